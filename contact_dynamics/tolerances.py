@@ -599,10 +599,6 @@ last bit."""
 MODE_STRAIGHT: Final = 1e-8
 """rad. Friction that misses the direction against the sliding by no more opposes it to rounding."""
 
-MODE_OBLIQUE: Final = 1e-3
-"""rad. Surfaces that lean less against each other count as flush. Several modes are rare there with usual
-friction."""
-
 MODE_RESTS: Final = 1e-12
 """Relative to the load. Forces that hold a body may leave so much of it unbalanced."""
 

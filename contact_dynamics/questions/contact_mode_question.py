@@ -43,7 +43,8 @@ class ContactModeQuestion(Record):
         velocity_tolerance: m/s, >= 0. A slower contact counts as at rest. None means the default.
         distance_tolerance: m, >= 0. A body with a smaller gap touches. None means the default.
         friction_facets: Number of edges, 3 to 32, of the pyramid that stands for a friction cone at rest in
-            space. None means 8 edges in the modes and 4 in the wrench sets.
+            space, in margins, statics and wrench sets. None means 8 edges, and 4 in the wrench sets. The
+            modes do not depend on it.
         margin_length: m, > 0. A torque divided by this length compares with a force in margins and statics.
             If it is None, the radius of gyration serves.
         want_margins: Whether the answer says how far the wrench is from another mode.

@@ -71,7 +71,7 @@ class ModeCase(Record):
         torque_W: (3,), N m, applied about the centre of mass, world axes.
         velocity_tolerance: m/s.
         distance_tolerance: m.
-        friction_facets: Edges of each friction pyramid in space.
+        friction_facets: Edges of each friction pyramid in space, in what says whether contacts jam.
     """
 
     subject: Subject

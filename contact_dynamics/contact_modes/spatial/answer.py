@@ -9,9 +9,9 @@ border of two sectors has its force on the side between their edges.
 
 The letters are s (separates), f (sticks) and c (stays and slides); the sector or border belongs to the mode.
 The search finds all modes of the pyramids (`search`). Then friction is turned exactly against the sliding
-(`exact_friction`, `exact_modes`). What the pyramids missed between two to four oblique contacts is found or
-refuted (`completeness`). For others, finer pyramids are tried where friction could not be turned. One contact
-at rest is solved exactly (`one_contact`), and round cones decide whether all contacts can stick
+(`exact_friction`, `exact_modes`). What the pyramids missed is found or refuted (`completeness`), unless it is
+proven at once that one mode is alone (`only_motion`). So the answer does not depend on the pyramids. One
+contact at rest is solved exactly (`one_contact`), and round cones decide whether all contacts can stick
 (`round_cones`).
 A contact without friction has the letter c, whether it slides or not.
 
@@ -35,7 +35,13 @@ from contact_dynamics.contact_modes.spatial.mode_with_forces import (
 )
 from contact_dynamics.contact_modes.spatial.narrowly import narrowly
 from contact_dynamics.contact_modes.spatial.one_contact import modes_of_one
-from contact_dynamics.contact_modes.spatial.problem import SpatialCase, search_of, spatial_case
+from contact_dynamics.contact_modes.spatial.only_motion import is_only_motion, rests_alone
+from contact_dynamics.contact_modes.spatial.problem import (
+    FRICTION_FACETS,
+    SpatialCase,
+    search_of,
+    spatial_case,
+)
 from contact_dynamics.contact_modes.spatial.realised import realised
 from contact_dynamics.contact_modes.spatial.result import SpatialMode, SpatialModeAnswer
 from contact_dynamics.contact_modes.spatial.round_cones import (
@@ -44,9 +50,7 @@ from contact_dynamics.contact_modes.spatial.round_cones import (
     rests_in_one_way,
     sticking,
 )
-from contact_dynamics.errors import TooLargeError
 from contact_dynamics.tolerances import (
-    MODE_OBLIQUE,
     MODE_STRAIGHT,
     NARROWLY,
 )
@@ -55,13 +59,6 @@ if TYPE_CHECKING:
     from contact_dynamics.contact_modes.spatial.problem import SpatialContactProblem
     from contact_dynamics.contact_modes.spatial.search import Found, Search
 
-
-_MOST_COMPLETED: Final = 4
-"""The modes of no more contacts than these are completed, with some 1000 linear programs of 0.1 ms."""
-
-_MOST_FACETS: Final = 128
-"""How many edges the finest pyramid has that is searched. Pyramids are made finer where friction could not be
-turned against the sliding."""
 
 _DOUBT: Final = "rounding decides whether some modes are consistent: contacts or normals are nearly the same"
 
@@ -74,7 +71,10 @@ _TURNED: Final = (
 
 _MISSED: Final = "bounds on friction and sliding could not tell whether there are further modes {}"
 
-_UNENDED: Final = "the search for modes with friction between the edges of the pyramids did not end"
+_UNENDED: Final = (
+    "the search for further modes did not end. There may be modes in which contacts stay as in {}, sticking "
+    "or sliding, and others"
+)
 
 
 _NARROW: Final = "rounding decides whether modes hold that hold under nearly the same load: {}"
@@ -107,7 +107,8 @@ def spatial_contact_modes(problem: SpatialContactProblem) -> SpatialModeAnswer:
     case = spatial_case(problem)
     if not isinstance(case, SpatialCase):
         return _answer(problem, Evidence([], ""), approaching=case)
-    return modes_of_case(problem, case, search_of(case, problem.friction_facets))
+    facets = FRICTION_FACETS if problem.sharpen else problem.friction_facets
+    return modes_of_case(problem, case, search_of(case, facets))
 
 
 def modes_of_case(
@@ -118,7 +119,8 @@ def modes_of_case(
     Args:
         problem: The problem.
         case: Its case (`spatial_case`).
-        search: The search of that case with the problem's facets (`search_of`), which nobody has run yet.
+        search: The search of that case (`search_of`), which nobody has run yet. If friction is sharpened, the
+            number of its facets does not matter to the answer.
         beside_rest: Whether it is enough to know if a body at rest has another mode than rest. The answer
             then need not have all modes where it has several.
 
@@ -126,7 +128,7 @@ def modes_of_case(
         TooLargeError: the search takes more trials than `pyramid_programs.MOST_EXAMINED`.
     """
     if problem.sharpen:
-        found = evidenced(case, search, facets=problem.friction_facets, beside_rest=beside_rest)
+        found = evidenced(case, search, beside_rest=beside_rest)
     else:
         found = Evidence(found_by(case, search, sharpen=False), _DOUBT if search.doubtful else "")
         if not (found.modes or found.undecided or search.at_rest or has_none(search)):
@@ -153,21 +155,20 @@ def _answer(
     )
 
 
-def evidenced(case: SpatialCase, search: Search, *, facets: int, beside_rest: bool = False) -> Evidence:
+def evidenced(case: SpatialCase, search: Search, *, beside_rest: bool = False) -> Evidence:
     """Return all modes of a case, with Coulomb's round cones.
 
     Args:
         case: The body with its contacts.
         search: The search of that case.
-        facets: The number of edges of its pyramids.
         beside_rest: As `modes_of_case` has it.
     """
-    found = _sought(case, search, facets, beside_rest=beside_rest)
+    found = _sought(case, search, beside_rest=beside_rest)
     exact = [pair for pair in found.modes if is_exact(pair[0])]
     others = tuple(dict.fromkeys(mode.mode for mode, _ in found.modes if not is_exact(mode)))
     turned = _TURNED.format(", ".join(others)) if others else ""
     letters = tuple(dict.fromkeys((*others, *found.undecided_modes)))
-    if not exact and not letters:
+    if not exact and not others:
         return _narrow(case, search, found)
     return Evidence(exact, found.undecided or turned, letters)
 
@@ -178,26 +179,25 @@ def _narrow(case: SpatialCase, search: Search, found: Evidence) -> Evidence:
         return found
     near = narrowly(search)
     if near.modes:
-        return Evidence(
-            [
-                (
-                    mode_with_forces(
-                        case,
-                        one.letters,
-                        one.forces,
-                        forces_unique=one.alone,
-                        motion_unique=True,
-                        slowest=NARROWLY,
-                    ),
-                    None,
-                )
-                for one in near.modes
-            ],
-            "",
-        )
+        modes: list[tuple[SpatialMode, Found | None]] = [
+            (
+                mode_with_forces(
+                    case,
+                    one.letters,
+                    one.forces,
+                    forces_unique=one.alone,
+                    motion_unique=True,
+                    slowest=NARROWLY,
+                ),
+                None,
+            )
+            for one in near.modes
+        ]
+        alone = len(near.modes) == 1 and is_only_motion(search, near.modes[0].forces)
+        return Evidence(modes, "") if alone or not found.undecided_modes else found._replace(modes=modes)
     if not near.nearby:
         return found._replace(undecided=found.undecided or _NOT_REFUTED)
-    names = tuple(_of_all(case, letters) for letters in near.nearby)
+    names = found.undecided_modes or tuple(_of_all(case, letters) for letters in near.nearby)
     return Evidence([], found.undecided or _NARROW.format(", ".join(names)), names)
 
 
@@ -209,29 +209,38 @@ def _of_all(case: SpatialCase, letters: str) -> str:
     return "".join(every)
 
 
-def _sought(case: SpatialCase, search: Search, facets: int, *, beside_rest: bool) -> Evidence:
+def _sought(case: SpatialCase, search: Search, *, beside_rest: bool) -> Evidence:
     """Return the modes of a case, also those whose friction could not be turned."""
+    slides = bool(np.any(case.sliding[case.touching]))
+    if rests_alone(search):
+        rest = search.resting()
+        resting = [] if rest is None else [(realised(case, search, rest, sharpen=True), rest)]
+        return _with_rest(case, search, Evidence([*resting], ""))
     kept = found_by(case, search, sharpen=True)
     undecided = _DOUBT if search.doubtful else ""
-    slides = bool(np.any(case.sliding[case.touching]))
     if not slides and len(case.touching) == 1 and search.touching[0].friction > 0.0:
         return Evidence(_of_one_contact(case, search, kept), "")
+    if not any(one.frame is not None for one in search.pyramids):
+        return Evidence(kept, undecided)
+    known = Evidence(by_letters(case, search, kept), "")
     if beside_rest and not slides:
-        exact = [pair for pair in by_letters(case, search, kept) if is_exact(pair[0])]
+        exact = [pair for pair in known.modes if is_exact(pair[0])]
         if not all(_all_stick(case, search, mode) for mode, _ in exact):
             return _with_rest(case, search, Evidence(exact, undecided))
-    if 2 <= len(search.touching) <= _MOST_COMPLETED and _are_oblique(search):
-        found = _completed(case, search, by_letters(case, search, kept))
-    else:
-        found = _refined(case, search, Evidence(kept, undecided), facets)
-    return found if slides else _with_rest(case, search, found)
+    if not _is_alone(case, search, known) and not slides:
+        known = _with_rest(case, search, known)
+    if _is_alone(case, search, known):
+        return Evidence([pair for pair in known.modes if is_exact(pair[0])], "")
+    found = _completed(case, search, known.modes)
+    return found._replace(undecided=found.undecided or known.undecided)
 
 
-def _are_oblique(search: Search) -> bool:
-    """Return whether friction at rest acts on surfaces that lean against each other."""
-    normals = np.array([one.normal for one in search.touching])
-    at_rest = any(one.frame is not None for one in search.pyramids)
-    return at_rest and bool(np.abs(normals - normals[0]).max() > MODE_OBLIQUE)
+def _is_alone(case: SpatialCase, search: Search, found: Evidence) -> bool:
+    """Return whether one mode was found, and it is proven that there is no other."""
+    exact = [mode for mode, _ in found.modes if is_exact(mode)]
+    if len(exact) != 1 or not exact[0].motion_unique:
+        return False
+    return is_only_motion(search, exact[0].contact_forces_W[case.touching] / case.motion.scale)
 
 
 def _completed(case: SpatialCase, search: Search, found: list[tuple[SpatialMode, Found | None]]) -> Evidence:
@@ -248,15 +257,16 @@ def _completed(case: SpatialCase, search: Search, found: list[tuple[SpatialMode,
     missed = completed(search, known)
     for one in missed.further:
         mode = mode_with_forces(
-            case, one.letters, one.forces, forces_unique=one.alone, motion_unique=one.alone
+            case, one.letters, one.forces, forces_unique=one.forces_unique, motion_unique=one.alone
         )
         exact.append((mode, None))
     names = [_of_all(case, letters) for letters in missed.undecided]
     undecided = _MISSED.format(", ".join(names)) if names else ""
-    if not missed.ended:
-        undecided = _UNENDED
-        names += [mode.mode for mode, _ in found if not is_exact(mode) and mode.mode not in names]
-    return Evidence(each_once(exact), undecided, tuple(names))
+    if missed.unended:
+        open_ones = _of_all(case, missed.unended)
+        undecided = _UNENDED.format(open_ones)
+        names += [*(mode.mode for mode, _ in found if not is_exact(mode)), open_ones]
+    return Evidence(each_once(exact), undecided, tuple(dict.fromkeys(names)))
 
 
 def found_by(case: SpatialCase, search: Search, *, sharpen: bool) -> list[tuple[SpatialMode, Found | None]]:
@@ -272,27 +282,6 @@ def found_by(case: SpatialCase, search: Search, *, sharpen: bool) -> list[tuple[
     if not sharpen:
         return found
     return each_once(sorted(found, key=lambda pair: pair[0].motion_unique))
-
-
-def _refined(case: SpatialCase, search: Search, found: Evidence, facets: int) -> Evidence:
-    """Return the modes, where modes of finer pyramids replace those whose friction could not be turned."""
-    modes = by_letters(case, search, found.modes)
-    while not all(is_exact(mode) for mode, _ in modes):
-        facets *= 2
-        exact = [pair for pair in modes if is_exact(pair[0])]
-        others = [mode for mode, _ in modes if not is_exact(mode)]
-        if facets > _MOST_FACETS or not all(mode.motion_unique for mode in others):
-            break
-        finer = search_of(case, facets)
-        try:
-            further = found_by(case, finer, sharpen=True)
-        except TooLargeError:
-            break
-        further = [(mode, None) for mode, _ in by_letters(case, finer, further)]
-        modes = each_once([*exact, *further])
-        if finer.doubtful:
-            return Evidence(modes, _DOUBT)
-    return Evidence(modes, found.undecided)
 
 
 def _of_one_contact(

@@ -1,13 +1,19 @@
-"""Whether a case has modes that were not found: every combination of letters is found, refuted or named.
+"""Whether a case has modes that were not found: every set of them is found, refuted or named.
 
-The search of the pyramids can miss a mode whose friction lies between their edges. Here a linear program
-holds all modes of a set of letters and directions (`holding_programs`). If no forces satisfy it, there is no
-mode in the set. Otherwise the set is parted, first by letters and then by directions.
+The search of the pyramids can miss a mode whose friction lies between their edges. Here linear programs hold
+all modes of a set (`holding_programs`), with pyramids around the round cones. If no forces satisfy one, there
+is no mode in the set. Otherwise the set is parted:
 
-This ends at solutions. Newton's method finds a solution in the set, and bounds on the derivatives around it
-say in which range of directions there is no other one (`only_solution`). Outside of that range the parting
-goes on. Where bodies can move in one direction only, round cones decide (`shared_loads`). What is left over
-when ranges are narrow is undecided.
+- First it is decided which contacts stay, one after another.
+- Then it is decided which of several frictional contacts at rest stick. As in `search`, the motions with
+  given contacts sticking form a flat.
+- In a flat, the common motions are parted into regions, and where a contact may slide any way in a narrow
+  region, because it may stick there too, its directions of sliding are parted.
+
+This ends at solutions. One motion may exclude all others with the same contacts staying (`only_motion`).
+Otherwise Newton's method finds a solution in the set, and bounds on the derivatives around it say in which
+range of directions there is no other one (`only_solution`). Where bodies can move in one direction only,
+round cones decide (`shared_loads`). What is left over when ranges are narrow is undecided.
 """
 
 from __future__ import annotations
@@ -15,34 +21,46 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Final, NamedTuple
 
+import numpy as np
+
 from contact_dynamics.contact_modes.letters import SEPARATES, STAYS, STICKS
-from contact_dynamics.contact_modes.spatial.exact_letters import (
-    forces_with_letters,
-    solution_near,
-)
+from contact_dynamics.contact_modes.spatial.exact_letters import forces_with_letters, solution_near
 from contact_dynamics.contact_modes.spatial.holding_programs import (
     COARSE,
     FINE,
-    UNKNOWN,
     HoldingPrograms,
     Ranges,
-    TooManyError,
+    Within,
 )
+from contact_dynamics.contact_modes.spatial.only_motion import is_only_motion
 from contact_dynamics.contact_modes.spatial.only_solution import Equations, alone_within
+from contact_dynamics.contact_modes.spatial.pyramid_programs import PyramidPrograms
+from contact_dynamics.contact_modes.spatial.regions import flat_of, gains_in, whole
 from contact_dynamics.contact_modes.spatial.shared_loads import sliding_together
 from contact_dynamics.tolerances import NARROWEST_RANGE, SAME_MOTION, SAME_SLIDING, STRICT
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
+    from contact_dynamics.contact_modes.spatial.options import Option
+    from contact_dynamics.contact_modes.spatial.pyramid_programs import AnyProgram
+    from contact_dynamics.contact_modes.spatial.regions import Flat, Region
     from contact_dynamics.contact_modes.spatial.search import Search
     from contact_dynamics.validation import FloatArray
 
+_MOST_PROGRAMS: Final = 3000
+"""The search for missed modes is given up after this many linear programs of 0.3 ms."""
+
 _QUARTER: Final = 0.5 * math.pi
+
+_TURN: Final = 2.0 * math.pi
 
 _WIDE: Final = 0.1
 """rad. In wider ranges of directions the pyramids around round cones are coarse. Newton's method waits too,
 since it would mostly find solutions elsewhere."""
+
+_REGION: Final = 0.3
+"""rad. Regions are narrower than this before directions of single contacts are parted."""
 
 
 class Known(NamedTuple):
@@ -53,11 +71,13 @@ class Known(NamedTuple):
         forces: (n, 3), in the units of the motion.
         alone: Whether its motion is the only one with these letters nearby. If it is not, one mode stands for
             all with these letters.
+        forces_unique: Whether its forces are the only ones with its motion.
     """
 
     letters: str
     forces: FloatArray
     alone: bool
+    forces_unique: bool = True
 
 
 class Completed(NamedTuple):
@@ -66,12 +86,21 @@ class Completed(NamedTuple):
     Attributes:
         further: Modes that were not known.
         undecided: The letters that may have further modes.
-        ended: Whether the search came to its end. If it did not, other letters may have modes too.
+        unended: The letters at which the search was given up, or empty if it came to its end. Letters that
+            follow may have modes too.
     """
 
     further: tuple[Known, ...]
     undecided: tuple[str, ...]
-    ended: bool
+    unended: str
+
+
+class _TooManyError(Exception):
+    """There are too many sets of letters and directions."""
+
+
+class _NotRefutedError(Exception):
+    """Linear programs do not refute a set."""
 
 
 class _Alone(NamedTuple):
@@ -79,19 +108,46 @@ class _Alone(NamedTuple):
 
     Attributes:
         angles: The directions of sliding, rad.
-        equations: The equations there.
+        equations: The equations there; None where contacts share loads, so that they are too few.
         has_letters: Whether it is a mode.
         within: rad. No other solution has all directions within this of these. It is negative if unknown.
     """
 
     angles: dict[int, float]
-    equations: Equations
+    equations: Equations | None
     has_letters: bool
     within: float = -1.0
 
     def is_in(self, ranges: Ranges, slack: float) -> bool:
         """Return whether all directions are in ranges, or no further outside than some slack, rad."""
         return all(_from(low - slack, self.angles[i]) <= high + slack for i, (low, high) in ranges.items())
+
+    def excludes(self, ranges: Ranges) -> bool:
+        """Return whether no other solution has directions in these ranges."""
+        return all(
+            max(abs(_from(low, self.angles[i]) - end) for end in (low, high)) <= self.within
+            for i, (low, high) in ranges.items()
+        )
+
+
+class _Set(NamedTuple):
+    """Modes with some letters, in a region of common motions, with some directions of sliding.
+
+    Attributes:
+        letters: s, c or f for each touching contact.
+        turning: The contacts that begin to slide.
+        flat: The flat of the region; None if the motions are not parted.
+        region: The region.
+        gains: The power of the applied wrench, as `Within` has it.
+        ranges: Directions of sliding that are demanded.
+    """
+
+    letters: str
+    turning: list[int]
+    flat: Flat | None
+    region: Region | None
+    gains: FloatArray | None
+    ranges: Ranges
 
 
 def completed(search: Search, known: Sequence[Known]) -> Completed:
@@ -104,30 +160,49 @@ def completed(search: Search, known: Sequence[Known]) -> Completed:
         known: The modes that were found, all exact.
     """
     work = _Work(search, known)
-    ended = True
+    unended = ""
     try:
-        work.part(UNKNOWN * len(search.touching))
-    except TooManyError:
-        ended = False
-    return Completed(tuple(work.further), tuple(work.undecided), ended)
+        work.run()
+    except _TooManyError:
+        unended = work.at
+    settled = {one.letters for one in work.further if not one.alone}
+    return Completed(tuple(work.further), tuple(one for one in work.undecided if one not in settled), unended)
 
 
 def has_none(search: Search) -> bool:
     """Return whether it is certain that a case has no mode, also none that holds narrowly."""
     try:
-        return _Work(search, (), least=0.0).refutes(UNKNOWN * len(search.touching))
-    except TooManyError:
+        _Work(search, (), least=0.0, refutes=True).run()
+    except (_TooManyError, _NotRefutedError):
         return False
+    return True
 
 
-class _Work:
-    """The search for missed modes."""
+class _Work(PyramidPrograms):
+    """The search for missed modes, with pyramids around the round cones."""
 
-    def __init__(self, search: Search, known: Sequence[Known], *, least: float = STRICT) -> None:
+    def __init__(
+        self, search: Search, known: Sequence[Known], *, least: float = STRICT, refutes: bool = False
+    ) -> None:
+        wider = 1.0 / math.cos(math.pi / COARSE)
+        super().__init__(
+            [
+                contact if pyramid.frame is None else contact._replace(friction=wider * contact.friction)
+                for contact, pyramid in zip(search.touching, search.pyramids, strict=True)
+            ],
+            of_forces=search.of_forces,
+            free=search.motion[:, -1],
+            mass=search.mass,
+            at_rest=search.at_rest,
+            facets=COARSE,
+            least=least,
+        )
         self._search = search
+        self._refutes = refutes
         self._open = [i for i, one in enumerate(search.pyramids) if one.frame is not None]
-        self._at_rest = "".join(STAYS if one.frame is None else STICKS for one in search.pyramids)
-        self._forces = HoldingPrograms(search, least).forces
+        self._all_stick = "".join(STAYS if one.frame is None else STICKS for one in search.pyramids)
+        self._programs = HoldingPrograms(search, least)
+        self._known = known
         self._held = {one.letters for one in known}
         self._decided = {one.letters for one in known if not one.alone}
         self._solutions: dict[str, list[_Alone]] = {}
@@ -136,116 +211,202 @@ class _Work:
                 self._solve(one.letters, one.forces)
         self.further: list[Known] = []
         self.undecided: list[str] = []
+        self.at = STAYS * len(search.touching)  # the letters that are decided now
 
-    def refutes(self, letters: str) -> bool:
-        """Return whether linear programs refute a set, parted by letters and then by directions."""
-        if self._forces(letters, {}) is None:
-            return True
-        at = letters.find(UNKNOWN)
-        if at >= 0:
-            own = (SEPARATES, STAYS, STICKS) if at in self._open else (SEPARATES, STAYS)
-            return all(self.refutes(letters[:at] + letter + letters[at + 1 :]) for letter in own)
-        turning = [i for i in self._open if letters[i] == STAYS]
-        if not turning:
-            return self._forces(letters, {}, FINE) is None
-        return self._refutes_directions(letters, dict.fromkeys(turning, (0.0, 2.0 * math.pi)))
+    def run(self) -> None:
+        """Part the set of all modes."""
+        root = self._solved(self._root)
+        if root is not None:
+            self._decide_who_stays(root, self._trials, 0)
 
-    def _refutes_directions(self, letters: str, ranges: Ranges) -> bool:
-        """Return whether linear programs refute letters with some ranges of directions."""
-        widest = max(ranges, key=lambda i: ranges[i][1] - ranges[i][0])
-        low, high = ranges[widest]
-        narrow = {i: own for i, own in ranges.items() if own[1] - own[0] <= _QUARTER}
-        if self._forces(letters, narrow, COARSE if high - low > _WIDE else FINE) is None:
-            return True
-        middle = 0.5 * (low + high)
-        return high - low > _WIDE and all(
-            self._refutes_directions(letters, {**ranges, widest: half})
-            for half in ((low, middle), (middle, high))
-        )
+    def _count(self) -> None:
+        self.examined += 1
+        if self.examined > _MOST_PROGRAMS:
+            raise _TooManyError
 
-    def part(self, letters: str) -> None:
-        """Part a set by letters, and then by directions."""
-        if letters in self._decided or letters == self._at_rest or self._forces(letters, {}) is None:
+    def _forces(
+        self, letters: str, ranges: Ranges, facets: int, within: Within | None = None
+    ) -> FloatArray | None:
+        self._count()
+        return self._programs.forces(letters, ranges, facets, within=within)
+
+    def _decide_who_stays(self, program: AnyProgram, trials: list[Option], at: int) -> None:
+        if at == len(trials):
+            self._decide_staying(trials)
             return
-        at = letters.find(UNKNOWN)
-        turning = [i for i in self._open if letters[i] == STAYS]
-        if at >= 0:
-            for letter in (SEPARATES, STAYS, STICKS) if at in self._open else (SEPARATES, STAYS):
-                self.part(letters[:at] + letter + letters[at + 1 :])
-        elif not turning:
+        for part in trials[at].parts:
+            narrower = self._solved(self._narrowed(program, at, part))
+            if narrower is not None:
+                self._decide_who_stays(narrower, [*trials[:at], part, *trials[at + 1 :]], at + 1)
+
+    def _decide_staying(self, trials: list[Option]) -> None:
+        """Decide all modes in which the same contacts stay."""
+        letters = "".join(one.letter or STICKS for one in trials)
+        self.at = letters.replace(STICKS, STAYS)
+        staying = _staying(letters)
+        open_ones = [i for i in self._open if letters[i] == STICKS]
+        if not open_ones:
             self._decide_without_directions(letters)
-        elif not self._is_decided_one_way(letters):
-            self._part_directions(letters, {}, turning)
+            return
+        if any(
+            one.alone
+            and _staying(one.letters) == staying
+            and is_only_motion(self._search, one.forces, staying)
+            for one in self._known
+        ):
+            return
+        if len(open_ones) == 1 or any(self.touching[i].point[:, -1].any() for i in staying):
+            self._part_letters(letters, open_ones)
+            return
+        frames = np.array([trials[i].parts[0].rows[:, :-1] for i in open_ones])
+        normals = self._normals[staying, :-1]
+        rest = flat_of(normals, frames, tuple(range(len(open_ones))))
+        self._decide_without_directions(letters)
+        flats = [flat_of(normals, frames, ())]
+        seen = {rest.stuck, flats[0].stuck}
+        while flats:
+            flat = flats.pop()
+            if self._decide_flat(flat, letters, open_ones):
+                for further in flat.parts(normals, frames):
+                    if further.stuck not in seen:
+                        seen.add(further.stuck)
+                        flats.append(further)
+
+    def _part_letters(self, letters: str, open_ones: list[int]) -> None:
+        """Decide which of some contacts stick, and then in which directions the others slide."""
+        if not open_ones:
+            turning = [i for i in self._open if letters[i] == STAYS]
+            if not turning:
+                self._decide_without_directions(letters)
+            elif not self._is_decided(letters):
+                self._decide(_Set(letters, turning, None, None, None, {}))
+            return
+        at = open_ones[0]
+        for letter in (STAYS, STICKS):
+            narrower = letters[:at] + letter + letters[at + 1 :]
+            if letter == STICKS or self._forces(narrower, {}, COARSE) is not None:
+                self._part_letters(narrower, open_ones[1:])
 
     def _decide_without_directions(self, letters: str) -> None:
         """Find or refute a mode in which no contact begins to slide."""
         if letters in self._held or set(letters) == {SEPARATES}:
             return
+        if letters == self._all_stick and not self._refutes:
+            return
         start = self._forces(letters, {}, FINE)
         if start is None:
             return
+        if self._refutes:
+            raise _NotRefutedError
         forces = forces_with_letters(self._search, letters, start, shared=True)
         regular = solution_near(self._search, letters, start) is not None
         if forces is not None:
-            self._keep(Known(letters, forces, alone=regular))
+            self._keep(Known(letters, forces, alone=regular, forces_unique=regular))
         elif not regular:
             self.undecided.append(letters)
 
-    def _is_decided_one_way(self, letters: str) -> bool:
-        """Find or refute a mode of a body that can move in one direction only, and return whether it was."""
-        if STICKS not in letters or letters in self._held:
+    def _decide_flat(self, flat: Flat, letters: str, open_ones: list[int]) -> bool:
+        """Find or refute all modes in which all contacts slide that a flat lets slide.
+
+        Return whether there may be modes in which some of these contacts stick, and others slide.
+        """
+        turning = [i for k, i in enumerate(open_ones) if k not in flat.stuck]
+        own = self.at = "".join(STAYS if i in turning else letter for i, letter in enumerate(letters))
+        if self._forces(own, {}, COARSE) is None:
+            return False
+        if self._is_decided(own):
+            return True
+        if len(turning) < len(flat.image.coordinates) - 1:
+            self._decide(_Set(own, turning, None, None, None, {}))
+            return True
+        gains = None if self._power is None else gains_in(flat.image, self._power, self.mass)
+        may_hold = False
+        for region in whole(len(flat.image.coordinates)):
+            may_hold |= self._decide(_Set(own, turning, flat, region, gains, {}))
+        return may_hold
+
+    def _is_decided(self, letters: str) -> bool:
+        """Return whether all modes with some letters are known.
+
+        A mode of a body that can move in one direction only is found or refuted.
+        """
+        if letters in self._decided:
+            return True
+        if letters in self._held:
             return False
         held = sliding_together(self._search, letters, [])
         if held.forces is None:
             return held.certain
+        if self._refutes:
+            raise _NotRefutedError
         forces = forces_with_letters(self._search, letters, held.forces, shared=True)
-        if forces is not None:
-            self._keep(Known(letters, forces, alone=False))
-        return forces is not None
-
-    def _part_directions(self, letters: str, ranges: Ranges, turning: list[int]) -> None:
-        """Part the directions of contacts into quarters of the circle."""
-        if len(ranges) == len(turning):
-            self._decide(letters, ranges)
-            return
-        at = turning[len(ranges)]
-        for quarter in range(4):
-            narrower = {**ranges, at: (quarter * _QUARTER, (quarter + 1) * _QUARTER)}
-            if len(narrower) == len(turning) or self._forces(letters, narrower) is not None:
-                self._part_directions(letters, narrower, turning)
-
-    def _decide(self, letters: str, ranges: Ranges) -> None:
-        """Find or refute all modes with some letters in some ranges of directions."""
-        if letters in self._decided:
-            return
-        widest = max(ranges, key=lambda i: ranges[i][1] - ranges[i][0])
-        low, high = ranges[widest]
-        forces = self._forces(letters, ranges, COARSE if high - low > _WIDE else FINE)
         if forces is None:
-            return
+            return False
+        regular = solution_near(self._search, letters, forces) is not None
+        solution = solution_near(self._search, letters, forces, shared=True)
+        alone = solution is not None and solution.motion_unique
+        self._keep(Known(letters, forces, alone=alone, forces_unique=regular))
+        self._decided.add(letters)  # the forces that move it so form a convex set
+        return True
+
+    def _decide(self, modes: _Set) -> bool:
+        """Find or refute all modes in a set.
+
+        Return whether contacts that slide in it may stick instead.
+        """
+        letters, turning = modes.letters, modes.turning
+        if letters in self._decided:
+            return True
+        ranges = _met(_implied(modes), modes.ranges)
+        widest, width = _widest(turning, ranges or {})
+        forces = None
+        if ranges is not None:
+            facets = COARSE if width > _WIDE else FINE
+            forces = self._forces(letters, ranges, facets, _within(modes))
+        if ranges is None or forces is None:
+            return bool(modes.ranges)
+        if self._refutes and width <= _WIDE:
+            raise _NotRefutedError
+        if len(ranges) == len(turning) and self._ends(modes, ranges, width, forces):
+            return True
+        may_hold = False
+        for part in _parts(modes, ranges, widest, width):
+            may_hold |= self._decide(part)
+        return may_hold
+
+    def _ends(self, modes: _Set, ranges: Ranges, width: float, forces: FloatArray) -> bool:
+        """Return whether a set need not be parted further, because its solutions are known, or it is narrow.
+
+        Args:
+            modes: The set.
+            ranges: The directions in which each contact slides.
+            width: The width of the widest of them.
+            forces: Forces that its programs allow.
+        """
+        letters = modes.letters
         solution = self._inside(letters, ranges)
-        if solution is None and high - low <= _WIDE:
+        if solution is None and width <= _WIDE:
             self._solve(letters, forces, new=True)
             solution = self._inside(letters, ranges)
-        if solution is not None and solution.within > 0.0:
+        if solution is not None and solution.within > 0.0 and modes.region is None:
             for piece in _without(ranges, solution):
-                self._decide(letters, piece)
-        elif high - low <= SAME_SLIDING and self._is_close(letters, ranges):
-            return  # it may be the same mode
-        elif high - low > NARROWEST_RANGE:
-            middle = 0.5 * (low + high)
-            self._decide(letters, {**ranges, widest: (low, middle)})
-            self._decide(letters, {**ranges, widest: (middle, high)})
-        else:
+                self._decide(modes._replace(ranges=piece))
+            return True
+        if solution is not None and solution.excludes(ranges):
+            return True
+        if width <= SAME_SLIDING and self._is_close(letters, ranges):
+            return True  # it may be the same mode
+        if width <= NARROWEST_RANGE:
             self.undecided.append(letters)
             self._decided.add(letters)
+        return letters in self._decided
 
     def _inside(self, letters: str, ranges: Ranges) -> _Alone | None:
         """Return a solution whose directions are in all ranges."""
         others = self._solutions.get(letters, [])
         for k, one in enumerate(others):
             if one.is_in(ranges, 0.0):
-                if one.within < 0.0:
+                if one.within < 0.0 and one.equations is not None:
                     others[k] = one._replace(within=alone_within(one.equations))
                 return others[k]
         return None
@@ -257,20 +418,87 @@ class _Work:
 
     def _solve(self, letters: str, forces: FloatArray, *, new: bool = False) -> None:
         """Keep a solution near some forces, and the mode that it is if that is new."""
-        solution = solution_near(self._search, letters, forces)
+        solution = solution_near(self._search, letters, forces) or solution_near(
+            self._search, letters, forces, shared=True
+        )
         if solution is None:
+            return
+        if solution.equations is None and not solution.motion_unique:
+            if new and solution.has_letters:
+                self._keep(Known(letters, solution.forces, alone=False, forces_unique=False))
             return
         others = self._solutions.setdefault(letters, [])
         if not any(_are_the_same(solution.angles, one.angles) for one in others):
             others.append(_Alone(solution.angles, solution.equations, solution.has_letters))
             if new and solution.has_letters:
-                self._keep(Known(letters, solution.forces, alone=True))
+                unique = solution.equations is not None
+                self._keep(Known(letters, solution.forces, alone=True, forces_unique=unique))
 
     def _keep(self, mode: Known) -> None:
         self.further.append(mode)
         self._held.add(mode.letters)
         if not mode.alone:
             self._decided.add(mode.letters)
+
+
+def _staying(letters: str) -> list[int]:
+    return [i for i, letter in enumerate(letters) if letter != SEPARATES]
+
+
+def _within(modes: _Set) -> Within | None:
+    """Return the region of a set, for its programs."""
+    if modes.region is None or modes.flat is None:
+        return None
+    implied = frozenset(i for i in modes.turning if i not in modes.ranges)
+    return Within(modes.region, modes.flat.image, modes.turning, modes.gains, implied)
+
+
+def _widest(turning: list[int], ranges: Ranges) -> tuple[int, float]:
+    """Return the contact that may slide in the widest range of directions, and the width of that, rad."""
+    widths = {i: ranges[i][1] - ranges[i][0] if i in ranges else _TURN for i in turning}
+    widest = max(turning, key=widths.__getitem__)
+    return widest, widths[widest]
+
+
+def _implied(modes: _Set) -> Ranges:
+    """Return the ranges of directions that follow from the region of a set."""
+    if modes.region is None or modes.flat is None:
+        return {}
+    found = modes.region.directions(modes.flat.image)
+    return {i: one for i, one in zip(modes.turning, found, strict=True) if one is not None}
+
+
+def _met(implied: Ranges, demanded: Ranges) -> Ranges | None:
+    """Return the ranges in which directions satisfy both, or None if there are none."""
+    found = {**implied, **demanded}
+    for i in demanded.keys() & implied.keys():
+        low, high = demanded[i]
+        start, end = implied[i]
+        first = _from(low, start)  # both ranges are narrower than half a circle
+        if first <= high:
+            found[i] = first, min(high, first + end - start)
+        elif first + end - start >= low + _TURN:
+            found[i] = low, min(high, first + end - start - _TURN)
+        else:
+            return None
+    return found
+
+
+def _parts(modes: _Set, ranges: Ranges, widest: int, width: float) -> Iterator[_Set]:
+    """Yield the halves of a set."""
+    region = modes.region
+    if region is not None and region.width > 0.0 and (region.width > _REGION or 3.0 * region.width > width):
+        for half in region.cut:
+            yield modes._replace(region=half)
+    elif widest in ranges:
+        low, high = ranges[widest]
+        middle = 0.5 * (low + high)
+        for part in ((low, middle), (middle, high)):
+            yield modes._replace(ranges={**modes.ranges, widest: part})
+    else:
+        for quarter in range(4):
+            part = (quarter * _QUARTER, (quarter + 1) * _QUARTER)
+            yield modes._replace(ranges={**modes.ranges, widest: part})
 
 
 def _without(ranges: Ranges, solution: _Alone) -> Iterator[Ranges]:
@@ -288,10 +516,8 @@ def _without(ranges: Ranges, solution: _Alone) -> Iterator[Ranges]:
 
 def _from(low: float, angle: float) -> float:
     """Return an angle plus full turns, from ``low`` on."""
-    return low + (angle - low) % (2.0 * math.pi)
+    return low + (angle - low) % _TURN
 
 
 def _are_the_same(angles: dict[int, float], others: dict[int, float]) -> bool:
-    return all(
-        abs(math.remainder(angle - others[i], 2.0 * math.pi)) <= SAME_MOTION for i, angle in angles.items()
-    )
+    return all(abs(math.remainder(angle - others[i], _TURN)) <= SAME_MOTION for i, angle in angles.items())

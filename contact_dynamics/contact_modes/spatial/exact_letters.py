@@ -25,6 +25,7 @@ from contact_dynamics.tolerances import (
     LETTERS_ON_CONE,
     LETTERS_REGULAR,
     LETTERS_SETTLED,
+    SAME_MOTION,
     STRICT,
 )
 
@@ -83,26 +84,35 @@ class Solution(NamedTuple):
         forces: (n, 3), in the units of the motion.
         angles: For each contact that begins to slide, the direction of that, rad, in its pyramid's frame.
         has_letters: Whether the inequalities hold, so that it is a mode.
-        equations: The equations there.
+        equations: The equations there; None if contacts may share loads.
+        motion_unique: Whether forces nearby with these letters cause the same motion.
     """
 
     forces: FloatArray
     angles: dict[int, float]
     has_letters: bool
-    equations: Equations
+    equations: Equations | None
+    motion_unique: bool = True
 
 
-def solution_near(search: Search, letters: str, forces: FloatArray) -> Solution | None:
+def solution_near(
+    search: Search, letters: str, forces: FloatArray, *, shared: bool = False
+) -> Solution | None:
     """Return the solution that Newton's method finds from some forces, (n, 3).
 
-    It is None if the method does not settle, or if the equations leave something open.
+    It is None if the method does not settle, or if the equations leave something open and contacts may not
+    share loads.
     """
-    system = _System(search, letters, None)
-    unknowns = _solved(system, forces, shared=False)
+    system = _System(search, letters, forces if shared else None)
+    unknowns = _solved(system, forces, shared=shared)
     if unknowns is None:
         return None
     found = system.forces(unknowns)
-    return Solution(found, system.angles(unknowns), system.has_letters(found), system.equations(unknowns))
+    holds = system.has_letters(found)
+    if not shared:
+        return Solution(found, system.angles(unknowns), holds, system.equations(unknowns))
+    every = _System(search, letters, None)
+    return Solution(found, system.sliding(found), holds, None, every.is_motion_unique(every.start(found)))
 
 
 def _solved(system: _System, forces: FloatArray, *, shared: bool) -> FloatArray | None:
@@ -223,6 +233,28 @@ class _System:
                 if not (against if pressing > 0.0 else float(np.linalg.norm(slides)) > least):
                     return False
         return True
+
+    def is_motion_unique(self, unknowns: FloatArray) -> bool:
+        """Return whether unknowns nearby that solve the equations too cause the same motion."""
+        slopes, of_unknowns = (
+            self.at(unknowns)[1],
+            self._search.of_forces @ self._forces_and_changes(unknowns)[1],
+        )
+        sizes = np.linalg.norm(slopes, axis=0)
+        sizes[sizes == 0.0] = 1.0
+        spread, right = np.linalg.svd(slopes / sizes)[1:]
+        open_ones = right[int((spread > LETTERS_REGULAR * spread[0]).sum()) :].T
+        moved = (of_unknowns / sizes) @ open_ones
+        return bool(np.abs(moved).max(initial=0.0) <= SAME_MOTION * np.abs(of_unknowns / sizes).max())
+
+    def sliding(self, forces: FloatArray) -> dict[int, float]:
+        """Return the direction, rad, in which forces make each contact slide that begins to."""
+        motion, found = self._motion(forces), {}
+        for i, (letter, frame) in enumerate(zip(self._letters, self._frames, strict=True)):
+            if letter == STAYS and frame is not None:
+                x, y = frame @ (self._search.touching[i].point @ motion)
+                found[i] = math.atan2(y, x)
+        return found
 
     def angles(self, unknowns: FloatArray) -> dict[int, float]:
         """Return the direction, rad, in which each contact begins to slide."""

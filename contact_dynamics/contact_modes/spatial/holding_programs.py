@@ -1,35 +1,36 @@
 """Linear programs that hold all modes with some letters and some directions of sliding.
 
-Each asks for less than its modes do. A contact that slides in a range of directions has a force in the cone
-of three edges that holds all friction against them: the two at the ends, and the crossing of the tangents
-there. A contact that sticks has a pyramid around its round cone. So if no forces satisfy the program, there
-is no mode.
+Each asks for less than its modes do. A contact that slides in a range of directions has a force in the hull
+of all friction against them, whose edges are those at both ends and the crossings of tangents in between. A
+contact that sticks has a pyramid around its round cone. So if no forces satisfy the program, there is no
+mode.
+
+In a region of common motions (`regions`), the power of the applied wrench must reach what friction takes
+there. Friction takes at least what the same normal forces would along any fixed direction. What that leaves
+is linear in the motion, so that it is negative in all of the region where it is negative on each of its rays.
 """
 
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Final, TypeAlias
+from typing import TYPE_CHECKING, Final, NamedTuple, TypeAlias
 
 import numpy as np
 
-from contact_dynamics.contact.friction import linearised_cone
+from contact_dynamics.contact.friction import edges_in_frame
 from contact_dynamics.contact_modes.letters import SEPARATES, STICKS
 from contact_dynamics.contact_modes.spatial.careful_program import CarefulProgram
 from contact_dynamics.contact_modes.spatial.dual_simplex import Narrowing, Program
 from contact_dynamics.contact_modes.spatial.options import MILDER
+from contact_dynamics.numerics.linear_spaces import seen_and_unseen
+from contact_dynamics.tolerances import STRICT
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from contact_dynamics.contact_modes.spatial.search import Search
+    from contact_dynamics.contact_modes.spatial.pyramid_programs import PyramidPrograms
+    from contact_dynamics.contact_modes.spatial.regions import Image, Region
     from contact_dynamics.validation import FloatArray
-
-_MOST_PROGRAMS: Final = 3000
-"""The search for missed modes is given up after this many linear programs of 0.1 ms."""
-
-_CARE: Final = 10
-"""A program that is solved with care counts as so many."""
 
 COARSE: Final = 16
 """The number of edges of a coarse pyramid around a round cone. Its friction is too large by 2 %."""
@@ -37,105 +38,191 @@ COARSE: Final = 16
 FINE: Final = 128
 """The number of edges of a fine one. Its friction is too large by 0.03 %."""
 
-UNKNOWN: Final = "?"
-"""The letter of a contact that is not decided yet."""
+_PIECE: Final = 0.8
+"""rad. Tangents to the friction of a range of directions touch it this far apart at most."""
+
+_QUARTER: Final = 0.5 * math.pi
 
 Ranges: TypeAlias = dict[int, tuple[float, float]]
 """For contacts that slide, the first and the last direction, rad, in the frames of their pyramids."""
 
+_CONSTANT: Final = np.eye(1, 7, 6)[0]
 
-_CONSTANT: Final = np.eye(1, 7, 6)
+
+class Within(NamedTuple):
+    """A region of common motions.
+
+    Attributes:
+        region: The region.
+        image: The space in which it lies.
+        turning: The contacts that slide, in the order of the image's maps.
+        gains: (p,), the power of the applied wrench on unit coordinates; None if something moves already.
+        implied: The contacts whose ranges of directions follow from the region.
+    """
+
+    region: Region
+    image: Image
+    turning: list[int]
+    gains: FloatArray | None
+    implied: frozenset[int] = frozenset()
 
 
-class TooManyError(Exception):
-    """There are too many sets of letters and directions."""
+class _Edges(NamedTuple):
+    """Edges of contact forces, in units in which each moves the body by one.
+
+    Attributes:
+        edges: (k, 3).
+        moved: (k, 6), the motion that each causes.
+        sizes: (k,), the motion that a unit normal part of each causes.
+    """
+
+    edges: FloatArray
+    moved: FloatArray
+    sizes: FloatArray
 
 
 class HoldingPrograms:
     """The programs of one search, whose strict inequalities hold by at least ``least``."""
 
-    def __init__(self, search: Search, least: float) -> None:
+    def __init__(self, search: PyramidPrograms, least: float) -> None:
         """Prepare the pyramids around the round cones."""
         self._search = search
         self._least = least
-        self._around = {facets: _around_cones(search, facets) for facets in (COARSE, FINE)}
-        self._programs = 0
+        n = len(search.touching)
+        self._normals = np.array([one.normal for one in search.touching])
+        self._frictions = np.array([one.friction for one in search.touching])
+        self._frames = np.array([np.zeros((2, 3)) if p.frame is None else p.frame for p in search.pyramids])
+        self._points = np.array([one.point for one in search.touching])  # (n, 3, 7)
+        self._rising = np.einsum("ij,ijk->ik", self._normals, self._points)
+        self._across = self._frames @ self._points  # (n, 2, 7)
+        self._of_forces = search.of_forces.reshape(6, n, 3).transpose(1, 2, 0)  # (n, 3, 6)
+        self._around: dict[int, list[_Edges]] = {}
+        self._equations: dict[str, FloatArray] = {}
 
-    def forces(self, letters: str, ranges: Ranges, facets: int = COARSE) -> FloatArray | None:
+    def forces(
+        self, letters: str, ranges: Ranges, facets: int = COARSE, *, within: Within | None = None
+    ) -> FloatArray | None:
         """Return forces, (n, 3), that satisfy what modes in a set must, or None if there are none.
 
         Where rounding hides that there are none, they are zero.
 
-        Raises:
-            TooManyError: too many programs were asked for.
+        Args:
+            letters: s, c or f for each touching contact.
+            ranges: Directions in which contacts slide.
+            facets: The number of edges of the pyramids around round cones.
+            within: A region in which the common motion lies.
         """
-        self._programs += 1
-        if self._programs > _MOST_PROGRAMS:
-            raise TooManyError
-        search = self._search
-        edges: list[FloatArray] = []
-        zero, positive = [np.zeros((0, 7))], [np.zeros((0, 7))]
-        for i, (letter, contact) in enumerate(zip(letters, search.touching, strict=True)):
-            normal = (contact.normal @ contact.point)[None, :]
-            edges.append(self._around[facets][i])
+        zero, positive = self._rows_of(letters), []
+        turning = list(ranges)
+        owners: list[int] = []
+        parts: list[_Edges] = []
+        whole = self._whole(facets)
+        for i, letter in enumerate(letters):
             if letter == SEPARATES:
-                edges[i] = edges[i][:0]
-                positive.append(normal - self._least * _CONSTANT)
-            elif letter == UNKNOWN:
-                positive.append(normal)
-            elif letter == STICKS:
-                zero.append(contact.point)
-            else:
-                zero.append(normal)
-                if i in ranges:
-                    edges[i], rows = self._range(i, *ranges[i])
-                    positive.append(rows)
-        owners = np.repeat(np.arange(len(edges)), [len(one) for one in edges])
-        every = np.vstack(edges)
-        table = np.einsum("ijk,ik->ji", search.of_forces.reshape(6, -1, 3).transpose(1, 0, 2)[owners], every)
-        sizes = np.linalg.norm(table, axis=0)
-        every = every / sizes[:, None]  # so that the unit of mass does not matter
-        table = np.column_stack([table / sizes, search.motion[:, -1]])
-        rows = np.vstack([*zero, *positive])
-        equalities = sum(len(one) for one in zero)
+                positive.append(self._rising[i] - self._least * _CONSTANT)
+            elif i not in ranges:
+                parts.append(whole[i])
+                owners += [i] * len(whole[i].sizes)
+        if turning:
+            own, rows = self._in_ranges(turning, np.array([ranges[i] for i in turning]))
+            parts.append(own)
+            owners += np.repeat(turning, len(own.sizes) // len(turning)).tolist()
+            implied: frozenset[int] = frozenset() if within is None else within.implied
+            positive += [
+                row for i, some in zip(turning, rows, strict=True) if i not in implied for row in some
+            ]
+        if within is not None:
+            positive += list(within.region.rows(within.image))
+        every, moved, sizes = (np.concatenate(one) for one in zip(*parts, strict=True))
+        table = np.column_stack([moved.T, self._search.motion[:, -1]])
+        rows = np.array([*zero, *positive]).reshape(-1, 7)
         names = range(len(every), len(every) + len(rows))
-        program = Program.stated(table, rows, names).renamed(list(range(len(every))), equalities)
+        program: Program | CarefulProgram = Program.stated(table, rows, names).renamed(
+            list(range(len(every))), len(zero)
+        )
         holds = program.solve()
         if not holds and program.doubtful:
-            self._programs += _CARE
-            careful = CarefulProgram(table, rows[:0], ()).narrowed(
-                Narrowing(rows=rows, equalities=equalities)
-            )
-            if careful.solve():
-                return _summed(careful.shares(len(every)), every, owners, len(edges))
-            return np.zeros((len(edges), 3)) if careful.doubtful else None
-        return _summed(program.shares(len(every)), every, owners, len(edges)) if holds else None
+            program = CarefulProgram(table, rows[:0], ()).narrowed(Narrowing(rows=rows, equalities=len(zero)))
+            holds = program.solve()
+            if not holds and program.doubtful:
+                return np.zeros((len(letters), 3))
+        if not holds or not (within is None or self._has_power(program, within, owners, sizes)):
+            return None
+        found = np.zeros((len(letters), 3))
+        np.add.at(found, owners, program.shares(len(every))[:, None] * every)
+        return found
 
-    def _range(self, at: int, low: float, high: float) -> tuple[FloatArray, FloatArray]:
-        """Return edges, (3, 3), of a contact that slides in a range of directions, and conditions, (3, 7)."""
-        contact, frame = self._search.touching[at], np.array(self._search.pyramids[at].frame)
-        middle, half = 0.5 * (low + high), 0.5 * (high - low)
-        ways = np.array([(math.cos(angle), math.sin(angle)) for angle in (low, middle, high)])
-        leaning = contact.friction * np.array([1.0, 1.0 / math.cos(half), 1.0])[:, None]
-        inward = np.array([(-ways[0, 1], ways[0, 0]), ways[1], (ways[2, 1], -ways[2, 0])])
-        rows = inward @ frame @ contact.point
-        rows[1, -1] -= MILDER * self._least
-        return contact.normal - leaning * (ways @ frame), rows
+    def _rows_of(self, letters: str) -> FloatArray:
+        """Return independent rows, (k, 7), that vanish with some letters."""
+        if letters not in self._equations:
+            rows = [np.zeros((0, 7))]
+            for i, letter in enumerate(letters):
+                if letter != SEPARATES:
+                    rows.append(self._points[i] if letter == STICKS else self._rising[i][None, :])
+            stacked = np.vstack(rows)
+            if not stacked[:, -1].any():
+                basis = seen_and_unseen(stacked[:, :-1])[0]
+                stacked = np.column_stack([basis, np.zeros(len(basis))])
+            self._equations[letters] = stacked
+        return self._equations[letters]
 
+    def _whole(self, facets: int) -> list[_Edges]:
+        """Return the edges of each contact's whole cone."""
+        if facets not in self._around:
+            wider = 1.0 / math.cos(math.pi / facets)
+            self._around[facets] = [
+                self._sized(
+                    pyramid.edges
+                    if pyramid.frame is None
+                    else edges_in_frame(contact.normal, wider * contact.friction, facets, pyramid.frame),
+                    np.full(1 if pyramid.frame is None else facets, i),
+                )
+                for i, (contact, pyramid) in enumerate(
+                    zip(self._search.touching, self._search.pyramids, strict=True)
+                )
+            ]
+        return self._around[facets]
 
-def _summed(shares: FloatArray, edges: FloatArray, owners: NDArray[np.intp], count: int) -> FloatArray:
-    """Return the forces, (n, 3), of shares, (k,), of edges, (k, 3), of their owners."""
-    forces = np.zeros((count, 3))
-    np.add.at(forces, owners, shares[:, None] * edges)
-    return forces
+    def _sized(self, edges: FloatArray, owners: NDArray[np.intp]) -> _Edges:
+        moved = (edges[:, None, :] @ self._of_forces[owners])[:, 0]
+        sizes = np.sqrt((moved * moved).sum(axis=1))  # so that the unit of mass does not matter
+        return _Edges(edges / sizes[:, None], moved / sizes[:, None], sizes)
 
+    def _in_ranges(self, turning: list[int], ends: FloatArray) -> tuple[_Edges, FloatArray]:
+        """Return the edges of contacts that slide in ranges of directions, and conditions, (m, 3, 7)."""
+        low, high = ends.T
+        wide = high - low
+        pieces = max(1, math.ceil(float(wide.max()) / _PIECE))
+        half = 0.5 * wide / pieces
+        shares = np.array([0.0, *(2.0 * k + 1.0 for k in range(pieces)), 2.0 * pieces])
+        angles = low[:, None] + half[:, None] * shares
+        leaning = np.repeat((self._frictions[turning] / np.cos(half))[:, None], len(shares), axis=1)
+        leaning[:, [0, -1]] = self._frictions[turning][:, None]
+        along = leaning[:, :, None] * np.stack([np.cos(angles), np.sin(angles)], axis=-1)  # (m, k, 2)
+        edges = self._normals[turning][:, None, :] - along @ self._frames[turning]
+        middle = 0.5 * (low + high)
+        turns = np.stack([low + _QUARTER, middle, high - _QUARTER], axis=1)  # (m, 3)
+        rows = np.stack([np.cos(turns), np.sin(turns)], axis=-1) @ self._across[turning]
+        rows[:, 1, -1] -= MILDER * self._least
+        return self._sized(edges.reshape(-1, 3), np.repeat(turning, len(shares))), rows
 
-def _around_cones(search: Search, facets: int) -> list[FloatArray]:
-    """Return the edges of each contact's forces, with pyramids around round cones."""
-    wider = 1.0 / math.cos(math.pi / facets)
-    return [
-        pyramid.edges
-        if pyramid.frame is None
-        else linearised_cone(contact.normal, wider * contact.friction, facets)
-        for contact, pyramid in zip(search.touching, search.pyramids, strict=True)
-    ]
+    def _has_power(
+        self,
+        program: Program | CarefulProgram,
+        within: Within,
+        owners: list[int],
+        sizes: FloatArray,
+    ) -> bool:
+        """Return whether the applied wrench may have the power that friction takes in a region."""
+        if within.gains is None:
+            return True
+        rays = within.region.rays
+        along = within.image.maps @ rays.T  # (m, 2, p)
+        middle = along.sum(axis=2)
+        middle /= np.maximum(np.linalg.norm(middle, axis=1), np.finfo(float).tiny)[:, None]
+        friction = self._frictions[within.turning]
+        per_contact = np.zeros((len(rays), len(self._search.touching)))
+        per_contact[:, within.turning] = -(friction[:, None] * (middle[:, None, :] @ along)[:, 0]).T
+        weights, gains = per_contact[:, owners] / sizes, rays @ within.gains
+        scale = max(float(np.abs(weights).max()), float(np.abs(gains).max()))
+        return program.allows_any(weights / scale, gains / scale, -STRICT) or program.doubtful

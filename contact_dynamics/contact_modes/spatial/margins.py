@@ -21,7 +21,9 @@ import numpy as np
 from contact_dynamics.contact_modes.result import ModeVerdict, verdict_on
 from contact_dynamics.contact_modes.spatial.answer import evidenced, found_by
 from contact_dynamics.contact_modes.spatial.margins_of_sliding import union_margin
+from contact_dynamics.contact_modes.spatial.mode_with_forces import are_the_same
 from contact_dynamics.contact_modes.spatial.problem import (
+    FRICTION_FACETS,
     SpatialCase,
     search_of,
     search_of_few_edges,
@@ -34,7 +36,7 @@ from contact_dynamics.validation import check_positive
 
 if TYPE_CHECKING:
     from contact_dynamics.contact_modes.spatial.problem import SpatialContactProblem
-    from contact_dynamics.contact_modes.spatial.result import SpatialModeAnswer
+    from contact_dynamics.contact_modes.spatial.result import SpatialMode, SpatialModeAnswer
     from contact_dynamics.contact_modes.spatial.search import Found, Search
     from contact_dynamics.validation import FloatArray
 
@@ -92,7 +94,7 @@ def spatial_mode_margins(
     metric = np.array([1.0, 1.0, 1.0, length, length, length])
     present = None if answer is None or not problem.sharpen else tuple(one.mode for one in answer.modes)
     margins = []
-    for mode, found in evidenced(case, search, facets=friction_facets).modes:
+    for mode, found in _with_found(case, search, friction_facets):
         beyond = None
         if found is None:
             margin, way = math.nan, np.zeros(6)
@@ -115,6 +117,19 @@ def spatial_mode_margins(
             )
         )
     return tuple(margins)
+
+
+def _with_found(
+    case: SpatialCase, search: Search, friction_facets: int
+) -> list[tuple[SpatialMode, Found | None]]:
+    """Return the modes of a case, each with what the search of pyramids with some facets found."""
+    if friction_facets == FRICTION_FACETS:
+        return evidenced(case, search).modes
+    modes = evidenced(case, search_of(case, FRICTION_FACETS)).modes
+    found = found_by(case, search, sharpen=True)
+    return [
+        (mode, next((one for other, one in found if are_the_same(mode, other)), None)) for mode, _ in modes
+    ]
 
 
 def _beyond(

@@ -49,9 +49,10 @@ FRICTION_FACETS: Final = 8
 class SpatialContactProblem(Record):
     """A question about the contact modes of one body in space; its sister is `PlanarContactProblem`.
 
-    Friction cones are pyramids where contacts are at rest, and 8 edges serve most questions. Margins of
-    sticking are short by the part 1 - cos(pi / facets) of friction, 8 % with 8 edges and 2 % with 16: state
-    the problem with more edges where that matters. The sets of wrenches grow as the square or cube of the
+    The modes are those of round cones, whatever the number of facets. In margins, statics and wrench sets,
+    friction cones of contacts at rest are pyramids, and 8 edges serve most questions. Margins of sticking are
+    short by the part 1 - cos(pi / facets) of friction, 8 % with 8 edges and 2 % with 16: state the problem
+    with more edges where that matters. The sets of wrenches grow as the square or cube of the
     edges, some 200 to 350 for a box on four feet with 4 edges and 1300 with 8: state it with 4 for these
     (`dataclasses.replace`). Statics take 128 edges in all.
 
@@ -62,9 +63,10 @@ class SpatialContactProblem(Record):
         force_W: (3,), N, on the body besides its contact forces, gravity included, world axes.
         torque_W: (3,), N m, on the body besides that of its contact forces, about the centre of mass, world
             axes.
-        friction_facets: The number of edges of the pyramid that stands for a friction cone, >= 3.
-        sharpen: Whether friction is turned exactly against the sliding, where the motion is unique and there
-            is a solution (`exact_friction`). Then modes with the same letters are one mode if their motion is
+        friction_facets: The number of edges of the pyramid that stands for a friction cone, >= 3, in margins,
+            statics and wrench sets, and in the modes if ``sharpen`` is false.
+        sharpen: Whether the modes are those of Coulomb's round cones, with friction exactly against the
+            sliding. Then modes with the same letters are one mode if their motion is
             the same, or if one of them has no unique motion. Otherwise each sector of the pyramids is a mode
             of its own, and there can be hundreds where the motion under many feet is not unique. Margins are
             always those of the sharpened modes.

@@ -64,6 +64,7 @@ class PyramidPrograms:
         mass: FloatArray,
         at_rest: bool,
         facets: int,
+        least: float = STRICT,
     ) -> None:
         """State the problem.
 
@@ -74,7 +75,9 @@ class PyramidPrograms:
             mass: (6, 6), the forces and torques that unit motion needs.
             at_rest: Whether nothing moves, so that the applied wrench has power >= 0.
             facets: The number of edges of a friction pyramid.
+            least: By how much contacts that separate must do so.
         """
+        self._least = least
         self.touching = touching
         self._facets = facets
         self.pyramids: list[Pyramid] = []
@@ -173,7 +176,7 @@ class PyramidPrograms:
             Narrowing(
                 zeroed=zeroed,
                 raised=() if letters.raised is None else (letters.raised,),
-                least=STRICT,
+                least=self._least,
                 rows=letters.rows,
                 equalities=letters.equalities,
                 tag=CONTACT_TAG - at,

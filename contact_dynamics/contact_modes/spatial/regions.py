@@ -17,7 +17,7 @@ import numpy as np
 
 from contact_dynamics.contact_modes.spatial.options import MILDER, acting_edges
 from contact_dynamics.numerics.linear_spaces import seen_and_unseen
-from contact_dynamics.tolerances import ROW_TOLERANCE, STRICT
+from contact_dynamics.tolerances import AT_SECTORS_BORDER, ROW_TOLERANCE, STRICT
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -70,18 +70,22 @@ class Region(NamedTuple):
         return found
 
     def halves(self, count: int) -> tuple[Region, Region] | None:
-        """Return the halves of the region, cut across its widest edge.
+        """Return the halves of the region.
 
         Return None if the region is narrow enough for pyramids of ``count`` edges.
         """
-        if len(self.rays) == 1:
-            return None
-        unit = self.rays / np.sqrt((self.rays * self.rays).sum(axis=1))[:, None]
-        cosines = unit @ unit.T
-        one, other = divmod(int(cosines.argmin()), len(unit))
-        narrow = min(_NARROW, 0.8 * math.pi / count) if len(unit) <= 3 else _NARROW_OF_MORE
-        if cosines[one, other] > math.cos(narrow):
-            return None
+        narrow = min(_NARROW, 0.8 * math.pi / count) if len(self.rays) <= 3 else _NARROW_OF_MORE
+        return self.cut if self.width >= narrow else None
+
+    @property
+    def width(self) -> float:
+        """The widest angle, rad, between two rays."""
+        return self._widest[2]
+
+    @property
+    def cut(self) -> tuple[Region, Region]:
+        """The halves of the region, cut across its widest edge. It must have more rays than one."""
+        one, other, _ = self._widest
         near, far = self.rays.copy(), self.rays.copy()
         near[other] = far[one] = 0.5 * (self.rays[one] + self.rays[other])
         shares, of_near, of_far = self.inside, self.inside.copy(), self.inside.copy()
@@ -89,6 +93,33 @@ class Region(NamedTuple):
         of_near[one] -= shares[other]
         of_far[other] -= shares[one]
         return Region(near, of_near), Region(far, of_far)
+
+    @property
+    def _widest(self) -> tuple[int, int, float]:
+        """The two rays that are farthest apart, and the angle between them, rad."""
+        unit = self.rays / np.sqrt((self.rays * self.rays).sum(axis=1))[:, None]
+        one, other = divmod(int((unit @ unit.T).argmin()), len(unit))
+        apart, between = unit[one] - unit[other], unit[one] + unit[other]
+        return one, other, 2.0 * math.atan2(math.sqrt(apart @ apart), math.sqrt(between @ between))
+
+    def directions(self, image: Image) -> list[tuple[float, float] | None]:
+        """Return the first and the last direction, rad, in which each contact slides in the region.
+
+        It is None where a contact may slide in opposite directions, or stick.
+        """
+        x, y = (image.maps @ self.rays.T).transpose(1, 0, 2)  # (m, p) each
+        angles = np.sort(np.arctan2(y, x), axis=1)
+        gaps = np.diff(angles, axis=1, append=angles[:, :1] + 2.0 * math.pi)
+        widest = gaps.argmax(axis=1)
+        each = np.arange(len(angles))
+        ranges = 2.0 * math.pi - gaps[each, widest]
+        starts = angles[each, (widest + 1) % angles.shape[1]]
+        least = (x * x + y * y).min(axis=1)
+        clear = (ranges < math.pi - AT_SECTORS_BORDER) & (least > AT_SECTORS_BORDER**2)
+        return [
+            (start, start + size) if own else None
+            for start, size, own in zip(starts.tolist(), ranges.tolist(), clear.tolist(), strict=True)
+        ]
 
     def acting_edges(self, image: Image, count: int) -> NDArray[np.bool_]:
         """Return which of ``count`` edges, (m, count), of each contact's pyramid oppose some sliding here."""
@@ -161,6 +192,23 @@ def image_of(normals: FloatArray, frames: FloatArray) -> Image:
     along = frames.reshape(-1, 6) @ free.T
     basis, rest = seen_and_unseen(along)
     return Image(basis @ free, rest @ free, (along @ basis.T).reshape(len(frames), 2, -1))
+
+
+def gains_in(image: Image, power: FloatArray, mass: FloatArray) -> FloatArray:
+    """Return the power of the applied wrench on unit coordinates, (p,).
+
+    Unseen motions have no part in it, since each motion is taken with those of them that leave it no kinetic
+    energy in common with the others.
+
+    Args:
+        image: The space of the coordinates.
+        power: (6,), the power of the applied wrench on unit motions.
+        mass: (6, 6), the forces and torques that unit motions need.
+    """
+    unseen = image.unseen @ mass
+    rest = np.linalg.solve(unseen @ image.unseen.T, image.unseen @ power)
+    gains: FloatArray = image.coordinates @ (power - rest @ unseen)
+    return gains
 
 
 def whole(dimensions: int) -> Iterator[Region]:

@@ -56,7 +56,7 @@ class SpatialModeAnswer(Record):
         friction_facets: The number of edges of each friction pyramid.
         examined: The number of cases, of one letter or of a group of letters, that were tried.
         undecided: What could not be decided, and why. It is empty unless the verdict is UNDECIDED.
-        undecided_modes: The letters of modes that hold with friction pyramids, and may not with round cones.
+        undecided_modes: The letters of modes that could be neither found nor refuted.
         within: The verdicts that occur within the problem's uncertainty, or None if it has none.
     """
 

@@ -30,7 +30,7 @@ from contact_dynamics.contact_modes.letters import SEPARATES, STAYS
 from contact_dynamics.contact_modes.spatial.dual_simplex import Ends, Narrowing, Program
 from contact_dynamics.contact_modes.spatial.options import ways_of_sliding
 from contact_dynamics.contact_modes.spatial.pyramid_programs import CONTACT_TAG, AnyProgram, PyramidPrograms
-from contact_dynamics.contact_modes.spatial.regions import Image, Region, flat_of, whole
+from contact_dynamics.contact_modes.spatial.regions import Image, Region, flat_of, gains_in, whole
 from contact_dynamics.tolerances import STRICT
 
 if TYPE_CHECKING:
@@ -96,6 +96,16 @@ class Search(PyramidPrograms):
             self._root = self._careful_root
             self._search()
         return list(self._found.values())
+
+    def resting(self) -> Found | None:
+        """Return the mode in which all contacts stick, or None if pyramids do not hold them."""
+        sticks = []
+        for both in self._trials:
+            stays = both.parts[1]
+            sticks.append(stays.parts[0] if stays.parts else stays)
+        self._found, self._grouped = {}, False
+        self._note(sticks)
+        return next(iter(self._found.values()), None)
 
     def _search(self) -> None:
         root = self._solved(self._root)
@@ -175,12 +185,7 @@ class Search(PyramidPrograms):
 
     def _common(self, image: Image, open_ones: list[int]) -> Common:
         """Return what the regions of a flat have in common."""
-        gains = None
-        if self._power is not None:
-            # Seen motions with which unseen ones have no kinetic energy in common: those gain on their own.
-            unseen = image.unseen @ self.mass
-            rest = np.linalg.solve(unseen @ image.unseen.T, image.unseen @ self._power)
-            gains = image.coordinates @ (self._power - rest @ unseen)
+        gains = None if self._power is None else gains_in(image, self._power, self.mass)
         pyramids = [self.pyramids[i] for i in open_ones]
         names = np.array([one.first for one in pyramids])[:, None] + np.arange(len(pyramids[0].edges))
         tangential = np.array([one.tangential() for one in pyramids])

@@ -22,7 +22,12 @@ from contact_dynamics.contact.friction import linearised_cone
 from contact_dynamics.contact_modes.result import BodyStatics, Certainty, ModeVerdict
 from contact_dynamics.contact_modes.spatial.answer import modes_of_case
 from contact_dynamics.contact_modes.spatial.cone import cone_of
-from contact_dynamics.contact_modes.spatial.problem import MOST_EDGES, search_of, spatial_case
+from contact_dynamics.contact_modes.spatial.problem import (
+    FRICTION_FACETS,
+    MOST_EDGES,
+    search_of,
+    spatial_case,
+)
 from contact_dynamics.contact_modes.spatial.round_cones import held_by_round_cones, wedged_by_round_cones
 from contact_dynamics.contact_modes.spatial.wrenches import distinct
 from contact_dynamics.errors import TooLargeError, UndecidedError
@@ -66,7 +71,7 @@ def spatial_statics(problem: SpatialContactProblem, *, margin_length: float | No
     ]
     at_rest = replace(problem, state=replace(state, v_WB_W=np.zeros(3), w_WB_W=np.zeros(3)), sharpen=True)
     case = cast("SpatialCase", spatial_case(at_rest))  # at rest no contact approaches
-    search = search_of(case, friction_facets)
+    search = search_of(case, FRICTION_FACETS)
     wedged = _decided(wedged_by_round_cones(search), "balance with each other")
     equilibrium, jammed, room = Certainty.NO, Certainty.NO, math.nan
     if _decided(held_by_round_cones(search, np.eye(6, 7)), "balance with the wrench"):

@@ -1,0 +1,200 @@
+"""Whether one mode's motion is the only one, by one matrix, without looking for others.
+
+Let A* be the motion of a mode with forces f*, and A another one with forces f, with d = A - A*. Then d M d is
+the sum of (f - f*) (a - a*) over the contacts, whose accelerations are a. A contact that begins to slide in
+the direction u has f = n (N - mu u), with N its normal, and u* is that direction in the first mode. There,
+the turn of its friction takes mu n (1 - u u*) (|a| + |a*|). Normal forces and separations exclude each other,
+so that their share is negative. What is left is - sum mu (n - n*) u* (a - a*).
+
+If some virtual motion z, linear in d, has the acceleration mu u* (a - a*) along N - mu u* at every contact,
+the equations of motion turn what is left into - z M d - sum mu n z (u - u*). The turns of friction make this
+larger than what they take by n mu |z|^2 / (2 |a*|) at most, with the tangential part of z at the contact. So
+if M + z M, less these parts, is positive definite, d is zero.
+
+A contact that slides already has friction in a known direction, which does not turn. A contact that sticks
+has f* = n* (N - mu s) with |s| <= 1, which takes the place of u*. There z must vanish along the surface.
+Where all contacts are on one plane, it vanishes everywhere.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+import numpy as np
+
+from contact_dynamics.numerics.linear_spaces import seen_and_unseen
+from contact_dynamics.tolerances import FORCES_ROUNDING, ROW_TOLERANCE, SAME_MOTION
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from contact_dynamics.contact_modes.spatial.search import Search
+    from contact_dynamics.validation import FloatArray
+
+_MOST_STEPS: Final = 12
+"""The largest number of Newton's steps to forces that friction of a common motion allows. Five are enough."""
+
+
+class _Contacts(NamedTuple):
+    """Touching contacts.
+
+    Attributes:
+        normals: (n, 3), unit.
+        frictions: (n,), Coulomb's mu.
+        points: (n, 3, 6), their accelerations on unit motions.
+        rising: (n, 6), the normal ones.
+        across: (n, 3, 6), the tangential ones.
+        turns: (n,), whether their friction may turn, which is that of contacts at rest.
+    """
+
+    normals: FloatArray
+    frictions: FloatArray
+    points: FloatArray
+    rising: FloatArray
+    across: FloatArray
+    turns: FloatArray
+
+
+def is_only_motion(search: Search, forces: FloatArray, staying: Sequence[int] | None = None) -> bool:
+    """Return whether it is proven that no mode has another motion than the one that forces bring about.
+
+    Args:
+        search: The case.
+        forces: (n, 3), of a mode, in the units of the motion.
+        staying: If given, only modes are meant in which just these contacts stay, as in the first.
+    """
+    motion = search.motion[:, -1] + search.of_forces @ forces.ravel()
+    everyone = list(range(len(search.touching))) if staying is None else list(staying)
+    contacts = _contacts(search, everyone)
+    own = forces[everyone]
+    points = np.array([search.touching[i].point for i in everyone]) @ np.append(motion, 1.0)
+    across = points - np.sum(points * contacts.normals, axis=1)[:, None] * contacts.normals
+    speeds = np.linalg.norm(across, axis=1) * contacts.turns
+    slides = speeds > SAME_MOTION
+    ways = across / np.where(slides, speeds, 1.0)[:, None] * slides[:, None]
+    pressing = np.sum(own * contacts.normals, axis=1)
+    friction = contacts.frictions * pressing
+    leans = ~slides & (friction > 0.0)
+    ways[leans] = -((own - pressing[:, None] * contacts.normals)[leans] / friction[leans, None])
+    for k, i in enumerate(everyone):
+        speed = float(np.linalg.norm(search.touching[i].sliding))
+        if speed > 0.0:
+            ways[k] = search.touching[i].sliding / speed
+    return _excludes_others(search, contacts, ways, speeds * slides, within=staying is not None)
+
+
+def rests_alone(search: Search) -> bool:
+    """Return whether it is proven that a body rests and can do nothing else.
+
+    Forces are sought that hold it with friction of one common virtual motion, in parts of what slides with it
+    would have.
+    """
+    if not search.at_rest or not search.touching:
+        return False
+    contacts = _contacts(search, list(range(len(search.touching))))
+    wrench = search.mass @ search.motion[:, -1]
+    normal = contacts.rising.T  # (6, n)
+    gripping = contacts.frictions[:, None, None] * contacts.across
+    seen = seen_and_unseen(gripping.reshape(-1, 6) / max(1.0, float(contacts.frictions.max())))[0].T
+    pressing = np.linalg.lstsq(normal, -wrench, rcond=ROW_TOLERANCE)[0]
+    common = np.zeros(seen.shape[1])
+    enough = FORCES_ROUNDING * float(np.linalg.norm(wrench))
+    for _ in range(_MOST_STEPS):
+        ways = gripping @ (seen @ common)  # (n, 3), times the coefficient of friction
+        edges = normal - np.einsum("ijk,ij->ki", contacts.points, ways)
+        missed = wrench + edges @ pressing
+        if float(np.linalg.norm(missed)) <= enough:
+            slips = np.linalg.norm(ways, axis=1) > contacts.frictions
+            if pressing.min() < 0.0 or np.any(slips):
+                return False
+            ways = ways / np.where(contacts.frictions > 0.0, contacts.frictions, 1.0)[:, None]
+            return _excludes_others(search, contacts, ways, np.zeros(len(ways)), within=False)
+        turned = np.einsum("ijk,i,ijl->kl", contacts.points, pressing, gripping) @ seen
+        step = np.linalg.lstsq(np.column_stack([edges, -turned]), -missed, rcond=ROW_TOLERANCE)[0]
+        pressing = pressing + step[: len(pressing)]
+        common = common + step[len(pressing) :]
+    return False
+
+
+def _contacts(search: Search, everyone: list[int]) -> _Contacts:
+    touching = [search.touching[i] for i in everyone]
+    normals = np.array([one.normal for one in touching]).reshape(-1, 3)
+    points = np.array([one.point[:, :6] for one in touching]).reshape(-1, 3, 6)
+    rising = np.einsum("ij,ijk->ik", normals, points)
+    return _Contacts(
+        normals=normals,
+        frictions=np.array([one.friction for one in touching]),
+        points=points,
+        rising=rising,
+        across=points - normals[:, :, None] * rising[:, None, :],
+        turns=np.array([search.pyramids[i].frame is not None for i in everyone], dtype=float),
+    )
+
+
+def _excludes_others(
+    search: Search, contacts: _Contacts, ways: FloatArray, speeds: FloatArray, *, within: bool
+) -> bool:
+    """Return whether it is proven that no mode has another motion.
+
+    Args:
+        search: The case.
+        contacts: The contacts that may stay.
+        ways: (n, 3), friction in the first mode as parts of the largest, reversed.
+        speeds: (n,), how fast they begin to slide; zero where they stick, or slide already.
+        within: Whether all these contacts stay.
+    """
+    basis = seen_and_unseen(contacts.rising)[1].T if within else np.eye(6)
+    if basis.size == 0:
+        return True
+    if len(ways) == 0:
+        return False
+    leaning = contacts.frictions[:, None] * ways
+    along = np.einsum("ij,ijk->ik", leaning, contacts.points)
+    E, U = contacts.rising - along, along @ basis
+    z = np.linalg.pinv(E, rcond=ROW_TOLERANCE) @ U
+    if np.abs(E @ z - U).max() > ROW_TOLERANCE * max(1.0, float(np.abs(U).max())):
+        return False
+    # The virtual motions that have these accelerations and turn friction least are taken.
+    tangents = contacts.turns[:, None, None] * contacts.across
+    others = seen_and_unseen(E)[1].T
+    tangential = tangents.reshape(-1, 6)
+    z -= others @ (np.linalg.pinv(tangential @ others, rcond=ROW_TOLERANCE) @ (tangential @ z))
+    turned = tangents @ z  # (n, 3, p)
+    mass = basis.T @ search.mass @ basis
+    scale = np.linalg.inv(np.linalg.cholesky(mass))
+    cross = z.T @ search.mass @ basis
+    form = mass + 0.5 * (cross + cross.T)
+    worst = [form]
+    turning = np.abs(turned).max(axis=(1, 2)) > ROW_TOLERANCE
+    if np.any(turning):
+        if np.any(turning & (speeds == 0.0)):
+            return False
+        most = _most_pressing(search, contacts)
+        if not math.isfinite(most):
+            return False
+        for k in np.flatnonzero(turning).tolist():
+            part = float(contacts.frictions[k]) * most / (2.0 * float(speeds[k]))
+            worst.append(form - part * turned[k].T @ turned[k])
+    return all(float(np.linalg.eigvalsh(scale @ one @ scale.T)[0]) > SAME_MOTION for one in worst)
+
+
+def _most_pressing(search: Search, contacts: _Contacts) -> float:
+    """Return a bound on the sum of the normal forces of any mode, which is infinite if none is known.
+
+    Friction takes power from a body at rest, so that its motion A has A M A <= A w with the applied wrench w.
+    So A is in a ball, and the forces that press in one direction are bounded.
+    """
+    way = contacts.normals.sum(axis=0)
+    size = float(np.linalg.norm(way))
+    if size == 0.0 or not search.at_rest:
+        return math.inf
+    along = contacts.normals @ (way / size)
+    helps = along - contacts.frictions * np.sqrt(np.maximum(1.0 - along * along, 0.0))
+    if helps.min() <= 0.0:
+        return math.inf
+    virtual = np.append(way / size, np.zeros(3))
+    free = search.motion[:, -1]
+    wrench = search.mass @ free
+    most = math.sqrt(float(free @ wrench) * float(virtual @ search.mass @ virtual))
+    return 0.5 * (most - float(virtual @ wrench)) / float(helps.min())

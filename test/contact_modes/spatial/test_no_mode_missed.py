@@ -1,0 +1,141 @@
+"""No mode is missed on several planes: each that was made by construction is listed, or one is unproven."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+
+import numpy as np
+import pytest
+
+from contact_dynamics.contact.contact import ContactSet
+from contact_dynamics.contact_modes import (
+    ModeVerdict,
+    SpatialContactProblem,
+    SpatialModeAnswer,
+    contact_modes,
+)
+from contact_dynamics.rigid_body.body import BodyState, MassProperties
+from oracles.modes_on_planes import INERTIA, MASS, Made, made, worst_violation
+from sweeps import sweep
+
+NEAR = 0.01  # relative, of accelerations: modes whose directions of sliding differ by 1e-3 rad count as one
+EXACT = 1e-9
+FEW, BLOCK = 150, 1000
+AT_REST = BodyState(p_WB_W=[0, 0, 0], q_WB=[0, 0, 0, 1], v_WB_W=[0, 0, 0], w_WB_W=[0, 0, 0])
+
+
+def problem_of(case: Made, friction_facets: int = 8) -> SpatialContactProblem:
+    return SpatialContactProblem(
+        body=MassProperties(mass=MASS, I_B=INERTIA),
+        state=BodyState(p_WB_W=np.zeros(3), q_WB=[0.0, 0.0, 0.0, 1.0], v_WB_W=case.v, w_WB_W=case.w),
+        contacts=ContactSet(p_WC_W=case.points, normals_W=case.normals, frictions=case.frictions),
+        force_W=case.wrench[:3],
+        torque_W=case.wrench[3:],
+        friction_facets=friction_facets,
+    )
+
+
+def place_of(case: Made, answer: SpatialModeAnswer) -> str:
+    """Return where an answer has the mode that was made."""
+    size = max(EXACT, NEAR * float(np.abs(case.motion).max()))
+    for mode in answer.modes:
+        motion = np.concatenate([mode.acceleration_W, mode.angular_acceleration_W])
+        if mode.mode == case.letters and (
+            not mode.motion_unique or np.abs(motion - case.motion).max() <= size
+        ):
+            return "listed"
+    return "undecided" if answer.verdict == ModeVerdict.UNDECIDED else "missed"
+
+
+def check_modes(case: Made, answer: SpatialModeAnswer) -> None:
+    """Check each mode by mechanics alone."""
+    for mode in answer.modes:
+        motion = np.concatenate([mode.acceleration_W, mode.angular_acceleration_W])
+        missed = worst_violation(case, mode.mode, motion, mode.contact_forces_W, mode.contact_accelerations_W)
+        assert missed <= EXACT, mode.mode
+
+
+def places_of(seeds: range) -> Counter[str]:
+    """Return how many answers list the mode that was made, and how many leave a mode unproven."""
+    places: Counter[str] = Counter()
+    for seed in seeds:
+        case = made(seed)
+        answer = contact_modes(problem_of(case))
+        check_modes(case, answer)
+        places[place_of(case, answer)] += 1
+        places["unproven"] += answer.verdict == ModeVerdict.UNDECIDED
+        if answer.verdict == ModeVerdict.UNDECIDED:
+            assert answer.undecided
+    return places
+
+
+def test_no_mode_that_was_made_on_planes_is_missed() -> None:
+    places = places_of(range(FEW))
+    assert places["missed"] == 0
+    assert places["unproven"] <= 0.02 * FEW
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("block", range(20))
+def test_no_mode_that_was_made_on_planes_is_missed_in_twenty_thousand_draws(block: int) -> None:
+    """The draws are of one to eight contacts on one to four planes, at rest and moving."""
+    places = places_of(range(BLOCK * block, BLOCK * (block + 1)))
+    assert places["missed"] == 0
+    assert places["unproven"] <= 0.02 * BLOCK
+
+
+@pytest.mark.parametrize("seed", sweep(12, whole=300))
+def test_the_answer_does_not_depend_on_the_facets(seed: int) -> None:
+    case = made(seed)
+    answers = [contact_modes(problem_of(case, facets)) for facets in (3, 8, 24)]
+    assert len({one.verdict for one in answers}) == 1
+    assert len({tuple(sorted(mode.mode for mode in one.modes)) for one in answers}) == 1
+
+
+def test_three_feet_on_a_floor_and_two_on_a_wall_have_three_modes() -> None:
+    y, z = [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]
+    points = np.array([[-0.3, -0.5, 0], [0.4, 0, -0.5], [0.5, 0, -0.5], [-0.4, -0.5, 0.5], [-0.1, 0.3, -0.5]])
+    force, torque = np.array([5.75, -3.5, -5.0]), np.array([-0.5, -0.325, 1.6])
+    contacts = ContactSet(p_WC_W=points, normals_W=[y, z, z, y, z], frictions=0.5)
+    # All five slide along x at 1.5 m/s^2, which these forces bring about.
+    pressing = np.array([3.0, 2.0, 0.5, 0.5, 2.5])
+    forces = pressing[:, None] * (np.array([y, z, z, y, z]) - [0.5, 0.0, 0.0])
+    assert forces.sum(axis=0) + force == pytest.approx([1.5, 0.0, 0.0], abs=1e-12)
+    assert np.cross(points, forces).sum(axis=0) + torque == pytest.approx(np.zeros(3), abs=1e-12)
+    for facets in (3, 8, 16, 24):
+        answer = contact_modes(
+            SpatialContactProblem(
+                body=MassProperties(mass=1, I_B=np.diag([0.6, 0.7, 0.9])),
+                state=AT_REST,
+                contacts=contacts,
+                force_W=force,
+                torque_W=torque,
+                friction_facets=facets,
+            )
+        )
+        assert answer.verdict == ModeVerdict.INDETERMINATE
+        assert {mode.mode for mode in answer.modes} == {"ccccc", "ccscc", "csccc"}
+        (together,) = (mode for mode in answer.modes if mode.mode == "ccccc")
+        assert together.acceleration_W == pytest.approx([1.5, 0.0, 0.0], abs=1e-9)
+        assert together.motion_unique
+
+
+@pytest.mark.parametrize("feet", [4, 8, 32])
+@pytest.mark.parametrize("push", [0.0, 0.5, 0.99])
+def test_a_box_that_rests_on_many_feet_is_proven_to_rest_without_a_search(feet: int, push: float) -> None:
+    angles = 2.0 * math.pi * np.arange(feet) / feet + 0.1
+    answer = contact_modes(
+        SpatialContactProblem(
+            body=MassProperties(mass=2.0, I_B=np.diag([0.3, 0.4, 0.5])),
+            state=AT_REST,
+            contacts=ContactSet(
+                p_WC_W=np.column_stack([np.cos(angles), np.sin(angles), np.full(feet, -0.2)]),
+                normals_W=[0.0, 0.0, 1.0],
+                frictions=0.4,
+            ),
+            force_W=(0.6 * 8.0 * push, 0.8 * 8.0 * push, -20.0),
+        )
+    )
+    assert (answer.verdict, [mode.mode for mode in answer.modes]) == (ModeVerdict.UNIQUE, ["f" * feet])
+    assert answer.examined <= 1
