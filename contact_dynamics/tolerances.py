@@ -208,6 +208,10 @@ LEAST_NOISE: Final = 1e-12
 """m and rad. The noise of a fit counts as at least this. The residuals of exact states are rounding alone,
 which does not say how to weigh positions against orientations."""
 
+ROUNDED_STAMP_TURN: Final = 1e-6
+"""rad. Residuals below this do not decide how many turns a body made. Stamps are whole nanoseconds, and at
+1000 rad/s half of one is 5e-7 rad."""
+
 # shapes
 
 FLAT_HULL: Final = 1e-9

@@ -4,6 +4,9 @@ The filter is `motion.velocity_estimate`: a quadratic is fitted to each coordina
 slope at the newest pose is the velocity. Its delay is zero while the acceleration is constant, as in flight.
 For 50 poses at 1 kHz with white noise sigma the velocity has the noise 38 sigma a second, for 12 poses at
 240 Hz it has 75 sigma a second (`slope_noise`). After an impact it is wrong until the window has passed.
+
+Not covered: a body that turns by nearly a whole turn, or by several, from every pose to the next. Its poses
+are those of one that turns slowly or backwards, and nothing in them shows it.
 """
 
 from __future__ import annotations
@@ -16,6 +19,7 @@ import numpy as np
 from contact_dynamics.constants import seconds_since, to_ns
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.motion.velocity_estimate import FEWEST_FRAMES, newest_velocity, slope_weights
+from contact_dynamics.motion.whole_turns import THIRD_OF_A_TURN
 from contact_dynamics.rigid_body.published_frame import state_of_center_of_mass
 from contact_dynamics.rotations.many import rotation_vectors
 from contact_dynamics.validation import check_array, check_unit
@@ -65,8 +69,8 @@ class PoseTrack:
                 poses is taken to be independent, and that of each to be this.
 
         Raises:
-            InvalidFieldError: a number is not finite, the quaternion is not unit, or the body turns by half a
-                turn or more within the window.
+            InvalidFieldError: a number is not finite, the quaternion is not unit, the body turns by half a
+                turn or more within the window, or it may have done so while poses were missing.
         """
         pose = _Pose(
             stamp_ns, check_array("pose.position", p_WF, (3,)), check_unit("pose.orientation", q_WF, 4)
@@ -94,6 +98,7 @@ class PoseTrack:
         if angle >= np.pi:
             found = f"a turn by {angle:.3g} rad within {-times[0]:.3g} s"
             raise InvalidFieldError("pose.orientation", found, "less than half a turn (velocity_window)")
+        self._check_gap(times, turns)
         v_WF, w_WF = newest_velocity(times, np.array([pose.p for pose in self._poses]), q)
         state = state_of_center_of_mass(
             p_WF_W=newest.p,
@@ -108,3 +113,14 @@ class PoseTrack:
         weights = slope_weights(times)
         shares = np.array([[1.0, weights[-1]], [weights[-1], weights @ weights]])
         return with_covariance(state, np.kron(shares, covariance), self._p_FB_F, twist_in_body_axes=False)
+
+    @staticmethod
+    def _check_gap(times: FloatArray, turns: FloatArray) -> None:
+        """Compare the turn over the longest gap with that at the mean rate of the other poses."""
+        gaps = np.diff(times)
+        longest = int(np.argmax(gaps))
+        others = np.delete(turns, longest, axis=0).sum(axis=0) / (gaps.sum() - gaps[longest])
+        expected = others * gaps[longest]
+        if np.linalg.norm(turns[longest] - expected) > THIRD_OF_A_TURN:
+            found = f"{gaps[longest]:.3g} s without a pose, at about {np.linalg.norm(others):.3g} rad/s"
+            raise InvalidFieldError("pose.orientation", found, "less than half a turn between poses")

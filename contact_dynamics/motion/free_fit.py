@@ -4,12 +4,12 @@ Model: a torque-free body in uniform gravity (`contact_dynamics.tumbling`) is se
 noise in position and orientation, and in the velocities if they are used. The path of the centre of mass is a
 linear least-squares problem. The rotation has six unknowns, attitude and angular velocity at the newest
 stamp. Gauss's and Newton's method finds them with the exact derivative of the motion (`free_derivative`). It
-starts from the angular momentum averaged over all neighbouring pairs of states, since L is constant. If the
-last turn alone fits better, as it does for needles, it starts from that.
+starts from the angular momentum averaged over all neighbouring pairs of states, since L is constant, from the
+last turn, or from the published velocities, whichever fits best. `whole_turns` finds out whether the body
+made whole turns more or less between the states.
 
 Not covered: windows in which something touched the body, torque and drag (`integrated_fit`), outliers, noise
-that is correlated from state to state, unknown mass properties, half a turn or more between neighbouring
-states.
+that is correlated from state to state, unknown mass properties, and what `whole_turns` does not cover.
 """
 
 from __future__ import annotations
@@ -24,7 +24,8 @@ import numpy as np
 from contact_dynamics.constants import STANDARD_GRAVITY_W, seconds_since
 from contact_dynamics.errors import InvalidFieldError, TooLargeError
 from contact_dynamics.motion.free_derivative import rotation_derivatives
-from contact_dynamics.numerics.gauss_newton import gauss_newton
+from contact_dynamics.motion.whole_turns import MAX_NOISE_RATIO, chosen_motion, turns_near
+from contact_dynamics.numerics.gauss_newton import Fit, gauss_newton
 from contact_dynamics.records import Record
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.rotations.many import matrices_of, rotation_vectors, turned
@@ -82,13 +83,21 @@ class FitResult(Record):
         orientation_residual: rad, root mean square angle between the orientations.
         count: Number of states.
         rounds: Number of rounds of Gauss's and Newton's method.
-        converged: Whether the last round changed next to nothing.
+        converged: Whether the last round changed next to nothing, and the residuals fit the noise: their root
+            mean square is at most three of the given deviations or, if no noise is given, the orientations
+            miss by at most 0.1 rad.
         position_misses_W: (count, 3), m, the positions less the fitted ones, world axes.
         orientation_misses_W: (count, 3), rad, rotation vectors from the fitted attitudes to those of the
             states, world axes.
         by_gravity: By how much the fitted position (s^2) and velocity (s) change with gravity, each component
             with its own. A fit to positions over a time T has about T^2 / 12 and T / 2. None means that it is
             not known, as under wrenches.
+        turns_known: Whether the published angular velocities exclude motions that turn by whole turns more or
+            less from one state to the next. They do so if they are off by less than a third of a turn per
+            interval. Without them, as with velocities that are all zero of a body that turns, the fit takes
+            the fewest turns that fit, and other numbers of turns are possible.
+        alternatives: Other states at the newest stamp whose motions were found to fit as well. ``state`` and
+            its covariance are worth nothing where one of them may be true.
     """
 
     state: BodyState
@@ -101,6 +110,8 @@ class FitResult(Record):
     position_misses_W: FloatArray
     orientation_misses_W: FloatArray
     by_gravity: tuple[float, float] | None = None
+    turns_known: bool = True
+    alternatives: tuple[BodyState, ...] = ()
 
 
 def fit_free_motion(
@@ -113,7 +124,9 @@ def fit_free_motion(
     """Return the free motion that fits ``states``, in order of time, best.
 
     If ``noise`` is given, the covariance follows from it, and the fit uses the velocities for which it has a
-    deviation. Otherwise the fit uses poses alone, and the covariance follows from their residuals.
+    deviation. Otherwise the fit uses poses alone, and the covariance follows from their residuals. Published
+    angular velocities say in either case how many whole turns there are between the states. Where neither
+    they nor the poses do, `FitResult.turns_known` is false.
 
     Raises:
         InvalidFieldError: there are fewer than `FEWEST_STATES` states, their stamps do not ascend, the window
@@ -138,16 +151,21 @@ def fit_free_motion(
     at_place, at_spin = np.r_[0:3, 6:9], np.r_[3:6, 9:12]
     covariance[np.ix_(at_place, at_place)] = np.kron(place.covariance, np.eye(3))
     covariance[np.ix_(at_spin, at_spin)] = spin.covariance
-    q_WB, w_WB_W = spin.motion.state.q_WB, spin.motion.state.w_WB_W
+    state, *alternatives = (
+        BodyState(p_WB_W=place.p_W, q_WB=each.q_WB, v_WB_W=place.v_W, w_WB_W=each.w_WB_W, stamp_ns=newest)
+        for each in (spin.motion.state, *spin.alternatives)
+    )
     return FitResult(
-        state=BodyState(p_WB_W=place.p_W, q_WB=q_WB, v_WB_W=place.v_W, w_WB_W=w_WB_W, stamp_ns=newest),
+        state=state,
         covariance=covariance,
         by_gravity=place.by_gravity,
         position_residual=place.residual,
         orientation_residual=spin.residual,
         count=len(states),
         rounds=spin.rounds,
-        converged=spin.converged,
+        converged=spin.converged and place.fits_noise,
+        turns_known=spin.turns_known,
+        alternatives=tuple(alternatives),
         position_misses_W=place.misses_W,
         orientation_misses_W=spin.misses_W,
     )
@@ -161,6 +179,7 @@ class _Place:
     by_gravity: tuple[float, float]  # s^2, s
     residual: float
     misses_W: FloatArray  # (n, 3), m
+    fits_noise: bool
 
 
 def _fit_place(
@@ -185,6 +204,7 @@ def _fit_place(
     orthogonal, triangle = np.linalg.qr(design)
     inverse = np.linalg.inv(triangle)
     solution = inverse @ (orthogonal.T @ values)
+    cost = float(np.square(values - design @ solution)[:, :3].sum())
     by_gravity = (float(solution[0, 3]), float(solution[1, 3]) / span)
     solution = solution[:, :3]
     misses = fallen - solution[0] - (seconds / span)[:, None] * solution[1]
@@ -198,6 +218,7 @@ def _fit_place(
         by_gravity=by_gravity,
         residual=math.sqrt(total / len(seconds)),
         misses_W=misses,
+        fits_noise=noise is None or cost <= MAX_NOISE_RATIO**2 * 3 * (len(values) - 2),
     )
 
 
@@ -209,78 +230,125 @@ class _Rotation:
     misses_W: FloatArray  # (n, 3), rad
     rounds: int
     converged: bool
+    turns_known: bool
+    alternatives: tuple[BodyState, ...]
 
 
 def _fit_rotation(
     body: MassProperties, states: Sequence[BodyState], seconds: FloatArray, noise: StateNoise | None
 ) -> _Rotation:
-    measured = np.array([state.q_WB for state in states])
-    rates = np.array([state.w_WB_W for state in states])
-    by_q = 1.0 if noise is None else 1.0 / noise.orientation
-    by_w = 0.0 if noise is None or noise.angular_velocity is None else 1.0 / noise.angular_velocity
+    window = _Turning(body, states, seconds, noise)
+    starts = window.starts()
+    start = min(starts, key=lambda motion: float(np.square(window.misses(motion, len(seconds))).sum()))
+    chosen = chosen_motion(window, start, starts)
+    fit = chosen.fit
+    attitudes = 3 * len(seconds)
+    turns = fit.misses[:attitudes].reshape(-1, 3) / window.by_q
+    total = float(np.square(fit.misses[:attitudes]).sum()) / window.by_q**2
+    variance = total / (attitudes - 6) if noise is None else 1.0
+    return _Rotation(
+        motion=fit.model,
+        covariance=variance * fit.inverse @ fit.inverse.T,
+        residual=math.sqrt(total / len(seconds)),
+        misses_W=turns,
+        rounds=fit.rounds,
+        converged=chosen.converged,
+        turns_known=chosen.turns_known,
+        alternatives=chosen.alternatives,
+    )
 
-    def misses(motion: FreeMotion) -> FloatArray:
-        then = motion.at(seconds)
-        weighted = (by_q * rotation_vectors(measured, then.q_WB)).ravel()
-        return np.concatenate([weighted, (by_w * (rates - then.w_WB_W)).ravel()]) if by_w else weighted
 
-    def derivatives(motion: FreeMotion) -> FloatArray:
-        each = rotation_derivatives(motion, seconds)
+class _Turning:
+    """Published attitudes and angular velocities, with the methods that fit a rotation to them."""
+
+    unknowns = 6
+
+    def __init__(
+        self,
+        body: MassProperties,
+        states: Sequence[BodyState],
+        seconds: FloatArray,
+        noise: StateNoise | None,
+    ) -> None:
+        self.body = body
+        self.seconds = seconds
+        self.q = np.array([state.q_WB for state in states])
+        self.w = np.array([state.w_WB_W for state in states])
+        self.by_q = 1.0 if noise is None else 1.0 / noise.orientation
+        self.by_w = 0.0 if noise is None or noise.angular_velocity is None else 1.0 / noise.angular_velocity
+        self.noise_is_known = noise is not None
+        self.rates_weigh = self.by_w > 0.0
+
+    def misses(self, motion: FreeMotion, count: int) -> FloatArray:
+        """Return the weighted residuals of the last ``count`` states: of all attitudes, and then of rates."""
+        then = motion.at(self.seconds[-count:])
+        weighted = (self.by_q * rotation_vectors(self.q[-count:], then.q_WB)).ravel()
+        if not self.by_w:
+            return weighted
+        return np.concatenate([weighted, (self.by_w * (self.w[-count:] - then.w_WB_W)).ravel()])
+
+    def derivatives(self, motion: FreeMotion, count: int) -> FloatArray:
+        """Return the derivatives of what the residuals compare, (m, 6)."""
+        each = rotation_derivatives(motion, self.seconds[-count:])
         if not np.isfinite(each).all():
             raise InvalidFieldError(
-                "states", f"{-seconds[0]:g} s", "a window over which the motion is predictable"
+                "states", f"{-self.seconds[-count]:g} s", "a window over which the motion is predictable"
             )
-        design = by_q * each[:, :3].reshape(-1, 6)
-        return np.vstack([design, by_w * each[:, 3:].reshape(-1, 6)]) if by_w else design
+        design = self.by_q * each[:, :3].reshape(-1, 6)
+        return np.vstack([design, self.by_w * each[:, 3:].reshape(-1, 6)]) if self.by_w else design
 
-    def moved(motion: FreeMotion, step: FloatArray) -> FreeMotion:
+    def fitted(self, start: FreeMotion, count: int) -> Fit[FreeMotion]:
+        """Return the fit to the last ``count`` states."""
+        negligible = np.full((6 if self.by_w else 3) * count, math.inf)
+        negligible[: 3 * count] = self.by_q * SMALL_STEP
+        return gauss_newton(
+            start,
+            misses_of=lambda motion: self.misses(motion, count),
+            derivatives_of=lambda motion: self.derivatives(motion, count),
+            moved=self._moved,
+            negligible=negligible,
+        )
+
+    def _moved(self, motion: FreeMotion, step: FloatArray) -> FreeMotion:
         q_WB = turned(motion.state.q_WB[None], step[None, :3])[0]
-        return _motion_from(body, q_WB, motion.state.w_WB_W + step[3:])
+        return self._motion(q_WB, motion.state.w_WB_W + step[3:])
 
-    starts = [
-        _motion_from(body, measured[-1], rate)
-        for rate in (_averaged_rate(body, measured, seconds), _last_rate(measured, seconds))
-    ]
-    start = min(starts, key=lambda motion: float(np.square(misses(motion)).sum()))
-    attitudes = 3 * len(seconds)
-    negligible = np.full(2 * attitudes if by_w else attitudes, math.inf)
-    negligible[:attitudes] = by_q * SMALL_STEP
-    fit = gauss_newton(
-        start, misses_of=misses, derivatives_of=derivatives, moved=moved, negligible=negligible
-    )
-    turns = fit.misses[:attitudes].reshape(-1, 3) / by_q
-    total = float(np.square(fit.misses[:attitudes]).sum()) / by_q**2
-    variance = total / (attitudes - 6) if noise is None else 1.0
-    covariance = variance * fit.inverse @ fit.inverse.T
-    return _Rotation(fit.model, covariance, math.sqrt(total / len(seconds)), turns, fit.rounds, fit.converged)
+    def with_rate(self, model: FreeMotion, rate: FloatArray) -> FreeMotion:
+        """Return the motion with another angular velocity at the newest state."""
+        return self._motion(model.state.q_WB, rate)
 
+    def _motion(self, q_WB: FloatArray, w_WB_W: FloatArray) -> FreeMotion:
+        """Return a motion with a resting centre of mass, whose path is fitted separately."""
+        state = BodyState(p_WB_W=np.zeros(3), q_WB=q_WB, v_WB_W=np.zeros(3), w_WB_W=w_WB_W)
+        return free_motion(self.body, state, gravity_W=np.zeros(3), precision=Precision.DOUBLE)
 
-def _motion_from(body: MassProperties, q_WB: FloatArray, w_WB_W: FloatArray) -> FreeMotion:
-    """Return a motion with this rotation and a resting centre of mass, whose path is fitted separately."""
-    state = BodyState(p_WB_W=np.zeros(3), q_WB=q_WB, v_WB_W=np.zeros(3), w_WB_W=w_WB_W)
-    return free_motion(body, state, gravity_W=np.zeros(3), precision=Precision.DOUBLE)
+    def starts(self) -> list[FreeMotion]:
+        """Return motions from the newest attitude on, with angular velocities by several estimates.
 
+        Between neighbours a body turns about almost one axis: w is the turn over the time, at the attitude
+        halfway. That of L averaged over all neighbours, with the squares of the times as the weights for the
+        noise of orientations, is the least noisy. A needle is the exception, because the spin about its own
+        axis is the smallest part of L; for it there is the last turn. Where a body tumbles by half a turn or
+        more between neighbours, neither is near, and published velocities are.
+        """
+        q, between = self.q, np.diff(self.seconds)
+        expected = 0.5 * (self.w[1:] + self.w[:-1]) * between[:, None]
+        turns, rest = turns_near(q[1:], q[:-1], expected)
+        halfway = matrices_of(turned(q[:-1], 0.5 * turns))
+        turns = turns + rest
+        of_turns = self._momenta(halfway, turns * between[:, None]).sum(axis=0) / (between @ between)
+        rates = [self._rate(of_turns), turns[-1] / between[-1]]
+        if self.w.any():
+            momenta = self._momenta(matrices_of(q), self.w)
+            rates += [self._rate(momenta.mean(axis=0)), *map(self._rate, momenta[-4:])]
+        return [self._motion(q[-1], rate) for rate in rates]
 
-def _averaged_rate(body: MassProperties, q: FloatArray, seconds: FloatArray) -> FloatArray:
-    """Return the angular velocity, (3,), at the newest state for L averaged over all neighbouring pairs.
+    def _momenta(self, R: FloatArray, w: FloatArray) -> FloatArray:
+        momenta: FloatArray = np.einsum("nij,jk,nlk,nl->ni", R, self.body.I_B, R, w)
+        return momenta
 
-    Between neighbours a body turns about almost one axis: w is the turn over the time, at the attitude
-    halfway. The weights, squares of the time, are those of the noise of orientations.
-    """
-    turns = rotation_vectors(q[1:], q[:-1])
-    between = np.diff(seconds)
-    halfway = matrices_of(turned(q[:-1], 0.5 * turns))
-    L = np.einsum("nij,jk,nlk,nl->ni", halfway, body.I_B, halfway, turns * between[:, None])
-    R = matrices_of(q[-1:])[0]
-    rate: FloatArray = R @ np.linalg.solve(body.I_B, R.T @ (L.sum(axis=0) / (between @ between)))
-    return rate
-
-
-def _last_rate(q: FloatArray, seconds: FloatArray) -> FloatArray:
-    """Return the angular velocity, (3,), of the last turn.
-
-    It is noisier than the rate from L. A needle is the exception, because the spin about its own axis is the
-    smallest part of L.
-    """
-    rate: FloatArray = rotation_vectors(q[-1:], q[-2:-1])[0] / (seconds[-1] - seconds[-2])
-    return rate
+    def _rate(self, L: FloatArray) -> FloatArray:
+        """Return the angular velocity at the newest state for an angular momentum."""
+        R = matrices_of(self.q[-1:])[0]
+        rate: FloatArray = R @ np.linalg.solve(self.body.I_B, R.T @ L)
+        return rate

@@ -4,24 +4,27 @@ Model: a body moves under gravity, a constant wrench, drag and a user's function
 seen at n times with white noise. All twelve numbers of the newest state are found together, because a force
 that turns with the body ties its path to its attitude. Gauss's and Newton's method finds them with the
 derivative of the integrated motion (`contact_dynamics.motion.integrated_derivative`). It starts from the free
-motion that fits best.
+motion that fits best. `whole_turns` finds out whether the body made whole turns more or less between the
+states.
 
 Not covered: forces that are not known, outliers, correlated noise, contacts within the window, unknown mass
-properties, and half a turn or more between neighbouring states.
+properties, and what `whole_turns` does not cover.
 """
 
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from contact_dynamics.constants import STANDARD_GRAVITY_W, seconds_since
 from contact_dynamics.motion.forces import NO_DRAG, NO_WRENCH, ConstantWrench, Drag
-from contact_dynamics.motion.free_fit import FitResult, StateNoise, fit_free_motion
+from contact_dynamics.motion.free_fit import MOST_STATES, FitResult, StateNoise, fit_free_motion
 from contact_dynamics.motion.integrated import MOST_STEPS, ForcedMotion, forced_motion, turns_or_drags
 from contact_dynamics.motion.integrated_derivative import forced_state_derivatives
+from contact_dynamics.motion.whole_turns import chosen_motion
 from contact_dynamics.numerics.gauss_newton import Fit, gauss_newton
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.rotations.many import rotation_vectors, turned
@@ -76,22 +79,30 @@ def fit_motion(
         wrench_of=wrench_of,
         most_steps=most_steps,
     )
-    seen = _Seen(states)
     position, orientation = free.position_residual, free.orientation_residual
-    for _ in range(1 if noise else PASSES):
-        assumed = noise or _noise_of(position, orientation, len(states))
-        fit = seen.fitted(motion, assumed)
-        motion = fit.model
-        position, orientation = seen.residuals(motion)
-    misses = seen.misses(motion)
+    window = _Seen(
+        body, states, noise or _noise_of(position, orientation, len(states)), noise_is_known=noise is not None
+    )
+    others = [*free.alternatives, replace(free.state, w_WB_W=states[-1].w_WB_W)]
+    chosen = chosen_motion(window, motion, [motion.from_state(state) for state in others])
+    fit, converged = chosen.fit, chosen.converged
+    for _ in range(0 if noise else PASSES - 1):
+        position, orientation = window.residuals(fit.model)
+        window = _Seen(body, states, _noise_of(position, orientation, len(states)), noise_is_known=False)
+        fit = window.fitted(fit.model, len(states))
+        converged = converged and fit.converged
+    position, orientation = window.residuals(fit.model)
+    misses = window.misses(fit.model)
     return FitResult(
-        state=motion.state,
+        state=fit.model.state,
         covariance=fit.inverse @ fit.inverse.T,
         position_residual=position,
         orientation_residual=orientation,
         count=len(states),
         rounds=fit.rounds,
-        converged=fit.converged,
+        converged=converged,
+        turns_known=chosen.turns_known,
+        alternatives=chosen.alternatives,
         position_misses_W=misses[:, :3],
         orientation_misses_W=misses[:, 3:6],
     )
@@ -110,23 +121,35 @@ def _noise_of(position_residual: float, orientation_residual: float, count: int)
 class _Seen:
     """The published states, as arrays, with the methods that fit a motion to them."""
 
-    def __init__(self, states: Sequence[BodyState]) -> None:
+    unknowns = 12
+
+    def __init__(
+        self, body: MassProperties, states: Sequence[BodyState], noise: StateNoise, *, noise_is_known: bool
+    ) -> None:
+        self.body = body
         newest = states[-1].stamp_ns
         self.seconds = seconds_since(newest, [state.stamp_ns for state in states])
         self.p = np.array([state.p_WB_W for state in states])
         self.q = np.array([state.q_WB for state in states])
         self.v = np.array([state.v_WB_W for state in states])
         self.w = np.array([state.w_WB_W for state in states])
+        deviations = (noise.position, noise.orientation, noise.linear_velocity, noise.angular_velocity)
+        self._used = np.repeat([deviation is not None for deviation in deviations], 3)
+        self._weights = 1.0 / np.repeat([deviation or 1.0 for deviation in deviations], 3)[self._used]
+        self._negligible = np.where(np.arange(12) < 6, SMALL_STEP, math.inf)[self._used] * self._weights
+        self.by_q = 1.0 / noise.orientation
+        self.noise_is_known = noise_is_known
+        self.rates_weigh = noise.angular_velocity is not None
 
-    def misses(self, motion: ForcedMotion) -> FloatArray:
-        """Return the seen states less the computed ones, (n, 12)."""
-        then = motion.at(self.seconds)
+    def misses(self, motion: ForcedMotion, count: int = MOST_STATES) -> FloatArray:
+        """Return the seen states less the computed ones, (n, 12), of the last ``count`` states."""
+        then = motion.at(self.seconds[-count:])
         return np.hstack(
             [
-                self.p - then.p_WB_W,
-                rotation_vectors(self.q, then.q_WB),
-                self.v - then.v_WB_W,
-                self.w - then.w_WB_W,
+                self.p[-count:] - then.p_WB_W,
+                rotation_vectors(self.q[-count:], then.q_WB),
+                self.v[-count:] - then.v_WB_W,
+                self.w[-count:] - then.w_WB_W,
             ]
         )
 
@@ -136,12 +159,9 @@ class _Seen:
         n = len(self.seconds)
         return math.sqrt(squares[:, :3].sum() / n), math.sqrt(squares[:, 3:6].sum() / n)
 
-    def fitted(self, motion: ForcedMotion, noise: StateNoise) -> Fit[ForcedMotion]:
-        """Return the fit, from a start, of the components for which ``noise`` has a deviation."""
-        deviations = (noise.position, noise.orientation, noise.linear_velocity, noise.angular_velocity)
-        used = np.repeat([deviation is not None for deviation in deviations], 3)
-        weights = 1.0 / np.repeat([deviation or 1.0 for deviation in deviations], 3)[used]
-        negligible = np.where(np.arange(12) < 6, SMALL_STEP, math.inf)[used] * weights
+    def fitted(self, start: ForcedMotion, count: int) -> Fit[ForcedMotion]:
+        """Return the fit to the last ``count`` states, of the components whose noise has a deviation."""
+        used, weights = self._used, self._weights
 
         def moved(motion: ForcedMotion, step: FloatArray) -> ForcedMotion:
             state = motion.state
@@ -156,11 +176,15 @@ class _Seen:
             )
 
         return gauss_newton(
-            motion,
-            misses_of=lambda motion: (weights * self.misses(motion)[:, used]).ravel(),
+            start,
+            misses_of=lambda motion: (weights * self.misses(motion, count)[:, used]).ravel(),
             derivatives_of=lambda motion: (
-                weights[:, None] * forced_state_derivatives(motion, self.seconds)[:, used]
+                weights[:, None] * forced_state_derivatives(motion, self.seconds[-count:])[:, used]
             ).reshape(-1, 12),
             moved=moved,
-            negligible=np.tile(negligible, len(self.seconds)),
+            negligible=np.tile(self._negligible, count),
         )
+
+    def with_rate(self, model: ForcedMotion, rate: FloatArray) -> ForcedMotion:
+        """Return the motion with another angular velocity at the newest state."""
+        return model.from_state(replace(model.state, w_WB_W=rate))

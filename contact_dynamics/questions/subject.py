@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Final, TypeAlias
 
+import numpy as np
+
 from contact_dynamics.constants import seconds_between
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.motion.between_states import share_between, state_between
@@ -115,7 +117,8 @@ def subject_of(
         NoStateError: no state of it was published, or every one that is kept has a later stamp.
         StaleStateError: the newest state is too old, or those around the stamp are too far apart.
         InvalidFieldError: a published state is asked for and the body has no name, or the window cannot be
-            fitted, or the stamp is further ahead of the newest state than the default horizon.
+            fitted, or no motion fits it, or several do that differ by whole turns from state to state, or the
+            stamp is further ahead of the newest state than the default horizon.
         TooLargeError: the window has more states than are fitted.
     """
     if isinstance(body, str):
@@ -138,6 +141,7 @@ def subject_of(
         if error.field != "states":
             raise
         raise type(error)("fit_window", error.found, error.allowed) from None  # the question's name for them
+    _check_fit(best)
     quality = FitQuality(
         count=best.count,
         position_residual=best.position_residual,
@@ -151,6 +155,26 @@ def subject_of(
         by_gravity=best.by_gravity or (0.0, 0.0),
     )
     return _moved(found, None, source.stamp_ns, knowledge)
+
+
+def _check_fit(fit: FitResult) -> None:
+    """Raise an error for a motion that does not fit the states, and for one that is not the only one."""
+    if not fit.converged:
+        raise InvalidFieldError(
+            "fit_window",
+            f"{fit.count} states that the motion found misses by {fit.position_residual:.3g} m and "
+            f"{fit.orientation_residual:.3g} rad",
+            "a window in which nothing touches the body, and published angular velocities",
+        )
+    if not fit.turns_known:
+        rates = ", ".join(
+            f"{float(np.linalg.norm(state.w_WB_W)):.4g}" for state in (fit.state, *fit.alternatives)
+        )
+        raise InvalidFieldError(
+            "fit_window",
+            f"states that do not show how many turns the body makes between them ({rates} rad/s)",
+            "states with angular velocities, or more states a second",
+        )
 
 
 def covariance_of(subject: Subject) -> FloatArray:

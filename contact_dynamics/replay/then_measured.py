@@ -82,6 +82,8 @@ class Measuring:
             state = self._before
             if self._is_impact:
                 fitted = fit_free_motion(self._body, self._after[_AT_IMPACT:], gravity_W=self._gravity_W)
+                if not (fitted.converged and fitted.turns_known):
+                    return None
                 state = fitted.state
             seconds = seconds_between(state.stamp_ns, self.predicted.stamp_ns)
             if abs(seconds) > WITHIN:

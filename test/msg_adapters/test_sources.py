@@ -375,6 +375,16 @@ def test_half_a_turn_within_the_window_is_refused() -> None:
         [read(flying(0.0125 * i)[0]) for i in (50, 51, 52)]
 
 
+def test_half_a_turn_while_poses_are_missing_is_refused() -> None:
+    """A body at 5 rad/s turns by 3.5 rad in 0.7 s, which look like 2.8 rad backwards."""
+    (read,) = POSE.readers(settings(window=0.15))
+    for i in range(20):
+        read(flying(0.01 * i)[0])
+    words = r"pose\.orientation: found 0\.71 s without a pose, at about 5 rad/s, allowed is less than half"
+    with pytest.raises(InvalidFieldError, match=words):
+        read(flying(0.9)[0])
+
+
 # Trees and lists of bodies
 
 

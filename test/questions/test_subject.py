@@ -157,6 +157,54 @@ def test_a_fit_finds_the_toss_that_was_published() -> None:
     assert subject.covariance.shape == (12, 12)
 
 
+def spinning(rate: float, per_second: float, *, published: float) -> Knowledge:
+    """Return what is known after ten states of the cube, which turns about z and rests otherwise."""
+    states = StateStore(history=10.0, timeout=0.5)
+    for k in range(10):
+        half = 0.5 * rate * k / per_second
+        states.add(
+            "cube",
+            BodyState(
+                p_WB_W=[0.0, 0.0, -0.5 * GRAVITY * (k / per_second) ** 2],
+                q_WB=[0.0, 0.0, np.sin(half), np.cos(half)],
+                v_WB_W=[0.0, 0.0, -GRAVITY * k / per_second],
+                w_WB_W=[0.0, 0.0, published],
+                stamp_ns=round(1e9 * k / per_second),
+            ),
+        )
+    return Knowledge(world=WORLD, states=states)
+
+
+@pytest.mark.parametrize(("rate", "per_second"), [(100.0, 30.0), (400.0, 120.0)])
+def test_a_fit_and_a_state_between_two_turn_as_published(rate: float, per_second: float) -> None:
+    """Each turns by 191 degrees from state to state."""
+    known = spinning(rate, per_second, published=rate)
+    fitted = subject_of("cube", PublishedState(fit_window=1.0), known).state
+    np.testing.assert_allclose(fitted.w_WB_W, [0.0, 0.0, rate], rtol=0.0, atol=1e-3)
+    stamp_ns = round(8.5e9 / per_second)
+    between = subject_of("cube", PublishedState(stamp_ns=stamp_ns), known).state
+    half = 0.5 * rate * stamp_ns * 1e-9
+    assert abs(between.q_WB @ [0.0, 0.0, np.sin(half), np.cos(half)]) == pytest.approx(1.0, abs=1e-12)
+
+
+def test_a_fit_to_states_that_leave_the_turns_open_is_an_error() -> None:
+    known = spinning(400.0, 120.0, published=0.0)
+    words = r"fit_window: found states that do not show how many turns .*\(354.* 400.*allowed is states with"
+    with pytest.raises(InvalidFieldError, match=words):
+        subject_of("cube", PublishedState(fit_window=1.0), known)
+
+
+def test_a_fit_to_states_of_another_motion_is_an_error() -> None:
+    """Turned by a radian in the middle of the window, as by a blow that the velocities do not show."""
+    states = StateStore(history=10.0, timeout=0.5)
+    for k in range(10):
+        state = rising(10 * k * MS)
+        half = 0.5 * (k > 4)
+        states.add("cube", replace(state, q_WB=[np.sin(half), 0.0, 0.0, np.cos(half)]))
+    with pytest.raises(InvalidFieldError, match=r"fit_window: found 10 states that the motion found misses"):
+        subject_of("cube", PublishedState(fit_window=1.0), Knowledge(world=WORLD, states=states))
+
+
 def test_a_load_moves_the_centre_of_mass_and_leaves_the_body_where_it_is() -> None:
     """Its frame stays, so that the new centre is beside the old one, and moves with the body's turning."""
     offset = np.array([0.05, 0.0, 0.0])
