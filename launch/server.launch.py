@@ -21,7 +21,7 @@ def generate_launch_description() -> LaunchDescription:
     share = get_package_share_path("contact_dynamics")
     namespace = LaunchConfiguration("namespace")
     parameters = LaunchConfiguration("params_file")
-    environment = {DISCOVERY: LaunchConfiguration("discovery_range")}  # of these nodes alone
+    environment = {DISCOVERY: LaunchConfiguration("discovery_range")}  # for these nodes alone
     full_name = PathJoinSubstitution(["/", namespace, "contact_dynamics"])
     return LaunchDescription(
         [

@@ -16,6 +16,7 @@ from contextlib import contextmanager, suppress
 from functools import partial
 from typing import TYPE_CHECKING, Final, Protocol
 
+import numpy as np
 import rclpy
 from rclpy.exceptions import InvalidHandle, ParameterException
 from rclpy.experimental import EventsExecutor
@@ -80,6 +81,7 @@ def run_node(
     never_wait_for_readers()
     ensure_ros_log_directory()
     keep_reserved_memory_untouched()
+    np.seterr(all="ignore")  # whoever sent such numbers is told by the field's name, the console would flood
     with stop_signals() as stop:
         try:
             rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.NO)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import signal
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -12,9 +13,14 @@ from nav_msgs.msg import Odometry
 
 from changed_requests import put
 from contact_dynamics.demo.ros_domain import claim_domain
-from contact_dynamics_interfaces.msg import BodyState, ContactSet
-from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact, PredictTumbling
-from running_server import Client, server_and_client
+from contact_dynamics_interfaces.msg import BodyState, BodyStates, ContactSet
+from contact_dynamics_interfaces.srv import (
+    PredictContactMode,
+    PredictImpact,
+    PredictTumbling,
+    PredictTumblingBatch,
+)
+from running_server import ROOT, Client, process, server_and_client
 
 SERVICES = (PredictContactMode, PredictImpact, PredictTumbling)
 
@@ -355,3 +361,34 @@ def test_states_that_are_stale_or_make_no_sense(client_alone: Client) -> None:
     asked = PredictTumbling.Request(body_name="brick", times=[0.1])
     asked.state_source, asked.stamp = asked.STATE_AT_STAMP, old.header.stamp
     assert client.ask(asked).status == 0
+
+
+def test_numbers_without_measure_flood_no_console(tmp_path: Path) -> None:
+    """NumPy warned of each such state again after each answer, and of questions that overflow."""
+    arguments = ("--params-file", str(ROOT / "config" / "server.yaml"), "--ros-args", "-p", "workers:=1")
+    with process("server", *arguments, "-p", f"log_directory:={tmp_path}", ready="ready") as server:
+        client = Client()
+        try:
+            states = client.publisher(Odometry, "/brick/odometry")
+            msg = Odometry(child_frame_id="brick")
+            msg.header.frame_id, msg.header.stamp = "world", client.node.get_clock().now().to_msg()
+            far = PredictTumblingBatch.Request(body_name="brick", times=[1e300])
+            far.states = BodyStates(
+                positions=[0.0, 0.0, 1.0],
+                orientations=[0.0, 0.0, 0.0, 1.0],
+                linear_velocities=[1e30, 0.0, -1.0],
+                angular_velocities=[0.0, 3.0, 0.0],
+            )
+            for number in (math.inf, 1e308, math.nan):
+                for _ in range(20):
+                    msg.twist.twist.linear.x = msg.twist.twist.angular.y = number
+                    msg.pose.covariance[0] = number
+                    states.publish(msg)
+                    assert client.ask(far).status != 0
+        finally:
+            client.close()
+        server.send_signal(signal.SIGINT)
+        assert server.stdout is not None
+        printed = server.stdout.read()
+        assert "message ignored" in printed
+        assert "RuntimeWarning" not in printed
