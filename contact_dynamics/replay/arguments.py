@@ -62,6 +62,12 @@ def recover_parser() -> argparse.ArgumentParser:
     return parser
 
 
+def stamps_as_logged(given: argparse.Namespace) -> bool:
+    """Return whether what is published keeps the stamps of the log."""
+    chosen = given.stamps or ("logged" if given.clock else "now")
+    return bool(chosen == "logged")
+
+
 class _WithDefaultMode(argparse.ArgumentParser):
     """A parser that takes what names no mode as the arguments of the first one."""
 
@@ -82,14 +88,7 @@ def _add_verify(parser: argparse.ArgumentParser) -> None:
         metavar="LOG",
         help="folder of a log of the server, one of its files, or a folder in which logs are looked for",
     )
-    parser.add_argument(
-        "--tolerance",
-        type=_not_negative,
-        default=0.0,
-        metavar="T",
-        help="how much a number may differ, relative to the larger of the two, or to 1 if both are smaller "
-        "(default: 0, so that every bit counts)",
-    )
+    _add_tolerance(parser)
 
     group = parser.add_argument_group(
         "another configuration", "What would the answers have been? The report tells the largest differences."
@@ -127,7 +126,9 @@ def _add_view(parser: argparse.ArgumentParser) -> None:
     viewer.add_argument(
         "--spawn", action="store_true", help="open rerun's viewer (what happens without --rrd)"
     )
-    viewer.add_argument("--serve", action="store_true", help="serve the picture at the port, for viewers")
+    viewer.add_argument(
+        "--serve", action="store_true", help="serve the picture at the port, for viewers, until Ctrl-C"
+    )
     viewer.add_argument("--connect", metavar="URL", default="", help="a viewer that is open already")
     parser.add_argument(
         "--port", type=int, default=DEFAULT_PORT, help=f"of --spawn and --serve (default: {DEFAULT_PORT})"
@@ -145,6 +146,8 @@ def _add_view(parser: argparse.ArgumentParser) -> None:
 
 def _add_publish(parser: argparse.ArgumentParser) -> None:
     parser.epilog = (
+        "exit code: 0 all was published, and with --requests every answer is as logged; 1 nothing was "
+        "published, an answer differs, or did not come; 2 there is no such log, or no such part of it. "
         "While it runs, the space bar pauses it, and a dot steps on. ROS's own arguments follow --ros-args."
     )
     parser.add_argument("log", metavar="LOG", help="a log of the server, or any recording with --all-topics")
@@ -153,7 +156,8 @@ def _add_publish(parser: argparse.ArgumentParser) -> None:
         type=_positive,
         default=1.0,
         metavar="R",
-        help="how many times as fast as it was (default: 1)",
+        help="how many times as fast as it was (default: 1). Others need --clock, or --stamps logged: "
+        "velocities do not fit stamps that are stretched",
     )
     parser.add_argument(
         "--loop", action="store_true", help="begin again at the end, until it is told to stop"
@@ -162,8 +166,9 @@ def _add_publish(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--requests",
         action="store_true",
-        help="ask the logged questions again, each at its time, and compare",
+        help="ask the logged questions again, each at its time, and compare the answers with the logged ones",
     )
+    _add_tolerance(parser)
     parser.add_argument(
         "--clock", action="store_true", help="publish the time of the log at /clock, 100 times a second"
     )
@@ -185,6 +190,17 @@ def _add_publish(parser: argparse.ArgumentParser) -> None:
         help="wait this long for listeners, s (default: 3)",
     )
     _add_span(parser)
+
+
+def _add_tolerance(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--tolerance",
+        type=_not_negative,
+        default=0.0,
+        metavar="T",
+        help="how much a number may differ, relative to the larger of the two, or to 1 if both are smaller "
+        "(default: 0, so that every bit counts)",
+    )
 
 
 def _add_span(parser: argparse.ArgumentParser) -> None:

@@ -10,6 +10,7 @@ import struct
 import sys
 import time
 import warnings
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -24,18 +25,25 @@ from rosgraph_msgs.msg import Clock
 from contact_dynamics.constants import NS_PER_S
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.nodes.ros_log_directory import ensure_ros_log_directory
+from contact_dynamics.nodes.run_record import versions_here
 from contact_dynamics.nodes.running import stop_signals
 from contact_dynamics.recording.bag_reader import BagReader
 from contact_dynamics.recording.cdr_stamp import leading_stamp_ns
 from contact_dynamics.recording.decoding import message_class
 from contact_dynamics.recording.definitions import EVENT_SUFFIX
 from contact_dynamics.recording.errors import DamagedLogWarning, NotALogError
+from contact_dynamics.recording.message_types import Message
 from contact_dynamics.recording.qos import FOREVER_NS, OfferedQos, offered_qos
 from contact_dynamics.recording.service_calls import EVENT_TOPIC_SUFFIX, ServiceCall
+from contact_dynamics.replay.arguments import stamps_as_logged
+from contact_dynamics.replay.compare import differences
+from contact_dynamics.replay.event_parts import part_of
 from contact_dynamics.replay.of_log import server_of_log
 from contact_dynamics.replay.pacing import Pacing, single_keys
 from contact_dynamics.replay.progress import Progress
+from contact_dynamics.replay.report import report
 from contact_dynamics.replay.timeline import CLOCK, in_order
+from contact_dynamics.replay.verify import ServiceTally, Verification, note_difference
 from msg_adapters.stamps import stamp_ns_from_msg, stamp_to_msg
 
 if TYPE_CHECKING:
@@ -48,6 +56,7 @@ if TYPE_CHECKING:
 
     from contact_dynamics.recording.bag_reader import LoggedMessage
     from contact_dynamics.recording.file_messages import Span, Topic
+    from contact_dynamics.replay.compare import Difference
 
 NODE_NAME: Final = "contact_dynamics_replay"
 
@@ -59,10 +68,13 @@ _ANSWERS_S: Final = 10.0  # how long the next answer is waited for at the end
 _STAMPED: Final = ("std_msgs/Header", "builtin_interfaces/Time")
 _LITTLE_ENDIAN: Final = 1  # the second byte of a serialised message
 _POLL_S: Final = 0.02
+_OF_THE_STATE: Final = ("stamp.sec", "stamp.nanosec", "fit_count")  # fields that say which states were used
 
 
 def publish(given: argparse.Namespace, of_ros: list[str], *, span: Span) -> int:
-    """Publish a log as the arguments say; return the exit code: 1 where a question got no answer.
+    """Publish a log as the arguments say; return the exit code.
+
+    It is 1 where a question got no answer or another one than logged, and where nothing was to be published.
 
     Raises:
         NotALogError: it is no recording; or it is none of the server, and that is what was asked for.
@@ -83,24 +95,32 @@ def publish(given: argparse.Namespace, of_ros: list[str], *, span: Span) -> int:
                 print(f"{path}: paused: the space bar goes on, a dot steps", file=sys.stderr, flush=True)
             while publisher.play(pacing, progress) and given.loop:
                 pass
-            complete = stop.is_set() or publisher.wait_for_answers()
+            complete = stop.is_set() or (publisher.wait_for_answers() and publisher.has_published)
         finally:
             progress.end()
             rclpy.try_shutdown()
     print(publisher.told, file=sys.stderr)
-    return 0 if complete else 1
+    if publisher.found is None:
+        return 0 if complete else 1
+    print(report(publisher.found), flush=True)
+    return 0 if complete and publisher.found.agrees else 1
 
 
 class _LogPublisher:
-    """A node that publishes what a log holds."""
+    """A node that publishes what a log holds.
+
+    Attributes:
+        found: How the answers compare with those of the log, or None if questions are not asked.
+    """
 
     def __init__(self, path: Path, given: argparse.Namespace, *, span: Span) -> None:
         self._path = path
         self._span = span
         self._asks = given.requests
+        self.found = _nothing_yet(path, given.tolerance) if given.requests else None
         topics = _topics(path, given=given)
         self._topics = frozenset(topic.name for topic in topics)
-        self._is_shifted = (given.stamps or ("logged" if given.clock else "now")) == "now"
+        self._is_shifted = not stamps_as_logged(given)
         self._node = Node(NODE_NAME)
         self._publishers: dict[str, tuple[Publisher, bool]] = {}  # and whether messages begin with a stamp
         self._clients: dict[str, Client] = {}
@@ -111,6 +131,11 @@ class _LogPublisher:
             self._add(topic)
         ticks = given.clock and CLOCK not in self._publishers
         self._ticks = self._node.create_publisher(Clock, CLOCK, QoSProfile(depth=DEPTH)) if ticks else None
+
+    @property
+    def has_published(self) -> bool:
+        """Whether anything was published or asked."""
+        return self._published + self._asked > 0
 
     @property
     def told(self) -> str:
@@ -216,12 +241,27 @@ class _LogPublisher:
                 message_class(call.service_type), call.service, qos_profile=QoSProfile(depth=DEPTH)
             )
             self._clients[call.service].wait_for_service(timeout_sec=_ANSWERS_S)
+        logged = None if call.response_event is None else part_of(call.response_event, "response")
+        if logged is not None and self._is_shifted:
+            _move_all(logged, pacing)
         future = self._clients[call.service].call_async(request)
-        future.add_done_callback(self._count_answer)
+        future.add_done_callback(partial(self._take_answer, call, logged))
         self._asked += 1
 
-    def _count_answer(self, _future: Future) -> None:
+    def _take_answer(self, call: ServiceCall, logged: Any, future: Future) -> None:
         self._answered += 1
+        if self.found is None or call.request_event is None or logged is None:
+            return
+        tally = self.found.services.setdefault(call.service, ServiceTally())
+        tally.questions += 1
+        differing = list(differences(logged, response := future.result()))
+        if logged.status == response.status != logged.OK:  # words tell of ages and stamps
+            differing = [each for each in differing if each.field != "message"]
+        if _used_other_states(logged, response, differing):
+            tally.other_state += 1
+        else:
+            asked_ns = call.request_event.log_time_ns
+            note_difference(self.found, call.service, differing, asked_ns=asked_ns)
 
 
 def _topics(path: Path, *, given: argparse.Namespace) -> list[Topic]:
@@ -276,6 +316,38 @@ def _stamped(data: bytes, stamp_ns: int) -> bytes:
     """Return a serialised message that begins with a stamp, with another one."""
     order = "<" if data[1] == _LITTLE_ENDIAN else ">"
     return data[:4] + struct.pack(f"{order}iI", *divmod(stamp_ns, NS_PER_S)) + data[12:]
+
+
+def _nothing_yet(path: Path, tolerance: float) -> Verification:
+    """Return how answers compare before there is any."""
+    run, _ = server_of_log(path)
+    here = versions_here()
+    versions = {name: run[name] for name in here if name in run}
+    return Verification(path=path, tolerance=tolerance, versions=versions, versions_now=here)
+
+
+def _used_other_states(logged: Any, response: Any, differing: list[Difference]) -> bool:
+    """Return whether an answer differs because the server had other states, or no time, when it was asked."""
+    if logged.status != response.status:
+        names = ("NO_STATE", "STALE_STATE", "BUSY", "TIMEOUT")
+        return bool({logged.status, response.status} & {getattr(logged, name, None) for name in names})
+    return any(each.field.endswith(_OF_THE_STATE) for each in differing)
+
+
+def _move_all(message: Message, pacing: Pacing) -> None:
+    """Move all stamps of a logged message into the present."""
+    for field in message.FIELDS:
+        value: Any = getattr(message, field.name)
+        if isinstance(value, Message) and hasattr(value, "nanosec"):
+            stamp_ns = stamp_ns_from_msg(value)
+            if stamp_ns > 0:
+                stamp_to_msg(pacing.present_of(stamp_ns), into=value)
+        elif isinstance(value, Message):
+            _move_all(value, pacing)
+        elif isinstance(value, (list, tuple)):
+            for each in value:
+                if isinstance(each, Message):
+                    _move_all(each, pacing)
 
 
 def _move(request: Any, pacing: Pacing) -> None:

@@ -78,6 +78,12 @@ def _other(other: OtherAnswer) -> list[str]:
 
 def _gaps(found: Verification) -> list[str]:
     lines = []
+    other_state = sum(tally.other_state for tally in found.services.values())
+    if other_state:
+        lines.append(
+            f"  {other_state} answers used other states than the logged ones, or none, and are not compared: "
+            "DDS does not keep the order between a state and a question"
+        )
     unanswered = sum(tally.unanswered for tally in found.services.values())
     unreadable = sum(tally.unreadable for tally in found.services.values())
     if unanswered:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import signal
 import sys
 import warnings
 from contextlib import suppress
@@ -16,7 +17,7 @@ from contact_dynamics.nodes.run_record import LoggedParameters
 from contact_dynamics.recording.bag_reader import BagReader
 from contact_dynamics.recording.errors import DamagedLogWarning, NotALogError
 from contact_dynamics.recording.file_messages import Span
-from contact_dynamics.replay.arguments import PUBLISH, TABLE, VERIFY, VIEW, replay_parser
+from contact_dynamics.replay.arguments import PUBLISH, TABLE, VERIFY, VIEW, replay_parser, stamps_as_logged
 from contact_dynamics.replay.asking import AskedEvents, Asking
 from contact_dynamics.replay.configuration import Configuration, values_of
 from contact_dynamics.replay.logged import LoggedEvents
@@ -50,6 +51,11 @@ def main(arguments: list[str]) -> int:
     given = parser.parse_args(ours)
     if of_ros and given.mode != PUBLISH:
         parser.error(f"--ros-args: found with {given.mode}, allowed is it with {PUBLISH}")
+    if given.mode == PUBLISH and given.rate != 1.0 and not stamps_as_logged(given):
+        parser.error(
+            f"--rate must be 1 where stamps are moved to the present, got {given.rate:g}: velocities do not "
+            "fit stamps that are stretched. --clock keeps the stamps, for a server with use_sim_time"
+        )
     if given.mode == VERIFY:
         if not given.logs:  # argparse would complain of this before it complains of a mistyped option
             parser.error("found no LOG, needed is one at least")
@@ -143,10 +149,18 @@ def _view(given: argparse.Namespace) -> int:
     path = Path(given.log)
     events = _events(path, given)
     progress = _progress(path)
+    if given.serve:  # stopped in either way, it closes what it drew to
+        signal.signal(signal.SIGTERM, signal.default_int_handler)
+
+    def told(where: str) -> None:
+        if given.serve:
+            print(f"{path}: {where}; Ctrl-C ends it", file=sys.stderr, flush=True)
+
     drawn = draw(
         events,
         sinks,
         surface_side=given.surface_side,
+        on_open=told,
         on_problem=lambda problem: print(f"contact-dynamics replay: {problem}", file=sys.stderr),
         on_progress=lambda stamp_ns: progress.tell(stamp_ns, "drawing"),
     )

@@ -39,6 +39,8 @@ class ServiceTally:
         equal: Answers that are as in the log to the last bit.
         within: Other answers, none of which differs by more than the tolerance.
         different: Answers that differ by more than the tolerance.
+        other_state: Answers that used other states than the logged ones, and are not compared. There are none
+            where the states of the log are at hand, as here.
         unanswered: Questions without an answer in the log, which were not asked.
         unreadable: Calls whose question is missing, or that cannot be decoded.
     """
@@ -47,6 +49,7 @@ class ServiceTally:
     equal: int = 0
     within: int = 0
     different: int = 0
+    other_state: int = 0
     unanswered: int = 0
     unreadable: int = 0
 

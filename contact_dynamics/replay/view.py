@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import time
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, Final
@@ -15,6 +17,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from contact_dynamics.replay.events import Answered, Event, Events
+
+_LOOK_S: Final = 0.2  # how long what is served waits between two looks at its sinks
 
 _AT_ONCE: Final = 1000
 """States that are drawn together, because a batch costs what a single state does."""
@@ -42,15 +46,17 @@ def draw(
     sinks: Sinks,
     *,
     surface_side: float,
+    on_open: Callable[[str], object],
     on_problem: Callable[[str], object],
     on_progress: Callable[[int], object],
 ) -> Drawn:
-    """Draw a recording, and return what came of it.
+    """Draw a recording, and return what came of it. What is served stays so until `KeyboardInterrupt`.
 
     Args:
         events: the recording.
         sinks: where to draw to.
         surface_side: m, the side of the squares that stand for surfaces.
+        on_open: a function that is told, in words, where to it is drawn.
         on_problem: a function that is told, in words, what cannot be drawn, each kind once.
         on_progress: a function that is told the stamp of what is drawn, ns.
 
@@ -60,6 +66,7 @@ def draw(
     """
     raise_errors()
     recording = OpenRecording(sinks, on_problem=on_problem)
+    on_open(recording.description)
     drawing = _Drawing(
         Picture(recording.stream, events.world, surface_side=surface_side), on_problem=on_problem
     )
@@ -70,6 +77,8 @@ def draw(
             if isinstance(event, StateCame):
                 on_progress(event.state.stamp_ns)
         drawing.finish(look_at_all=sinks.viewer is ViewerMode.NONE)
+        if sinks.viewer is ViewerMode.SERVE and not recording.viewer_failed:
+            _serve(recording)
     finally:  # also if the user stops it: what is drawn so far can be opened
         took_all = recording.close()
     return Drawn(
@@ -78,6 +87,14 @@ def draw(
         took_all=took_all,
         viewer_failed=recording.viewer_failed,
     )
+
+
+def _serve(recording: OpenRecording) -> None:
+    """Serve the picture until the user stops it. rerun serves it as long as the recording is open."""
+    with suppress(KeyboardInterrupt):
+        while True:
+            recording.tend()
+            time.sleep(_LOOK_S)
 
 
 class _Drawing:

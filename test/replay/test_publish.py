@@ -46,8 +46,9 @@ def test_the_time_of_the_log_gives_its_states_and_its_answers(asked: Asked, tmp_
     with process("server", *arguments, ready="ready"):
         done = published(asked.log, "--clock", "--requests", "--wait", str(PATIENCE_S))
     count = sum(asked.counts.values())
-    assert done.returncode == 0, done.stderr
+    assert done.returncode == 0, done.stdout + done.stderr
     assert f"{count} questions asked, {count} answered" in done.stderr
+    assert compared(done.stdout)["predict_contact_mode"] == (asked.counts["PredictContactMode"],) * 2
     (log,) = (tmp_path / "logs").iterdir()
     for topic in STATES:
         before, after = ([m.data for m in BagReader(path).messages({topic})] for path in (asked.log, log))
@@ -69,6 +70,44 @@ def test_the_time_of_the_log_gives_its_states_and_its_answers(asked: Asked, tmp_
     assert verify_log(log).agrees
 
 
+def compared(printed: str) -> dict[str, tuple[int, int]]:
+    """How many questions of each service were asked, and how many were answered as in the log."""
+    rows = [line.split() for line in printed.splitlines() if line.startswith("  /contact_dynamics/")]
+    return {row[0].rpartition("/")[2]: (int(row[1]), int(row[2])) for row in rows if len(row) == 4}
+
+
+def test_other_answers_are_told_and_counted(asked: Asked, tmp_path: Path) -> None:
+    """The server has another friction, as who compares two of them would have it."""
+    arguments = ["--params-file", str(configured(tmp_path)), "--ros-args", "-p", "log_directory:=''"]
+    arguments += ["-p", "surface.floor.friction:=0.31"]
+    with process("server", *arguments, ready="ready"):
+        done = published(asked.log, "--requests", "--wait", str(PATIENCE_S))
+    assert done.returncode == 1
+    questions, equal = compared(done.stdout)["predict_contact_mode"]
+    assert questions == asked.counts["PredictContactMode"]
+    assert equal < questions
+    assert "/contact_dynamics/predict_contact_mode, question " in done.stdout
+    assert compared(done.stdout)["predict_tumbling_batch"][0] == asked.counts["PredictTumblingBatch"]
+    assert len(set(compared(done.stdout)["predict_tumbling_batch"])) == 1
+
+
+def test_stamps_in_the_present_are_not_stretched(tmp_path: Path) -> None:
+    """States that come twice as fast with the same velocities would land elsewhere."""
+    write_flight(tmp_path / "bag")
+    for arguments in (("--rate", "2"), ("--rate", "0.5", "--stamps", "now", "--clock")):
+        done = published(tmp_path / "bag", *arguments)
+        assert done.returncode == 2
+        assert f"--rate must be 1 where stamps are moved to the present, got {arguments[1]}" in done.stderr
+
+
+def test_a_part_without_messages_is_an_error(tmp_path: Path) -> None:
+    write_flight(tmp_path / "bag")
+    done = published(tmp_path / "bag", "--start", "5", "--end", "6", "--wait", "0")
+    assert done.returncode == 2
+    assert "--start and --end: found 5 s to 6 s, allowed is a part of" in done.stderr
+    assert "which lasts 0.945 s" in done.stderr
+
+
 def test_stamps_are_moved_to_the_present(asked: Asked, tmp_path: Path) -> None:
     """A server by the machine's clock takes the states as new ones, and answers questions about them."""
     arguments = ["--params-file", str(configured(tmp_path)), "--ros-args"]
@@ -77,7 +116,10 @@ def test_stamps_are_moved_to_the_present(asked: Asked, tmp_path: Path) -> None:
         began_ns = time.time_ns()  # the log that is published has ended before
         done = published(asked.log, "--requests", "--wait", str(PATIENCE_S))
         ended_ns = time.time_ns()
-    assert done.returncode == 0, done.stderr
+    assert done.returncode == 0, done.stdout + done.stderr
+    for service in ("predict_impact_batch", "predict_tumbling_batch", "predict_contact_mode"):
+        questions, equal = compared(done.stdout)[service]
+        assert questions == equal > 0
     (log,) = (tmp_path / "logs").iterdir()
     for message in BagReader(log).messages(STATES):
         assert began_ns < message.publish_time_ns < ended_ns
@@ -95,7 +137,7 @@ def test_a_recording_of_others_in_its_time_and_faster(tmp_path: Path) -> None:
     """0.95 s of states at twice the rate, twice over, take at least 0.47 s each."""
     write_flight(tmp_path / "bag", storage=StoragePlugin.MCAP)
     begin = time.monotonic()
-    done = published(tmp_path / "bag", "--rate", "2", "--wait", "0")
+    done = published(tmp_path / "bag", "--rate", "2", "--stamps", "logged", "--wait", "0")
     assert done.returncode == 0, done.stderr
     assert time.monotonic() - begin > 0.47
     assert f"{2 * len(flight())} messages published" in done.stderr
@@ -107,7 +149,7 @@ def test_a_loop_goes_on_until_it_is_told_to_stop(tmp_path: Path) -> None:
     write_flight(tmp_path / "bag")
     command = [sys.executable, "-m", "contact_dynamics", "replay", "publish", tmp_path / "bag"]
     with subprocess.Popen(
-        [*command, "--loop", "--rate", "50", "--wait", "0"],
+        [*command, "--loop", "--rate", "50", "--stamps", "logged", "--wait", "0"],
         cwd=ROOT,
         env=environment(),
         stderr=subprocess.PIPE,

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import signal
 import socket
+import subprocess
+import sys
 import warnings
 from pathlib import Path
 
@@ -13,6 +16,7 @@ from contact_dynamics.recording import BagReader, decode_without_ros, service_ca
 from contact_dynamics.replay.run import main
 from replay.asked_log import Asked, without_ros
 from replay.flights import CONFIGURATION, flight, write_flight
+from running_server import ROOT
 
 with warnings.catch_warnings():
     warnings.simplefilter("ignore", DeprecationWarning)  # of Python 3.10, at rerun's import
@@ -76,6 +80,27 @@ def test_a_viewer_that_does_not_open_ends_with_the_reason(
     assert done.returncode == 1  # the file is there, what was asked for was to see it
     assert reason in done.stderr
     assert (tmp_path / "drawn.rrd").stat().st_size > 0
+
+
+def test_what_is_served_stays_until_it_is_stopped(tmp_path: Path) -> None:
+    """It prints the address, which can be connected to after all is drawn, and ends with Ctrl-C."""
+    write_flight(tmp_path / "bag")
+    (tmp_path / "server.yaml").write_text(CONFIGURATION)
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        port = probe.getsockname()[1]
+    command = [sys.executable, "-m", "contact_dynamics", "replay", "view", tmp_path / "bag", "--serve"]
+    command += ["--port", str(port), "--config", tmp_path / "server.yaml", "--topics", "ball=/tracker/ball"]
+    with subprocess.Popen(command, cwd=ROOT, stderr=subprocess.PIPE, text=True) as started:
+        assert started.stderr is not None
+        line = started.stderr.readline()
+        assert f"served at rerun+http://127.0.0.1:{port}/proxy; Ctrl-C ends it" in line
+        with pytest.raises(subprocess.TimeoutExpired):
+            started.wait(6.0)  # to draw it takes less than one
+        socket.create_connection(("127.0.0.1", port), timeout=10.0).close()
+        started.send_signal(signal.SIGINT)
+        assert "drew 188 states" in started.stderr.read()
+        assert started.wait(60.0) == 0
 
 
 def test_a_damaged_log_is_drawn_but_for_the_damage_which_is_told(
