@@ -550,6 +550,10 @@ CONE_SWEEPS_CONVERGED: Final = 1e-12
 """Relative to the largest velocity or acceleration. A sweep over the contacts that changes less is the last,
 since it is near rounding."""
 
+CONE_CREEPS: Final = 1e-6
+"""Relative to the largest velocity. Where impulses of contacts against each other creep on from sweep to
+sweep, and hardly change the velocities, a sweep that changes less is the last."""
+
 BEGINNING_ROUNDING: Final = 1e-7
 """Relative to gravity. Where a contact begins to slide, its acceleration may be off the direction of friction
 by this much. Accelerations carry the rounding of forces, `FORCE_ROUNDING`, times some ten."""
@@ -565,6 +569,10 @@ of 10 m/s^2 turns the sliding in 1e-4 s, which is as short as a step of a phase 
 HELD_DRIFT: Final = 1e-11
 """m, or m/s. A held contact that is off by less is left as it is. It is a hundredth of `GRAZING_DEPTH` and of
 `STRIKES`."""
+
+SUNK: Final = 1e-10
+"""m. A body of a whole toss whose corners are deeper in a flat is taken out of it. It is a tenth of
+`GRAZING_DEPTH`."""
 
 PHASE_ERROR: Final = 1e-7
 """m, or m/s. The error that a step of a contact phase may have. It is a tenth of `SETTLING_HEIGHT`."""

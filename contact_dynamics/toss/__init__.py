@@ -12,7 +12,9 @@ what happens, and `result` has what is returned. Flights, impacts (`one_impact`)
   `contact_modes` where there may be several modes, as where a body may be `wedged`.
 - `forces` has the accelerations in a mode of `held` contacts, `flush` those of a body that slides on a face,
   and `phase` integrates them (`phase_step`) until the mode ends (`phase_ends`). `holding` keeps contacts
-  where they are.
+  where they are, and the body out of the flats.
+- Contacts that jam have an impact without restitution together (`inelastic`). Where strikes and modes lead to
+  one another at one instant, a `short_step` passes over that.
 
 What is not known exactly (`uncertainty`) is sampled: `sampled` is the call, and `distribution` has what it
 returns. `strikes_of_many` has the next strikes of all samples at once (`arrivals_of_many`), and `law_spread`

@@ -16,19 +16,21 @@ from contact_dynamics.numerics.vectors import norm
 from contact_dynamics.tolerances import (
     LIFT_OFF_PAUSE,
     RESTING_ACCELERATION,
+    SLIDING_STOPPED,
     STILL_TOUCHING,
     STRIKES,
 )
 from contact_dynamics.toss.course import Course
 from contact_dynamics.toss.flight import AskedFlight
-from contact_dynamics.toss.forces import pushed_by_contacts
-from contact_dynamics.toss.holding import held_in_place
+from contact_dynamics.toss.forces import least_left, pushed_by_contacts
+from contact_dynamics.toss.holding import held_in_place, out_of_flats
 from contact_dynamics.toss.laid_flat import laid_flat
 from contact_dynamics.toss.mode_choice import choose_mode, contacts_of, state_of
 from contact_dynamics.toss.one_impact import routh
 from contact_dynamics.toss.phase import phase
 from contact_dynamics.toss.phase_ends import PhaseEnd
 from contact_dynamics.toss.result import FlightPiece, Toss, TossEnd, TossEventKind, UndecidedReason
+from contact_dynamics.toss.short_step import LONGEST, SHORTEST, short_step
 from contact_dynamics.toss.solid import energy_of, kinetic_energy_of, numbers_of
 from contact_dynamics.toss.strike import approaches, low_rebounds_ended, strike
 from contact_dynamics.toss.wedged import may_be_wedged
@@ -39,6 +41,7 @@ if TYPE_CHECKING:
     from contact_dynamics.rigid_body.body import BodyState, MassProperties
     from contact_dynamics.shapes.convex import ConvexShape
     from contact_dynamics.toss.asked import Asked, Asking
+    from contact_dynamics.toss.held import Held
     from contact_dynamics.toss.laid_flat import Faces
     from contact_dynamics.toss.mode_choice import Choice, Mode
     from contact_dynamics.toss.solid import Numbers, Solid, Touch
@@ -52,6 +55,22 @@ MOST_STEPS: Final = 100_000
 
 _ROUNDS: Final = 4
 """Searches for a mode, relative to the bound on events, after which a toss ends unfinished."""
+
+_ROUNDS_AT_ONCE: Final = 12
+"""Rounds of strikes, modes and flights after which the time that they take is looked at. Up to six are usual
+at one instant."""
+
+_LINGER: Final = 1e-5
+"""s. If rounds take less time, the motion is not followed by them, but for so long in short steps."""
+
+_LONGEST_LINGER: Final = 0.1
+"""s, the same where that happens again and again."""
+
+_LONGER: Final = 4.0
+"""By this factor the time becomes longer then."""
+
+_SHARE: Final = 0.25
+"""Length of a short step, relative to the time that is passed over."""
 
 _MOST_LAID: Final = 3
 """How often a sample is laid flat. One that rattles on goes on as a toss does."""
@@ -120,9 +139,10 @@ class Run(Course):
     def __init__(self, runs: Following, state: BodyState, ways: tuple[int, ...]) -> None:
         super().__init__(runs.solid, state, ways)
         self.runs = runs
-        self.work = SearchWork()
         self.slow = math.inf  # J, rest is tried where the kinetic energy is below this
         self.struck = self.laid = self.steps = 0  # strikes, how often it was laid flat, steps in contact
+        self.mark, self.rounds = 0.0, 0  # a time, s, and the rounds since then
+        self.linger = _LINGER  # s, as long as rounds have to take, and short steps go on
         self.settled: Strikes | None = None  # the last strikes
         self.looked_at: list[Touch] = []  # contacts whose modes were all looked for last
         self.faces: Faces = {}  # that it could be laid on
@@ -140,25 +160,32 @@ class Run(Course):
             if self.now >= self.runs.horizon:
                 return TossEnd.HORIZON
             touching = self._laid_flat(touching)
+            if self._lingers():
+                touching = self._pass_over()
             rates = approaches(self.solid, self.y, touching)
             if min(rates, default=0.0) < -STRIKES:
                 touching = yield from self._strike(touching, rates)
-            elif touching:
-                if self._rests(touching):
-                    return TossEnd.RESTS
-                modes = self._modes(touching)
-                if not modes:
-                    if not self._jam(touching):
-                        return TossEnd.UNDECIDED
-                    touching = self.touching_now(STILL_TOUCHING)
-                elif modes[0]:
-                    touching = yield from self._follow(modes[0])
-                else:
-                    self.note(TossEventKind.LIFTS_OFF, touching)
-                    touching = yield from self._fly(LIFT_OFF_PAUSE)
-            else:
-                touching = yield from self._fly(0.0)
+                continue
+            touching = [touch for touch, rate in zip(touching, rates, strict=True) if rate <= STILL_TOUCHING]
+            if touching and self._rests(touching):
+                return TossEnd.RESTS
+            touching = yield from self._go_on(touching)
         return TossEnd.MOST_EVENTS
+
+    def _go_on(self, touching: list[Touch]) -> Asking[list[Touch]]:
+        """Go on from contacts that neither approach nor leave, and return what touches then."""
+        if not touching:
+            return (yield from self._fly(0.0))
+        modes = self._modes(touching)
+        if not modes:
+            return self._jam(touching)
+        mode = modes[0]
+        if not mode:
+            self.note(TossEventKind.LIFTS_OFF, touching)
+            return (yield from self._fly(LIFT_OFF_PAUSE))
+        if least_left(self.solid, mode, pushed_by_contacts(self.solid, self.y, mode).forces) < 0.0:
+            return self._pass_over()
+        return (yield from self._follow(mode))
 
     # Flights
 
@@ -168,6 +195,7 @@ class Run(Course):
         A body whose contacts have just left without speed flies for a pause before arrivals are looked for.
         """
         left = self.runs.horizon - self.now
+        self.y = out_of_flats(self.solid, self.y)
         flown = AskedFlight(
             self.solid,
             self.runs.properties,
@@ -176,7 +204,7 @@ class Run(Course):
             stamp_ns=self.stamp_ns(),
             longest=left,
             pause=pause,
-            search=self.work,
+            search=SearchWork(),
             is_told=self.runs.has_pieces,
         )
         yield flown
@@ -185,7 +213,7 @@ class Run(Course):
             self._forget_instant()
         self.y = flown.after
         self.now += flown.seconds
-        return self.touching_now(STILL_TOUCHING) if flown.seconds < left else []
+        return self.touching_now(self._fast()) if flown.seconds < left else []
 
     def _forget_instant(self) -> None:
         """Drop pieces of no length, so that a time belongs to one piece."""
@@ -239,16 +267,21 @@ class Run(Course):
         """Return the approach, m/s, from which the order of contacts that strike together matters."""
         return math.sqrt(2.0 * self.solid.settling * norm(self.solid.gravity)) + STRIKES
 
-    def _jam(self, touching: list[Touch]) -> bool:
-        """Settle contacts without a consistent mode by an impact, and return whether that was possible."""
+    def _jam(self, touching: list[Touch]) -> list[Touch]:
+        """Settle contacts without a consistent mode by an impact, and return what touches then.
+
+        If no impact settles them, short steps pass over that.
+        """
         solid = self.solid
         before = energy_of(solid, self.y)
         if len(touching) == 1:
             friction = solid.flats[touching[0][0]].friction
             self.y, one = routh(solid, self.y, touching[0], self.runs.law, friction=friction)
+            if one.outcome == ImpactOutcome.NO_IMPULSE:
+                return self._pass_over()
             self.lost_in_strikes += before - energy_of(solid, self.y)
             self.note(TossEventKind.JAMS, touching, impulse=one.impulse, outcome=one.outcome)
-            return one.outcome != ImpactOutcome.NO_IMPULSE
+            return self.touching_now(STILL_TOUCHING)
         contacts = contacts_of(solid, self.y, touching)
         impact = settling_impact(
             self.runs.properties,
@@ -258,12 +291,12 @@ class Run(Course):
             force_W=solid.mass * np.array(solid.gravity),
         )
         if impact.verdict != SeveralVerdict.RESOLVED:
-            return False
+            return self._pass_over()
         self.y = [*self.y[:7], *impact.state.v_WB_W.tolist(), *impact.state.w_WB_W.tolist()]
         self.lost_in_strikes += before - energy_of(solid, self.y)
         x, y, z = impact.impulses_W.sum(axis=0).tolist()
         self.note(TossEventKind.JAMS, touching, impulse=(x, y, z))
-        return True
+        return self.touching_now(STILL_TOUCHING)
 
     # Contact
 
@@ -312,15 +345,50 @@ class Run(Course):
         self.lost_in_contact += before - energy_of(self.solid, self.y)
         held = [one.touch for one in mode]
         if went.end == PhaseEnd.COMES_DOWN:
-            return held + [touch for touch in self.touching_now(STILL_TOUCHING) if touch not in held]
+            return held + [touch for touch in self.touching_now(self._fast()) if touch not in held]
         if went.end == PhaseEnd.SLOW:
             return held + [touch for touch in self.touching_now(math.inf) if touch not in held]
         return held
 
+    def _lingers(self) -> bool:
+        """Return whether events have led to one another for so long, and time has hardly gone on."""
+        if self.now > self.mark + self.linger:
+            self.mark, self.rounds = self.now, 0
+            self.linger = max(0.5 * self.linger, _LINGER)
+        self.rounds += 1
+        return self.rounds > _ROUNDS_AT_ONCE
+
+    def _pass_over(self) -> list[Touch]:
+        """Go on in short steps where events lead to one another, and return what touches then.
+
+        If they do so again, it goes on so for longer.
+        """
+        until = min(self.now + self.linger, self.runs.horizon)
+        mode: tuple[Held, ...] = ()
+        before = energy_of(self.solid, self.y)
+        while self.now < until:
+            span = min(until - self.now, max(_SHARE * self.linger, SHORTEST), LONGEST)
+            went = short_step(self.solid, self.y, start=self.now, span=span)
+            if self.runs.has_pieces:
+                self.pieces.append(went.step)
+            mode = mode or went.mode
+            self.y, self.now = went.y, self.now + went.step.span
+            self.steps += 1
+        letters = "".join("c" if one.slides else "f" for one in mode)
+        self.note(TossEventKind.NEW_MODE, [one.touch for one in mode], mode=letters)
+        self.lost_in_contact += before - energy_of(self.solid, self.y)
+        self.linger = min(_LONGER * self.linger, _LONGEST_LINGER)
+        self.mark, self.rounds = self.now, 0
+        return self.touching_now(self._fast())
+
     def _slow(self, touching: list[Touch]) -> float:
-        """Return the kinetic energy, J, with which a body rises or slides by `settling` at most."""
+        """Return the kinetic energy, J, with which a body rises or slides by `settling` at most.
+
+        Without friction it would slide on for ever. There its speed has to be rounding.
+        """
         grip = min((self.solid.flats[touch[0]].friction for touch in touching), default=0.0)
-        return self.solid.mass * norm(self.solid.gravity) * self.solid.settling * min(grip, 1.0)
+        per_mass = norm(self.solid.gravity) * self.solid.settling * min(grip, 1.0)
+        return self.solid.mass * max(per_mass, 0.5 * SLIDING_STOPPED**2)
 
     def _laid_flat(self, touching: list[Touch]) -> list[Touch]:
         """Lay a body that only rattles on a face flat on it, if it may be, and return what touches then."""
@@ -355,7 +423,7 @@ class Run(Course):
                 self.way_on = modes[way]
                 return False
         self.lost_in_contact += energy
-        placed = held_in_place(self.solid, still, modes[0])
+        placed = out_of_flats(self.solid, held_in_place(self.solid, still, modes[0]))
         self.lost_in_contact += energy_of(self.solid, still) - energy_of(self.solid, placed)
         self.y, self.resting = placed, [one.touch for one in modes[0]]
         self.note(TossEventKind.RESTS, self.resting)

@@ -3,7 +3,8 @@
 Each held contact sticks or slides. A contact that sticks has no acceleration, which is three equations for
 the three parts of its force. A contact that slides has no normal acceleration, which is one equation for its
 normal force. Its friction is mu times that, against the sliding (lecture 26). If the forces are not the only
-ones with the mode, as under four corners, the least ones are taken.
+ones with the mode, as under four corners, the least ones are taken. Where those pull, or friction does not
+allow them, others with the same motion are sought, as where a body is wedged.
 """
 
 from __future__ import annotations
@@ -13,8 +14,18 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from contact_dynamics.numerics.vectors import Vector3, cross, dot, normalised, opposite, scaled, without
-from contact_dynamics.tolerances import SAME_FORCES
+from contact_dynamics.contact_modes.spatial.round_cones import summed_by_round_cones
+from contact_dynamics.numerics.vectors import (
+    Vector3,
+    cross,
+    dot,
+    norm,
+    normalised,
+    opposite,
+    scaled,
+    without,
+)
+from contact_dynamics.tolerances import FORCE_ROUNDING, SAME_FORCES
 from contact_dynamics.toss.flush import flush_sliding, is_flush
 from contact_dynamics.toss.held import sliding_direction
 from contact_dynamics.toss.solid import arm_of, pose_of, responses, times, transposed_times, velocity_of
@@ -107,7 +118,7 @@ def pushed_by_contacts(solid: Solid, y: Numbers, mode: tuple[Held, ...]) -> Push
                 equations.append((axis, moment))
                 wanted.append(-dot(axis, acceleration))
     per_mass = 1.0 / solid.mass
-    sizes = least_solution(responses(per_mass, equations, unknowns), wanted)
+    sizes, unique = _solved(responses(per_mass, equations, unknowns), wanted)
     a_x, a_y, a_z = free.a
     t_x, t_y, t_z = free.alpha
     forces = [(0.0, 0.0, 0.0)] * len(mode)
@@ -120,7 +131,49 @@ def pushed_by_contacts(solid: Solid, y: Numbers, mode: tuple[Held, ...]) -> Push
     if len(mode) == 2 and not (mode[0].slides or mode[1].slides):
         shared = _shared_along_edge if mode[0].touch[0] == mode[1].touch[0] else _squeezed
         forces = shared(solid, pose, mode, forces)
+    if not unique and least_left(solid, mode, forces) < 0.0:
+        forces = _within_cones(solid, pose, mode, forces) or forces
     return Pushed(rates_of(y, (a_x, a_y, a_z), (t_x, t_y, t_z)), forces)
+
+
+def least_left(solid: Solid, mode: tuple[Held, ...], forces: list[Vector3]) -> float:
+    """Return the least force, N, that is left until a contact no longer presses, or no longer sticks.
+
+    It is less than zero where one does not, and rounding has been given to it.
+    """
+    least = math.inf
+    for one, force in zip(mode, forces, strict=True):
+        flat = solid.flats[one.touch[0]]
+        pressing = dot(force, flat.normal)
+        least = min(least, pressing)
+        if not one.slides:
+            across = math.sqrt(max(dot(force, force) - pressing * pressing, 0.0))
+            least = min(least, flat.friction * pressing - across)
+    return least + force_rounding(solid)
+
+
+def force_rounding(solid: Solid) -> float:
+    """Return the force, N, by which a contact may pull and still stay."""
+    return FORCE_ROUNDING * solid.mass * (1.0 + norm(solid.gravity))
+
+
+def _within_cones(
+    solid: Solid, pose: Pose, mode: tuple[Held, ...], forces: list[Vector3]
+) -> list[Vector3] | None:
+    """Return forces with the same motion that press, and that friction allows, or None if there are none."""
+    axes, frictions, effects = [], [], []
+    for one in mode:
+        flat, arm = solid.flats[one.touch[0]], arm_of(solid, pose, one.touch)
+        n, mu = flat.normal, flat.friction
+        d = one.towards if one.begins else sliding_direction(velocity_of(pose, arm), n, one.towards)
+        axes.append((n[0] - mu * d[0], n[1] - mu * d[1], n[2] - mu * d[2]) if one.slides else n)
+        frictions.append(0.0 if one.slides else mu)
+        x, y, z = (each / solid.reach for each in arm)
+        effects.append([[1, 0, 0], [0, 1, 0], [0, 0, 1], [0, -z, y], [z, 0, -x], [-y, x, 0]])
+    each = np.array(effects, dtype=float).transpose(1, 0, 2).reshape(6, -1)
+    target = each @ np.array(forces).ravel()
+    held = summed_by_round_cones(each, target, np.array(axes), np.array(frictions)).forces
+    return None if held is None else [(x, y, z) for x, y, z in held.tolist()]
 
 
 def _shared_along_edge(
@@ -213,18 +266,23 @@ def rates_of(y: Numbers, a: Vector3, alpha: Vector3) -> Numbers:
 
 def least_solution(matrix: list[list[float]], wanted: list[float]) -> list[float]:
     """Return the unknowns of the equations, the least ones if there are many."""
+    return _solved(matrix, wanted)[0]
+
+
+def _solved(matrix: list[list[float]], wanted: list[float]) -> tuple[list[float], bool]:
+    """Return the unknowns of the equations, the least ones if there are many, and whether there are not."""
     n = len(wanted)
     if n == 0:
-        return []
+        return [], True
     if n == 1:
         ((a,),) = matrix
-        return [wanted[0] / a if a != 0.0 else math.inf]
+        return [wanted[0] / a if a != 0.0 else math.inf], True
     if n == 2:
         (a, b), (c, d) = matrix
         det = a * d - b * c
         if abs(det) > SAME_FORCES * (abs(a) + abs(b)) * (abs(c) + abs(d)):
             x, y = wanted
-            return [(d * x - b * y) / det, (a * y - c * x) / det]
+            return [(d * x - b * y) / det, (a * y - c * x) / det], True
     if n == 3:
         (a, b, c), (d, e, f), (g, h, i) = matrix
         x, y, z = wanted
@@ -237,6 +295,6 @@ def least_solution(matrix: list[list[float]], wanted: list[float]) -> list[float
                 (A * x + D * y + G * z) / det,
                 (B * x + E * y + H * z) / det,
                 (C * x + F * y + K * z) / det,
-            ]
-    sizes: list[float] = np.linalg.lstsq(np.array(matrix), np.array(wanted), rcond=SAME_FORCES)[0].tolist()
-    return sizes
+            ], True
+    sizes, _, rank, _ = np.linalg.lstsq(np.array(matrix), np.array(wanted), rcond=SAME_FORCES)
+    return sizes.tolist(), int(rank) == n

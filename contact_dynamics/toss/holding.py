@@ -6,37 +6,48 @@ is measured by kinetic energy. So velocities lose energy by it, if anything.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from contact_dynamics.numerics.vectors import Vector3, cross, dot, norm, without
 from contact_dynamics.numerics.vectors import normalised as normalised_vector
 from contact_dynamics.rotations.one import normalised, product
-from contact_dynamics.tolerances import HELD_DRIFT, SLIDING_STOPPED
+from contact_dynamics.tolerances import DISTANCE_TOLERANCE, HELD_DRIFT, SLIDING_STOPPED, SUNK
 from contact_dynamics.toss.forces import least_solution
-from contact_dynamics.toss.solid import arm_of, pose_of, responses, times, velocity_of
+from contact_dynamics.toss.solid import (
+    arm_of,
+    height_of,
+    heights_and_rates,
+    pose_of,
+    responses,
+    times,
+    velocity_of,
+)
 
 if TYPE_CHECKING:
     from contact_dynamics.toss.held import Held
     from contact_dynamics.toss.solid import Matrix3, Numbers, Solid, Touch
 
+_MOST_SWEEPS: Final = 200
+"""Sweeps over corners that are below a flat. Some ten are usual."""
 
-def held_in_place(solid: Solid, y: Numbers, mode: tuple[Held, ...]) -> Numbers:
-    """Return a state with a unit quaternion whose held contacts touch, do not leave, and stick or slide."""
-    q = normalised(y[3:7])
-    y = [*y[:3], *q, *y[7:]]
+
+def held_in_place(
+    solid: Solid, y: Numbers, mode: tuple[Held, ...], heights: list[float] | None = None
+) -> Numbers:
+    """Return a state with a unit quaternion whose held contacts do not leave, and stick or slide.
+
+    Contacts are at these heights, m, above their flats then, and without any they touch.
+    """
+    y = [*y[:3], *normalised(y[3:7]), *y[7:]]
     pose = pose_of(solid, y)
+    off = [height_of(solid, pose, one.touch) for one in mode]
+    if heights is not None:
+        off = [height - target for height, target in zip(off, heights, strict=True)]
     arms = [arm_of(solid, pose, one.touch) for one in mode]
     flats = [solid.flats[one.touch[0]] for one in mode]
-    heights = [
-        dot(pose.position, flat.normal) + dot(arm, flat.normal) - flat.level
-        for flat, arm in zip(flats, arms, strict=True)
-    ]
-    if max(map(abs, heights), default=0.0) > HELD_DRIFT:
+    if max(map(abs, off), default=0.0) > HELD_DRIFT:
         rows = [(flat.normal, cross(arm, flat.normal)) for flat, arm in zip(flats, arms, strict=True)]
-        shift, turn = _least_change(solid, pose.inverse, rows, heights)
-        for k in range(3):
-            y[k] -= shift[k]
-        y[3:7] = product(normalised((-0.5 * turn[0], -0.5 * turn[1], -0.5 * turn[2], 1.0)), q)
+        y = _moved(y, _least_change(solid, pose.inverse, rows, off))
         pose = pose_of(solid, y)
         arms = [arm_of(solid, pose, one.touch) for one in mode]
     rows, speeds = [], []
@@ -51,6 +62,41 @@ def held_in_place(solid: Solid, y: Numbers, mode: tuple[Held, ...]) -> Numbers:
             y[7 + k] -= v[k]
             y[10 + k] -= w[k]
     return y
+
+
+def heights_held(solid: Solid, y: Numbers, mode: tuple[Held, ...]) -> list[float]:
+    """Return the heights, m, at which contacts of a mode are held: where they are, but not below the flats.
+
+    What touches may be a micrometre high. To bring it down would press others into their flats.
+    """
+    pose = pose_of(solid, y)
+    return [max(height_of(solid, pose, one.touch), 0.0) for one in mode]
+
+
+def out_of_flats(solid: Solid, y: Numbers) -> Numbers:
+    """Return a state with the least change of place and attitude after which no corner is below a flat."""
+    listed = heights_and_rates(solid, y)
+    if min((height for height, _, _ in listed), default=0.0) >= -SUNK:
+        return y
+    y = [*y[:3], *normalised(y[3:7]), *y[7:]]
+    pose = pose_of(solid, y)
+    near = [(height, touch) for height, _, touch in listed if height <= DISTANCE_TOLERANCE]
+    rows = []
+    for _, touch in near:
+        normal = solid.flats[touch[0]].normal
+        rows.append((normal, cross(arm_of(solid, pose, touch), normal)))
+    pushes = [(normal, times(pose.inverse, moment)) for normal, moment in rows]
+    response = responses(1.0 / solid.mass, rows, pushes)
+    lift = [0.0] * len(near)
+    for _ in range(_MOST_SWEEPS):
+        least = 0.0
+        for i, (height, _) in enumerate(near):
+            now = height + sum(a * b for a, b in zip(response[i], lift, strict=True))
+            least = min(least, now if lift[i] == 0.0 else -abs(now))
+            lift[i] = max(lift[i] - now / response[i][i], 0.0)
+        if least >= -HELD_DRIFT:
+            break
+    return _moved(y, _summed(1.0 / solid.mass, [-each for each in lift], pushes))
 
 
 def without_rebounds(solid: Solid, y: Numbers, touching: list[Touch]) -> Numbers:
@@ -95,9 +141,24 @@ def _least_change(
     forces = rows if forces is None else forces
     pushes = [(force, times(inverse, moment)) for force, moment in forces]
     shares = least_solution(responses(per_mass, rows, pushes), amounts)
+    return _summed(per_mass, shares, pushes)
+
+
+def _summed(
+    per_mass: float, shares: list[float], pushes: list[tuple[Vector3, Vector3]]
+) -> tuple[Vector3, Vector3]:
+    """Return the linear and angular motion by shares of pushes."""
     v_x = v_y = v_z = w_x = w_y = w_z = 0.0
     for share, ((x, y, z), (t_x, t_y, t_z)) in zip(shares, pushes, strict=True):
         part = share * per_mass
         v_x, v_y, v_z = v_x + part * x, v_y + part * y, v_z + part * z
         w_x, w_y, w_z = w_x + share * t_x, w_y + share * t_y, w_z + share * t_z
     return (v_x, v_y, v_z), (w_x, w_y, w_z)
+
+
+def _moved(y: Numbers, motion: tuple[Vector3, Vector3]) -> Numbers:
+    """Return a state that is moved back by a small shift and turn."""
+    shift, (x, yy, z) = motion
+    q_x, q_y, q_z, q_w = y[3:7]
+    turn = normalised((-0.5 * x, -0.5 * yy, -0.5 * z, 1.0))
+    return [y[0] - shift[0], y[1] - shift[1], y[2] - shift[2], *product(turn, (q_x, q_y, q_z, q_w)), *y[7:]]

@@ -27,14 +27,19 @@ from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.tolerances import BEGINNING_ROUNDING, FORCE_ROUNDING, SAME_FORCES, SLIDING_STOPPED
 from contact_dynamics.toss.beginning import turned_along_accelerations
 from contact_dynamics.toss.cone_forces import Site, cone_forces
-from contact_dynamics.toss.forces import Free, free_accelerations, pushed_by_contacts
+from contact_dynamics.toss.forces import (
+    Free,
+    force_rounding,
+    free_accelerations,
+    least_left,
+    pushed_by_contacts,
+)
 from contact_dynamics.toss.held import Held, sliding_direction
 from contact_dynamics.toss.solid import arm_of, pose_of, times, velocity_of
 from contact_dynamics.toss.wedged import may_be_wedged
 
 if TYPE_CHECKING:
     from contact_dynamics.numerics.vectors import Vector3
-    from contact_dynamics.toss.forces import Pushed
     from contact_dynamics.toss.solid import Numbers, Solid, Touch
     from contact_dynamics.validation import FloatArray
 
@@ -75,11 +80,13 @@ def choose_mode(solid: Solid, y: Numbers, touching: list[Touch], *, thorough: bo
         velocity, acceleration = velocity_of(free.pose, arm), free.at(solid, touch, arm)
         along = dot(velocity, t1), dot(velocity, t2)
         speed = math.hypot(*along)
-        slides = speed > SLIDING_STOPPED
+        moves = speed > SLIDING_STOPPED
+        slides = moves or flat.friction == 0.0  # nothing makes it stick
         d = sliding_direction(velocity, n, n) if slides else (0.0, 0.0, 0.0)
         guess.append(Held(touch, slides, d))
         motion = (dot(acceleration, t1), dot(acceleration, t2), dot(acceleration, n))
-        sliding = (along[0] / speed, along[1] / speed) if slides else None
+        at_rest = (0.0, 0.0) if slides else None
+        sliding = (along[0] / speed, along[1] / speed) if moves else at_rest
         sites.append(Site(arm, (t1, t2, n), flat.friction, motion, sliding))
         turning = times(free.pose.inverse, cross(arm, n))
         normal = 1.0 / solid.mass + dot(cross(arm, n), turning)
@@ -201,7 +208,7 @@ def _correction(
     """
     flat = solid.flats[first.touch[0]]
     n = flat.normal
-    least = -FORCE_ROUNDING * solid.mass * (1.0 + norm(solid.gravity))
+    least = -force_rounding(solid)
     slowest = BEGINNING_ROUNDING * (1.0 + norm(solid.gravity))
     if one is None or force is None:
         acceleration = moved.at(solid, first.touch, arm_of(solid, moved.pose, first.touch))
@@ -220,20 +227,6 @@ def _correction(
         if norm(cross(begins, one.towards)) > slowest:
             return _beginning(one.touch, normalised(begins))
     return one
-
-
-def _holds(solid: Solid, mode: Mode, pushed: Pushed) -> bool:
-    """Return whether all contacts press, and friction holds those that stick."""
-    least = -FORCE_ROUNDING * solid.mass * (1.0 + norm(solid.gravity))
-    for one, force in zip(mode, pushed.forces, strict=True):
-        flat = solid.flats[one.touch[0]]
-        pressing = dot(force, flat.normal)
-        if pressing < least:
-            return False
-        across = math.sqrt(max(dot(force, force) - pressing * pressing, 0.0))
-        if not one.slides and flat.friction * pressing - across < least:
-            return False
-    return True
 
 
 def _read_off(
@@ -263,7 +256,7 @@ def _read_off(
             kept = _beginning(one.touch, d)
         (held if pressing else idle).append(kept)
     everything = tuple(held + idle)
-    if idle and _holds(solid, everything, pushed_by_contacts(solid, y, everything)):
+    if idle and least_left(solid, everything, pushed_by_contacts(solid, y, everything).forces) >= 0.0:
         return everything
     return tuple(held)
 
@@ -297,6 +290,7 @@ def _all_modes(solid: Solid, y: Numbers, touching: list[Touch]) -> Choice:
                 direction = sliding_direction(velocity, n, n)
             slides = letter != STICKS and direction != (0.0, 0.0, 0.0)
             begins = slides and speed <= SLIDING_STOPPED
+            slides = slides or solid.flats[touch[0]].friction == 0.0
             mode.append(Held(touch, slides, direction if slides else (0.0, 0.0, 0.0), begins))
         modes.append(tuple(mode))
     return Choice(answer.verdict, modes)

@@ -33,8 +33,9 @@ if TYPE_CHECKING:
 HORIZON: Final = 10.0
 """s. A body that is tossed by hand rests within two."""
 
-MOST_EVENTS: Final = 2000
-"""Events after which a toss ends unfinished. A toss of a box takes ten to fifty."""
+MOST_EVENTS: Final = 10_000
+"""Events after which a toss ends unfinished. A toss of a box takes ten to fifty, and one of a smooth body
+among four flats takes thousands."""
 
 MOST_ALTERNATIVES: Final = 8
 """Other ways that are followed, if no other number is asked for."""

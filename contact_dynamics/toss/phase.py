@@ -17,7 +17,6 @@ from contact_dynamics.numerics.vectors import dot, norm, without
 from contact_dynamics.tolerances import (
     BEGUN_TO_SLIDE,
     COARSE_SLIDING_STOPPED,
-    FORCE_ROUNDING,
     PHASE_ERROR,
     PHASE_LEAST_STEP,
     RESOLVED_SLIDING,
@@ -26,7 +25,7 @@ from contact_dynamics.tolerances import (
 )
 from contact_dynamics.toss.forces import Free, Pushed, free_accelerations, pushed_by_contacts
 from contact_dynamics.toss.held import Held, sliding_direction
-from contact_dynamics.toss.holding import held_in_place
+from contact_dynamics.toss.holding import heights_held, held_in_place, out_of_flats
 from contact_dynamics.toss.mode_choice import corrected
 from contact_dynamics.toss.phase_ends import PhaseEnd, first_end, low_corners, watched_corners
 from contact_dynamics.toss.phase_step import INTERPOLANT, AskedStep, PhaseStep, scales_of, within
@@ -97,8 +96,9 @@ def phase(
     """
     held = {one.touch for one in mode}
     scales = scales_of(solid)
-    least_force = -FORCE_ROUNDING * solid.mass * (1.0 + math.hypot(*solid.gravity))
-    y = held_in_place(solid, y, mode)
+    y = out_of_flats(solid, y)
+    heights = heights_held(solid, y, mode)
+    y = held_in_place(solid, y, mode, heights)
     now, step, steps = start, FIRST_STEP * (error / SAMPLED_PHASE_ERROR) ** 0.2, []
     pushed = pushed_by_contacts(solid, y, mode)
     low = low_corners(solid, y, held)
@@ -115,18 +115,17 @@ def phase(
         if size > 1.0 and step > PHASE_LEAST_STEP:
             step *= max(0.2, 0.9 * size**-0.2)
             continue
-        done = PhaseStep(now, step, np.array(y), asked.stages.T @ INTERPOLANT, step)
-        found = first_end(
-            solid, done, mode, after=after, trial=trial, watched=watched, least_force=least_force
-        )
+        done = PhaseStep(solid, now, step, np.array(y), asked.stages.T @ INTERPOLANT, step)
+        found = first_end(solid, done, mode, after=after, trial=trial, watched=watched)
         if found is not None:
             reason, x = found
             span = x * step
             steps.append(done._replace(span=span))
-            return Phase(reason, now + span, held_in_place(solid, within(done, x).tolist(), mode), steps)
+            y = held_in_place(solid, within(done, x).tolist(), mode, heights)
+            return Phase(reason, now + span, y, steps)
         steps.append(done)
         now += step
-        y = held_in_place(solid, trial, mode)
+        y = held_in_place(solid, trial, mode, heights)
         turned = _turned(solid, y, mode)
         pushed = after if turned == mode else pushed_by_contacts(solid, y, turned)
         mode = turned
@@ -134,7 +133,7 @@ def phase(
         before_stop, stopped = _sliding(solid, y, pushed, mode, resolved=resolved)
         if stopped:
             still = tuple(one._replace(slides=one.slides and one.touch not in stopped) for one in mode)
-            return Phase(PhaseEnd.SLIDING_STOPS, now, held_in_place(solid, y, still), steps)
+            return Phase(PhaseEnd.SLIDING_STOPS, now, held_in_place(solid, y, still, heights), steps)
         if now >= until:
             return Phase(PhaseEnd.TIME, now, y, steps)
         energy = kinetic_energy_of(solid, y)
@@ -172,7 +171,7 @@ def _sliding(
     longest, stopped = math.inf, set()
     pose = pose_of(solid, y)
     for one in mode:
-        if one.slides and not one.begins:
+        if one.slides and not one.begins and solid.flats[one.touch[0]].friction > 0.0:
             speed, rate = _speed_and_rate(solid, pose, pushed, one)
             if rate < 0.0:
                 longest = min(longest, _TOWARDS_STOP * speed / -rate)

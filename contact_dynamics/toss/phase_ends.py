@@ -9,10 +9,9 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Final, TypeAlias
 
-from contact_dynamics.numerics.vectors import dot
 from contact_dynamics.records import NamedInt
 from contact_dynamics.tolerances import COMES_DOWN_FOUND, FORCE_END_FOUND, GRAZING_DEPTH, PHASE_LEAST_STEP
-from contact_dynamics.toss.forces import Pushed, pushed_by_contacts
+from contact_dynamics.toss.forces import Pushed, force_rounding, least_left, pushed_by_contacts
 from contact_dynamics.toss.phase_step import within
 from contact_dynamics.toss.solid import heights_and_rates, rows_at
 
@@ -51,23 +50,10 @@ def low_corners(solid: Solid, y: Numbers, held: set[Touch]) -> dict[Touch, float
     """Return the corners that are on a flat or below and not held, with the depths, m, that they may have."""
     listed = heights_and_rates(solid, y)
     return {
-        touch: GRAZING_DEPTH - min(height, 0.0)
+        touch: 0.5 * GRAZING_DEPTH - min(height, 0.0)
         for height, _, touch in listed
         if height <= 0.5 * GRAZING_DEPTH and touch not in held
     }
-
-
-def _least_force(solid: Solid, pushed: Pushed, mode: tuple[Held, ...]) -> float:
-    """Return the least force, N, that is left until a contact no longer presses, or no longer sticks."""
-    least = math.inf
-    for one, force in zip(mode, pushed.forces, strict=True):
-        flat = solid.flats[one.touch[0]]
-        pressing = dot(force, flat.normal)
-        least = min(least, pressing)
-        if not one.slides:
-            across = math.sqrt(max(dot(force, force) - pressing * pressing, 0.0))
-            least = min(least, flat.friction * pressing - across)
-    return least
 
 
 def watched_corners(solid: Solid, held: set[Touch], low: dict[Touch, float]) -> Watched:
@@ -102,7 +88,6 @@ def first_end(
     after: Pushed,
     trial: Numbers,
     watched: Watched,
-    least_force: float,
 ) -> tuple[PhaseEnd, float] | None:
     """Return why and where, as a share of the step, the mode ends within a step, or None."""
 
@@ -110,17 +95,19 @@ def first_end(
         return _least_height(solid, within(step, x).tolist(), watched)
 
     def force_at(x: float) -> float:
-        return (
-            _least_force(solid, pushed_by_contacts(solid, within(step, x).tolist(), mode), mode) - least_force
-        )
+        pushed = pushed_by_contacts(solid, within(step, x).tolist(), mode)
+        return least_left(solid, mode, pushed.forces)
 
     first: tuple[PhaseEnd, float] | None = None
     if _least_height(solid, trial, watched) < 0.0:
         first = PhaseEnd.COMES_DOWN, _crossing(height_at, 1.0, step.whole, COMES_DOWN_FOUND)
-    if _least_force(solid, after, mode) < least_force:
+    if least_left(solid, mode, after.forces) < 0.0:
         x = 1.0 if first is None else first[1]
         if first is None or force_at(x) < 0.0:
-            first = PhaseEnd.FORCES, _crossing(force_at, x, step.whole, FORCE_END_FOUND * abs(least_force))
+            first = (
+                PhaseEnd.FORCES,
+                _crossing(force_at, x, step.whole, FORCE_END_FOUND * force_rounding(solid)),
+            )
     return first
 
 

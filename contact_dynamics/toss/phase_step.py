@@ -12,6 +12,7 @@ import numpy as np
 
 from contact_dynamics.toss.flush import is_flush
 from contact_dynamics.toss.forces import Pushed, pushed_by_contacts
+from contact_dynamics.toss.holding import out_of_flats
 
 if TYPE_CHECKING:
     from contact_dynamics.toss.held import Held
@@ -49,6 +50,7 @@ class PhaseStep(NamedTuple):
     """One step of the integrator.
 
     Attributes:
+        solid: The body and the flats.
         start: s, its beginning.
         span: s, its length, up to where it counts.
         y: (13,), the state at its beginning.
@@ -56,6 +58,7 @@ class PhaseStep(NamedTuple):
         whole: s, the length that the interpolant's coefficients belong to.
     """
 
+    solid: Solid
     start: float
     span: float
     y: FloatArray
@@ -64,8 +67,7 @@ class PhaseStep(NamedTuple):
 
     def at(self, seconds: float) -> Numbers:
         """Return the 13 numbers at a time of this step, s, counted as its start is."""
-        numbers: Numbers = within(self, (seconds - self.start) / self.whole).tolist()
-        return numbers
+        return out_of_flats(self.solid, within(self, (seconds - self.start) / self.whole).tolist())
 
 
 def within(step: PhaseStep, x: float) -> FloatArray:

@@ -29,7 +29,8 @@ class TossEventKind(NamedInt):
     SETTLES = 1
     """The rebounds at a contact have become too low to be followed. The contact stays from then on."""
     NEW_MODE = 2
-    """The contacts that touch go on in a contact mode, sticking, rolling or sliding."""
+    """The contacts that touch go on in a contact mode, sticking, rolling or sliding. Where they jam, the
+    motion goes on in short steps, and the mode is that of the first."""
     LIFTS_OFF = 3
     """The last contact leaves, and the body flies."""
     JAMS = 4
@@ -48,7 +49,8 @@ class TossEnd(NamedInt):
     MOST_EVENTS = 2
     """The bound on the number of events, or of steps in contact, was reached."""
     UNDECIDED = 3
-    """No contact mode was found to be consistent, and no impact settled that."""
+    """No contact mode was found to be consistent, and no impact settled that. Short steps pass over such
+    states now, so that only answers of earlier versions have this end."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)

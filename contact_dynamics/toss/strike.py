@@ -16,10 +16,10 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 from contact_dynamics.numerics.vectors import cross, dot, norm
 from contact_dynamics.tolerances import STILL_TOUCHING, STRIKES
-from contact_dynamics.toss.cone_forces import Site, cone_forces
 from contact_dynamics.toss.forces import pushed_by_contacts
 from contact_dynamics.toss.held import Held
-from contact_dynamics.toss.holding import held_in_place, without_rebounds
+from contact_dynamics.toss.holding import heights_held, held_in_place, without_rebounds
+from contact_dynamics.toss.inelastic import inelastic_impact
 from contact_dynamics.toss.mode_choice import choose_mode
 from contact_dynamics.toss.one_impact import AskedImpact, Struck
 from contact_dynamics.toss.solid import arm_of, pose_of, times, velocity_of
@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from contact_dynamics.impact.law import RestitutionLaw
     from contact_dynamics.numerics.vectors import Vector3
     from contact_dynamics.toss.asked import Asking
+    from contact_dynamics.toss.inelastic import Inelastic
     from contact_dynamics.toss.mode_choice import Choice
     from contact_dynamics.toss.solid import Numbers, Solid, Touch
 
@@ -95,6 +96,11 @@ def strike(
         y = impact.after
         struck.append(impact.struck)
         rates = approaches(solid, y, touching)
+    else:
+        together = inelastic_impact(solid, y, touching)
+        if together is not None:
+            ended = _all_together(together, touching)
+            return ended._replace(struck=struck + ended.struck)
     staying = [touch for touch, rate in zip(touching, rates, strict=True) if rate <= STILL_TOUCHING]
     return Strikes(y, struck, staying, settled=False)
 
@@ -122,52 +128,60 @@ def low_rebounds_ended(solid: Solid, y: Numbers, touching: list[Touch]) -> Strik
 
 def _settled(solid: Solid, y: Numbers, touching: list[Touch], rates: list[float]) -> Strikes | None:
     """Return the state in which all slow rebounds have ended, or None if a contact still rebounds."""
-    gravity = norm(solid.gravity)
-    fast = 2.0 * solid.settling * gravity
+    fast = 2.0 * solid.settling * norm(solid.gravity)
     for rate in rates:
         if rate < 0.0 and rate * rate > fast:
             return None
-    pose = pose_of(solid, y)
-    sites = []
-    for touch in touching:
-        flat, arm = solid.flats[touch[0]], arm_of(solid, pose, touch)
-        velocity = velocity_of(pose, arm)
-        axes = (*flat.tangents, flat.normal)
-        motion = (dot(velocity, axes[0]), dot(velocity, axes[1]), dot(velocity, axes[2]))
-        sites.append(Site(arm, axes, flat.friction, motion, None))
-    found = cone_forces(1.0 / solid.mass, pose.inverse, sites)
-    if found is None:
+    impact = inelastic_impact(solid, y, touching)
+    if impact is None:
         return None
-    pushes, motions = found
-    after = list(y)
-    struck = []
-    for touch, site, push in zip(touching, sites, pushes, strict=True):
-        (p, q, r), (t1, t2, n) = push, site.axes
-        impulse = (
-            p * t1[0] + q * t2[0] + r * n[0],
-            p * t1[1] + q * t2[1] + r * n[1],
-            p * t1[2] + q * t2[2] + r * n[2],
-        )
-        turning = times(pose.inverse, cross(site.arm, impulse))
-        for k in range(3):
-            after[7 + k] += impulse[k] / solid.mass
-            after[10 + k] += turning[k]
-        if push[2] > 0.0:
-            struck.append(Struck(touch, impulse, None))
+    motions = impact.motions
     slow = [
         Held(touch, math.hypot(*motion[:2]) ** 2 > fast * solid.flats[touch[0]].friction)
         for touch, motion in zip(touching, motions, strict=True)
         if motion[2] * motion[2] <= fast
     ]
-    stopped = held_in_place(solid, after, tuple(slow))
+    stopped = _held(solid, impact.y, slow, touching)
+    if stopped is None:
+        return _all_together(impact, touching)
     choice = choose_mode(solid, stopped, [one.touch for one in slow])
     staying = _pressed(solid, stopped, choice, touching, before=rates, motions=motions)
     if staying is None:
         return None
-    if staying == [one.touch for one in slow]:
-        return Strikes(stopped, struck, staying, settled=True, choice=choice)
-    kept = tuple(one for one in slow if one.touch in staying)
-    return Strikes(held_in_place(solid, after, kept), struck, staying, settled=True)
+    known: Choice | None = choice
+    if staying != [one.touch for one in slow]:
+        stopped = _held(solid, impact.y, [one for one in slow if one.touch in staying], touching)
+        known = None
+    if stopped is None:
+        return _all_together(impact, touching)
+    return Strikes(stopped, _struck(impact, touching), staying, settled=True, choice=known)
+
+
+def _held(solid: Solid, y: Numbers, slow: list[Held], touching: list[Touch]) -> Numbers | None:
+    """Return the state with slow contacts held, or None if contacts approach then."""
+    mode = tuple(slow)
+    held = held_in_place(solid, y, mode, heights_held(solid, y, mode))
+    return held if min(approaches(solid, held, touching)) >= -STRIKES else None
+
+
+def _all_together(impact: Inelastic, touching: list[Touch]) -> Strikes:
+    """Return what an impact without restitution leaves, where contacts cannot all be held: they jam.
+
+    Held contacts then meet more equations than there are motions, and what is left of them would have some
+    approach again and again. The impact has left those that it struck without normal velocity.
+    """
+    staying = [
+        touch for touch, motion in zip(touching, impact.motions, strict=True) if motion[2] <= STILL_TOUCHING
+    ]
+    return Strikes(impact.y, _struck(impact, touching), staying, settled=True)
+
+
+def _struck(impact: Inelastic, touching: list[Touch]) -> list[Struck]:
+    return [
+        Struck(touch, impulse, None)
+        for touch, impulse in zip(touching, impact.impulses, strict=True)
+        if impulse != (0.0, 0.0, 0.0)
+    ]
 
 
 def _pressed(

@@ -58,7 +58,7 @@ def test_energy_never_grows_nothing_penetrates_and_rest_is_rest(seed: int) -> No
     moved = went.at(times)
     R = np.array([one.R_WB for one in map(went.state_at, times.tolist())])
     lowest = (moved.p_WB_W[:, None] + body.shape.vertices @ R.transpose(0, 2, 1))[:, :, 2].min(axis=1)
-    assert float(lowest.min()) >= -1.1e-6  # what counts as touching
+    assert float(lowest.min()) >= -1e-9
     feet = went.state.p_WB_W + body.shape.vertices @ went.state.R_WB.T
     assert sorted(np.flatnonzero(np.abs(feet[:, 2]) <= 1e-9)) == list(went.resting_corners)
     assert np.abs(went.resting_normal_B).max() == pytest.approx(1.0, abs=1e-8)

@@ -127,6 +127,20 @@ def wedged_by_round_cones(search: Search) -> Held:
     return _nearest(_Demand(np.ascontiguousarray(images), target, np.ones(len(target))), normals, frictions)
 
 
+def summed_by_round_cones(
+    effects: FloatArray, target: FloatArray, axes: FloatArray, frictions: FloatArray
+) -> Held:
+    """Return forces within round cones whose effects sum to a target.
+
+    Args:
+        effects: (k, 3 n), what unit forces do.
+        target: (k,), what they must sum to.
+        axes: (n, 3), the axes of the cones.
+        frictions: (n,), how far forces lean from them. A cone with 0 is a ray.
+    """
+    return _nearest(_balanced(effects, target), axes, frictions)
+
+
 def polished(search: Search, rows: FloatArray, forces: FloatArray) -> FloatArray:
     """Return forces, (n, 3), that make rows of the motion vanish to rounding, where the cones allow that.
 

@@ -1,0 +1,103 @@
+"""A short step of a body whose contacts strike, stick and leave too fast to be followed (Moreau 1988).
+
+Strikes, modes and their ends can lead to one another at one instant, as where flats jam the body and several
+motions are nearly consistent. The step passes over that: all contacts have one impulse without restitution
+that stands for strikes and forces over the step, and keeps the body out of the flats at its end. The impulses
+do no work on the motion, so energy never grows. The error is that of a step of first order.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+import numpy as np
+
+from contact_dynamics.numerics.vectors import norm
+from contact_dynamics.rotations.one import normalised
+from contact_dynamics.tolerances import DISTANCE_TOLERANCE, SLIDING_STOPPED
+from contact_dynamics.toss.forces import free_accelerations, rates_of
+from contact_dynamics.toss.held import Held
+from contact_dynamics.toss.holding import out_of_flats
+from contact_dynamics.toss.inelastic import Inelastic, inelastic_impact
+from contact_dynamics.toss.phase_step import PhaseStep
+from contact_dynamics.toss.solid import energy_of, heights_and_rates, kinetic_energy_of
+
+if TYPE_CHECKING:
+    from contact_dynamics.toss.solid import Numbers, Solid, Touch
+
+LONGEST: Final = 2e-4
+"""s. A step is no longer. A body that turns by 10 rad/s meanwhile turns by a tenth of a degree."""
+
+SHORTEST: Final = 1e-7
+"""s. A step may be this short, where a corner comes down."""
+
+
+class ShortStep(NamedTuple):
+    """A short step.
+
+    Attributes:
+        y: The state at its end.
+        step: The motion meanwhile.
+        mode: The contacts that press, and whether they slide at the end.
+    """
+
+    y: Numbers
+    step: PhaseStep
+    mode: tuple[Held, ...]
+
+
+def short_step(solid: Solid, y: Numbers, *, start: float, span: float) -> ShortStep:
+    """Return a short step from a state.
+
+    Args:
+        solid: The body and the flats.
+        y: The state.
+        start: s, its time.
+        span: s, > 0, how long the step may be. It ends where a corner comes down, which strikes then.
+    """
+    listed = heights_and_rates(solid, y)
+    for height, rate, _ in listed:
+        if height > DISTANCE_TOLERANCE and rate < 0.0:
+            span = min(span, max(-height / rate, SHORTEST))
+    free = free_accelerations(solid, y)
+    pushed = [*y[:7], *(a + span * b for a, b in zip(y[7:], (*free.a, *free.alpha), strict=True))]
+    reached = DISTANCE_TOLERANCE + 2.0 * span * (norm(free.pose.v) + solid.reach * norm(free.pose.w))
+    near = [(max(height, 0.0) / span, touch) for height, _, touch in listed if height <= reached]
+    touching = [touch for _, touch in near]
+    impact = _impact(solid, pushed, touching, [room for room, _ in near])
+    v, w = impact.y[7:10], impact.y[10:]
+    rates = rates_of(impact.y, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+    after = [a + span * b for a, b in zip(impact.y, rates, strict=True)]
+    after = out_of_flats(solid, [*after[:3], *normalised(after[3:7]), *v, *w])
+    gained = energy_of(solid, after) - energy_of(solid, y)
+    kinetic = kinetic_energy_of(solid, after)
+    if gained > 0.0:  # by the turn within the step
+        slower = math.sqrt(max(1.0 - gained / kinetic, 0.0)) if kinetic > 0.0 else 0.0
+        after = [*after[:7], *(slower * each for each in after[7:])]
+    # Where the body falls or rises within the step, its velocities change such that energy stays.
+    fallen = energy_of(solid, [*after[:3], *impact.y[3:]]) - energy_of(solid, impact.y)
+    begun = math.sqrt(max(1.0 + fallen / kinetic, 0.0)) if kinetic > 0.0 else 1.0
+    first = np.array([*y[:7], *(begun * each for each in after[7:])])
+    slopes = np.zeros((13, 4))
+    slopes[:7, 0] = rates[:7]
+    slopes[7:, 0] = (np.array(after[7:]) - first[7:]) / span
+    mode = tuple(
+        Held(touch, math.hypot(*motion[:2]) > SLIDING_STOPPED)
+        for touch, motion, impulse in zip(touching, impact.motions, impact.impulses, strict=True)
+        if impulse != (0.0, 0.0, 0.0)
+    )
+    return ShortStep(after, PhaseStep(solid, start, span, first, slopes, span), mode)
+
+
+def _impact(solid: Solid, y: Numbers, touching: list[Touch], room: list[float]) -> Inelastic:
+    """Return the impact over a step. Where none is found, friction is left out, or at last the body stops."""
+    impact = inelastic_impact(solid, y, touching, room=room)
+    if impact is not None:
+        return impact
+    smooth = solid._replace(flats=tuple(flat._replace(friction=0.0) for flat in solid.flats))
+    impact = inelastic_impact(smooth, y, touching, room=room)
+    if impact is not None:
+        return impact
+    none = (0.0, 0.0, 0.0)
+    return Inelastic([*y[:7], *[0.0] * 6], [none] * len(touching), [none] * len(touching))
