@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from itertools import repeat
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
@@ -32,6 +32,9 @@ from msg_adapters.impact import resolved_impact_from_msg, resolved_impact_to_msg
 if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
     from contact_dynamics.world import World
+
+_WEDGED: Final = {True: Certainty.POSSIBLE, False: Certainty.NO, None: Certainty.UNKNOWN}
+"""Answers to whether a body is wedged, as they are in the message."""
 
 
 def contact_mode_answer_to_msg(
@@ -218,7 +221,7 @@ def _write_statics(msg: PredictContactMode.Response, statics: BodyStatics | None
     if statics is not None:
         msg.equilibrium = int(statics.equilibrium)
         msg.jammed = int(statics.jammed)
-        msg.wedged = msg.POSSIBLE if statics.wedged else msg.NO
+        msg.wedged = int(_WEDGED[statics.wedged])
         msg.stable_disturbance = statics.stable_disturbance
 
 
@@ -229,7 +232,7 @@ def _read_statics(msg: PredictContactMode.Response) -> BodyStatics | None:
     return BodyStatics(
         equilibrium=Certainty(msg.equilibrium),
         jammed=Certainty(msg.jammed),
-        wedged=msg.wedged == msg.POSSIBLE,
+        wedged=next(wedged for wedged, certainty in _WEDGED.items() if certainty == msg.wedged),
         stable_disturbance=msg.stable_disturbance,
         margin_length=math.nan,
     )

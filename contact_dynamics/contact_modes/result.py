@@ -127,6 +127,8 @@ class Certainty(NamedInt):
     POSSIBLE = 2
     """It is consistent, and something else is consistent too."""
     CERTAIN = 3
+    UNKNOWN = 4
+    """Rounding decides. In space it may stand for an answer beside the equilibrium."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
@@ -136,7 +138,8 @@ class BodyStatics(Record):
     Attributes:
         equilibrium: Whether the body stays at rest.
         jammed: Whether friction alone keeps the body at rest.
-        wedged: Whether the contacts can press against each other without an applied wrench.
+        wedged: Whether the contacts can press against each other without an applied wrench, or None if
+            rounding decides.
         stable_disturbance: N. Equilibrium stays possible under every change of the wrench up to this size. It
             is infinite if equilibrium is possible under every wrench (force closure), and NaN if there is no
             equilibrium.
@@ -145,7 +148,7 @@ class BodyStatics(Record):
 
     equilibrium: Certainty
     jammed: Certainty
-    wedged: bool
+    wedged: bool | None
     stable_disturbance: float
     margin_length: float
 

@@ -83,7 +83,12 @@ LETTERS: Final = {
 }
 """The words for what one contact does, and for several."""
 
-CERTAINTIES: Final = {Certainty.NO: "no", Certainty.POSSIBLE: "possible", Certainty.CERTAIN: "certain"}
+CERTAINTIES: Final = {
+    Certainty.NO: "no",
+    Certainty.POSSIBLE: "possible",
+    Certainty.CERTAIN: "certain",
+    Certainty.UNKNOWN: "unknown",
+}
 """The words for answers to static questions."""
 
 
@@ -277,7 +282,7 @@ def _probabilities_in_words(impact: ResolvedImpact) -> list[str]:
 def _statics_in_words(statics: BodyStatics | None) -> list[str]:
     if statics is None:
         return []
-    wedged = "possible" if statics.wedged else "no"
+    wedged = {True: "possible", False: "no", None: "unknown"}[statics.wedged]
     equilibrium, jammed = CERTAINTIES[statics.equilibrium], CERTAINTIES[statics.jammed]
     return [f"equilibrium {equilibrium}, jammed {jammed}, wedged {wedged}"]
 

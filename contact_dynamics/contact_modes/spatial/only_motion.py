@@ -13,7 +13,7 @@ if M + z M, less these parts, is positive definite, d is zero.
 
 A contact that slides already has friction in a known direction, which does not turn. A contact that sticks
 has f* = n* (N - mu s) with |s| <= 1, which takes the place of u*. There z must vanish along the surface.
-Where all contacts are on one plane, it vanishes everywhere.
+Where all contacts are on one plane, it vanishes everywhere. Where normal forces alone hold a body, z is zero.
 """
 
 from __future__ import annotations
@@ -23,6 +23,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
+from contact_dynamics.contact_modes.spatial.round_cones import held_by_round_cones
 from contact_dynamics.numerics.linear_spaces import seen_and_unseen
 from contact_dynamics.tolerances import FORCES_ROUNDING, ROW_TOLERANCE, SAME_MOTION
 
@@ -87,11 +88,13 @@ def is_only_motion(search: Search, forces: FloatArray, staying: Sequence[int] | 
 def rests_alone(search: Search) -> bool:
     """Return whether it is proven that a body rests and can do nothing else.
 
-    Forces are sought that hold it with friction of one common virtual motion, in parts of what slides with it
-    would have.
+    Normal forces alone may hold it. Otherwise forces are sought that hold it with friction of one common
+    virtual motion, in parts of what slides with it would have.
     """
     if not search.at_rest or not search.touching:
         return False
+    if held_by_round_cones(search, np.eye(6, 7), smooth=True).forces is not None:
+        return True
     contacts = _contacts(search, list(range(len(search.touching))))
     wrench = search.mass @ search.motion[:, -1]
     normal = contacts.rising.T  # (6, n)

@@ -2,7 +2,8 @@
 
 The questions are those of the plane (`planar.statics`). Round cones decide whether forces balance the wrench,
 with and without friction, and whether contacts press against each other (`round_cones`). Such an answer comes
-with forces or with a motion that refutes them. Where rounding hides both, the question is undecided.
+with forces or with a motion that refutes them. Where rounding hides both, the question is undecided: an error
+if it is whether the body can rest, and otherwise an answer without that part.
 
 The disturbance that the body can take is found with pyramids inside the friction cones. The wrenches that
 their forces can balance are a polyhedral cone in R^6, with torques divided by a length, whose facets are the
@@ -51,7 +52,7 @@ def spatial_statics(problem: SpatialContactProblem, *, margin_length: float | No
 
     Raises:
         InvalidFieldError: the length is not > 0.
-        UndecidedError: the contacts are so nearly the same that rounding decides the answer.
+        UndecidedError: the contacts are so nearly the same that rounding decides whether the body can rest.
         TooLargeError: more than `MOST_EDGES` edges, or more contacts than `spatial_contact_modes` accepts.
     """
     body, state, contacts = problem.body, problem.state, problem.contacts
@@ -72,28 +73,30 @@ def spatial_statics(problem: SpatialContactProblem, *, margin_length: float | No
     at_rest = replace(problem, state=replace(state, v_WB_W=np.zeros(3), w_WB_W=np.zeros(3)), sharpen=True)
     case = cast("SpatialCase", spatial_case(at_rest))  # at rest no contact approaches
     search = search_of(case, FRICTION_FACETS)
-    wedged = _decided(wedged_by_round_cones(search), "balance with each other")
+    wedged = _known(wedged_by_round_cones(search))
     equilibrium, jammed, room = Certainty.NO, Certainty.NO, math.nan
-    if _decided(held_by_round_cones(search, np.eye(6, 7)), "balance with the wrench"):
+    held = _known(held_by_round_cones(search, np.eye(6, 7)))
+    if held is None:
+        raise UndecidedError(
+            "contacts: found forces whose balance with the wrench hangs on rounding, allowed are contacts "
+            "and wrenches that are clearly balanced or clearly not"
+        )
+    if held:
         answer = modes_of_case(at_rest, case, search, beside_rest=True)
         alone = answer.verdict == ModeVerdict.UNIQUE and answer.modes[0].motion_unique
         equilibrium = Certainty.CERTAIN if alone else Certainty.POSSIBLE
-        smooth = held_by_round_cones(search, np.eye(6, 7), smooth=True)
-        jammed = Certainty.NO if _decided(smooth, "balance without friction") else equilibrium
-        room = _room(_rows(arms, pyramids, length), np.concatenate([force, torque / length]), wedged=wedged)
+        smooth = _known(held_by_round_cones(search, np.eye(6, 7), smooth=True))
+        jammed = {True: Certainty.NO, False: equilibrium, None: Certainty.UNKNOWN}[smooth]
+        target = np.concatenate([force, torque / length])
+        room = _room(_rows(arms, pyramids, length), target, wedged=wedged is True)
     return BodyStatics(
         equilibrium=equilibrium, jammed=jammed, wedged=wedged, stable_disturbance=room, margin_length=length
     )
 
 
-def _decided(held: Held, what: str) -> bool:
-    """Return whether there are forces, or raise an error that names what could not be decided."""
-    if held.forces is None and not held.certain:
-        raise UndecidedError(
-            f"contacts: found forces whose {what} hangs on rounding, allowed are contacts and wrenches that "
-            "are clearly balanced or clearly not"
-        )
-    return held.forces is not None
+def _known(held: Held) -> bool | None:
+    """Return whether there are forces, or None if rounding decides."""
+    return None if held.forces is None and not held.certain else held.forces is not None
 
 
 def _rows(arms: FloatArray, pyramids: list[FloatArray], length: float) -> FloatArray:

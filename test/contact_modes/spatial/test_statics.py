@@ -304,3 +304,26 @@ def test_misuse_is_refused_by_name() -> None:
         pushed(facets=2)
     with pytest.raises(TooLargeError, match="edges"):
         pushed(facets=64)
+
+
+@pytest.mark.parametrize("decade", range(-14, -3))
+def test_what_rounding_hides_does_not_take_the_other_answers_with_it(decade: int) -> None:
+    # Whether friction alone keeps such a box at rest hangs on the last digits of its normals.
+    feet = [(x, y, 0.0) for x in (-0.1, 0.1) for y in (-0.1, 0.1)]
+    for seed in range(3):
+        normals = [0.0, 0.0, 1.0] + 10.0**decade * np.random.default_rng([seed, -decade]).normal(size=(4, 3))
+        found = statics(
+            SpatialContactProblem(
+                body=MassProperties(mass=1.0, I_B=np.diag([0.01, 0.012, 0.015])),
+                state=BodyState(p_WB_W=[0, 0, 0.1], q_WB=[0, 0, 0, 1], v_WB_W=[0, 0, 0], w_WB_W=[0, 0, 0]),
+                contacts=ContactSet(
+                    p_WC_W=feet,
+                    normals_W=normals / np.linalg.norm(normals, axis=1)[:, None],
+                    frictions=0.5,
+                ),
+                force_W=(0.0, 0.0, -9.8),
+            )
+        )
+        assert (found.equilibrium, found.wedged) == (Certainty.CERTAIN, False)
+        assert found.stable_disturbance > 1.0
+        assert found.jammed in {Certainty.NO, Certainty.CERTAIN, Certainty.UNKNOWN}
