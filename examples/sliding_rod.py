@@ -17,6 +17,7 @@ contact = PlanarContact(
     r=(-4.0 * math.cos(theta), -4.0 * math.sin(theta)),
     normal=(0.0, 1.0),
     friction=math.tan(math.radians(30.0)),
+    restitution=0.0,
 )
 
 sliding = PlanarVelocity(v=(-1.0, 0.0), w=0.0)

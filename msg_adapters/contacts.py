@@ -45,7 +45,7 @@ def contacts_from_msg(msg: ContactSetMsg) -> ContactSet:
             p_WC_W=_rows("contacts.positions", msg.positions, n),
             normals_W=_rows("contacts.normals", msg.normals, n),
             frictions=np.array(msg.frictions),
-            restitutions=np.array(msg.restitutions),
+            restitutions=np.array(msg.restitutions) if msg.restitutions or n == 0 else None,
             surfaces=tuple(msg.surface_names),
             body_curvatures=body_curvatures,
             surface_curvatures=surface_curvatures,
@@ -60,7 +60,8 @@ def contacts_to_msg(contacts: ContactSet, *, into: ContactSetMsg | None = None) 
     msg.positions = flat(contacts.p_WC_W)
     msg.normals = flat(contacts.normals_W)
     msg.frictions = flat(contacts.frictions)
-    msg.restitutions = flat(contacts.restitutions)
+    if contacts.restitutions is not None:
+        msg.restitutions = flat(contacts.restitutions)
     msg.surface_names = list(contacts.surfaces)
     if contacts.body_curvatures is None and contacts.surface_curvatures is None:
         return msg

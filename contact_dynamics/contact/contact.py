@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -29,8 +29,7 @@ from contact_dynamics.validation import (
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
+_NEEDED: Final = "a number in [0, 1] for each contact of an impact"
 
 MOST_CONTACTS: Final = 10_000
 """Longest list of contacts accepted. Real sets have far fewer, and a service can still answer for so many."""
@@ -44,7 +43,7 @@ class Contact(Record):
         p_WC_W: (3,), m, the contact point, world.
         normal_W: (3,), unit, into the body, world axes.
         friction: Coulomb's mu, >= 0.
-        restitution: Coefficient e, in [0, 1]. Contact modes do not use it.
+        restitution: Coefficient e, in [0, 1], which impacts need and contact modes do not use, or None.
         surface: The surface that it touches, or empty if it is not known.
         body_curvatures: Curvatures of the body there, one row, or None if a point of the body touches.
         surface_curvatures: Curvatures of the world there, one row, or None if a flat is touched.
@@ -57,7 +56,7 @@ class Contact(Record):
     p_WC_W: FloatArray
     normal_W: FloatArray
     friction: float
-    restitution: float = 0.0
+    restitution: float | None = None
     surface: str = ""
     body_curvatures: Curvatures | None = None
     surface_curvatures: Curvatures | None = None
@@ -70,7 +69,7 @@ class Contact(Record):
             p_WC_W: ArrayLike,
             normal_W: ArrayLike,
             friction: float,
-            restitution: float = 0.0,
+            restitution: float | None = None,
             surface: str = "",
             body_curvatures: Curvatures | None = None,
             surface_curvatures: Curvatures | None = None,
@@ -81,8 +80,14 @@ class Contact(Record):
         object.__setattr__(self, "p_WC_W", check_array("p_WC_W", self.p_WC_W, (3,)))
         object.__setattr__(self, "normal_W", check_unit("normal_W", self.normal_W, 3))
         object.__setattr__(self, "friction", check_not_negative("friction", self.friction))
-        object.__setattr__(self, "restitution", check_within("restitution", self.restitution, 0.0, 1.0))
+        if self.restitution is not None:
+            object.__setattr__(self, "restitution", check_within("restitution", self.restitution, 0.0, 1.0))
         _check_curvatures(self, self.normal_W[None])
+
+    @property
+    def impact_restitution(self) -> float:
+        """Return e, which an impact needs, or raise `InvalidFieldError` if it is not known."""
+        return known_restitution(self.restitution)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -95,7 +100,7 @@ class ContactSet(Record):
         p_WC_W: (n, 3), m, contact points, world.
         normals_W: (n, 3), unit, into the body, world axes.
         frictions: (n,), Coulomb's mu, >= 0.
-        restitutions: (n,), e, in [0, 1]. Contact modes do not use them.
+        restitutions: (n,), e, in [0, 1], which impacts need and contact modes do not use, or None.
         surfaces: The surface that each contact touches, or empty if it is not known.
         body_curvatures: Curvatures of the body at each contact, or None if points of the body touch.
         surface_curvatures: Curvatures of the world at each contact, or None if flats are touched.
@@ -109,7 +114,7 @@ class ContactSet(Record):
     p_WC_W: FloatArray
     normals_W: FloatArray
     frictions: FloatArray
-    restitutions: FloatArray = field(default_factory=lambda: np.zeros(()))
+    restitutions: FloatArray | None = None
     surfaces: tuple[str, ...] = ()
     body_curvatures: Curvatures | None = None
     surface_curvatures: Curvatures | None = None
@@ -122,7 +127,7 @@ class ContactSet(Record):
             p_WC_W: ArrayLike,
             normals_W: ArrayLike,
             frictions: ArrayLike,
-            restitutions: ArrayLike = 0.0,
+            restitutions: ArrayLike | None = None,
             surfaces: Sequence[str] = (),
             body_curvatures: Curvatures | None = None,
             surface_curvatures: Curvatures | None = None,
@@ -136,7 +141,9 @@ class ContactSet(Record):
         points = check_array("p_WC_W", self.p_WC_W, (n, 3))
         normals = check_array("normals_W", _for_each(self.normals_W, n, 1), (n, 3))
         frictions = check_array("frictions", _for_each(self.frictions, n), (n,))
-        restitutions = check_array("restitutions", _for_each(self.restitutions, n), (n,))
+        restitutions = self.restitutions
+        if restitutions is not None:
+            restitutions = check_array("restitutions", _for_each(restitutions, n), (n,))
         lengths = np.sqrt(np.einsum("ij,ij->i", normals, normals))
         _check_each(normals, lengths, frictions, restitutions)
         if self.surfaces and len(self.surfaces) != n:
@@ -158,11 +165,18 @@ class ContactSet(Record):
             p_WC_W=np.array([one.p_WC_W for one in contacts]).reshape(n, 3),
             normals_W=np.array([one.normal_W for one in contacts]).reshape(n, 3),
             frictions=np.array([one.friction for one in contacts]),
-            restitutions=np.array([one.restitution for one in contacts]),
+            restitutions=all_or_none([one.restitution for one in contacts]),
             surfaces=[one.surface for one in contacts] if any(one.surface for one in contacts) else (),
             body_curvatures=_together([one.body_curvatures for one in contacts], math.inf),
             surface_curvatures=_together([one.surface_curvatures for one in contacts], 0.0),
         )
+
+    @property
+    def impact_restitutions(self) -> FloatArray:
+        """Return e of each contact, (n,), or raise `InvalidFieldError` if they are not known."""
+        if self.restitutions is None:
+            raise InvalidFieldError("contacts.restitutions", "none", _NEEDED)
+        return self.restitutions
 
     def __len__(self) -> int:
         """Return the number of contacts."""
@@ -176,7 +190,7 @@ class ContactSet(Record):
             p_WC_W=self.p_WC_W[i],
             normal_W=self.normals_W[i],
             friction=float(self.frictions[i]),
-            restitution=float(self.restitutions[i]),
+            restitution=None if self.restitutions is None else float(self.restitutions[i]),
             surface=self.surfaces[i] if self.surfaces else "",
             body_curvatures=None if body is None else body.subset([i]),
             surface_curvatures=None if surface is None else surface.subset([i]),
@@ -193,13 +207,30 @@ class ContactSet(Record):
             p_WC_W=self.p_WC_W[chosen],
             normals_W=self.normals_W[chosen],
             frictions=self.frictions[chosen],
-            restitutions=self.restitutions[chosen],
+            restitutions=None if self.restitutions is None else self.restitutions[chosen],
             surfaces=tuple(self.surfaces[i] for i in chosen) if self.surfaces else (),
             body_curvatures=None if self.body_curvatures is None else self.body_curvatures.subset(chosen),
             surface_curvatures=(
                 None if self.surface_curvatures is None else self.surface_curvatures.subset(chosen)
             ),
         )
+
+
+def known_restitution(restitution: float | None) -> float:
+    """Return a coefficient of restitution, or raise `InvalidFieldError` where it was left out."""
+    if restitution is None:
+        raise InvalidFieldError("contact.restitution", "none", _NEEDED)
+    return restitution
+
+
+def all_or_none(restitutions: list[float | None]) -> list[float] | None:
+    """Return the restitutions of contacts, or raise `InvalidFieldError` where only some have one."""
+    known = [one for one in restitutions if one is not None]
+    if not known:
+        return None
+    if len(known) < len(restitutions):
+        raise InvalidFieldError("restitution", "none at some contacts", "one at each contact, or at none")
+    return known
 
 
 def _for_each(values: ArrayLike, n: int, ndim: int = 0) -> ArrayLike:
@@ -230,7 +261,7 @@ def _check_curvatures(contacts: Contact | ContactSet, normals_W: FloatArray) -> 
 
 
 def _check_each(
-    normals: FloatArray, lengths: FloatArray, frictions: FloatArray, restitutions: FloatArray
+    normals: FloatArray, lengths: FloatArray, frictions: FloatArray, restitutions: FloatArray | None
 ) -> None:
     """Refuse the first contact with a number that is not allowed. Floats are faster for small sets."""
     for i, length in enumerate(lengths.tolist()):
@@ -239,6 +270,6 @@ def _check_each(
     for i, friction in enumerate(frictions.tolist()):
         if friction < 0.0:
             raise InvalidFieldError(f"frictions[{i}]", friction, "a number >= 0")
-    for i, restitution in enumerate(restitutions.tolist()):
+    for i, restitution in enumerate(() if restitutions is None else restitutions.tolist()):
         if not 0.0 <= restitution <= 1.0:
             raise InvalidFieldError(f"restitutions[{i}]", restitution, "a number in [0, 1]")

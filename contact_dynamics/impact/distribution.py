@@ -114,7 +114,7 @@ def planar_impact_distribution(
             r=arm,
             normals=normal,
             frictions=contact.friction,
-            restitutions=contact.restitution,
+            restitutions=contact.impact_restitution,
             restitution_law=restitution_law,
             velocity_tolerance=tolerance,
         )
@@ -179,7 +179,7 @@ def spatial_impact_distribution(
             ),
             normals_W=normal,
             frictions=contact.friction,
-            restitutions=contact.restitution,
+            restitutions=contact.impact_restitution,
             restitution_laws=restitution_law,
             velocity_tolerance=tolerance,
         )

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from contact_dynamics.contact.contact import ContactSet
+from contact_dynamics.contact.contact import ContactSet, all_or_none
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.validation import check_array
 
@@ -37,6 +37,6 @@ def planar_in_space(
         p_WC_W=np.array([contact.r for contact in contacts]).reshape(-1, 2) @ axes,
         normals_W=np.array([contact.normal for contact in contacts]).reshape(-1, 2) @ axes,
         frictions=np.array([contact.friction for contact in contacts]),
-        restitutions=np.array([contact.restitution for contact in contacts]),
+        restitutions=all_or_none([contact.restitution for contact in contacts]),
     )
     return MassProperties(mass=body.mass, I_B=body.inertia * np.eye(3)), state, touching

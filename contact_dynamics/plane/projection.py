@@ -205,7 +205,7 @@ def projected(
                 seen.arms_W,
                 normals,
                 contacts.frictions.tolist(),
-                contacts.restitutions.tolist(),
+                [None] * len(contacts) if contacts.restitutions is None else contacts.restitutions.tolist(),
                 _curvatures_in(plane, contacts),
                 strict=True,
             )

@@ -14,6 +14,7 @@ import math
 from dataclasses import dataclass
 from typing import Any, TypeAlias
 
+from contact_dynamics.contact.contact import known_restitution
 from contact_dynamics.contact.curvature import planar_gap_acceleration
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.records import Record
@@ -103,7 +104,7 @@ class PlanarContact(Record):
         r: Position of the contact from the centre of mass, m.
         normal: Unit normal into the body.
         friction: Coulomb's mu, >= 0.
-        restitution: Coefficient e, in [0, 1]. Contact modes do not use it.
+        restitution: Coefficient e, in [0, 1], which impacts need and contact modes do not use, or None.
         body_curvature: Curvature of the body there, 1/m, positive where convex, inf at a corner.
         surface_curvature: Curvature of the surface there, 1/m, positive where convex, inf at a corner.
 
@@ -116,7 +117,7 @@ class PlanarContact(Record):
     r: Vector2
     normal: Vector2
     friction: float
-    restitution: float = 0.0
+    restitution: float | None = None
     body_curvature: float = math.inf
     surface_curvature: float = 0.0
 
@@ -132,9 +133,15 @@ class PlanarContact(Record):
         unit = (n_x / length, n_y / length) if off > LENGTH_ROUNDING else (n_x, n_y)
         object.__setattr__(self, "normal", unit)
         object.__setattr__(self, "friction", check_not_negative("friction", self.friction))
-        object.__setattr__(self, "restitution", check_within("restitution", self.restitution, 0.0, 1.0))
+        if self.restitution is not None:
+            object.__setattr__(self, "restitution", check_within("restitution", self.restitution, 0.0, 1.0))
         if self.body_curvature != math.inf or self.surface_curvature != 0.0:
             self._check_curvatures()
+
+    @property
+    def impact_restitution(self) -> float:
+        """Return e, which an impact needs, or raise `InvalidFieldError` if it is not known."""
+        return known_restitution(self.restitution)
 
     def _check_curvatures(self) -> None:
         one, other = self.body_curvature, self.surface_curvature

@@ -164,6 +164,8 @@ def _case(question: ContactModeQuestion, knowledge: Knowledge) -> ModeCase:
     if len(contacts) > MOST_PLANAR_CONTACTS:
         raise TooLargeError("contacts", f"{len(contacts)} contacts", f"at most {MOST_PLANAR_CONTACTS}")
     check_contacts(contacts)
+    if question.want_impact:
+        _ = contacts.impact_restitutions
     question.uncertainty.check_count(len(contacts))
     is_hard = question.want_geometry_margins or not question.uncertainty.is_exact
     if is_hard and len(contacts) > MOST_UNCERTAIN_CONTACTS:

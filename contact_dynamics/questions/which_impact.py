@@ -64,6 +64,7 @@ def strike_of(question: ImpactQuestion, knowledge: Knowledge) -> Strike:
         contacts = contacts_of(
             question.contacts, subject, knowledge.world, distance_tolerance=distance_tolerance
         )
+        _ = contacts.impact_restitutions
     elif other is not None:
         message = "contacts: found none for two bodies, allowed is to state them: shapes meet the world alone"
         raise NotSupportedError(message)

@@ -15,6 +15,7 @@ ROLLING = Contact(
     p_WC_W=[0.0, 0.0, 0.0],
     normal_W=UP,
     friction=0.3,
+    restitution=0.0,
     body_curvatures=Curvatures(along=[10.0], across=[5.0], directions_W=[[1.0, 0.0, 0.0]]),
 )
 
@@ -53,7 +54,7 @@ def test_one_number_stands_for_all_and_lists_are_arrays() -> None:
     feet = ContactSet(p_WC_W=[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]], normals_W=UP, frictions=0.3)
     assert feet.normals_W.tolist() == [UP, UP]
     assert feet.frictions.tolist() == [0.3, 0.3]
-    assert feet.restitutions.tolist() == [0.0, 0.0]
+    assert feet.restitutions is None
     assert (
         ContactSet(p_WC_W=feet.p_WC_W, normals_W=UP, frictions=[0.1, 0.2], restitutions=1).frictions[1] == 0.2
     )

@@ -164,6 +164,12 @@ CASES = [
         )
         for service in (PredictContactMode, PredictImpact)
     ],
+    (
+        PredictImpact,
+        put("contacts.restitutions", []),
+        "INVALID_FIELD",
+        "contacts.restitutions: found none, allowed is a number in [0, 1] for each contact of an impact",
+    ),
     (PredictContactMode, put("applied_wrench.force.x", math.nan), "INVALID_FIELD", "applied_wrench.force"),
     (
         PredictContactMode,

@@ -85,7 +85,7 @@ class FoundMeetings:
             p_WC_W=np.concatenate([np.zeros((0, 3)), *(contact.p_WC_W for contact in self._met)]),
             normals_W=np.concatenate([np.zeros((0, 3)), *(contact.normals_W for contact in self._met)]),
             frictions=np.array([float(contact.frictions[0]) for contact in self._met]),
-            restitutions=np.array([float(contact.restitutions[0]) for contact in self._met]),
+            restitutions=np.array([float(contact.impact_restitutions[0]) for contact in self._met]),
             surfaces=tuple(name for contact in self._met for name in contact.surfaces),
         )
 

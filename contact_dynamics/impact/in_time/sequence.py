@@ -147,6 +147,7 @@ def impact_sequence_of(
     held = None if hold_step is None else check_positive("hold_step", hold_step)
     if contacts.body_curvatures is not None or contacts.surface_curvatures is not None:
         raise InvalidFieldError("contacts.curvatures", "some", "none: a point of the body on a plane")
+    _ = contacts.impact_restitutions
     gravity = check_array("gravity_W", gravity_W, (3,))
     work = SearchWork("strike_window")
     meetings = NamedMeetings(

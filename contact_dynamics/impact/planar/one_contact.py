@@ -44,6 +44,7 @@ def planar_impact(
 
     Source: lecture 27, eqs. 2 to 10; Routh 1860; Stronge 1990 for the energetic law.
     """
+    restitution = contact.impact_restitution
     tolerance = check_not_negative("velocity_tolerance", velocity_tolerance)
     n_x, n_y = contact.normal
     r_x, r_y = contact.r
@@ -55,7 +56,7 @@ def planar_impact(
     r_t = r_x * n_y - r_y * n_x
     r_n = r_x * n_x + r_y * n_y
     response = inverse_inertia(body.mass, body.inertia, r_t, r_n)
-    path = impulse_path(v_t, v_n, response, contact.friction, contact.restitution, restitution_law)
+    path = impulse_path(v_t, v_n, response, contact.friction, restitution, restitution_law)
     i_t = path.t_end
     i_n = path.p_end
     i_x = i_t * n_y + i_n * n_x

@@ -47,6 +47,7 @@ def planar_pair_impact(
         SeparatingContactError: the contact's relative normal velocity is above the tolerance.
         InvalidFieldError: a number is not finite, or the tolerance is negative.
     """
+    restitution = contact.impact_restitution
     tolerance = check_not_negative("velocity_tolerance", velocity_tolerance)
     n_x, n_y = contact.normal
     r_x, r_y = contact.r
@@ -60,7 +61,7 @@ def planar_pair_impact(
         (body.mass, body.inertia, r_x * n_y - r_y * n_x, r_x * n_x + r_y * n_y),
         (other.mass, other.inertia, s_x * n_y - s_y * n_x, s_x * n_x + s_y * n_y),
     )
-    path = impulse_path(v_t, v_n, response, contact.friction, contact.restitution, restitution_law)
+    path = impulse_path(v_t, v_n, response, contact.friction, restitution, restitution_law)
     i_x = path.t_end * n_y + path.p_end * n_x
     i_y = path.p_end * n_y - path.t_end * n_x
     return PlanarImpact(

@@ -138,7 +138,7 @@ def _in_contact_axes(contacts: ContactSet, arms: FloatArray, inverse: FloatArray
     rows = np.array(axes) @ point_jacobians(arms)
     push = inverse @ rows.transpose(0, 2, 1)
     frictions = np.minimum(contacts.frictions, LARGEST_GRIP)
-    return _Set(rows, push, rows @ push, frictions, contacts.restitutions**2)
+    return _Set(rows, push, rows @ push, frictions, contacts.impact_restitutions**2)
 
 
 def _draw(

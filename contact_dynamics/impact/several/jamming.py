@@ -123,6 +123,7 @@ def jamming_impact(
             f"{facets}, with {len(contacts)} contacts",
             f"at most {MOST_DIRECTIONS} over all contacts",
         )
+    restitutions = contacts.impact_restitutions
     w, inertia = state.w_WB_W, body.inertia_in_world(state.R_WB)
     arms = contacts.p_WC_W - state.p_WB_W
     inverse = inverse_mass_matrix(body.mass, inertia)
@@ -148,7 +149,7 @@ def jamming_impact(
             zero=_ZERO * share * speed,
         )
         start = cleaned + seen.rows @ (twist + short * free) + short * rolling - before
-        found = _two_phases(seen, start, contacts.restitutions)
+        found = _two_phases(seen, start, restitutions)
         if found is None:
             continue
         impulses, held = found

@@ -116,6 +116,7 @@ def check_touching(touching: Touching, states: Sequence[BodyState]) -> FloatArra
     contacts, tolerance = touching.contacts, touching.tolerance
     if len(contacts) == 0:
         raise InvalidFieldError("contacts", "none", "at least one contact")
+    _ = contacts.impact_restitutions
     for index, (body, state) in enumerate(zip(touching.bodies, states, strict=True)):
         check_striking(body, state, contacts.p_WC_W[[i for i, p in enumerate(touching.pairs) if index in p]])
     velocities = _relative_velocities(touching, states)

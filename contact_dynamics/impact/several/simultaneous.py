@@ -101,7 +101,7 @@ def simultaneous_impulses(
     # `RestitutionRule` needs a path, and there is none here. Newton's law asks for velocities, in one
     # problem, and Poisson's for impulses, in a second one.
     if law == RestitutionLaw.NEWTON:
-        bounce = -contacts.restitutions * approach
+        bounce = -contacts.impact_restitutions * approach
         return _solve(
             jacobian, inverse_mass, twist, normals, frictions, least=none, bounce=bounce, order=order
         )
@@ -109,7 +109,7 @@ def simultaneous_impulses(
         jacobian, inverse_mass, twist, normals, frictions, least=none, bounce=none, order=order
     )
     twist = twist + inverse_mass @ np.einsum("ijk,ij->k", jacobian, compression)
-    least = contacts.restitutions * np.einsum("ij,ij->i", compression, normals)
+    least = contacts.impact_restitutions * np.einsum("ij,ij->i", compression, normals)
     if not least.any():
         return compression, converged
     restitution, also = _solve(

@@ -98,7 +98,7 @@ def next_to_strike(approach: FloatArray, contacts: ContactSet, *, tolerance: flo
     tied = np.flatnonzero(approach <= min(float(approach.min()) + tie, -tolerance)).tolist()
     if len(tied) < 2:
         return tied
-    materials = [(float(contacts.restitutions[i]), float(contacts.frictions[i])) for i in tied]
+    materials = [(float(contacts.impact_restitutions[i]), float(contacts.frictions[i])) for i in tied]
     first = min(materials)
     return [i for i, material in zip(tied, materials, strict=True) if material == first]
 
@@ -143,7 +143,7 @@ def strike_as_one(
     if float(np.hypot(u1, u2)) <= tolerance:
         u1 = u2 = 0.0
     sliding = SlidingLaw(l1, l2, k1, k2, kn, followed_friction(float(contacts.frictions[0])))
-    path = trace(sliding, (u1, u2), v_n, restitution=float(contacts.restitutions[0]), law=law)
+    path = trace(sliding, (u1, u2), v_n, restitution=float(contacts.impact_restitutions[0]), law=law)
     impulses = np.einsum("a,kaj->kj", np.array(path.impulse), axes) / k
     after = pushed(response, states, impulses)
     velocities_after = velocities + response.jacobian @ response.inverse_mass @ np.einsum(

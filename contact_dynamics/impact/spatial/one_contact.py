@@ -114,6 +114,7 @@ def _impact(
     velocity_tolerance: float,
 ) -> SpatialImpact:
     """Return the impact of a body on ``other``, or on the fixed world if ``other`` is None."""
+    restitution = contact.impact_restitution
     tolerance = check_not_negative("velocity_tolerance", velocity_tolerance)
 
     first, second = _responding(body, state, contact.p_WC_W), None
@@ -136,7 +137,7 @@ def _impact(
     if still or rests:
         velocity = axes.in_world((u1, u2, v_n))
     sliding = SlidingLaw(axes.l1, axes.l2, axes.k1, axes.k2, axes.kn, followed_friction(contact.friction))
-    path = trace(sliding, (u1, u2), v_n, restitution=contact.restitution, law=law)
+    path = trace(sliding, (u1, u2), v_n, restitution=restitution, law=law)
 
     impulse = axes.in_world(path.impulse)
     v, w = pushed(first, impulse)

@@ -34,6 +34,7 @@ SOLVED = 1e-9  # relative: linear algebra of a few dozen unknowns, of condition 
 
 def jam(case: FloatCase, *, in_space: bool = False) -> tuple[SeveralImpact, MassProperties, BodyState]:
     body, velocity, contacts, wrench = case
+    contacts = [replace(one, restitution=one.restitution or 0.0) for one in contacts]
     solid, state, touching = planar_in_space(body, velocity, contacts, axes_W=AXES)
     impact = jamming_impact(
         solid,
@@ -71,7 +72,10 @@ def test_one_contact_that_sticks_ends_where_rouths_path_does(*, restitution: flo
 
 def slot(friction: float) -> FloatCase:
     """A point of the body in a slot along x, sliding left, pressed by the wrench."""
-    sides = [PlanarContact(r=(1.0, -3.0), normal=(0.0, side), friction=friction) for side in (1.0, -1.0)]
+    sides = [
+        PlanarContact(r=(1.0, -3.0), normal=(0.0, side), friction=friction, restitution=0.0)
+        for side in (1.0, -1.0)
+    ]
     body = PlanarBody(mass=2.0, inertia=1.0 / 3.0)
     return body, PlanarVelocity(v=(2.0, 1.0), w=-1.0), sides, PlanarWrench(f=(3.0, 3.0), moment=1.0)
 
