@@ -23,7 +23,7 @@ from contact_dynamics.contact.contact import ContactSet
 from contact_dynamics.contact.curvature import Curvatures
 from contact_dynamics.contact.on_flats import flat_touches
 from contact_dynamics.contact.on_obstacles import lowest_along, site_of, touches_of
-from contact_dynamics.errors import NoContactError
+from contact_dynamics.errors import InvalidFieldError, NoContactError
 from contact_dynamics.tolerances import DISTANCE_TOLERANCE
 from contact_dynamics.validation import check_not_negative
 from contact_dynamics.world import Surface
@@ -47,17 +47,52 @@ def find_contacts(
 ) -> ContactSet:
     """Return the contacts of a body with the surfaces, in their order. On a flat, rims come after corners.
 
-    A point touches if its height above the surface is at most ``distance_tolerance`` (m). A point below the
-    surface touches too, since measured poses penetrate by their noise. A rim lies flush if all of it touches.
-    The set may be empty.
+    A point touches if its height above the surface is at most ``distance_tolerance`` (m), or its depth below
+    it. Measured poses penetrate by their noise, so that they need a tolerance as large. A rim lies flush if
+    all of it touches. The set may be empty.
 
     Raises:
         NoContactError: the body has no shape that could touch anything.
-        InvalidFieldError: the tolerance is negative or not finite.
+        InvalidFieldError: the body is deeper in a surface than the tolerance, or the tolerance is negative or
+            not finite.
         NotSupportedError: a rim of the body is at an edge of an obstacle (`on_obstacles`).
     """
+    check_not_inside(body, state, surfaces, distance_tolerance=distance_tolerance)
+    return contacts_within(body, state, surfaces, distance_tolerance)
+
+
+def check_not_inside(
+    body: Body,
+    state: BodyState,
+    surfaces: Sequence[Surface | Obstacle],
+    *,
+    distance_tolerance: float = DISTANCE_TOLERANCE,
+) -> None:
+    """Raise `InvalidFieldError` where a body is deeper in a surface than a tolerance, m, or the default one.
+
+    It raises `NoContactError` where the body has no shape.
+    """
     check_has_shape(body)
-    check_not_negative("distance_tolerance", distance_tolerance)
+    allowed = max(check_not_negative("distance_tolerance", distance_tolerance), DISTANCE_TOLERANCE)
+    for surface in surfaces:
+        if isinstance(surface, Surface):
+            lowest = lowest_along(body.shape, state.p_WB_W, state.R_WB, surface.normal_W[None])
+            gap = float(lowest[0] - surface.p_WS_W @ surface.normal_W)
+        else:
+            gap = site_of(body.shape, state.p_WB_W, state.R_WB, surface).gap
+        if gap < -allowed:
+            raise InvalidFieldError(
+                "state",
+                f"{body.name!r} {-gap:.6g} m deep in {surface.name!r}",
+                f"at most the distance_tolerance of {allowed:g} m, which may be larger for measured poses",
+            )
+
+
+def contacts_within(
+    body: Body, state: BodyState, surfaces: Sequence[Surface | Obstacle], distance_tolerance: float
+) -> ContactSet:
+    """Return the contacts as `find_contacts` does, however deep the body is in a surface."""
+    check_has_shape(body)
     shape, R_WB = body.shape, state.R_WB
     points = state.p_WB_W + shape.vertices @ R_WB.T
     flats = [surface for surface in surfaces if isinstance(surface, Surface)]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from contact_dynamics.contact.found import find_contacts
+from contact_dynamics.contact.found import contacts_within
 from contact_dynamics.records import Record
 from contact_dynamics.world import Surface
 
@@ -35,7 +35,7 @@ def touch_of(body: Body, state: BodyState, world: World, *, within: float) -> To
     """Return what a body touches within that gap, m. Without a shape or a surface it touches nothing."""
     if body.shape.is_empty or not world.surfaces:
         return None
-    contacts = find_contacts(body, state, world.surfaces, distance_tolerance=within)
+    contacts = contacts_within(body, state, world.surfaces, within)
     if len(contacts) == 0:
         return None
     flats = {surface.name: surface for surface in world.surfaces if isinstance(surface, Surface)}

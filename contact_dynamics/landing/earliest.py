@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from contact_dynamics.contact.found import check_has_shape, find_contacts
+from contact_dynamics.contact.found import check_not_inside, contacts_within
 from contact_dynamics.landing.obstacle_arrival import first_touch
 from contact_dynamics.landing.plane_arrival import first_contact
 from contact_dynamics.landing.search_work import SearchWork
@@ -65,13 +65,37 @@ def next_landing(
 
     Raises:
         NoContactError: the body has no shape that could touch anything.
-        InvalidFieldError: a horizon or a tolerance is negative or not finite.
+        InvalidFieldError: the body is deeper in a surface than ``distance_tolerance``, or a horizon or a
+            tolerance is negative or not finite.
         TooLargeError: the search takes too many steps: the body spins too fast for the horizon.
     """
-    check_has_shape(body)
     check_not_negative("horizon", horizon)
-    check_not_negative("distance_tolerance", distance_tolerance)
     check_not_negative("velocity_tolerance", velocity_tolerance)
+    check_not_inside(body, state, world.surfaces, distance_tolerance=distance_tolerance)
+    return landing_from(
+        body,
+        state,
+        world,
+        horizon=horizon,
+        distance_tolerance=distance_tolerance,
+        velocity_tolerance=velocity_tolerance,
+        motion=motion,
+        work=work,
+    )
+
+
+def landing_from(
+    body: Body,
+    state: BodyState,
+    world: World,
+    *,
+    horizon: float,
+    distance_tolerance: float,
+    velocity_tolerance: float,
+    motion: Motion | None = None,
+    work: SearchWork | None = None,
+) -> Landing | None:
+    """Return the landing as `next_landing` does, however deep the body is in a surface."""
     now = _touching(body, state, world, distance_tolerance)
     if now is not None and (now.approach <= velocity_tolerance).any():
         return now.landing(0.0, state, velocity_tolerance)
@@ -120,7 +144,7 @@ class _Touching:
 
 
 def _touching(body: Body, state: BodyState, world: World, distance_tolerance: float) -> _Touching | None:
-    contacts = find_contacts(body, state, world.surfaces, distance_tolerance=distance_tolerance)
+    contacts = contacts_within(body, state, world.surfaces, distance_tolerance)
     if len(contacts) == 0:
         return None
     velocities = state.velocity_of_point(contacts.p_WC_W)

@@ -277,7 +277,7 @@ def _read_defaults(reader: ParameterReader) -> Defaults:
         distance_tolerance=reader.read(
             "distance_tolerance",
             default.distance_tolerance,
-            "Gap below which a body counts as touching, m.",
+            "Gap below which a body counts as touching, and largest depth in a surface, m.",
             (0.0, 1e3),
         ),
         out_of_plane_tolerance=reader.read(

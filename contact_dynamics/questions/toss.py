@@ -204,6 +204,7 @@ def answer(question: TossQuestion, knowledge: Knowledge | None = None) -> TossAn
             seed=sampling.seed,
             law=question.restitution_law,
             horizon=horizon,
+            distance_tolerance=known.defaults.distance_tolerance,
         )
     went = toss(
         body,
@@ -213,6 +214,7 @@ def answer(question: TossQuestion, knowledge: Knowledge | None = None) -> TossAn
         horizon=horizon,
         most_alternatives=MOST_ALTERNATIVES if most is None else most,
         lasting_factors=question.lasting_factors,
+        distance_tolerance=known.defaults.distance_tolerance,
     )
     return TossAnswer(
         body_name=body.name,

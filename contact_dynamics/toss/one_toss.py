@@ -15,8 +15,9 @@ from collections import deque
 from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
+from contact_dynamics.contact.found import check_not_inside
 from contact_dynamics.impact.law import RestitutionLaw
-from contact_dynamics.tolerances import PHASE_ERROR
+from contact_dynamics.tolerances import DISTANCE_TOLERANCE, PHASE_ERROR
 from contact_dynamics.toss.distinct_corners import with_distinct_corners
 from contact_dynamics.toss.following import Following
 from contact_dynamics.toss.solid import solid_of
@@ -52,6 +53,7 @@ def toss(
     most_alternatives: int = MOST_ALTERNATIVES,
     error: float = PHASE_ERROR,
     lasting_factors: ArrayLike = (),
+    distance_tolerance: float = DISTANCE_TOLERANCE,
 ) -> Toss:
     """Return the motion of a body from a state, in flight or in contact, until it rests.
 
@@ -67,14 +69,16 @@ def toss(
             reach.
         lasting_factors: (s,), >= 0, the friction of each surface where contact lasts, relative to that of
             its strikes. Without any, those of the surfaces hold.
+        distance_tolerance: m, >= 0. The body may be in a surface by this much at first, or by 1e-6 m.
 
     Raises:
         NoContactError: the body has no shape that could touch anything.
         NotSupportedError: the shape has rims, or a surface is an obstacle.
-        InvalidFieldError: a number is not allowed.
+        InvalidFieldError: a number is not allowed, or the body is deeper in a surface than the tolerance.
         TooLargeError: a flight takes too many steps of the search for its end.
     """
     factors = check_factors("lasting_factors", lasting_factors)
+    check_not_inside(body, state, world.surfaces, distance_tolerance=distance_tolerance)
     body, indices = with_distinct_corners(body)
     solid = solid_of(body, world, indices=indices, lasting_factors=factors)
     runs = Following(

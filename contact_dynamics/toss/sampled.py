@@ -15,9 +15,10 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from contact_dynamics.contact.found import check_not_inside
 from contact_dynamics.numerics.vectors import dot
 from contact_dynamics.rigid_body.body import BodyState
-from contact_dynamics.tolerances import SAMPLED_SETTLING_HEIGHT
+from contact_dynamics.tolerances import DISTANCE_TOLERANCE, SAMPLED_SETTLING_HEIGHT
 from contact_dynamics.toss.distinct_corners import with_distinct_corners
 from contact_dynamics.toss.distribution import (
     FEWEST,
@@ -74,6 +75,7 @@ def sampled_toss(
     law: RestitutionLaw,
     horizon: float,
     processes: int | Executor = 1,
+    distance_tolerance: float = DISTANCE_TOLERANCE,
 ) -> TossDistribution:
     """Return what can happen in a toss whose state, parameters or impacts are not known exactly.
 
@@ -98,16 +100,19 @@ def sampled_toss(
             such parts are of no use. A number of processes is started anew by each call, which takes about
             half a second. They import the main module, so a program does its work under
             ``if __name__ == "__main__":``, as with `multiprocessing`.
+        distance_tolerance: m, >= 0. The best state may be in a surface by this much, or by 1e-6 m. Samples
+            may be deeper.
 
     Raises:
         NoContactError: the body has no shape that could touch anything.
         NotSupportedError: the shape has rims, or a surface is an obstacle.
         InvalidFieldError: the parameters' covariance has another size than the world's surfaces ask for, or
-            there are not as many factors as surfaces, or ``processes`` is neither a whole number >= 1 nor an
-            executor.
+            there are not as many factors as surfaces, ``processes`` is neither a whole number >= 1 nor an
+            executor, or the body is deeper in a surface than the tolerance.
         BrokenProcessPool: a process died, for example because the main module is not guarded as said above.
     """
     shared_by = check_processes(processes)
+    check_not_inside(body, state, world.surfaces, distance_tolerance=distance_tolerance)
     body, indices = with_distinct_corners(body)
     solid = solid_of(body, world, indices=indices, settling=SAMPLED_SETTLING_HEIGHT)
     chance = np.random.default_rng(seed)

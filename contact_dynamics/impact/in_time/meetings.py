@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Protocol
 import numpy as np
 
 from contact_dynamics.contact.contact import ContactSet
-from contact_dynamics.landing.earliest import Landing, next_landing
+from contact_dynamics.landing.earliest import Landing, landing_from
 from contact_dynamics.landing.plane_arrival import first_contact
 from contact_dynamics.tolerances import DISTANCE_TOLERANCE
 from contact_dynamics.tumbling import free_motion
@@ -57,7 +57,7 @@ class FoundMeetings:
 
     def next(self, state: BodyState, horizon: float) -> Landing | None:
         """Return where free flight from a state ends within ``horizon``, s, or None."""
-        return next_landing(
+        return landing_from(
             self._body,
             state,
             self._world,

@@ -25,6 +25,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Final
 
 from contact_dynamics.constants import STANDARD_GRAVITY_W
+from contact_dynamics.contact.found import check_not_inside
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.impact.in_time.meetings import FoundMeetings, NamedMeetings
 from contact_dynamics.impact.in_time.strike_by_strike import StrikeByStrike
@@ -83,16 +84,17 @@ def impact_sequence(
 
     Raises:
         TooLargeError: the sequence has too many strikes, or too many steps over contacts that stay.
-        InvalidFieldError: a number is not allowed.
+        InvalidFieldError: a number is not allowed, or the body is deeper in a surface than the tolerance.
         NoContactError: the body has no shape that could touch anything.
     """
     tolerance = check_positive("velocity_tolerance", velocity_tolerance)
     held = None if hold_step is None else check_positive("hold_step", hold_step)
+    check_not_inside(body, state, world.surfaces, distance_tolerance=distance_tolerance)
     work = SearchWork("strike_window")
     meetings = FoundMeetings(
         body,
         world,
-        distance_tolerance=check_not_negative("distance_tolerance", distance_tolerance),
+        distance_tolerance=distance_tolerance,
         velocity_tolerance=tolerance,
         work=work,
     )
