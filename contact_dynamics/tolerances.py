@@ -69,6 +69,12 @@ meet it."""
 DECIMALS_MET: Final = Decimal("1e-30")
 """Relative. A target counts as met exactly if this much of it is left."""
 
+# contact
+
+NO_NOISE: Final = 1e-9
+"""Relative. Conditions on the error of a state that depend on each other leave singular values of 1e-15 of
+the largest. Corners of a body that are told apart leave more than this."""
+
 # evaluation
 
 LANDING_GAP: Final = 0.015

@@ -4,7 +4,7 @@
 `found` finds contacts from geometry: `on_flats` where a body meets a plane, `on_obstacles` and `overlap`
 where it meets a solid. `velocities` says which contacts count as at rest. `kinds` says what velocities add to
 the accelerations of contacts. `friction` makes pyramids from friction cones. `uncertainty` says how well
-contacts are known.
+contacts are known, and `noise` which of them touch and rest where the state is measured.
 """
 
 from contact_dynamics.contact.contact import Contact, ContactSet

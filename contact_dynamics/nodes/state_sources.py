@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.nodes.parameter_reader import ConfigurationError
+from contact_dynamics.questions.uncertain_state import with_deviations
 from msg_adapters.odometry import ODOMETRY
 from msg_adapters.pose import POSE, POSE_WITH_COVARIANCE
 from msg_adapters.pose_twist import POSE_TWIST, POSE_TWIST_WITH_COVARIANCE
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
     from contact_dynamics.nodes.parameter_reader import ConfiguredTopic
     from contact_dynamics.nodes.parameters import ServerParameters
     from contact_dynamics.nodes.world_parameters import ConfiguredSource
+    from contact_dynamics.questions.uncertain_state import KnownState
     from msg_adapters.state_adapter import Reader
     from msg_adapters.transforms import TFMessage
 
@@ -140,7 +142,8 @@ def state_sources(parameters: ServerParameters, *, static: TransformTree) -> tup
             static=static,
         )
         for configured in body.sources:
-            for source, topic in zip(_of_body(configured, settings), configured.topics, strict=True):
+            made = _of_body(configured, settings, body.state_deviations)
+            for source, topic in zip(made, configured.topics, strict=True):
                 _add(found, source, topic.parameter)
                 other = by_frame.setdefault((topic.full_name, body.frame), body.body_name)
                 if other != body.body_name:
@@ -152,7 +155,19 @@ def state_sources(parameters: ServerParameters, *, static: TransformTree) -> tup
     return tuple(found.values())
 
 
-def _of_body(configured: ConfiguredSource, settings: SourceSettings) -> tuple[StateSource, ...]:
+def _with_deviations(reader: Reader, deviations: tuple[float, ...]) -> Reader:
+    """Return a reader whose states have a covariance."""
+
+    def read(msg: object) -> KnownState | None:
+        known = reader(msg)
+        return None if known is None else with_deviations(known, deviations)
+
+    return read if deviations else reader
+
+
+def _of_body(
+    configured: ConfiguredSource, settings: SourceSettings, deviations: tuple[float, ...]
+) -> tuple[StateSource, ...]:
     parameter = f"body.{settings.body_name}.source"
     adapter = adapter_of(configured.adapter, parameter=parameter)
     if len(configured.topics) != len(adapter.type_names):
@@ -165,7 +180,7 @@ def _of_body(configured: ConfiguredSource, settings: SourceSettings) -> tuple[St
             topic=topic.name,
             full_name=topic.full_name,
             type_name=type_name,
-            readers=(BodyReader(settings.body_name, reader),),
+            readers=(BodyReader(settings.body_name, _with_deviations(reader, deviations)),),
             is_whole=adapter.is_whole,
             is_of_one_body=adapter.is_of_one_body,
         )

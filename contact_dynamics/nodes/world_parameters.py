@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.nodes.body_shapes import DESCRIPTIONS, ShapeParameters
@@ -16,6 +16,10 @@ from contact_dynamics.world import Body, Surface
 
 if TYPE_CHECKING:
     from contact_dynamics.nodes.parameter_reader import ConfiguredTopic, ParameterReader
+
+
+MOST_DEVIATION: Final = 1e6
+"""The largest standard deviation of a state that can be configured, in m, rad, m/s and rad/s."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -39,12 +43,14 @@ class BodySources:
         body_name: The body.
         frame: The body's frame, whose pose is published.
         velocity_window: s, the time over which a velocity is found from poses.
+        state_deviations: Standard deviations of states without a covariance (`with_deviations`), or none.
         sources: The sources, of which there may be several or none.
     """
 
     body_name: str
     frame: str
     velocity_window: float
+    state_deviations: tuple[float, ...]
     sources: tuple[ConfiguredSource, ...]
 
 
@@ -76,8 +82,25 @@ def read_body(reader: ParameterReader, name: str) -> tuple[Body, BodySources]:
             "Time over which a velocity is found where poses alone are published, s.",
             (1e-3, 10.0),
         ),
+        state_deviations=_read_deviations(reader, key),
         sources=_read_sources(reader, key),
     )
+
+
+def _read_deviations(reader: ParameterReader, key: str) -> tuple[float, ...]:
+    name = f"{key}.state_deviations"
+    found = reader.read(
+        name,
+        [0.0],
+        "Standard deviations of states that are published without a covariance: position, m, orientation, "
+        "rad, linear velocity, m/s, angular velocity, rad/s. [0.0]: such states are exact.",
+    )
+    if found == [0.0]:
+        return ()
+    if len(found) != 4 or not all(0.0 <= deviation <= MOST_DEVIATION for deviation in found):
+        allowed = f"four numbers from 0 to {MOST_DEVIATION:g} (or [0.0]: exact)"
+        raise ConfigurationError(f"{name}: found {found}, allowed are {allowed}")
+    return tuple(found)
 
 
 def _read_sources(reader: ParameterReader, key: str) -> tuple[ConfiguredSource, ...]:

@@ -51,7 +51,7 @@ from contact_dynamics.questions.settled_impact import (
     settled_in_space,
 )
 from contact_dynamics.questions.subject import subject_of
-from contact_dynamics.questions.touching import contacts_of
+from contact_dynamics.questions.touching import in_contact
 from contact_dynamics.records import Record
 from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.validation import FloatArray
@@ -160,7 +160,14 @@ def _case(question: ContactModeQuestion, knowledge: Knowledge) -> ModeCase:
     check_extent(subject.body.mass_properties, subject.state)
     defaults, world = knowledge.defaults, knowledge.world
     distance_tolerance = or_default(question.distance_tolerance, defaults.distance_tolerance)
-    contacts = contacts_of(question.contacts, subject, world, distance_tolerance=distance_tolerance)
+    velocity_tolerance = or_default(question.velocity_tolerance, defaults.velocity_tolerance)
+    subject, contacts = in_contact(
+        question.contacts,
+        subject,
+        world,
+        distance_tolerance=distance_tolerance,
+        velocity_tolerance=velocity_tolerance,
+    )
     if len(contacts) > MOST_PLANAR_CONTACTS:
         raise TooLargeError("contacts", f"{len(contacts)} contacts", f"at most {MOST_PLANAR_CONTACTS}")
     check_contacts(contacts)
@@ -180,7 +187,7 @@ def _case(question: ContactModeQuestion, knowledge: Knowledge) -> ModeCase:
         contacts=contacts,
         force_W=force_W,
         torque_W=question.torque_W,
-        velocity_tolerance=or_default(question.velocity_tolerance, defaults.velocity_tolerance),
+        velocity_tolerance=velocity_tolerance,
         distance_tolerance=distance_tolerance,
         friction_facets=question.friction_facets or FRICTION_FACETS,
     )

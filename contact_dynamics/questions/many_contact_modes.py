@@ -18,7 +18,8 @@ from contact_dynamics.questions import contact_modes
 from contact_dynamics.questions.contact_mode_question import ContactModeQuestion
 from contact_dynamics.questions.knowledge import Knowledge, or_default
 from contact_dynamics.questions.subject import subject_of
-from contact_dynamics.questions.touching import contacts_of
+from contact_dynamics.questions.touching import in_contact
+from contact_dynamics.questions.uncertain_state import UncertainState
 from contact_dynamics.records import Record
 from contact_dynamics.validation import FloatArray, check_array
 from contact_dynamics.validation_batches import check_rows
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
 
     from contact_dynamics.contact.contact import ContactSet
     from contact_dynamics.questions.contact_modes import ContactModeAnswer
+    from contact_dynamics.questions.uncertain_state import KnownState
     from contact_dynamics.rigid_body.body import BodyState
 
 MOST_CANDIDATES: Final = 1000
@@ -156,7 +158,20 @@ def answer(question: ManyContactModesQuestion, knowledge: Knowledge | None = Non
     asked = question.asked
     subject = subject_of(asked.body, asked.state, known)
     tolerance = or_default(asked.distance_tolerance, known.defaults.distance_tolerance)
-    contacts = contacts_of(asked.contacts, subject, known.world, distance_tolerance=tolerance)
+    state: KnownState = subject.state
+    if len(question.contact_counts) > 1 and asked.contacts is not None:  # they are alternatives
+        contacts = asked.contacts
+        if subject.covariance is not None:
+            state = UncertainState(state=subject.state, covariance=subject.covariance)
+    else:
+        subject, contacts = in_contact(
+            asked.contacts,
+            subject,
+            known.world,
+            distance_tolerance=tolerance,
+            velocity_tolerance=or_default(asked.velocity_tolerance, known.defaults.velocity_tolerance),
+        )
+        state = subject.state
     counts = question.contact_counts or (len(contacts),)
     ends = np.cumsum(counts).tolist()
     sets = [
@@ -166,7 +181,7 @@ def answer(question: ManyContactModesQuestion, knowledge: Knowledge | None = Non
     shared = replace(
         asked,
         body=subject.body,
-        state=subject.state,
+        state=state,
         want_wrenches=False,
         want_statics=False,
         want_impact=False,

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from contact_dynamics.contact.found import find_contacts, nearest_surface
+from contact_dynamics.contact.noise import NoisyState, resting, touching
 from contact_dynamics.errors import NoContactError
+from contact_dynamics.questions.extent import check_extent
 
 if TYPE_CHECKING:
     from contact_dynamics.contact.contact import ContactSet
@@ -39,6 +42,34 @@ def contacts_of(
             f"{message} (distance_tolerance): the nearest, {surface.name!r}, is {gap:.6g} m away"
         )
     return contacts
+
+
+def in_contact(
+    named: ContactSet | None,
+    subject: Subject,
+    world: World,
+    *,
+    distance_tolerance: float,
+    velocity_tolerance: float,
+) -> tuple[Subject, ContactSet]:
+    """Return a subject and its contacts, which touch and rest where the noise of its state allows it.
+
+    Without a covariance the state is exact. With one, it is the likeliest state in which the contacts that
+    may touch and rest do so (`contact.noise`).
+
+    Raises:
+        NoContactError: there is no contact.
+    """
+    if subject.covariance is None:
+        return subject, contacts_of(named, subject, world, distance_tolerance=distance_tolerance)
+    check_extent(subject.body.mass_properties, subject.state)
+    noisy = NoisyState.of(subject.state, subject.covariance)
+    if named is None and not subject.body.shape.is_empty:
+        noisy = touching(subject.body, noisy, world.surfaces, distance_tolerance=distance_tolerance)
+        subject = replace(subject, state=noisy.state)
+    contacts = contacts_of(named, subject, world, distance_tolerance=distance_tolerance)
+    noisy = resting(noisy, contacts, velocity_tolerance=velocity_tolerance)
+    return replace(subject, state=noisy.state, covariance=noisy.root @ noisy.root.T), contacts
 
 
 def check_has_shape(body: Body) -> None:

@@ -5,12 +5,16 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeAlias
 
+import numpy as np
+
 from contact_dynamics.records import Record
 from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.validation import FloatArray
 from contact_dynamics.validation_batches import check_covariance
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import ArrayLike
 
 
@@ -48,6 +52,20 @@ class UncertainState(Record):
 
 KnownState: TypeAlias = "BodyState | UncertainState"
 """A state, with its covariance where that is known."""
+
+
+def with_deviations(known: KnownState, deviations: Sequence[float]) -> KnownState:
+    """Return a state that has a covariance, with the one that follows from deviations if it has none.
+
+    Args:
+        known: The state, with its covariance or without.
+        deviations: Standard deviations, the same along all axes, of the position of the centre of mass (m),
+            the orientation (rad), the linear velocity (m/s) and the angular velocity (rad/s). Without any,
+            the state stays as it is.
+    """
+    if not deviations or not isinstance(known, BodyState):
+        return known
+    return UncertainState(state=known, covariance=np.diag(np.repeat(np.square(deviations), 3)))
 
 
 def state_of(known: KnownState) -> BodyState:

@@ -1,0 +1,233 @@
+"""Finds which contacts of a body touch and rest, where its state is known with some noise.
+
+No point of a measured body is exactly on a surface, and none is exactly at rest. With the covariance of the
+state, "this corner touches" and "these contacts are at rest" are hypotheses: linear conditions on the error
+of the state. A hypothesis holds unless a chi-square test rejects it: the squared size of the least error that
+makes it true, in standard deviations, is beyond the quantile `REST_LEVEL` for as many degrees of freedom as
+the conditions have. The state that is used from then on is the likeliest one under the conditions that hold,
+so that corners that touch lie in their plane and contacts at rest have no velocity.
+
+If the hypothesis that all contacts are at rest is rejected, those touch whose normal velocities can be zero,
+and of these those stick whose tangential velocities can be zero. Each is tested beside those that hold
+already, the likeliest first. So are the points that may touch a flat.
+
+Not covered: gaps to obstacles, whose contacts are found at the pose as it is; the effect of the pose's noise
+on velocities, which is a product of two errors for a body that is nearly at rest.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+import numpy as np
+
+from contact_dynamics.contact.on_flats import flat_touches
+from contact_dynamics.numerics.vectors import point_jacobians, tangent_rows
+from contact_dynamics.rotations.many import turned
+from contact_dynamics.tolerances import NO_NOISE
+from contact_dynamics.world import Surface
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from contact_dynamics.contact.contact import ContactSet
+    from contact_dynamics.rigid_body.body import BodyState
+    from contact_dynamics.shapes.obstacle import Obstacle
+    from contact_dynamics.validation import FloatArray
+    from contact_dynamics.world import Body
+
+REST_LEVEL: Final = 0.999
+"""Probability with which a hypothesis about touching or resting contacts passes its test if it is true."""
+
+QUANTILES: Final = (0.0, 10.827566, 13.815511, 16.266236, 18.466827, 20.515006, 22.457744)
+"""Quantiles of chi squared at `REST_LEVEL`, by degrees of freedom from 0 to 6."""
+
+_ROUNDS: Final = 3
+"""Each correction of a pose squares the turns that are left: 0.01 rad come to rounding."""
+
+
+class NoisyState(NamedTuple):
+    """A state and its noise.
+
+    Attributes:
+        state: The state.
+        root: (12, k), a root of its covariance, which is root @ root.T, in the order of `motion.covariance`.
+    """
+
+    state: BodyState
+    root: FloatArray
+
+    @classmethod
+    def of(cls, state: BodyState, covariance: FloatArray) -> NoisyState:
+        """Return a state with a covariance, (12, 12)."""
+        variances, axes = np.linalg.eigh(covariance)
+        return cls(state, axes * np.sqrt(np.maximum(variances, 0.0)))
+
+    def corrected(self, error: FloatArray) -> BodyState:
+        """Return the state without an error, (k,), in standard deviations."""
+        change = -self.root @ error
+        state = self.state
+        return replace(
+            state,
+            p_WB_W=state.p_WB_W + change[:3],
+            q_WB=turned(state.q_WB[None], change[None, 3:6])[0],
+            v_WB_W=state.v_WB_W + change[6:9],
+            w_WB_W=state.w_WB_W + change[9:],
+        )
+
+
+def touching(
+    body: Body,
+    noisy: NoisyState,
+    surfaces: Sequence[Surface | Obstacle],
+    *,
+    distance_tolerance: float,
+) -> NoisyState:
+    """Return the likeliest state of a body with a shape in which all points that may touch a flat do so."""
+    points = _points_near_flats(body, noisy, surfaces, distance_tolerance)
+    if not points:
+        return noisy
+    held: list[_Point] = []
+    closed = noisy
+    for i in np.argsort(_gaps(points, noisy.state)[0]):
+        gap, row = _gaps([points[i]], closed.state)
+        hypothesis = _hypothesis(row, gap, noisy, closed, distance_tolerance)
+        if hypothesis.passes and hypothesis.state is not closed:
+            held.append(points[i])
+            closed = _with_gaps_closed(held, noisy, hypothesis.state.state)
+    return closed
+
+
+def _with_gaps_closed(points: Sequence[_Point], noisy: NoisyState, near: BodyState) -> NoisyState:
+    """Return the likeliest state in which points have no gap, and its noise, from a state near it."""
+    state = near
+    for _ in range(_ROUNDS):
+        gaps, rows = _gaps(points, state)
+        there = noisy._replace(state=state)
+        closed = _hypothesis(rows, gaps, there, there, math.inf).state
+        state = closed.state
+    return closed
+
+
+def resting(noisy: NoisyState, contacts: ContactSet, *, velocity_tolerance: float) -> NoisyState:
+    """Return the likeliest state in which all contacts that may rest or touch do so.
+
+    A contact's velocity that is left within ``velocity_tolerance``, m/s, counts as zero.
+    """
+    jacobians = np.zeros((len(contacts), 3, 12))
+    jacobians[:, :, 6:] = point_jacobians(contacts.p_WC_W - noisy.state.p_WB_W)
+    frames = np.array([(n_W, *tangent_rows(n_W)) for n_W in contacts.normals_W])
+    rows = np.einsum("cij,cjk->cik", frames, jacobians)
+
+    def that_zero(which: Sequence[int], axes: slice, beside: NoisyState) -> _Hypothesis:
+        """Return the hypothesis that components of velocities are zero, beside what holds already."""
+        velocities = beside.state.velocity_of_point(contacts.p_WC_W[which])
+        violation = np.einsum("cij,cj->ci", frames[which], velocities)[:, axes]
+        return _hypothesis(
+            rows[which, axes].reshape(-1, 12), violation.ravel(), noisy, beside, velocity_tolerance
+        )
+
+    everything = that_zero(range(len(contacts)), slice(0, 3), noisy)
+    if everything.passes:
+        return everything.state
+    found, may_hold = noisy, list(range(len(contacts)))
+    for axes in (slice(0, 1), slice(1, 3)):
+        likeliest_first = sorted(may_hold, key=lambda i: that_zero([i], axes, noisy).size)
+        may_hold = []
+        for i in likeliest_first:
+            hypothesis = that_zero([i], axes, found)
+            if hypothesis.passes:
+                found = hypothesis.state
+                may_hold.append(i)
+    return found
+
+
+class _Hypothesis(NamedTuple):
+    """That the error of a state meets some conditions, beside those that it meets already.
+
+    Attributes:
+        passes: Whether the test does not reject it.
+        size: The square of the least error that meets the conditions, in standard deviations.
+        state: The likeliest state that does.
+    """
+
+    passes: bool
+    size: float
+    state: NoisyState
+
+
+def _hypothesis(
+    rows: FloatArray, violation: FloatArray, noisy: NoisyState, beside: NoisyState, tolerance: float
+) -> _Hypothesis:
+    """Return the hypothesis that the error of a state causes a violation of conditions, (m,).
+
+    Args:
+        rows: (m, 12), how the conditions change with the state.
+        violation: What they are off at the state ``beside``.
+        noisy: The state with all its noise.
+        beside: The state under the conditions that hold already, with the noise that they leave.
+        tolerance: What may be left of the violation.
+    """
+    whole, left = rows @ noisy.root, rows @ beside.root
+    U, sizes, V = np.linalg.svd(left, full_matrices=False)
+    kept = sizes > NO_NOISE * np.linalg.norm(whole)
+    components = (U.T[kept] @ violation) / sizes[kept]
+    error = V[kept].T @ components
+    unexplained = float(np.abs(violation - left @ error).max())
+    size = float(components @ components)
+    passes = unexplained <= max(tolerance, NO_NOISE * float(np.abs(violation).max()))
+    return _Hypothesis(
+        passes and size <= QUANTILES[len(components)],
+        size,
+        NoisyState(beside.corrected(error), beside.root - (beside.root @ V[kept].T) @ V[kept])
+        if len(components) > 0
+        else beside,
+    )
+
+
+class _Point(NamedTuple):
+    """A point of a body near a flat.
+
+    Attributes:
+        p_BP_B: (3,), m, where it is in the body.
+        normal_W: (3,), unit, of the flat.
+        level: m, the flat's, and how far a ball around the point reaches.
+    """
+
+    p_BP_B: FloatArray
+    normal_W: FloatArray
+    level: float
+
+
+def _points_near_flats(
+    body: Body, noisy: NoisyState, surfaces: Sequence[Surface | Obstacle], distance_tolerance: float
+) -> list[_Point]:
+    """Return the points that are nearer to flats than the noise of their gaps at `REST_LEVEL` allows."""
+    state, shape, R_WB = noisy.state, body.shape, noisy.state.R_WB
+    place, turn = (float(np.linalg.norm(noisy.root[i : i + 3])) for i in (0, 3))
+    far = [math.hypot(*corner) for corner in shape.vertices.tolist()]
+    far += [math.hypot(*rim.center) + rim.radius for rim in shape.rims]
+    noise = math.sqrt(QUANTILES[1]) * (place + turn * max(far))
+    found = []
+    for surface in surfaces:
+        if not isinstance(surface, Surface):
+            continue
+        n_W, level = surface.normal_W, float(surface.p_WS_W @ surface.normal_W)
+        for touch in flat_touches(
+            shape, state.p_WB_W, R_WB, n_W, level=level, tolerance=distance_tolerance + noise
+        ):
+            center = touch.p_WC_W + shape.rounding * n_W
+            found.append(_Point((center - state.p_WB_W) @ R_WB, n_W, level + shape.rounding))
+    return found
+
+
+def _gaps(points: Sequence[_Point], state: BodyState) -> tuple[FloatArray, FloatArray]:
+    """Return the gaps of points, (m,), m, and how they change with position and small turns, (m, 12)."""
+    arms = np.array([point.p_BP_B for point in points]) @ state.R_WB.T
+    normals = np.array([point.normal_W for point in points])
+    gaps = np.einsum("ij,ij->i", state.p_WB_W + arms, normals) - [point.level for point in points]
+    rows = np.zeros((len(points), 12))
+    rows[:, :3], rows[:, 3:6] = normals, np.cross(arms, normals)
+    return gaps, rows
