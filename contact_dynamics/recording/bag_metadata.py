@@ -106,6 +106,23 @@ def metadata_lines(bag: BagSummary) -> list[str]:
     ]
 
 
+def custom_data_of(text: str) -> dict[str, str]:
+    """Return the writer's record of the run from the text of a ``metadata.yaml`` of ours.
+
+    It is empty where the text has none, or one that somebody else wrote.
+    """
+    _, _, after = text.partition("\n  custom_data:\n")
+    found: dict[str, str] = {}
+    for line in after.splitlines():
+        if not line.startswith("    "):
+            break
+        try:
+            found |= json.loads(f"{{{line}}}")
+        except ValueError:
+            return {}
+    return found
+
+
 def metadata_file_text(bag: BagSummary) -> str:
     """Return the text of ``metadata.yaml``: the same lines under rosbag2's outermost key."""
     return "\n".join(["rosbag2_bagfile_information:", *_indented(metadata_lines(bag)), ""])

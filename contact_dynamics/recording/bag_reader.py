@@ -11,6 +11,7 @@ installed.
 
 from __future__ import annotations
 
+import json
 import re
 import warnings
 from contextlib import contextmanager
@@ -19,6 +20,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from contact_dynamics.errors import InvalidFieldError
+from contact_dynamics.recording.bag_metadata import METADATA_FILE, custom_data_of
 from contact_dynamics.recording.errors import DamagedLogWarning, NotALogError
 from contact_dynamics.recording.file_messages import Loss, MessageFile, Span, Topic
 from contact_dynamics.recording.mcap_messages import McapMessages
@@ -70,6 +72,7 @@ class BagReader:
         """
         path = Path(path)
         self.paths = _files_of(path) if path.is_dir() else [path]
+        self.run_is_later = False  # whether the last record of the run is newer than the log's beginning
         self.losses: list[Loss] = []  # the stretches that the last reading has had to leave out so far
         if not self.paths or not self.paths[0].is_file():
             found = "no MCAP file here, and no .db3 file" if path.exists() else "no such file or folder"
@@ -154,14 +157,29 @@ class BagReader:
         return min(start_ns for start_ns, _ in found), max(end_ns for _, end_ns in found)
 
     def run(self) -> dict[str, str]:
-        """Return the writer's record of its run. It is empty if the record is missing or damaged."""
+        """Return the writer's record of its run.
+
+        If that of the first file is damaged, it is the record of a later one, or that in the bag's
+        ``metadata.yaml``, and `run_is_later` says so. It is empty if there is none that is whole.
+        """
         self.losses = []
+        self.run_is_later = False
         for path in self.paths:
             with self._opened(path) as file:
                 run = file.run()
             if run is not None:
                 return run
-        return {}
+            self.run_is_later = True
+        return self._run_of_metadata() if self.losses else {}
+
+    def _run_of_metadata(self) -> dict[str, str]:
+        """Return the record in ``metadata.yaml``, if that describes the first file."""
+        path = self.paths[0]
+        try:
+            text = (path.parent / METADATA_FILE).read_text(encoding="utf-8")
+        except (OSError, UnicodeDecodeError):
+            return {}
+        return custom_data_of(text) if json.dumps(path.name, ensure_ascii=False) in text else {}
 
     def _made(self, path: Path, stored: StoredMessage) -> LoggedMessage | None:
         topic, data, log_time_ns, publish_time_ns = stored

@@ -5,6 +5,7 @@ from __future__ import annotations
 import warnings
 from typing import TYPE_CHECKING, Any
 
+from contact_dynamics.nodes import parameter_event
 from contact_dynamics.nodes.run_record import PARAMETERS, LoggedParameters
 from contact_dynamics.recording.bag_reader import BagReader
 from contact_dynamics.recording.definitions import EVENT_SUFFIX
@@ -43,6 +44,7 @@ def server_of_log(
         damage = f" ({log.damage})" if log.damage else ""
         run = log.run()
         damage = f" ({log.damage})" if log.damage else damage
+        is_later = log.run_is_later and next(log.messages({parameter_event.TOPIC}), None) is not None
     events = [name for name in definitions if name.startswith(INTERFACES) and name.endswith(EVENT_SUFFIX)]
     if not events:
         known = ", ".join(sorted(definitions)) or "none"
@@ -52,6 +54,11 @@ def server_of_log(
     if PARAMETERS not in run and "world_frame" not in run:
         raise NotALogError(
             f"{path}: not a log of the server: no record of how its run was configured{damage}"
+        )
+    if is_later:
+        raise NotALogError(
+            f"{path}: no record of how its run was configured at its beginning: "
+            f"what is left of it is from after a change{damage}"
         )
     check_definitions(path, definitions, run.get("version"))
     stand_in(definitions.items())

@@ -13,10 +13,13 @@ from pathlib import Path
 import pytest
 from mcap.reader import make_reader
 from mcap.writer import Writer
+from rcl_interfaces.msg import ParameterEvent
+from rclpy.serialization import serialize_message
 
 from contact_dynamics.nodes.services import SERVICES
 from contact_dynamics.recording import BagReader, BagWriter, LoggedMessage, NotALogError, service_calls
 from contact_dynamics.recording.definitions import find_definition
+from contact_dynamics.recording.errors import DamagedLogWarning
 from contact_dynamics.replay.run import main
 from contact_dynamics.replay.same_definitions import digest
 from contact_dynamics.replay.verify import Verification, verify_log
@@ -222,6 +225,44 @@ def test_a_truncated_log_is_asked_as_far_as_it_goes(
     assert 0 < questions_left < sum(asked.counts.values())
     assert main([str(cut)]) == 0
     assert "is damaged or was cut short" in capsys.readouterr().out
+
+
+def with_a_flipped_bit_in_its_record(log: Path) -> Path:
+    """The log, whose record of the run is damaged. What `metadata.yaml` says is whole."""
+    (path,) = log.glob("*.mcap")
+    data = bytearray(path.read_bytes())
+    data[data.index(b"surface.floor.friction")] ^= 1
+    path.write_bytes(data)
+    return log
+
+
+def test_a_flipped_bit_in_the_record_of_the_run_does_not_cost_the_log(asked: Asked, tmp_path: Path) -> None:
+    log = with_a_flipped_bit_in_its_record(copied(asked, tmp_path))
+    with pytest.warns(DamagedLogWarning, match="record of how the run was made fails its checksum"):
+        assert BagReader(log).run() == BagReader(asked.log).run()
+    found = verify_log(log)
+    assert sum(tally.equal for tally in found.services.values()) == sum(asked.counts.values())
+    assert found.agrees
+    (path,) = log.glob("*.mcap")
+    assert main([str(path)]) == 0  # one file of the folder
+    (log / "metadata.yaml").unlink()
+    with pytest.raises(NotALogError, match="no record of how its run was configured"):
+        verify_log(log)
+
+
+def test_a_record_from_after_a_change_is_not_taken_for_that_of_the_beginning(tmp_path: Path) -> None:
+    """`metadata.yaml` has the last configuration, and the changes in the log begin with the first."""
+    before, after = ({"parameters": json.dumps({"surface.floor.friction": mu})} for mu in (0.3, 0.4))
+    event = "contact_dynamics_interfaces/srv/PredictImpact_Event"
+    with BagWriter(tmp_path / "log", run=before) as writer:
+        writer.add_topic("/contact_dynamics/predict_impact/_service_event", event)
+        writer.add_topic("/parameter_events", "rcl_interfaces/msg/ParameterEvent")
+        data = bytes(serialize_message(ParameterEvent(node="/contact_dynamics")))
+        writer.write("/parameter_events", data, log_time_ns=5, publish_time_ns=5)
+        writer.change_run(after)
+    log = with_a_flipped_bit_in_its_record(tmp_path / "log")
+    with pytest.raises(NotALogError, match="what is left of it is from after a change"):
+        verify_log(log)
 
 
 def test_a_log_of_another_kind_is_refused_by_name(
