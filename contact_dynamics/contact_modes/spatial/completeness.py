@@ -24,6 +24,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import numpy as np
 
 from contact_dynamics.contact_modes.letters import SEPARATES, STAYS, STICKS
+from contact_dynamics.contact_modes.spatial.careful_program import CarefulProgram
 from contact_dynamics.contact_modes.spatial.exact_letters import forces_with_letters, solution_near
 from contact_dynamics.contact_modes.spatial.holding_programs import (
     COARSE,
@@ -50,6 +51,9 @@ if TYPE_CHECKING:
 
 _MOST_PROGRAMS: Final = 3000
 """The search for missed modes is given up after this many linear programs of 0.3 ms."""
+
+_CARE: Final = 3
+"""A program that is solved with care counts as so many more."""
 
 _QUARTER: Final = 0.5 * math.pi
 
@@ -219,6 +223,15 @@ class _Work(PyramidPrograms):
         if root is not None:
             self._decide_who_stays(root, self._trials, 0)
 
+    def _solved(self, program: AnyProgram) -> AnyProgram | None:
+        if isinstance(program, CarefulProgram):
+            self.examined += _CARE
+        found = super()._solved(program)
+        if found is None and self.doubtful:
+            self.doubtful = False
+            return program  # rounding may hide that it holds
+        return found
+
     def _count(self) -> None:
         self.examined += 1
         if self.examined > _MOST_PROGRAMS:
@@ -228,7 +241,9 @@ class _Work(PyramidPrograms):
         self, letters: str, ranges: Ranges, facets: int, within: Within | None = None
     ) -> FloatArray | None:
         self._count()
-        return self._programs.forces(letters, ranges, facets, within=within)
+        found, careful = self._programs.forces(letters, ranges, facets, within=within)
+        self.examined += _CARE * careful
+        return found
 
     def _decide_who_stays(self, program: AnyProgram, trials: list[Option], at: int) -> None:
         if at == len(trials):
@@ -289,6 +304,8 @@ class _Work(PyramidPrograms):
 
     def _decide_without_directions(self, letters: str) -> None:
         """Find or refute a mode in which no contact begins to slide."""
+        if self._refutes and set(letters) == {SEPARATES}:
+            raise _NotRefutedError
         if letters in self._held or set(letters) == {SEPARATES}:
             return
         if letters == self._all_stick and not self._refutes:

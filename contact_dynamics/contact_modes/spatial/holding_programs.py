@@ -101,10 +101,10 @@ class HoldingPrograms:
 
     def forces(
         self, letters: str, ranges: Ranges, facets: int = COARSE, *, within: Within | None = None
-    ) -> FloatArray | None:
+    ) -> tuple[FloatArray | None, bool]:
         """Return forces, (n, 3), that satisfy what modes in a set must, or None if there are none.
 
-        Where rounding hides that there are none, they are zero.
+        Where rounding hides that there are none, they are zero. The second value is whether that took care.
 
         Args:
             letters: s, c or f for each touching contact.
@@ -141,16 +141,17 @@ class HoldingPrograms:
             list(range(len(every))), len(zero)
         )
         holds = program.solve()
-        if not holds and program.doubtful:
+        careful = not holds and program.doubtful
+        if careful:
             program = CarefulProgram(table, rows[:0], ()).narrowed(Narrowing(rows=rows, equalities=len(zero)))
             holds = program.solve()
             if not holds and program.doubtful:
-                return np.zeros((len(letters), 3))
+                return np.zeros((len(letters), 3)), careful
         if not holds or not (within is None or self._has_power(program, within, owners, sizes)):
-            return None
+            return None, careful
         found = np.zeros((len(letters), 3))
         np.add.at(found, owners, program.shares(len(every))[:, None] * every)
-        return found
+        return found, careful
 
     def _rows_of(self, letters: str) -> FloatArray:
         """Return independent rows, (k, 7), that vanish with some letters."""
