@@ -87,6 +87,10 @@ class TookTooLongError(ContactDynamicsError):
     """The answer did not come within the time that it was given."""
 
 
+class ConcaveShapeWarning(UserWarning):
+    """Corners of a concave body are given where shapes are convex, so that its hull is taken."""
+
+
 _LONGEST_SHOWN: Final = 120
 
 

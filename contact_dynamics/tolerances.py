@@ -223,6 +223,10 @@ ROUNDED_STAMP_TURN: Final = 1e-6
 FLAT_HULL: Final = 1e-9
 """Relative to the size. A hull thinner than this is a plate or a rod. Corners carry 1e-16 of rounding."""
 
+INSIDE_HULL: Final = 1e-3
+"""Relative to the size, and in rad. A corner this far inside the hull of all corners is not one of a convex
+body. Coordinates of meshes are rounded to 1e-7 of the size."""
+
 SAME_DIRECTION: Final = 1e-9
 """1 - cos of an angle of 4e-5 rad. Normals, or directions of edges, within it count as one."""
 

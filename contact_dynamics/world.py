@@ -14,6 +14,7 @@ from contact_dynamics.constants import STANDARD_GRAVITY_W
 from contact_dynamics.errors import InvalidFieldError, UnknownBodyError
 from contact_dynamics.records import Record
 from contact_dynamics.rigid_body.body import MassProperties
+from contact_dynamics.shapes.concavity import warn_if_concave
 from contact_dynamics.shapes.convex import MOST_VERTICES, NO_SHAPE, ConvexShape, box_vertices, polyhedron
 from contact_dynamics.shapes.obstacle import Obstacle
 from contact_dynamics.validation import (
@@ -45,7 +46,7 @@ class Body(Record):
         mass_properties: Mass and angular inertia about the centre of mass.
         p_FB_F: (3,), m, centre of mass in the published frame F.
         vertices_B: (k, 3), m, corners of the shape, body axes. Give them instead of a shape that is the
-            polyhedron of these corners.
+            polyhedron of these corners. Corners that show a concave body cause a `ConcaveShapeWarning`.
         shape: The shape that can touch, body axes.
 
     Raises:
@@ -75,10 +76,17 @@ class Body(Record):
 
     def __post_init__(self) -> None:
         """Check the arrays, and make corners and shape agree."""
+        if not isinstance(self.mass_properties, MassProperties):
+            raise InvalidFieldError(
+                "mass_properties",
+                type(self.mass_properties).__name__,
+                "MassProperties; Body.of(name, mass) takes a MassDistribution, with its centre of mass",
+            )
         center = check_magnitude("p_FB_F", check_array("p_FB_F", self.p_FB_F, (3,)))
         object.__setattr__(self, "p_FB_F", center)
         if self.shape is NO_SHAPE:
             object.__setattr__(self, "shape", ConvexShape(vertices=self.vertices_B))
+            warn_if_concave(f"body {self.name!r}", self.shape.vertices, self.mass_properties, stacklevel=4)
         elif len(self.vertices_B) > 0 and self.vertices_B is not self.shape.vertices:
             raise InvalidFieldError("vertices_B", "vertices and a shape", "one of them")
         object.__setattr__(self, "vertices_B", self.shape.vertices)
@@ -97,7 +105,9 @@ class Body(Record):
         Args:
             name: The name by which questions refer to it.
             mass: Mass, centre of mass and inertia, in F.
-            vertices_F: (k, 3), m, corners of its shape in F, instead of ``shape_F``.
+            vertices_F: (k, 3), m, corners of its shape in F, instead of ``shape_F``. Their convex hull is
+                taken. Corners that show a concave body cause a `ConcaveShapeWarning`. Give
+                ``shape_F=polyhedron(vertices)`` to take the hull on purpose.
             shape_F: Its shape in F.
 
         Raises:
@@ -105,13 +115,15 @@ class Body(Record):
                 or both vertices and a shape are given.
             TooLargeError: there are more vertices than `MOST_VERTICES`.
         """
+        mass_properties = mass.mass_properties
         if vertices_F is not None:
             if shape_F is not NO_SHAPE:
                 raise InvalidFieldError("vertices_F", "vertices and a shape", "one of them")
             shape_F = polyhedron(check_array("vertices_F", vertices_F, (None, 3)))
+            warn_if_concave(f"body {name!r}", shape_F.vertices - mass.p_FB_F, mass_properties)
         return cls(
             name=name,
-            mass_properties=mass.mass_properties,
+            mass_properties=mass_properties,
             p_FB_F=mass.p_FB_F,
             shape=shape_F.moved(-mass.p_FB_F),
         )

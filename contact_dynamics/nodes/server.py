@@ -10,6 +10,7 @@ waits for a lifecycle manager. Configured, it receives states and writes the log
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, Any
@@ -18,7 +19,7 @@ from rcl_interfaces.msg import SetParametersResult
 from rclpy.lifecycle import LifecycleNode, TransitionCallbackReturn
 from rclpy.parameter import Parameter
 
-from contact_dynamics.errors import ContactDynamicsError
+from contact_dynamics.errors import ConcaveShapeWarning, ContactDynamicsError
 from contact_dynamics.nodes.arguments import VISUALIZER_PARAMETERS, server_parser
 from contact_dynamics.nodes.given_parameters import GivenParameters
 from contact_dynamics.nodes.inbox import InboxNode
@@ -36,6 +37,7 @@ if TYPE_CHECKING:
 
     from rclpy.lifecycle import LifecycleState
 
+    from contact_dynamics.nodes.parameter_reader import ParameterSource
     from contact_dynamics.nodes.parameters import ServerParameters
 
 
@@ -94,7 +96,7 @@ class Server(InboxNode, LifecycleNode):
             read_only=False,
         )
         self._source = source
-        self._configuration = read_server_parameters(source)
+        self._configuration = self._read(source)
         autostart = self._configuration.autostart
         is_configured = autostart if predecessor is None else predecessor.is_configured
         is_active = autostart if predecessor is None else predecessor.is_active
@@ -107,6 +109,15 @@ class Server(InboxNode, LifecycleNode):
         self._takes_over = False
         if is_active:
             self.trigger_activate()
+
+    def _read(self, source: ParameterSource) -> ServerParameters:
+        """Read every parameter, and tell in the log of bodies and obstacles that are not convex."""
+        with warnings.catch_warnings(record=True) as warned:
+            warnings.simplefilter("always", ConcaveShapeWarning)
+            parameters = read_server_parameters(source)
+        for each in warned:
+            self.get_logger().warning(str(each.message))
+        return parameters
 
     @property
     def successor(self) -> Callable[[], Server] | None:
@@ -184,7 +195,7 @@ class Server(InboxNode, LifecycleNode):
         proposed = {**before, **{each.name: plain(each.value) for each in parameter_list}}
         given = GivenParameters(proposed, also_known=before, resolve=self._source.resolved_topic)
         try:
-            configuration = read_server_parameters(given)
+            configuration = self._read(given)
             if self._serving is not None:
                 check_change(self._configuration, configuration)
         except ContactDynamicsError as error:

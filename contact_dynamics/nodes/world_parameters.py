@@ -10,6 +10,7 @@ from contact_dynamics.nodes.body_shapes import DESCRIPTIONS, ShapeParameters
 from contact_dynamics.nodes.parameter_reader import ConfigurationError
 from contact_dynamics.questions.extent import check_friction, check_mass, check_place
 from contact_dynamics.rigid_body.body import MassProperties
+from contact_dynamics.shapes.concavity import warn_if_concave
 from contact_dynamics.shapes.obstacle import Obstacle
 from contact_dynamics.validation import check_array, check_positive
 from contact_dynamics.world import Body, Surface
@@ -152,12 +153,10 @@ def _body(name: str, mass: float, inertia: list[float], offset: list[float], sha
         raise InvalidFieldError("inertia", f"{len(inertia)} numbers", allowed)
     check_mass(mass_properties)
     check_place("center_of_mass", center_of_mass)
-    return Body(
-        name=name,
-        mass_properties=mass_properties,
-        p_FB_F=center_of_mass,
-        shape=shape_F.moved(-center_of_mass),
-    )
+    shape_B = shape_F.moved(-center_of_mass)
+    told = mass_properties if inertia != [0.0] and shape_B.is_polyhedron else None
+    warn_if_concave(f"body.{name}.vertices", shape_B.vertices, told, divided_faces=False)
+    return Body(name=name, mass_properties=mass_properties, p_FB_F=center_of_mass, shape=shape_B)
 
 
 def _read_shape(reader: ParameterReader, key: str) -> ShapeParameters:

@@ -1,7 +1,8 @@
 """Bodies and obstacles have convex shapes.
 
 `convex` has the shapes of bodies, from spheres to rounded polyhedra, and a function for each. An `obstacle`
-is a convex piece of the world with edges and corners. `hull_features` and `rim` have the parts of a shape
+is a convex piece of the world with edges and corners. `concavity` warns of corners that are not those of a
+convex body. `hull_features` and `rim` have the parts of a shape
 that can touch.
 """
 

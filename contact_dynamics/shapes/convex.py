@@ -130,7 +130,10 @@ NO_SHAPE: Final = ConvexShape()
 
 
 def polyhedron(vertices: ArrayLike) -> ConvexShape:
-    """Return the hull of corners, (k, 3), m. They may lie in a plane (a plate) or on a line (a rod)."""
+    """Return the hull of corners, (k, 3), m. They may lie in a plane (a plate) or on a line (a rod).
+
+    Points inside it are allowed: this is how to take the hull of a concave body on purpose.
+    """
     return ConvexShape(vertices=np.asarray(vertices))
 
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from contact_dynamics.errors import InvalidFieldError, TooLargeError
 from contact_dynamics.records import Record
+from contact_dynamics.shapes.concavity import warn_if_concave
 from contact_dynamics.shapes.convex import MOST_VERTICES
 from contact_dynamics.shapes.hull_features import Features, hull_features
 from contact_dynamics.validation import (
@@ -65,6 +66,7 @@ class Obstacle(Record):
             found = f"{places} different corner{'' if places == 1 else 's'}"
             raise InvalidFieldError("vertices", found, "three or more, not on a line")
         object.__setattr__(self, "features", features)
+        warn_if_concave(f"obstacle {self.name!r}", vertices, stacklevel=4)
 
 
 def closest_points(features: Features, points: FloatArray) -> FloatArray:

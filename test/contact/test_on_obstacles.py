@@ -194,6 +194,7 @@ def test_the_gap_is_positive_just_where_hulls_are_apart_and_never_above_their_di
 
 @settings(max_examples=40, deadline=None)
 @given(q=turns, center=places, scale=st.floats(0.1, 2.0), seed=st.integers(0, 10_000))
+@pytest.mark.filterwarnings("ignore::contact_dynamics.errors.ConcaveShapeWarning")
 def test_a_ball_is_as_far_as_its_centre(
     q: tuple[float, ...], center: tuple[float, float, float], scale: float, seed: int
 ) -> None:

@@ -334,6 +334,21 @@ def parameters_file(folder: Path, values: dict[str, Any]) -> Path:
     return path
 
 
+def test_a_concave_body_is_told_in_the_log(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    """An L-bracket. The server ends by itself, since it cannot write a log."""
+    outline = [(0.0, 0.0), (1.0, 0.0), (1.0, 0.2), (0.2, 0.2), (0.2, 1.0), (0.0, 1.0)]
+    values = {
+        "bodies": ["bracket"],
+        "body.bracket.mass": 1.0,
+        "body.bracket.inertia": [0.0],
+        "body.bracket.vertices": [number for z in (0.0, 0.3) for x, y in outline for number in (x, y, z)],
+        "log_directory": str(parameters_file(tmp_path, {})),  # a file
+    }
+    file = parameters_file(tmp_path, values)
+    assert server.main(["--params-file", str(file)]) != 0
+    assert "body.bracket.vertices: 2 of 12 corners are in faces of their hull" in capfd.readouterr().err
+
+
 @pytest.mark.parametrize(("change", "words"), WRONG, ids=[words.partition(":")[0] for _, words in WRONG])
 def test_a_wrong_value_ends_the_server_and_is_named(
     tmp_path: Path, capfd: pytest.CaptureFixture[str], change: Change, words: str

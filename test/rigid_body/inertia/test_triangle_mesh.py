@@ -13,6 +13,7 @@ from scipy.spatial.transform import Rotation
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.rigid_body import inertia
 from contact_dynamics.rigid_body.inertia import MassDistribution
+from contact_dynamics.shapes.convex import polyhedron
 from contact_dynamics.world import Body, box_vertices
 from oracles.inertia_exact import mesh_moments
 
@@ -301,7 +302,7 @@ def test_a_hull_of_points_is_the_mesh_of_its_corners(seed: int, count: int) -> N
     )
     first, second, third = np.linalg.eigvalsh(whole.I_B)
     assert first + second > third
-    assert Body.of("hull", whole, vertices_F=points).mass_properties.mass == whole.mass
+    assert Body.of("hull", whole, shape_F=polyhedron(points)).mass_properties.mass == whole.mass
 
 
 @pytest.mark.parametrize("shape", ["mesh", "hull"])
