@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Final, TypeAlias
 
@@ -12,6 +13,7 @@ from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.motion.between_states import share_between, state_between
 from contact_dynamics.motion.covariance import covariance_along
 from contact_dynamics.motion.free_fit import FitResult, fit_free_motion
+from contact_dynamics.motion.whole_turns import THIRD_OF_A_TURN
 from contact_dynamics.questions.uncertain_state import KnownState, UncertainState, state_of
 from contact_dynamics.records import Record
 from contact_dynamics.rigid_body.body import BodyState
@@ -141,7 +143,7 @@ def subject_of(
         if error.field != "states":
             raise
         raise type(error)("fit_window", error.found, error.allowed) from None  # the question's name for them
-    _check_fit(best)
+    _check_fit(best, states)
     quality = FitQuality(
         count=best.count,
         position_residual=best.position_residual,
@@ -157,8 +159,12 @@ def subject_of(
     return _moved(found, None, source.stamp_ns, knowledge)
 
 
-def _check_fit(fit: FitResult) -> None:
-    """Raise an error for a motion that does not fit the states, and for one that is not the only one."""
+def _check_fit(fit: FitResult, states: Sequence[BodyState]) -> None:
+    """Raise an error for a motion that does not fit the states, and for one that may not be the only one.
+
+    Without published angular velocities a body is taken to turn by less than half a turn from state to state,
+    if it is seen to turn by less than a third.
+    """
     if not fit.converged:
         raise InvalidFieldError(
             "fit_window",
@@ -166,7 +172,10 @@ def _check_fit(fit: FitResult) -> None:
             f"{fit.orientation_residual:.3g} rad",
             "a window in which nothing touches the body, and published angular velocities",
         )
-    if not fit.turns_known:
+    longest = max(seconds_between(a.stamp_ns, b.stamp_ns) for a, b in itertools.pairwise(states))
+    turn = float(np.linalg.norm(fit.state.w_WB_W)) * longest
+    has_rates = any(state.w_WB_W.any() for state in states)
+    if not fit.turns_known and (has_rates or turn >= THIRD_OF_A_TURN):
         rates = ", ".join(
             f"{float(np.linalg.norm(state.w_WB_W)):.4g}" for state in (fit.state, *fit.alternatives)
         )

@@ -194,6 +194,14 @@ def test_a_fit_to_states_that_leave_the_turns_open_is_an_error() -> None:
         subject_of("cube", PublishedState(fit_window=1.0), known)
 
 
+def test_a_fit_to_states_without_velocities_takes_less_than_a_third_of_a_turn() -> None:
+    known = spinning(20.0, 120.0, published=0.0)
+    fitted = subject_of("cube", PublishedState(fit_window=1.0), known).state
+    np.testing.assert_allclose(fitted.w_WB_W, [0.0, 0.0, 20.0], rtol=0.0, atol=1e-5)
+    with pytest.raises(InvalidFieldError, match="do not show how many turns"):
+        subject_of("cube", PublishedState(fit_window=1.0), spinning(20.0, 120.0, published=500.0))
+
+
 def test_a_fit_to_states_of_another_motion_is_an_error() -> None:
     """Turned by a radian in the middle of the window, as by a blow that the velocities do not show."""
     states = StateStore(history=10.0, timeout=0.5)
