@@ -587,6 +587,9 @@ SUNK: Final = 1e-10
 PHASE_ERROR: Final = 1e-7
 """m, or m/s. The error that a step of a contact phase may have. It is a tenth of `SETTLING_HEIGHT`."""
 
+LEAST_PHASE_ERROR: Final = 1e-15
+"""m, or m/s. Doubles tell no less apart on the way of a toss. It would take its shortest steps in vain."""
+
 PHASE_LEAST_STEP: Final = 1e-13
 """s. A step this short is taken whatever its error, and events are found to this time."""
 

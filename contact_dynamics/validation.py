@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 FloatArray: TypeAlias = "NDArray[np.float64]"
 
 _FEW: Final = 20
+_LARGEST_WHOLE: Final = 2**63 - 1
+_LATEST: Final = 10**80
 
 
 def check_finite(field: str, value: Any) -> float:
@@ -26,7 +28,7 @@ def check_finite(field: str, value: Any) -> float:
     if type(value) is float and math.isfinite(value):  # the common case
         return value
     try:
-        number = float(value)
+        number = math.nan if isinstance(value, str | bytes) else float(value)
     except (TypeError, ValueError, OverflowError):
         raise InvalidFieldError(field, value, "a finite number") from None
     if not math.isfinite(number):
@@ -58,12 +60,28 @@ def check_within(field: str, value: Any, lowest: float, highest: float) -> float
     return number
 
 
+def check_size(field: str, value: Any) -> float:
+    """Return ``value`` as a float from 1 / `LARGEST_NUMBER` to `LARGEST_NUMBER`, whose square is a float."""
+    return check_within(field, value, 1.0 / LARGEST_NUMBER, LARGEST_NUMBER)
+
+
 def check_whole(field: str, value: Any, lowest: int, highest: int | None = None) -> int:
-    """Return ``value`` as a whole number of at least ``lowest`` and, if given, at most ``highest``."""
+    """Return ``value`` as a whole number of at least ``lowest`` and, if given, at most ``highest``.
+
+    It is below 2^63 in any case, as in messages.
+    """
     whole = isinstance(value, (int, np.integer)) and not isinstance(value, (bool, np.bool_))
-    if not whole or value < lowest or (highest is not None and value > highest):
+    if not whole or value < lowest or value > (_LARGEST_WHOLE if highest is None else highest):
         most = "" if highest is None else f" and <= {highest}"
         raise InvalidFieldError(field, value, f"a whole number >= {lowest}{most}")
+    return int(value)
+
+
+def check_stamp(field: str, value: Any) -> int:
+    """Return a stamp, ns, as a whole number. It may exceed 64 bits, since motions are followed for ages."""
+    whole = isinstance(value, (int, np.integer)) and not isinstance(value, (bool, np.bool_))
+    if not whole or abs(int(value)) > _LATEST:
+        raise InvalidFieldError(field, value, "a whole number of nanoseconds")
     return int(value)
 
 
@@ -109,6 +127,11 @@ def check_magnitude(field: str, value: FloatArray, most: float = LARGEST_NUMBER)
     if not largest <= most:
         raise InvalidFieldError(field, f"{largest:g}", f"numbers of at most {most:g}, by size")
     return value
+
+
+def check_vector3(field: str, value: ArrayLike) -> FloatArray:
+    """Return a vector, (3,), whose numbers are at most `LARGEST_NUMBER` in magnitude."""
+    return check_magnitude(field, check_array(field, value, (3,)))
 
 
 def check_unit(field: str, value: ArrayLike, length: int) -> FloatArray:

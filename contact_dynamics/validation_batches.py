@@ -17,7 +17,7 @@ from contact_dynamics.tolerances import (
     SYMMETRY_TOLERANCE,
     UNIT_LENGTH_TOLERANCE,
 )
-from contact_dynamics.validation import FloatArray, check_array
+from contact_dynamics.validation import FloatArray, check_array, check_magnitude
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -108,10 +108,11 @@ def check_covariance(field: str, value: ArrayLike, size: int = 12) -> FloatArray
     """Return a covariance, (``size``, ``size``), made exactly symmetric.
 
     Raises:
-        InvalidFieldError: the matrix has another shape, is not symmetric, or has a number that is not finite,
-            a negative variance, a correlation beyond 1, or a direction in which the variance is negative.
+        InvalidFieldError: the matrix has another shape, is not symmetric, or has a number that is not finite
+            or beyond the square of `LARGEST_NUMBER`, a negative variance, a correlation beyond 1, or a
+            direction in which the variance is negative.
     """
-    matrix = check_array(field, value, (size, size))
+    matrix = check_magnitude(field, check_array(field, value, (size, size)), LARGEST_NUMBER**2)
     variances = matrix.diagonal()
     if (variances < 0.0).any():
         raise InvalidFieldError(field, f"variances {variances.tolist()}", "variances >= 0")

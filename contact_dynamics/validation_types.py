@@ -176,7 +176,7 @@ def _expected_in_words(expected: Expected) -> str:
             words.append("True or False")
         elif kind is _FUNCTION:
             words.append("a function")
-        elif kind is not np.bool_:
+        elif kind not in {np.bool_, Iterator}:
             words.append(_with_article(kind.__name__))
     if expected.elements is not None:
         each = " or ".join(kind.__name__ for kind in expected.elements.types)
@@ -223,9 +223,10 @@ def _generic(node: ast.Subscript, module: Mapping[str, Any]) -> Expected | None:
     if isinstance(inner, ast.Tuple):  # any length, as in tuple[Body, ...]
         ellipsis = isinstance(inner.elts[-1], ast.Constant) and inner.elts[-1].value is ...
         inner = inner.elts[0] if ellipsis else None
-    if outer in _SEQUENCES:
+    if outer in {*_SEQUENCES, Iterable}:
         elements = None if inner is None else _expected_by(inner, module)
-        return None if elements is None else Expected((), elements)
+        once = (Iterator,) if outer is Iterable else ()  # its elements are not looked at here
+        return None if elements is None else Expected(once, elements)
     return _expected_of(outer, module)
 
 

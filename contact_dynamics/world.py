@@ -25,6 +25,7 @@ from contact_dynamics.validation import (
     check_unit,
     check_within,
 )
+from contact_dynamics.validation_types import checks_types
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -85,13 +86,15 @@ class Body(Record):
         center = check_magnitude("p_FB_F", check_array("p_FB_F", self.p_FB_F, (3,)))
         object.__setattr__(self, "p_FB_F", center)
         if self.shape is NO_SHAPE:
-            object.__setattr__(self, "shape", ConvexShape(vertices=self.vertices_B))
+            vertices = check_magnitude("vertices_B", check_array("vertices_B", self.vertices_B, (None, 3)))
+            object.__setattr__(self, "shape", ConvexShape(vertices=vertices))
             warn_if_concave(f"body {self.name!r}", self.shape.vertices, self.mass_properties, stacklevel=4)
-        elif len(self.vertices_B) > 0 and self.vertices_B is not self.shape.vertices:
+        elif self.vertices_B is not self.shape.vertices and np.size(self.vertices_B) > 0:
             raise InvalidFieldError("vertices_B", "vertices and a shape", "one of them")
         object.__setattr__(self, "vertices_B", self.shape.vertices)
 
     @classmethod
+    @checks_types
     def of(
         cls,
         name: str,
@@ -118,8 +121,10 @@ class Body(Record):
         mass_properties = mass.mass_properties
         if vertices_F is not None:
             if shape_F is not NO_SHAPE:
-                raise InvalidFieldError("vertices_F", "vertices and a shape", "one of them")
-            shape_F = polyhedron(check_array("vertices_F", vertices_F, (None, 3)))
+                raise InvalidFieldError("vertices_F, shape_F", "both", "one of them")
+            shape_F = polyhedron(
+                check_magnitude("vertices_F", check_array("vertices_F", vertices_F, (None, 3)))
+            )
             warn_if_concave(f"body {name!r}", shape_F.vertices - mass.p_FB_F, mass_properties)
         return cls(
             name=name,
@@ -219,6 +224,7 @@ class World(Record):
         if len(set(names)) < len(names):
             raise InvalidFieldError("bodies", names, "names that differ")
 
+    @checks_types
     def body(self, name: str) -> Body:
         """Return the body of that name, or raise `UnknownBodyError`, which lists the known names."""
         for body in self.bodies:

@@ -148,7 +148,10 @@ def asked_plane(normal: Vector3) -> PlaneOfMotion | None:
     """Return the plane of motion of a request, or None if the best fitting plane is to be found."""
     if not any((normal.x, normal.y, normal.z)):
         return None
-    return PlaneOfMotion(normal_W=vector_from_msg(normal))
+    try:
+        return PlaneOfMotion(normal_W=vector_from_msg(normal))
+    except InvalidFieldError as error:
+        raise renamed(error, {"normal_W": "plane_normal"}) from None
 
 
 def asked_restitution_law(value: int) -> RestitutionLaw:

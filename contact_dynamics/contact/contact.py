@@ -25,6 +25,7 @@ from contact_dynamics.validation import (
     check_unit,
     check_within,
 )
+from contact_dynamics.validation_types import checks_types
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -158,6 +159,7 @@ class ContactSet(Record):
         _check_curvatures(self, normals)
 
     @classmethod
+    @checks_types
     def of(cls, contacts: Sequence[Contact]) -> ContactSet:
         """Return the set of these contacts, in their order."""
         n = len(contacts)
@@ -235,7 +237,7 @@ def all_or_none(restitutions: list[float | None]) -> list[float] | None:
 
 def _for_each(values: ArrayLike, n: int, ndim: int = 0) -> ArrayLike:
     """Return a value of that dimension, which is for all contacts, n times, and anything else unchanged."""
-    return values if np.ndim(values) != ndim else np.broadcast_to(values, (n, *np.shape(values)))
+    return values if np.ndim(values) != ndim else np.broadcast_to(values, (n, *np.asarray(values).shape))
 
 
 def _together(curvatures: list[Curvatures | None], otherwise: float) -> Curvatures | None:

@@ -52,6 +52,19 @@ if TYPE_CHECKING:
 Pair: TypeAlias = "tuple[float, float]"
 
 
+def _with_infinity(field: str, value: ArrayLike, n: int) -> FloatArray:
+    """Return ``value`` as read-only curvatures, (n,), each of which is a number or infinity."""
+    try:
+        values = np.array(value, dtype=np.float64)
+    except (TypeError, ValueError, OverflowError):
+        values = np.full(n, math.nan)
+    wrong = values.shape != (n,) or np.isnan(values).any() or np.isneginf(values).any()
+    if wrong or np.iscomplexobj(value):
+        raise InvalidFieldError(field, value, f"{n} numbers, or infinity")
+    values.flags.writeable = False
+    return values
+
+
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class Curvatures(Record):
     """Principal curvatures of one side, body or surface, of n contacts. They are positive where convex.
@@ -76,15 +89,11 @@ class Curvatures(Record):
 
     def __post_init__(self) -> None:
         """Check all arrays."""
-        n = len(self.along)
+        rows = check_array("directions_W", self.directions_W, (None, 3))
         for name in ("along", "across"):
-            values = np.array(getattr(self, name), dtype=np.float64)
-            if values.shape != (n,) or np.isnan(values).any() or np.isneginf(values).any():
-                raise InvalidFieldError(name, values.tolist(), f"{n} numbers, or infinity")
-            values.flags.writeable = False
+            values = _with_infinity(name, getattr(self, name), len(rows))
             object.__setattr__(self, name, values)
-        directions = check_array("directions_W", self.directions_W, (n, 3))
-        object.__setattr__(self, "directions_W", directions)
+        object.__setattr__(self, "directions_W", rows)
 
     def __len__(self) -> int:
         """Return the number of contacts."""

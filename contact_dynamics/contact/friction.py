@@ -13,9 +13,12 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from contact_dynamics.numerics.vectors import tangents_towards
-from contact_dynamics.validation import check_whole
+from contact_dynamics.tolerances import LARGEST_NUMBER
+from contact_dynamics.validation import check_array, check_not_negative, check_unit, check_whole
 
 if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
     from contact_dynamics.validation import FloatArray
 
 
@@ -30,7 +33,7 @@ def check_facets(facets: int) -> int:
 
 
 def linearised_cone(
-    normal: FloatArray, friction: float, facets: int, *, towards: FloatArray | None = None
+    normal: ArrayLike, friction: float, facets: int, *, towards: ArrayLike | None = None
 ) -> FloatArray:
     """Return the edges, (facets, 3), of a pyramid inside the round friction cone about a unit normal, (3,).
 
@@ -39,9 +42,17 @@ def linearised_cone(
     towards ``towards``, (3,), if given.
 
     Raises:
-        InvalidFieldError: ``facets`` is not a whole number from 3 to `MOST_FACETS`.
+        InvalidFieldError: ``facets`` is not a whole number from 3 to `MOST_FACETS`, the normal is not unit,
+            the friction is negative, or a number is not finite.
     """
-    return edges_in_frame(normal, friction, check_facets(facets), tangents_towards(normal, towards))
+    unit = check_unit("normal", normal, 3)
+    lean = None if towards is None else check_array("towards", towards, (3,))
+    if lean is not None and (largest := float(np.abs(lean).max())) > LARGEST_NUMBER:
+        lean = lean / largest
+    number = check_whole("facets", facets, 3, MOST_FACETS)
+    return edges_in_frame(
+        unit, check_not_negative("friction", friction), number, tangents_towards(unit, lean)
+    )
 
 
 def edges_in_frame(

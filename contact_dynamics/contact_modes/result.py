@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Final
 
 from contact_dynamics.contact.uncertainty import ContactUncertainty
 from contact_dynamics.records import NamedInt, Record
+from contact_dynamics.validation import check_not_negative
 
 if TYPE_CHECKING:
     from collections.abc import Sized
@@ -154,4 +155,4 @@ class BodyStatics(Record):
 
     def is_stable_against(self, disturbance: float) -> bool:
         """Return whether equilibrium stays possible under every change of the wrench up to this size, N."""
-        return self.stable_disturbance >= disturbance  # NaN compares as false
+        return self.stable_disturbance >= check_not_negative("disturbance", disturbance)  # false for NaN

@@ -99,13 +99,17 @@ def first_contact(
     """
     search = Descent(
         motion,
-        shape_B if isinstance(shape_B, ConvexShape) else ConvexShape(vertices=np.asarray(shape_B)),
+        shape_B if isinstance(shape_B, ConvexShape) else _hull(shape_B),
         check_magnitude("p_WS_W", check_array("p_WS_W", p_WS_W, (3,))),
         check_unit("normal_W", normal_W, 3),
     )
     if search.shape.is_empty:
         raise InvalidFieldError("shape_B", "nothing", "a shape or at least one corner, which can arrive")
     return search.run(check_not_negative("horizon", horizon), SearchWork() if work is None else work)
+
+
+def _hull(corners: ArrayLike) -> ConvexShape:
+    return ConvexShape(vertices=check_magnitude("shape_B", check_array("shape_B", corners, (None, 3))))
 
 
 class Above(NamedTuple):

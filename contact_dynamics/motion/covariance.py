@@ -28,17 +28,16 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from contact_dynamics.constants import STANDARD_GRAVITY_W
-from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.motion.free_derivative import state_derivatives
 from contact_dynamics.motion.integrated import ForcedMotion
 from contact_dynamics.motion.integrated_derivative import forced_state_derivatives
 from contact_dynamics.records import Record
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.rotations.many import rotation_vectors, turned
-from contact_dynamics.tolerances import NEGATIVE_VARIANCE_TOLERANCE
+from contact_dynamics.tolerances import LARGEST_NUMBER, NEGATIVE_VARIANCE_TOLERANCE
 from contact_dynamics.tumbling import FreeMotion, Precision, free_motion
 from contact_dynamics.tumbling.poinsot_construction import polhode_period
-from contact_dynamics.validation import FloatArray, check_array
+from contact_dynamics.validation import FloatArray, check_array, check_magnitude, check_whole
 from contact_dynamics.validation_batches import check_covariance
 
 if TYPE_CHECKING:
@@ -51,6 +50,9 @@ variance in directions in which neighbours hardly part."""
 
 PROBES: Final = 64
 """Number of times on the way at which growth is checked, over at most one period of the polhode."""
+
+MOST_SAMPLES: Final = 100_000
+"""Largest number of draws. Each is a motion of its own, and takes some 0.1 ms."""
 
 FEWEST_SAMPLES: Final = 50
 """Least number of draws. Scaling them by their own covariance, (12, 12), needs more than 12 pairs."""
@@ -116,11 +118,12 @@ def covariance_along(
     set-up, for forced ones the integration.
 
     Raises:
-        InvalidFieldError: an error of `propagate_covariance`, or there are fewer than `FEWEST_SAMPLES`
-            samples.
+        InvalidFieldError: an error of `propagate_covariance`, or there are fewer samples than
+            `FEWEST_SAMPLES` or more than `MOST_SAMPLES`.
     """
     start = check_covariance("covariance", covariance)
-    seconds = check_array("times", times, (None,))
+    farthest = motion.farthest if isinstance(motion, FreeMotion) else LARGEST_NUMBER
+    seconds = check_magnitude("times", check_array("times", times, (None,)), farthest)
     probes = _probes(motion, seconds)
     if method is PropagationMethod.LINEARISED:
         everywhere = _linearised(motion, start, np.concatenate([seconds, probes]))
@@ -129,9 +132,9 @@ def covariance_along(
             orientation_deviations(everywhere[len(seconds) :]),
         )
     else:
-        if samples < FEWEST_SAMPLES:
-            raise InvalidFieldError("samples", samples, f"at least {FEWEST_SAMPLES}")
-        covariances = _sampled(motion, start, seconds, draws=_draws(start, samples, seed))
+        samples = check_whole("samples", samples, FEWEST_SAMPLES, MOST_SAMPLES)
+        draws = _draws(start, samples, check_whole("seed", seed, 0))
+        covariances = _sampled(motion, start, seconds, draws=draws)
         on_the_way = orientation_deviations(_linearised(motion, start, probes))
     deviations = orientation_deviations(covariances)
     return CarriedCovariance(

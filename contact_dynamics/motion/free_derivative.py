@@ -41,7 +41,7 @@ from contact_dynamics.rotations.one import cross_matrix
 from contact_dynamics.tolerances import GROWTH_ROUNDING, LARGEST_DERIVATIVE_ERROR, SMALL_TURN
 from contact_dynamics.tumbling.poinsot_construction import polhode_period
 from contact_dynamics.tumbling.polhode import Spin, largest_rate
-from contact_dynamics.validation import FloatArray, check_array
+from contact_dynamics.validation import FloatArray, check_array, check_magnitude
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -67,7 +67,7 @@ def state_derivatives(motion: FreeMotion, seconds: ArrayLike) -> FloatArray:
     Raises:
         InvalidFieldError: the times are not a flat list of finite numbers.
     """
-    times = check_array("seconds", seconds, (None,))
+    times = check_magnitude("seconds", check_array("seconds", seconds, (None,)), motion.farthest)
     derivatives = np.zeros((len(times), 12, 12))
     i = np.arange(3)
     derivatives[:, i, i] = derivatives[:, i + 6, i + 6] = 1.0
@@ -77,8 +77,9 @@ def state_derivatives(motion: FreeMotion, seconds: ArrayLike) -> FloatArray:
     return derivatives
 
 
-def rotation_derivatives(motion: FreeMotion, times: FloatArray) -> FloatArray:
+def rotation_derivatives(motion: FreeMotion, times: ArrayLike) -> FloatArray:
     """Return the part of `state_derivatives` for rotation vector and angular velocity, (n, 6, 6)."""
+    times = check_magnitude("times", check_array("times", times, (None,)), motion.farthest)
     if len(times) == 0:
         return np.zeros((0, 6, 6))
     state, body = motion.state, motion.body

@@ -31,7 +31,7 @@ from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.rotations.many import matrices_of, rotation_vectors, turned
 from contact_dynamics.tolerances import SMALL_STEP
 from contact_dynamics.tumbling import FreeMotion, Precision, free_motion
-from contact_dynamics.validation import FloatArray, check_array, check_positive
+from contact_dynamics.validation import FloatArray, check_array, check_magnitude, check_positive
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -144,7 +144,7 @@ def fit_free_motion(
         if earlier >= later:
             raise InvalidFieldError("states", f"stamps {later - earlier} ns apart", "> 0")
     seconds = seconds_since(0, since_newest)
-    gravity = check_array("gravity_W", gravity_W, (3,))
+    gravity = check_magnitude("gravity_W", check_array("gravity_W", gravity_W, (3,)))
     place = _fit_place(states, seconds, gravity, noise)
     spin = _fit_rotation(body, states, seconds, noise)
     covariance = np.zeros((12, 12))

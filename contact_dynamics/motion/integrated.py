@@ -38,7 +38,8 @@ from contact_dynamics.rotations.many import make_continuous
 from contact_dynamics.tolerances import LARGEST_NUMBER
 from contact_dynamics.tumbling import FreeMotion, Sample, Trajectory, free_motion
 from contact_dynamics.tumbling.motion import check_extent
-from contact_dynamics.validation import FloatArray, check_array, check_magnitude, check_within
+from contact_dynamics.validation import FloatArray, check_array, check_magnitude, check_whole, check_within
+from contact_dynamics.validation_types import checks_types
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -106,6 +107,7 @@ class ForcedMotion(Record):
         """
         return self.ahead.step_at(seconds)
 
+    @checks_types
     def from_state(self, state: BodyState) -> ForcedMotion:
         """Return the motion of the same body under the same forces from another state at time 0."""
         return forced_motion(
@@ -221,6 +223,7 @@ def forced_motion(
             function does not return two vectors of three finite numbers, now or whenever the motion calls it.
     """
     gravity = check_array("gravity_W", gravity_W, (3,))
+    most_steps = check_whole("most_steps", most_steps, 1)
     check_extent(body, state, gravity)
     law = MotionLaw(body, state, gravity, wrench=wrench, drag=drag, wrench_of=wrench_of)
     law.rates(0.0, law.start)  # a function that returns nonsense is refused at once

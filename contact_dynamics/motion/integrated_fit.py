@@ -29,7 +29,7 @@ from contact_dynamics.numerics.gauss_newton import Fit, gauss_newton
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.rotations.many import rotation_vectors, turned
 from contact_dynamics.tolerances import LEAST_NOISE, SMALL_STEP
-from contact_dynamics.validation import FloatArray, check_array
+from contact_dynamics.validation import FloatArray, check_array, check_magnitude
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -66,7 +66,7 @@ def fit_motion(
         InvalidFieldError, TooLargeError: as in `fit_free_motion` and `forced_motion`, and where the motion
             grows without bounds into the past within the window.
     """
-    gravity = check_array("gravity_W", gravity_W, (3,))
+    gravity = check_magnitude("gravity_W", check_array("gravity_W", gravity_W, (3,)))
     if not turns_or_drags(wrench, drag, wrench_of):
         return fit_free_motion(body, states, gravity_W=gravity + wrench.force / body.mass, noise=noise)
     free = fit_free_motion(body, states, gravity_W=gravity, noise=noise)

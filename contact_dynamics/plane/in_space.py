@@ -11,7 +11,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from contact_dynamics.contact.contact import ContactSet, all_or_none
+from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
+from contact_dynamics.tolerances import UNIT_LENGTH_TOLERANCE
 from contact_dynamics.validation import check_array
 
 if TYPE_CHECKING:
@@ -25,8 +27,15 @@ if TYPE_CHECKING:
 def planar_in_space(
     body: PlanarBody, velocity: PlanarVelocity, contacts: Sequence[PlanarContact], *, axes_W: ArrayLike
 ) -> tuple[MassProperties, BodyState, ContactSet]:
-    """Return a problem in space that moves as a planar one does, with the plane's x and y, (2, 3)."""
+    """Return a problem in space that moves as a planar one does, with the plane's x and y, (2, 3).
+
+    Raises:
+        InvalidFieldError: the axes are not two unit vectors at right angles.
+    """
     axes = check_array("axes_W", axes_W, (2, 3))
+    unit = np.abs(axes).max() <= 1.0 + UNIT_LENGTH_TOLERANCE
+    if not unit or np.abs(axes @ axes.T - np.eye(2)).max() > UNIT_LENGTH_TOLERANCE:
+        raise InvalidFieldError("axes_W", axes.tolist(), "two unit vectors at right angles")
     state = BodyState(
         p_WB_W=np.zeros(3),
         q_WB=np.array([0.0, 0.0, 0.0, 1.0]),

@@ -25,9 +25,12 @@ from contact_dynamics.plane.projection import (
     three_of,
 )
 from contact_dynamics.tolerances import OUT_OF_PLANE_RATIO, OUT_OF_PLANE_SPEED
+from contact_dynamics.validation import check_not_negative, check_vector3
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
+
+    from numpy.typing import ArrayLike
 
     from contact_dynamics.contact.contact import ContactSet
     from contact_dynamics.plane.projection import PlanarProblem, PlaneFit, ProblemInFloats
@@ -56,8 +59,8 @@ def best_plane(
     state: BodyState,
     contacts: ContactSet,
     *,
-    force_W: FloatArray,
-    torque_W: FloatArray,
+    force_W: ArrayLike,
+    torque_W: ArrayLike,
     speed_tolerance: float = OUT_OF_PLANE_SPEED,
 ) -> PlaneOfMotion:
     """Return a plane in which a problem is planar, or the plane in which it is most nearly planar.
@@ -73,9 +76,12 @@ def best_plane(
     head of this file says.
 
     Raises:
+        InvalidFieldError: the wrench is not three finite numbers each, or the tolerance is negative.
         OutOfPlaneError: no plane contains all contact normals and the force.
     """
-    return _best_fit(in_floats(body, state, contacts), force_W, torque_W, speed_tolerance).plane
+    force, torque = check_vector3("force_W", force_W), check_vector3("torque_W", torque_W)
+    tolerance = check_not_negative("speed_tolerance", speed_tolerance)
+    return _best_fit(in_floats(body, state, contacts), force, torque, tolerance).plane
 
 
 def _best_fit(

@@ -19,13 +19,19 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import numpy as np
 
 from contact_dynamics.contact.contact import ContactSet
+from contact_dynamics.contact.velocities import check_speeds
 from contact_dynamics.errors import OutOfPlaneError
 from contact_dynamics.numerics.vectors import Vector3, cross, dot, norm, normalised, scaled, without
 from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench, Vector2
 from contact_dynamics.records import Record
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.tolerances import OUT_OF_PLANE_RATIO, OUT_OF_PLANE_SPEED
-from contact_dynamics.validation import FloatArray, check_unit
+from contact_dynamics.validation import (
+    FloatArray,
+    check_not_negative,
+    check_unit,
+    check_vector3,
+)
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -57,7 +63,7 @@ class PlaneOfMotion(Record):
 
     def __post_init__(self) -> None:
         """Check the normal, and complete the axes."""
-        object.__setattr__(self, "normal_W", check_unit("plane_normal", self.normal_W, 3))
+        object.__setattr__(self, "normal_W", check_unit("normal_W", self.normal_W, 3))
         normal = three_of(self.normal_W)
         y = normalised(without((0.0, 0.0, 1.0) if abs(normal[2]) < STEEP else (1.0, 0.0, 0.0), normal))
         axes = np.array((cross(y, normal), y))
@@ -99,8 +105,8 @@ def project_onto_plane(
     contacts: ContactSet,
     *,
     plane: PlaneOfMotion,
-    force_W: FloatArray,
-    torque_W: FloatArray,
+    force_W: ArrayLike,
+    torque_W: ArrayLike,
     speed_tolerance: float = OUT_OF_PLANE_SPEED,
 ) -> PlanarProblem:
     """Return the problem in the plane.
@@ -115,11 +121,14 @@ def project_onto_plane(
         speed_tolerance: largest speed out of the plane, m/s, that still counts as planar.
 
     Raises:
+        InvalidFieldError: the wrench is not three finite numbers each, or the tolerance is negative.
         OutOfPlaneError: velocity, a contact normal, the wrench or the inertia leaves the plane by more than
             its tolerance.
     """
     seen = in_floats(body, state, contacts)
-    return projected(seen, fit_of(seen, plane), force_W, torque_W, speed_tolerance)
+    force, torque = check_vector3("force_W", force_W), check_vector3("torque_W", torque_W)
+    tolerance = check_not_negative("speed_tolerance", speed_tolerance)
+    return projected(seen, fit_of(seen, plane), force, torque, tolerance)
 
 
 class ProblemInFloats(NamedTuple):
@@ -240,6 +249,7 @@ def _curvatures_in(plane: PlaneOfMotion, contacts: ContactSet) -> list[tuple[flo
 
 def out_of_plane_speed(plane: PlaneOfMotion, state: BodyState, contacts: ContactSet) -> float:
     """Return the largest speed out of the plane, m/s, at contacts and centre of mass."""
+    check_speeds(state, contacts)
     arms = rows_of(contacts.p_WC_W - state.p_WB_W)
     return _speed_out_of(three_of(plane.normal_W), three_of(state.v_WB_W), three_of(state.w_WB_W), arms)
 

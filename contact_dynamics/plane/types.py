@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any, TypeAlias
+from typing import Any, Final, TypeAlias
 
 from contact_dynamics.contact.contact import known_restitution
 from contact_dynamics.contact.curvature import planar_gap_acceleration
@@ -92,6 +92,10 @@ class PlanarWrench(Record):
         object.__setattr__(self, "moment", _check_number("moment", self.moment))
 
 
+_FLAT: Final = 0.0
+"""1/m, the curvature of a flat surface."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class PlanarContact(Record):
     """A contact of a planar body: a point of the body on a flat of the world, or two curved sides.
@@ -119,7 +123,7 @@ class PlanarContact(Record):
     friction: float
     restitution: float | None = None
     body_curvature: float = math.inf
-    surface_curvature: float = 0.0
+    surface_curvature: float = _FLAT
 
     def __post_init__(self) -> None:
         """Check all fields and normalise the normal to rounding."""
@@ -135,7 +139,7 @@ class PlanarContact(Record):
         object.__setattr__(self, "friction", check_not_negative("friction", self.friction))
         if self.restitution is not None:
             object.__setattr__(self, "restitution", check_within("restitution", self.restitution, 0.0, 1.0))
-        if self.body_curvature != math.inf or self.surface_curvature != 0.0:
+        if self.body_curvature is not math.inf or self.surface_curvature is not _FLAT:
             self._check_curvatures()
 
     @property
@@ -144,6 +148,10 @@ class PlanarContact(Record):
         return known_restitution(self.restitution)
 
     def _check_curvatures(self) -> None:
+        for name in ("body_curvature", "surface_curvature"):
+            value = getattr(self, name)
+            corner = isinstance(value, float) and value == math.inf
+            object.__setattr__(self, name, math.inf if corner else check_finite(name, value))
         one, other = self.body_curvature, self.surface_curvature
         if (one == math.inf and other == math.inf) or not one + other > 0.0:
             raise InvalidFieldError(

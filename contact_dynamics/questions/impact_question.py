@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from contact_dynamics.contact.contact import ContactSet
-from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.impact import RestitutionLaw, SeveralContactsLaw
 from contact_dynamics.impact.in_time.sequence import MOST_STRIKES, STRIKE_WINDOW
 from contact_dynamics.plane.projection import PlaneOfMotion
@@ -13,7 +12,7 @@ from contact_dynamics.questions.knowledge import check_optional
 from contact_dynamics.questions.problem import Problem
 from contact_dynamics.questions.subject import NEWEST, StateSource
 from contact_dynamics.records import Record
-from contact_dynamics.validation import check_positive
+from contact_dynamics.validation import check_positive, check_whole
 from contact_dynamics.world import Body
 
 
@@ -38,8 +37,7 @@ class InTime(Record):
     def __post_init__(self) -> None:
         """Check the three numbers."""
         object.__setattr__(self, "strike_window", check_positive("strike_window", self.strike_window))
-        if not self.most_strikes >= 1:
-            raise InvalidFieldError("most_strikes", self.most_strikes, "a whole number >= 1")
+        object.__setattr__(self, "most_strikes", check_whole("most_strikes", self.most_strikes, 1))
         if self.hold_step is not None:
             object.__setattr__(self, "hold_step", check_positive("hold_step", self.hold_step))
 

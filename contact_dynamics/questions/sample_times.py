@@ -18,7 +18,14 @@ from contact_dynamics.motion.integrated import ForcedMotion
 from contact_dynamics.questions.knowledge import check_optional, or_default
 from contact_dynamics.questions.touching import check_has_shape
 from contact_dynamics.records import NamedInt, Record
-from contact_dynamics.validation import FloatArray, check_array, check_magnitude, check_positive, check_unit
+from contact_dynamics.validation import (
+    FloatArray,
+    check_array,
+    check_magnitude,
+    check_positive,
+    check_stamp,
+    check_unit,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -98,10 +105,14 @@ class AtStamps(Record):
 
     def __post_init__(self) -> None:
         """Check the stamps."""
-        stamps = tuple(self.stamps_ns)
+        try:
+            stamps = tuple(self.stamps_ns)
+        except TypeError:
+            raise InvalidFieldError("stamps_ns", self.stamps_ns, "a sequence of whole numbers, ns") from None
         _check_count("stamps_ns", len(stamps))
         if not stamps:
             raise InvalidFieldError("stamps_ns", "none", "at least one stamp")
+        stamps = tuple(check_stamp(f"stamps_ns[{i}]", one) for i, one in enumerate(stamps))
         for i, (earlier, later) in enumerate(itertools.pairwise(stamps)):
             if later < earlier:
                 before = seconds_between(later, earlier)

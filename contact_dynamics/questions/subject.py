@@ -24,7 +24,7 @@ from contact_dynamics.rigid_body.published_frame import (
     velocity_of_published_frame,
 )
 from contact_dynamics.tumbling import free_motion
-from contact_dynamics.validation import FloatArray, check_not_negative
+from contact_dynamics.validation import FloatArray, check_not_negative, check_stamp
 from contact_dynamics.world import Body
 
 if TYPE_CHECKING:
@@ -48,14 +48,16 @@ class PublishedState(Record):
             followed to there. Zero means no fit.
 
     Raises:
-        InvalidFieldError: the window is negative or not finite.
+        InvalidFieldError: the stamp is not a whole number, or the window is negative or not finite.
     """
 
     stamp_ns: int | None = None
     fit_window: float = 0.0
 
     def __post_init__(self) -> None:
-        """Check the window."""
+        """Check both."""
+        if self.stamp_ns is not None:
+            object.__setattr__(self, "stamp_ns", check_stamp("stamp_ns", self.stamp_ns))
         object.__setattr__(self, "fit_window", check_not_negative("fit_window", self.fit_window))
 
 

@@ -62,9 +62,8 @@ class TossSampling(Record):
 
     def __post_init__(self) -> None:
         """Check the numbers."""
-        if self.count > MOST_SAMPLES:
+        if check_whole("samples", self.count, 1) > MOST_SAMPLES:
             raise TooLargeError("samples", self.count, f"at most {MOST_SAMPLES}")
-        check_whole("samples", self.count, 1)
         if self.strikes is not None:
             check_whole("strikes", self.strikes, 1, MOST_STRIKES)
         check_whole("seed", self.seed, 0, 2**32 - 1)

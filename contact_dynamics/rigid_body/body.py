@@ -15,8 +15,15 @@ import numpy as np
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.records import Record
 from contact_dynamics.rotations.one import cross_matrix, rotation_matrix
-from contact_dynamics.tolerances import SYMMETRY_TOLERANCE, TRIANGLE_TOLERANCE
-from contact_dynamics.validation import FloatArray, check_array, check_positive, check_unit
+from contact_dynamics.tolerances import LARGEST_NUMBER, SYMMETRY_TOLERANCE, TRIANGLE_TOLERANCE
+from contact_dynamics.validation import (
+    FloatArray,
+    check_array,
+    check_magnitude,
+    check_positive,
+    check_stamp,
+    check_unit,
+)
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -52,11 +59,12 @@ class MassProperties(Record):
         """Return the angular inertia in world axes, (3, 3), kg m^2 (lecture 25, eq. 11)."""
         return R_WB @ self.I_B @ R_WB.T
 
-    def angular_inertia_about(self, axis_B: FloatArray) -> float:
+    def angular_inertia_about(self, axis_B: ArrayLike) -> float:
         """Return n^T I n, kg m^2, about a unit axis through the centre of mass (lecture 25, eq. 12)."""
-        return float(axis_B @ self.I_B @ axis_B)
+        axis = check_unit("axis_B", axis_B, 3)
+        return float(axis @ self.I_B @ axis)
 
-    def radius_of_gyration(self, axis_B: FloatArray) -> float:
+    def radius_of_gyration(self, axis_B: ArrayLike) -> float:
         """Return k of I_n = m k^2, m, about a unit axis through the centre of mass (lecture 25, eq. 13)."""
         return math.sqrt(self.angular_inertia_about(axis_B) / self.mass)
 
@@ -78,7 +86,8 @@ class BodyState(Record):
         stamp_ns: The time of this state, ns, on the caller's clock.
 
     Raises:
-        InvalidFieldError: a number is not finite, or the quaternion is not unit.
+        InvalidFieldError: a number is not finite, the quaternion is not unit, or the stamp is not a whole
+            number.
     """
 
     p_WB_W: FloatArray
@@ -106,6 +115,7 @@ class BodyState(Record):
         object.__setattr__(self, "q_WB", check_unit("q_WB", self.q_WB, 4))
         object.__setattr__(self, "v_WB_W", check_array("v_WB_W", self.v_WB_W, (3,)))
         object.__setattr__(self, "w_WB_W", check_array("w_WB_W", self.w_WB_W, (3,)))
+        object.__setattr__(self, "stamp_ns", check_stamp("stamp_ns", self.stamp_ns))
 
     @property
     def R_WB(self) -> FloatArray:
@@ -149,13 +159,14 @@ def angular_momentum(body: MassProperties, state: BodyState) -> FloatArray:
 
 def kinetic_energy(body: MassProperties, state: BodyState) -> float:
     """Return the kinetic energy of translation and rotation, J (lecture 24; lecture 25, eq. 23)."""
-    translation = 0.5 * body.mass * float(state.v_WB_W @ state.v_WB_W)
+    v = check_magnitude("v_WB_W", state.v_WB_W)
+    translation = 0.5 * body.mass * float(v @ v)
     return translation + rotational_energy(body, state)
 
 
 def rotational_energy(body: MassProperties, state: BodyState) -> float:
     """Return the kinetic energy of rotation, w . L / 2, J (lecture 25, eq. 23)."""
-    return 0.5 * float(state.w_WB_W @ angular_momentum(body, state))
+    return 0.5 * float(check_magnitude("w_WB_W", state.w_WB_W) @ angular_momentum(body, state))
 
 
 def _check_inertia(field: str, value: FloatArray) -> FloatArray:
@@ -172,7 +183,7 @@ def _check_inertia(field: str, value: FloatArray) -> FloatArray:
 
 def check_symmetric(field: str, value: ArrayLike) -> FloatArray:
     """Return a (3, 3) matrix, or raise `InvalidFieldError` where it is not symmetric."""
-    matrix = check_array(field, value, (3, 3))
+    matrix = check_magnitude(field, check_array(field, value, (3, 3)), LARGEST_NUMBER**2)
     if float(np.abs(matrix - matrix.T).max()) > SYMMETRY_TOLERANCE * float(np.abs(matrix).max()):
         raise InvalidFieldError(field, matrix.tolist(), "a symmetric matrix")
     return matrix

@@ -27,6 +27,7 @@ from contact_dynamics.validation import (
     check_magnitude,
     check_positive,
     check_unit,
+    check_vector3,
     check_within,
 )
 
@@ -112,9 +113,10 @@ class ConvexShape(Record):
         """Return the same shape turned by a unit quaternion x, y, z, w, then shifted by ``offset``, (3,), m.
 
         Raises:
-            InvalidFieldError: the offset is not three finite numbers, or the quaternion is not unit.
+            InvalidFieldError: the offset is not three numbers of at most `LARGEST_NUMBER`, or the quaternion
+                is not unit.
         """
-        shift = check_array("offset", offset, (3,))
+        shift = check_vector3("offset", offset)
         turn = check_unit("q", q, 4)
         R = np.eye(3) if turn[3] == 1.0 else rotation_matrix(turn)
         return ConvexShape(

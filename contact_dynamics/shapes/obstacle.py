@@ -54,9 +54,9 @@ class Obstacle(Record):
 
     def __post_init__(self) -> None:
         """Check all fields and find faces and edges."""
-        vertices = check_magnitude("vertices", check_array("vertices", self.vertices_W, (None, 3)))
+        vertices = check_magnitude("vertices_W", check_array("vertices_W", self.vertices_W, (None, 3)))
         if len(vertices) > MOST_VERTICES:
-            raise TooLargeError("vertices", f"{len(vertices)} vertices", f"at most {MOST_VERTICES}")
+            raise TooLargeError("vertices_W", f"{len(vertices)} vertices", f"at most {MOST_VERTICES}")
         object.__setattr__(self, "vertices_W", vertices)
         object.__setattr__(self, "friction", check_not_negative("friction", self.friction))
         object.__setattr__(self, "restitution", check_within("restitution", self.restitution, 0.0, 1.0))
@@ -64,7 +64,7 @@ class Obstacle(Record):
         if features is None or len(features.normals) == 0:
             places = len({*map(tuple, vertices.tolist())})
             found = f"{places} different corner{'' if places == 1 else 's'}"
-            raise InvalidFieldError("vertices", found, "three or more, not on a line")
+            raise InvalidFieldError("vertices_W", found, "three or more, not on a line")
         object.__setattr__(self, "features", features)
         warn_if_concave(f"obstacle {self.name!r}", vertices, stacklevel=4)
 

@@ -17,12 +17,12 @@ from typing import TYPE_CHECKING, Final
 
 from contact_dynamics.contact.found import check_not_inside
 from contact_dynamics.impact.law import RestitutionLaw
-from contact_dynamics.tolerances import DISTANCE_TOLERANCE, PHASE_ERROR
+from contact_dynamics.tolerances import DISTANCE_TOLERANCE, LARGEST_NUMBER, LEAST_PHASE_ERROR, PHASE_ERROR
 from contact_dynamics.toss.distinct_corners import with_distinct_corners
 from contact_dynamics.toss.following import Following
 from contact_dynamics.toss.solid import solid_of
 from contact_dynamics.toss.uncertainty import check_factors
-from contact_dynamics.validation import check_positive, check_whole
+from contact_dynamics.validation import check_positive, check_whole, check_within
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -65,8 +65,8 @@ def toss(
         horizon: s, > 0. How far the motion is followed.
         most_events: How many events to follow at most, >= 1.
         most_alternatives: How many other ways to follow at most, >= 0, where mechanics does not decide.
-        error: m, m/s, > 0. The error that one step of a contact phase may have. Angles count with the body's
-            reach.
+        error: m, m/s, at least `LEAST_PHASE_ERROR`. The error that one step of a contact phase may have.
+            Angles count with the body's reach.
         lasting_factors: (s,), >= 0, the friction of each surface where contact lasts, relative to that of
             its strikes. Without any, those of the surfaces hold.
         distance_tolerance: m, >= 0. The body may be in a surface by this much at first, or by 1e-6 m.
@@ -88,7 +88,7 @@ def toss(
         restitution_law,
         horizon=check_positive("horizon", horizon),
         most_events=check_whole("most_events", most_events, 1),
-        error=check_positive("error", error),
+        error=check_within("error", error, LEAST_PHASE_ERROR, LARGEST_NUMBER),
     )
     most = check_whole("most_alternatives", most_alternatives, 0)
     main = runs.run(state, ())

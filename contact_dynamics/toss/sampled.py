@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from contact_dynamics.contact.found import check_not_inside
+from contact_dynamics.errors import TooLargeError
 from contact_dynamics.numerics.vectors import dot
 from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.tolerances import DISTANCE_TOLERANCE, SAMPLED_SETTLING_HEIGHT
@@ -34,12 +35,15 @@ from contact_dynamics.toss.law_spread import LawSpread
 from contact_dynamics.toss.solid import solid_of
 from contact_dynamics.toss.strikes_of_many import ManyStrikes, SampleEnd, strikes_of_many
 from contact_dynamics.toss.to_rest import check_processes, followed_to_rest
-from contact_dynamics.toss.uncertainty import EXACT, TossUncertainty, draw
+from contact_dynamics.toss.uncertainty import EXACT, MOST_SPREAD, TossUncertainty, draw
+from contact_dynamics.tumbling.motion import check_extent
+from contact_dynamics.validation import check_array, check_magnitude, check_positive, check_whole
+from contact_dynamics.validation_batches import check_covariance
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
 
-    from numpy.typing import NDArray
+    from numpy.typing import ArrayLike, NDArray
 
     from contact_dynamics.impact.law import RestitutionLaw
     from contact_dynamics.numerics.vectors import Vector3
@@ -65,7 +69,7 @@ def sampled_toss(
     state: BodyState,
     world: World,
     *,
-    covariance: FloatArray | None = None,
+    covariance: ArrayLike | None = None,
     by_gravity: tuple[float, float] = (0.0, 0.0),
     uncertainty: TossUncertainty = EXACT,
     count: int,
@@ -88,12 +92,12 @@ def sampled_toss(
         by_gravity: s^2 and s, by how much the best position and velocity change with gravity, as
             `FitResult.by_gravity`. A state that does not depend on gravity has zeros.
         uncertainty: How uncertain parameters and law are.
-        count: Number of samples.
-        strikes: How many next strikes the tree has.
+        count: Number of samples, from 1 to `MOST_SAMPLES`.
+        strikes: How many next strikes the tree has, from 1 to `MOST_STRIKES`.
         to_rest: Whether samples are followed to rest.
-        seed: Samples are drawn from it. The same seed draws the same ones.
+        seed: Samples are drawn from it, >= 0. The same seed draws the same ones.
         law: What the coefficients of restitution mean.
-        horizon: s, how far samples are followed.
+        horizon: s, > 0, how far samples are followed.
         processes: How many processes share the samples that go on to rest, or an executor of
             `concurrent.futures`, which keeps its processes from toss to toss. The answer is the same bit for
             bit. Each process takes some 250 samples at a time (`to_rest.BLOCK`), so that more processes than
@@ -106,22 +110,31 @@ def sampled_toss(
     Raises:
         NoContactError: the body has no shape that could touch anything.
         NotSupportedError: the shape has rims, or a surface is an obstacle.
-        InvalidFieldError: the parameters' covariance has another size than the world's surfaces ask for, or
-            there are not as many factors as surfaces, ``processes`` is neither a whole number >= 1 nor an
-            executor, or the body is deeper in a surface than the tolerance.
+        TooLargeError: there are more samples than `MOST_SAMPLES`.
+        InvalidFieldError: a number is out of its range, the state's covariance is not positive semidefinite
+            or is larger than `MOST_SPREAD` squared, the parameters' covariance has another size than the
+            world's surfaces ask for, there are not as many factors as surfaces, or ``processes`` is neither a
+            whole number >= 1 nor an executor, or the body is deeper in a surface than the tolerance.
         BrokenProcessPool: a process died, for example because the main module is not guarded as said above.
     """
     shared_by = check_processes(processes)
+    if check_whole("count", count, 1) > MOST_SAMPLES:
+        raise TooLargeError("count", count, f"at most {MOST_SAMPLES}")
+    strikes = check_whole("strikes", strikes, 1, MOST_STRIKES)
+    horizon = check_positive("horizon", horizon)
+    if covariance is not None:
+        covariance = check_covariance("covariance", covariance)
+    check_extent(body.mass_properties, state, world.gravity_W)
     check_not_inside(body, state, world.surfaces, distance_tolerance=distance_tolerance)
     body, indices = with_distinct_corners(body)
     solid = solid_of(body, world, indices=indices, settling=SAMPLED_SETTLING_HEIGHT)
-    chance = np.random.default_rng(seed)
+    chance = np.random.default_rng(check_whole("seed", seed, 0))
     samples = draw(
         body,
         state,
         world,
         covariance=covariance,
-        by_gravity=by_gravity,
+        by_gravity=check_magnitude("by_gravity", check_array("by_gravity", by_gravity, (2,)), MOST_SPREAD),
         uncertainty=uncertainty,
         count=count,
         chance=chance,

@@ -98,8 +98,7 @@ class TossUncertainty(Record):
         for name in ("velocity", "spin", "height"):
             object.__setattr__(self, name, check_within(name, getattr(self, name), 0.0, MOST_SPREAD))
         for name in ("lasting_factors", "lasting_factor_stds"):
-            factors = check_factors(name, getattr(self, name))
-            object.__setattr__(self, name, check_magnitude(name, factors, MOST_SPREAD))
+            object.__setattr__(self, name, check_factors(name, getattr(self, name)))
         count = len(self.lasting_factors)
         if len(self.lasting_factor_stds) not in {0, count}:
             found = f"{len(self.lasting_factor_stds)} numbers"
@@ -107,8 +106,8 @@ class TossUncertainty(Record):
 
 
 def check_factors(field: str, values: ArrayLike) -> FloatArray:
-    """Return numbers >= 0, (s,)."""
-    factors = check_array(field, values, (None,))
+    """Return numbers from 0 to `MOST_SPREAD`, (s,)."""
+    factors = check_magnitude(field, check_array(field, values, (None,)), MOST_SPREAD)
     if (factors < 0.0).any():
         raise InvalidFieldError(field, factors, "numbers >= 0")
     return factors
@@ -152,7 +151,7 @@ def draw(
     world: World,
     *,
     covariance: FloatArray | None,
-    by_gravity: tuple[float, float] = (0.0, 0.0),
+    by_gravity: Sequence[float] | FloatArray = (0.0, 0.0),
     uncertainty: TossUncertainty,
     count: int,
     chance: Generator,

@@ -18,6 +18,7 @@ from contact_dynamics.rotations.one import cross_matrix
 from contact_dynamics.tumbling.many import flips_of_many
 from contact_dynamics.tumbling.polhode import Spin, Tumble
 from contact_dynamics.tumbling.regime import Regime
+from contact_dynamics.validation import check_whole
 from contact_dynamics.validation_batches import check_covariance
 
 if TYPE_CHECKING:
@@ -53,6 +54,10 @@ class Flips(Record):
     deviations: FloatArray
 
 
+MOST_FLIPS: Final = 10_000
+"""Largest number of flips that are asked for at once. Their deviations take 80 MB."""
+
+
 def next_flips(motion: FreeMotion, count: int, *, covariance: ArrayLike | None = None) -> Flips:
     """Return the next ``count`` flips, or fewer: one on the separatrix, none where the body does not flip.
 
@@ -62,8 +67,12 @@ def next_flips(motion: FreeMotion, count: int, *, covariance: ArrayLike | None =
     the same pairs, around the given one.
 
     Raises:
-        InvalidFieldError: the matrix is not a covariance (`validation_batches.check_covariance`).
+        InvalidFieldError: the count is not a whole number from 0 to `MOST_FLIPS`, or the matrix is not a
+            covariance (`validation_batches.check_covariance`).
     """
+    count = check_whole("count", count, 0, MOST_FLIPS)
+    if covariance is not None:
+        covariance = check_covariance("covariance", covariance)
     regime, rotation = motion.regime, motion.rotation
     flips = regime in (Regime.ABOUT_MAJOR_AXIS, Regime.ABOUT_MINOR_AXIS, Regime.SEPARATRIX)
     if (
@@ -76,7 +85,7 @@ def next_flips(motion: FreeMotion, count: int, *, covariance: ArrayLike | None =
     times = _flip_times(rotation, count, from_seconds=0.0)
     if covariance is None or len(times) == 0:
         return Flips(seconds=times, deviations=np.full(len(times), math.nan))
-    spread = _covariance_in_body(motion, check_covariance("covariance", covariance))
+    spread = _covariance_in_body(motion, covariance)
     return Flips(seconds=times, deviations=_deviations(motion, spread, times))
 
 

@@ -22,7 +22,7 @@ from contact_dynamics.tolerances import (
 )
 from contact_dynamics.tumbling.many_turns import Turns, tumbles_of_many, turns_of_many
 from contact_dynamics.tumbling.motion import Trajectory
-from contact_dynamics.validation import check_array
+from contact_dynamics.validation import check_array, check_magnitude
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -158,7 +158,7 @@ def _start(
     w_WB_W: ArrayLike,
     gravity_W: ArrayLike,
 ) -> _Start:
-    w = check_array("w_WB_W", w_WB_W, (None, 3))
+    w = check_magnitude("w_WB_W", check_array("w_WB_W", w_WB_W, (None, 3)))
     n = len(w)
     p, v = _rows("p_WB_W", p_WB_W, n, (3,)), _rows("v_WB_W", v_WB_W, n, (3,))
     q = _unit(_rows("q_WB", q_WB, n, (4,)))
@@ -188,7 +188,8 @@ def _rows(field: str, value: ArrayLike, n: int, shape: tuple[int, ...]) -> Float
 
 
 def _times(seconds: ArrayLike, n: int) -> FloatArray:
-    return check_array("seconds", seconds, ()) if np.ndim(seconds) == 0 else _rows("seconds", seconds, n, ())
+    rows = check_array("seconds", seconds, ()) if np.ndim(seconds) == 0 else _rows("seconds", seconds, n, ())
+    return check_magnitude("seconds", rows)
 
 
 def _unit(q: FloatArray) -> FloatArray:
@@ -261,7 +262,7 @@ def flips_of_many(moments: ArrayLike, w_P: ArrayLike) -> tuple[FloatArray, Float
 
 def _checked(moments: ArrayLike, w_P: ArrayLike) -> tuple[FloatArray, FloatArray]:
     """Return the angular velocities and the moments, (n, 3) each."""
-    w = check_array("w_P", w_P, (None, 3))
+    w = check_magnitude("w_P", check_array("w_P", w_P, (None, 3)))
     given = check_array("moments", moments, (3,) if np.ndim(moments) == 1 else (len(w), 3))
     if not (given > 0.0).all():
         raise InvalidFieldError("moments", float(given.min()), "numbers > 0")

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from contact_dynamics.errors import InvalidFieldError
+from contact_dynamics.errors import InvalidFieldError, TooLargeError
 from contact_dynamics.numerics.arithmetic import ARRAYS, DOUBLES
 from contact_dynamics.records import Record
 from contact_dynamics.rigid_body.body import angular_momentum
@@ -26,7 +26,7 @@ from contact_dynamics.tolerances import SEPARATRIX_END, SMALLEST_COMPLEMENT
 from contact_dynamics.tumbling.elliptic import average_over_period, carlson_rf
 from contact_dynamics.tumbling.polhode import Rotation, Spin, Tumble, largest_rate
 from contact_dynamics.tumbling.regime import Regime
-from contact_dynamics.validation import FloatArray, check_array
+from contact_dynamics.validation import FloatArray, check_array, check_whole
 
 if TYPE_CHECKING:
     from decimal import Decimal
@@ -169,6 +169,10 @@ def _sensitivity_of_spin(motion: FreeMotion) -> float:
     return math.inf if abs(middle_B @ w_B) > 0.5 * np.linalg.norm(w_B) else 1.0
 
 
+MOST_POINTS: Final = 1_000_000
+"""Points of rolling curves, which take some three seconds and 200 MB."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class RollingCurves(Record):
     """Polhode and herpolhode, which roll on each other. They touch in row i of both at ``seconds[i]``.
@@ -193,9 +197,12 @@ def rolling_curves(motion: FreeMotion, count: int) -> RollingCurves:
     where there is no period.
 
     Raises:
-        InvalidFieldError: the period is so long that doubles do not tell turns apart in it, as it may be in
-            bodies whose moments differ by their last digits.
+        TooLargeError: there are more than `MOST_POINTS` points.
+        InvalidFieldError: ``count`` is not a whole number >= 1, or the period is so long that doubles do not
+            tell turns apart in it, as it may be in bodies whose moments differ by their last digits.
     """
+    if check_whole("count", count, 1) > MOST_POINTS:
+        raise TooLargeError("count", count, f"at most {MOST_POINTS}")
     rotation = motion.rotation
     if isinstance(rotation, Spin) or motion.regime in CONSTANT_RATE:
         return RollingCurves(

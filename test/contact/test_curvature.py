@@ -300,7 +300,7 @@ def test_sides_that_do_not_touch_in_one_point_are_refused(body: Any, surface: An
     ("body", "surface"), [(INF, INF), (0.0, 0.0), (-1.0, 0.5), (math.nan, 0.0), (-INF, 0.0)]
 )
 def test_so_they_are_in_the_plane(body: float, surface: float) -> None:
-    with pytest.raises(InvalidFieldError, match="body_curvature, surface_curvature"):
+    with pytest.raises(InvalidFieldError, match="body_curvature"):
         PlanarContact(
             r=(0.0, 0.0), normal=(0.0, 1.0), friction=0.0, body_curvature=body, surface_curvature=surface
         )

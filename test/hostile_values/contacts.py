@@ -1,6 +1,7 @@
-"""Calls about contacts, worlds and contact problems, and which of their arguments become hostile."""
+"""Calls about contacts, worlds and contact problems."""
 
 from contact_dynamics import (
+    Body,
     Contact,
     ContactSet,
     PlanarBody,
@@ -12,12 +13,22 @@ from contact_dynamics import (
     Surface,
     World,
     find_contacts,
+    free_motion,
     next_landing,
+    shapes,
 )
-from contact_dynamics.contact import ContactUncertainty
+from contact_dynamics.contact import (
+    ContactUncertainty,
+    Curvatures,
+    linearised_cone,
+    spatial_contact_velocities,
+)
+from contact_dynamics.landing import first_contact
+from hostile_values.rigid_bodies import HAMMER
 from hostile_values.shared import (
     BALL,
     BOX,
+    CONTACT,
     CONTACTS,
     CORNERS,
     FLOOR,
@@ -31,19 +42,20 @@ from hostile_values.shared import (
     Calls,
 )
 
+CURVED = Curvatures(along=[1.0], across=[2.0], directions_W=[[1.0, 0.0, 0.0]])
+
 CALLS_WITH_CONTACTS: Calls = {
-    "Contact": (Contact, TOUCH, set()),
-    "ContactSet": (ContactSet, CORNERS, set()),
-    "Surface": (Surface, FLOOR, {"p_WS_W", "normal_W", "friction", "restitution"}),
+    "Contact": (Contact, TOUCH),
+    "ContactSet": (ContactSet, CORNERS),
+    "Surface": (Surface, FLOOR),
     "World": (
         World,
         {"bodies": (BOX,), "surfaces": (Surface(**FLOOR),), "gravity_W": [0, 0, -9.8]},
-        {"gravity_W"},
     ),
-    "PlanarBody": (PlanarBody, {"mass": 1.0, "inertia": 0.5}, set()),
-    "PlanarVelocity": (PlanarVelocity, LEAN, set()),
-    "PlanarWrench": (PlanarWrench, {"f": (0.0, -9.8), "moment": 0.1}, set()),
-    "PlanarContact": (PlanarContact, TIP, set()),
+    "PlanarBody": (PlanarBody, {"mass": 1.0, "inertia": 0.5}),
+    "PlanarVelocity": (PlanarVelocity, LEAN),
+    "PlanarWrench": (PlanarWrench, {"f": (0.0, -9.8), "moment": 0.1}),
+    "PlanarContact": (PlanarContact, TIP),
     "next_landing": (
         next_landing,
         {
@@ -54,12 +66,10 @@ CALLS_WITH_CONTACTS: Calls = {
             "distance_tolerance": 1e-6,
             "velocity_tolerance": 1e-9,
         },
-        {"horizon", "distance_tolerance", "velocity_tolerance"},
     ),
     "find_contacts": (
         find_contacts,
         {"body": BOX, "state": STATE, "surfaces": WORLD.surfaces, "distance_tolerance": 1.0},
-        {"distance_tolerance"},
     ),
     "PlanarContactProblem": (
         PlanarContactProblem,
@@ -71,7 +81,6 @@ CALLS_WITH_CONTACTS: Calls = {
             "velocity_tolerance": 1e-9,
             "acceleration_tolerance": 1e-9,
         },
-        {"velocity_tolerance", "acceleration_tolerance"},
     ),
     "SpatialContactProblem": (
         SpatialContactProblem,
@@ -84,7 +93,29 @@ CALLS_WITH_CONTACTS: Calls = {
             "friction_facets": 8,
             "velocity_tolerance": 1e-9,
         },
-        {"force_W", "torque_W", "friction_facets", "velocity_tolerance"},
     ),
-    "ContactUncertainty": (ContactUncertainty, {"points": 1e-3, "normals": 1e-3, "frictions": 0.1}, set()),
+    "ContactUncertainty": (ContactUncertainty, {"points": 1e-3, "normals": 1e-3, "frictions": 0.1}),
+    "ContactSet.of": (ContactSet.of, {"contacts": [CONTACT]}),
+    "Curvatures": (Curvatures, {"along": [1.0], "across": [2.0], "directions_W": [[1.0, 0.0, 0.0]]}),
+    "linearised_cone": (
+        linearised_cone,
+        {"normal": [0.0, 0.0, 1.0], "friction": 0.5, "facets": 8, "towards": [1.0, 0.0, 0.0]},
+    ),
+    "spatial_contact_velocities": (
+        spatial_contact_velocities,
+        {"state": STATE, "contacts": CONTACTS, "velocity_tolerance": 1e-9},
+    ),
+    "first_contact": (
+        first_contact,
+        {
+            "motion": free_motion(BALL, STATE),
+            "shape_B": BOX.shape,
+            "p_WS_W": [0.0, 0.0, 0.0],
+            "normal_W": [0.0, 0.0, 1.0],
+            "horizon": 0.5,
+        },
+    ),
+    "Body": (Body, {"name": "box", "mass_properties": BALL, "p_FB_F": [0.0, 0.0, 0.1], "shape": BOX.shape}),
+    "Body.of": (Body.of, {"name": "box", "mass": HAMMER, "vertices_F": shapes.box_vertices((0.2, 0.2, 0.2))}),
+    "World.body": (WORLD.body, {"name": "box"}),
 }

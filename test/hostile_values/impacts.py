@@ -1,4 +1,4 @@
-"""Calls about impacts and tosses, and which of their arguments become hostile."""
+"""Calls about impacts."""
 
 import numpy as np
 
@@ -13,7 +13,6 @@ from contact_dynamics import (
     spatial_impact,
 )
 from contact_dynamics.impact import StrikingBodies
-from contact_dynamics.toss import toss
 from hostile_values.shared import (
     BALL,
     BOX,
@@ -33,27 +32,23 @@ from hostile_values.shared import (
 )
 
 IMPACTS: Calls = {
-    "StrikingBodies": (StrikingBodies, STRIKERS, set()),
+    "StrikingBodies": (StrikingBodies, STRIKERS),
     "spatial_impact": (
         spatial_impact,
         {**WHERE, "contact": CONTACT, "velocity_tolerance": 1e-9},
-        {"velocity_tolerance"},
     ),
-    "several_impact": (several_impact, SEVERAL, {"velocity_tolerance"}),
+    "several_impact": (several_impact, SEVERAL),
     "outcomes_over_orders": (
         impact.outcomes_over_orders,
         {**SEVERAL, "most_orders": 2},
-        {"velocity_tolerance", "most_orders"},
     ),
     "outcomes_at_once": (
         impact.outcomes_at_once,
         {**SEVERAL, "most_orders": 2},
-        {"velocity_tolerance", "most_orders"},
     ),
     "outcomes_over_interleavings": (
         impact.outcomes_over_interleavings,
         {**SEVERAL, "samples": 1, "seed": 0},
-        {"velocity_tolerance", "samples", "seed"},
     ),
     "jamming_impact": (
         impact.jamming_impact,
@@ -65,7 +60,6 @@ IMPACTS: Calls = {
             "plane_normal_W": [0.0, 1.0, 0.0],
             "friction_facets": 8,
         },
-        {"velocity_tolerance", "force_W", "torque_W", "friction_facets", "plane_normal_W"},
     ),
     "planar_impact": (
         planar_impact,
@@ -75,7 +69,6 @@ IMPACTS: Calls = {
             "contact": PlanarContact(**TIP),
             "velocity_tolerance": 1e-9,
         },
-        {"velocity_tolerance"},
     ),
     "planar_impacts": (
         impact.planar_impacts,
@@ -90,7 +83,6 @@ IMPACTS: Calls = {
             "restitutions": 0.5,
             "velocity_tolerance": 1e-9,
         },
-        set(),
     ),
     "spatial_impacts": (
         impact.spatial_impacts,
@@ -101,7 +93,6 @@ IMPACTS: Calls = {
             "restitutions": 0.5,
             "velocity_tolerance": 1e-9,
         },
-        {"normals_W", "frictions", "restitutions", "velocity_tolerance"},
     ),
     "planar_impact_distribution": (
         impact.planar_impact_distribution,
@@ -114,7 +105,6 @@ IMPACTS: Calls = {
             "seed": 0,
             "velocity_tolerance": 1e-9,
         },
-        {"covariance", "samples", "seed", "velocity_tolerance"},
     ),
     "spatial_impact_distribution": (
         impact.spatial_impact_distribution,
@@ -126,7 +116,6 @@ IMPACTS: Calls = {
             "seed": 0,
             "velocity_tolerance": 1e-9,
         },
-        {"covariance", "samples", "seed", "velocity_tolerance"},
     ),
     "impact_sequence": (
         impact_sequence,
@@ -140,7 +129,6 @@ IMPACTS: Calls = {
             "velocity_tolerance": 1e-9,
             "hold_step": None,
         },
-        {"window", "most_strikes", "distance_tolerance", "velocity_tolerance", "hold_step"},
     ),
     "impact_sequence_of": (
         impact.impact_sequence_of,
@@ -154,7 +142,6 @@ IMPACTS: Calls = {
             "velocity_tolerance": 1e-9,
             "hold_step": None,
         },
-        {"gravity_W", "window", "most_strikes", "distance_tolerance", "velocity_tolerance", "hold_step"},
     ),
     "spatial_pair_impact": (
         impact.spatial_pair_impact,
@@ -165,7 +152,6 @@ IMPACTS: Calls = {
             "contact": CONTACT,
             "velocity_tolerance": 1e-9,
         },
-        {"velocity_tolerance"},
     ),
     "planar_pair_impact": (
         impact.planar_pair_impact,
@@ -178,19 +164,23 @@ IMPACTS: Calls = {
             "other_r": (0.1, 0.5),
             "velocity_tolerance": 1e-9,
         },
-        {"other_r", "velocity_tolerance"},
     ),
-    "toss": (
-        toss,
+    "bodies_impact": (
+        impact.bodies_impact,
+        {"bodies": [BALL], "states": [STATE], "contacts": CONTACTS, "pairs": [(0, None), (0, None)]},
+    ),
+    "planar_several_impact": (
+        impact.planar_several_impact,
+        {"body": ROD, "velocity": PlanarVelocity(**LEAN), "contacts": [PlanarContact(**TIP)]},
+    ),
+    "settling_impact": (
+        impact.settling_impact,
         {
-            "body": BOX,
-            "state": STATE,
-            "world": WORLD,
-            "horizon": 0.1,
-            "most_events": 3,
-            "most_alternatives": 0,
-            "error": 1e-6,
+            **SEVERAL,
+            "state": RESTING,
+            "is_settled": bool,
+            "force_W": [1.0, 0.0, -9.8],
+            "plane_normal_W": [0.0, 1.0, 0.0],
         },
-        {"horizon", "most_events", "most_alternatives", "error"},
     ),
 }

@@ -1,18 +1,28 @@
-"""Calls about questions, and which of their arguments become hostile."""
+"""Calls about questions."""
+
+import numpy as np
 
 from contact_dynamics.questions import (
     AtRate,
+    AtStamps,
     AtTimes,
     ContactModeQuestion,
+    Defaults,
     ImpactQuestion,
+    InTime,
+    Knowledge,
     PublishedState,
+    TossQuestion,
+    TossSampling,
     TumblingQuestion,
+    UncertainState,
     UntilContact,
     UntilPlane,
+    ask,
 )
 from contact_dynamics.questions.many import ManyImpactsQuestion, ManyStates, ManyTumblingsQuestion
 from contact_dynamics.questions.many_contact_modes import ManyContactModesQuestion
-from hostile_values.shared import BOX, CONTACTS, STATES, Calls
+from hostile_values.shared import BOX, CONTACTS, STATE, STATES, WORLD, Calls
 
 QUESTIONS: Calls = {
     "ContactModeQuestion": (
@@ -28,30 +38,18 @@ QUESTIONS: Calls = {
             "friction_facets": 8,
             "margin_length": 0.1,
         },
-        {
-            "force_W",
-            "torque_W",
-            "gravity_W",
-            "out_of_plane_tolerance",
-            "velocity_tolerance",
-            "distance_tolerance",
-            "friction_facets",
-            "margin_length",
-        },
     ),
     "ImpactQuestion": (
         ImpactQuestion,
         {"body": BOX, "horizon": 1.0, "velocity_tolerance": 1e-9, "distance_tolerance": 1e-6},
-        {"horizon", "velocity_tolerance", "distance_tolerance"},
     ),
     "TumblingQuestion": (
         TumblingQuestion,
         {"body": BOX, "gravity_W": [0.0, 0.0, -9.8], "curve_points": 10},
-        {"gravity_W", "curve_points"},
     ),
-    "AtTimes": (AtTimes, {"times": [0.1, 0.2]}, set()),
-    "AtRate": (AtRate, {"rate": 100.0, "duration": 0.5}, set()),
-    "UntilContact": (UntilContact, {"rate": 100.0, "duration": 0.5}, set()),
+    "AtTimes": (AtTimes, {"times": [0.1, 0.2]}),
+    "AtRate": (AtRate, {"rate": 100.0, "duration": 0.5}),
+    "UntilContact": (UntilContact, {"rate": 100.0, "duration": 0.5}),
     "UntilPlane": (
         UntilPlane,
         {
@@ -61,14 +59,12 @@ QUESTIONS: Calls = {
             "plane_normal": [0.0, 0.0, 1.0],
             "body_point": [0.1, 0.0, 0.0],
         },
-        set(),
     ),
-    "PublishedState": (PublishedState, {"fit_window": 0.1}, set()),
-    "ManyStates": (ManyStates, STATES, set()),
+    "PublishedState": (PublishedState, {"fit_window": 0.1}),
+    "ManyStates": (ManyStates, STATES),
     "ManyTumblingsQuestion": (
         ManyTumblingsQuestion,
         {"body": BOX, "states": ManyStates(**STATES), "seconds": [0.5]},
-        {"seconds"},
     ),
     "ManyImpactsQuestion": (
         ManyImpactsQuestion,
@@ -81,7 +77,6 @@ QUESTIONS: Calls = {
             "restitutions": [0.5],
             "velocity_tolerance": 1e-9,
         },
-        {"p_WC_W", "normals_W", "frictions", "restitutions", "velocity_tolerance"},
     ),
     "ManyContactModesQuestion": (
         ManyContactModesQuestion,
@@ -91,6 +86,13 @@ QUESTIONS: Calls = {
             "torques_W": [[0.0, 0.0, 0.1]],
             "contact_counts": (2,),
         },
-        {"forces_W", "torques_W", "contact_counts"},
     ),
+    "AtStamps": (AtStamps, {"stamps_ns": [0, 1]}),
+    "Defaults": (Defaults, {"horizon": 1.0}),
+    "InTime": (InTime, {"strike_window": 0.05, "most_strikes": 10, "hold_step": 1e-3}),
+    "Knowledge": (Knowledge, {"world": WORLD}),
+    "TossQuestion": (TossQuestion, {"body": BOX, "horizon": 0.1, "rate": 100.0, "lasting_factors": [0.8]}),
+    "TossSampling": (TossSampling, {"count": 10, "strikes": 1, "seed": 0}),
+    "UncertainState": (UncertainState, {"state": STATE, "covariance": 1e-6 * np.eye(12)}),
+    "ask": (ask, {"question": TumblingQuestion(body=BOX, state=STATE), "knowledge": Knowledge(world=WORLD)}),
 }

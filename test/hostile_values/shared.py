@@ -12,13 +12,17 @@ from contact_dynamics import (
     ContactSet,
     MassProperties,
     PlanarBody,
+    PlanarContact,
+    PlanarContactProblem,
+    PlanarWrench,
+    SpatialContactProblem,
     Surface,
     World,
     shapes,
 )
 
-Calls = dict[str, tuple[Callable[..., Any], dict[str, Any], set[str]]]
-"""By name: a call, its arguments, and those that become hostile (all, if there are none)."""
+Calls = dict[str, tuple[Callable[..., Any], dict[str, Any]]]
+"""By name: a call, and arguments that it takes. It may have further ones with a default."""
 
 BALL = MassProperties(mass=1.0, I_B=np.diag([0.1, 0.2, 0.25]))
 FALLING = {
@@ -41,7 +45,12 @@ BOX = Body(name="box", mass_properties=BALL, vertices_B=shapes.box_vertices((0.2
 WORLD = World(bodies=(BOX,), surfaces=(Surface(**FLOOR),))
 ROD, LEAN = PlanarBody(mass=1.0, inertia=0.5), {"v": (0.3, -1.0), "w": 0.5}
 TIP = {"r": (0.2, -0.5), "normal": (0.0, 1.0), "friction": 0.5, "restitution": 0.5}
+PUSH = PlanarWrench(f=(0.3, -9.8), moment=0.1)
+FLAT = PlanarContactProblem(body=ROD, contacts=(PlanarContact(**TIP),), wrench=PUSH)
 RESTING = BodyState(**{**FALLING, "v_WB_W": [0, 0, 0], "w_WB_W": [0, 0, 0]})
+DEEP = SpatialContactProblem(
+    body=BALL, state=RESTING, contacts=CONTACTS, force_W=[0.0, 0.0, -9.8], friction_facets=4
+)
 STRIKERS = {
     "masses": 1.0,
     "inertias_B": np.diag([0.1, 0.2, 0.25]),

@@ -125,7 +125,7 @@ def test_what_leans_out_of_the_plane_is_refused_by_name() -> None:
     skew = MassProperties(mass=2.0, I_B=np.array([[0.2, 0.05, 0.0], [0.05, 0.3, 0.0], [0.0, 0.0, 0.4]]))
     with pytest.raises(OutOfPlaneError, match="inertia"):
         project_onto_plane(skew, state(), contact((0.0, 0.0, 0.0)), **arguments)
-    with pytest.raises(InvalidFieldError, match="plane_normal"):
+    with pytest.raises(InvalidFieldError, match="normal_W"):
         PlaneOfMotion(normal_W=np.zeros(3))
 
 

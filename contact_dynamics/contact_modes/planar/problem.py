@@ -33,11 +33,10 @@ from contact_dynamics.tolerances import (
     ACCELERATION_TOLERANCE,
     GRIP_TOLERANCE,
     LARGEST_GRIP,
-    LARGEST_NUMBER,
     ROW_TOLERANCE,
     VELOCITY_TOLERANCE,
 )
-from contact_dynamics.validation import check_not_negative, check_within
+from contact_dynamics.validation import check_not_negative, check_size
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -192,7 +191,7 @@ def check_length(margin_length: float | None, body: PlanarBody) -> float:
     """
     if margin_length is None:
         return body.radius_of_gyration
-    return check_within("margin_length", margin_length, 1.0 / LARGEST_NUMBER, LARGEST_NUMBER)
+    return check_size("margin_length", margin_length)
 
 
 def touching_case(problem: PlanarContactProblem) -> PlanarCase | None:

@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from contact_dynamics.contact.kinds import velocity_accelerations
+from contact_dynamics.contact.velocities import check_speeds
 from contact_dynamics.contact_modes.letters import SEPARATES, STAYS
 from contact_dynamics.contact_modes.spatial.cone import cone_of
 from contact_dynamics.errors import TooLargeError
@@ -60,6 +61,7 @@ def spatial_kinematic_modes(
     n = len(contacts)
     if n > MOST_SPATIAL_CONTACTS:
         raise TooLargeError("contacts", f"{n} contacts", f"at most {MOST_SPATIAL_CONTACTS}")
+    check_speeds(state, contacts)
     velocities = state.velocity_of_point(contacts.p_WC_W)
     v_n = np.sum(contacts.normals_W * velocities, axis=1)
     if np.any(v_n < -tolerance):

@@ -32,7 +32,7 @@ from contact_dynamics.contact_modes.spatial.problem import (
 from contact_dynamics.contact_modes.spatial.wrenches import Way, supports, wrench_generators
 from contact_dynamics.records import Record
 from contact_dynamics.tolerances import BEYOND_MARGIN, ROW_TOLERANCE
-from contact_dynamics.validation import check_positive
+from contact_dynamics.validation import check_size
 
 if TYPE_CHECKING:
     from contact_dynamics.contact_modes.spatial.problem import SpatialContactProblem
@@ -85,7 +85,7 @@ def spatial_mode_margins(
     """
     body, wrench, friction_facets = problem.body, problem.wrench_W, problem.friction_facets
     own = body.mean_radius_of_gyration
-    length = own if margin_length is None else check_positive("margin_length", margin_length)
+    length = own if margin_length is None else check_size("margin_length", margin_length)
     case = spatial_case(problem)
     if not isinstance(case, SpatialCase):
         return ()

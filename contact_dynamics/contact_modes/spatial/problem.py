@@ -22,7 +22,7 @@ from contact_dynamics.numerics.vectors import point_jacobians
 from contact_dynamics.records import Record
 from contact_dynamics.rigid_body.body import inverse_mass_matrix
 from contact_dynamics.tolerances import VELOCITY_TOLERANCE
-from contact_dynamics.validation import check_array, check_not_negative
+from contact_dynamics.validation import check_not_negative, check_vector3
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -108,8 +108,8 @@ class SpatialContactProblem(Record):
 
     def __post_init__(self) -> None:
         """Check the wrench, the facets and the tolerance."""
-        object.__setattr__(self, "force_W", check_array("force_W", self.force_W, (3,)))
-        object.__setattr__(self, "torque_W", check_array("torque_W", self.torque_W, (3,)))
+        object.__setattr__(self, "force_W", check_vector3("force_W", self.force_W))
+        object.__setattr__(self, "torque_W", check_vector3("torque_W", self.torque_W))
         tolerance = check_not_negative("velocity_tolerance", self.velocity_tolerance)
         object.__setattr__(self, "velocity_tolerance", tolerance)
         object.__setattr__(self, "friction_facets", check_facets(self.friction_facets))

@@ -24,7 +24,7 @@ from contact_dynamics.contact_modes.spatial.kinematic import spatial_kinematic_m
 from contact_dynamics.contact_modes.spatial.problem import SpatialCase, search_of, spatial_case
 from contact_dynamics.contact_modes.spatial.wrenches import Way, wrench_generators
 from contact_dynamics.tolerances import NO_DISTANCE, ROW_TOLERANCE
-from contact_dynamics.validation import check_positive
+from contact_dynamics.validation import check_size
 
 if TYPE_CHECKING:
     from contact_dynamics.contact_modes.spatial.problem import SpatialContactProblem
@@ -60,7 +60,7 @@ def spatial_refused_modes(
     """
     body, tolerance = problem.body, problem.velocity_tolerance
     own = body.mean_radius_of_gyration
-    length = own if margin_length is None else check_positive("margin_length", margin_length)
+    length = own if margin_length is None else check_size("margin_length", margin_length)
     case = spatial_case(problem)
     if not isinstance(case, SpatialCase):
         return ()

@@ -20,10 +20,11 @@ import numpy as np
 
 from contact_dynamics.contact_modes.letters import SEPARATES, STICKS
 from contact_dynamics.contact_modes.spatial.kinematic import cone_faces
-from contact_dynamics.errors import InvalidFieldError, TooLargeError
+from contact_dynamics.errors import TooLargeError
 from contact_dynamics.numerics.linear_spaces import null_space
 from contact_dynamics.numerics.vectors import tangents_towards
 from contact_dynamics.tolerances import ROW_TOLERANCE, SMALLEST
+from contact_dynamics.validation import check_magnitude, check_whole
 
 if TYPE_CHECKING:
     from contact_dynamics.contact.contact import ContactSet
@@ -57,12 +58,12 @@ def spatial_sliding_modes(contacts: ContactSet, *, planes: int = 2) -> tuple[str
         TooLargeError: more than `MOST_SLIDING_CONTACTS` contacts.
     """
     n = len(contacts)
-    if not 2 <= planes <= MOST_PLANES:
-        raise InvalidFieldError("planes", planes, f"a whole number from 2 to {MOST_PLANES}")
+    planes = check_whole("planes", planes, 2, MOST_PLANES)
     if n > MOST_SLIDING_CONTACTS:
         raise TooLargeError("contacts", f"{n} contacts", f"at most {MOST_SLIDING_CONTACTS}")
     if n == 0:
         return ("",)
+    check_magnitude("p_WC_W", contacts.p_WC_W)
     arms = contacts.p_WC_W - contacts.p_WC_W.mean(axis=0)
     arms = arms / max(float(np.linalg.norm(arms, axis=1).max()), SMALLEST)
     normals = _rows(contacts.normals_W, arms)

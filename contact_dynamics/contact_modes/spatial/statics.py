@@ -33,7 +33,7 @@ from contact_dynamics.contact_modes.spatial.round_cones import held_by_round_con
 from contact_dynamics.contact_modes.spatial.wrenches import distinct
 from contact_dynamics.errors import TooLargeError, UndecidedError
 from contact_dynamics.rotations.one import cross_matrix
-from contact_dynamics.validation import check_positive
+from contact_dynamics.validation import check_size
 
 if TYPE_CHECKING:
     from contact_dynamics.contact_modes.spatial.problem import SpatialCase, SpatialContactProblem
@@ -58,7 +58,7 @@ def spatial_statics(problem: SpatialContactProblem, *, margin_length: float | No
     body, state, contacts = problem.body, problem.state, problem.contacts
     force, torque, friction_facets = problem.force_W, problem.torque_W, problem.friction_facets
     own = body.mean_radius_of_gyration
-    length = own if margin_length is None else check_positive("margin_length", margin_length)
+    length = own if margin_length is None else check_size("margin_length", margin_length)
     if len(contacts) * friction_facets > MOST_EDGES:
         found = f"{len(contacts)} contacts of {friction_facets} edges"
         raise TooLargeError("contacts", found, f"at most {MOST_EDGES} edges together")

@@ -248,6 +248,8 @@ def _bound(
     d . z + |z| |towards - d + c|. Dykstra's projections onto the two sets of y lead to the best d and c.
     """
     length = float(np.linalg.norm(z))
+    if length == 0.0:  # a body at rest stays at rest
+        return 0.0
     best = length * float(np.linalg.norm(towards))
     scale = float(np.linalg.norm(towards)) / length
     from_cone = from_normals = np.zeros_like(z)

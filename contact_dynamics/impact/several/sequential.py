@@ -13,6 +13,8 @@ Not covered: moments at the contacts.
 
 from __future__ import annotations
 
+import operator
+from collections.abc import Sized
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
@@ -281,10 +283,15 @@ def _check_pairs(
 ) -> None:
     if len(states) != len(bodies):
         raise InvalidFieldError("states", f"{len(states)} states", f"{len(bodies)}, one for each body")
-    if len(pairs) != len(contacts):
-        raise InvalidFieldError("pairs", f"{len(pairs)} pairs", f"{len(contacts)}, one for each contact")
-    for i, (first, second) in enumerate(pairs):
-        known = 0 <= first < len(bodies) and (second is None or 0 <= second < len(bodies))
+    if not isinstance(pairs, Sized) or len(pairs) != len(contacts):
+        raise InvalidFieldError("pairs", pairs, f"{len(contacts)}, one for each contact")
+    for i, pair in enumerate(pairs):
+        allowed = f"two different indices below {len(bodies)}, or None as the second for the world"
+        try:
+            first, second = pair
+            others = () if second is None else (second,)
+            known = all(0 <= operator.index(one) < len(bodies) for one in (first, *others))
+        except (TypeError, ValueError):
+            raise InvalidFieldError(f"pairs[{i}]", pair, allowed) from None
         if not known or first == second:
-            allowed = f"two different indices below {len(bodies)}, or None as the second for the world"
             raise InvalidFieldError(f"pairs[{i}]", (first, second), allowed)

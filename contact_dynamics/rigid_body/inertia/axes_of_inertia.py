@@ -27,8 +27,9 @@ import numpy as np
 
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.records import Record
+from contact_dynamics.rigid_body.body import check_symmetric
 from contact_dynamics.rigid_body.inertia.principal_frame import principal_frame
-from contact_dynamics.tolerances import AXIS_TIE, EQUAL_MOMENTS_TOLERANCE, SYMMETRY_TOLERANCE
+from contact_dynamics.tolerances import AXIS_TIE, EQUAL_MOMENTS_TOLERANCE
 from contact_dynamics.validation import FloatArray, check_array, check_positive, check_unit
 
 if TYPE_CHECKING:
@@ -85,10 +86,7 @@ def principal_axes(I_B: ArrayLike) -> PrincipalAxes:
     Raises:
         InvalidFieldError: the matrix is not symmetric, or not finite.
     """
-    matrix = check_array("I_B", I_B, (3, 3))
-    if float(np.abs(matrix - matrix.T).max()) > SYMMETRY_TOLERANCE * float(np.abs(matrix).max()):
-        raise InvalidFieldError("I_B", matrix.tolist(), "a symmetric matrix")
-    return axes_of_bytes(matrix.tobytes())
+    return axes_of_bytes(check_symmetric("I_B", I_B).tobytes())
 
 
 @lru_cache(maxsize=REMEMBERED)

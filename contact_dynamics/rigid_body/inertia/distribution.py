@@ -19,7 +19,14 @@ from contact_dynamics.records import Record
 from contact_dynamics.rigid_body.body import MassProperties, check_symmetric
 from contact_dynamics.rotations.one import rotation_matrix
 from contact_dynamics.tolerances import SUM_ROUNDING, TRIANGLE_TOLERANCE
-from contact_dynamics.validation import FloatArray, check_array, check_magnitude, check_positive, check_unit
+from contact_dynamics.validation import (
+    FloatArray,
+    check_positive,
+    check_size,
+    check_unit,
+    check_vector3,
+)
+from contact_dynamics.validation_types import checks_types
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -46,11 +53,11 @@ class MassDistribution(Record):
     def __post_init__(self) -> None:
         """Check all fields."""
         object.__setattr__(self, "mass", check_positive("mass", self.mass))
-        center = check_array("p_FB_F", self.p_FB_F, (3,))
-        object.__setattr__(self, "p_FB_F", check_magnitude("p_FB_F", center))
+        object.__setattr__(self, "p_FB_F", check_vector3("p_FB_F", self.p_FB_F))
         object.__setattr__(self, "I_B", _check_inertia("I_B", self.I_B))
 
     @classmethod
+    @checks_types
     def of(cls, mass_properties: MassProperties, p_FB_F: ArrayLike = (0.0, 0.0, 0.0)) -> MassDistribution:
         """Return the distribution of a body whose centre of mass is at ``p_FB_F``, (3,), m."""
         return cls(mass=mass_properties.mass, p_FB_F=np.asarray(p_FB_F), I_B=mass_properties.I_B)
@@ -71,11 +78,16 @@ class MassDistribution(Record):
             InvalidFieldError: as in the class, and if the inertia is too small for a centre so far from Q.
         """
         mass = check_positive("mass", mass)
-        center = check_array("p_FB_F", p_FB_F, (3,))
-        arm = center - check_array("p_FQ_F", p_FQ_F, (3,))
-        about = check_array("I_Q", I_Q, (3, 3))
+        center = check_vector3("p_FB_F", p_FB_F)
+        arm = center - check_vector3("p_FQ_F", p_FQ_F)
+        about = check_symmetric("I_Q", I_Q)
         I_B = difference(about, mass * point_inertia(arm), terms=float(np.abs(about).max()))
-        return cls(mass=mass, p_FB_F=center, I_B=I_B)
+        try:
+            return cls(mass=mass, p_FB_F=center, I_B=I_B)
+        except InvalidFieldError as error:
+            found = f"one that leaves {error.found} about the centre of mass"
+            allowed = "inertia that a mass has whose centre (p_FB_F) is so far from the point (p_FQ_F)"
+            raise InvalidFieldError("I_Q", found, allowed) from None
 
     @property
     def mass_properties(self) -> MassProperties:
@@ -99,7 +111,7 @@ class MassDistribution(Record):
             InvalidFieldError: a number is not finite, or the quaternion is not unit.
         """
         R_GF = rotation_matrix(check_unit("q_GF", q_GF, 4))
-        origin = check_array("p_GF_G", p_GF_G, (3,))
+        origin = check_vector3("p_GF_G", p_GF_G)
         return MassDistribution(
             mass=self.mass, p_FB_F=origin + R_GF @ self.p_FB_F, I_B=_symmetric(R_GF @ self.I_B @ R_GF.T)
         )
@@ -112,12 +124,12 @@ class MassDistribution(Record):
 
     def with_mass(self, mass: float) -> MassDistribution:
         """Return the same shape with another mass, kg, for example the mass that a scale shows."""
-        mass = check_positive("mass", mass)
+        mass = check_size("mass", mass)
         return MassDistribution(mass=mass, p_FB_F=self.p_FB_F, I_B=self.I_B * (mass / self.mass))
 
     def inertia_about(self, p_FQ_F: ArrayLike) -> FloatArray:
         """Return the angular inertia, (3, 3), kg m^2, about a point Q, F's axes (parallel axes)."""
-        arm = self.p_FB_F - check_array("p_FQ_F", p_FQ_F, (3,))
+        arm = self.p_FB_F - check_vector3("p_FQ_F", p_FQ_F)
         about: FloatArray = self.I_B + self.mass * point_inertia(arm)
         return about
 
@@ -134,7 +146,7 @@ class MassDistribution(Record):
         )  # a line about itself has 0, or rounding below it
         if p_FQ_F is None:
             return about_center
-        lever = np.cross(axis, self.p_FB_F - check_array("p_FQ_F", p_FQ_F, (3,)))
+        lever = np.cross(axis, self.p_FB_F - check_vector3("p_FQ_F", p_FQ_F))
         return about_center + self.mass * float(lever @ lever)
 
     def radius_of_gyration(self, axis_F: ArrayLike, *, p_FQ_F: ArrayLike | None = None) -> float:

@@ -1,0 +1,51 @@
+"""Calls about whole tosses."""
+
+import numpy as np
+
+from contact_dynamics import toss
+from contact_dynamics.impact import RestitutionLaw
+from hostile_values.shared import BOX, STATE, WORLD, Calls
+
+TOSSED = {"body": BOX, "state": STATE, "world": WORLD}
+FOLLOWED = toss.toss(**TOSSED, horizon=0.1)
+
+TOSSES: Calls = {
+    "toss": (
+        toss.toss,
+        {
+            **TOSSED,
+            "horizon": 0.1,
+            "most_events": 3,
+            "most_alternatives": 0,
+            "error": 1e-6,
+            "lasting_factors": [0.8],
+        },
+    ),
+    "Toss.at": (FOLLOWED.at, {"seconds": [0.01, 0.05]}),
+    "Toss.state_at": (FOLLOWED.state_at, {"seconds": 0.05}),
+    "TossUncertainty": (
+        toss.TossUncertainty,
+        {
+            "covariance": 1e-4 * np.eye(6),
+            "velocity": 0.01,
+            "spin": 0.1,
+            "height": 1e-3,
+            "lasting_factors": [0.8],
+            "lasting_factor_stds": [0.1],
+        },
+    ),
+    "sampled_toss": (
+        toss.sampled_toss,
+        {
+            **TOSSED,
+            "covariance": 1e-6 * np.eye(12),
+            "by_gravity": (0.0, 0.0),
+            "count": 4,
+            "strikes": 1,
+            "to_rest": False,
+            "seed": 0,
+            "law": RestitutionLaw.POISSON,
+            "horizon": 0.2,
+        },
+    ),
+}

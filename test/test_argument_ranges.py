@@ -1,0 +1,101 @@
+"""Numbers that would be answered by chance are errors of their argument, and every covariance is one."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+
+from contact_dynamics.contact import linearised_cone
+from contact_dynamics.errors import InvalidFieldError, TooLargeError
+from contact_dynamics.questions import UncertainState
+from contact_dynamics.tumbling import rolling_curves
+from hostile_values import CALLS
+from hostile_values.motions import FREE
+from hostile_values.shared import STATE
+
+NAN = math.nan
+
+
+def call(name: str, **changes: Any) -> object:
+    function, arguments = CALLS[name]
+    return function(**{**arguments, **changes})
+
+
+RANGES: list[tuple[str, str, Any]] = [
+    *[("sampled_toss", "horizon", value) for value in (NAN, -1.0, 0.0, math.inf, "1")],
+    *[("sampled_toss", "covariance", value) for value in (np.full((12, 12), NAN), np.eye(3), 1.0)],
+    *[("sampled_toss", "count", value) for value in (0, -1, 2.5, True, NAN)],
+    *[("sampled_toss", "strikes", value) for value in (0, 11, 1.5)],
+    *[("sampled_toss", "seed", value) for value in (-1, 0.5)],
+    *[("sampled_toss", "by_gravity", value) for value in ((NAN, 0.0), (0.0,), 1.0)],
+    *[("toss", "error", value) for value in (1e-200, 0.0, -1.0, NAN)],
+    *[("toss", "lasting_factors", value) for value in ([1e300], [-1.0], [NAN])],
+    *[("linearised_cone", "normal", value) for value in ([0, 0, 0], [0, 0, 2], [NAN, 0, 1])],
+    *[("linearised_cone", "friction", value) for value in (-1.0, NAN, math.inf)],
+    ("linearised_cone", "towards", [NAN, 0.0, 0.0]),
+    *[("SpatialContactProblem", name, [1e308, 0, 0]) for name in ("force_W", "torque_W")],
+    *[("rolling_curves", "count", value) for value in (0, -3, 2.5, NAN)],
+    *[("MassProperties.radius_of_gyration", "axis_B", value) for value in ([0, 0, 2], [0, 0, 0])],
+    *[("planar_in_space", "axes_W", value) for value in ([[1, 0, 0], [1, 0, 0]], [[2, 0, 0], [0, 1, 0]])],
+    *[("BodyState", "stamp_ns", value) for value in (NAN, 0.5, "now", 10**400)],
+    ("forced_motion", "most_steps", 0.5),
+    ("spatial_sliding_modes", "planes", 2.5),
+]
+
+
+@pytest.mark.parametrize(("name", "argument", "value"), RANGES)
+def test_a_number_out_of_its_range_is_named(name: str, argument: str, value: Any) -> None:
+    with pytest.raises(InvalidFieldError) as raised:
+        call(name, **{argument: value})
+    assert str(raised.value).startswith(argument)
+
+
+def test_a_curve_of_ten_million_points_is_too_large() -> None:
+    with pytest.raises(TooLargeError, match=r"^count: found 10000000, allowed is at most 1000000$"):
+        rolling_curves(FREE, 10_000_000)
+
+
+def test_a_cone_takes_lists_and_leans_towards_any_vector() -> None:
+    near = linearised_cone([0, 0, 1], 0.5, 8, towards=[1.0, 2.0, 0.0])
+    far = linearised_cone(np.array([0.0, 0.0, 1.0]), 0.5, 8, towards=[1e300, 2e300, 0.0])
+    assert near == pytest.approx(far, abs=1e-15)
+
+
+def uncertain_state(covariance: Any) -> object:
+    return UncertainState(state=STATE, covariance=covariance)
+
+
+WITH_COVARIANCE: dict[str, Callable[..., object]] = {
+    **{
+        name: lambda covariance, name=name: call(name, covariance=covariance)
+        for name, (_, arguments) in CALLS.items()
+        if "covariance" in arguments and name != "UncertainState"
+    },
+    "UncertainState": uncertain_state,
+}
+
+
+def indefinite(size: int) -> np.ndarray:
+    """A symmetric matrix with variances > 0 and correlations that no variables have."""
+    matrix = np.eye(size)
+    matrix[:3, :3] = np.array([[1.0, -0.9, -0.9], [-0.9, 1.0, -0.9], [-0.9, -0.9, 1.0]])
+    return 1e-6 * matrix
+
+
+@pytest.mark.parametrize("name", WITH_COVARIANCE)
+def test_what_is_no_covariance_is_refused_everywhere(name: str) -> None:
+    size = len(CALLS[name][1]["covariance"])
+    skew = 1e-6 * np.eye(size)
+    skew[0, 1] = 5e-7
+    for wrong in (-np.eye(size), indefinite(size), skew, np.full((size, size), NAN)):
+        with pytest.raises(InvalidFieldError, match=r"covariance(\[0\])?: found"):
+            WITH_COVARIANCE[name](wrong)
+    WITH_COVARIANCE[name](np.zeros((size, size)))
+
+
+def test_covariances_are_found_in_several_chapters() -> None:
+    assert len(WITH_COVARIANCE) > 6
