@@ -8,7 +8,14 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from contact_dynamics.contact_modes.result import BodyStatics, Certainty, ModeVerdict, Refusal, RefusedMode
+from contact_dynamics.contact_modes.result import (
+    BodyStatics,
+    Certainty,
+    ModeProbability,
+    ModeVerdict,
+    Refusal,
+    RefusedMode,
+)
 from contact_dynamics.contact_modes.spatial.margins import SpatialModeMargin
 from contact_dynamics.contact_modes.spatial.result import SpatialMode
 from contact_dynamics.contact_modes.spatial.wrench_sets import SpatialWrenchSet
@@ -76,6 +83,8 @@ def contact_mode_answer_to_msg(
     msg.undecided_modes = list(answer.undecided_modes)
     write_within(answer.within, msg)
     msg.geometry_margins = [geometry_margin_to_msg(margin) for margin in answer.geometry_margins or ()]
+    msg.probable_modes = [each.mode for each in answer.probabilities or ()]
+    msg.mode_probabilities = [each.probability for each in answer.probabilities or ()]
     return msg
 
 
@@ -119,6 +128,11 @@ def contact_mode_answer_from_msg(msg: PredictContactMode.Response, *, world: Wor
         undecided_modes=tuple(msg.undecided_modes),
         within=within_from_msg(msg),
         geometry_margins=tuple(geometry_margin_from_msg(margin) for margin in msg.geometry_margins) or None,
+        probabilities=tuple(
+            ModeProbability(mode=mode, probability=probability)
+            for mode, probability in zip(msg.probable_modes, msg.mode_probabilities, strict=True)
+        )
+        or None,
     )
 
 

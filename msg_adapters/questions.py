@@ -141,6 +141,7 @@ def contact_mode_question_from_msg(
             want_impact=request.want_impact,
             uncertainty=uncertainty_from_msg(request),
             want_geometry_margins=request.want_geometry_margins,
+            want_probabilities=request.want_probabilities,
         )
     except InvalidFieldError as error:
         raise renamed(error, WRENCH_FIELDS) from None
@@ -159,6 +160,7 @@ def asked_contact_modes(
     want_impact: bool = False,
     uncertainty: ContactUncertainty = EXACT_CONTACTS,
     want_geometry_margins: bool = False,
+    want_probabilities: bool = False,
 ) -> ContactModeQuestion:
     """Return the question of what requests about one candidate and about many have in common.
 
@@ -174,6 +176,7 @@ def asked_contact_modes(
         want_impact: As the question's.
         uncertainty: As the question's.
         want_geometry_margins: As the question's.
+        want_probabilities: As the question's.
 
     Raises:
         ContactDynamicsError: a field holds what is not allowed, or names a body that is not known.
@@ -205,4 +208,5 @@ def asked_contact_modes(
         want_impact=want_impact,
         uncertainty=uncertainty,
         want_geometry_margins=want_geometry_margins,
+        want_probabilities=want_probabilities,
     )

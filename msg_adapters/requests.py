@@ -118,6 +118,7 @@ def contact_mode_question_to_msg(
     msg.want_impact = question.want_impact
     write_uncertainty(question.uncertainty, msg)
     msg.want_geometry_margins = question.want_geometry_margins
+    msg.want_probabilities = question.want_probabilities
     return msg
 
 

@@ -44,6 +44,9 @@ REST_LEVEL: Final = 0.999
 QUANTILES: Final = (0.0, 10.827566, 13.815511, 16.266236, 18.466827, 20.515006, 22.457744)
 """Quantiles of chi squared at `REST_LEVEL`, by degrees of freedom from 0 to 6."""
 
+SAMPLES: Final = 1000
+"""Measurements that are drawn for `possible_motions`. They give shares to 0.016."""
+
 _ROUNDS: Final = 3
 """Each correction of a pose squares the turns that are left: 0.01 rad come to rounding."""
 
@@ -116,10 +119,7 @@ def resting(noisy: NoisyState, contacts: ContactSet, *, velocity_tolerance: floa
 
     A contact's velocity that is left within ``velocity_tolerance``, m/s, counts as zero.
     """
-    jacobians = np.zeros((len(contacts), 3, 12))
-    jacobians[:, :, 6:] = point_jacobians(contacts.p_WC_W - noisy.state.p_WB_W)
-    frames = np.array([(n_W, *tangent_rows(n_W)) for n_W in contacts.normals_W])
-    rows = np.einsum("cij,cjk->cik", frames, jacobians)
+    frames, rows = _components(noisy.state, contacts)
 
     def that_zero(which: Sequence[int], axes: slice, beside: NoisyState) -> _Hypothesis:
         """Return the hypothesis that components of velocities are zero, beside what holds already."""
@@ -144,15 +144,70 @@ def resting(noisy: NoisyState, contacts: ContactSet, *, velocity_tolerance: floa
     return found
 
 
+def possible_motions(
+    noisy: NoisyState, contacts: ContactSet, *, velocity_tolerance: float
+) -> list[tuple[float, BodyState]]:
+    """Return the states that `resting` could come to from other measurements, each with their share.
+
+    `SAMPLES` measurements are drawn about the state, by its noise. Each comes to the first of these that
+    passes: all contacts rest; those components of their velocities are zero that are so by `resting`; all
+    touch. If none passes, contacts move as they are measured. The same state always has the same draws.
+    """
+    frames, rows = _components(noisy.state, contacts)
+    found = resting(noisy, contacts, velocity_tolerance=velocity_tolerance).state
+
+    def velocities(state: BodyState) -> FloatArray:
+        along: FloatArray = np.einsum("cij,cj->ci", frames, state.velocity_of_point(contacts.p_WC_W))
+        return along.ravel()
+
+    whole = rows.reshape(-1, 12) @ noisy.root
+    draws = np.random.default_rng(0).normal(size=(noisy.root.shape[1], SAMPLES))
+    drawn = velocities(noisy.state)[:, None] + whole @ draws
+    undecided = np.ones(SAMPLES, dtype=bool)
+    motions = []
+    touch = np.tile([True, False, False], len(contacts))
+    zero = np.abs(velocities(found)) <= velocity_tolerance
+    for conditions in (np.ones_like(touch), zero, touch):
+        if not conditions.any():
+            continue
+        hypothesis = _hypothesis(
+            rows.reshape(-1, 12)[conditions],
+            velocities(noisy.state)[conditions],
+            noisy,
+            noisy,
+            velocity_tolerance,
+        )
+        U, sizes, _ = np.linalg.svd(whole[conditions], full_matrices=False)
+        kept = sizes > NO_NOISE * np.linalg.norm(whole[conditions])
+        components = (U.T[kept] @ drawn[conditions]) / sizes[kept, None]
+        passes = (
+            undecided & (np.sum(components**2, axis=0) <= QUANTILES[int(kept.sum())]) & hypothesis.is_possible
+        )
+        undecided &= ~passes
+        motions.append((float(passes.mean()), hypothesis.state.state))
+    motions.append((float(undecided.mean()), noisy.state))
+    return [(share, state) for share, state in motions if share > 0.0]
+
+
+def _components(state: BodyState, contacts: ContactSet) -> tuple[FloatArray, FloatArray]:
+    """Return normal and tangents of contacts, (n, 3, 3), and how velocities along them change, (n, 3, 12)."""
+    jacobians = np.zeros((len(contacts), 3, 12))
+    jacobians[:, :, 6:] = point_jacobians(contacts.p_WC_W - state.p_WB_W)
+    frames = np.array([(n_W, *tangent_rows(n_W)) for n_W in contacts.normals_W])
+    return frames, np.einsum("cij,cjk->cik", frames, jacobians)
+
+
 class _Hypothesis(NamedTuple):
     """That the error of a state meets some conditions, beside those that it meets already.
 
     Attributes:
+        is_possible: Whether any error meets them.
         passes: Whether the test does not reject it.
         size: The square of the least error that meets the conditions, in standard deviations.
         state: The likeliest state that does.
     """
 
+    is_possible: bool
     passes: bool
     size: float
     state: NoisyState
@@ -177,9 +232,10 @@ def _hypothesis(
     error = V[kept].T @ components
     unexplained = float(np.abs(violation - left @ error).max())
     size = float(components @ components)
-    passes = unexplained <= max(tolerance, NO_NOISE * float(np.abs(violation).max()))
+    is_possible = unexplained <= max(tolerance, NO_NOISE * float(np.abs(violation).max()))
     return _Hypothesis(
-        passes and size <= QUANTILES[len(components)],
+        is_possible,
+        is_possible and size <= QUANTILES[len(components)],
         size,
         NoisyState(beside.corrected(error), beside.root - (beside.root @ V[kept].T) @ V[kept])
         if len(components) > 0

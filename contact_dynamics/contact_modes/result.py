@@ -87,6 +87,19 @@ class VerdictsWithin(Record):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
+class ModeProbability(Record):
+    """How probable a mode is, by the noise of a measured state.
+
+    Attributes:
+        mode: The mode, or nothing for an impact.
+        probability: The share of measurements of the state, drawn by its noise, under which it is consistent.
+    """
+
+    mode: str
+    probability: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class GeometryMargin(Record):
     """How far the contacts would have to be off for another answer, in one of three ways.
 

@@ -54,6 +54,8 @@ class ContactModeQuestion(Record):
         uncertainty: How far the true contacts may be from the contacts. If they are not known exactly, the
             answer says which verdicts occur.
         want_geometry_margins: Whether the answer says how far the contacts are from another verdict or mode.
+        want_probabilities: Whether the answer says how probable each mode is by the noise of the state, which
+            must have a covariance.
 
     Raises:
         InvalidFieldError: a number is out of its range or not finite, or the problem is not a `Problem`.
@@ -78,6 +80,7 @@ class ContactModeQuestion(Record):
     want_impact: bool = False
     uncertainty: ContactUncertainty = EXACT_CONTACTS
     want_geometry_margins: bool = False
+    want_probabilities: bool = False
 
     if TYPE_CHECKING:
 
@@ -103,6 +106,7 @@ class ContactModeQuestion(Record):
             want_impact: bool = ...,
             uncertainty: ContactUncertainty = ...,
             want_geometry_margins: bool = ...,
+            want_probabilities: bool = ...,
         ) -> None:
             """Take whatever NumPy makes arrays of."""
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from contact_dynamics.contact.contact import ContactSet
+from contact_dynamics.contact.noise import possible_motions
 from contact_dynamics.contact.velocities import spatial_contact_velocities
 from contact_dynamics.contact_modes import (
     BodyStatics,
@@ -29,6 +30,7 @@ from contact_dynamics.contact_modes import (
     wrench_sets,
 )
 from contact_dynamics.contact_modes.planar.problem import MOST_PLANAR_CONTACTS
+from contact_dynamics.contact_modes.result import ModeProbability
 from contact_dynamics.contact_modes.spatial.problem import FRICTION_FACETS
 from contact_dynamics.contact_modes.spatial.wrench_sets import WRENCH_FACETS
 from contact_dynamics.errors import OutOfPlaneError, TooLargeError
@@ -50,18 +52,25 @@ from contact_dynamics.questions.settled_impact import (
     settled_in_plane,
     settled_in_space,
 )
-from contact_dynamics.questions.subject import subject_of
+from contact_dynamics.questions.subject import covariance_of, subject_of
 from contact_dynamics.questions.touching import in_contact
 from contact_dynamics.records import Record
 from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.validation import FloatArray
 
 if TYPE_CHECKING:
+    from contact_dynamics.contact.noise import NoisyState
     from contact_dynamics.plane.projection import PlanarProblem
 
 MOST_UNCERTAIN_CONTACTS: Final = 16
 """A question about uncertain contacts may have at most this many. It takes dozens of samples, each of which
 takes some 50 ms for so many."""
+
+LEAST_PROBABILITY: Final = 0.01
+"""Motions that are rarer by the noise of a state are left out of the probabilities."""
+
+IMPACT: Final = ""
+"""What stands instead of a mode in the probabilities where a contact approaches."""
 
 _UNCERTAIN: Final = (
     "contacts: found points or normals that may be off, which are in a plane only if their errors are"
@@ -96,6 +105,8 @@ class ContactModeAnswer(Record):
         undecided_modes: Modes that may be consistent besides those that are listed, or not.
         within: The verdicts that occur within the uncertainty of the contacts, or None if it has none.
         geometry_margins: How far the contacts are from another answer, or None if that was not asked for.
+        probabilities: How probable each mode is by the noise of the state, the most probable first, or None
+            if that was not asked for. Those below `LEAST_PROBABILITY` are left out.
         settled: The impact that settles the case, and the modes after it. It is None if it was not asked for
             or is not needed.
         problem: PLANAR or SPATIAL.
@@ -139,6 +150,7 @@ class ContactModeAnswer(Record):
     undecided_modes: tuple[str, ...] = ()
     within: VerdictsWithin | None = None
     geometry_margins: tuple[GeometryMargin, ...] | None = None
+    probabilities: tuple[ModeProbability, ...] | None = None
 
 
 def answer(question: ContactModeQuestion, knowledge: Knowledge | None = None) -> ContactModeAnswer:
@@ -149,19 +161,53 @@ def answer(question: ContactModeQuestion, knowledge: Knowledge | None = None) ->
             that is not known or not allowed. The message names it.
     """
     known = Knowledge() if knowledge is None else knowledge
-    case = _case(question, known)
+    case, noisy = _case(question, known)
     view, reason = _in_plane(question, case, known)
-    return _spatial_answer(question, case, reason) if view is None else _planar_answer(question, case, *view)
+    found = _spatial_answer(question, case, reason) if view is None else _planar_answer(question, case, *view)
+    if not question.want_probabilities:
+        return found
+    if noisy is None:
+        covariance_of(case.subject)  # there is none, which is an error
+        return found
+    return replace(found, probabilities=_probabilities(question, case, noisy, known))
 
 
-def _case(question: ContactModeQuestion, knowledge: Knowledge) -> ModeCase:
-    """Look up all that a question names."""
+def _probabilities(
+    question: ContactModeQuestion, case: ModeCase, noisy: NoisyState, knowledge: Knowledge
+) -> tuple[ModeProbability, ...]:
+    """Return the modes that other measurements of the state would come to, the most probable first."""
+    alone = ContactModeQuestion(
+        body=case.subject.body,
+        contacts=case.contacts,
+        force_W=question.force_W,
+        torque_W=question.torque_W,
+        gravity_W=question.gravity_W,
+        problem=question.problem,
+        plane=question.plane,
+        out_of_plane_tolerance=question.out_of_plane_tolerance,
+        velocity_tolerance=question.velocity_tolerance,
+        distance_tolerance=question.distance_tolerance,
+        friction_facets=question.friction_facets,
+    )
+    shares: dict[str, float] = {}
+    for share, state in possible_motions(noisy, case.contacts, velocity_tolerance=case.velocity_tolerance):
+        if share >= LEAST_PROBABILITY:
+            found = answer(replace(alone, state=state), knowledge)
+            modes = {IMPACT} if found.verdict is ModeVerdict.IMPACT else {mode.mode for mode in found.modes}
+            for mode in modes:
+                shares[mode] = shares.get(mode, 0.0) + share
+    ordered = sorted(shares.items(), key=lambda each: (-each[1], each[0]))
+    return tuple(ModeProbability(mode=mode, probability=share) for mode, share in ordered)
+
+
+def _case(question: ContactModeQuestion, knowledge: Knowledge) -> tuple[ModeCase, NoisyState | None]:
+    """Look up all that a question names. The second value is the noisy state, if it has a covariance."""
     subject = subject_of(question.body, question.state, knowledge)
     check_extent(subject.body.mass_properties, subject.state)
     defaults, world = knowledge.defaults, knowledge.world
     distance_tolerance = or_default(question.distance_tolerance, defaults.distance_tolerance)
     velocity_tolerance = or_default(question.velocity_tolerance, defaults.velocity_tolerance)
-    subject, contacts = in_contact(
+    subject, contacts, noisy = in_contact(
         question.contacts,
         subject,
         world,
@@ -182,7 +228,7 @@ def _case(question: ContactModeQuestion, knowledge: Knowledge) -> ModeCase:
     gravity_W = world.gravity_W if question.gravity_W is None else question.gravity_W
     force_W = question.force_W + subject.body.mass_properties.mass * gravity_W
     check_wrench(force_W, question.torque_W)
-    return ModeCase(
+    case = ModeCase(
         subject=subject,
         contacts=contacts,
         force_W=force_W,
@@ -191,6 +237,7 @@ def _case(question: ContactModeQuestion, knowledge: Knowledge) -> ModeCase:
         distance_tolerance=distance_tolerance,
         friction_facets=question.friction_facets or FRICTION_FACETS,
     )
+    return case, noisy
 
 
 def _in_plane(

@@ -115,7 +115,7 @@ def _is_quick_impact(question: ImpactQuestion, knowledge: Knowledge) -> bool:
 
 
 def _are_quick_modes(question: ContactModeQuestion, knowledge: Knowledge) -> bool:
-    if question.want_geometry_margins or not question.uncertainty.is_exact:
+    if question.want_geometry_margins or question.want_probabilities or not question.uncertainty.is_exact:
         return False
     few = _are_few(question.contacts, question.body, knowledge)
     extra = question.want_margins or question.want_wrenches or question.want_statics or question.want_impact

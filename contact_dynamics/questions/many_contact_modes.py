@@ -164,7 +164,7 @@ def answer(question: ManyContactModesQuestion, knowledge: Knowledge | None = Non
         if subject.covariance is not None:
             state = UncertainState(state=subject.state, covariance=subject.covariance)
     else:
-        subject, contacts = in_contact(
+        subject, contacts, _ = in_contact(
             asked.contacts,
             subject,
             known.world,
@@ -185,6 +185,7 @@ def answer(question: ManyContactModesQuestion, knowledge: Knowledge | None = Non
         want_wrenches=False,
         want_statics=False,
         want_impact=False,
+        want_probabilities=False,
         uncertainty=EXACT_CONTACTS,
         want_geometry_margins=False,
     )

@@ -51,25 +51,26 @@ def in_contact(
     *,
     distance_tolerance: float,
     velocity_tolerance: float,
-) -> tuple[Subject, ContactSet]:
+) -> tuple[Subject, ContactSet, NoisyState | None]:
     """Return a subject and its contacts, which touch and rest where the noise of its state allows it.
 
     Without a covariance the state is exact. With one, it is the likeliest state in which the contacts that
-    may touch and rest do so (`contact.noise`).
+    may touch and rest do so (`contact.noise`). The third value is then the state, with its noise, in which
+    they touch and nothing is known yet of rest.
 
     Raises:
         NoContactError: there is no contact.
     """
     if subject.covariance is None:
-        return subject, contacts_of(named, subject, world, distance_tolerance=distance_tolerance)
+        return subject, contacts_of(named, subject, world, distance_tolerance=distance_tolerance), None
     check_extent(subject.body.mass_properties, subject.state)
     noisy = NoisyState.of(subject.state, subject.covariance)
     if named is None and not subject.body.shape.is_empty:
         noisy = touching(subject.body, noisy, world.surfaces, distance_tolerance=distance_tolerance)
         subject = replace(subject, state=noisy.state)
     contacts = contacts_of(named, subject, world, distance_tolerance=distance_tolerance)
-    noisy = resting(noisy, contacts, velocity_tolerance=velocity_tolerance)
-    return replace(subject, state=noisy.state, covariance=noisy.root @ noisy.root.T), contacts
+    found = resting(noisy, contacts, velocity_tolerance=velocity_tolerance)
+    return replace(subject, state=found.state, covariance=found.root @ found.root.T), contacts, noisy
 
 
 def check_has_shape(body: Body) -> None:

@@ -12,6 +12,7 @@ from contact_dynamics.contact_modes.result import (
     BodyStatics,
     Certainty,
     GeometryMargin,
+    ModeProbability,
     ModeVerdict,
     Refusal,
     RefusedMode,
@@ -159,6 +160,9 @@ geometry_margins = st.builds(
 )
 
 
+probabilities = st.builds(ModeProbability, mode=texts, probability=positive)
+
+
 @st.composite
 def contact_mode_answers(draw: st.DrawFn, p_FB_F: np.ndarray = NO_OFFSET) -> ContactModeAnswer:
     """With no mode and several, and with all that can be asked for besides or not."""
@@ -194,6 +198,7 @@ def contact_mode_answers(draw: st.DrawFn, p_FB_F: np.ndarray = NO_OFFSET) -> Con
         undecided_modes=draw(st.lists(texts, max_size=2).map(tuple)),
         within=draw(some(verdicts_within())),
         geometry_margins=draw(st.lists(geometry_margins, max_size=3).map(tuple)) or None,
+        probabilities=draw(st.lists(probabilities, max_size=3).map(tuple)) or None,
     )
 
 
@@ -229,4 +234,5 @@ def contact_mode_questions(draw: st.DrawFn) -> ContactModeQuestion:
         want_impact=draw(flags),
         uncertainty=uncertainty,
         want_geometry_margins=geometry_margins,
+        want_probabilities=draw(flags),
     )

@@ -100,6 +100,7 @@ def many_contact_modes_questions(draw: st.DrawFn) -> ManyContactModesQuestion:
         want_impact=False,
         uncertainty=EXACT_CONTACTS,
         want_geometry_margins=False,
+        want_probabilities=False,
     )
     if not asked.want_margins:
         asked = replace(asked, margin_length=None)

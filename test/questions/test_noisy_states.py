@@ -7,8 +7,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
+from scipy.stats import chi2, ncx2
 
+from contact_dynamics.contact.noise import REST_LEVEL
 from contact_dynamics.contact_modes import ModeVerdict
+from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.questions import ContactModeAnswer, ContactModeQuestion, Knowledge, UncertainState, ask
 from contact_dynamics.questions.many_contact_modes import ManyContactModesQuestion
 from contact_dynamics.questions.many_contact_modes import answer as answer_many
@@ -98,6 +101,30 @@ def test_the_answer_has_the_state_that_it_is_about() -> None:
     np.testing.assert_allclose(found.state.p_WB_W, noisy.state.p_WB_W, rtol=0.0, atol=4 * MOTION_CAPTURE[0])
     again = ask(ContactModeQuestion(body="brick", state=found.state), KNOWLEDGE)
     assert modes_of(again) == modes_of(found)
+
+
+@pytest.mark.parametrize("deviations_off", [0.0, 2.5, 4.0, 5.0, 7.0])
+def test_the_probability_of_rest_is_that_of_chi_squared(deviations_off: float) -> None:
+    """For a velocity that is off by so many deviations the squared size of a repeat is noncentral."""
+    deviations = np.repeat(MOTION_CAPTURE, 3)
+    state = BodyState(
+        p_WB_W=[0.1, 0.2, 0.025], q_WB=[0, 0, 0, 1], v_WB_W=[deviations_off * 0.02, 0, 0], w_WB_W=[0, 0, 0]
+    )
+    noisy = UncertainState(state=state, covariance=np.diag(deviations**2))
+    found = ask(ContactModeQuestion(body="brick", state=noisy, want_probabilities=True), KNOWLEDGE)
+    assert found.probabilities is not None
+    shares = {each.mode: each.probability for each in found.probabilities}
+    expected = ncx2.cdf(chi2.ppf(REST_LEVEL, 6), 6, deviations_off**2)
+    assert shares.get("ffff", 0.0) == pytest.approx(expected, abs=0.05)  # three deviations of 1000 draws
+    assert max(shares, key=lambda mode: shares[mode]) == modes_of(found)[0]
+    if 0.1 < expected < 0.9:
+        assert sum(share for mode, share in shares.items() if set(mode) <= set("clr")) > 0.05
+
+
+def test_probabilities_need_a_covariance() -> None:
+    exact = measured(np.random.default_rng(8), scale=0.0).state
+    with pytest.raises(InvalidFieldError, match=r"state\.covariance: found none"):
+        ask(ContactModeQuestion(body="brick", state=exact, want_probabilities=True), KNOWLEDGE)
 
 
 @pytest.mark.parametrize("counts", [(), (4, 4)])
