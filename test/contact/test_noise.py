@@ -14,6 +14,7 @@ from scipy.stats import chi2
 from contact_dynamics.contact.contact import ContactSet
 from contact_dynamics.contact.found import find_contacts
 from contact_dynamics.contact.noise import QUANTILES, REST_LEVEL, NoisyState, resting, touching
+from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.shapes.convex import ConvexShape, cylinder, rounded, sphere
 from contact_dynamics.shapes.convex import box as box_of
@@ -83,7 +84,12 @@ def test_a_body_at_rest_touches_with_all_its_feet_and_none_moves(
     chance, rejected = np.random.default_rng(5), 0
     for _ in range(DRAWS):
         turn = Rotation.from_rotvec([0.0, 0.0, chance.uniform(-3.0, 3.0)])
-        found, contacts = settled(body(shape), measured(state([0.3, 0.2, height], turn=turn), chance), FLOOR)
+        seen = measured(state([0.3, 0.2, height], turn=turn), chance)
+        try:
+            found, contacts = settled(body(shape), seen, FLOOR)
+        except InvalidFieldError:  # deeper in the floor than the noise explains
+            rejected += 1
+            continue
         touches = len(contacts) == feet and np.abs(contacts.p_WC_W[:, 2]).max() < 1e-12
         rejected += not touches or np.abs(velocities(found, contacts)).max() > EXACT
     assert rejected <= 2
