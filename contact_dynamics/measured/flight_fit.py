@@ -16,7 +16,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
@@ -55,6 +55,22 @@ class MeasuredState(Record):
     angular_velocity_std: FloatArray
 
 
+class FittedPoses(NamedTuple):
+    """Poses of a fitted flight, with the standard deviation of each of their parts.
+
+    Attributes:
+        p_WB_W: (n, 3), m.
+        q_WB: (n, 4), unit quaternions x, y, z, w.
+        position_std: (n,), m, that of each coordinate.
+        orientation_std: (n, 3), rad, those of a rotation vector's components, world axes.
+    """
+
+    p_WB_W: FloatArray
+    q_WB: FloatArray
+    position_std: FloatArray
+    orientation_std: FloatArray
+
+
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class FlightFit(Record):
     """A fitted free flight: position and rotation vector at a reference time, with velocity and L.
@@ -84,42 +100,55 @@ class FlightFit(Record):
     cov_rotation: FloatArray
 
     def at(self, time: float) -> MeasuredState:
-        """Return the flight's state at ``time``, s.
-
-        The orientation is one step of the midpoint rule from the reference. Its error is of third order in
-        the angle, so ask within a few frames of the reference.
-        """
-        after = time - self.reference
-        q_0 = turned(self.q_reference, self.theta_W[None])[0]
-        q_half = turned(q_0, 0.5 * after * self._w_W(q_0)[None])[0]
-        q = turned(q_0, after * self._w_W(q_half)[None])[0]
-        inverse = self._inverse_inertia(q)
+        """Return the flight's state at ``time``, s; see `poses_at`."""
+        poses, after = self.poses_at(np.array([time])), time - self.reference
+        inverse = self._inverse_inertias(poses.q_WB)[0]
         cov_w = inverse @ self.cov_rotation[3:, 3:] @ inverse.T
-        to_q = np.hstack([np.eye(3), after * inverse])
-        cov_q = to_q @ self.cov_rotation @ to_q.T
-        to_p = np.array([1.0, after])
         return MeasuredState(
             time=time,
             state=BodyState(
-                p_WB_W=self.p_W + after * self.v_W + (0.5 * after * after) * self.gravity_W,
-                q_WB=q,
+                p_WB_W=poses.p_WB_W[0],
+                q_WB=poses.q_WB[0],
                 v_WB_W=self.v_W + after * self.gravity_W,
                 w_WB_W=inverse @ self.L_W,
                 stamp_ns=to_ns(time),
             ),
-            position_std=math.sqrt(to_p @ self.cov_p @ to_p),
-            orientation_std=np.sqrt(cov_q.diagonal()),
+            position_std=float(poses.position_std[0]),
+            orientation_std=poses.orientation_std[0],
             velocity_std=math.sqrt(self.cov_p[1, 1]),
             angular_velocity_std=np.sqrt(cov_w.diagonal()),
         )
 
-    def _inverse_inertia(self, q: FloatArray) -> FloatArray:
-        R = matrices_of(q[None])[0]
-        inverse: FloatArray = R @ np.linalg.solve(self.I_B, R.T)
-        return inverse
+    def poses_at(self, times: FloatArray) -> FittedPoses:
+        """Return the poses at many ``times``, (n,), s.
 
-    def _w_W(self, q: FloatArray) -> FloatArray:
-        return self._inverse_inertia(q) @ self.L_W
+        An orientation is one step of the midpoint rule from the reference. Its error is of third order in the
+        angle, so ask within a few frames of the reference.
+        """
+        after = times - self.reference
+        q_0 = turned(self.q_reference, self.theta_W[None])
+        w_0 = self._inverse_inertias(q_0)[0] @ self.L_W
+        q_half = turned(q_0[0], 0.5 * after[:, None] * w_0)
+        q = turned(q_0[0], after[:, None] * (self._inverse_inertias(q_half) @ self.L_W))
+        to_q = np.concatenate(
+            [
+                np.broadcast_to(np.eye(3), (len(times), 3, 3)),
+                after[:, None, None] * self._inverse_inertias(q),
+            ],
+            axis=2,
+        )
+        to_p = np.column_stack([np.ones_like(after), after])
+        return FittedPoses(
+            p_WB_W=self.p_W + after[:, None] * self.v_W + (0.5 * after * after)[:, None] * self.gravity_W,
+            q_WB=q,
+            position_std=np.sqrt(np.einsum("ni,ij,nj->n", to_p, self.cov_p, to_p)),
+            orientation_std=np.sqrt(np.einsum("nij,nij->ni", to_q @ self.cov_rotation, to_q)),
+        )
+
+    def _inverse_inertias(self, q: FloatArray) -> FloatArray:
+        R = matrices_of(q)
+        inverses: FloatArray = R @ np.linalg.solve(self.I_B, R.transpose(0, 2, 1))
+        return inverses
 
 
 def fit_flight(poses: MeasuredPoses, frames: slice, *, reference: int | None = None) -> FlightFit:

@@ -68,14 +68,11 @@ def _falls(poses: MeasuredPoses, frames: slice) -> bool:
 
 def _worst(poses: MeasuredPoses, fit: FlightFit, frames: slice) -> float:
     """Return the largest deviation of the frames' poses from the fit, as a fraction of what is allowed."""
-    worst = 0.0
-    for frame in range(frames.start, frames.stop):
-        expected = fit.at(float(poses.times[frame]))
-        p_std = np.hypot(poses.position_noise, expected.position_std)
-        q_std = np.hypot(poses.orientation_noise, expected.orientation_std)
-        p_off = np.abs(poses.p_WB_W[frame] - expected.state.p_WB_W)
-        q_off = np.abs(rotation_vectors(poses.q_WB[frame : frame + 1], expected.state.q_WB)[0])
-        p_worst = float(p_off.max()) / (DEVIATIONS * p_std + POSITION_SLACK)
-        q_worst = float((q_off / (DEVIATIONS * q_std + ORIENTATION_SLACK)).max())
-        worst = max(worst, p_worst, q_worst)
-    return worst
+    expected = fit.poses_at(poses.times[frames])
+    p_std = np.hypot(poses.position_noise, expected.position_std)
+    q_std = np.hypot(poses.orientation_noise, expected.orientation_std)
+    p_off = np.abs(poses.p_WB_W[frames] - expected.p_WB_W).max(axis=1)
+    q_off = np.abs(rotation_vectors(poses.q_WB[frames], expected.q_WB))
+    p_worst = (p_off / (DEVIATIONS * p_std + POSITION_SLACK)).max()
+    q_worst = (q_off / (DEVIATIONS * q_std + ORIENTATION_SLACK)).max()
+    return float(max(p_worst, q_worst))

@@ -12,8 +12,9 @@ from contact_dynamics.constants import seconds_between
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.motion.between_states import share_between, state_between
 from contact_dynamics.motion.covariance import covariance_along
-from contact_dynamics.motion.free_fit import FitResult, fit_free_motion
+from contact_dynamics.motion.free_fit import FitResult
 from contact_dynamics.motion.whole_turns import THIRD_OF_A_TURN
+from contact_dynamics.questions.kept_fits import kept_fit
 from contact_dynamics.questions.uncertain_state import KnownState, UncertainState, state_of
 from contact_dynamics.records import Record
 from contact_dynamics.rigid_body.body import BodyState
@@ -138,7 +139,7 @@ def subject_of(
     states = [state_of(each) for each in known]
     try:
         if fit is None:
-            best = fit_free_motion(body.mass_properties, states, gravity_W=knowledge.world.gravity_W)
+            best = kept_fit(body.mass_properties, states, gravity_W=knowledge.world.gravity_W)
         else:
             best = fit(body.mass_properties, states)
     except InvalidFieldError as error:

@@ -10,6 +10,7 @@ from contact_dynamics.motion.covariance import CarriedCovariance, covariance_alo
 from contact_dynamics.motion.forces import NO_DRAG, NO_WRENCH, ConstantWrench, Drag
 from contact_dynamics.motion.integrated import ForcedMotion, Method, motion_of
 from contact_dynamics.motion.integrated_fit import fit_motion
+from contact_dynamics.questions.kept_fits import kept_fit
 from contact_dynamics.questions.knowledge import Knowledge
 from contact_dynamics.questions.sample_times import (
     MOST_INTEGRATED_STEPS,
@@ -195,6 +196,8 @@ class _Forces:
 
     def fit(self, body: MassProperties, states: Sequence[BodyState]) -> FitResult:
         """Return the motion that fits states best."""
+        if self.wrench is NO_WRENCH and self.drag is NO_DRAG:
+            return kept_fit(body, states, gravity_W=self.gravity_W)
         return fit_motion(
             body,
             states,

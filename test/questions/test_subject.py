@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from contact_dynamics.errors import InvalidFieldError, NoStateError, StaleStateError, UnknownBodyError
+from contact_dynamics.motion.free_fit import fit_free_motion
 from contact_dynamics.questions import (
     AtTimes,
     Defaults,
@@ -278,3 +279,22 @@ def test_states_that_the_clock_falls_behind_are_forgotten() -> None:
     states.add("cube", rising(hour_ns))
     with pytest.raises(NoStateError):
         states.newest("cube", now_ns=0)
+
+
+def test_a_fit_that_is_kept_is_that_of_the_same_body_states_and_gravity() -> None:
+    """Asked in turn, so that each fit is kept while the others are asked for."""
+    known = watching(*range(0, 100 * MS, 10 * MS))
+    floating = replace(known, world=replace(WORLD, gravity_W=np.array([0.0, 0.0, -1.0])))
+    light = replace(CUBE, mass_properties=MassProperties(mass=0.5, I_B=np.diag([1e-3, 2e-3, 2.5e-3])))
+    for _ in range(2):
+        for body, knowledge in (("cube", known), ("cube", floating), (light, known)):
+            for stamp_ns in (90 * MS, 80 * MS):
+                source = PublishedState(fit_window=0.05, stamp_ns=stamp_ns)
+                found = subject_of(body, source, knowledge)
+                states = [rising(each) for each in range(stamp_ns - 50 * MS, stamp_ns + 1, 10 * MS)]
+                expected = fit_free_motion(
+                    found.body.mass_properties, states, gravity_W=knowledge.world.gravity_W
+                )
+                np.testing.assert_array_equal(found.state.p_WB_W, expected.state.p_WB_W)
+                np.testing.assert_array_equal(found.state.w_WB_W, expected.state.w_WB_W)
+                np.testing.assert_array_equal(found.covariance, expected.covariance)
