@@ -1,4 +1,4 @@
-"""The table of docs/limits.md and the constants of the code say the same, in both directions."""
+"""docs/limits.md and the constants of the code agree, and each row of docs/certainty.md has its test."""
 
 from __future__ import annotations
 
@@ -79,3 +79,15 @@ def test_every_limit_of_the_code_is_in_the_table() -> None:
     assert declared - listed - NOT_REFUSED == set()
     assert listed - declared == set()
     assert NOT_REFUSED - declared == set()
+
+
+CERTAIN = re.compile(r"^\| .+ \| .+ \| `([\w/]+\.py)::(\w+)` \|$", re.MULTILINE)
+
+
+def test_each_statement_of_the_page_on_certainty_has_its_test() -> None:
+    page = (ROOT / "docs" / "certainty.md").read_text(encoding="utf-8")
+    rows = CERTAIN.findall(page)
+    stated = re.findall(r"^\| (?!statement|---)", page, re.MULTILINE)
+    assert len(rows) == len(stated) > 20
+    for path, name in rows:
+        assert f"def {name}(" in (ROOT / "test" / path).read_text(encoding="utf-8"), f"{path}::{name}"
