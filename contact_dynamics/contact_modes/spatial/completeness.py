@@ -271,7 +271,8 @@ class _Work(PyramidPrograms):
         ):
             return
         if len(open_ones) == 1 or any(self.touching[i].point[:, -1].any() for i in staying):
-            self._part_letters(letters, open_ones)
+            stays = [STAYS if i in open_ones else letter for i, letter in enumerate(letters)]
+            self._part_letters("".join(stays), open_ones)
             return
         frames = np.array([trials[i].parts[0].rows[:, :-1] for i in open_ones])
         normals = self._normals[staying, :-1]
@@ -288,7 +289,10 @@ class _Work(PyramidPrograms):
                         flats.append(further)
 
     def _part_letters(self, letters: str, open_ones: list[int]) -> None:
-        """Decide which of some contacts stick, and then in which directions the others slide."""
+        """Decide which of some contacts stick, and then in which directions the others slide.
+
+        A contact that is not decided yet has the letter c, whose programs hold its sticking too.
+        """
         if not open_ones:
             turning = [i for i in self._open if letters[i] == STAYS]
             if not turning:
@@ -299,7 +303,7 @@ class _Work(PyramidPrograms):
         at = open_ones[0]
         for letter in (STAYS, STICKS):
             narrower = letters[:at] + letter + letters[at + 1 :]
-            if letter == STICKS or self._forces(narrower, {}, COARSE) is not None:
+            if self._forces(narrower, {}, COARSE) is not None:
                 self._part_letters(narrower, open_ones[1:])
 
     def _decide_without_directions(self, letters: str) -> None:
