@@ -344,6 +344,8 @@ class Run(Course):
         self.now, self.y = went.seconds, went.y
         self.lost_in_contact += before - energy_of(self.solid, self.y)
         held = [one.touch for one in mode]
+        if went.end == PhaseEnd.CREEPS:
+            return self._pass_over()
         if went.end == PhaseEnd.COMES_DOWN:
             return held + [touch for touch in self.touching_now(self._fast()) if touch not in held]
         if went.end == PhaseEnd.SLOW:

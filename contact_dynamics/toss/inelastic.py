@@ -67,3 +67,17 @@ def inelastic_impact(
             after[10 + k] += turning[k]
         impulses.append(impulse)
     return Inelastic(after, impulses, motions)
+
+
+def sure_impact(
+    solid: Solid, y: Numbers, touching: list[Touch], *, room: list[float] | None = None
+) -> Inelastic:
+    """Return the impact without restitution. Where none is found, friction is left out, or the body stops."""
+    impact = inelastic_impact(solid, y, touching, room=room)
+    if impact is None:
+        smooth = solid._replace(flats=tuple(flat._replace(friction=0.0) for flat in solid.flats))
+        impact = inelastic_impact(smooth, y, touching, room=room)
+    if impact is None:
+        none = [(0.0, 0.0, 0.0)] * len(touching)
+        impact = Inelastic([*y[:7], *[0.0] * 6], none, none)
+    return impact

@@ -44,6 +44,12 @@ if TYPE_CHECKING:
 MOST_PHASE_STEPS: Final = 20_000
 """Steps after which a phase ends unfinished. A tenth of a second of sliding or tipping takes some twenty."""
 
+_TOO_SHORT: Final = 1e-6
+"""s. A phase whose steps are that short again and again creeps."""
+
+_MOST_SHORT_STEPS: Final = 60
+"""Such steps after which a phase ends. Sliding that stops takes some ten."""
+
 LARGEST_STEP: Final = 0.2
 """s. A step is no longer than this where no other corner comes down."""
 
@@ -99,19 +105,22 @@ def phase(
     y = out_of_flats(solid, y)
     heights = heights_held(solid, y, mode)
     y = held_in_place(solid, y, mode, heights)
-    now, step, steps = start, FIRST_STEP * (error / SAMPLED_PHASE_ERROR) ** 0.2, []
+    now, step, steps = start, FIRST_STEP * (error / SAMPLED_PHASE_ERROR) ** 0.2, list[PhaseStep]()
     pushed = pushed_by_contacts(solid, y, mode)
     low = low_corners(solid, y, held)
     watched = watched_corners(solid, held, low)
     resolved = max(SLIDING_STOPPED, min(RESOLVED_SLIDING * error, COARSE_SLIDING_STOPPED))
     before_stop, _ = _sliding(solid, y, pushed, mode, resolved=resolved)
-    fast = kinetic_energy_of(solid, y) > slow
+    fast, short = kinetic_energy_of(solid, y) > slow, 0
     for _ in range(MOST_PHASE_STEPS):
         longest = _before_arrival(solid, y, held)
         step = min(step, longest, until - now, before_stop)
         asked = AskedStep(solid, y, pushed, mode, span=step, scales=scales, error=error)
         yield asked
         trial, size, after = asked.trial, asked.size, asked.after
+        short += step < _TOO_SHORT
+        if short > _MOST_SHORT_STEPS:
+            return Phase(PhaseEnd.CREEPS, now, y, steps)
         if size > 1.0 and step > PHASE_LEAST_STEP:
             step *= max(0.2, 0.9 * size**-0.2)
             continue

@@ -44,6 +44,8 @@ class PhaseEnd(NamedInt):
     """The time that was asked for is over."""
     STEPS = 5
     """The bound on the number of steps was reached."""
+    CREEPS = 6
+    """Steps have become too short to go on in the mode, since its forces jump."""
 
 
 def low_corners(solid: Solid, y: Numbers, held: set[Touch]) -> dict[Touch, float]:

@@ -19,12 +19,12 @@ from contact_dynamics.tolerances import DISTANCE_TOLERANCE, SLIDING_STOPPED
 from contact_dynamics.toss.forces import free_accelerations, rates_of
 from contact_dynamics.toss.held import Held
 from contact_dynamics.toss.holding import out_of_flats
-from contact_dynamics.toss.inelastic import Inelastic, inelastic_impact
+from contact_dynamics.toss.inelastic import sure_impact
 from contact_dynamics.toss.phase_step import PhaseStep
 from contact_dynamics.toss.solid import energy_of, heights_and_rates, kinetic_energy_of
 
 if TYPE_CHECKING:
-    from contact_dynamics.toss.solid import Numbers, Solid, Touch
+    from contact_dynamics.toss.solid import Numbers, Solid
 
 LONGEST: Final = 2e-4
 """s. A step is no longer. A body that turns by 10 rad/s meanwhile turns by a tenth of a degree."""
@@ -65,7 +65,7 @@ def short_step(solid: Solid, y: Numbers, *, start: float, span: float) -> ShortS
     reached = DISTANCE_TOLERANCE + 2.0 * span * (norm(free.pose.v) + solid.reach * norm(free.pose.w))
     near = [(max(height, 0.0) / span, touch) for height, _, touch in listed if height <= reached]
     touching = [touch for _, touch in near]
-    impact = _impact(solid, pushed, touching, [room for room, _ in near])
+    impact = sure_impact(solid, pushed, touching, room=[room for room, _ in near])
     v, w = impact.y[7:10], impact.y[10:]
     rates = rates_of(impact.y, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
     after = [a + span * b for a, b in zip(impact.y, rates, strict=True)]
@@ -88,16 +88,3 @@ def short_step(solid: Solid, y: Numbers, *, start: float, span: float) -> ShortS
         if impulse != (0.0, 0.0, 0.0)
     )
     return ShortStep(after, PhaseStep(solid, start, span, first, slopes, span), mode)
-
-
-def _impact(solid: Solid, y: Numbers, touching: list[Touch], room: list[float]) -> Inelastic:
-    """Return the impact over a step. Where none is found, friction is left out, or at last the body stops."""
-    impact = inelastic_impact(solid, y, touching, room=room)
-    if impact is not None:
-        return impact
-    smooth = solid._replace(flats=tuple(flat._replace(friction=0.0) for flat in solid.flats))
-    impact = inelastic_impact(smooth, y, touching, room=room)
-    if impact is not None:
-        return impact
-    none = (0.0, 0.0, 0.0)
-    return Inelastic([*y[:7], *[0.0] * 6], [none] * len(touching), [none] * len(touching))

@@ -19,7 +19,7 @@ from contact_dynamics.tolerances import STILL_TOUCHING, STRIKES
 from contact_dynamics.toss.forces import pushed_by_contacts
 from contact_dynamics.toss.held import Held
 from contact_dynamics.toss.holding import heights_held, held_in_place, without_rebounds
-from contact_dynamics.toss.inelastic import inelastic_impact
+from contact_dynamics.toss.inelastic import inelastic_impact, sure_impact
 from contact_dynamics.toss.mode_choice import choose_mode
 from contact_dynamics.toss.one_impact import AskedImpact, Struck
 from contact_dynamics.toss.solid import arm_of, pose_of, times, velocity_of
@@ -32,8 +32,12 @@ if TYPE_CHECKING:
     from contact_dynamics.toss.mode_choice import Choice
     from contact_dynamics.toss.solid import Numbers, Solid, Touch
 
-MOST_STRIKES_AT_ONCE: Final = 500
-"""Strikes of one instant after which the contacts count as not settled by them."""
+MOST_STRIKES_AT_ONCE: Final = 100
+"""Strikes of one instant after which contacts that still approach jam, and have an impact without restitution
+together. A prism that lands on a face of eight corners takes some twenty."""
+
+_JAMS_AFTER: Final = 40
+"""The same where they approach so slowly that they would not rise by `settling`."""
 
 
 class Strikes(NamedTuple):
@@ -82,25 +86,22 @@ def strike(
         first: The contact that is struck first, or None if it is the one that approaches fastest.
     """
     struck: list[Struck] = []
-    for _ in range(MOST_STRIKES_AT_ONCE):
-        fastest = min(rates)
-        if fastest >= -STRIKES:
+    for k in range(MOST_STRIKES_AT_ONCE):
+        if min(rates) >= -(_slow(solid) if k >= _JAMS_AFTER else STRIKES):
             break
         settled = _settled(solid, y, touching, rates)
         if settled is not None:
             return settled._replace(struck=struck + settled.struck)
-        which = touching[rates.index(fastest)] if first is None else first
+        which = touching[rates.index(min(rates))] if first is None else first
         first = None
         impact = AskedImpact(solid, y, which, law)
         yield impact
         y = impact.after
         struck.append(impact.struck)
         rates = approaches(solid, y, touching)
-    else:
-        together = inelastic_impact(solid, y, touching)
-        if together is not None:
-            ended = _all_together(together, touching)
-            return ended._replace(struck=struck + ended.struck)
+    if min(rates) < -STRIKES:
+        ended = _all_together(sure_impact(solid, y, touching), touching)
+        return ended._replace(struck=struck + ended.struck)
     staying = [touch for touch, rate in zip(touching, rates, strict=True) if rate <= STILL_TOUCHING]
     return Strikes(y, struck, staying, settled=False)
 
@@ -112,7 +113,7 @@ def low_rebounds_ended(solid: Solid, y: Numbers, touching: list[Touch]) -> Strik
     `settling`. Its impulse is that by which it loses its rebound.
     """
     rates = approaches(solid, y, touching)
-    fast = math.sqrt(2.0 * solid.settling * norm(solid.gravity))
+    fast = _slow(solid)
     if min(rates) < -STRIKES or not any(STILL_TOUCHING < rate <= fast for rate in rates):
         return None
     found = _settled(solid, y, touching, rates)
@@ -124,6 +125,11 @@ def low_rebounds_ended(solid: Solid, y: Numbers, touching: list[Touch]) -> Strik
         if rate > STILL_TOUCHING and touch in found.staying
     ]
     return found._replace(y=without_rebounds(solid, y, found.staying), choice=None) if low else None
+
+
+def _slow(solid: Solid) -> float:
+    """Return the speed, m/s, with which a contact rises by the solid's `settling`."""
+    return math.sqrt(2.0 * solid.settling * norm(solid.gravity))
 
 
 def _settled(solid: Solid, y: Numbers, touching: list[Touch], rates: list[float]) -> Strikes | None:
