@@ -13,6 +13,7 @@ what happens, and `result` has what is returned. Flights, impacts (`one_impact`)
 - `forces` has the accelerations in a mode of `held` contacts, `flush` those of a body that slides on a face,
   and `phase` integrates them (`phase_step`) until the mode ends (`phase_ends`). `holding` keeps contacts
   where they are, and the body out of the flats.
+- Contacts that strike at one instant and have no order do so `at_once`.
 - Contacts that jam have an impact without restitution together (`inelastic`). Where strikes and modes lead to
   one another at one instant, a `short_step` passes over that.
 

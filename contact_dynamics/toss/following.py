@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final, TypeAlias
 import numpy as np
 
 from contact_dynamics.impact.law import ImpactOutcome, RestitutionLaw
-from contact_dynamics.impact.several.result import SeveralVerdict
+from contact_dynamics.impact.several.result import SeveralContactsLaw, SeveralVerdict
 from contact_dynamics.impact.several.settling import settling_impact
 from contact_dynamics.landing.search_work import SearchWork
 from contact_dynamics.numerics.vectors import norm
@@ -87,6 +87,7 @@ class Following:
         properties: Mass and inertia, as flights take them.
         shape: The shape, as flights take it.
         law: What the coefficients of restitution mean.
+        several_contacts_law: The law for several contacts that strike at one instant.
         horizon: s, how far a toss is followed.
         most_events: How many events are followed.
         error: The error that one step of a contact phase may have (`phase.phase`).
@@ -105,6 +106,7 @@ class Following:
         shape: ConvexShape,
         law: RestitutionLaw,
         *,
+        several_contacts_law: SeveralContactsLaw = SeveralContactsLaw.SEQUENTIAL,
         horizon: float,
         most_events: int,
         error: float,
@@ -114,7 +116,7 @@ class Following:
         has_pieces: bool = True,
     ) -> None:
         self.solid, self.properties, self.shape = solid, properties, shape
-        self.law, self.horizon = law, horizon
+        self.law, self.several_contacts_law, self.horizon = law, several_contacts_law, horizon
         self.most_events, self.error = most_events, error
         self.kick, self.flat_after, self.thorough = kick, flat_after, thorough
         self.has_pieces = has_pieces
@@ -226,11 +228,14 @@ class Run(Course):
         striking = [
             touch for rate, touch in sorted(zip(rates, touching, strict=True)) if rate < -self._fast()
         ]
-        first = None
-        if len(striking) > 1:
-            first = striking[self.way(UndecidedReason.STRIKE_TOGETHER, len(striking))]
+        first, together = None, self.runs.several_contacts_law
+        if len(striking) > 1 and together == SeveralContactsLaw.SEQUENTIAL:
+            way = self.way(UndecidedReason.STRIKE_TOGETHER, len(striking))
+            first = striking[way] if way > 0 else None
         y, before = self.y, energy_of(self.solid, self.y)
-        strikes = yield from strike(self.solid, self.y, touching, self.runs.law, rates=rates, first=first)
+        strikes = yield from strike(
+            self.solid, self.y, touching, self.runs.law, rates=rates, together=together, first=first
+        )
         self.settled = strikes
         self.y, staying = strikes.y, strikes.staying
         kick = self.runs.kick
@@ -238,7 +243,7 @@ class Run(Course):
             self.y = kick(self.solid, y, self.y, touching[0])
             staying = self.touching_now(STILL_TOUCHING)
         for one in strikes.struck:
-            kind = TossEventKind.SETTLES if one.outcome is None else TossEventKind.STRIKES
+            kind = TossEventKind.SETTLES if one.settles else TossEventKind.STRIKES
             self.struck += kind == TossEventKind.STRIKES
             self.note(kind, [one.touch], impulse=one.impulse, outcome=one.outcome)
         if not strikes.settled:

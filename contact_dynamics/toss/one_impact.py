@@ -23,12 +23,14 @@ class Struck(NamedTuple):
     Attributes:
         touch: The contact.
         impulse: N s, on the body, world axes.
-        outcome: What the contact did, or None if it was settled without restitution, together with others.
+        outcome: What the contact did, or None if all contacts struck at once or settled.
+        settles: Whether it was settled without restitution, together with others.
     """
 
     touch: Touch
     impulse: Vector3
     outcome: ImpactOutcome | None
+    settles: bool = False
 
 
 def routh(

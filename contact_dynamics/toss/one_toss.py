@@ -17,7 +17,9 @@ from typing import TYPE_CHECKING, Final
 
 from contact_dynamics.contact.found import check_not_inside
 from contact_dynamics.impact.law import RestitutionLaw
+from contact_dynamics.impact.several.result import SeveralContactsLaw
 from contact_dynamics.tolerances import DISTANCE_TOLERANCE, LARGEST_NUMBER, LEAST_PHASE_ERROR, PHASE_ERROR
+from contact_dynamics.toss.at_once import check_laws
 from contact_dynamics.toss.distinct_corners import with_distinct_corners
 from contact_dynamics.toss.following import Following
 from contact_dynamics.toss.solid import solid_of
@@ -48,6 +50,7 @@ def toss(
     world: World,
     *,
     restitution_law: RestitutionLaw = RestitutionLaw.POISSON,
+    several_contacts_law: SeveralContactsLaw = SeveralContactsLaw.SEQUENTIAL,
     horizon: float = HORIZON,
     most_events: int = MOST_EVENTS,
     most_alternatives: int = MOST_ALTERNATIVES,
@@ -61,7 +64,8 @@ def toss(
         body: Mass properties and shape: corners, which may be rounded.
         state: Pose and velocities.
         world: Surfaces, which are flats, and gravity.
-        restitution_law: What the coefficients of restitution mean.
+        restitution_law: What the coefficients of restitution mean. ENERGETIC only goes with SEQUENTIAL.
+        several_contacts_law: The law for several contacts that strike at one instant.
         horizon: s, > 0. How far the motion is followed.
         most_events: How many events to follow at most, >= 1.
         most_alternatives: How many other ways to follow at most, >= 0, where mechanics does not decide.
@@ -74,9 +78,11 @@ def toss(
     Raises:
         NoContactError: the body has no shape that could touch anything.
         NotSupportedError: the shape has rims, or a surface is an obstacle.
-        InvalidFieldError: a number is not allowed, or the body is deeper in a surface than the tolerance.
+        InvalidFieldError: a number is not allowed, ENERGETIC and SIMULTANEOUS are asked for together, or the
+            body is deeper in a surface than the tolerance.
         TooLargeError: a flight takes too many steps of the search for its end.
     """
+    check_laws(restitution_law, several_contacts_law)
     factors = check_factors("lasting_factors", lasting_factors)
     check_not_inside(body, state, world.surfaces, distance_tolerance=distance_tolerance)
     body, indices = with_distinct_corners(body)
@@ -86,6 +92,7 @@ def toss(
         body.mass_properties,
         body.shape,
         restitution_law,
+        several_contacts_law=several_contacts_law,
         horizon=check_positive("horizon", horizon),
         most_events=check_whole("most_events", most_events, 1),
         error=check_within("error", error, LEAST_PHASE_ERROR, LARGEST_NUMBER),

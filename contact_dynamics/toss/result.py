@@ -64,7 +64,8 @@ class TossEvent(Record):
         corners: The indices of the corners of the body's shape that touch there, as many as surfaces.
         p_WC_W: (n, 3), m, where these contacts are, world.
         impulse_W: (3,), N s, the impulse on the body, world axes. It is zero where nothing strikes.
-        outcome: What a striking contact did, or None.
+        outcome: What a striking contact did, or None. Contacts that strike at once under SIMULTANEOUS have
+            none.
         mode: A letter for each contact: f sticks or rolls, c slides. It is empty where no mode follows.
         state: The state after everything that happens at that time.
     """
@@ -114,8 +115,8 @@ class Undecided(Record):
         seconds: s after the first state's stamp.
         reason: What is open.
         options: How many ways there are to go on, >= 2.
-        taken: Which way this toss took, from 0. Way 0 strikes the fastest approach first, or takes the first
-            mode.
+        taken: Which way this toss took, from 0. Way 0 strikes the fastest approach first, with those that
+            approach as fast, or takes the first mode.
     """
 
     seconds: float

@@ -17,9 +17,11 @@ import numpy as np
 
 from contact_dynamics.contact.found import check_not_inside
 from contact_dynamics.errors import TooLargeError
+from contact_dynamics.impact.several.result import SeveralContactsLaw
 from contact_dynamics.numerics.vectors import dot
 from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.tolerances import DISTANCE_TOLERANCE, SAMPLED_SETTLING_HEIGHT
+from contact_dynamics.toss.at_once import check_laws
 from contact_dynamics.toss.distinct_corners import with_distinct_corners
 from contact_dynamics.toss.distribution import (
     FEWEST,
@@ -77,6 +79,7 @@ def sampled_toss(
     to_rest: bool = False,
     seed: int = 0,
     law: RestitutionLaw,
+    several_contacts_law: SeveralContactsLaw = SeveralContactsLaw.SEQUENTIAL,
     horizon: float,
     processes: int | Executor = 1,
     distance_tolerance: float = DISTANCE_TOLERANCE,
@@ -96,7 +99,9 @@ def sampled_toss(
         strikes: How many next strikes the tree has, from 1 to `MOST_STRIKES`.
         to_rest: Whether samples are followed to rest.
         seed: Samples are drawn from it, >= 0. The same seed draws the same ones.
-        law: What the coefficients of restitution mean.
+        law: What the coefficients of restitution mean. ENERGETIC only goes with SEQUENTIAL.
+        several_contacts_law: The law for several contacts that strike at one instant, in samples that go on
+            to rest.
         horizon: s, > 0, how far samples are followed.
         processes: How many processes share the samples that go on to rest, or an executor of
             `concurrent.futures`, which keeps its processes from toss to toss. The answer is the same bit for
@@ -126,6 +131,7 @@ def sampled_toss(
         covariance = check_covariance("covariance", covariance)
     check_extent(body.mass_properties, state, world.gravity_W)
     check_not_inside(body, state, world.surfaces, distance_tolerance=distance_tolerance)
+    check_laws(law, several_contacts_law)
     body, indices = with_distinct_corners(body)
     solid = solid_of(body, world, indices=indices, settling=SAMPLED_SETTLING_HEIGHT)
     chance = np.random.default_rng(check_whole("seed", seed, 0))
@@ -146,7 +152,14 @@ def sampled_toss(
     rests: dict[int, Followed] = {}
     if to_rest:
         followed = followed_to_rest(
-            solid, samples, told, spread, law=law, horizon=horizon, processes=shared_by
+            solid,
+            samples,
+            told,
+            spread,
+            law=law,
+            several_contacts_law=several_contacts_law,
+            horizon=horizon,
+            processes=shared_by,
         )
         for i, one in followed.items():
             _tell(told, i, one)

@@ -1,8 +1,9 @@
 """Strikes at the contacts of one instant: Routh's impact at each, and the end of many small rebounds.
 
 The contact that approaches fastest is struck first, by Routh's impact at one contact (`impact.spatial`), and
-so on until none approaches, which is the sequential law (`impact.several`). The order is a choice, and
-another contact may be asked to come first.
+so on until none approaches, which is the sequential law (`impact.several`). Contacts that approach equally
+fast strike as one. The order is a choice, and another contact may be asked to come first. Under the
+simultaneous law all contacts strike `at_once`.
 
 Rebounds shrink by a ratio, and infinitely many of them end in finite time (Zeno). A contact whose rebound
 would not be higher than the solid's `settling` stays from then on. The impulses that it would have had in all
@@ -14,8 +15,10 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Final, NamedTuple
 
+from contact_dynamics.impact.several.result import SeveralContactsLaw
 from contact_dynamics.numerics.vectors import cross, dot, norm
 from contact_dynamics.tolerances import STILL_TOUCHING, STRIKES
+from contact_dynamics.toss.at_once import next_in_turn, simultaneous_strike, tied_strike
 from contact_dynamics.toss.forces import pushed_by_contacts
 from contact_dynamics.toss.held import Held
 from contact_dynamics.toss.holding import heights_held, held_in_place, without_rebounds
@@ -73,6 +76,7 @@ def strike(
     law: RestitutionLaw,
     *,
     rates: list[float],
+    together: SeveralContactsLaw = SeveralContactsLaw.SEQUENTIAL,
     first: Touch | None = None,
 ) -> Asking[Strikes]:
     """Return the state after all strikes of contacts that touch at one instant.
@@ -83,7 +87,9 @@ def strike(
         touching: All contacts that touch, approaching or not.
         law: What the coefficients of restitution mean.
         rates: m/s, the normal velocities of these contacts (`approaches`).
-        first: The contact that is struck first, or None if it is the one that approaches fastest.
+        together: The law for several contacts.
+        first: The contact that is struck first under SEQUENTIAL, or None if it is the one that approaches
+            fastest, with those that tie with it.
     """
     struck: list[Struck] = []
     for k in range(MOST_STRIKES_AT_ONCE):
@@ -92,12 +98,20 @@ def strike(
         settled = _settled(solid, y, touching, rates)
         if settled is not None:
             return settled._replace(struck=struck + settled.struck)
-        which = touching[rates.index(min(rates))] if first is None else first
+        group = next_in_turn(solid, y, touching, rates) if first is None else [first]
         first = None
-        impact = AskedImpact(solid, y, which, law)
-        yield impact
-        y = impact.after
-        struck.append(impact.struck)
+        at_once = None
+        if together == SeveralContactsLaw.SIMULTANEOUS and len(touching) > 1:
+            at_once = simultaneous_strike(solid, y, touching, law)
+            together = SeveralContactsLaw.SEQUENTIAL  # what is left after it strikes in turn
+        elif len(group) > 1:
+            at_once = tied_strike(solid, y, group, law)
+        if at_once is None:
+            impact = AskedImpact(solid, y, group[0], law)
+            yield impact
+            at_once = impact.after, [impact.struck]
+        y, new = at_once
+        struck += new
         rates = approaches(solid, y, touching)
     if min(rates) < -STRIKES:
         ended = _all_together(sure_impact(solid, y, touching), touching)
@@ -184,7 +198,7 @@ def _all_together(impact: Inelastic, touching: list[Touch]) -> Strikes:
 
 def _struck(impact: Inelastic, touching: list[Touch]) -> list[Struck]:
     return [
-        Struck(touch, impulse, None)
+        Struck(touch, impulse, None, settles=True)
         for touch, impulse in zip(touching, impact.impulses, strict=True)
         if impulse != (0.0, 0.0, 0.0)
     ]

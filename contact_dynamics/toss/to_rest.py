@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from concurrent.futures import Executor
 
     from contact_dynamics.impact.law import RestitutionLaw
+    from contact_dynamics.impact.several.result import SeveralContactsLaw
     from contact_dynamics.numerics.vectors import Vector3
     from contact_dynamics.toss.law_spread import KickOfOne, LawSpread
     from contact_dynamics.toss.solid import Numbers, Solid, Touch
@@ -70,6 +71,7 @@ class _Block(NamedTuple):
         lacking: (n,), how many strikes the tree lacks.
         kicks: What the law's own spread does to each of them, or None.
         law: What the coefficients of restitution mean.
+        several_contacts_law: The law for several contacts that strike at one instant.
         horizon: s, how far they are followed.
     """
 
@@ -80,6 +82,7 @@ class _Block(NamedTuple):
     lacking: list[int]
     kicks: list[KickOfOne | None]
     law: RestitutionLaw
+    several_contacts_law: SeveralContactsLaw
     horizon: float
 
 
@@ -103,6 +106,7 @@ def followed_to_rest(
     spread: LawSpread,
     *,
     law: RestitutionLaw,
+    several_contacts_law: SeveralContactsLaw,
     horizon: float,
     processes: int | Executor,
 ) -> dict[int, Followed]:
@@ -114,6 +118,7 @@ def followed_to_rest(
         told: The strikes up to where they go on.
         spread: The law's own spread.
         law: What the coefficients of restitution mean.
+        several_contacts_law: The law for several contacts that strike at one instant.
         horizon: s, how far they are followed.
         processes: How many processes share the work, or an executor.
     """
@@ -131,6 +136,7 @@ def followed_to_rest(
             lacking=(len(told.seconds) - strikes[which]).tolist(),
             kicks=[None if spread.is_none else spread.of_one(i) for i in which.tolist()],
             law=law,
+            several_contacts_law=several_contacts_law,
             horizon=horizon,
         )
         for which in np.array_split(going, max(round(len(going) / BLOCK), 1))
@@ -204,6 +210,7 @@ def _begun(block: _Block, i: int) -> Run:
         MassProperties(mass=solid.mass, I_B=inertia),
         ConvexShape(vertices=corners, rounding=solid.rounding),
         block.law,
+        several_contacts_law=block.several_contacts_law,
         horizon=block.horizon - float(block.now[i]),
         most_events=_MOST_EVENTS,
         error=SAMPLED_PHASE_ERROR,
