@@ -156,8 +156,8 @@ def _is_iterable(value: object) -> TypeGuard[Iterable[object]]:
 
 
 def _refuse(field: str, value: object, expected: Expected) -> NoReturn:
-    """Raise the error, with a hint where a field of the value is what is expected."""
-    found = in_words(value)
+    """Raise the error, with a hint where a field of the value is what is expected, or its type has one."""
+    found = in_words(value) + getattr(type(value), "HINT_IF_WRONG", "")
     for name in getattr(type(value), "__dataclass_fields__", ()):
         if isinstance(getattr(value, name), tuple({*expected.types} - {type(None), str})):
             found += f", whose {name} is one"

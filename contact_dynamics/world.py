@@ -77,12 +77,6 @@ class Body(Record):
 
     def __post_init__(self) -> None:
         """Check the arrays, and make corners and shape agree."""
-        if not isinstance(self.mass_properties, MassProperties):
-            raise InvalidFieldError(
-                "mass_properties",
-                type(self.mass_properties).__name__,
-                "MassProperties; Body.of(name, mass) takes a MassDistribution, with its centre of mass",
-            )
         center = check_magnitude("p_FB_F", check_array("p_FB_F", self.p_FB_F, (3,)))
         object.__setattr__(self, "p_FB_F", center)
         if self.shape is NO_SHAPE:

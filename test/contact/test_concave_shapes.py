@@ -9,12 +9,14 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from contact_dynamics.errors import ConcaveShapeWarning, InvalidFieldError
+from contact_dynamics.errors import ConcaveShapeWarning, WrongTypeError
 from contact_dynamics.nodes.given_parameters import GivenParameters
 from contact_dynamics.nodes.parameters import read_server_parameters
 from contact_dynamics.rigid_body import inertia
+from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.shapes.convex import box, polyhedron
 from contact_dynamics.shapes.obstacle import Obstacle
+from contact_dynamics.tumbling import free_motion
 from contact_dynamics.world import Body, box_vertices
 from sweeps import sweep
 
@@ -104,12 +106,13 @@ def test_shapes_without_faces_inside_do_not_warn() -> None:
 
 
 def test_a_mass_distribution_is_no_mass_properties() -> None:
-    """Its centre of mass would be lost."""
-    words = (
-        r"mass_properties: found MassDistribution, allowed is MassProperties; Body\.of\(name, mass\) takes"
-    )
-    with pytest.raises(InvalidFieldError, match=words):
+    """Its centre of mass would be lost. The error says what takes it."""
+    words = r" must be a MassProperties, got a MassDistribution, which Body\.of takes with its centre of mass"
+    with pytest.raises(WrongTypeError, match=f"mass_properties{words}"):
         Body(name="L", mass_properties=mass("L"))  # type: ignore[arg-type]
+    state = BodyState(p_WB_W=np.zeros(3), q_WB=[0, 0, 0, 1], v_WB_W=np.zeros(3), w_WB_W=np.ones(3))
+    with pytest.raises(WrongTypeError, match=f"body{words}"):
+        free_motion(mass("L"), state)  # type: ignore[arg-type]
 
 
 def test_a_configured_bracket_warns() -> None:

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
@@ -49,6 +49,10 @@ class MassDistribution(Record):
     mass: float
     p_FB_F: FloatArray
     I_B: FloatArray
+
+    HINT_IF_WRONG: ClassVar[str] = (
+        ", which Body.of takes with its centre of mass, and whose mass_properties are about that centre"
+    )
 
     def __post_init__(self) -> None:
         """Check all fields."""
