@@ -174,7 +174,7 @@ SERVICES: Final = (
     Service(
         type_name="PredictContactMode",
         kind=CONTACT_MODES,
-        digest="daa8ba36d4c08594",
+        digest="8d68cde9b31a3348",
         question_from_msg=ImportedOnUse("msg_adapters.questions:contact_mode_question_from_msg"),
         answer=ImportedOnUse("contact_dynamics.questions.contact_modes:answer"),
         answer_to_msg=ImportedOnUse("msg_adapters.contact_mode:contact_mode_answer_to_msg"),

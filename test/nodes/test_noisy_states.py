@@ -57,7 +57,14 @@ def share_at_rest(client: Client, *, has_covariance: bool, **asked: Any) -> floa
         client.spin_until(is_about_it)
         answer = answers[-1]
         assert answer.status == answer.OK, answer.message
-        right += answer.verdict == answer.UNIQUE and [mode.mode for mode in answer.modes] == ["ffff"]
+        rests = answer.verdict == answer.UNIQUE and [mode.mode for mode in answer.modes] == ["ffff"]
+        right += rests
+        assert len(answer.probable_modes) == len(answer.mode_probabilities)
+        if asked.get("want_probabilities") and rests:
+            assert answer.probable_modes[0] == "ffff"
+            assert (
+                0.3 < sum(answer.mode_probabilities) < 1.1
+            )  # modes that are consistent together count twice
     return right / DRAWS
 
 
@@ -73,7 +80,10 @@ def configured(tmp_path: Path, request: pytest.FixtureRequest) -> Iterator[Clien
 @pytest.mark.parametrize("configured", [[]], indirect=True)
 def test_a_published_covariance_tells_noise_from_motion(configured: Client) -> None:
     """Without it, no tolerance does."""
-    assert share_at_rest(configured, has_covariance=True, want_margins=True) >= (DRAWS - 1) / DRAWS
+    assert (
+        share_at_rest(configured, has_covariance=True, want_margins=True, want_probabilities=True)
+        >= (DRAWS - 1) / DRAWS
+    )
     tolerances = {"velocity_tolerance": [0.02], "distance_tolerance": [0.001]}
     assert share_at_rest(configured, has_covariance=False, **tolerances) < 0.2
 
