@@ -16,7 +16,6 @@ from contextlib import contextmanager, suppress
 from functools import partial
 from typing import TYPE_CHECKING, Final, Protocol
 
-import numpy as np
 import rclpy
 from rclpy.exceptions import InvalidHandle, ParameterException
 from rclpy.experimental import EventsExecutor
@@ -29,6 +28,7 @@ from contact_dynamics.nodes.dds_profile import profile_of_fast_dds
 from contact_dynamics.nodes.reserved_memory import keep_reserved_memory_untouched
 from contact_dynamics.nodes.ros_log_directory import ensure_ros_log_directory
 from contact_dynamics.nodes.unread_output import never_wait_for_readers
+from contact_dynamics.questions.numpy_warnings import leave_out_numpy_warnings
 
 if TYPE_CHECKING:
     import argparse
@@ -81,7 +81,7 @@ def run_node(
     never_wait_for_readers()
     ensure_ros_log_directory()
     keep_reserved_memory_untouched()
-    np.seterr(all="ignore")  # whoever sent such numbers is told by the field's name, the console would flood
+    leave_out_numpy_warnings()
     with stop_signals() as stop:
         try:
             rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.NO)

@@ -21,9 +21,8 @@ from multiprocessing import forkserver, resource_tracker
 from pathlib import Path
 from typing import TYPE_CHECKING, Final, TypeVar
 
-import numpy as np
-
 from contact_dynamics.errors import BusyError, ContactDynamicsError, TookTooLongError, TooLargeError
+from contact_dynamics.questions.numpy_warnings import leave_out_numpy_warnings
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -282,7 +281,7 @@ def _answer_questions(pipe: Connection, memory: int, priority: int) -> None:
     """Answer one question after another: what a worker does."""
     signal.signal(signal.SIGALRM, signal.SIG_DFL)
     os.setpriority(os.PRIO_PROCESS, 0, max(priority, os.getpriority(os.PRIO_PROCESS, 0)))
-    np.seterr(all="ignore")  # what overflows is refused by its name
+    leave_out_numpy_warnings()
     limit = _address_space() + memory
     resource.setrlimit(resource.RLIMIT_AS, (limit, limit))
     with contextlib.suppress(OSError):  # who asks is gone
