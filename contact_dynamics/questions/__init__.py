@@ -20,7 +20,8 @@ world axes
 `settled_impact` has the impact that follows an inconsistency. `many` asks about many states at once, and
 `many_contact_modes` about many wrenches or sets of contacts.
 
-`effort` tells whether a question is quick, and `workers` are processes that answer those that are not.
+`effort` tells whether a question is quick, and `workers` are processes that answer those that are not. They
+and the server leave out `numpy_warnings`. `kept_fits` has the fits of the last few questions.
 """
 
 from contact_dynamics.questions.asking import ask
