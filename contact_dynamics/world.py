@@ -82,7 +82,7 @@ class Body(Record):
         if self.shape is NO_SHAPE:
             vertices = check_magnitude("vertices_B", check_array("vertices_B", self.vertices_B, (None, 3)))
             object.__setattr__(self, "shape", ConvexShape(vertices=vertices))
-            warn_if_concave(f"body {self.name!r}", self.shape.vertices, self.mass_properties, stacklevel=4)
+            warn_if_concave(f"body {self.name!r}", self.shape.vertices, self.mass_properties)
         elif self.vertices_B is not self.shape.vertices and np.size(self.vertices_B) > 0:
             raise InvalidFieldError("vertices_B", "vertices and a shape", "one of them")
         object.__setattr__(self, "vertices_B", self.shape.vertices)

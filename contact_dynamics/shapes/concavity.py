@@ -11,6 +11,7 @@ the hull. No corners show them.
 
 from __future__ import annotations
 
+import inspect
 import math
 import warnings
 from typing import TYPE_CHECKING, Final
@@ -26,6 +27,8 @@ if TYPE_CHECKING:
 
     from contact_dynamics.rigid_body.body import MassProperties
     from contact_dynamics.validation import FloatArray
+
+_PACKAGE: Final = __name__.partition(".")[0] + "."
 
 _FEW: Final = 300
 """Up to this number of corners, the products of all of them are cheap."""
@@ -43,7 +46,6 @@ def warn_if_concave(
     mass_properties: MassProperties | None = None,
     *,
     divided_faces: bool = True,
-    stacklevel: int = 3,
 ) -> None:
     """Warn with `ConcaveShapeWarning` if corners, (k, 3), m, of something named are those of a concave body.
 
@@ -56,7 +58,15 @@ def warn_if_concave(
             f"{name}: {found}. Its convex hull is taken instead, which touches where the body does not. "
             "If the hull is meant, give its corners alone"
         )
-        warnings.warn(message, ConcaveShapeWarning, stacklevel=stacklevel)
+        warnings.warn(message, ConcaveShapeWarning, stacklevel=_frames_to_caller())
+
+
+def _frames_to_caller() -> int:
+    """Return the number of frames from the function that warns to the first one outside of this package."""
+    count, frame = 0, inspect.currentframe()
+    while frame is not None and str(frame.f_globals.get("__name__")).startswith(_PACKAGE):
+        count, frame = count + 1, frame.f_back
+    return count
 
 
 def _concave_by(

@@ -66,12 +66,13 @@ def test_a_corner_inside_the_hull_warns_wherever_corners_are_given() -> None:
     dented = np.vstack([box_vertices((1.0, 1.0, 1.0)), [[0.0, 0.0, 0.3]]])
     even = inertia.box(size=(1.0, 1.0, 1.0), mass=1.0)
     words = r"1 of 9 corners are inside their hull, by up to 0\.2 m"
-    with pytest.warns(ConcaveShapeWarning, match=words):
+    with pytest.warns(ConcaveShapeWarning, match=words) as of_mass:
         Body.of("cube", even, vertices_F=dented)
-    with pytest.warns(ConcaveShapeWarning, match=words):
+    with pytest.warns(ConcaveShapeWarning, match=words) as of_body:
         Body(name="cube", mass_properties=even.mass_properties, vertices_B=dented)
-    with pytest.warns(ConcaveShapeWarning, match=f"obstacle 'step': {words}"):
+    with pytest.warns(ConcaveShapeWarning, match=f"obstacle 'step': {words}") as of_obstacle:
         Obstacle(name="step", vertices_W=dented, friction=0.3, restitution=0.0)
+    assert [each.filename for each in (*of_mass, *of_body, *of_obstacle)] == [__file__] * 3
 
 
 @pytest.mark.filterwarnings("error")
