@@ -35,6 +35,7 @@ from msg_adapters.geometry_margins import (
     write_within,
 )
 from msg_adapters.impact import resolved_impact_from_msg, resolved_impact_to_msg
+from msg_adapters.status import with_warnings, without_warnings
 
 if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
@@ -51,7 +52,7 @@ def contact_mode_answer_to_msg(
     msg = PredictContactMode.Response() if into is None else into
     margins = repeat(None) if answer.margins is None else answer.margins
     msg.verdict = int(answer.verdict)
-    msg.message = answer.undecided
+    msg.message = with_warnings(answer.undecided, answer.warnings)
     msg.modes = [mode_to_msg(mode, margin) for mode, margin in zip(answer.modes, margins, strict=False)]
     msg.approaching_contacts = list(answer.approaching)
     msg.contact_velocities = flat(answer.contact_velocities_W)
@@ -100,6 +101,7 @@ def contact_mode_answer_from_msg(msg: PredictContactMode.Response, *, world: Wor
     margins = tuple(filter(None, map(margin_from_msg, msg.modes)))
     wrench_sets = tuple(wrench_set_from_msg(wrenches) for wrenches in msg.wrench_sets)
     is_planar = msg.problem == PredictContactMode.Request.PLANAR
+    undecided, warnings = without_warnings(msg.message)
     return ContactModeAnswer(
         body_name=msg.state.body_name,
         p_FB_F=p_FB_F,
@@ -124,7 +126,8 @@ def contact_mode_answer_from_msg(msg: PredictContactMode.Response, *, world: Wor
         distance_tolerance=msg.distance_tolerance,
         friction_facets=msg.friction_facets,
         wrench_facets=msg.wrench_facets,
-        undecided=msg.message,
+        undecided=undecided,
+        warnings=warnings,
         undecided_modes=tuple(msg.undecided_modes),
         within=within_from_msg(msg),
         geometry_margins=tuple(geometry_margin_from_msg(margin) for margin in msg.geometry_margins) or None,

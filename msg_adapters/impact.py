@@ -27,6 +27,7 @@ from msg_adapters.body_state import body_state_from_msg, body_state_to_msg, cent
 from msg_adapters.contacts import contacts_from_msg, contacts_to_msg, flat, rows
 from msg_adapters.geometry import vector_from_msg, vector_to_msg
 from msg_adapters.stamps import stamp_ns_from_msg
+from msg_adapters.status import with_warnings, without_warnings
 from msg_adapters.tumbling import read_fit, write_fit
 
 if TYPE_CHECKING:
@@ -46,6 +47,7 @@ def impact_answer_to_msg(
     resolved_impact_to_msg(
         answer.impact, body_name=name, p_FB_F=p_FB_F, world_frame=world_frame, other=other, into=msg.impact
     )
+    msg.message = with_warnings("", answer.warnings)
     write_fit(msg, answer.fit)
     msg.time_to_contact = answer.seconds_to_contact
     msg.problem = int(answer.problem)
@@ -90,6 +92,7 @@ def impact_answer_from_msg(msg: PredictImpact.Response, *, world: World) -> Impa
         out_of_plane=msg.out_of_plane,
         velocity_tolerance=msg.velocity_tolerance,
         distance_tolerance=msg.distance_tolerance,
+        warnings=without_warnings(msg.message)[1],
     )
 
 

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Final, Protocol
+from typing import TYPE_CHECKING, Final, Protocol
 
 from contact_dynamics import errors
 from msg_adapters.field_names import renamed
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
 
 _CODE_NAMES: Final[tuple[tuple[type[errors.ContactDynamicsError], str], ...]] = (
     # A subclass must come before the class that it refines.
@@ -41,6 +44,21 @@ def short(message: str) -> str:
     """Return a message without its middle, if it is too long to be read."""
     half = MOST_SAID // 2
     return message if len(message) <= MOST_SAID else f"{message[:half]} ... {message[-half:]}"
+
+
+_WARNING: Final = "warning: "
+
+
+def with_warnings(text: str, warnings: Sequence[str]) -> str:
+    """Return the message of an answer: what it says by itself, then a line for each warning."""
+    return "\n".join([*([text] if text else []), *(_WARNING + one for one in warnings)])
+
+
+def without_warnings(message: str) -> tuple[str, tuple[str, ...]]:
+    """Return what an answer says by itself, and its warnings."""
+    lines = message.splitlines()
+    warnings = tuple(line.removeprefix(_WARNING) for line in lines if line.startswith(_WARNING))
+    return "\n".join(line for line in lines if not line.startswith(_WARNING)), warnings
 
 
 def code_name(error: Exception) -> str:

@@ -53,7 +53,7 @@ from contact_dynamics.questions.settled_impact import (
     settled_in_space,
 )
 from contact_dynamics.questions.subject import covariance_of, subject_of
-from contact_dynamics.questions.touching import in_contact
+from contact_dynamics.questions.touching import in_contact, outside_shape
 from contact_dynamics.records import Record
 from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.validation import FloatArray
@@ -121,6 +121,7 @@ class ContactModeAnswer(Record):
             plane.
         wrench_facets: Number of edges of each friction pyramid in the wrench sets in space, or zero if they
             were not asked for.
+        warnings: What makes the answer doubtful, in words: a contact outside of the body's shape.
     """
 
     body_name: str
@@ -151,6 +152,7 @@ class ContactModeAnswer(Record):
     within: VerdictsWithin | None = None
     geometry_margins: tuple[GeometryMargin, ...] | None = None
     probabilities: tuple[ModeProbability, ...] | None = None
+    warnings: tuple[str, ...] = ()
 
 
 def answer(question: ContactModeQuestion, knowledge: Knowledge | None = None) -> ContactModeAnswer:
@@ -164,6 +166,10 @@ def answer(question: ContactModeQuestion, knowledge: Knowledge | None = None) ->
     case, noisy = _case(question, known)
     view, reason = _in_plane(question, case, known)
     found = _spatial_answer(question, case, reason) if view is None else _planar_answer(question, case, *view)
+    if question.contacts is not None:
+        tolerance = case.distance_tolerance
+        outside = outside_shape(case.contacts, case.subject, distance_tolerance=tolerance)
+        found = replace(found, warnings=outside)
     if not question.want_probabilities:
         return found
     if noisy is None:

@@ -22,6 +22,7 @@ from contact_dynamics.impact import (
     spatial_impact_distribution,
     spatial_pair_impact,
 )
+from contact_dynamics.impact.several.orders import order_warning
 from contact_dynamics.impact.several.result import SeveralContactsLaw
 from contact_dynamics.motion.covariance import propagate_covariance
 from contact_dynamics.plane.in_space import planar_in_space
@@ -46,6 +47,7 @@ from contact_dynamics.questions.resolving import (
     with_orders,
 )
 from contact_dynamics.questions.subject import Subject, covariance_of
+from contact_dynamics.questions.touching import outside_shape
 from contact_dynamics.questions.which_impact import Strike, strike_of
 from contact_dynamics.rigid_body.body import BodyState
 
@@ -57,6 +59,11 @@ if TYPE_CHECKING:
 SAMPLES: Final = 2000
 """Number of states that are drawn for an uncertain impact. They give probabilities to 0.011 and take some 20
 ms, during which a server answers nobody else."""
+
+_OPEN_AT_AN_INSTANT: Final = (
+    "contacts approach at one instant, and rigid-body mechanics does not decide their order: the fastest "
+    "strikes first, and those that tie as one"
+)
 
 _NO_WRENCH: Final = np.zeros(3)
 
@@ -71,16 +78,21 @@ def answer(question: ImpactQuestion, knowledge: Knowledge | None = None) -> Impa
     known = Knowledge() if knowledge is None else knowledge
     strike = strike_of(question, known)
     problem: PlanarProblem | None = None
+    warnings = _outside(question, strike)
     law = question.several_contacts_law
     if isinstance(law, InTime):
         sequence = _in_time(question, law, strike, known)
         strike = _from_first(sequence, strike)
         resolved = sequence_resolved(sequence, strike.before)
+        if sequence.order_is_open:
+            warnings += (_OPEN_AT_AN_INSTANT,)
     elif question.problem is Problem.PLANAR:
         problem = _problem(question, strike, known)
         resolved = _in_plane(question, law, strike, problem)
     else:  # AUTOMATIC goes here too, because space contains the plane
         resolved = _in_space(question, law, strike)
+    if law is SeveralContactsLaw.SEQUENTIAL:
+        warnings += _order_warning(question, strike, problem)
     if question.want_covariance:
         resolved = with_distribution(resolved, _distribution(question, strike, known))
     body, other = strike.subject.body, strike.other
@@ -100,7 +112,41 @@ def answer(question: ImpactQuestion, knowledge: Knowledge | None = None) -> Impa
         out_of_plane=math.nan if problem is None else problem.out_of_plane,
         velocity_tolerance=strike.velocity_tolerance,
         distance_tolerance=strike.distance_tolerance,
+        warnings=warnings,
     )
+
+
+def _outside(question: ImpactQuestion, strike: Strike) -> tuple[str, ...]:
+    """Return warnings of stated contacts that are outside of the body's shape."""
+    if question.contacts is None:
+        return ()
+    return outside_shape(strike.contacts, strike.subject, distance_tolerance=strike.distance_tolerance)
+
+
+def _order_warning(
+    question: ImpactQuestion, strike: Strike, problem: PlanarProblem | None
+) -> tuple[str, ...]:
+    """Return a warning where the order of strikes decides the answer, with the difference that it makes."""
+    body, state, contacts = strike.before.body, strike.state, strike.contacts
+    if problem is not None and len(problem.contacts) > 1:
+        axes = problem.plane.axes_W
+        body, state, contacts = planar_in_space(problem.body, problem.velocity, problem.contacts, axes_W=axes)
+    if len(contacts) == 1:
+        return ()
+    bodies, states, pair = [body], [state], None
+    if strike.other is not None:
+        bodies.append(strike.other.body.mass_properties)
+        states.append(strike.other.state)
+        pair = 1
+    words = order_warning(
+        bodies,
+        states,
+        contacts,
+        [(0, pair)] * len(contacts),
+        restitution_law=question.restitution_law,
+        velocity_tolerance=strike.velocity_tolerance,
+    )
+    return (words,) if words else ()
 
 
 def _in_time(question: ImpactQuestion, law: InTime, strike: Strike, knowledge: Knowledge) -> ImpactSequence:

@@ -50,6 +50,8 @@ class ImpactAnswer(Record):
         out_of_plane: m/s, the largest motion out of the plane, or NaN in space.
         velocity_tolerance: m/s, the tolerance that was used.
         distance_tolerance: m, the tolerance that was used.
+        warnings: What makes the answer doubtful, in words: an order of strikes that mechanics does not
+            decide, a contact outside of the body's shape.
     """
 
     body_name: str
@@ -65,3 +67,4 @@ class ImpactAnswer(Record):
     out_of_plane: float
     velocity_tolerance: float
     distance_tolerance: float
+    warnings: tuple[str, ...] = ()

@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from typing import TYPE_CHECKING
+
+import numpy as np
 
 from contact_dynamics.contact.found import find_contacts, nearest_surface
 from contact_dynamics.contact.noise import NoisyState, resting, touching
 from contact_dynamics.errors import NoContactError
 from contact_dynamics.questions.extent import check_extent
+from contact_dynamics.shapes.hull_features import RIM_CORNERS, features_of
+from contact_dynamics.shapes.obstacle import closest_points
+from contact_dynamics.tolerances import DISTANCE_TOLERANCE
 
 if TYPE_CHECKING:
     from contact_dynamics.contact.contact import ContactSet
@@ -71,6 +77,30 @@ def in_contact(
     contacts = contacts_of(named, subject, world, distance_tolerance=distance_tolerance)
     found = resting(noisy, contacts, velocity_tolerance=velocity_tolerance)
     return replace(subject, state=found.state, covariance=found.root @ found.root.T), contacts, noisy
+
+
+def outside_shape(contacts: ContactSet, subject: Subject, *, distance_tolerance: float) -> tuple[str, ...]:
+    """Return a warning for each stated contact that is farther outside of the body's known shape, m.
+
+    A rim counts as the hull of some of its points, widened by what these leave out.
+    """
+    shape, state = subject.body.shape, subject.state
+    if shape.is_empty:
+        return ()
+    features = features_of(shape)
+    points_B = (contacts.p_WC_W - state.p_WB_W) @ state.R_WB
+    gaps = np.linalg.norm(points_B - closest_points(features, points_B), axis=1) - shape.rounding
+    if len(features.triangles) > 0:
+        levels = (features.normals @ features.corners.T).max(axis=1)
+        inside = (points_B @ features.normals.T <= levels).all(axis=1)
+        gaps[inside] = 0.0
+    largest = max((rim.radius for rim in shape.rims), default=0.0)
+    left_out = largest * (1.0 - math.cos(math.pi / RIM_CORNERS))
+    return tuple(
+        f"contact {i} is {gap:.6g} m outside of the shape of {subject.body.name!r}"
+        for i, gap in enumerate(gaps.tolist())
+        if gap > max(distance_tolerance, DISTANCE_TOLERANCE) + left_out
+    )
 
 
 def check_has_shape(body: Body) -> None:

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from contact_dynamics.shapes.convex import ConvexShape
     from contact_dynamics.validation import FloatArray
 
-_RIM_CORNERS: Final = 32
+RIM_CORNERS: Final = 32
 
 _KEPT: Final = 64
 """Number of shapes whose features are remembered."""
@@ -41,11 +41,11 @@ class Features(NamedTuple):
 def features_of(shape: ConvexShape) -> Features:
     """Return the features of the hull of a shape's corners and of points of its rims, in its axes.
 
-    Rims are replaced by `_RIM_CORNERS` corners, so the features have some of the directions of a round side.
+    Rims are replaced by `RIM_CORNERS` corners, so the features have some of the directions of a round side.
     """
     rims = [radii_of(rim) for rim in shape.rims]
-    turns = np.linspace(0.0, 2.0 * np.pi, _RIM_CORNERS, endpoint=False)
-    circle = np.column_stack([np.ones(_RIM_CORNERS), np.cos(turns), np.sin(turns)])
+    turns = np.linspace(0.0, 2.0 * np.pi, RIM_CORNERS, endpoint=False)
+    circle = np.column_stack([np.ones(RIM_CORNERS), np.cos(turns), np.sin(turns)])
     return hull_features(
         np.concatenate([shape.vertices, *(circle @ [rim.center, rim.first, rim.second] for rim in rims)])
     )

@@ -48,6 +48,7 @@ from message_values.shared import (
     states,
     texts,
     tuples_of,
+    warnings,
 )
 
 
@@ -172,6 +173,7 @@ def contact_mode_answers(draw: st.DrawFn, p_FB_F: np.ndarray = NO_OFFSET) -> Con
     margins = tuple(draw(margins_of(mode.mode)) for mode in modes) if draw(flags) else ()
     sets = draw(st.lists(wrench_sets(), max_size=2).map(tuple))
     return ContactModeAnswer(
+        warnings=draw(warnings),
         body_name=draw(st.sampled_from(NAMES)) if not p_FB_F.any() else "brick",
         p_FB_F=p_FB_F,
         state=draw(states),

@@ -43,6 +43,7 @@ from message_values.shared import (
     some,
     states,
     tuples_of,
+    warnings,
 )
 
 
@@ -123,6 +124,7 @@ def impact_answers(draw: st.DrawFn, p_FB_F: np.ndarray = NO_OFFSET) -> ImpactAns
     struck = draw(some(st.builds(StruckBody, name=st.just(name), p_FB_F=st.just(p_FB_F), state=states)))
     plane = draw(planes)
     return ImpactAnswer(
+        warnings=draw(warnings),
         body_name=name,
         p_FB_F=p_FB_F,
         state=draw(states),

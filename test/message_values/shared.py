@@ -188,3 +188,6 @@ def many_states(draw: st.DrawFn, count: int) -> ManyStates:
         v_WB_W=draw(arrays(count, 3)),
         w_WB_W=draw(arrays(count, 3)),
     )
+
+
+warnings = st.lists(st.sampled_from(["contact 0 is outside", "the order decides"]), max_size=2).map(tuple)

@@ -37,16 +37,21 @@ from contact_dynamics.impact.several.sequential import (
     strike_at_once,
     strike_in_turn,
 )
-from contact_dynamics.tolerances import VELOCITY_TOLERANCE
+from contact_dynamics.tolerances import SAME_IMPULSES, VELOCITY_TOLERANCE
 from contact_dynamics.validation import check_positive, check_whole
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from contact_dynamics.contact.contact import ContactSet
     from contact_dynamics.rigid_body.body import BodyState, MassProperties
     from contact_dynamics.validation import FloatArray
 
 MOST_ORDERS: Final = 120
 """Number of orders that `outcomes_over_orders` tries. These are all orders of up to five contacts."""
+
+FIRST_TRIED: Final = 8
+"""Contacts that a warning of an open order names and tries as the first: as many as a flat rim has."""
 
 MOST_STRIKES_OVER_ORDERS: Final = 6000
 """Bound on the strikes of all these orders together, which take some 2 s. An order takes ten or twenty
@@ -156,6 +161,48 @@ def outcomes_over_orders(
         velocities_W=np.array(list(found.values())).reshape(-1, 6),
         complete=next(priorities, None) is None,
         not_converged=lost,
+    )
+
+
+def order_warning(
+    bodies: Sequence[MassProperties],
+    states: Sequence[BodyState],
+    contacts: ContactSet,
+    pairs: Sequence[tuple[int, int | None]],
+    *,
+    restitution_law: RestitutionLaw,
+    velocity_tolerance: float,
+) -> str:
+    """Return in words that the order of strikes decides the sequential law's answer, or an empty text.
+
+    Each contact that approaches is tried as the first. So the differences that are named are found ones, and
+    `outcomes_over_orders` may find larger ones.
+    """
+    touching = Touching(bodies, contacts, pairs, restitution_law, velocity_tolerance)
+    own = strike_in_turn(touching, states)
+    if not own.order_is_open:
+        return ""
+    approach = np.einsum("ij,ij->i", check_touching(touching, states), contacts.normals_W)
+    first = np.flatnonzero(approach < -velocity_tolerance).tolist()
+    named = f"{', '.join(map(str, first[:FIRST_TRIED]))}{', ...' if len(first) > FIRST_TRIED else ''}"
+    if len(first) == 1:
+        return (
+            "after the first strike several contacts approach at once, whose order rigid-body mechanics does "
+            "not decide; want_orders lists the outcomes"
+        )
+    outcomes = [
+        np.concatenate([_velocities(state) for state in turn.states]).reshape(-1, 6)
+        for turn in (own, *(strike_in_turn(touching, states, first=i) for i in first[:FIRST_TRIED]))
+    ]
+    linear, angular = np.abs(outcomes - outcomes[0]).reshape(len(outcomes), -1, 2, 3).max(axis=(0, 1, 3))
+    scale = float(np.abs(outcomes).max())
+    if max(linear, angular) <= SAME_IMPULSES * scale:
+        return ""
+    how = "strike as one" if own.ties else "strike in turn, the fastest first"
+    return (
+        f"contacts {named} approach at once and {how}, but rigid-body mechanics does not decide their order: "
+        f"with another one first, velocities differ by up to {linear:.3g} m/s and {angular:.3g} rad/s; "
+        "want_orders lists the outcomes"
     )
 
 

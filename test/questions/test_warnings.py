@@ -1,0 +1,119 @@
+"""Answers that hold and are doubtful say so: an open order of strikes, a contact outside of the shape."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from contact_dynamics import Body, BodyState, ContactSet, MassProperties, Surface, World
+from contact_dynamics.impact import RestitutionLaw, SeveralContactsLaw, outcomes_over_orders
+from contact_dynamics.plane.projection import PlaneOfMotion
+from contact_dynamics.questions import contact_modes as modes_questions
+from contact_dynamics.questions import impact as impact_questions
+from contact_dynamics.questions.contact_mode_question import ContactModeQuestion
+from contact_dynamics.questions.impact_question import ImpactQuestion, InTime
+from contact_dynamics.questions.knowledge import Knowledge
+from contact_dynamics.questions.problem import Problem
+from contact_dynamics.shapes import box, capsule, cylinder, sphere
+from contact_dynamics.shapes.convex import ConvexShape
+from msg_adapters.impact import impact_answer_to_msg
+
+MASS = MassProperties(mass=0.37, I_B=8.1e-4 * np.eye(3))
+CUBE = Body(name="cube", mass_properties=MASS, shape=box(size=(0.1, 0.1, 0.1)))
+FLOOR = Surface(name="floor", p_WS_W=[0, 0, 0], normal_W=[0, 0, 1], friction=0.3, restitution=0.5)
+KNOWN = Knowledge(world=World(bodies=(CUBE,), surfaces=(FLOOR,)))
+FLAT = BodyState(p_WB_W=[0, 0, 0.05], q_WB=[0, 0, 0, 1], v_WB_W=[0, 0, -1], w_WB_W=[0, 0, 0])
+DECIDES = re.compile(r"differ by up to ([\d.e-]+) m/s and ([\d.e-]+) rad/s; want_orders lists")
+
+
+@pytest.mark.parametrize("law", RestitutionLaw)
+def test_a_flat_landing_is_level_and_names_what_another_order_would_do(law: RestitutionLaw) -> None:
+    answer = impact_questions.answer(ImpactQuestion(body="cube", state=FLAT, restitution_law=law), KNOWN)
+    np.testing.assert_allclose(answer.impact.state.v_WB_W, [0.0, 0.0, 0.5], atol=1e-12)
+    np.testing.assert_allclose(answer.impact.state.w_WB_W, 0.0, atol=1e-12)
+    (warning,) = answer.warnings
+    assert warning.startswith("contacts 0, 1, 2, 3 approach at once and strike as one")
+    found = DECIDES.search(warning)
+    assert found is not None
+    orders = outcomes_over_orders(MASS, FLAT, answer.contacts, restitution_law=law)
+    apart = np.abs(orders.velocities_W - orders.velocities_W[0]).max(axis=0)
+    assert 1.0 < float(found[2]) <= apart[3:].max() * 1.01
+    assert float(found[1]) <= apart[:3].max() * 1.01
+    message = impact_answer_to_msg(answer, world_frame="world").message
+    assert message == f"warning: {warning}"
+
+
+def test_one_strike_and_another_law_have_no_order() -> None:
+    tilted = replace(FLAT, q_WB=[0.1, 0.2, 0.0, 0.97467943448], p_WB_W=[0, 0, 0.3])
+    assert impact_questions.answer(ImpactQuestion(body="cube", state=tilted), KNOWN).warnings == ()
+    at_once = ImpactQuestion(body="cube", state=FLAT, several_contacts_law=SeveralContactsLaw.SIMULTANEOUS)
+    assert impact_questions.answer(at_once, KNOWN).warnings == ()
+
+
+def test_two_feet_in_a_plane_two_bodies_and_strikes_in_time_warn_too() -> None:
+    feet = ContactSet(
+        p_WC_W=[[-0.05, 0, 0], [0.05, 0, 0]], normals_W=[0, 0, 1], frictions=0.3, restitutions=0.5
+    )
+    stated = ImpactQuestion(body="cube", state=FLAT, contacts=feet)
+    plane = PlaneOfMotion(normal_W=[0, -1, 0])
+    in_plane = replace(stated, problem=Problem.PLANAR, plane=plane)
+    under = BodyState(p_WB_W=[0, 0, -0.05], q_WB=[0, 0, 0, 1], v_WB_W=[0, 0, 0], w_WB_W=[0, 0, 0])
+    on_another = replace(stated, other=CUBE, other_state=under)
+    for question in (stated, in_plane, on_another):
+        (warning,) = impact_questions.answer(question, KNOWN).warnings
+        assert DECIDES.search(warning)
+    (warning,) = impact_questions.answer(replace(stated, several_contacts_law=InTime()), KNOWN).warnings
+    assert "does not decide their order" in warning
+
+
+def test_orders_that_lead_to_one_outcome_are_no_warning() -> None:
+    """A level elastic rod on its two ends rises level in every order (`test_level_rod_on_two_supports`)."""
+    rod = Body(name="rod", mass_properties=MassProperties(mass=2.0, I_B=np.diag([1e-4, 2 / 3, 2 / 3])))
+    ends = ContactSet(p_WC_W=[[1, 0, 0], [-1, 0, 0]], normals_W=[0, 0, 1], frictions=0, restitutions=1)
+    state = BodyState(p_WB_W=[0, 0, 0], q_WB=[0, 0, 0, 1], v_WB_W=[0, 0, -1], w_WB_W=[0, 0, 0])
+    assert impact_questions.answer(ImpactQuestion(body=rod, state=state, contacts=ends)).warnings == ()
+
+
+@pytest.mark.parametrize(
+    ("shape", "on", "off", "gap"),
+    [
+        (box(size=(0.1, 0.1, 0.1)), [0.05, 0.0, 0.01], [0.05, 0.0, -0.07], 0.02),
+        (sphere(radius=0.1), [0.0, 0.0, -0.1], [0.0, 0.03, -0.14], 0.0431782106),
+        (capsule(radius=0.1, length=0.2), [0.1, 0.0, 0.05], [0.0, 0.0, -0.25], 0.05),
+        (cylinder(radius=0.1, length=0.2), [0.1, 0.0, -0.1], [0.0, 0.0, -0.15], 0.05),
+    ],
+)
+@pytest.mark.parametrize("turn", [[0, 0, 0, 1], [0.5, -0.5, 0.5, -0.5]])
+def test_a_contact_outside_of_the_shape_is_a_warning(
+    shape: ConvexShape, on: list[float], off: list[float], gap: float, turn: list[float]
+) -> None:
+    body = Body(name="it", mass_properties=MASS, shape=shape)
+    state = BodyState(p_WB_W=[1, 2, 3], q_WB=turn, v_WB_W=[0, 0, 0], w_WB_W=[0, 0, 0])
+    for point, warned in ((on, False), (off, True), ([0.0, 0.0, 0.0], False)):
+        place = state.p_WB_W + state.R_WB @ np.array(point)
+        contacts = ContactSet(p_WC_W=[place], normals_W=[0, 0, 1], frictions=0.3, restitutions=0.5)
+        falling = replace(state, v_WB_W=[0, 0, -1])
+        answers = (
+            modes_questions.answer(ContactModeQuestion(body=body, state=state, contacts=contacts)),
+            impact_questions.answer(ImpactQuestion(body=body, state=falling, contacts=contacts)),
+        )
+        for answer in answers:
+            if not warned:
+                assert answer.warnings == ()
+                continue
+            (warning,) = answer.warnings
+            found = re.fullmatch(r"contact 0 is ([\d.]+) m outside of the shape of 'it'", warning)
+            assert found is not None
+            assert float(found[1]) == pytest.approx(gap, abs=1e-6)
+
+
+def test_a_body_without_a_shape_has_no_outside() -> None:
+    body = Body(name="it", mass_properties=MASS)
+    contacts = ContactSet(p_WC_W=[[9, 9, 9]], normals_W=[0, 0, 1], frictions=0.3)
+    rest = BodyState(p_WB_W=[0, 0, 0], q_WB=[0, 0, 0, 1], v_WB_W=[0, 0, 0], w_WB_W=[0, 0, 0])
+    assert (
+        modes_questions.answer(ContactModeQuestion(body=body, state=rest, contacts=contacts)).warnings == ()
+    )
