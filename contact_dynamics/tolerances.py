@@ -69,12 +69,6 @@ meet it."""
 DECIMALS_MET: Final = Decimal("1e-30")
 """Relative. A target counts as met exactly if this much of it is left."""
 
-# contact
-
-NO_NOISE: Final = 1e-9
-"""Relative. Conditions on the error of a state that depend on each other leave singular values of 1e-15 of
-the largest. Corners of a body that are told apart leave more than this."""
-
 # evaluation
 
 LANDING_GAP: Final = 0.015
@@ -231,6 +225,10 @@ SAME_DIRECTION: Final = 1e-9
 """1 - cos of an angle of 4e-5 rad. Normals, or directions of edges, within it count as one."""
 
 # contact
+
+NO_NOISE: Final = 1e-9
+"""Relative. Conditions on the error of a state that depend on each other leave singular values of 1e-15 of
+the largest. Corners of a body that are told apart leave more than this."""
 
 VELOCITY_TOLERANCE: Final = 1e-9
 """m/s. A contact's velocity below it counts as zero, if the caller gives no other tolerance. It is far above
@@ -744,3 +742,20 @@ would hang on rounding; this is below what any tracking system tells."""
 
 LEAST_LAW_SPIN: Final = 1e-2
 """rad/s. The same for angular velocities."""
+
+# toss
+
+SWEEPS_CHANGE_ALIKE: Final = 1e-3
+"""Ratio of singular values. Below it, changes by sweeps over contacts count as the same."""
+
+SHORTEST_LINGER: Final = 1e-5
+"""s. If rounds of a toss take less time, it is not followed by them, but for so long in short steps."""
+
+CREEPING_STEP: Final = 1e-6
+"""s. A contact phase whose steps are that short again and again creeps."""
+
+LONGEST_SHORT_STEP: Final = 2e-4
+"""s. A short step is no longer. A body that turns by 10 rad/s meanwhile turns by a tenth of a degree."""
+
+SHORTEST_SHORT_STEP: Final = 1e-7
+"""s. A short step may be this short, where a corner comes down."""

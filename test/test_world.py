@@ -18,6 +18,7 @@ from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.shapes import box, cylinder, sphere
 from contact_dynamics.shapes.convex import ConvexShape
 from contact_dynamics.shapes.obstacle import Obstacle
+from contact_dynamics.tolerances import DISTANCE_TOLERANCE
 from contact_dynamics.world import MOST_VERTICES, Body, Surface, World, box_vertices
 
 STUFF = MassProperties(mass=1.0, I_B=np.eye(3))
@@ -62,8 +63,15 @@ def test_edges_corners_and_two_surfaces_at_once() -> None:
 
 @given(gap=st.floats(-0.1, 0.1), tolerance=st.floats(0.0, 0.05))
 def test_the_tolerance_decides_what_touches(gap: float, tolerance: float) -> None:
-    found = find_contacts(BOX, at((0.0, 0.0, 3.0 + gap)), [FLOOR], distance_tolerance=tolerance)
     height = (3.0 + gap) - 3.0
+    state = at((0.0, 0.0, 3.0 + gap))
+    if height < -max(tolerance, DISTANCE_TOLERANCE):
+        with pytest.raises(
+            InvalidFieldError, match=r"deep in 'floor', allowed is at most the distance_tolerance"
+        ):
+            find_contacts(BOX, state, [FLOOR], distance_tolerance=tolerance)
+        return
+    found = find_contacts(BOX, state, [FLOOR], distance_tolerance=tolerance)
     assert len(found) == (4 if height <= tolerance else 0)
 
 

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import numpy as np
 
 from contact_dynamics.numerics.vectors import Vector3, cross, norm
-from contact_dynamics.tolerances import CONE_SWEEPS_CONVERGED, FORCE_ROUNDING
+from contact_dynamics.tolerances import CONE_SWEEPS_CONVERGED, FORCE_ROUNDING, SWEEPS_CHANGE_ALIKE
 from contact_dynamics.toss.solid import as_rows, responses, times
 
 if TYPE_CHECKING:
@@ -38,9 +38,6 @@ _MOST_FURTHER_SWEEPS: Final = 1000
 
 FURTHER_SWEEPS: Final = 10
 """Sweeps from which their limit is sought, again and again."""
-
-_SAME_CHANGES: Final = 1e-3
-"""Ratio of singular values. Below it, changes by sweeps count as the same."""
 
 _MOST_TURNS: Final = 60
 """Steps towards the direction in which one contact slides."""
@@ -140,7 +137,7 @@ def _limit(seen: list[list[Vector3]]) -> list[Vector3]:
     after = np.array(seen).reshape(len(seen), -1)
     changes = np.diff(after, axis=0)
     last, turns = changes[-1], np.diff(changes, axis=0)
-    shares = np.linalg.lstsq(turns.T, last, rcond=_SAME_CHANGES)[0]
+    shares = np.linalg.lstsq(turns.T, last, rcond=SWEEPS_CHANGE_ALIKE)[0]
     found = after[-1] - shares @ changes[1:]
     return [(x, y, z) for x, y, z in found.reshape(-1, 3).tolist()]
 

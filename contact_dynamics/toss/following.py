@@ -15,7 +15,10 @@ from contact_dynamics.landing.search_work import SearchWork
 from contact_dynamics.numerics.vectors import norm
 from contact_dynamics.tolerances import (
     LIFT_OFF_PAUSE,
+    LONGEST_SHORT_STEP,
     RESTING_ACCELERATION,
+    SHORTEST_LINGER,
+    SHORTEST_SHORT_STEP,
     SLIDING_STOPPED,
     STILL_TOUCHING,
     STRIKES,
@@ -30,7 +33,7 @@ from contact_dynamics.toss.one_impact import routh
 from contact_dynamics.toss.phase import phase
 from contact_dynamics.toss.phase_ends import PhaseEnd
 from contact_dynamics.toss.result import FlightPiece, Toss, TossEnd, TossEventKind, UndecidedReason
-from contact_dynamics.toss.short_step import LONGEST, SHORTEST, short_step
+from contact_dynamics.toss.short_step import short_step
 from contact_dynamics.toss.solid import energy_of, kinetic_energy_of, numbers_of
 from contact_dynamics.toss.strike import approaches, low_rebounds_ended, strike
 from contact_dynamics.toss.wedged import may_be_wedged
@@ -59,9 +62,6 @@ _ROUNDS: Final = 4
 _ROUNDS_AT_ONCE: Final = 12
 """Rounds of strikes, modes and flights after which the time that they take is looked at. Up to six are usual
 at one instant."""
-
-_LINGER: Final = 1e-5
-"""s. If rounds take less time, the motion is not followed by them, but for so long in short steps."""
 
 _LONGEST_LINGER: Final = 0.1
 """s, the same where that happens again and again."""
@@ -144,7 +144,7 @@ class Run(Course):
         self.slow = math.inf  # J, rest is tried where the kinetic energy is below this
         self.struck = self.laid = self.steps = 0  # strikes, how often it was laid flat, steps in contact
         self.mark, self.rounds = 0.0, 0  # a time, s, and the rounds since then
-        self.linger = _LINGER  # s, as long as rounds have to take, and short steps go on
+        self.linger = SHORTEST_LINGER  # s, as long as rounds have to take, and short steps go on
         self.settled: Strikes | None = None  # the last strikes
         self.looked_at: list[Touch] = []  # contacts whose modes were all looked for last
         self.faces: Faces = {}  # that it could be laid on
@@ -361,7 +361,7 @@ class Run(Course):
         """Return whether events have led to one another for so long, and time has hardly gone on."""
         if self.now > self.mark + self.linger:
             self.mark, self.rounds = self.now, 0
-            self.linger = max(0.5 * self.linger, _LINGER)
+            self.linger = max(0.5 * self.linger, SHORTEST_LINGER)
         self.rounds += 1
         return self.rounds > _ROUNDS_AT_ONCE
 
@@ -374,7 +374,7 @@ class Run(Course):
         mode: tuple[Held, ...] = ()
         before = energy_of(self.solid, self.y)
         while self.now < until:
-            span = min(until - self.now, max(_SHARE * self.linger, SHORTEST), LONGEST)
+            span = min(until - self.now, max(_SHARE * self.linger, SHORTEST_SHORT_STEP), LONGEST_SHORT_STEP)
             went = short_step(self.solid, self.y, start=self.now, span=span)
             if self.runs.has_pieces:
                 self.pieces.append(went.step)

@@ -17,6 +17,7 @@ from contact_dynamics.numerics.vectors import dot, norm, without
 from contact_dynamics.tolerances import (
     BEGUN_TO_SLIDE,
     COARSE_SLIDING_STOPPED,
+    CREEPING_STEP,
     PHASE_ERROR,
     PHASE_LEAST_STEP,
     RESOLVED_SLIDING,
@@ -43,9 +44,6 @@ if TYPE_CHECKING:
 
 MOST_PHASE_STEPS: Final = 20_000
 """Steps after which a phase ends unfinished. A tenth of a second of sliding or tipping takes some twenty."""
-
-_TOO_SHORT: Final = 1e-6
-"""s. A phase whose steps are that short again and again creeps."""
 
 _MOST_SHORT_STEPS: Final = 60
 """Such steps after which a phase ends. Sliding that stops takes some ten."""
@@ -118,7 +116,7 @@ def phase(
         asked = AskedStep(solid, y, pushed, mode, span=step, scales=scales, error=error)
         yield asked
         trial, size, after = asked.trial, asked.size, asked.after
-        short += step < _TOO_SHORT
+        short += step < CREEPING_STEP
         if short > _MOST_SHORT_STEPS:
             return Phase(PhaseEnd.CREEPS, now, y, steps)
         if size > 1.0 and step > PHASE_LEAST_STEP:

@@ -9,13 +9,13 @@ do no work on the motion, so energy never grows. The error is that of a step of 
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from contact_dynamics.numerics.vectors import norm
 from contact_dynamics.rotations.one import normalised
-from contact_dynamics.tolerances import DISTANCE_TOLERANCE, SLIDING_STOPPED
+from contact_dynamics.tolerances import DISTANCE_TOLERANCE, SHORTEST_SHORT_STEP, SLIDING_STOPPED
 from contact_dynamics.toss.forces import free_accelerations, rates_of
 from contact_dynamics.toss.held import Held
 from contact_dynamics.toss.holding import out_of_flats
@@ -25,12 +25,6 @@ from contact_dynamics.toss.solid import energy_of, heights_and_rates, kinetic_en
 
 if TYPE_CHECKING:
     from contact_dynamics.toss.solid import Numbers, Solid
-
-LONGEST: Final = 2e-4
-"""s. A step is no longer. A body that turns by 10 rad/s meanwhile turns by a tenth of a degree."""
-
-SHORTEST: Final = 1e-7
-"""s. A step may be this short, where a corner comes down."""
 
 
 class ShortStep(NamedTuple):
@@ -59,7 +53,7 @@ def short_step(solid: Solid, y: Numbers, *, start: float, span: float) -> ShortS
     listed = heights_and_rates(solid, y)
     for height, rate, _ in listed:
         if height > DISTANCE_TOLERANCE and rate < 0.0:
-            span = min(span, max(-height / rate, SHORTEST))
+            span = min(span, max(-height / rate, SHORTEST_SHORT_STEP))
     free = free_accelerations(solid, y)
     pushed = [*y[:7], *(a + span * b for a, b in zip(y[7:], (*free.a, *free.alpha), strict=True))]
     reached = DISTANCE_TOLERANCE + 2.0 * span * (norm(free.pose.v) + solid.reach * norm(free.pose.w))
