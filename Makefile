@@ -20,7 +20,7 @@ export PIP_USER := 0
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help demo test test-matrix test-slow fuzz coverage lint types bench docs setup venv clean FORCE
+.PHONY: help demo test test-matrix test-slow sweeps fuzz coverage lint types bench docs setup venv clean FORCE
 
 help: ## print this
 	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(MAKEFILE_LIST) | while IFS='	' read -r name text; do \
@@ -39,8 +39,13 @@ test: lint types $(MADE)/test ## lint, types and the tests; JOBS=1 runs them in 
 test-matrix: ## the physics with the oldest and newest NumPy and SciPy, on every Python and several kinds of processors
 	@setup/matrix.sh $(VENV)-matrix
 
-test-slow: $(MADE)/test ## the sweeps that are too slow for `make test`
-	@HYPOTHESIS_PROFILE=explore $(BIN)/python -m pytest -m slow
+SWEEP ?= test
+CERTAINTY := test/contact_modes/spatial/test_no_mode_missed.py test/contact_modes/spatial/test_nearly_the_same.py test/toss/test_among_flats.py
+test-slow: $(MADE)/test ## the sweeps that are too slow for `make test`; SWEEP=path runs those of one file or folder
+	@HYPOTHESIS_PROFILE=explore $(BIN)/python -m pytest -m slow $(SWEEP)
+
+sweeps: $(MADE)/test ## the large sweeps behind docs/certainty.md: modes, nearly equal contacts, tosses
+	@$(MAKE) --no-print-directory test-slow SWEEP="$(CERTAINTY)"
 
 fuzz: $(MADE)/test ## ask 10 000 questions of all kinds, with numbers of every size
 	@$(BIN)/python -m pytest -q -n 0 -m slow test/questions/test_fuzz.py
