@@ -74,7 +74,7 @@ class MassProperties(Record):
         return mean_radius_of_gyration(self.mass, self.I_B)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False, init=False)
 class BodyState(Record):
     """Where a body is and how it moves at one time.
 
@@ -87,7 +87,7 @@ class BodyState(Record):
 
     Raises:
         InvalidFieldError: a number is not finite, the quaternion is not unit, or the stamp is not a whole
-            number.
+            number. Or the attitude is given in both orders, or in none.
     """
 
     p_WB_W: FloatArray
@@ -96,26 +96,39 @@ class BodyState(Record):
     w_WB_W: FloatArray
     stamp_ns: int = 0
 
-    if TYPE_CHECKING:
+    def __init__(
+        self,
+        *,
+        p_WB_W: ArrayLike,
+        q_WB: ArrayLike | None = None,
+        v_WB_W: ArrayLike,
+        w_WB_W: ArrayLike,
+        stamp_ns: int = 0,
+        quaternion_wxyz: ArrayLike | None = None,
+    ) -> None:
+        """Check all fields, and normalise the quaternion to rounding.
 
-        def __init__(
-            self,
-            *,
-            p_WB_W: ArrayLike,
-            q_WB: ArrayLike,
-            v_WB_W: ArrayLike,
-            w_WB_W: ArrayLike,
-            stamp_ns: int = ...,
-        ) -> None:
-            """Take whatever NumPy makes arrays of."""
-
-    def __post_init__(self) -> None:
-        """Check all fields, and normalise the quaternion to rounding."""
-        object.__setattr__(self, "p_WB_W", check_array("p_WB_W", self.p_WB_W, (3,)))
-        object.__setattr__(self, "q_WB", check_unit("q_WB", self.q_WB, 4))
-        object.__setattr__(self, "v_WB_W", check_array("v_WB_W", self.v_WB_W, (3,)))
-        object.__setattr__(self, "w_WB_W", check_array("w_WB_W", self.w_WB_W, (3,)))
-        object.__setattr__(self, "stamp_ns", check_stamp("stamp_ns", self.stamp_ns))
+        Args:
+            p_WB_W: As the attribute.
+            q_WB: As the attribute.
+            v_WB_W: As the attribute.
+            w_WB_W: As the attribute.
+            stamp_ns: As the attribute.
+            quaternion_wxyz: (4,), the same as ``q_WB`` in the order w, x, y, z, in its place.
+        """
+        if q_WB is not None and quaternion_wxyz is None:
+            q = check_unit("q_WB", q_WB, 4)
+        elif quaternion_wxyz is not None and q_WB is None:
+            q = np.roll(check_unit("quaternion_wxyz", quaternion_wxyz, 4), -1)
+            q.flags.writeable = False
+        else:
+            found = "neither" if q_WB is None else "both"
+            raise InvalidFieldError("q_WB, quaternion_wxyz", found, "one of them")
+        object.__setattr__(self, "p_WB_W", check_array("p_WB_W", p_WB_W, (3,)))
+        object.__setattr__(self, "q_WB", q)
+        object.__setattr__(self, "v_WB_W", check_array("v_WB_W", v_WB_W, (3,)))
+        object.__setattr__(self, "w_WB_W", check_array("w_WB_W", w_WB_W, (3,)))
+        object.__setattr__(self, "stamp_ns", check_stamp("stamp_ns", stamp_ns))
 
     @property
     def R_WB(self) -> FloatArray:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -88,6 +89,21 @@ def test_a_state_that_makes_no_sense_is_refused(field: str, value: np.ndarray, w
 def test_a_quaternion_of_four_decimals_is_taken_and_made_unit() -> None:
     state = BodyState(**{**REST, "q_WB": np.array([0.5774, 0.5774, 0.5774, 0.0])})
     assert np.linalg.norm(state.q_WB) == pytest.approx(1.0, abs=1e-15)
+
+
+@given(q=quaternions)
+def test_an_attitude_may_be_given_with_w_first(q: np.ndarray) -> None:
+    moving = {"p_WB_W": np.zeros(3), "v_WB_W": np.zeros(3), "w_WB_W": np.zeros(3)}
+    state = BodyState(quaternion_wxyz=[q[3], q[0], q[1], q[2]], **moving)
+    np.testing.assert_array_equal(state.q_WB, BodyState(q_WB=q, **moving).q_WB)
+    assert not state.q_WB.flags.writeable
+    np.testing.assert_array_equal(replace(state, stamp_ns=1).q_WB, state.q_WB)
+    with pytest.raises(InvalidFieldError, match=r"q_WB, quaternion_wxyz: found both, allowed is one of them"):
+        BodyState(q_WB=q, quaternion_wxyz=q, **moving)
+    with pytest.raises(InvalidFieldError, match=r"q_WB, quaternion_wxyz: found neither"):
+        BodyState(**moving)
+    with pytest.raises(InvalidFieldError, match="quaternion_wxyz: found"):
+        BodyState(quaternion_wxyz=2.0 * q, **moving)
 
 
 @given(q=quaternions, v=vectors, w=vectors, points=st.lists(vectors, min_size=4, max_size=8))
