@@ -27,6 +27,8 @@ FIELDS: Final = {
     "seconds": "times",
     "torque_W": "applied_wrench.torque",
     "v_WB_W": "linear_velocity",
+    "vertices_B": "vertices",
+    "vertices_W": "vertices",
     "w_WB_W": "angular_velocity",
 }
 """The fields of messages and parameters, by the arguments that the package makes of them."""

@@ -243,7 +243,7 @@ def test_bodies_refuse_what_they_cannot_mean() -> None:
     body, state = MassProperties(mass=1.0, I_B=np.eye(3)), moving([0.0, 0.0, 0.0], [0.0, 0.0, -1.0])
     contacts = contacts_at([[0.0, 0.0, -1.0]], normal=(0.0, 0.0, 1.0), friction=0.0, restitution=0.0)
     for pairs, text in (
-        ([], "pairs: found 0 pairs"),
+        ([], r"pairs: found \[\]"),
         ([(0, 0)], r"pairs\[0\]: found \(0, 0\)"),
         ([(0, 2)], r"pairs\[0\]"),
         ([(-1, None)], r"pairs\[0\]"),

@@ -52,7 +52,8 @@ def share_at_rest(client: Client, *, has_covariance: bool, **asked: Any) -> floa
             request = PredictContactMode.Request(body_name="brick", state_source=2, **asked)
             request.stamp = msg.header.stamp
             answers.append(client.ask(request))
-            return answers[-1].status != answers[-1].NO_STATE
+            # Until the state has come, the stamp is ahead of those that have.
+            return answers[-1].status == answers[-1].OK
 
         client.spin_until(is_about_it)
         answer = answers[-1]

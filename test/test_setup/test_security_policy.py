@@ -10,6 +10,7 @@ from xml.etree import ElementTree as ET
 import pytest
 import rclpy
 
+from contact_dynamics.demo.ros_domain import claim_domain
 from contact_dynamics.nodes.server import Server
 from running_server import PATIENCE_S, ROOT
 
@@ -23,7 +24,8 @@ def server(tmp_path: Path) -> Iterator[Server]:
         args=[
             "--ros-args", "--params-file", str(ROOT / "config" / "server.yaml"),
             "-p", f"log_directory:={tmp_path}", "-p", "use_sim_time:=true",
-        ]
+        ],
+        domain_id=claim_domain(),
     )  # fmt: skip
     node = Server()
     yield node

@@ -37,7 +37,8 @@ def test_the_triangles_of_a_mesh_are_the_shape_with_its_corners_once() -> None:
     assert len(mesh.shape.vertices) == 8
     order = [int(np.flatnonzero((vertex == CORNERS).all(axis=1))[0]) for vertex in mesh.shape.vertices]
     plain, meshed = toss(brick(CORNERS), THROWN, world(mesh)), toss(mesh, THROWN, world(mesh))
-    np.testing.assert_array_equal(meshed.state.p_WB_W, plain.state.p_WB_W)
+    # Corners of one strike are added up in the order of their list, so that last bits differ.
+    np.testing.assert_allclose(meshed.state.p_WB_W, plain.state.p_WB_W, rtol=0.0, atol=1e-12)
     assert sorted(order[k] for k in meshed.resting_corners) == list(plain.resting_corners)
     assert meshed.undecided == plain.undecided
 

@@ -111,7 +111,7 @@ class StrikeByStrike:
                         held += 1
                         state = self._impacts(landing, self._next(landing), held=True)[0].state
                         continue
-                    if len(self.strikes) == most:
+                    if len(self.strikes) >= most:  # contacts that strike as one may pass the bound
                         return SequenceEnd.MOST_STRIKES
                     state = self._strike(landing, now)
                     until = now + window
