@@ -37,6 +37,7 @@ NOTHING: Final = np.zeros(3)
 """No force, no torque or no gravity."""
 
 Number = TypeVar("Number", int, float)
+Law = TypeVar("Law", RestitutionLaw, SeveralContactsLaw)
 
 
 class ContactRequest(Protocol):
@@ -156,11 +157,20 @@ def asked_plane(normal: Vector3) -> PlaneOfMotion | None:
 
 def asked_restitution_law(value: int) -> RestitutionLaw:
     """Return the law of a request's number, or raise `InvalidFieldError`."""
+    return _asked_law("restitution_law", RestitutionLaw, value)
+
+
+def asked_instant_law(value: int) -> SeveralContactsLaw:
+    """Return the law for contacts at one instant of a request's number, or raise `InvalidFieldError`."""
+    return _asked_law("several_contacts_law", SeveralContactsLaw, value)
+
+
+def _asked_law(field: str, kind: type[Law], value: int) -> Law:
     try:
-        return RestitutionLaw(value)
+        return kind(value)
     except ValueError:
-        allowed = ", ".join(f"{law.name} ({law.value})" for law in RestitutionLaw)
-        raise InvalidFieldError("restitution_law", value, allowed) from None
+        allowed = ", ".join(f"{law.name} ({law.value})" for law in kind)
+        raise InvalidFieldError(field, value, allowed) from None
 
 
 def asked_several_contacts_law(request: PredictImpact.Request) -> SeveralContactsLaw | InTime:

@@ -23,7 +23,7 @@ from contact_dynamics.toss import (
 from contact_dynamics_interfaces.msg import TossEvent as TossEventMsg
 from contact_dynamics_interfaces.msg import TossPath as TossPathMsg
 from contact_dynamics_interfaces.srv import PredictToss
-from msg_adapters.asked_fields import asked_restitution_law, optional
+from msg_adapters.asked_fields import asked_instant_law, asked_restitution_law, optional
 from msg_adapters.asked_subject import asked_subject
 from msg_adapters.body_state import body_state_from_msg, body_state_to_msg, center_of_mass
 from msg_adapters.contacts import flat, rows
@@ -56,6 +56,7 @@ def toss_question_from_msg(request: PredictToss.Request, *, world: World, world_
         body=body,
         state=state,
         restitution_law=asked_restitution_law(request.restitution_law),
+        several_contacts_law=asked_instant_law(request.several_contacts_law),
         horizon=optional("horizon", request.horizon),
         rate=optional("rate", request.rate),
         most_alternatives=optional("most_alternatives", request.most_alternatives),
@@ -113,6 +114,7 @@ def toss_question_to_msg(question: TossQuestion, *, world: World, world_frame: s
     msg = PredictToss.Request()
     write_fitted_subject(msg, question.body, question.state, world, world_frame)
     msg.restitution_law = int(question.restitution_law)
+    msg.several_contacts_law = int(question.several_contacts_law)
     msg.horizon, msg.rate = asked_optional(question.horizon), asked_optional(question.rate)
     msg.most_alternatives = asked_optional(question.most_alternatives)
     msg.lasting_factors = flat(question.lasting_factors)

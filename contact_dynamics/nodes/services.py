@@ -210,7 +210,7 @@ SERVICES: Final = (
     Service(
         type_name="PredictToss",
         kind=TOSS,
-        digest="754ae5479c39721f",
+        digest="49bdfd21e540a976",
         question_from_msg=ImportedOnUse("msg_adapters.toss:toss_question_from_msg"),
         answer=ImportedOnUse("contact_dynamics.questions.toss:answer"),
         answer_to_msg=ImportedOnUse("msg_adapters.toss:toss_answer_to_msg"),

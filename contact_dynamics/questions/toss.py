@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from contact_dynamics.errors import InvalidFieldError, TooLargeError
-from contact_dynamics.impact import RestitutionLaw
+from contact_dynamics.impact import RestitutionLaw, SeveralContactsLaw
 from contact_dynamics.questions.extent import check_extent
 from contact_dynamics.questions.knowledge import Knowledge, or_default
 from contact_dynamics.questions.sample_times import MOST_SAMPLES as MOST_TIMES
@@ -77,6 +77,7 @@ class TossQuestion(Record):
         body: The body, or the name of one of the known world. Its shape has corners, which may be rounded.
         state: Its state, with or without a covariance, or a reference to a published one.
         restitution_law: What the coefficients of restitution mean.
+        several_contacts_law: The law for several contacts that strike at one instant.
         horizon: s, > 0. How far the motion is followed. None means `toss.one_toss.HORIZON`.
         rate: Hz, > 0. Samples of the trajectory a second. None means the default.
         most_alternatives: How many other ways are followed where mechanics does not decide. None means
@@ -87,13 +88,14 @@ class TossQuestion(Record):
             the surfaces.
 
     Raises:
-        InvalidFieldError: a number is out of its range, the law is not a member of its enumeration, or the
+        InvalidFieldError: a number is out of its range, a law is not a member of its enumeration, or the
             sampling's uncertainty has other factors.
     """
 
     body: Body | str
     state: StateSource = NEWEST
     restitution_law: RestitutionLaw = RestitutionLaw.POISSON
+    several_contacts_law: SeveralContactsLaw = SeveralContactsLaw.SEQUENTIAL
     horizon: float | None = None
     rate: float | None = None
     most_alternatives: int | None = None
@@ -202,6 +204,7 @@ def answer(question: TossQuestion, knowledge: Knowledge | None = None) -> TossAn
             to_rest=sampling.to_rest,
             seed=sampling.seed,
             law=question.restitution_law,
+            several_contacts_law=question.several_contacts_law,
             horizon=horizon,
             distance_tolerance=known.defaults.distance_tolerance,
         )
@@ -210,6 +213,7 @@ def answer(question: TossQuestion, knowledge: Knowledge | None = None) -> TossAn
         state,
         known.world,
         restitution_law=question.restitution_law,
+        several_contacts_law=question.several_contacts_law,
         horizon=horizon,
         most_alternatives=MOST_ALTERNATIVES if most is None else most,
         lasting_factors=question.lasting_factors,

@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 from contact_dynamics.impact import (
     ImpactOutcome,
     RestitutionLaw,
+    SeveralContactsLaw,
 )
 from contact_dynamics.questions import (
     TossAnswer,
@@ -181,6 +182,7 @@ def toss_questions(draw: st.DrawFn) -> TossQuestion:
         body=draw(bodies()),
         state=draw(st.one_of(published, known_states())),
         restitution_law=draw(st.sampled_from(RestitutionLaw)),
+        several_contacts_law=draw(st.sampled_from(SeveralContactsLaw)),
         horizon=draw(some(positive)),
         rate=draw(some(positive)),
         most_alternatives=draw(some(indices)),

@@ -110,6 +110,8 @@ CHOICES = {
 def requests_of(service: Any) -> Iterator[Any]:
     """Yield a request for each combination of a service's flags. All else that may be left out is."""
     flags = {name: values for name, values in CHOICES.items() if hasattr(service.Request(), name)}
+    if "several_contacts_law" in flags and not hasattr(service.Request(), "SEQUENTIAL_IN_TIME"):
+        flags["several_contacts_law"] = (0, 1)
     for chosen in itertools.product(*flags.values()):
         request = service.Request(body_name="cube")
         for name, value in zip(flags, chosen, strict=True):

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from contact_dynamics.errors import ContactDynamicsError, InvalidFieldError, TooLargeError
+from contact_dynamics.impact import RestitutionLaw, SeveralContactsLaw
 from contact_dynamics.questions import Knowledge, TossQuestion, TossSampling, UncertainState, ask
 from contact_dynamics.rigid_body import inertia
 from contact_dynamics.rigid_body.body import BodyState
@@ -129,3 +130,23 @@ def test_two_lists_of_factors_are_refused() -> None:
 def test_a_trajectory_of_too_many_samples_is_refused() -> None:
     with pytest.raises(TooLargeError, match=r"rate: found .* samples"):
         ask(TossQuestion(body="cube", state=THROWN, rate=1e6, most_alternatives=0), KNOWN)
+
+
+@pytest.mark.parametrize("law", SeveralContactsLaw)
+def test_the_law_for_several_contacts_is_that_of_the_toss(law: SeveralContactsLaw) -> None:
+    flat = BodyState(p_WB_W=[0, 0, 0.2], q_WB=[0, 0, 0, 1], v_WB_W=[0.5, 0.3, 0], w_WB_W=[0, 0, 3])
+    answer = ask(TossQuestion(body="cube", state=flat, several_contacts_law=law), KNOWN)
+    went = toss(CUBE, flat, KNOWN.world, several_contacts_law=law)
+    np.testing.assert_array_equal(answer.toss.trajectory.p_WB_W[-1], went.state.p_WB_W)
+    assert [event.kind for event in answer.toss.events] == [event.kind for event in went.events]
+
+
+def test_the_simultaneous_law_takes_no_energetic_restitution() -> None:
+    question = TossQuestion(
+        body="cube",
+        state=THROWN,
+        restitution_law=RestitutionLaw.ENERGETIC,
+        several_contacts_law=SeveralContactsLaw.SIMULTANEOUS,
+    )
+    with pytest.raises(InvalidFieldError, match="restitution_law: found ENERGETIC"):
+        ask(question, KNOWN)
