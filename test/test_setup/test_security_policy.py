@@ -8,30 +8,18 @@ from pathlib import Path
 from xml.etree import ElementTree as ET
 
 import pytest
-import rclpy
 
 from contact_dynamics.demo.ros_domain import claim_domain
-from contact_dynamics.nodes.server import Server
-from running_server import PATIENCE_S, ROOT
+from running_server import ROOT, Client, server_and_client
 
 POLICY = ROOT / "config" / "sros2_policy.xml"
 NODE = "/contact_dynamics"
 
 
 @pytest.fixture
-def server(tmp_path: Path) -> Iterator[Server]:
-    rclpy.init(
-        args=[
-            "--ros-args", "--params-file", str(ROOT / "config" / "server.yaml"),
-            "-p", f"log_directory:={tmp_path}", "-p", "use_sim_time:=true",
-        ],
-        domain_id=claim_domain(),
-    )  # fmt: skip
-    node = Server()
-    yield node
-    node.close()
-    node.destroy_node()
-    rclpy.shutdown()
+def client(tmp_path: Path) -> Iterator[Client]:
+    with server_and_client(tmp_path, domain_id=claim_domain(), parameters=["use_sim_time:=true"]) as client:
+        yield client
 
 
 def allowed(kind: str, **permission: str) -> set[str]:
@@ -46,27 +34,24 @@ def allowed(kind: str, **permission: str) -> set[str]:
     }
 
 
-def interfaces(server: Server) -> tuple[set[str], set[str], set[str]]:
+def interfaces(client: Client) -> tuple[set[str], set[str], set[str]]:
     """What the server publishes, what it subscribes to and its services, as ROS knows them now."""
-    of_node = server.get_name(), server.get_namespace()
+    of_node = NODE[1:], "/"
     found = (
-        server.get_publisher_names_and_types_by_node(*of_node),
-        server.get_subscriber_names_and_types_by_node(*of_node),
-        server.get_service_names_and_types_by_node(*of_node),
+        client.node.get_publisher_names_and_types_by_node(*of_node),
+        client.node.get_subscriber_names_and_types_by_node(*of_node),
+        client.node.get_service_names_and_types_by_node(*of_node),
     )
     publishes, subscribes, serves = ({name for name, _ in each} for each in found)
     return publishes, subscribes, serves
 
 
-def test_the_server_may_do_what_it_does_and_no_more(server: Server) -> None:
+def test_the_server_may_do_what_it_does_and_no_more(client: Client) -> None:
     expected = (
         allowed("topic", publish="ALLOW"),
         allowed("topic", subscribe="ALLOW") - {"/parameter_events"},
         allowed("service", reply="ALLOW"),
     )
-    # ROS's graph learns of a node's interfaces a moment after the node has made them.
-    give_up = time.monotonic() + PATIENCE_S
-    while interfaces(server) != expected and time.monotonic() < give_up:
-        time.sleep(0.05)
+    client.spin_until(lambda: interfaces(client) == expected)
     time.sleep(0.2)  # an interface more may come last
-    assert interfaces(server) == expected
+    assert interfaces(client) == expected
