@@ -1,17 +1,17 @@
-"""The profile by which Fast DDS makes the participant of a node, so that one which starts again hears soon.
+"""The Fast DDS profile of our nodes, with which a killed process neither blocks nor delays the others.
 
-It says three things. Messages come at a port that nobody left behind. Processes of one machine hand messages
-over in shared memory that belongs to such a port. Those that sent to a process that was killed go on to write
-into its memory until they notice, one to three seconds later, also if another process has its port by then.
-At a port of its own, it hears them at once.
+Messages come in over UDP, also from the same machine. In shared memory, which is the default there, a
+process that was killed can leave a lock behind that blocks whoever writes to it next, and others go on to
+write into its memory for one to three seconds, also if a new process has its port by then.
 
-And the node says who it is every `_ANNOUNCED_EVERY_S` instead of every three seconds. A client that starts
-again misses the first time more often than not (`introductions.py` says why), and has no answer before the
-second.
+They come in at a port that differs at each start. At the port of a killed process, which is the default,
+others answer the new one a second later.
 
-And what was sent and is not confirmed is asked about every `_ASKED_EVERY_S` instead of every three seconds.
-A client that was killed and starts again takes the port of the one before, so that it misses the first
-answers, and those that follow wait until it has these.
+The node announces itself every `_ANNOUNCED_EVERY_S` instead of every three seconds. A restarted client mostly
+misses the first announcement (`introductions.py` explains why) and gets no answer before the second.
+
+Unacknowledged messages are announced again every `_ASKED_EVERY_S` instead of every three seconds. A restarted
+client has the port of the killed one, so that it misses the first answers, and later ones wait for these.
 
 A user's own profile takes the place of this one.
 """
@@ -26,7 +26,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from contact_dynamics.constants import NS_PER_S
-from contact_dynamics.nodes.domain_ports import PORTS_OF_PARTICIPANT, first_port, next_participant
+from contact_dynamics.nodes.domain_ports import PORTS_OF_PARTICIPANT
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -41,13 +41,11 @@ _ASKED_EVERY_S: Final = 0.1
 """s. Only a writer some of whose messages are not confirmed asks."""
 
 FIRST_OFFSET: Final = 101
-"""Ports count from the first one of the domain. Below are those of Fast DDS's choice for 45 participants."""
+"""Ports count from the first one of the domain. Below are those that Fast DDS chooses for 45 participants."""
 
 PORTS: Final = 60
-"""They are `PORTS_OF_PARTICIPANT` apart. They end so far below the next domain that ten further participants
+"""They are `PORTS_OF_PARTICIPANT` apart, and end so far below the next domain that ten further participants
 find one."""
-
-_SHARED_MEMORY: Final = Path("/dev/shm")  # noqa: S108  Fast DDS has no other place
 
 _PROFILE: Final = """<?xml version="1.0" encoding="UTF-8"?>
 <profiles xmlns="http://www.eprosima.com/XMLSchemas/fastRTPS_Profiles">
@@ -58,6 +56,7 @@ _PROFILE: Final = """<?xml version="1.0" encoding="UTF-8"?>
           <leaseAnnouncement><sec>0</sec><nanosec>{announced_every_ns}</nanosec></leaseAnnouncement>
         </discovery_config>
       </builtin>
+      <defaultUnicastLocatorList><locator><udpv4/></locator></defaultUnicastLocatorList>
       <port><offsetd3>{offset}</offsetd3></port>
     </rtps>
   </participant>
@@ -69,8 +68,8 @@ _PROFILE: Final = """<?xml version="1.0" encoding="UTF-8"?>
 
 
 @contextmanager
-def profile_of_fast_dds(domain_id: int) -> Iterator[None]:
-    """Let participants that are made in a domain meanwhile have the profile, unless the user has one.
+def profile_of_fast_dds() -> Iterator[None]:
+    """Give participants that are made meanwhile the profile, unless the user has one.
 
     The environment is as before afterwards, so that processes that are started later do not inherit it.
     """
@@ -78,7 +77,7 @@ def profile_of_fast_dds(domain_id: int) -> Iterator[None]:
         yield
         return
     text = _PROFILE.format(
-        offset=_free_offset(domain_id),
+        offset=FIRST_OFFSET + PORTS_OF_PARTICIPANT * (int(time.monotonic()) % PORTS),
         announced_every_ns=round(NS_PER_S * _ANNOUNCED_EVERY_S),
         asked_every_ns=round(NS_PER_S * _ASKED_EVERY_S),
     )
@@ -90,16 +89,3 @@ def profile_of_fast_dds(domain_id: int) -> Iterator[None]:
             os.environ[VARIABLE] = file.name
             stack.callback(os.environ.pop, VARIABLE)
         yield
-
-
-def _free_offset(domain_id: int) -> int:
-    """Return the offset of a port that has no file, or if there is none, of another one than a second ago.
-
-    It is the offset of the first participant. That of this process comes as many ports later as there are
-    others before it.
-    """
-    now = int(time.monotonic())
-    offsets = [FIRST_OFFSET + PORTS_OF_PARTICIPANT * ((now + each) % PORTS) for each in range(PORTS)]
-    first = first_port(domain_id) + PORTS_OF_PARTICIPANT * next_participant(domain_id)
-    free = (each for each in offsets if not (_SHARED_MEMORY / f"fastrtps_port{first + each}").exists())
-    return next(free, offsets[0])

@@ -33,11 +33,3 @@ def ports_in_use() -> set[int]:
     """Return the ports on which any process listens."""
     text = "\n".join(table.read_text(encoding="ascii") for table in _TABLES if table.is_file())
     return {int(port, 16) for port in _LOCAL_PORT.findall(text)}
-
-
-def next_participant(domain_id: int) -> int:
-    """Return the number that the next participant of this machine will have in a domain, from 0 on."""
-    first, in_use = first_port(domain_id) + FIRST_DISCOVERY, ports_in_use()
-    most = PORTS_OF_DOMAIN // PORTS_OF_PARTICIPANT
-    free = (number for number in range(most) if first + PORTS_OF_PARTICIPANT * number not in in_use)
-    return next(free, 0)

@@ -116,7 +116,7 @@ def _run(make_node: Callable[[], RunnableNode], args: list[str], verb: str, stop
     complete = True
     while True:
         try:
-            with profile_of_fast_dds(rclpy.get_default_context().get_domain_id()):
+            with profile_of_fast_dds():
                 node = make_node()
         except (ContactDynamicsError, OSError, ParameterException) as error:
             get_logger(verb).fatal(f"configuration: {error}")

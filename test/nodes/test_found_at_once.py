@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-import contextlib
 import errno
 import os
 import re
-import signal
-import socket
 import subprocess
 import sys
 import tempfile
@@ -15,10 +12,8 @@ from pathlib import Path
 
 import pytest
 
-from contact_dynamics.demo.ros_domain import claim_domain
-from contact_dynamics.nodes import dds_profile
 from contact_dynamics.nodes.dds_profile import FIRST_OFFSET, PORTS, VARIABLE, profile_of_fast_dds
-from contact_dynamics.nodes.domain_ports import first_port, next_participant
+from contact_dynamics.nodes.domain_ports import first_port
 from running_server import DOMAIN_ID, PATIENCE_S, ROOT, environment, process, wait_for
 
 ARGUMENTS = ["--params-file", str(ROOT / "config" / "server.yaml"), "--ros-args", "-p", "log:=false"]
@@ -58,27 +53,25 @@ input()
 """
 
 
-def port(server: subprocess.Popen[str]) -> int:
-    """Return at which port a process hears messages, from the first port of the domain."""
-    opened = []
-    for path in Path(f"/proc/{server.pid}/fd").iterdir():
-        with contextlib.suppress(OSError):  # it was closed meanwhile
-            opened.append(str(path.readlink()))
-    found = [re.fullmatch(r".*/fastrtps_port(\d+)_el", path) for path in opened]
-    ports = [int(each[1]) - 7400 - 250 * DOMAIN_ID for each in found if each is not None]
-    (offset,) = [each for each in ports if 0 <= each < 250]
-    return offset
-
-
-def test_a_server_that_was_killed_comes_back_at_another_port() -> None:
-    ports = []
-    for _ in range(3):
-        with process("server", *ARGUMENTS, ready="ready") as server:
-            ports.append(port(server))
-            os.kill(server.pid, signal.SIGKILL)
-            server.wait(PATIENCE_S)
-    assert len(set(ports)) == 3
-    assert set(ports) <= set(range(FIRST_OFFSET, FIRST_OFFSET + 2 * PORTS, 2))
+def test_nothing_is_sent_to_the_server_through_shared_memory_which_a_kill_could_leave_locked() -> None:
+    to_server = re.compile(r"/fastrtps_port(\d+)")
+    with (
+        process("server", *ARGUMENTS, ready="ready"),
+        subprocess.Popen(
+            [sys.executable, "-c", STAYS],
+            cwd=ROOT,
+            env=environment(),
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            text=True,
+        ) as client,
+    ):
+        wait_for(client, "answered")
+        ports = {int(port) for port in to_server.findall(Path(f"/proc/{client.pid}/maps").read_text())}
+        of_servers = {first_port(DOMAIN_ID) + FIRST_OFFSET + each for each in range(2 * PORTS)}
+        assert ports  # the client has one of its own
+        assert not ports & of_servers
+        client.communicate("end\n", timeout=PATIENCE_S)
 
 
 def test_a_client_that_says_only_once_who_it_is_finds_a_server_that_comes_later(tmp_path: Path) -> None:
@@ -96,29 +89,6 @@ def test_a_client_that_says_only_once_who_it_is_finds_a_server_that_comes_later(
             wait_for(client, "waits")
             with process("server", *ARGUMENTS, ready="ready"):
                 assert client.communicate(timeout=2.0 * PATIENCE_S)[0] == "found\n"
-
-
-def test_the_port_is_nobodys_although_other_participants_are_there(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
-    """Participants come at ports two apart, so that the number of this one moves its port."""
-    monkeypatch.delenv(VARIABLE, raising=False)
-    monkeypatch.setattr(dds_profile, "_SHARED_MEMORY", tmp_path)
-    domain = claim_domain()
-    first = first_port(domain)
-    with contextlib.ExitStack() as stack:
-        for before in range(4):
-            assert next_participant(domain) == before
-            ports = {FIRST_OFFSET + 2 * (before + each) for each in range(PORTS)}
-            for free in (FIRST_OFFSET + 2 * before, FIRST_OFFSET + 2 * (before + 31), max(ports)):
-                for port in ports:
-                    (tmp_path / f"fastrtps_port{first + port}").touch()
-                (tmp_path / f"fastrtps_port{first + free}").unlink()
-                with profile_of_fast_dds(domain):
-                    text = Path(os.environ[VARIABLE]).read_text()
-                assert f"<offsetd3>{free - 2 * before}</offsetd3>" in text
-            other = stack.enter_context(socket.socket(socket.AF_INET, socket.SOCK_DGRAM))
-            other.bind(("127.0.0.1", first + 10 + 2 * before))
 
 
 def test_a_client_with_the_profile_for_it_is_answered_over_udp() -> None:
@@ -143,7 +113,7 @@ def test_a_client_with_the_profile_for_it_is_answered_over_udp() -> None:
 
 def test_the_environment_is_as_before(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv(VARIABLE, raising=False)
-    with profile_of_fast_dds(DOMAIN_ID):
+    with profile_of_fast_dds():
         assert "<leaseAnnouncement><sec>0</sec><nanosec>500000000<" in Path(os.environ[VARIABLE]).read_text()
     assert VARIABLE not in os.environ
 
@@ -154,17 +124,17 @@ def test_where_no_file_can_be_written_there_is_no_profile(monkeypatch: pytest.Mo
 
     monkeypatch.delenv(VARIABLE, raising=False)
     monkeypatch.setattr(tempfile, "NamedTemporaryFile", is_full)
-    with profile_of_fast_dds(DOMAIN_ID):
+    with profile_of_fast_dds():
         assert VARIABLE not in os.environ
 
 
 def test_the_profile_of_the_user_stays(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setenv(VARIABLE, "mine.xml")
-    with profile_of_fast_dds(DOMAIN_ID):
+    with profile_of_fast_dds():
         assert os.environ[VARIABLE] == "mine.xml"
     assert os.environ[VARIABLE] == "mine.xml"
     monkeypatch.delenv(VARIABLE)
     monkeypatch.chdir(tmp_path)
     (tmp_path / "DEFAULT_FASTRTPS_PROFILES.xml").write_text(SAYS_IT_ONCE, encoding="utf-8")
-    with profile_of_fast_dds(DOMAIN_ID):
+    with profile_of_fast_dds():
         assert VARIABLE not in os.environ
