@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 FITTED_TO: Final = 40
 """Tosses that the engines' contacts are fitted to, of the half that may be fitted to."""
 
-MOST_FITS: Final = {2: 20, 3: 45}
+MAX_FITS: Final = {2: 20, 3: 45}
 """Settings that are tried, by the number of those that are free."""
 
 REST: Final = "calibration.rest"
@@ -112,7 +112,7 @@ def _fitted(
         return float(np.mean(0.02 * errors[:, 2] + np.radians(errors[:, 3])))
 
     simplex = np.vstack([np.zeros(free), np.diag([0.1, -0.5, 0.7][:free])])
-    options = {"maxfev": MOST_FITS[free], "initial_simplex": simplex, "xatol": 0.02, "fatol": 1e-3}
+    options = {"maxfev": MAX_FITS[free], "initial_simplex": simplex, "xatol": 0.02, "fatol": 1e-3}
     best = setting(minimize(cost, np.zeros(free), method="Nelder-Mead", options=options).x)
     _row(name, test, centre, roll_with(best), quoted=quoted)
     print(f"{'':>28} fitted: mu {best.friction:.3f}, e {best.restitution:.3f}, softness {best.softness:.2g}")
@@ -141,7 +141,7 @@ def _ours(body: Body, surface: Surface, gravity_W: FloatArray) -> Roll:
     world = World(bodies=(body,), surfaces=(surface,), gravity_W=gravity_W)
 
     def roll(state: BodyState, times: FloatArray) -> tuple[FloatArray, FloatArray]:
-        went = toss(body, state, world, most_alternatives=0)
+        went = toss(body, state, world, max_alternatives=0)
         known = times if went.end == TossEnd.RESTS else np.minimum(times, went.seconds)
         path = went.at(known)
         return path.p_WB_W, path.q_WB

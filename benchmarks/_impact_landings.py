@@ -1,6 +1,6 @@
 """How well each law predicts measured landings of a cube on several corners, some milliseconds apart.
 
-The recordings are those of `_impact_tosses`. The benchmark takes pairs of flights with up to `MOST_BETWEEN`
+The recordings are those of `_impact_tosses`. The benchmark takes pairs of flights with up to `MAX_BETWEEN`
 frames between them, in which more than one corner can have struck. Each law takes the state at the end of the
 first flight, and predicts the velocities at the beginning of the second:
 
@@ -46,7 +46,7 @@ if TYPE_CHECKING:
 
 Prediction: TypeAlias = "Callable[[MeasuredLanding, float, float], FloatArray]"
 
-MOST_BETWEEN: Final = 6
+MAX_BETWEEN: Final = 6
 """Number of frames, 40 ms. Longer stretches without flight are mostly sliding or rocking."""
 
 ALONE: Final = 0.01
@@ -90,7 +90,7 @@ def _landing(toss: Toss, index: int, before: slice, after: slice) -> MeasuredLan
     between = after.start - before.stop
     # The frames next to the strikes can hold a part of them.
     stop, start = before.stop - 1, after.start + 1
-    if between > MOST_BETWEEN or min(stop - before.start, after.stop - start) < FEWEST_FRAMES:
+    if between > MAX_BETWEEN or min(stop - before.start, after.stop - start) < FEWEST_FRAMES:
         return None
     span = max(FEWEST_FRAMES, round(FIT_SPAN * toss.rate))
     first = fit_flight(toss, slice(max(before.start, stop - span), stop))

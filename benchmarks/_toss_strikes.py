@@ -173,8 +173,8 @@ def second_arrival(observed: Observed, world: World, gravity_W: FloatArray) -> A
         state,
         replace(world, gravity_W=gravity_W),
         horizon=LATEST,
-        most_events=1,
-        most_alternatives=0,
+        max_events=1,
+        max_alternatives=0,
     )
     if not went.events or went.events[0].kind != TossEventKind.STRIKES:
         return None

@@ -38,9 +38,9 @@ BODY: Final = PlanarBody(mass=1.0, inertia=1.0)
 AT_REST: Final = PlanarVelocity(v=(0.0, 0.0), w=0.0)
 WRENCH: Final = PlanarWrench(f=(0.1, -1.0), moment=0.05)
 COUNTS: Final = (1, 2, 4, 8, 16, 32, 64, 200, 800)
-MOST_STRINGS: Final = 4**4  # more take minutes
-MOST_PROGRAMS: Final = 16  # contacts, up to which the modes are compared with linear programs
-MOST_TIMED: Final = 40  # modes of a set that are timed one by one
+MAX_STRINGS: Final = 4**4  # more take minutes
+MAX_PROGRAMS: Final = 16  # contacts, up to which the modes are compared with linear programs
+MAX_TIMED: Final = 40  # modes of a set that are timed one by one
 REPEATS: Final = 5  # at least
 AT_LEAST_S: Final = 0.02
 
@@ -117,7 +117,7 @@ def slowest_mode(contacts: list[PlanarContact]) -> float:
     """Return the time of the mode that takes longest to judge, s, of some over all the set."""
     problem = case_of(contacts)
     cells = kinematic_cells(problem)
-    chosen = sorted(cells)[:: 1 + len(cells) // MOST_TIMED]
+    chosen = sorted(cells)[:: 1 + len(cells) // MAX_TIMED]
 
     def judged(some: Mapping[str, Cell]) -> float:
         return best_of(lambda: judge_all(problem, some, ACCELERATION_TOLERANCE))
@@ -207,7 +207,7 @@ def run() -> None:
 def peers(make: Callable[[int], list[PlanarContact]], contacts: list[PlanarContact]) -> str:
     """Return the times of the linear programs, if there are not too many. Their answers must agree."""
     n = len(contacts)
-    if n > MOST_PROGRAMS:
+    if n > MAX_PROGRAMS:
         return ""
     answer = contact_modes(
         PlanarContactProblem(body=BODY, velocity=AT_REST, contacts=contacts, wrench=WRENCH)
@@ -217,7 +217,7 @@ def peers(make: Callable[[int], list[PlanarContact]], contacts: list[PlanarConta
     one = (time.thread_time() - start) / len(answer.kinematic_modes)
     assert found == [mode.mode for mode in answer.modes]
     text = f"{1e6 * one:12.0f} us"
-    if make is drawn and 4**n <= MOST_STRINGS:
+    if make is drawn and 4**n <= MAX_STRINGS:
         start = time.thread_time()
         assert all_strings(contacts) == set(answer.kinematic_modes)
         spent = time.thread_time() - start

@@ -33,8 +33,8 @@ from contact_dynamics import Body, BodyState, MassProperties, Surface, World
 from contact_dynamics.constants import ns_after
 from contact_dynamics.questions import (
     ContactModeQuestion,
+    Context,
     ImpactQuestion,
-    Knowledge,
     TumblingQuestion,
     UntilContact,
     ask,
@@ -69,7 +69,7 @@ WORLD = World(
     bodies=tuple(Body(name=f"brick_{i}", mass_properties=BRICK, shape=box(size=SIZE)) for i in range(BODIES)),
     surfaces=(FLOOR,),
 )
-KNOWN = Knowledge(world=WORLD)
+KNOWN = Context(world=WORLD)
 
 
 def run(seconds: float = SECONDS, *, with_viewer: bool = False) -> None:

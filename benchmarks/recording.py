@@ -17,7 +17,7 @@ from rclpy.serialization import serialize_message
 from benchmarks._log_rates import rates
 from benchmarks._quotes import quote
 from contact_dynamics import Body, BodyState, MassProperties, Surface, World
-from contact_dynamics.questions import ImpactQuestion, Knowledge, ask
+from contact_dynamics.questions import Context, ImpactQuestion, ask
 from contact_dynamics.recording import BagWriter, Recorder
 from contact_dynamics.shapes import box
 from contact_dynamics_interfaces.srv import PredictImpact
@@ -70,7 +70,7 @@ def _calls() -> None:
     """Measure what a call costs the log: its request and its response, about an impact in space."""
     state = BodyState(p_WB_W=[0, 0, 0.4], q_WB=[0.6, 0, 0, 0.8], v_WB_W=[1, 0, -2], w_WB_W=[3, 5, 1])
     world = World(bodies=(BRICK,), surfaces=(FLOOR,))
-    answer = ask(ImpactQuestion(body="brick", state=state), Knowledge(world=world))
+    answer = ask(ImpactQuestion(body="brick", state=state), Context(world=world))
     response = impact_answer_to_msg(answer, world_frame="world")
     asked = PredictImpact.Event(request=[PredictImpact.Request(body_name="brick")])
     events = [serialize_message(each) for each in (asked, PredictImpact.Event(response=[response]))]

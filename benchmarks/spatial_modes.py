@@ -38,8 +38,8 @@ BODY: Final = MassProperties(mass=1.0, I_B=np.diag([0.1, 0.12, 0.15]))
 WEIGHT: Final = 10.0
 COUNTS: Final = (1, 2, 4, 8, 16, 32)
 FEW_AND_MANY: Final = (4, 8)  # facets
-MOST_BY_FACETS: Final = 4  # contacts for which both are shown
-MOST_STRINGS: Final = 2**8  # more take minutes
+MAX_BY_FACETS: Final = 4  # contacts for which both are shown
+MAX_STRINGS: Final = 2**8  # more take minutes
 REPEATS: Final = 5
 PUSHES: Final = {"rests": 0.0, "is pushed": 0.3, "slides off": 0.6}  # share of the weight; friction holds 0.5
 SLACK: Final = 1e-7
@@ -171,7 +171,7 @@ def run_kinematic() -> None:
             modes = len(spatial_kinematic_modes(state(), contacts))
             seconds = best_of(partial(spatial_kinematic_modes, state(), contacts))
             peer = ""
-            if 2**n <= MOST_STRINGS:
+            if 2**n <= MAX_STRINGS:
                 start = time.thread_time()
                 assert every_string(contacts) == modes
                 brute = time.thread_time() - start
@@ -188,7 +188,7 @@ def run_mechanics() -> None:
     for make, n, facets, (what, share) in itertools.product(
         (flush, drawn), COUNTS, FEW_AND_MANY, PUSHES.items()
     ):
-        if n > MOST_BY_FACETS and facets < FEW_AND_MANY[-1]:
+        if n > MAX_BY_FACETS and facets < FEW_AND_MANY[-1]:
             continue
         contacts = make(n)
         force = WEIGHT * np.array([share, 0.05 * (share > 0.0), -1.0])
@@ -205,7 +205,7 @@ def run_mechanics() -> None:
         answer = ask()
         seconds = best_of(ask)
         peer = ""
-        if (2 + 2 * facets) ** n <= MOST_STRINGS:
+        if (2 + 2 * facets) ** n <= MAX_STRINGS:
             start = time.thread_time()
             assert every_letter(contacts, force, facets) == len(answer.modes)
             brute = time.thread_time() - start

@@ -245,7 +245,7 @@ def _costs(early: list[Early], world: World, uncertainty: TossUncertainty) -> No
         if rollouts := _mujoco_rollouts(early, world, uncertainty, count):
             print(f"MuJoCo, {count} rollouts over the same time: {np.median(rollouts):.0f} ms")
             quote(f"tosses.cost.mujoco.{count}", float(np.median(rollouts)), "ms")
-    spent = [_spent(partial(toss, body, one.state, world, most_alternatives=0)) for one in early]
+    spent = [_spent(partial(toss, body, one.state, world, max_alternatives=0)) for one in early]
     print(f"a single toss to rest: {np.median(spent):.0f} ms")
     quote("tosses.cost.single", float(np.median(spent)), "ms")
     _shared(early[0], world, uncertainty)

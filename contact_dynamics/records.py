@@ -19,7 +19,7 @@ from contact_dynamics.validation_types import checks_fields
 _DIGITS: Final = 6
 """Significant digits of a number that is shown. `to_dict` keeps all of them."""
 
-_MOST_SHOWN: Final = 9
+_MAX_SHOWN: Final = 9
 """Largest number of elements of an array or a list that is shown. Longer ones are shown as their shape."""
 
 
@@ -128,10 +128,10 @@ def _short(value: Any) -> str:
     elif isinstance(value, _NUMBERS):
         shown = f"{float(value):.{_DIGITS}g}"
     elif isinstance(value, np.ndarray):
-        shown = _short(value.tolist()) if value.size <= _MOST_SHOWN else f"array of shape {value.shape}"
+        shown = _short(value.tolist()) if value.size <= _MAX_SHOWN else f"array of shape {value.shape}"
     elif _has_fields(value) and not isinstance(value, Record):
         shown = f"{type(value).__name__}(...)"
-    elif isinstance(value, list | tuple | frozenset | set | Mapping) and len(value) > _MOST_SHOWN:
+    elif isinstance(value, list | tuple | frozenset | set | Mapping) and len(value) > _MAX_SHOWN:
         shown = f"{len(value)} entries"
     elif isinstance(value, tuple):
         shown = "(" + ", ".join(map(_short, value)) + ")"
@@ -177,7 +177,7 @@ def _cell(value: Any) -> str:
     if isinstance(value, Record):
         return f"<details><summary>{type(value).__name__}</summary>{_table(value)}</details>"
     if isinstance(value, tuple | list) and value and all(isinstance(each, Record) for each in value):
-        tables = "".join(_table(each) for each in value[:_MOST_SHOWN])
-        more = f"<p>and {len(value) - _MOST_SHOWN} more</p>" if len(value) > _MOST_SHOWN else ""
+        tables = "".join(_table(each) for each in value[:_MAX_SHOWN])
+        more = f"<p>and {len(value) - _MAX_SHOWN} more</p>" if len(value) > _MAX_SHOWN else ""
         return f"<details><summary>{len(value)} entries</summary>{tables}{more}</details>"
     return html.escape(_short(value))

@@ -15,7 +15,7 @@ from contact_dynamics.errors import InvalidFieldError, UnknownBodyError
 from contact_dynamics.records import Record
 from contact_dynamics.rigid_body.body import MassProperties
 from contact_dynamics.shapes.concavity import warn_if_concave
-from contact_dynamics.shapes.convex import MOST_VERTICES, NO_SHAPE, ConvexShape, box_vertices, polyhedron
+from contact_dynamics.shapes.convex import MAX_VERTICES, NO_SHAPE, ConvexShape, box_vertices, polyhedron
 from contact_dynamics.shapes.obstacle import Obstacle
 from contact_dynamics.validation import (
     FloatArray,
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
     from contact_dynamics.rigid_body.inertia import MassDistribution
 
-__all__ = ["LONGEST_NAME", "MOST_VERTICES", "Body", "Surface", "World", "box_vertices"]
+__all__ = ["LONGEST_NAME", "MAX_VERTICES", "Body", "Surface", "World", "box_vertices"]
 
 LONGEST_NAME: Final = 256
 """Letters that a name may have which a request or a configuration gives."""
@@ -53,7 +53,7 @@ class Body(Record):
     Raises:
         InvalidFieldError: a number is not finite, the centre of mass is beyond `LARGEST_NUMBER`, an array has
             another shape, or both vertices and a shape are given.
-        TooLargeError: more vertices than `MOST_VERTICES`.
+        TooLargeError: more vertices than `MAX_VERTICES`.
     """
 
     name: str
@@ -110,7 +110,7 @@ class Body(Record):
         Raises:
             InvalidFieldError: the mass is a point or a line, vertices are not finite or not of shape (k, 3),
                 or both vertices and a shape are given.
-            TooLargeError: there are more vertices than `MOST_VERTICES`.
+            TooLargeError: there are more vertices than `MAX_VERTICES`.
         """
         mass_properties = mass.mass_properties
         if vertices_F is not None:

@@ -10,7 +10,7 @@ import numpy as np
 
 from contact_dynamics import Body, BodyState, Surface, World, inertia
 from contact_dynamics.diagrams.toss_words import branch_in_words, face_in_words
-from contact_dynamics.questions import Knowledge, TossQuestion, TossSampling, UncertainState, ask
+from contact_dynamics.questions import Context, TossQuestion, TossSampling, UncertainState, ask
 from contact_dynamics.shapes import box
 from contact_dynamics.toss import TossUncertainty
 from contact_dynamics.toss.distribution import Branch
@@ -30,7 +30,7 @@ question = TossQuestion(
     state=UncertainState(state=thrown, covariance=np.diag(deviations) ** 2),
     sampling=TossSampling(count=100, to_rest=True, uncertainty=TossUncertainty(velocity=0.02, spin=0.4)),
 )
-answer = ask(question, Knowledge(world=World(surfaces=(FLOOR,))))
+answer = ask(question, Context(world=World(surfaces=(FLOOR,))))
 
 went, told = answer.toss, answer.distribution
 if told is None:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Final, Protocol, TypeVar
 import numpy as np
 
 from contact_dynamics.errors import InvalidFieldError
-from contact_dynamics.impact.in_time.sequence import MOST_STRIKES, STRIKE_WINDOW
+from contact_dynamics.impact.in_time.sequence import MAX_STRIKES, STRIKE_WINDOW
 from contact_dynamics.impact.law import RestitutionLaw
 from contact_dynamics.impact.several.result import SeveralContactsLaw
 from contact_dynamics.motion.forces import NO_DRAG, NO_WRENCH, ConstantWrench, Drag, WrenchAxes
@@ -178,10 +178,10 @@ def asked_several_contacts_law(request: PredictImpact.Request) -> SeveralContact
     value = request.several_contacts_law
     if value == request.SEQUENTIAL_IN_TIME:
         window = optional("strike_window", request.strike_window)
-        most = optional("most_strikes", request.most_strikes)
+        most = optional("max_strikes", request.max_strikes)
         return InTime(
             strike_window=STRIKE_WINDOW if window is None else window,
-            most_strikes=MOST_STRIKES if most is None else most,
+            max_strikes=MAX_STRIKES if most is None else most,
             hold_step=request.hold_step or None,
         )
     try:

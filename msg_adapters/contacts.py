@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from contact_dynamics.contact.contact import MOST_CONTACTS, ContactSet
+from contact_dynamics.contact.contact import MAX_CONTACTS, ContactSet
 from contact_dynamics.contact.curvature import Curvatures, alike
 from contact_dynamics.errors import InvalidFieldError, NotSupportedError, TooLargeError
 from contact_dynamics_interfaces.msg import ContactSet as ContactSetMsg
@@ -28,13 +28,13 @@ def contacts_from_msg(msg: ContactSetMsg) -> ContactSet:
     Raises:
         InvalidFieldError: arrays have unequal lengths, curvatures are without the kind CURVED, or an error of
             `ContactSet`.
-        TooLargeError: there are more than `MOST_CONTACTS` contacts.
+        TooLargeError: there are more than `MAX_CONTACTS` contacts.
         NotSupportedError: a surface moves.
     """
     n = len(msg.frictions)
-    if max(n, len(msg.positions) // 3, len(msg.normals) // 3) > MOST_CONTACTS:
+    if max(n, len(msg.positions) // 3, len(msg.normals) // 3) > MAX_CONTACTS:
         raise TooLargeError(
-            "contacts", f"{max(n, len(msg.positions) // 3)} contacts", f"at most {MOST_CONTACTS}"
+            "contacts", f"{max(n, len(msg.positions) // 3)} contacts", f"at most {MAX_CONTACTS}"
         )
     for field in ("surface_velocities", "surface_accelerations"):
         if any(getattr(msg, field)):

@@ -23,7 +23,7 @@ class Stamped(Protocol):
 First = TypeVar("First", bound=Stamped)
 Second = TypeVar("Second", bound=Stamped)
 
-MOST_UNPAIRED: Final = 100
+MAX_UNPAIRED: Final = 100
 """Messages that wait for the other one of their stamp. Then the other topic is silent, and the oldest go."""
 
 
@@ -53,6 +53,6 @@ def _partner(msg: First, mine: dict[int, First], others: dict[int, Second]) -> S
     partner = others.pop(stamp_ns, None)
     if partner is None:
         mine[stamp_ns] = msg
-        if len(mine) > MOST_UNPAIRED:
+        if len(mine) > MAX_UNPAIRED:
             del mine[next(iter(mine))]
     return partner

@@ -15,14 +15,14 @@ from msg_adapters.stamps import stamp_ns_from_msg, stamp_to_msg
 if TYPE_CHECKING:
     from contact_dynamics_interfaces.msg import Trajectory as TrajectoryMsg
 
-MOST_POSES: Final = 200
+MAX_POSES: Final = 200
 """Largest number of poses. A pose costs some 0.1 ms as a nested message, and a drawn line needs no more."""
 
 
 def path_from_trajectory(trajectory: TrajectoryMsg) -> Path:
-    """Return at most `MOST_POSES` poses of a trajectory's message, with the first and the last."""
+    """Return at most `MAX_POSES` poses of a trajectory's message, with the first and the last."""
     count = len(trajectory.times)
-    chosen = np.unique(np.linspace(0, count - 1, min(count, MOST_POSES)).round().astype(int)).tolist()
+    chosen = np.unique(np.linspace(0, count - 1, min(count, MAX_POSES)).round().astype(int)).tolist()
     positions = np.array(trajectory.positions).reshape(-1, 3)
     orientations = np.array(trajectory.orientations).reshape(-1, 4)
     begin_ns = stamp_ns_from_msg(trajectory.header.stamp)

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 LONGEST_GAP: Final = 5.0
 """Windows without a pose, after which the poses before are forgotten."""
 
-MOST_POSES: Final = 1000
+MAX_POSES: Final = 1000
 """Poses of one window that are kept: 20 kHz of them in the usual one."""
 
 
@@ -50,7 +50,7 @@ class PoseTrack:
         """Begin without poses."""
         self._window_ns = to_ns(settings.velocity_window)
         self._p_FB_F = settings.p_FB_F
-        self._poses: deque[_Pose] = deque(maxlen=MOST_POSES)
+        self._poses: deque[_Pose] = deque(maxlen=MAX_POSES)
         self._far_behind = 0  # poses in turn
 
     def add(

@@ -73,7 +73,7 @@ def tumbling_question_from_msg(
         gravity_W=gravity_W,
         wrench=wrench,
         drag=drag,
-        want_covariance=request.want_covariance,
+        include_covariance=request.include_covariance,
         curve_points=request.curve_points,
     )
 
@@ -105,8 +105,8 @@ def impact_question_from_msg(
         horizon=optional("horizon", request.horizon),
         restitution_law=asked_restitution_law(request.restitution_law),
         several_contacts_law=law,
-        want_orders=request.want_orders,
-        want_covariance=request.want_covariance,
+        include_orders=request.include_orders,
+        include_covariance=request.include_covariance,
         problem=problem,
         plane=asked_plane(request.plane_normal),
         out_of_plane_tolerance=optional("out_of_plane_tolerance", request.out_of_plane_tolerance),
@@ -136,12 +136,12 @@ def contact_mode_question_from_msg(
             read_if=CONTACT_MODE,
             force_W=vector_from_msg(request.applied_wrench.force),
             torque_W=vector_from_msg(request.applied_wrench.torque),
-            want_wrenches=request.want_wrenches,
-            want_statics=request.want_statics,
-            want_impact=request.want_impact,
+            include_wrenches=request.include_wrenches,
+            include_statics=request.include_statics,
+            include_impact=request.include_impact,
             uncertainty=uncertainty_from_msg(request),
-            want_geometry_margins=request.want_geometry_margins,
-            want_probabilities=request.want_probabilities,
+            include_geometry_margins=request.include_geometry_margins,
+            include_probabilities=request.include_probabilities,
         )
     except InvalidFieldError as error:
         raise renamed(error, WRENCH_FIELDS) from None
@@ -155,12 +155,12 @@ def asked_contact_modes(
     read_if: Iterable[ReadIf],
     force_W: FloatArray = NOTHING,
     torque_W: FloatArray = NOTHING,
-    want_wrenches: bool = False,
-    want_statics: bool = False,
-    want_impact: bool = False,
+    include_wrenches: bool = False,
+    include_statics: bool = False,
+    include_impact: bool = False,
     uncertainty: ContactUncertainty = EXACT_CONTACTS,
-    want_geometry_margins: bool = False,
-    want_probabilities: bool = False,
+    include_geometry_margins: bool = False,
+    include_probabilities: bool = False,
 ) -> ContactModeQuestion:
     """Return the question of what requests about one candidate and about many have in common.
 
@@ -171,12 +171,12 @@ def asked_contact_modes(
         read_if: The fields of it that are not always read.
         force_W: The question's own, as what follows.
         torque_W: As the question's.
-        want_wrenches: As the question's.
-        want_statics: As the question's.
-        want_impact: As the question's.
+        include_wrenches: As the question's.
+        include_statics: As the question's.
+        include_impact: As the question's.
         uncertainty: As the question's.
-        want_geometry_margins: As the question's.
-        want_probabilities: As the question's.
+        include_geometry_margins: As the question's.
+        include_probabilities: As the question's.
 
     Raises:
         ContactDynamicsError: a field holds what is not allowed, or names a body that is not known.
@@ -202,11 +202,11 @@ def asked_contact_modes(
         margin_length=optional("margin_length", request.margin_length),
         force_W=force_W,
         torque_W=torque_W,
-        want_margins=request.want_margins,
-        want_wrenches=want_wrenches,
-        want_statics=want_statics,
-        want_impact=want_impact,
+        include_margins=request.include_margins,
+        include_wrenches=include_wrenches,
+        include_statics=include_statics,
+        include_impact=include_impact,
         uncertainty=uncertainty,
-        want_geometry_margins=want_geometry_margins,
-        want_probabilities=want_probabilities,
+        include_geometry_margins=include_geometry_margins,
+        include_probabilities=include_probabilities,
     )

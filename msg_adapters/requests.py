@@ -77,7 +77,7 @@ def tumbling_question_to_msg(
     msg.linear_drag, msg.quadratic_drag = question.drag.linear, question.drag.quadratic
     msg.linear_angular_drag = question.drag.linear_angular
     msg.quadratic_angular_drag = question.drag.quadratic_angular
-    msg.want_covariance = question.want_covariance
+    msg.include_covariance = question.include_covariance
     msg.curve_points = question.curve_points
     return msg
 
@@ -96,12 +96,12 @@ def impact_question_to_msg(
     law = question.several_contacts_law
     if isinstance(law, InTime):
         msg.several_contacts_law = msg.SEQUENTIAL_IN_TIME
-        msg.strike_window, msg.most_strikes = [law.strike_window], [law.most_strikes]
+        msg.strike_window, msg.max_strikes = [law.strike_window], [law.max_strikes]
         msg.hold_step = law.hold_step or 0.0
     else:
         msg.several_contacts_law = int(law)
-    msg.want_orders = question.want_orders
-    msg.want_covariance = question.want_covariance
+    msg.include_orders = question.include_orders
+    msg.include_covariance = question.include_covariance
     _write_problem(msg, question)
     return msg
 
@@ -113,12 +113,12 @@ def contact_mode_question_to_msg(
     msg = PredictContactMode.Request()
     write_contact_modes(msg, question, world, world_frame)
     msg.applied_wrench = wrench_to_msg(question.force_W, question.torque_W)
-    msg.want_wrenches = question.want_wrenches
-    msg.want_statics = question.want_statics
-    msg.want_impact = question.want_impact
+    msg.include_wrenches = question.include_wrenches
+    msg.include_statics = question.include_statics
+    msg.include_impact = question.include_impact
     write_uncertainty(question.uncertainty, msg)
-    msg.want_geometry_margins = question.want_geometry_margins
-    msg.want_probabilities = question.want_probabilities
+    msg.include_geometry_margins = question.include_geometry_margins
+    msg.include_probabilities = question.include_probabilities
     return msg
 
 
@@ -138,7 +138,7 @@ def write_contact_modes(
     _write_problem(msg, question)
     msg.friction_facets = asked_optional(question.friction_facets)
     msg.margin_length = asked_optional(question.margin_length)
-    msg.want_margins = question.want_margins
+    msg.include_margins = question.include_margins
 
 
 def write_fitted_subject(

@@ -27,7 +27,7 @@ _CODE_NAMES: Final[tuple[tuple[type[errors.ContactDynamicsError], str], ...]] = 
 )
 
 
-MOST_SAID: Final = 2000
+MAX_SAID: Final = 2000
 """Letters of a message about an error. It quotes what was found, which may be a name of any length."""
 
 
@@ -42,8 +42,8 @@ class Response(Protocol):
 
 def short(message: str) -> str:
     """Return a message without its middle, if it is too long to be read."""
-    half = MOST_SAID // 2
-    return message if len(message) <= MOST_SAID else f"{message[:half]} ... {message[-half:]}"
+    half = MAX_SAID // 2
+    return message if len(message) <= MAX_SAID else f"{message[:half]} ... {message[-half:]}"
 
 
 _WARNING: Final = "warning: "

@@ -59,7 +59,7 @@ def toss_question_from_msg(request: PredictToss.Request, *, world: World, world_
         several_contacts_law=asked_instant_law(request.several_contacts_law),
         horizon=optional("horizon", request.horizon),
         rate=optional("rate", request.rate),
-        most_alternatives=optional("most_alternatives", request.most_alternatives),
+        max_alternatives=optional("max_alternatives", request.max_alternatives),
         sampling=_sampling(request) if request.samples else None,
         lasting_factors=np.array(request.lasting_factors),
     )
@@ -116,7 +116,7 @@ def toss_question_to_msg(question: TossQuestion, *, world: World, world_frame: s
     msg.restitution_law = int(question.restitution_law)
     msg.several_contacts_law = int(question.several_contacts_law)
     msg.horizon, msg.rate = asked_optional(question.horizon), asked_optional(question.rate)
-    msg.most_alternatives = asked_optional(question.most_alternatives)
+    msg.max_alternatives = asked_optional(question.max_alternatives)
     msg.lasting_factors = flat(question.lasting_factors)
     sampling = question.sampling
     if sampling is not None:

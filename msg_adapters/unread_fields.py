@@ -145,14 +145,14 @@ _CONTACT_MODES: Final = (
 CONTACT_MODE: Final = (
     *_CONTACT_MODES,
     # AUTOMATIC solves these in space, because no plane holds uncertain contacts.
-    ReadIf(_PLANE, (_IN_PLANE, When("want_geometry_margins", is_zero=True))),
+    ReadIf(_PLANE, (_IN_PLANE, When("include_geometry_margins", is_zero=True))),
     ReadIf(_PLANE, (_IN_PLANE, When("uncertainty_points", is_zero=True))),
     ReadIf(_PLANE, (_IN_PLANE, When("uncertainty_normals", is_zero=True))),
-    ReadIf(("margin_length",), (When("want_margins"), When("want_statics"))),
+    ReadIf(("margin_length",), (When("include_margins"), When("include_statics"))),
 )
 """The fields of `PredictContactMode`."""
 
-CONTACT_MODE_BATCH: Final = (*_CONTACT_MODES, ReadIf(("margin_length",), (When("want_margins"),)))
+CONTACT_MODE_BATCH: Final = (*_CONTACT_MODES, ReadIf(("margin_length",), (When("include_margins"),)))
 """The fields of `PredictContactModeBatch`."""
 
 IMPACT: Final = (
@@ -161,7 +161,7 @@ IMPACT: Final = (
     ReadIf(("horizon",), (_FOUND,)),
     ReadIf(_PLANE, (_IN_PLANE,)),
     ReadIf(("distance_tolerance",), (_FOUND, _IN_TIME, _IN_PLANE)),
-    ReadIf(("strike_window", "most_strikes", "hold_step"), (_IN_TIME,)),
+    ReadIf(("strike_window", "max_strikes", "hold_step"), (_IN_TIME,)),
 )
 """The fields of `PredictImpact`."""
 

@@ -42,7 +42,7 @@ RANGES: list[tuple[str, str, Any]] = [
     *[("MassProperties.radius_of_gyration", "axis_B", value) for value in ([0, 0, 2], [0, 0, 0])],
     *[("planar_in_space", "axes_W", value) for value in ([[1, 0, 0], [1, 0, 0]], [[2, 0, 0], [0, 1, 0]])],
     *[("BodyState", "stamp_ns", value) for value in (NAN, 0.5, "now", 10**400)],
-    ("forced_motion", "most_steps", 0.5),
+    ("forced_motion", "max_steps", 0.5),
     ("spatial_sliding_modes", "planes", 2.5),
 ]
 

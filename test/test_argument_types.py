@@ -73,10 +73,10 @@ WRONG: list[tuple[Any, dict[str, Any], str]] = [
     (toss.toss, {"body": BOX, "state": STATE, "world": Body}, "world must be a World, got the class Body"),
     (
         questions.ImpactQuestion,
-        {"body": BOX, "want_orders": "no"},
-        "want_orders must be True or False, got 'no', a str",
+        {"body": BOX, "include_orders": "no"},
+        "include_orders must be True or False, got 'no', a str",
     ),
-    (questions.Knowledge, {"world": BOX}, "world must be a World, got a Body"),
+    (questions.Context, {"world": BOX}, "world must be a World, got a Body"),
     (questions.ask, {"question": BOX}, "question must be a TumblingQuestion or an ImpactQuestion or a "),
     (landing.next_landing, {"body": BOX, "state": STATE, "world": FLOOR, "horizon": 1}, "world must be a "),
 ]
@@ -121,7 +121,7 @@ def test_subclasses_and_numpys_booleans_are_of_the_type() -> None:
 
     cup = Cup(name=np.str_("cup"), mass_properties=BALL)
     assert World(bodies=[cup]).body("cup") is cup
-    assert questions.ImpactQuestion(body=cup, want_orders=np.True_).want_orders
+    assert questions.ImpactQuestion(body=cup, include_orders=np.True_).include_orders
 
 
 def public() -> list[tuple[str, Any]]:

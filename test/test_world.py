@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from contact_dynamics.contact.contact import MOST_CONTACTS, ContactSet
+from contact_dynamics.contact.contact import MAX_CONTACTS, ContactSet
 from contact_dynamics.contact.found import find_contacts
 from contact_dynamics.errors import InvalidFieldError, TooLargeError, UnknownBodyError
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
@@ -19,7 +19,7 @@ from contact_dynamics.shapes import box, cylinder, sphere
 from contact_dynamics.shapes.convex import ConvexShape
 from contact_dynamics.shapes.obstacle import Obstacle
 from contact_dynamics.tolerances import DISTANCE_TOLERANCE
-from contact_dynamics.world import MOST_VERTICES, Body, Surface, World, box_vertices
+from contact_dynamics.world import MAX_VERTICES, Body, Surface, World, box_vertices
 
 STUFF = MassProperties(mass=1.0, I_B=np.eye(3))
 BOX = Body(name="box", mass_properties=STUFF, vertices_B=box_vertices((2.0, 4.0, 6.0)))
@@ -102,10 +102,10 @@ def test_contacts_that_make_no_sense_are_refused(changes: dict[str, object], wor
 
 
 def test_absurd_sizes_are_refused_before_they_are_copied() -> None:
-    with pytest.raises(TooLargeError, match=f"at most {MOST_CONTACTS}"):
-        contacts(frictions=np.zeros(MOST_CONTACTS + 1))
-    with pytest.raises(TooLargeError, match=f"at most {MOST_VERTICES}"):
-        Body(name="sponge", mass_properties=STUFF, vertices_B=np.zeros((MOST_VERTICES + 1, 3)))
+    with pytest.raises(TooLargeError, match=f"at most {MAX_CONTACTS}"):
+        contacts(frictions=np.zeros(MAX_CONTACTS + 1))
+    with pytest.raises(TooLargeError, match=f"at most {MAX_VERTICES}"):
+        Body(name="sponge", mass_properties=STUFF, vertices_B=np.zeros((MAX_VERTICES + 1, 3)))
 
 
 def test_a_subset_keeps_rows_together() -> None:

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from contact_dynamics.calibration.tosses import tosses_in
-from contact_dynamics.measured.events import FIT_SPAN, MOST_BETWEEN, find_rest, meeting_of_flights
+from contact_dynamics.measured.events import FIT_SPAN, MAX_BETWEEN, find_rest, meeting_of_flights
 from contact_dynamics.measured.flight_fit import FEWEST_FRAMES
 from contact_dynamics.records import Record
 from contact_dynamics.world import Surface
@@ -103,7 +103,7 @@ def _observed(name: str, motion: MeasuredMotion, flights: tuple[slice, ...]) -> 
     reach = _reach(motion)
     strikes, several = [], 0
     for before, after in pairwise(flights):
-        if after.start - before.stop > MOST_BETWEEN or not surfaces:
+        if after.start - before.stop > MAX_BETWEEN or not surfaces:
             continue
         strike = _strike(motion, before, after, surfaces, reach)
         if strike is None:

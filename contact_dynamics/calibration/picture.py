@@ -20,7 +20,7 @@ from contact_dynamics.viewing import palette
 from contact_dynamics.viewing.entities import entity
 from contact_dynamics.viewing.kept_recording import APPLICATION
 from contact_dynamics.viewing.scene import solid
-from contact_dynamics.viewing.side_by_side import EVENTS, MOST_DRAWN, TABLE, SideBySide
+from contact_dynamics.viewing.side_by_side import EVENTS, MAX_DRAWN, TABLE, SideBySide
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -88,7 +88,7 @@ def write_picture(path: Path, found: Calibration) -> int:
     Raises:
         OSError: the file cannot be written.
     """
-    rows = drawn_strikes(found)[:MOST_DRAWN]
+    rows = drawn_strikes(found)[:MAX_DRAWN]
     shape = drawn_shape(found.body.shape)
     places = SideBySide(count=len(rows), size=shape.size, gravity_W=found.gravity_W)
     recording = rr.RecordingStream(APPLICATION)

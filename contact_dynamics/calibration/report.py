@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 CORRELATED: Final = 0.7
 """Correlations that are told."""
 
-MOST_OUTLIERS: Final = 10
+MAX_OUTLIERS: Final = 10
 """Outliers that are listed on the terminal. The JSON has all."""
 
 
@@ -135,11 +135,11 @@ def _doubts(found: Calibration) -> Iterator[str]:
     for title, texts in groups:
         for text in texts:
             yield f"{title}: {text}"
-    for each in found.outliers[:MOST_OUTLIERS]:
+    for each in found.outliers[:MAX_OUTLIERS]:
         when = "" if math.isnan(each.time) else f" at {each.time:.3f} s"
         yield f"Left out: {each.recording}{when}, {each.kind}, {each.size:.1f} standard deviations off"
-    if len(found.outliers) > MOST_OUTLIERS:
-        yield f"Left out: {len(found.outliers) - MOST_OUTLIERS} more"
+    if len(found.outliers) > MAX_OUTLIERS:
+        yield f"Left out: {len(found.outliers) - MAX_OUTLIERS} more"
 
 
 def content_of(found: Calibration) -> dict[str, Any]:

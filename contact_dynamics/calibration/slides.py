@@ -32,7 +32,7 @@ FEWEST_SLIDING: Final = 8
 FEWEST_SLIDES: Final = 5
 """Slides on a surface, below which their scatter says too little."""
 
-MOST_TURNING: Final = 0.3
+MAX_TURNING: Final = 0.3
 """How far corners of the face may turn, relative to the length of the slide. Friction of a body that turns is
 not along its way. This share takes up to 2 % from its deceleration."""
 
@@ -123,7 +123,7 @@ def _slide_of(each: Observed, described: Described, gravity_W: FloatArray) -> _S
     length = float(np.linalg.norm(way))
     turn = np.linalg.norm(rotation_vectors(motion.q_WB[stop - 1][None], motion.q_WB[begin])[0])
     reach = float(np.linalg.norm(described.corners - described.center, axis=1).max())
-    if length == 0.0 or turn * reach > MOST_TURNING * length:
+    if length == 0.0 or turn * reach > MAX_TURNING * length:
         return None
     solver = np.linalg.pinv(np.column_stack([np.ones_like(times), times, 0.5 * times**2]))[2]
     deceleration = -(solver @ along - gravity_W) @ (way / length)

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
 _NEEDED: Final = "a number in [0, 1] for each contact of an impact"
 
-MOST_CONTACTS: Final = 10_000
+MAX_CONTACTS: Final = 10_000
 """Longest list of contacts accepted. Real sets have far fewer, and a service can still answer for so many."""
 
 
@@ -109,7 +109,7 @@ class ContactSet(Record):
     Raises:
         InvalidFieldError: arrays have unequal lengths, a number is not finite, a normal is not unit, mu < 0,
             e is outside [0, 1], or curvatures do not let the sides touch in one point.
-        TooLargeError: there are more than `MOST_CONTACTS` contacts.
+        TooLargeError: there are more than `MAX_CONTACTS` contacts.
     """
 
     p_WC_W: FloatArray
@@ -137,8 +137,8 @@ class ContactSet(Record):
     def __post_init__(self) -> None:
         """Check every array and normalise the normals to rounding."""
         n = len(self.p_WC_W) if np.ndim(self.frictions) == 0 else len(self.frictions)
-        if n > MOST_CONTACTS:
-            raise TooLargeError("contacts", f"{n} contacts", f"at most {MOST_CONTACTS}")
+        if n > MAX_CONTACTS:
+            raise TooLargeError("contacts", f"{n} contacts", f"at most {MAX_CONTACTS}")
         points = check_array("p_WC_W", self.p_WC_W, (n, 3))
         normals = check_array("normals_W", _for_each(self.normals_W, n, 1), (n, 3))
         frictions = check_array("frictions", _for_each(self.frictions, n), (n,))

@@ -22,14 +22,14 @@ if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
 
 
-MOST_FACETS: Final = 1000
+MAX_FACETS: Final = 1000
 """Largest number of edges of a friction pyramid. It leaves out 5e-6 of friction, and more edges only take
 memory."""
 
 
 def check_facets(facets: int) -> int:
     """Return the number of a friction pyramid's edges, or raise `InvalidFieldError`."""
-    return check_whole("friction_facets", facets, 3, MOST_FACETS)
+    return check_whole("friction_facets", facets, 3, MAX_FACETS)
 
 
 def linearised_cone(
@@ -42,14 +42,14 @@ def linearised_cone(
     towards ``towards``, (3,), if given.
 
     Raises:
-        InvalidFieldError: ``facets`` is not a whole number from 3 to `MOST_FACETS`, the normal is not unit,
+        InvalidFieldError: ``facets`` is not a whole number from 3 to `MAX_FACETS`, the normal is not unit,
             the friction is negative, or a number is not finite.
     """
     unit = check_unit("normal", normal, 3)
     lean = None if towards is None else check_array("towards", towards, (3,))
     if lean is not None and (largest := float(np.abs(lean).max())) > LARGEST_NUMBER:
         lean = lean / largest
-    number = check_whole("facets", facets, 3, MOST_FACETS)
+    number = check_whole("facets", facets, 3, MAX_FACETS)
     return edges_in_frame(
         unit, check_not_negative("friction", friction), number, tangents_towards(unit, lean)
     )

@@ -109,4 +109,4 @@ def main(arguments: list[str]) -> int:
 def _situation(given: argparse.Namespace) -> Situation:
     if given.situation == PUSHED_BLOCK:
         return PushedBlock(height=given.height, rate=given.rate)
-    return TiltingTray(most_tilt=math.radians(given.tilt), rate=math.radians(given.degrees_per_second))
+    return TiltingTray(max_tilt=math.radians(given.tilt), rate=math.radians(given.degrees_per_second))

@@ -155,7 +155,7 @@ class Commentator(Node):
 
     def _request_at(self, stamp: Any) -> PredictContactMode.Request:
         """Return the question about the state at the time at which something was measured."""
-        request = PredictContactMode.Request(body_name=self._body.name, want_margins=True)
+        request = PredictContactMode.Request(body_name=self._body.name, include_margins=True)
         request.state_source, request.stamp = request.STATE_AT_STAMP, stamp
         return request
 

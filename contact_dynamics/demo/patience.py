@@ -9,7 +9,7 @@ from __future__ import annotations
 import time
 from typing import Final
 
-MOST_OF_A_LOOK_S: Final = 0.2
+MAX_OF_A_LOOK_S: Final = 0.2
 """s. One look counts no longer; between two looks there is at most the time of a wait for messages, 0.1 s."""
 
 
@@ -29,5 +29,5 @@ class Patience:
     def look(self) -> None:
         """Note that nothing has come yet."""
         now = time.monotonic()
-        self._left -= min(now - self._looked, MOST_OF_A_LOOK_S)
+        self._left -= min(now - self._looked, MAX_OF_A_LOOK_S)
         self._looked = now

@@ -20,10 +20,10 @@ _GRAVITY: Final = -STANDARD_GRAVITY_W[2]
 BEGINS_S: Final = 1.0
 """s for which nothing happens at first, so that one sees the block at rest."""
 
-MOST_PUSHED: Final = 0.1
+MAX_PUSHED: Final = 0.1
 """m after which the finger stops."""
 
-MOST_TIPPED: Final = 0.3
+MAX_TIPPED: Final = 0.3
 """rad after which the finger stops: the block falls over by itself."""
 
 
@@ -66,7 +66,7 @@ class PushedBlock:
 
     def load(self, seconds: float, block: SprungBlock) -> Load:
         """Return the weight and the push."""
-        self._is_over = self._is_over or block.x > MOST_PUSHED or abs(block.angle) > MOST_TIPPED
+        self._is_over = self._is_over or block.x > MAX_PUSHED or abs(block.angle) > MAX_TIPPED
         self._force = 0.0 if self._is_over else max(0.0, self.rate * (seconds - BEGINS_S))
         return Load(
             force_x=self._force,
@@ -90,11 +90,11 @@ class TiltingTray:
     rad/s it is 0.05 m/s^2 on a block that slides with 0.5 m/s. The sensor is the tray's accelerometer.
 
     Attributes:
-        most_tilt: rad, where the tray stops.
+        max_tilt: rad, where the tray stops.
         rate: rad/s.
     """
 
-    most_tilt: float
+    max_tilt: float
     rate: float
     topic: str = "/tray/gravity"
     msg_type: type = Vector3Stamped
@@ -102,7 +102,7 @@ class TiltingTray:
 
     def load(self, seconds: float, block: SprungBlock) -> Load:
         """Return the weight in the tray's axes."""
-        self._tilt = min(self.most_tilt, max(0.0, self.rate * (seconds - BEGINS_S)))
+        self._tilt = min(self.max_tilt, max(0.0, self.rate * (seconds - BEGINS_S)))
         weight = block.mass * _GRAVITY
         return Load(force_x=weight * math.sin(self._tilt), force_z=-weight * math.cos(self._tilt))
 

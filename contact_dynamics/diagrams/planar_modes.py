@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 NO_SIZE: Final = 0.1
 """m. A body without shape is drawn with this size at its only contact."""
 
-MOST_SETS: Final = 100
+MAX_SETS: Final = 100
 """A map of more modes than this is not drawn, because its regions are too small to see and take seconds."""
 
 _AROUND: Final = 0.35  # room around body and contacts in each picture, relative to the body's size
@@ -122,7 +122,7 @@ def map_of_answer(
     body: MassProperties | None = None,
     resolution: int = LIVE_RESOLUTION,
 ) -> AnswersMap | None:
-    """Return the map of an answer, or None if it has no wrench sets, or more than `MOST_SETS`.
+    """Return the map of an answer, or None if it has no wrench sets, or more than `MAX_SETS`.
 
     Args:
         answer: The answer, in world axes.
@@ -131,7 +131,7 @@ def map_of_answer(
             known.
         resolution: Points on a side of the chart.
     """
-    if not answer.wrench_sets or len(answer.wrench_sets) > MOST_SETS:
+    if not answer.wrench_sets or len(answer.wrench_sets) > MAX_SETS:
         return None
     sets = tuple(seen_wrench_set(wrenches, plane) for wrenches in answer.wrench_sets)
     applied = applied_of(answer, plane, body)

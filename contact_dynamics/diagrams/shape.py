@@ -21,7 +21,7 @@ also 1 - cos of the angle, 0.08 degrees, below which two triangles are one face.
 ROUND_FACETS: Final = 48
 """Number of facets around a rim or a ball. A chord is then 0.2 % of the radius from its arc."""
 
-MOST_BALLS: Final = 100
+MAX_BALLS: Final = 100
 """Up to this number of corners are rounded with all facets. If there are more corners, each has fewer facets.
 """
 
@@ -133,8 +133,8 @@ def _surface_points(shape: ConvexShape) -> FloatArray:
     # A rim's balls are seen in outline only. Single ones are round on all sides.
     tilts = np.linspace(0.0, np.pi, ROUND_FACETS // (4 if shape.rims else 2) + 1)
     ball = np.concatenate([around * np.sin(tilt) + [0.0, 0.0, np.cos(tilt)] for tilt in tilts])
-    if len(points) > MOST_BALLS:
-        ball = ball[:: len(points) // MOST_BALLS + 1]
+    if len(points) > MAX_BALLS:
+        ball = ball[:: len(points) // MAX_BALLS + 1]
     return (points[:, None] + shape.rounding * ball).reshape(-1, 3)
 
 

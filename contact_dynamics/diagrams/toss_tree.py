@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
 
 
-MOST_FACES: Final = 3
+MAX_FACES: Final = 3
 """Faces of rest that a label names. A longer one hides the labels of strikes."""
 
 
@@ -56,9 +56,9 @@ def rest_in_words(told: TossDistribution) -> str:
         f"{face_in_words(normal)}: {share:.0%}"
         for normal, share in zip(told.face_normals_B, shares, strict=True)
     ]
-    more = ", ".join(faces[1:MOST_FACES])
-    if len(faces) > MOST_FACES:
-        more += f", others: {sum(shares[MOST_FACES:]):.0%}"
+    more = ", ".join(faces[1:MAX_FACES])
+    if len(faces) > MAX_FACES:
+        more += f", others: {sum(shares[MAX_FACES:]):.0%}"
     return f"rests on its face towards {faces[0]}" + (f"\n{more}" if more else "") if faces else ""
 
 

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 TOSS_ENDS: Final = {
     TossEnd.RESTS: "rests",
     TossEnd.HORIZON: "still moves at the horizon",
-    TossEnd.MOST_EVENTS: "has more events or takes more steps than are followed",
+    TossEnd.MAX_EVENTS: "has more events or takes more steps than are followed",
     TossEnd.UNDECIDED: "has no consistent contact mode, and no impact settles that,",
 }
 """What the body does at the end of a toss."""

@@ -38,7 +38,7 @@ MANY_CONTACT_MODES: Final = "Contact modes of many"
 AFTER_IMPACT: Final = "After the impact"
 """The kind of words about what was measured after an answer."""
 
-MOST_LISTED: Final = 8
+MAX_LISTED: Final = 8
 """Up to this number of refused modes are listed. The others are only counted."""
 
 REGIMES: Final = {
@@ -60,7 +60,7 @@ SEQUENCE_ENDS: Final = {
     SequenceEnd.NOTHING_STRIKES: "it flies",
     SequenceEnd.STAYS: "a contact stays",
     SequenceEnd.CHATTERS: "it chatters to rest at a contact",
-    SequenceEnd.MOST_STRIKES: "the bound on their number was reached",
+    SequenceEnd.MAX_STRIKES: "the bound on their number was reached",
     SequenceEnd.WINDOW_ENDED: "the window ended",
 }
 """The words for what follows the last of several strikes in time."""
@@ -155,8 +155,8 @@ def contact_modes_in_words(answer: ContactModeAnswer) -> list[str]:
     words += [f"contact {i + 1} approaches with {speeds[i]:.3g} m/s" for i in answer.approaching]
     refused = [refused.mode for refused in answer.refused]
     if refused:
-        more = f" and {len(refused) - MOST_LISTED} more" if len(refused) > MOST_LISTED else ""
-        words.append(f"refused: {', '.join(refused[:MOST_LISTED])}{more}")
+        more = f" and {len(refused) - MAX_LISTED} more" if len(refused) > MAX_LISTED else ""
+        words.append(f"refused: {', '.join(refused[:MAX_LISTED])}{more}")
     return [*words, *_statics_in_words(answer.statics), *_settled_in_words(answer.settled)]
 
 
@@ -230,8 +230,8 @@ def _within_in_words(within: VerdictsWithin | None) -> list[str]:
 
 
 def _verdicts_and_modes(verdicts: str, modes: tuple[str, ...]) -> str:
-    more = f" and {len(modes) - MOST_LISTED} more" if len(modes) > MOST_LISTED else ""
-    return f"{verdicts} ({', '.join(modes[:MOST_LISTED])}{more})" if modes else verdicts
+    more = f" and {len(modes) - MAX_LISTED} more" if len(modes) > MAX_LISTED else ""
+    return f"{verdicts} ({', '.join(modes[:MAX_LISTED])}{more})" if modes else verdicts
 
 
 _GEOMETRY: Final = {

@@ -21,8 +21,8 @@ from contact_dynamics.evaluation.found_event import EventKind
 from contact_dynamics.evaluation.settings import Method
 from contact_dynamics.questions.asking import ask
 from contact_dynamics.questions.contact_mode_question import ContactModeQuestion
+from contact_dynamics.questions.context import Context
 from contact_dynamics.questions.impact_question import ImpactQuestion
-from contact_dynamics.questions.knowledge import Knowledge
 from contact_dynamics.questions.sample_times import AtStamps, UntilContact
 from contact_dynamics.questions.state_store import StateStore
 from contact_dynamics.questions.subject import PublishedState
@@ -38,8 +38,8 @@ if TYPE_CHECKING:
     from contact_dynamics.evaluation.found_event import FoundEvent
     from contact_dynamics.evaluation.motion import MeasuredMotion
     from contact_dynamics.evaluation.settings import Law, Settings
+    from contact_dynamics.questions.context import Defaults
     from contact_dynamics.questions.impact_answer import ImpactAnswer
-    from contact_dynamics.questions.knowledge import Defaults
     from contact_dynamics.tumbling import Trajectory
     from contact_dynamics.world import World
 
@@ -77,7 +77,7 @@ def compare_event(
         store = StateStore(history=settings.fit_window, timeout=informed.state_timeout)
         for state in states:
             store.add(event.body, state)
-        known = Knowledge(
+        known = Context(
             world=informed.world,
             states=store,
             defaults=informed.defaults,
@@ -100,14 +100,14 @@ def _source(method: Method, settings: Settings) -> PublishedState:
     return PublishedState(fit_window=0.0 if method is Method.NEWEST else settings.fit_window)
 
 
-def _has_covariance(row: Comparison, known: Knowledge) -> bool:
+def _has_covariance(row: Comparison, known: Context) -> bool:
     """Return whether the state that a prediction is made from has a covariance, as each fit has."""
     if row.method is Method.NEWEST:
         return isinstance(known.states.newest(row.body), UncertainState)
     return row.method is Method.FIT
 
 
-def _flight(row: Comparison, event: FoundEvent, known: Knowledge, settings: Settings) -> Iterator[Comparison]:
+def _flight(row: Comparison, event: FoundEvent, known: Context, settings: Settings) -> Iterator[Comparison]:
     for method in (Method.FIT, Method.NEWEST):
         yield _or_refusal(
             replace(row, method=method),
@@ -115,13 +115,13 @@ def _flight(row: Comparison, event: FoundEvent, known: Knowledge, settings: Sett
         )
 
 
-def _pose_at_end(row: Comparison, event: FoundEvent, known: Knowledge, source: PublishedState) -> Comparison:
+def _pose_at_end(row: Comparison, event: FoundEvent, known: Context, source: PublishedState) -> Comparison:
     answer = ask(
         TumblingQuestion(
             body=event.body,
             state=source,
             sampling=AtStamps(stamps_ns=[event.time_ns]),
-            want_covariance=_has_covariance(row, known),
+            include_covariance=_has_covariance(row, known),
         ),
         known,
     )
@@ -133,9 +133,7 @@ def _pose_at_end(row: Comparison, event: FoundEvent, known: Knowledge, source: P
     return _with_state(row, state, event, distance=distance, degrees=6)
 
 
-def _landing(
-    row: Comparison, event: FoundEvent, known: Knowledge, settings: Settings
-) -> Iterator[Comparison]:
+def _landing(row: Comparison, event: FoundEvent, known: Context, settings: Settings) -> Iterator[Comparison]:
     for method in (Method.FIT, Method.NEWEST):
         yield _or_refusal(
             replace(row, method=method),
@@ -143,15 +141,13 @@ def _landing(
         )
 
 
-def _first_contact(
-    row: Comparison, event: FoundEvent, known: Knowledge, source: PublishedState
-) -> Comparison:
+def _first_contact(row: Comparison, event: FoundEvent, known: Context, source: PublishedState) -> Comparison:
     answer = ask(
         TumblingQuestion(
             body=event.body,
             state=source,
             sampling=UntilContact(rate=_SPARSE),
-            want_covariance=_has_covariance(row, known),
+            include_covariance=_has_covariance(row, known),
         ),
         known,
     )
@@ -167,7 +163,7 @@ def _first_contact(
     return replace(_with_state(row, state, event, distance=distance, degrees=1), time_error=error)
 
 
-def _impact(row: Comparison, event: FoundEvent, known: Knowledge, settings: Settings) -> Iterator[Comparison]:
+def _impact(row: Comparison, event: FoundEvent, known: Context, settings: Settings) -> Iterator[Comparison]:
     for law in settings.laws:
         yield _or_refusal(
             replace(row, method=Method.FIT, law=law),
@@ -180,24 +176,24 @@ def _impact(row: Comparison, event: FoundEvent, known: Knowledge, settings: Sett
         )
 
 
-def _asked_impact(row: Comparison, event: FoundEvent, known: Knowledge, settings: Settings) -> ImpactAnswer:
+def _asked_impact(row: Comparison, event: FoundEvent, known: Context, settings: Settings) -> ImpactAnswer:
     law: Law = row.law or settings.laws[0]
     question = ImpactQuestion(
         body=event.body,
         state=_source(row.method, settings),
         restitution_law=law.restitution_law,
         several_contacts_law=law.several_contacts_law,
-        want_covariance=row.law is settings.laws[0] and _has_covariance(row, known),
+        include_covariance=row.law is settings.laws[0] and _has_covariance(row, known),
     )
     try:
         return ask(question, known)
     except NotSupportedError:  # covariances are carried through one contact alone
-        if not question.want_covariance:
+        if not question.include_covariance:
             raise
-        return ask(replace(question, want_covariance=False), known)
+        return ask(replace(question, include_covariance=False), known)
 
 
-def _after(row: Comparison, event: FoundEvent, known: Knowledge, answer: ImpactAnswer) -> Comparison:
+def _after(row: Comparison, event: FoundEvent, known: Context, answer: ImpactAnswer) -> Comparison:
     """Return the row with the state after the impact, flown on for as long as the measured one took."""
     state, covariance, lasted = answer.impact.state, answer.impact.covariance, 0.0
     if row.method is Method.NO_IMPACT:
@@ -217,13 +213,13 @@ def _after(row: Comparison, event: FoundEvent, known: Knowledge, answer: ImpactA
 def _modes(
     row: Comparison,
     event: FoundEvent,
-    known: Knowledge,
+    known: Context,
     settings: Settings,  # noqa: ARG001  as every asker
 ) -> Iterator[Comparison]:
     yield _or_refusal(row, lambda one: _mode(one, event, known))
 
 
-def _mode(row: Comparison, event: FoundEvent, known: Knowledge) -> Comparison:
+def _mode(row: Comparison, event: FoundEvent, known: Context) -> Comparison:
     answer = ask(ContactModeQuestion(body=event.body), known)
     modes = [mode.mode for mode in answer.modes] if answer.verdict is not ModeVerdict.IMPACT else []
     return replace(

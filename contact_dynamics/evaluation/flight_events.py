@@ -17,7 +17,7 @@ import numpy as np
 from contact_dynamics.constants import ns_after
 from contact_dynamics.evaluation.found_event import EventKind, FoundEvent
 from contact_dynamics.evaluation.touching import touch_of
-from contact_dynamics.measured.events import FIT_SPAN, MOST_BETWEEN, meeting_of_flights
+from contact_dynamics.measured.events import FIT_SPAN, MAX_BETWEEN, meeting_of_flights
 from contact_dynamics.measured.flight_fit import FEWEST_FRAMES, MeasuredState, fit_flight
 from contact_dynamics.measured.flights import find_flights
 from contact_dynamics.rigid_body.body import BodyState
@@ -68,7 +68,7 @@ def _flight(motion: MeasuredMotion, flight: slice) -> FoundEvent:
 def _end(motion: MeasuredMotion, flight: slice, after: slice | None) -> list[FoundEvent]:
     if flight.stop >= len(motion):  # nothing was measured after it
         return []
-    if after is not None and after.start - flight.stop <= MOST_BETWEEN:
+    if after is not None and after.start - flight.stop <= MAX_BETWEEN:
         meeting = meeting_of_flights(motion, flight, after)
         time_std, landing = meeting.time_std, meeting.before
         # the flights may meet a little after the first frame of the second one

@@ -24,7 +24,7 @@ from contact_dynamics.viewing import palette
 from contact_dynamics.viewing.entities import entity
 from contact_dynamics.viewing.kept_recording import APPLICATION
 from contact_dynamics.viewing.scene import solid
-from contact_dynamics.viewing.side_by_side import EVENTS, MOST_DRAWN, TABLE, SideBySide
+from contact_dynamics.viewing.side_by_side import EVENTS, MAX_DRAWN, TABLE, SideBySide
 from contact_dynamics.viewing.trajectory import outline
 
 if TYPE_CHECKING:
@@ -74,7 +74,7 @@ def write_picture(
     cells = []
     for cell in _cells(evaluation, sources, config):
         cells.append(cell)
-        if len(cells) == MOST_DRAWN:
+        if len(cells) == MAX_DRAWN:
             break
     recording = rr.RecordingStream(APPLICATION)
     recording.set_sinks(rr.FileSink(str(path)))

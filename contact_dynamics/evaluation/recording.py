@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 from contact_dynamics.evaluation.asking import Informed, compare_event
 from contact_dynamics.evaluation.events import find_events
 from contact_dynamics.evaluation.motion import motions_of
-from contact_dynamics.questions.knowledge import Defaults
+from contact_dynamics.questions.context import Defaults
 from contact_dynamics.records import Record
 from contact_dynamics.tolerances import TOUCHING_GAP
 from contact_dynamics.world import World

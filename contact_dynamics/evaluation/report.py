@@ -47,7 +47,7 @@ TITLES: Final = {
 SIGNIFICANT: Final = 0.05
 """Probability below which a change is marked."""
 
-MOST_PROBLEMS: Final = 20
+MAX_PROBLEMS: Final = 20
 """Bad recordings that are named one by one; the JSON has them all."""
 
 _WIDE: Final = 22
@@ -166,13 +166,13 @@ def _named(source: str, problem: str) -> str:
 
 def _problems(evaluation: Evaluation) -> list[str]:
     bad = [result for result in evaluation.results if result.problem]
-    lines = [f"  {_named(result.source, result.problem)}" for result in bad[:MOST_PROBLEMS]]
-    if len(bad) > MOST_PROBLEMS:
-        lines.append(f"  and {len(bad) - MOST_PROBLEMS} more")
+    lines = [f"  {_named(result.source, result.problem)}" for result in bad[:MAX_PROBLEMS]]
+    if len(bad) > MAX_PROBLEMS:
+        lines.append(f"  and {len(bad) - MAX_PROBLEMS} more")
     damaged = [result for result in evaluation.results if result.damage]
-    lines += [f"  {result.damage}" for result in damaged[:MOST_PROBLEMS]]
-    if len(damaged) > MOST_PROBLEMS:
-        lines.append(f"  and {len(damaged) - MOST_PROBLEMS} more damaged recordings")
+    lines += [f"  {result.damage}" for result in damaged[:MAX_PROBLEMS]]
+    if len(damaged) > MAX_PROBLEMS:
+        lines.append(f"  and {len(damaged) - MAX_PROBLEMS} more damaged recordings")
     if not lines:
         return []
     return ["", f"not evaluated: {len(bad)} recordings; damaged: {len(damaged)}", *lines]

@@ -20,7 +20,7 @@ FIT_WINDOW: Final = 0.1
 """s of states that a flight is fitted to, or as many as there are since it began."""
 
 
-MOST_STRIKES: Final = 40
+MAX_STRIKES: Final = 40
 """Strikes in time that are resolved. Those until the next flight begins count alone: of the published tosses
 no error changes if more are, and answers take four times as long."""
 
@@ -43,7 +43,7 @@ class Law(Enum):
     def several_contacts_law(self) -> SeveralContactsLaw | InTime:
         """What happens at several contacts."""
         return (
-            InTime(hold_step=HOLD_STEP, most_strikes=MOST_STRIKES)
+            InTime(hold_step=HOLD_STEP, max_strikes=MAX_STRIKES)
             if self is Law.IN_TIME
             else SeveralContactsLaw.SEQUENTIAL
         )

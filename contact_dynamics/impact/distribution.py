@@ -39,9 +39,9 @@ if TYPE_CHECKING:
     from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity
     from contact_dynamics.rigid_body.body import BodyState, MassProperties
 
-MOST_SAMPLES: Final = 1_000_000
+MAX_SAMPLES: Final = 1_000_000
 
-MOST_VARIANCE: Final = 1e12
+MAX_VARIANCE: Final = 1e12
 """In squares of SI units. Rotations by more than 1e6 rad have no digits left that say where a point is."""
 
 
@@ -93,7 +93,7 @@ def planar_impact_distribution(
     Raises:
         InvalidFieldError: the covariance is not symmetric and positive semidefinite, or the number of samples
             is odd or outside [2, 1 000 000]. A covariance beyond
-            `MOST_VARIANCE` and a seed that is no whole number >= 0 are refused too.
+            `MAX_VARIANCE` and a seed that is no whole number >= 0 are refused too.
     """
     tolerance = check_not_negative("velocity_tolerance", velocity_tolerance)
     draws = np.array([*velocity.v, velocity.w]) + _draw(covariance, 3, samples, seed)
@@ -155,7 +155,7 @@ def spatial_impact_distribution(
     Raises:
         InvalidFieldError: `spatial_impact` refuses a number, the covariance is not symmetric and positive
             semidefinite, or the number of samples is odd or outside [2, 1 000 000]. A covariance beyond
-            `MOST_VARIANCE` and a seed that is no whole number >= 0 are refused too.
+            `MAX_VARIANCE` and a seed that is no whole number >= 0 are refused too.
     """
     tolerance = check_not_negative("velocity_tolerance", velocity_tolerance)
     check_striking(body, state, contact.p_WC_W)
@@ -191,10 +191,10 @@ def spatial_impact_distribution(
 
 def _draw(covariance: ArrayLike, size: int, samples: int, seed: int) -> FloatArray:
     """Return drawn deviations from the mean, (samples, size), in opposite pairs."""
-    matrix = check_magnitude("covariance", check_array("covariance", covariance, (size, size)), MOST_VARIANCE)
+    matrix = check_magnitude("covariance", check_array("covariance", covariance, (size, size)), MAX_VARIANCE)
     check_whole("seed", seed, 0)
-    if check_whole("samples", samples, 2, MOST_SAMPLES) % 2:
-        raise InvalidFieldError("samples", samples, f"an even number in [2, {MOST_SAMPLES}]")
+    if check_whole("samples", samples, 2, MAX_SAMPLES) % 2:
+        raise InvalidFieldError("samples", samples, f"an even number in [2, {MAX_SAMPLES}]")
     largest = float(abs(matrix).max())
     values, vectors = np.linalg.eigh(0.5 * (matrix + matrix.T))
     symmetric = float(abs(matrix - matrix.T).max()) <= SYMMETRY_TOLERANCE * largest

@@ -6,7 +6,7 @@ time, takes the plane that separates best then, and goes on (conservative advanc
 dynamic simulation of rigid body systems, Berkeley 1996). It finds a touch within `GRAZING_DEPTH`, and misses
 no deeper one.
 
-Not covered: a body that hovers so close and so long that the search needs more than `MOST_STEPS` steps
+Not covered: a body that hovers so close and so long that the search needs more than `MAX_STEPS` steps
 (`NotSupportedError`), and rims that come to edges and corners (`contact.on_obstacles`).
 """
 
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from contact_dynamics.shapes.convex import ConvexShape
     from contact_dynamics.shapes.obstacle import Obstacle
 
-MOST_STEPS: Final = 5_000
+MAX_STEPS: Final = 5_000
 """Largest number of steps of a search, which take about a second. A toss takes ten to a hundred steps."""
 
 
@@ -57,7 +57,7 @@ def first_touch(
     if shape_B.is_empty:
         raise InvalidFieldError("shape_B", "nothing", "a shape, which can touch")
     now = 0.0
-    for _ in range(MOST_STEPS):
+    for _ in range(MAX_STEPS):
         if work is not None:
             work.spend(OBSTACLE_STEP, now)
         sample = motion.sample(now)

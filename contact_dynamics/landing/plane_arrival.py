@@ -43,7 +43,7 @@ if TYPE_CHECKING:
     from contact_dynamics.rotations.one import Vector
     from contact_dynamics.tumbling.motion import Sample
 
-_MOST_ROOT_STEPS: Final = 100
+_MAX_ROOT_STEPS: Final = 100
 """Largest number of steps to a root. Bisection alone needs 60 for the last bit, and Newton's steps need four.
 """
 
@@ -88,7 +88,7 @@ def first_contact(
         normal_W: (3,), unit normal into the free side, world axes.
         horizon: s after the state's stamp, how far to search.
         work: the count of steps, which may be shared with other searches. By default this search alone may
-            take `MOST_SEARCH_STEPS`.
+            take `MAX_SEARCH_STEPS`.
 
     Raises:
         TooLargeError: the search takes too many steps: the body spins too fast, or is too large, for the
@@ -232,7 +232,7 @@ class Descent:
     def root(self, part: int, low: float, high: float) -> float:
         """Return when a part reaches the plane. It is above the plane at ``low`` and not at ``high``."""
         now = high
-        for _ in range(_MOST_ROOT_STEPS):
+        for _ in range(_MAX_ROOT_STEPS):
             at = self.at(now)
             height, rate = float(at.heights[part]), float(at.rates[part])
             low, high = (now, high) if height > 0.0 else (low, now)

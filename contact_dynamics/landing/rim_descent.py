@@ -17,7 +17,7 @@ from typing import Final, NamedTuple
 
 from contact_dynamics.tolerances import GRAZING_DEPTH, RIM_ACCURACY
 
-_MOST_STEPS: Final = 60
+_MAX_STEPS: Final = 60
 """Largest number of Newton's steps. Four are usual. Towards a nearly double root, each step halves the
 distance."""
 
@@ -66,7 +66,7 @@ class RimAbove(NamedTuple):
         if math.isinf(beyond):
             return beyond
         t = beyond
-        for _ in range(_MOST_STEPS):
+        for _ in range(_MAX_STEPS):
             x, y = a_1 + b_1 * t, a_2 + b_2 * t
             size = math.hypot(x, y)
             value = self.height + GRAZING_DEPTH + t * (self.rate - 0.5 * pull * t) - size

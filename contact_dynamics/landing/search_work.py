@@ -6,7 +6,7 @@ from typing import Final
 
 from contact_dynamics.errors import TooLargeError
 
-MOST_SEARCH_STEPS: Final = 50_000
+MAX_SEARCH_STEPS: Final = 50_000
 """Largest number of steps of all searches of one question, which take some 2 s. A toss takes ten to a
 hundred, and a turn close to a surface takes some thirty."""
 
@@ -20,7 +20,7 @@ OBSTACLE_STEP: Final = 25
 class SearchWork:
     """Counts the steps of one or several searches, and ends them if there are too many."""
 
-    def __init__(self, field: str = "horizon", *, most: int = MOST_SEARCH_STEPS) -> None:
+    def __init__(self, field: str = "horizon", *, most: int = MAX_SEARCH_STEPS) -> None:
         """Begin to count. ``field`` is the caller's name of the time to search."""
         self._field = field
         self._most = most

@@ -37,7 +37,7 @@ FIT_SPAN: Final = 0.08
 """s. The velocity is fitted over this much of a flight next to a strike. In a longer span, errors of the
 model, such as gravity off by 2 %, would be larger than the gain in noise."""
 
-MOST_BETWEEN: Final = 1
+MAX_BETWEEN: Final = 1
 """Most frames between two flights that one strike may take. Such a frame shows the body in contact."""
 
 REST_SPAN: Final = 0.05
@@ -147,7 +147,7 @@ def measure_events(toss: Toss) -> MeasuredEvents:
     strikes = tuple(
         _strike(toss, before, after)
         for before, after in pairwise(flights)
-        if after.start - before.stop <= MOST_BETWEEN
+        if after.start - before.stop <= MAX_BETWEEN
     )
     return MeasuredEvents(flights=flights, strikes=strikes, rest=_rest(toss))
 
@@ -170,7 +170,7 @@ def _strike(toss: Toss, before: slice, after: slice) -> MeasuredStrike:
 
 
 def meeting_of_flights(poses: MeasuredPoses, before: slice, after: slice) -> FlightMeeting:
-    """Return when one flight passes into the next, with at most `MOST_BETWEEN` frames between them."""
+    """Return when one flight passes into the next, with at most `MAX_BETWEEN` frames between them."""
     count = max(FEWEST_FRAMES, round(FIT_SPAN * poses.rate))
     fit_after = fit_flight(
         poses, slice(after.start, min(after.stop, after.start + count)), reference=after.start

@@ -51,7 +51,7 @@ variance in directions in which neighbours hardly part."""
 PROBES: Final = 64
 """Number of times on the way at which growth is checked, over at most one period of the polhode."""
 
-MOST_SAMPLES: Final = 100_000
+MAX_SAMPLES: Final = 100_000
 """Largest number of draws. Each is a motion of its own, and takes some 0.1 ms."""
 
 FEWEST_SAMPLES: Final = 50
@@ -119,7 +119,7 @@ def covariance_along(
 
     Raises:
         InvalidFieldError: an error of `propagate_covariance`, or there are fewer samples than
-            `FEWEST_SAMPLES` or more than `MOST_SAMPLES`.
+            `FEWEST_SAMPLES` or more than `MAX_SAMPLES`.
     """
     start = check_covariance("covariance", covariance)
     farthest = motion.farthest if isinstance(motion, FreeMotion) else LARGEST_NUMBER
@@ -132,7 +132,7 @@ def covariance_along(
             orientation_deviations(everywhere[len(seconds) :]),
         )
     else:
-        samples = check_whole("samples", samples, FEWEST_SAMPLES, MOST_SAMPLES)
+        samples = check_whole("samples", samples, FEWEST_SAMPLES, MAX_SAMPLES)
         draws = _draws(start, samples, check_whole("seed", seed, 0))
         covariances = _sampled(motion, start, seconds, draws=draws)
         on_the_way = orientation_deviations(_linearised(motion, start, probes))

@@ -41,7 +41,7 @@ if TYPE_CHECKING:
 FEWEST_STATES: Final = 3
 """Least number of states. Twelve numbers fit two poses exactly, with all their noise."""
 
-MOST_STATES: Final = 2000
+MAX_STATES: Final = 2000
 """Largest number of states, which is a window of seconds. More would take too long."""
 
 
@@ -132,12 +132,12 @@ def fit_free_motion(
         InvalidFieldError: there are fewer than `FEWEST_STATES` states, their stamps do not ascend, the window
             is so long that neighbours of the motion part beyond the range of doubles, or gravity is not
             three finite numbers.
-        TooLargeError: more than `MOST_STATES` states.
+        TooLargeError: more than `MAX_STATES` states.
     """
     if len(states) < FEWEST_STATES:
         raise InvalidFieldError("states", f"{len(states)} states", f"at least {FEWEST_STATES}")
-    if len(states) > MOST_STATES:
-        raise TooLargeError("states", f"{len(states)} states", f"at most {MOST_STATES}")
+    if len(states) > MAX_STATES:
+        raise TooLargeError("states", f"{len(states)} states", f"at most {MAX_STATES}")
     newest = states[-1].stamp_ns
     since_newest = [state.stamp_ns - newest for state in states]
     for earlier, later in itertools.pairwise(since_newest):

@@ -46,7 +46,7 @@ if TYPE_CHECKING:
 
     from contact_dynamics.motion.equations import WrenchFunction
 
-MOST_STEPS: Final = 20_000
+MAX_STEPS: Final = 20_000
 """Largest number of steps in one direction of time. They take about 10 s, and cover about 500 revolutions."""
 
 
@@ -117,7 +117,7 @@ class ForcedMotion(Record):
             wrench=self.wrench,
             drag=self.drag,
             wrench_of=self.wrench_of,
-            most_steps=self.ahead.most,
+            max_steps=self.ahead.most,
         )
 
     def steps_to(self, seconds: float) -> FloatArray:
@@ -174,7 +174,7 @@ def motion_of(
     wrench: ConstantWrench = NO_WRENCH,
     drag: Drag = NO_DRAG,
     wrench_of: WrenchFunction | None = None,
-    most_steps: int = MOST_STEPS,
+    max_steps: int = MAX_STEPS,
 ) -> ChosenMotion:
     """Return a body's motion by the best method: in closed form where no torque and no drag acts.
 
@@ -189,7 +189,7 @@ def motion_of(
             wrench=wrench,
             drag=drag,
             wrench_of=wrench_of,
-            most_steps=most_steps,
+            max_steps=max_steps,
         )
         return ChosenMotion(forced, Method.INTEGRATED)
     fall = check_array("gravity_W", gravity_W, (3,)) + wrench.force / body.mass
@@ -210,20 +210,20 @@ def forced_motion(
     wrench: ConstantWrench = NO_WRENCH,
     drag: Drag = NO_DRAG,
     wrench_of: WrenchFunction | None = None,
-    most_steps: int = MOST_STEPS,
+    max_steps: int = MAX_STEPS,
 ) -> ForcedMotion:
     """Return the motion of a body under a constant wrench, drag and a user's function, by an integrator.
 
     Gravity is (3,), m/s^2, world axes. ``wrench_of(seconds, sample)`` returns a force, N, and a torque about
     the centre of mass, N m, three numbers each, in world axes. Its seconds count from the state's stamp. The
-    motion refuses times that are further away than ``most_steps`` of the integrator.
+    motion refuses times that are further away than ``max_steps`` of the integrator.
 
     Raises:
         InvalidFieldError: gravity is not three finite numbers; a number is beyond `LARGEST_NUMBER`; or the
             function does not return two vectors of three finite numbers, now or whenever the motion calls it.
     """
     gravity = check_array("gravity_W", gravity_W, (3,))
-    most_steps = check_whole("most_steps", most_steps, 1)
+    max_steps = check_whole("max_steps", max_steps, 1)
     check_extent(body, state, gravity)
     law = MotionLaw(body, state, gravity, wrench=wrench, drag=drag, wrench_of=wrench_of)
     law.rates(0.0, law.start)  # a function that returns nonsense is refused at once
@@ -235,6 +235,6 @@ def forced_motion(
         drag=drag,
         wrench_of=wrench_of,
         law=law,
-        ahead=Steps(law, math.inf, most_steps),
-        back=Steps(law, -math.inf, most_steps),
+        ahead=Steps(law, math.inf, max_steps),
+        back=Steps(law, -math.inf, max_steps),
     )

@@ -44,7 +44,7 @@ PIECE: Final = 0.5
 """Length of a piece times the fastest rate at which neighbours turn, part or meet, rad. Its 8 points then err
 by about (PIECE / 4)^8 / 8!, 1e-12, in the middle of a piece, and by far less at its end."""
 
-MOST_PIECES: Final = 5000
+MAX_PIECES: Final = 5000
 """Pieces in one direction of time: 0.2 GB, and some seconds of computing. A turn takes some twenty."""
 
 P, THETA, V, W = (slice(0, 3), slice(3, 6), slice(6, 9), slice(9, 12))
@@ -58,7 +58,7 @@ def forced_state_derivatives(motion: ForcedMotion, seconds: ArrayLike) -> FloatA
 
     Raises:
         InvalidFieldError: the times are not a flat list of finite numbers, or beyond what the motion reaches.
-        TooLargeError: so far, or under so strong a drag, that it takes more than `MOST_PIECES`.
+        TooLargeError: so far, or under so strong a drag, that it takes more than `MAX_PIECES`.
     """
     times = check_array("seconds", seconds, (None,))
     answers = np.tile(np.eye(12), (len(times), 1, 1))
@@ -86,9 +86,9 @@ def _edges(motion: ForcedMotion, end: float) -> FloatArray:
     rates = np.abs(np.linalg.eigvals(_coefficients(motion, steps[:-1] + 0.5 * lengths))).max(axis=1)
     pieces = np.maximum(np.ceil(rates * np.abs(lengths) / PIECE), 1.0)
     total = float(pieces.sum())
-    if not total <= MOST_PIECES:
+    if not total <= MAX_PIECES:
         found = f"{end:g} s, in which neighbours turn, part or meet so fast that it takes {total:.6g} pieces"
-        raise TooLargeError("times", found, f"at most {MOST_PIECES} pieces for a covariance")
+        raise TooLargeError("times", found, f"at most {MAX_PIECES} pieces for a covariance")
     counts = pieces.astype(int)
     shares = np.concatenate([np.arange(count) / count for count in counts.tolist()])
     edges: FloatArray = np.append(np.repeat(steps[:-1], counts) + shares * np.repeat(lengths, counts), end)

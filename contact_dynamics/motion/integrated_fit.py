@@ -21,8 +21,8 @@ import numpy as np
 
 from contact_dynamics.constants import STANDARD_GRAVITY_W, seconds_since
 from contact_dynamics.motion.forces import NO_DRAG, NO_WRENCH, ConstantWrench, Drag
-from contact_dynamics.motion.free_fit import MOST_STATES, FitResult, StateNoise, fit_free_motion
-from contact_dynamics.motion.integrated import MOST_STEPS, ForcedMotion, forced_motion, turns_or_drags
+from contact_dynamics.motion.free_fit import MAX_STATES, FitResult, StateNoise, fit_free_motion
+from contact_dynamics.motion.integrated import MAX_STEPS, ForcedMotion, forced_motion, turns_or_drags
 from contact_dynamics.motion.integrated_derivative import forced_state_derivatives
 from contact_dynamics.motion.whole_turns import chosen_motion
 from contact_dynamics.numerics.gauss_newton import Fit, gauss_newton
@@ -53,12 +53,12 @@ def fit_motion(
     drag: Drag = NO_DRAG,
     wrench_of: WrenchFunction | None = None,
     noise: StateNoise | None = None,
-    most_steps: int = MOST_STEPS,
+    max_steps: int = MAX_STEPS,
 ) -> FitResult:
     """Return the motion that fits ``states``, in order of time, best under the forces that act.
 
     Where `contact_dynamics.motion_of` takes the closed form, this is `fit_free_motion`. The seconds of
-    ``wrench_of`` count from the newest state, and ``most_steps`` is as in `forced_motion`. If ``noise`` is
+    ``wrench_of`` count from the newest state, and ``max_steps`` is as in `forced_motion`. If ``noise`` is
     given, the covariance follows from it, and the fit uses the velocities for which it has a deviation.
     Otherwise the fit uses poses alone, and the covariance follows from their residuals.
 
@@ -77,7 +77,7 @@ def fit_motion(
         wrench=wrench,
         drag=drag,
         wrench_of=wrench_of,
-        most_steps=most_steps,
+        max_steps=max_steps,
     )
     position, orientation = free.position_residual, free.orientation_residual
     window = _Seen(
@@ -141,7 +141,7 @@ class _Seen:
         self.noise_is_known = noise_is_known
         self.rates_weigh = noise.angular_velocity is not None
 
-    def misses(self, motion: ForcedMotion, count: int = MOST_STATES) -> FloatArray:
+    def misses(self, motion: ForcedMotion, count: int = MAX_STATES) -> FloatArray:
         """Return the seen states less the computed ones, (n, 12), of the last ``count`` states."""
         then = motion.at(self.seconds[-count:])
         return np.hstack(

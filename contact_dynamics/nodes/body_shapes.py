@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final, TypeAlias
 
 from contact_dynamics.errors import InvalidFieldError
-from contact_dynamics.questions.extent import MOST_IN_CONTACT, check_place
+from contact_dynamics.questions.extent import MAX_IN_CONTACT, check_place
 from contact_dynamics.rigid_body import inertia
 from contact_dynamics.shapes import convex as convex_shape
 from contact_dynamics.shapes.convex import NO_SHAPE, ConvexShape
@@ -157,7 +157,7 @@ class ShapeParameters:
             raise InvalidFieldError(name, f"{len(values)} numbers", allowed)
         numbers = [checks[i](f"{name}[{i}]", x) for i, x in enumerate(values)]
         for i, x in enumerate(numbers):
-            if x > 0.0 and not 1.0 / MOST_IN_CONTACT <= x <= MOST_IN_CONTACT:
-                allowed = f"a length from {1.0 / MOST_IN_CONTACT:g} m to {MOST_IN_CONTACT:g} m"
+            if x > 0.0 and not 1.0 / MAX_IN_CONTACT <= x <= MAX_IN_CONTACT:
+                allowed = f"a length from {1.0 / MAX_IN_CONTACT:g} m to {MAX_IN_CONTACT:g} m"
                 raise InvalidFieldError(f"{name}[{i}]", f"{x:g} m", allowed)
         return check_array(name, numbers, (None,))

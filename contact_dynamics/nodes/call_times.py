@@ -18,7 +18,7 @@ from contact_dynamics.recording.cdr_stamp import EventType, event_info
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-_MOST_OPEN: Final = 10_000  # calls whose events may still come, since a lost event leaves its call open
+_MAX_OPEN: Final = 10_000  # calls whose events may still come, since a lost event leaves its call open
 
 
 class EventTimes(NamedTuple):
@@ -63,7 +63,7 @@ class CallTimes:
     def __init__(self, node_clock_ns: Callable[[], int]) -> None:
         """Take the clock that stamps the events, whose times are noted beside this machine's."""
         self._node_clock_ns = node_clock_ns
-        self._unclaimed: deque[Call] = deque(maxlen=_MOST_OPEN)  # no event told of the request yet
+        self._unclaimed: deque[Call] = deque(maxlen=_MAX_OPEN)  # no event told of the request yet
         self._answered: dict[tuple[bytes, int], Call] = {}  # no event told of the answer yet
 
     def begin(self) -> Call:
@@ -96,7 +96,7 @@ class CallTimes:
                 if call.node_clock_ns >= info.stamp_ns:  # otherwise the event of this call got lost
                     call.client, call.sequence_number = key
                     self._answered[key] = call
-                    while len(self._answered) > _MOST_OPEN:
+                    while len(self._answered) > _MAX_OPEN:
                         del self._answered[next(iter(self._answered))]
                     return EventTimes(call.received_ns, max(0, call.node_clock_ns))  # MCAP has no time before
         elif info.event_type is EventType.RESPONSE_SENT and key in self._answered:

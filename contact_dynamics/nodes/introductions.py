@@ -23,7 +23,7 @@ import rclpy
 from contact_dynamics.nodes.domain_ports import FIRST_DISCOVERY, PORTS_OF_PARTICIPANT, first_port
 
 _DISCOVERY_RANGE: Final = "ROS_AUTOMATIC_DISCOVERY_RANGE"
-_MOST_PARTICIPANTS: Final = 32
+_MAX_PARTICIPANTS: Final = 32
 """Participants of one machine that ROS looks for where it looks on this machine alone."""
 
 _LEASE_S: Final = 1
@@ -43,7 +43,7 @@ def ask_for_introductions(domain_id: int) -> None:
     if os.environ.get(_DISCOVERY_RANGE) == "OFF":
         return
     first = first_port(domain_id) + FIRST_DISCOVERY
-    ports = range(first, first + PORTS_OF_PARTICIPANT * _MOST_PARTICIPANTS, PORTS_OF_PARTICIPANT)
+    ports = range(first, first + PORTS_OF_PARTICIPANT * _MAX_PARTICIPANTS, PORTS_OF_PARTICIPANT)
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:
         for own in _own_ports() & set(ports):
             message = _introduction(own)

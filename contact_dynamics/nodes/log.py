@@ -130,7 +130,7 @@ class Log:
         if not self._missing:
             return None
         return RecorderStatus(
-            written=0, lost=self._unlogged, waiting=0, most_waiting_bytes=0, is_interrupted=True, problems={}
+            written=0, lost=self._unlogged, waiting=0, max_waiting_bytes=0, is_interrupted=True, problems={}
         )
 
     def present(self) -> list[Present]:

@@ -13,9 +13,9 @@ from contact_dynamics.constants import STANDARD_GRAVITY_W
 from contact_dynamics.nodes.parameter_reader import ConfigurationError, ParameterReader
 from contact_dynamics.nodes.topic_faults import FaultLimits
 from contact_dynamics.nodes.world_parameters import read_body, read_surface
+from contact_dynamics.questions.context import Defaults
 from contact_dynamics.questions.extent import check_vector
-from contact_dynamics.questions.knowledge import Defaults
-from contact_dynamics.questions.state_store import FUTURE_TOLERANCE, MOST_STATES
+from contact_dynamics.questions.state_store import FUTURE_TOLERANCE, MAX_STATES
 from contact_dynamics.questions.workers import WorkerLimits
 from contact_dynamics.recording.limits import (
     FILES_KEPT,
@@ -44,7 +44,7 @@ class ServerParameters:
         state_timeout: s.
         state_history: s.
         future_tolerance: s.
-        most_states: How many states of a body are kept.
+        max_states: How many states of a body are kept.
         fault_limits: When faults of topics are told.
         client_gone_for: s for which a client that seemed gone gets no answers to what it asked before.
         defaults: What holds where a question says nothing.
@@ -62,7 +62,7 @@ class ServerParameters:
     state_timeout: float
     state_history: float
     future_tolerance: float
-    most_states: int
+    max_states: int
     fault_limits: FaultLimits
     client_gone_for: float
     defaults: Defaults
@@ -126,9 +126,9 @@ def read_server_parameters(source: ParameterSource) -> ServerParameters:
             "How far a state's stamp may be ahead of the node's clock, s. A state farther ahead is refused.",
             (0.0, 1e6),
         ),
-        most_states=reader.read(
-            "most_states",
-            MOST_STATES,
+        max_states=reader.read(
+            "max_states",
+            MAX_STATES,
             "States of a body that are kept, however fast they come.",
             (1, 10_000_000),
         ),
@@ -238,9 +238,9 @@ def _read_worker_limits(reader: ParameterReader) -> WorkerLimits:
             "Memory that a worker may take for an answer, MB.",
             (100, 1_000_000),
         ),
-        most_waiting=reader.read(
-            "most_waiting",
-            default.most_waiting,
+        max_waiting=reader.read(
+            "max_waiting",
+            default.max_waiting,
             "Questions that may wait while all workers are busy.",
             (0, 1000),
         ),

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from contact_dynamics.nodes.gone_clients import GoneClients
     from contact_dynamics.nodes.inbox import InboxNode, Taken
     from contact_dynamics.nodes.services import Answer, Question, Request, Service
-    from contact_dynamics.questions.knowledge import Knowledge
+    from contact_dynamics.questions.context import Context
     from contact_dynamics.questions.workers import Workers
     from msg_adapters.status import Response
 
@@ -68,7 +68,7 @@ class ServiceFront:
     Attributes:
         is_active: Whether questions are answered. Otherwise they are refused.
         gone: The clients that seemed gone. One that is only found late is answered what it asks from then on.
-        knowledge: What is known. It may be replaced, and counts for the questions that come later.
+        context: What is known. It may be replaced, and counts for the questions that come later.
     """
 
     def __init__(
@@ -76,7 +76,7 @@ class ServiceFront:
         node: InboxNode,
         served: Service,
         *,
-        knowledge: Knowledge,
+        context: Context,
         world_frame: str,
         workers: Workers | None,
         gone: GoneClients,
@@ -92,7 +92,7 @@ class ServiceFront:
         Args:
             node: the node.
             served: the service.
-            knowledge: what is known.
+            context: what is known.
             world_frame: the frame of states and answers.
             workers: they answer what takes long. Without them, this process does.
             gone: as the attribute.
@@ -106,7 +106,7 @@ class ServiceFront:
         """
         self._node = node
         self._served = served
-        self.knowledge = knowledge
+        self.context = context
         self._world_frame = world_frame
         self._workers = workers
         self._begin = begin
@@ -163,12 +163,12 @@ class ServiceFront:
 
     def _serve(self, request: Request, answering: _Answering) -> None:
         def elsewhere(
-            answer: Callable[[Question, Knowledge], Answer],
+            answer: Callable[[Question, Context], Answer],
             question: Question,
-            knowledge: Knowledge,
+            context: Context,
             fill: Callable[[Answer], object],
         ) -> bool:
-            if self._workers is None or is_quick(question, knowledge):
+            if self._workers is None or is_quick(question, context):
                 return False
 
             def done(outcome: Answer | Exception) -> None:
@@ -176,7 +176,7 @@ class ServiceFront:
                 if executor is not None:  # otherwise the node has stopped serving, and ends
                     executor.create_task(finish, partial(_fill, fill, outcome))
 
-            self._workers.ask(answer, question, excerpt(question, knowledge), done)
+            self._workers.ask(answer, question, excerpt(question, context), done)
             self._under_way.add(answering)
             return True
 
@@ -194,7 +194,7 @@ class ServiceFront:
             answering.is_done = self._served.serve(
                 request,
                 answering.response,
-                self.knowledge,
+                self.context,
                 world_frame=self._world_frame,
                 elsewhere=elsewhere,
             )

@@ -29,9 +29,9 @@ if TYPE_CHECKING:
 
     from contact_dynamics.questions.contact_mode_question import ContactModeQuestion
     from contact_dynamics.questions.contact_modes import ContactModeAnswer
+    from contact_dynamics.questions.context import Context
     from contact_dynamics.questions.impact_answer import ImpactAnswer
     from contact_dynamics.questions.impact_question import ImpactQuestion
-    from contact_dynamics.questions.knowledge import Knowledge
     from contact_dynamics.questions.many import (
         ManyImpactsAnswer,
         ManyImpactsQuestion,
@@ -71,9 +71,9 @@ class Elsewhere(Protocol):
 
     def __call__(
         self,
-        answer: Callable[[Question, Knowledge], Answer],
+        answer: Callable[[Question, Context], Answer],
         question: Question,
-        knowledge: Knowledge,
+        context: Context,
         fill: Callable[[Answer], object],
     ) -> bool:
         """Have a question answered, and call ``fill`` with its answer later; return False if it is quick."""
@@ -149,7 +149,7 @@ class Service:
         self,
         request: Request,
         response: Response,
-        knowledge: Knowledge,
+        context: Context,
         *,
         world_frame: str,
         elsewhere: Elsewhere | None = None,
@@ -159,14 +159,14 @@ class Service:
         Returns:
             Whether the response is filled. Otherwise it will be, when the answer comes from elsewhere.
         """
-        question = self.question_from_msg(request, world=knowledge.world, world_frame=world_frame)
+        question = self.question_from_msg(request, world=context.world, world_frame=world_frame)
 
         def fill(answered: Answer) -> None:
             self.answer_to_msg(answered, world_frame=world_frame, into=response)
 
-        if elsewhere is not None and elsewhere(self.answer.function, question, knowledge, fill):
+        if elsewhere is not None and elsewhere(self.answer.function, question, context, fill):
             return False
-        fill(self.answer(question, knowledge))
+        fill(self.answer(question, context))
         return True
 
 
@@ -174,7 +174,7 @@ SERVICES: Final = (
     Service(
         type_name="PredictContactMode",
         kind=CONTACT_MODES,
-        digest="8d68cde9b31a3348",
+        digest="0b8a6fbaa0edfb9f",
         question_from_msg=ImportedOnUse("msg_adapters.questions:contact_mode_question_from_msg"),
         answer=ImportedOnUse("contact_dynamics.questions.contact_modes:answer"),
         answer_to_msg=ImportedOnUse("msg_adapters.contact_mode:contact_mode_answer_to_msg"),
@@ -186,7 +186,7 @@ SERVICES: Final = (
     Service(
         type_name="PredictImpact",
         kind=IMPACT,
-        digest="0e9a5c11c191d2d7",
+        digest="33e34ceb992b069b",
         question_from_msg=ImportedOnUse("msg_adapters.questions:impact_question_from_msg"),
         answer=ImportedOnUse("contact_dynamics.questions.impact:answer"),
         answer_to_msg=ImportedOnUse("msg_adapters.impact:impact_answer_to_msg"),
@@ -198,7 +198,7 @@ SERVICES: Final = (
     Service(
         type_name="PredictTumbling",
         kind=TUMBLING,
-        digest="d8fea09495ab8bd5",
+        digest="a06a9784436647e8",
         question_from_msg=ImportedOnUse("msg_adapters.questions:tumbling_question_from_msg"),
         answer=ImportedOnUse("contact_dynamics.questions.tumbling:answer"),
         answer_to_msg=ImportedOnUse("msg_adapters.tumbling:tumbling_answer_to_msg"),
@@ -210,7 +210,7 @@ SERVICES: Final = (
     Service(
         type_name="PredictToss",
         kind=TOSS,
-        digest="49bdfd21e540a976",
+        digest="c6f9de7132ae313e",
         question_from_msg=ImportedOnUse("msg_adapters.toss:toss_question_from_msg"),
         answer=ImportedOnUse("contact_dynamics.questions.toss:answer"),
         answer_to_msg=ImportedOnUse("msg_adapters.toss:toss_answer_to_msg"),
@@ -246,7 +246,7 @@ SERVICES: Final = (
     Service(
         type_name="PredictContactModeBatch",
         kind=MANY_CONTACT_MODES,
-        digest="d17cfac59f50e7c0",
+        digest="f38d0678a11caa2b",
         question_from_msg=ImportedOnUse("msg_adapters.contact_mode_batch:contact_modes_question_from_msg"),
         answer=ImportedOnUse("contact_dynamics.questions.many_contact_modes:answer"),
         answer_to_msg=ImportedOnUse("msg_adapters.contact_mode_batch:contact_modes_answer_to_msg"),

@@ -31,7 +31,7 @@ from contact_dynamics.nodes.situations import Part, Present, Situation
 from contact_dynamics.nodes.state_sources import state_sources
 from contact_dynamics.nodes.state_subscriptions import present_ns, subscribe_to_states
 from contact_dynamics.nodes.topic_faults import TopicFaults
-from contact_dynamics.questions.knowledge import Knowledge
+from contact_dynamics.questions.context import Context
 from contact_dynamics.questions.state_store import CLOCK_SET_BACK, StateStore
 from contact_dynamics.questions.workers import Workers
 from contact_dynamics_interfaces.srv import PredictTumbling
@@ -100,10 +100,10 @@ class Serving:
             history=parameters.state_history,
             timeout=parameters.state_timeout,
             future_tolerance=parameters.future_tolerance,
-            most_states=parameters.most_states,
+            max_states=parameters.max_states,
         )
         self._asked_ns = 0  # when the present question came, by the node's clock
-        self._knowledge = Knowledge(
+        self._context = Context(
             world=parameters.world,
             states=states,
             defaults=parameters.defaults,
@@ -199,7 +199,7 @@ class Serving:
             history=parameters.state_history,
             timeout=parameters.state_timeout,
             future_tolerance=parameters.future_tolerance,
-            most_states=parameters.most_states,
+            max_states=parameters.max_states,
         )
         changed = bodies_read_otherwise(self._parameters, parameters)
         for name in changed:
@@ -212,7 +212,7 @@ class Serving:
         self._faults.limits = parameters.fault_limits
         for front in self._fronts:
             front.gone.gone_for = parameters.client_gone_for
-            front.knowledge = replace(front.knowledge, world=parameters.world, defaults=parameters.defaults)
+            front.context = replace(front.context, world=parameters.world, defaults=parameters.defaults)
         if self._workers is not None:
             self._workers.limits = parameters.worker_limits
 
@@ -316,7 +316,7 @@ class Serving:
         front = ServiceFront(
             self._node,
             served,
-            knowledge=self._knowledge,
+            context=self._context,
             world_frame=self._parameters.world_frame,
             workers=self._workers,
             gone=GoneClients(self._parameters.client_gone_for),

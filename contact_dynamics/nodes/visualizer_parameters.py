@@ -47,8 +47,8 @@ def read_visualizer_parameters(source: NodeParameters) -> VisualizerParameters:
     )
     rrd_path = read("rrd_path", "", "File to draw into, which is replaced. Empty: none.")
     rrd_file_size = read("rrd_file_size", 0, "MB, after which the next file begins. 0: one file.", (0, MOST))
-    rrd_most_files = read(
-        "rrd_most_files", 0, "Newest files that stay, where there are several. 0: all.", (0, MOST)
+    rrd_max_files = read(
+        "rrd_max_files", 0, "Newest files that stay, where there are several. 0: all.", (0, MOST)
     )
     spawn = read("spawn", False, "Start rerun's viewer, unless one listens at the port already.")  # noqa: FBT003
     serve = read("serve", False, "Serve the picture at the port, for viewers that connect.")  # noqa: FBT003
@@ -81,7 +81,7 @@ def read_visualizer_parameters(source: NodeParameters) -> VisualizerParameters:
         sinks = Sinks(
             rrd_path=rrd_path,
             rrd_size=rrd_file_size * MEGABYTE,
-            rrd_files=rrd_most_files,
+            rrd_files=rrd_max_files,
             viewer=ViewerMode(chosen[0]) if chosen else ViewerMode.NONE,
             port=port,
             url=url,

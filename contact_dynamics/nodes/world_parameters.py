@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from contact_dynamics.nodes.parameter_reader import ConfiguredTopic, ParameterReader
 
 
-MOST_DEVIATION: Final = 1e6
+MAX_DEVIATION: Final = 1e6
 """The largest standard deviation of a state that can be configured, in m, rad, m/s and rad/s."""
 
 
@@ -98,8 +98,8 @@ def _read_deviations(reader: ParameterReader, key: str) -> tuple[float, ...]:
     )
     if found == [0.0]:
         return ()
-    if len(found) != 4 or not all(0.0 <= deviation <= MOST_DEVIATION for deviation in found):
-        allowed = f"four numbers from 0 to {MOST_DEVIATION:g} (or [0.0]: exact)"
+    if len(found) != 4 or not all(0.0 <= deviation <= MAX_DEVIATION for deviation in found):
+        allowed = f"four numbers from 0 to {MAX_DEVIATION:g} (or [0.0]: exact)"
         raise ConfigurationError(f"{name}: found {found}, allowed are {allowed}")
     return tuple(found)
 

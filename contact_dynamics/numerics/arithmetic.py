@@ -16,12 +16,14 @@ from decimal import (
     MAX_EMAX,
     MIN_EMIN,
     ROUND_HALF_EVEN,
-    Context,
     Decimal,
     DivisionByZero,
     InvalidOperation,
     Overflow,
     localcontext,
+)
+from decimal import (
+    Context as DecimalContext,
 )
 from typing import TYPE_CHECKING, Any, Final, Generic, TypeAlias, TypeVar
 
@@ -67,8 +69,8 @@ class Arithmetic(Generic[Number]):
     largest: Callable[[Number, Number, Number], Number]
     sqrt: Callable[[Number], Number]
     pi: Number
-    sums: Context | None
-    rates: Context | None
+    sums: DecimalContext | None
+    rates: DecimalContext | None
     cancelled: Number
     half_precise: Number
     eighth_precise: Number
@@ -88,9 +90,9 @@ DOUBLES: Final = Arithmetic(
 )
 
 
-def _context(digits: int) -> Context:
+def _context(digits: int) -> DecimalContext:
     """Return a context that sets every option, so that the caller's and the default one do not matter."""
-    return Context(
+    return DecimalContext(
         prec=digits,
         rounding=ROUND_HALF_EVEN,
         Emin=MIN_EMIN,
@@ -129,6 +131,6 @@ ARRAYS: Final = Arithmetic(
 )
 
 
-def within(context: Context | None) -> AbstractContextManager[object]:
+def within(context: DecimalContext | None) -> AbstractContextManager[object]:
     """Return a block in which decimals have a context's digits. For doubles the context is None."""
     return contextlib.nullcontext() if context is None else localcontext(context)

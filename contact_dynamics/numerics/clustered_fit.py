@@ -37,10 +37,10 @@ HUBER: Final = 2.0
 REJECTED: Final = 5.0
 """Standard deviations beyond which an observation is an outlier."""
 
-MOST_ROUNDS: Final = 40
+MAX_ROUNDS: Final = 40
 """Bound on the rounds. Well determined fits take five to ten."""
 
-MOST_TRIALS: Final = 8
+MAX_TRIALS: Final = 8
 """Bound on the tries of one round, each with ten times more damping."""
 
 LEAST_INFORMATION: Final = 1.0
@@ -124,10 +124,10 @@ def fit_clustered(
     x, bounds = start.copy(), (lower, upper)
     groups = groups_at(x)
     rounds, converged, damping = 0, False, 0.0
-    while rounds < MOST_ROUNDS and not converged:
+    while rounds < MAX_ROUNDS and not converged:
         rounds += 1
         information, score = _normal(groups, _weights(groups, rejected))
-        for _ in range(MOST_TRIALS):
+        for _ in range(MAX_TRIALS):
             step = _step(information, score, x, bounds, damping)
             trial = np.clip(x + step, lower, upper)
             tried = groups_at(trial)

@@ -25,10 +25,10 @@ if TYPE_CHECKING:
 
 Model = TypeVar("Model")
 
-MOST_ROUNDS: Final = 20
+MAX_ROUNDS: Final = 20
 """Bound on the rounds. Most fits take three, and a start that is a radian off takes a few more."""
 
-MOST_HALVINGS: Final = 10
+MAX_HALVINGS: Final = 10
 """Bound on the halvings of a step that does not make the residuals smaller."""
 
 
@@ -73,7 +73,7 @@ def gauss_newton(
     """
     misses = misses_of(model)
     rounds, converged = 0, False
-    while rounds < MOST_ROUNDS and not converged:
+    while rounds < MAX_ROUNDS and not converged:
         rounds += 1
         design = derivatives_of(model)
         sizes = np.sqrt(np.einsum("mk,mk->k", design, design))
@@ -91,7 +91,7 @@ def gauss_newton(
         small = bool((np.abs(design @ step) < negligible).all())
         converged = small or float(explained @ explained) < SMALL_SHARE * cost
         start = model
-        for _ in range(MOST_HALVINGS):
+        for _ in range(MAX_HALVINGS):
             model = moved(start, step)
             misses = misses_of(model)
             if converged or float(misses @ misses) <= cost:

@@ -20,7 +20,7 @@ from contact_dynamics.tolerances import INSOLUBLE
 if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
 
-_MOST_STEPS: Final = 400
+_MAX_STEPS: Final = 400
 """Steps after which inequalities count as solvable. Tables of 35 rows take 15 on average."""
 
 _GOLDEN: Final = 0.6180339887498949
@@ -45,7 +45,7 @@ def contradiction(rows: FloatArray, limits: FloatArray) -> FloatArray | None:
     # Numbers below n are the variables x, and the others the slacks of the inequalities.
     columns, basic = np.arange(n), np.arange(n, n + m)
     costs = table[m, :n]
-    for _ in range(_MOST_STEPS):
+    for _ in range(_MAX_STEPS):
         r = int(table[:m, n].argmin())
         if table[r, n] >= -INSOLUBLE:
             return None

@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 from typing import Final
 
-MOST_QUESTIONS: Final = 100
+MAX_QUESTIONS: Final = 100
 """This many questions of a log are drawn unless the command says otherwise."""
 
 
@@ -32,9 +32,9 @@ def plot_parser() -> argparse.ArgumentParser:
     parser.add_argument(
         "--most",
         type=_count,
-        default=MOST_QUESTIONS,
+        default=MAX_QUESTIONS,
         metavar="N",
-        help=f"draw the first N answered questions (default: {MOST_QUESTIONS})",
+        help=f"draw the first N answered questions (default: {MAX_QUESTIONS})",
     )
     return parser
 

@@ -43,7 +43,7 @@ if TYPE_CHECKING:
     from contact_dynamics.shapes.convex import ConvexShape
     from contact_dynamics.validation import FloatArray
 
-MOST_MODES: Final = 6
+MAX_MODES: Final = 6
 """Figures of this many consistent modes are made, the first ones."""
 
 _RESOLUTION: Final = 600  # points on a side of the charts of wrenches
@@ -160,7 +160,7 @@ def _of_tumbling(
 def _of_modes(
     answer: ContactModeAnswer, body: MassProperties | None, shape: ConvexShape
 ) -> Iterator[NamedFigure]:
-    for i, mode in enumerate(answer.modes[:MOST_MODES], start=1):
+    for i, mode in enumerate(answer.modes[:MAX_MODES], start=1):
         figure = _figure(7.0, 4.6)
         draw_contact_forces(
             figure.add_subplot(), answer.contacts, mode, title=f"contact forces in {mode.mode}"
@@ -171,7 +171,7 @@ def _of_modes(
         return
     outline = silhouette(drawn_shape(shape), plane.axes_W @ answer.state.R_WB)
     view = modes_side_by_side(answer, plane, outline=outline)
-    for i, title in enumerate(view.titles[:MOST_MODES]):
+    for i, title in enumerate(view.titles[:MAX_MODES]):
         figure = _figure(8.0, 4.6)
         draw_planar_scene(figure.add_subplot(), view.scene(i), title=title)
         yield NamedFigure(f"planar-scene-{i + 1}", figure)
@@ -184,7 +184,7 @@ def _of_modes(
     chart = dual_chart_of(view, shown, resolution=_RESOLUTION)
     if chart is None:
         return
-    for i, seen in enumerate(view.modes[:MOST_MODES], start=1):
+    for i, seen in enumerate(view.modes[:MAX_MODES], start=1):
         one = next(one for one in shown.sets if one.mode == seen.mode)
         figure = _figure(11.0, 5.0)
         draw_force_dual(figure.add_subplot(), one, view.contacts, chart, outlines=[outline])

@@ -10,7 +10,7 @@ body will be (lectures 24, 25). `impact` says which velocities follow (lecture 2
 `contact_modes` says which contacts separate, slide or stay (lecture 26), and its question is in
 `contact_mode_question`. `toss` says where all that ends.
 
-The kinds share these files: `knowledge` (the world, defaults, and in a `state_store` what was published, with
+The kinds share these files: `context` (the world, defaults, and in a `state_store` what was published, with
 its `arrivals`),
 `subject` (which body, in which state, which may be an `uncertain_state`), `sample_times` (when), `touching`
 (which contacts), `extent` (how large numbers may be) and `problem` (in a plane or in space).
@@ -27,9 +27,9 @@ and the server leave out `numpy_warnings`. `kept_fits` has the fits of the last 
 from contact_dynamics.questions.asking import ask
 from contact_dynamics.questions.contact_mode_question import ContactModeQuestion
 from contact_dynamics.questions.contact_modes import ContactModeAnswer
+from contact_dynamics.questions.context import Context, Defaults
 from contact_dynamics.questions.impact_answer import ImpactAnswer, StruckBody
 from contact_dynamics.questions.impact_question import ImpactQuestion, InTime
-from contact_dynamics.questions.knowledge import Defaults, Knowledge
 from contact_dynamics.questions.problem import Problem
 from contact_dynamics.questions.resolved_impact import ResolvedImpact, SequenceStrike
 from contact_dynamics.questions.sample_times import (
@@ -55,6 +55,7 @@ __all__ = [
     "AtTimes",
     "ContactModeAnswer",
     "ContactModeQuestion",
+    "Context",
     "Defaults",
     "Event",
     "EventKind",
@@ -62,7 +63,6 @@ __all__ = [
     "ImpactAnswer",
     "ImpactQuestion",
     "InTime",
-    "Knowledge",
     "Problem",
     "PublishedState",
     "ResolvedImpact",

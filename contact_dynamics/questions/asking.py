@@ -12,29 +12,29 @@ from contact_dynamics.questions.tumbling import TumblingQuestion
 
 if TYPE_CHECKING:
     from contact_dynamics.questions.contact_modes import ContactModeAnswer
+    from contact_dynamics.questions.context import Context
     from contact_dynamics.questions.impact_answer import ImpactAnswer
-    from contact_dynamics.questions.knowledge import Knowledge
     from contact_dynamics.questions.toss import TossAnswer
     from contact_dynamics.questions.tumbling import TumblingAnswer
 
 
 @overload
-def ask(question: TumblingQuestion, knowledge: Knowledge | None = None) -> TumblingAnswer: ...
+def ask(question: TumblingQuestion, context: Context | None = None) -> TumblingAnswer: ...
 @overload
-def ask(question: ImpactQuestion, knowledge: Knowledge | None = None) -> ImpactAnswer: ...
+def ask(question: ImpactQuestion, context: Context | None = None) -> ImpactAnswer: ...
 @overload
-def ask(question: ContactModeQuestion, knowledge: Knowledge | None = None) -> ContactModeAnswer: ...
+def ask(question: ContactModeQuestion, context: Context | None = None) -> ContactModeAnswer: ...
 @overload
-def ask(question: TossQuestion, knowledge: Knowledge | None = None) -> TossAnswer: ...
+def ask(question: TossQuestion, context: Context | None = None) -> TossAnswer: ...
 def ask(
     question: TumblingQuestion | ImpactQuestion | ContactModeQuestion | TossQuestion,
-    knowledge: Knowledge | None = None,
+    context: Context | None = None,
 ) -> TumblingAnswer | ImpactAnswer | ContactModeAnswer | TossAnswer:
     """Answer a question, as the service of its kind does.
 
     Args:
         question: What is asked.
-        knowledge: What is known: bodies by name, surfaces, published states, defaults. If it is None, nothing
+        context: What is known: bodies by name, surfaces, published states, defaults. If it is None, nothing
             is known but what the question says.
 
     Raises:
@@ -42,9 +42,9 @@ def ask(
             message names it.
     """
     if isinstance(question, TumblingQuestion):
-        return tumbling.answer(question, knowledge)
+        return tumbling.answer(question, context)
     if isinstance(question, ImpactQuestion):
-        return impact.answer(question, knowledge)
+        return impact.answer(question, context)
     if isinstance(question, ContactModeQuestion):
-        return contact_modes.answer(question, knowledge)
-    return toss.answer(question, knowledge)
+        return contact_modes.answer(question, context)
+    return toss.answer(question, context)

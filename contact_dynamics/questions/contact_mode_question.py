@@ -10,7 +10,7 @@ import numpy as np
 from contact_dynamics.contact.contact import ContactSet
 from contact_dynamics.contact.uncertainty import EXACT_CONTACTS, ContactUncertainty
 from contact_dynamics.plane.projection import PlaneOfMotion
-from contact_dynamics.questions.knowledge import check_optional
+from contact_dynamics.questions.context import check_optional
 from contact_dynamics.questions.problem import Problem
 from contact_dynamics.questions.subject import NEWEST, StateSource
 from contact_dynamics.records import Record
@@ -20,7 +20,7 @@ from contact_dynamics.world import Body
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-MOST_FRICTION_FACETS: Final = 32
+MAX_FRICTION_FACETS: Final = 32
 """A friction pyramid may have at most this many edges. With 32 it holds 99.5 % of the round cone."""
 
 
@@ -47,15 +47,16 @@ class ContactModeQuestion(Record):
             modes do not depend on it.
         margin_length: m, > 0. A torque divided by this length compares with a force in margins and statics.
             If it is None, the radius of gyration serves.
-        want_margins: Whether the answer says how far the wrench is from another mode.
-        want_wrenches: Whether the answer has the applied wrenches of every kinematically possible mode.
-        want_statics: Whether the static questions are answered too.
-        want_impact: Whether the impact is resolved that settles an inconsistency or an approach.
+        include_margins: Whether the answer says how far the wrench is from another mode.
+        include_wrenches: Whether the answer has the applied wrenches of every kinematically possible mode.
+        include_statics: Whether the static questions are answered too.
+        include_impact: Whether the impact is resolved that settles an inconsistency or an approach.
         uncertainty: How far the true contacts may be from the contacts. If they are not known exactly, the
             answer says which verdicts occur.
-        want_geometry_margins: Whether the answer says how far the contacts are from another verdict or mode.
-        want_probabilities: Whether the answer says how probable each mode is by the noise of the state, which
-            must have a covariance.
+        include_geometry_margins: Whether the answer has the distance of the contacts from another verdict or
+            mode.
+        include_probabilities: Whether the answer has the probability of each mode by the noise of the state,
+            which must have a covariance.
 
     Raises:
         InvalidFieldError: a number is out of its range or not finite, or the problem is not a `Problem`.
@@ -74,13 +75,13 @@ class ContactModeQuestion(Record):
     distance_tolerance: float | None = None
     friction_facets: int | None = None
     margin_length: float | None = None
-    want_margins: bool = False
-    want_wrenches: bool = False
-    want_statics: bool = False
-    want_impact: bool = False
+    include_margins: bool = False
+    include_wrenches: bool = False
+    include_statics: bool = False
+    include_impact: bool = False
     uncertainty: ContactUncertainty = EXACT_CONTACTS
-    want_geometry_margins: bool = False
-    want_probabilities: bool = False
+    include_geometry_margins: bool = False
+    include_probabilities: bool = False
 
     if TYPE_CHECKING:
 
@@ -100,13 +101,13 @@ class ContactModeQuestion(Record):
             distance_tolerance: float | None = ...,
             friction_facets: int | None = ...,
             margin_length: float | None = ...,
-            want_margins: bool = ...,
-            want_wrenches: bool = ...,
-            want_statics: bool = ...,
-            want_impact: bool = ...,
+            include_margins: bool = ...,
+            include_wrenches: bool = ...,
+            include_statics: bool = ...,
+            include_impact: bool = ...,
             uncertainty: ContactUncertainty = ...,
-            want_geometry_margins: bool = ...,
-            want_probabilities: bool = ...,
+            include_geometry_margins: bool = ...,
+            include_probabilities: bool = ...,
         ) -> None:
             """Take whatever NumPy makes arrays of."""
 
@@ -121,5 +122,5 @@ class ContactModeQuestion(Record):
         if self.margin_length is not None:
             object.__setattr__(self, "margin_length", check_positive("margin_length", self.margin_length))
         if self.friction_facets is not None:
-            facets = check_whole("friction_facets", self.friction_facets, 3, MOST_FRICTION_FACETS)
+            facets = check_whole("friction_facets", self.friction_facets, 3, MAX_FRICTION_FACETS)
             object.__setattr__(self, "friction_facets", facets)

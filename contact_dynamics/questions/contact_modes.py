@@ -29,7 +29,7 @@ from contact_dynamics.contact_modes import (
     statics,
     wrench_sets,
 )
-from contact_dynamics.contact_modes.planar.problem import MOST_PLANAR_CONTACTS
+from contact_dynamics.contact_modes.planar.problem import MAX_PLANAR_CONTACTS
 from contact_dynamics.contact_modes.result import ModeProbability
 from contact_dynamics.contact_modes.spatial.problem import FRICTION_FACETS
 from contact_dynamics.contact_modes.spatial.wrench_sets import WRENCH_FACETS
@@ -37,8 +37,8 @@ from contact_dynamics.errors import OutOfPlaneError, TooLargeError
 from contact_dynamics.plane.lifting import check_mirrored, mirror_partners
 from contact_dynamics.plane.projection import PlaneOfMotion
 from contact_dynamics.questions.contact_mode_question import ContactModeQuestion
+from contact_dynamics.questions.context import Context, or_default
 from contact_dynamics.questions.extent import check_contacts, check_extent, check_margin_length, check_wrench
-from contact_dynamics.questions.knowledge import Knowledge, or_default
 from contact_dynamics.questions.lifted_modes import (
     lifted_margin,
     lifted_mode,
@@ -62,7 +62,7 @@ if TYPE_CHECKING:
     from contact_dynamics.contact.noise import NoisyState
     from contact_dynamics.plane.projection import PlanarProblem
 
-MOST_UNCERTAIN_CONTACTS: Final = 16
+MAX_UNCERTAIN_CONTACTS: Final = 16
 """A question about uncertain contacts may have at most this many. It takes dozens of samples, each of which
 takes some 50 ms for so many."""
 
@@ -155,14 +155,14 @@ class ContactModeAnswer(Record):
     warnings: tuple[str, ...] = ()
 
 
-def answer(question: ContactModeQuestion, knowledge: Knowledge | None = None) -> ContactModeAnswer:
-    """Answer a question about contact modes. Without ``knowledge`` no body is known by name.
+def answer(question: ContactModeQuestion, context: Context | None = None) -> ContactModeAnswer:
+    """Answer a question about contact modes. Without ``context`` no body is known by name.
 
     Raises:
         ContactDynamicsError: nothing touches, a planar question leaves its plane, or something is asked for
             that is not known or not allowed. The message names it.
     """
-    known = Knowledge() if knowledge is None else knowledge
+    known = Context() if context is None else context
     case, noisy = _case(question, known)
     view, reason = _in_plane(question, case, known)
     found = _spatial_answer(question, case, reason) if view is None else _planar_answer(question, case, *view)
@@ -170,7 +170,7 @@ def answer(question: ContactModeQuestion, knowledge: Knowledge | None = None) ->
         tolerance = case.distance_tolerance
         outside = outside_shape(case.contacts, case.subject, distance_tolerance=tolerance)
         found = replace(found, warnings=outside)
-    if not question.want_probabilities:
+    if not question.include_probabilities:
         return found
     if noisy is None:
         covariance_of(case.subject)  # there is none, which is an error
@@ -179,7 +179,7 @@ def answer(question: ContactModeQuestion, knowledge: Knowledge | None = None) ->
 
 
 def _probabilities(
-    question: ContactModeQuestion, case: ModeCase, noisy: NoisyState, knowledge: Knowledge
+    question: ContactModeQuestion, case: ModeCase, noisy: NoisyState, context: Context
 ) -> tuple[ModeProbability, ...]:
     """Return the modes that other measurements of the state would come to, the most probable first."""
     alone = ContactModeQuestion(
@@ -198,7 +198,7 @@ def _probabilities(
     shares: dict[str, float] = {}
     for share, state in possible_motions(noisy, case.contacts, velocity_tolerance=case.velocity_tolerance):
         if share >= LEAST_PROBABILITY:
-            found = answer(replace(alone, state=state), knowledge)
+            found = answer(replace(alone, state=state), context)
             modes = {IMPACT} if found.verdict is ModeVerdict.IMPACT else {mode.mode for mode in found.modes}
             for mode in modes:
                 shares[mode] = shares.get(mode, 0.0) + share
@@ -206,11 +206,11 @@ def _probabilities(
     return tuple(ModeProbability(mode=mode, probability=share) for mode, share in ordered)
 
 
-def _case(question: ContactModeQuestion, knowledge: Knowledge) -> tuple[ModeCase, NoisyState | None]:
+def _case(question: ContactModeQuestion, context: Context) -> tuple[ModeCase, NoisyState | None]:
     """Look up all that a question names. The second value is the noisy state, if it has a covariance."""
-    subject = subject_of(question.body, question.state, knowledge)
+    subject = subject_of(question.body, question.state, context)
     check_extent(subject.body.mass_properties, subject.state)
-    defaults, world = knowledge.defaults, knowledge.world
+    defaults, world = context.defaults, context.world
     distance_tolerance = or_default(question.distance_tolerance, defaults.distance_tolerance)
     velocity_tolerance = or_default(question.velocity_tolerance, defaults.velocity_tolerance)
     subject, contacts, noisy = in_contact(
@@ -220,15 +220,15 @@ def _case(question: ContactModeQuestion, knowledge: Knowledge) -> tuple[ModeCase
         distance_tolerance=distance_tolerance,
         velocity_tolerance=velocity_tolerance,
     )
-    if len(contacts) > MOST_PLANAR_CONTACTS:
-        raise TooLargeError("contacts", f"{len(contacts)} contacts", f"at most {MOST_PLANAR_CONTACTS}")
+    if len(contacts) > MAX_PLANAR_CONTACTS:
+        raise TooLargeError("contacts", f"{len(contacts)} contacts", f"at most {MAX_PLANAR_CONTACTS}")
     check_contacts(contacts)
-    if question.want_impact:
+    if question.include_impact:
         _ = contacts.impact_restitutions
     question.uncertainty.check_count(len(contacts))
-    is_hard = question.want_geometry_margins or not question.uncertainty.is_exact
-    if is_hard and len(contacts) > MOST_UNCERTAIN_CONTACTS:
-        allowed = f"at most {MOST_UNCERTAIN_CONTACTS} that are uncertain"
+    is_hard = question.include_geometry_margins or not question.uncertainty.is_exact
+    if is_hard and len(contacts) > MAX_UNCERTAIN_CONTACTS:
+        allowed = f"at most {MAX_UNCERTAIN_CONTACTS} that are uncertain"
         raise TooLargeError("contacts", f"{len(contacts)} contacts", allowed)
     check_margin_length(question.margin_length)
     gravity_W = world.gravity_W if question.gravity_W is None else question.gravity_W
@@ -247,7 +247,7 @@ def _case(question: ContactModeQuestion, knowledge: Knowledge) -> tuple[ModeCase
 
 
 def _in_plane(
-    question: ContactModeQuestion, case: ModeCase, knowledge: Knowledge
+    question: ContactModeQuestion, case: ModeCase, context: Context
 ) -> tuple[tuple[PlanarProblem, tuple[int, ...]] | None, str]:
     """Return the problem in its plane of motion, with the mirror image of each contact in that plane.
 
@@ -257,7 +257,7 @@ def _in_plane(
         return None, ""
     box = question.uncertainty
     if question.problem is Problem.AUTOMATIC and (
-        question.want_geometry_margins or np.any(box.points) or np.any(box.normals)
+        question.include_geometry_margins or np.any(box.points) or np.any(box.normals)
     ):
         return None, _UNCERTAIN
     state, contacts = case.subject.state, case.contacts
@@ -270,7 +270,7 @@ def _in_plane(
             force_W=case.force_W,
             torque_W=case.torque_W,
             speed_tolerance=or_default(
-                question.out_of_plane_tolerance, knowledge.defaults.out_of_plane_tolerance
+                question.out_of_plane_tolerance, context.defaults.out_of_plane_tolerance
             ),
         )
         partners = mirror_partners(problem.plane, state, contacts, distance_tolerance=case.distance_tolerance)
@@ -297,14 +297,14 @@ def _planar_answer(
     )
     found = contact_modes(asked)
     margins, sets, at_rest, settled = None, None, None, None
-    if question.want_margins:
+    if question.include_margins:
         in_plane = mode_margins(asked, found, margin_length=question.margin_length)
         margins = tuple(lifted_margin(margin, plane) for margin in in_plane)
-    if question.want_wrenches:
+    if question.include_wrenches:
         sets = tuple(lifted_wrench_set(wrenches, plane) for wrenches in wrench_sets(asked))
-    if question.want_statics:
+    if question.include_statics:
         at_rest = statics(asked, margin_length=question.margin_length)
-    if question.want_impact:
+    if question.include_impact:
         settled = settled_in_plane(case, problem, asked, found.verdict, partners)
     return ContactModeAnswer(
         body_name=subject.body.name,
@@ -324,7 +324,7 @@ def _planar_answer(
         undecided=found.undecided,
         undecided_modes=found.undecided_modes,
         within=found.within,
-        geometry_margins=geometry_margins(asked, found) if question.want_geometry_margins else None,
+        geometry_margins=geometry_margins(asked, found) if question.include_geometry_margins else None,
         problem=Problem.PLANAR,
         plane=plane,
         out_of_plane=problem.out_of_plane,
@@ -344,15 +344,15 @@ def _spatial_answer(question: ContactModeQuestion, case: ModeCase, reason: str) 
     margins, sets, at_rest, settled = None, None, None, None
     refused: tuple[RefusedMode, ...] = ()
     wrench_facets = 0
-    if question.want_margins:
+    if question.include_margins:
         margins = mode_margins(asked, found, margin_length=question.margin_length)
         refused = refused_modes(asked, found, margin_length=question.margin_length)
-    if question.want_wrenches:
+    if question.include_wrenches:
         wrench_facets = question.friction_facets or WRENCH_FACETS
         sets = wrench_sets(replace(asked, friction_facets=wrench_facets))
-    if question.want_statics:
+    if question.include_statics:
         at_rest = statics(asked, margin_length=question.margin_length)
-    if question.want_impact:
+    if question.include_impact:
         settled = settled_in_space(case, found.verdict)
     return ContactModeAnswer(
         body_name=subject.body.name,
@@ -363,7 +363,7 @@ def _spatial_answer(question: ContactModeQuestion, case: ModeCase, reason: str) 
         undecided=found.undecided,
         undecided_modes=found.undecided_modes,
         within=found.within,
-        geometry_margins=geometry_margins(asked, found) if question.want_geometry_margins else None,
+        geometry_margins=geometry_margins(asked, found) if question.include_geometry_margins else None,
         modes=found.modes,
         margins=margins,
         approaching=found.approaching,

@@ -26,50 +26,50 @@ from contact_dynamics.questions.tumbling import TumblingQuestion
 
 if TYPE_CHECKING:
     from contact_dynamics.contact.contact import ContactSet
-    from contact_dynamics.questions.knowledge import Knowledge
+    from contact_dynamics.questions.context import Context
     from contact_dynamics.questions.subject import StateSource
     from contact_dynamics.world import Body
 
-MOST_QUICK_CONTACTS: Final = 4
+MAX_QUICK_CONTACTS: Final = 4
 """Contacts of a quick question. Modes and orders grow exponentially with them; a box stands on four."""
 
-MOST_QUICK_IMPACTS: Final = 100
+MAX_QUICK_IMPACTS: Final = 100
 """Impacts of a quick batch. So many take some 30 ms, and in larger batches each takes less."""
 
-MOST_QUICK_CANDIDATES: Final = 10
+MAX_QUICK_CANDIDATES: Final = 10
 """Candidates of a quick question about contact modes. Each takes about a millisecond."""
 
-MOST_QUICK_CORNERS: Final = 64
+MAX_QUICK_CORNERS: Final = 64
 """Corners and rims of a shape, times the surfaces of the world, in a quick search for contacts."""
 
-MOST_QUICK_TURNS: Final = 20.0
+MAX_QUICK_TURNS: Final = 20.0
 """Turns of the body in a quick search for a contact, which takes a millisecond a turn close to a surface."""
 
-MOST_QUICK_FITTED: Final = 400
+MAX_QUICK_FITTED: Final = 400
 """States that a quick fit takes. A fit of so many takes 5 ms; to read them from their messages takes longer,
 but this process must do that for a worker, too."""
 
 _CORNERS_OF_A_RIM: Final = 8  # in which the base of a cylinder touches
 
 
-def is_quick(question: object, knowledge: Knowledge) -> bool:
+def is_quick(question: object, context: Context) -> bool:
     """Tell whether the answer is sure to come soon; what will be refused counts as quick."""
     try:
         if isinstance(question, TumblingQuestion):
-            return _is_quick_flight(question, knowledge)
+            return _is_quick_flight(question, context)
         if isinstance(question, ImpactQuestion):
-            return _is_quick_impact(question, knowledge)
+            return _is_quick_impact(question, context)
         if isinstance(question, ContactModeQuestion):
-            return _are_quick_modes(question, knowledge)
+            return _are_quick_modes(question, context)
     except ContactDynamicsError:
         return True
     if isinstance(question, ManyContactModesQuestion):
-        return len(question) <= MOST_QUICK_CANDIDATES and is_quick(question.asked, knowledge)
-    few = isinstance(question, ManyImpactsQuestion) and len(question.states) <= MOST_QUICK_IMPACTS
+        return len(question) <= MAX_QUICK_CANDIDATES and is_quick(question.asked, context)
+    few = isinstance(question, ManyImpactsQuestion) and len(question.states) <= MAX_QUICK_IMPACTS
     return few or isinstance(question, ManyTumblingsQuestion)  # 10 000 of them take 30 ms
 
 
-def excerpt(question: object, knowledge: Knowledge) -> Knowledge:
+def excerpt(question: object, context: Context) -> Context:
     """Return what another process must know to answer a question as this one would now."""
     wanted = []
     question = question.asked if isinstance(question, ManyContactModesQuestion) else question
@@ -78,77 +78,86 @@ def excerpt(question: object, knowledge: Knowledge) -> Knowledge:
         name = body if isinstance(body, str) else getattr(body, "name", "")
         if name and isinstance(source, PublishedState):
             wanted.append((name, source.stamp_ns, source.fit_window))
-    now_ns = None if knowledge.now_ns is None else knowledge.now_ns()
-    states = knowledge.states.excerpt(wanted, now_ns=now_ns)
-    return replace(knowledge, states=states, now_ns=partial(_same, now_ns))
+    now_ns = None if context.now_ns is None else context.now_ns()
+    states = context.states.excerpt(wanted, now_ns=now_ns)
+    return replace(context, states=states, now_ns=partial(_same, now_ns))
 
 
 def _same(now_ns: int | None) -> int | None:
     return now_ns
 
 
-def _is_quick_flight(question: TumblingQuestion, knowledge: Knowledge) -> bool:
+def _is_quick_flight(question: TumblingQuestion, context: Context) -> bool:
     sampling = question.sampling
     if question.wrench is not NO_WRENCH or question.drag is not NO_DRAG:
         return False
-    if question.want_covariance or not _is_quick_fit(question.body, question.state, knowledge):
+    if question.include_covariance or not _is_quick_fit(question.body, question.state, context):
         return False
     if not isinstance(sampling, UntilContact | UntilPlane):
         return True
-    horizon = knowledge.defaults.horizon if sampling.duration is None else sampling.duration
-    return _is_quick_search(question.body, question.state, horizon, knowledge)
+    horizon = context.defaults.horizon if sampling.duration is None else sampling.duration
+    return _is_quick_search(question.body, question.state, horizon, context)
 
 
-def _is_quick_impact(question: ImpactQuestion, knowledge: Knowledge) -> bool:
-    if question.want_orders or question.want_covariance:
+def _is_quick_impact(question: ImpactQuestion, context: Context) -> bool:
+    if question.include_orders or question.include_covariance:
         return False
-    if not _is_quick_fit(question.body, question.state, knowledge):
+    if not _is_quick_fit(question.body, question.state, context):
         return False
-    if question.other is not None and not _is_quick_fit(question.other, question.other_state, knowledge):
+    if question.other is not None and not _is_quick_fit(question.other, question.other_state, context):
         return False
     if not isinstance(question.several_contacts_law, SeveralContactsLaw):
         return False
     if question.contacts is not None:
-        return len(question.contacts) <= MOST_QUICK_CONTACTS
-    horizon = knowledge.defaults.horizon if question.horizon is None else question.horizon
-    return _is_quick_search(question.body, question.state, horizon, knowledge)
+        return len(question.contacts) <= MAX_QUICK_CONTACTS
+    horizon = context.defaults.horizon if question.horizon is None else question.horizon
+    return _is_quick_search(question.body, question.state, horizon, context)
 
 
-def _are_quick_modes(question: ContactModeQuestion, knowledge: Knowledge) -> bool:
-    if question.want_geometry_margins or question.want_probabilities or not question.uncertainty.is_exact:
+def _are_quick_modes(question: ContactModeQuestion, context: Context) -> bool:
+    if (
+        question.include_geometry_margins
+        or question.include_probabilities
+        or not question.uncertainty.is_exact
+    ):
         return False
-    few = _are_few(question.contacts, question.body, knowledge)
-    extra = question.want_margins or question.want_wrenches or question.want_statics or question.want_impact
+    few = _are_few(question.contacts, question.body, context)
+    extra = (
+        question.include_margins
+        or question.include_wrenches
+        or question.include_statics
+        or question.include_impact
+    )
     return (
         few
         and not (extra and question.problem is not Problem.PLANAR)
-        and _is_quick_fit(question.body, question.state, knowledge)
+        and _is_quick_fit(question.body, question.state, context)
     )
 
 
-def _are_few(contacts: ContactSet | None, body: Body | str, knowledge: Knowledge) -> bool:
+def _are_few(contacts: ContactSet | None, body: Body | str, context: Context) -> bool:
     if contacts is not None:
-        return len(contacts) <= MOST_QUICK_CONTACTS
-    return _corners(body, knowledge) <= 2 * MOST_QUICK_CONTACTS  # half of a box's corners touch at once
+        return len(contacts) <= MAX_QUICK_CONTACTS
+    return _corners(body, context) <= 2 * MAX_QUICK_CONTACTS  # half of a box's corners touch at once
 
 
-def _is_quick_search(body: Body | str, source: StateSource, horizon: float, knowledge: Knowledge) -> bool:
-    if _corners(body, knowledge) > MOST_QUICK_CORNERS:
+def _is_quick_search(body: Body | str, source: StateSource, horizon: float, context: Context) -> bool:
+    if _corners(body, context) > MAX_QUICK_CORNERS:
         return False
-    spin = math.hypot(*subject_of(body, source, knowledge).state.w_WB_W.tolist())
-    return spin * horizon <= 2.0 * math.pi * MOST_QUICK_TURNS
+    spin = math.hypot(*subject_of(body, source, context).state.w_WB_W.tolist())
+    return spin * horizon <= 2.0 * math.pi * MAX_QUICK_TURNS
 
 
-def _corners(body: Body | str, knowledge: Knowledge) -> int:
+def _corners(body: Body | str, context: Context) -> int:
     """Return how many pairs of a corner, or a rim, of the body and a surface there are."""
-    known = knowledge.world.body(body) if isinstance(body, str) else body
+    known = context.world.body(body) if isinstance(body, str) else body
     shape = known.shape
-    return (len(shape.vertices) + _CORNERS_OF_A_RIM * len(shape.rims)) * len(knowledge.world.surfaces)
+    return (len(shape.vertices) + _CORNERS_OF_A_RIM * len(shape.rims)) * len(context.world.surfaces)
 
 
-def _is_quick_fit(body: Body | str, source: StateSource, knowledge: Knowledge) -> bool:
+def _is_quick_fit(body: Body | str, source: StateSource, context: Context) -> bool:
     """Tell whether a state is no fit, or one to few states."""
     if not isinstance(source, PublishedState) or not source.fit_window > 0.0:
         return True
     name = body if isinstance(body, str) else body.name
-    return knowledge.states.count(name, source.stamp_ns, source.fit_window) <= MOST_QUICK_FITTED
+    return context.states.count(name, source.stamp_ns, source.fit_window) <= MAX_QUICK_FITTED

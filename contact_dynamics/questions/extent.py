@@ -14,24 +14,24 @@ if TYPE_CHECKING:
     from contact_dynamics.rigid_body.body import BodyState, MassProperties
     from contact_dynamics.validation import FloatArray
 
-MOST_IN_CONTACT: Final = 1e15
+MAX_IN_CONTACT: Final = 1e15
 """The largest number allowed, in m, m/s, rad/s, N or N m. Beside larger ones a metre or a newton is lost in
 rounding."""
 
-MOST_FRICTION: Final = 1e10
+MAX_FRICTION: Final = 1e10
 """Largest coefficient of friction. Contacts with more hold whatever presses them, to the last digit."""
 
-MOST_INERTIA: Final = 1e30
+MAX_INERTIA: Final = 1e30
 """The largest mass and moment of inertia allowed, in kg and kg m^2. The smallest is its inverse."""
 
 
-MOST_PUBLISHED_DISTANCE: Final = 1e12
+MAX_PUBLISHED_DISTANCE: Final = 1e12
 """m from the world's origin, almost seven times the distance to the Sun. Doubles resolve 0.1 mm there."""
 
-MOST_PUBLISHED_SPEED: Final = 1e5
+MAX_PUBLISHED_SPEED: Final = 1e5
 """m/s, ten times what leaves the Earth."""
 
-MOST_PUBLISHED_SPIN: Final = 1e6
+MAX_PUBLISHED_SPIN: Final = 1e6
 """rad/s, ten times the fastest turbines."""
 
 
@@ -39,13 +39,13 @@ def check_believable(state: BodyState) -> None:
     """Refuse a published state that is so far away or so fast that it must be a fault, by name.
 
     Raises:
-        InvalidFieldError: it is farther away than `MOST_PUBLISHED_DISTANCE`, faster than
-            `MOST_PUBLISHED_SPEED`, or spins faster than `MOST_PUBLISHED_SPIN`.
+        InvalidFieldError: it is farther away than `MAX_PUBLISHED_DISTANCE`, faster than
+            `MAX_PUBLISHED_SPEED`, or spins faster than `MAX_PUBLISHED_SPIN`.
     """
     for name, vector, most, unit in (
-        ("p_WB_W", state.p_WB_W, MOST_PUBLISHED_DISTANCE, "m"),
-        ("v_WB_W", state.v_WB_W, MOST_PUBLISHED_SPEED, "m/s"),
-        ("w_WB_W", state.w_WB_W, MOST_PUBLISHED_SPIN, "rad/s"),
+        ("p_WB_W", state.p_WB_W, MAX_PUBLISHED_DISTANCE, "m"),
+        ("v_WB_W", state.v_WB_W, MAX_PUBLISHED_SPEED, "m/s"),
+        ("w_WB_W", state.w_WB_W, MAX_PUBLISHED_SPIN, "rad/s"),
     ):
         size = math.hypot(*vector.tolist())
         if size > most:
@@ -56,7 +56,7 @@ def check_extent(body: MassProperties, state: BodyState) -> None:
     """Refuse a body or a state with a number that is too large for the mechanics of contacts, and name it.
 
     Raises:
-        InvalidFieldError: a number is beyond `MOST_IN_CONTACT`, or a mass or moment beyond `MOST_INERTIA`.
+        InvalidFieldError: a number is beyond `MAX_IN_CONTACT`, or a mass or moment beyond `MAX_INERTIA`.
     """
     for name, vector in (
         ("p_WB_W", state.p_WB_W),
@@ -71,22 +71,22 @@ def check_mass(body: MassProperties) -> None:
     """Refuse a mass or a moment of inertia that is too large or too small, and name it."""
     moments = body.I_B.diagonal().tolist()
     for name, value in (("mass", body.mass), *(("I_B", moment) for moment in moments)):
-        if not 1.0 / MOST_INERTIA <= value <= MOST_INERTIA:
-            allowed = f"a number from {1.0 / MOST_INERTIA:g} to {MOST_INERTIA:g} for contacts"
+        if not 1.0 / MAX_INERTIA <= value <= MAX_INERTIA:
+            allowed = f"a number from {1.0 / MAX_INERTIA:g} to {MAX_INERTIA:g} for contacts"
             raise InvalidFieldError(name, f"{value:g}", allowed)
 
 
 def check_place(name: str, points: FloatArray) -> None:
     """Refuse a point or points, in m, that are too far away, by that name."""
     largest = float(np.abs(points).max(initial=0.0))
-    if not largest <= MOST_IN_CONTACT:
-        raise InvalidFieldError(name, f"{largest:g} m", f"at most {MOST_IN_CONTACT:g} m")
+    if not largest <= MAX_IN_CONTACT:
+        raise InvalidFieldError(name, f"{largest:g} m", f"at most {MAX_IN_CONTACT:g} m")
 
 
 def check_friction(name: str, friction: float) -> None:
     """Refuse a coefficient of friction that is too large, by that name."""
-    if friction > MOST_FRICTION:
-        raise InvalidFieldError(name, f"{friction:g}", f"at most {MOST_FRICTION:g}")
+    if friction > MAX_FRICTION:
+        raise InvalidFieldError(name, f"{friction:g}", f"at most {MAX_FRICTION:g}")
 
 
 def check_contacts(contacts: ContactSet) -> None:
@@ -97,8 +97,8 @@ def check_contacts(contacts: ContactSet) -> None:
 
 def check_margin_length(length: float | None) -> None:
     """Refuse a length by which torques cannot be divided, by name."""
-    if length is not None and not 1.0 / MOST_IN_CONTACT <= length <= MOST_IN_CONTACT:
-        allowed = f"a number from {1.0 / MOST_IN_CONTACT:g} to {MOST_IN_CONTACT:g}"
+    if length is not None and not 1.0 / MAX_IN_CONTACT <= length <= MAX_IN_CONTACT:
+        allowed = f"a number from {1.0 / MAX_IN_CONTACT:g} to {MAX_IN_CONTACT:g}"
         raise InvalidFieldError("margin_length", f"{length:g}", allowed)
 
 
@@ -111,5 +111,5 @@ def check_wrench(force_W: FloatArray, torque_W: FloatArray) -> None:
 def check_vector(name: str, vector: FloatArray) -> None:
     """Refuse a vector, (3,), with a number that is too large, by that name."""
     largest = max(map(abs, vector.tolist()))
-    if not largest <= MOST_IN_CONTACT:
-        raise InvalidFieldError(name, f"{largest:g}", f"numbers of at most {MOST_IN_CONTACT:g} for contacts")
+    if not largest <= MAX_IN_CONTACT:
+        raise InvalidFieldError(name, f"{largest:g}", f"numbers of at most {MAX_IN_CONTACT:g} for contacts")

@@ -32,9 +32,9 @@ from contact_dynamics.plane.lifting import (
     planar_velocity,
     with_planar_velocity,
 )
+from contact_dynamics.questions.context import Context, or_default
 from contact_dynamics.questions.impact_answer import ImpactAnswer, StruckBody
 from contact_dynamics.questions.impact_question import ImpactQuestion, InTime
-from contact_dynamics.questions.knowledge import Knowledge, or_default
 from contact_dynamics.questions.problem import Problem, planar_problem_of
 from contact_dynamics.questions.resolved_impact import Before, ResolvedImpact
 from contact_dynamics.questions.resolving import (
@@ -68,14 +68,14 @@ _OPEN_AT_AN_INSTANT: Final = (
 _NO_WRENCH: Final = np.zeros(3)
 
 
-def answer(question: ImpactQuestion, knowledge: Knowledge | None = None) -> ImpactAnswer:
-    """Answer a question about an impact. Without ``knowledge`` no body is known by name, and no surface.
+def answer(question: ImpactQuestion, context: Context | None = None) -> ImpactAnswer:
+    """Answer a question about an impact. Without ``context`` no body is known by name, and no surface.
 
     Raises:
         ContactDynamicsError: nothing strikes, or something is asked for that is not known, not allowed or not
             supported. The message names it.
     """
-    known = Knowledge() if knowledge is None else knowledge
+    known = Context() if context is None else context
     strike = strike_of(question, known)
     problem: PlanarProblem | None = None
     warnings = _outside(question, strike)
@@ -93,7 +93,7 @@ def answer(question: ImpactQuestion, knowledge: Knowledge | None = None) -> Impa
         resolved = _in_space(question, law, strike)
     if law is SeveralContactsLaw.SEQUENTIAL:
         warnings += _order_warning(question, strike, problem)
-    if question.want_covariance:
+    if question.include_covariance:
         resolved = with_distribution(resolved, _distribution(question, strike, known))
     body, other = strike.subject.body, strike.other
     return ImpactAnswer(
@@ -149,9 +149,9 @@ def _order_warning(
     return (words,) if words else ()
 
 
-def _in_time(question: ImpactQuestion, law: InTime, strike: Strike, knowledge: Knowledge) -> ImpactSequence:
+def _in_time(question: ImpactQuestion, law: InTime, strike: Strike, context: Context) -> ImpactSequence:
     """Return the strikes from a state on. Without any, raise `SeparatingContactError` or `NoContactError`."""
-    world = knowledge.world
+    world = context.world
     if question.contacts is not None:
         sequence = impact_sequence_of(
             strike.before.body,
@@ -160,7 +160,7 @@ def _in_time(question: ImpactQuestion, law: InTime, strike: Strike, knowledge: K
             gravity_W=world.gravity_W,
             restitution_law=question.restitution_law,
             window=law.strike_window,
-            most_strikes=law.most_strikes,
+            max_strikes=law.max_strikes,
             distance_tolerance=strike.distance_tolerance,
             velocity_tolerance=strike.velocity_tolerance,
             hold_step=law.hold_step,
@@ -172,7 +172,7 @@ def _in_time(question: ImpactQuestion, law: InTime, strike: Strike, knowledge: K
             world,
             restitution_law=question.restitution_law,
             window=law.strike_window,
-            most_strikes=law.most_strikes,
+            max_strikes=law.max_strikes,
             distance_tolerance=strike.distance_tolerance,
             velocity_tolerance=strike.velocity_tolerance,
             hold_step=law.hold_step,
@@ -225,7 +225,7 @@ def _in_space(question: ImpactQuestion, law: SeveralContactsLaw, strike: Strike)
             velocity_tolerance=strike.velocity_tolerance,
         )
         resolved = several_resolved(several, before)
-    if not question.want_orders:
+    if not question.include_orders:
         return resolved
     return with_orders(resolved, _orders(question, strike, before.body, strike.state, contacts))
 
@@ -258,7 +258,7 @@ def _of_two(
     return pair_resolved(several, before, other_before)
 
 
-def _problem(question: ImpactQuestion, strike: Strike, knowledge: Knowledge) -> PlanarProblem:
+def _problem(question: ImpactQuestion, strike: Strike, context: Context) -> PlanarProblem:
     """Return the problem in its plane of motion. Refuse contacts beside it that have no mirror image."""
     problem = planar_problem_of(
         strike.subject.body.mass_properties,
@@ -267,9 +267,7 @@ def _problem(question: ImpactQuestion, strike: Strike, knowledge: Knowledge) -> 
         plane=question.plane,
         force_W=_NO_WRENCH,
         torque_W=_NO_WRENCH,
-        speed_tolerance=or_default(
-            question.out_of_plane_tolerance, knowledge.defaults.out_of_plane_tolerance
-        ),
+        speed_tolerance=or_default(question.out_of_plane_tolerance, context.defaults.out_of_plane_tolerance),
     )
     if len(problem.contacts) > 1:
         partners = mirror_partners(
@@ -306,7 +304,7 @@ def _in_plane(
         velocity = planar_velocity(problem.plane, several.state)
         after = with_planar_velocity(problem, strike.state, velocity)
         resolved = several_resolved(replace(several, state=after), before)
-    return with_orders(resolved, _orders(question, strike, *ordered)) if question.want_orders else resolved
+    return with_orders(resolved, _orders(question, strike, *ordered)) if question.include_orders else resolved
 
 
 def _orders(
@@ -321,7 +319,7 @@ def _orders(
     )
 
 
-def _distribution(question: ImpactQuestion, strike: Strike, knowledge: Knowledge) -> ImpactDistribution:
+def _distribution(question: ImpactQuestion, strike: Strike, context: Context) -> ImpactDistribution:
     """Return the distribution of the state after the impact, from the covariance of the state before."""
     covariance = covariance_of(strike.subject)
     body = strike.before.body
@@ -331,7 +329,7 @@ def _distribution(question: ImpactQuestion, strike: Strike, knowledge: Knowledge
             strike.subject.state,
             covariance,
             [strike.seconds],
-            gravity_W=knowledge.world.gravity_W,
+            gravity_W=context.world.gravity_W,
         )
         covariance = flight.covariances[0]
     return spatial_impact_distribution(

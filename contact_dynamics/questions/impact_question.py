@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 from contact_dynamics.contact.contact import ContactSet
 from contact_dynamics.impact import RestitutionLaw, SeveralContactsLaw
-from contact_dynamics.impact.in_time.sequence import MOST_STRIKES, STRIKE_WINDOW
+from contact_dynamics.impact.in_time.sequence import MAX_STRIKES, STRIKE_WINDOW
 from contact_dynamics.plane.projection import PlaneOfMotion
-from contact_dynamics.questions.knowledge import check_optional
+from contact_dynamics.questions.context import check_optional
 from contact_dynamics.questions.problem import Problem
 from contact_dynamics.questions.subject import NEWEST, StateSource
 from contact_dynamics.records import Record
@@ -22,7 +22,7 @@ class InTime(Record):
 
     Attributes:
         strike_window: s, > 0. The longest flight after which a strike still belongs to the same landing.
-        most_strikes: How many strikes are resolved at most, >= 1.
+        max_strikes: How many strikes are resolved at most, >= 1.
         hold_step: s, > 0. Where a contact stays on its surface, the body goes on in steps of this length
             until another corner strikes or it leaves. If it is None, the sequence ends there.
 
@@ -31,13 +31,13 @@ class InTime(Record):
     """
 
     strike_window: float = STRIKE_WINDOW
-    most_strikes: int = MOST_STRIKES
+    max_strikes: int = MAX_STRIKES
     hold_step: float | None = None
 
     def __post_init__(self) -> None:
         """Check the three numbers."""
         object.__setattr__(self, "strike_window", check_positive("strike_window", self.strike_window))
-        object.__setattr__(self, "most_strikes", check_whole("most_strikes", self.most_strikes, 1))
+        object.__setattr__(self, "max_strikes", check_whole("max_strikes", self.max_strikes, 1))
         if self.hold_step is not None:
             object.__setattr__(self, "hold_step", check_positive("hold_step", self.hold_step))
 
@@ -57,8 +57,8 @@ class ImpactQuestion(Record):
         restitution_law: What the coefficients of restitution mean.
         several_contacts_law: The law for several contacts, which is one for a single instant, or strikes in
             time.
-        want_orders: Whether the answer lists the outcomes over the admissible orders of several contacts.
-        want_covariance: Whether the state's covariance is carried through flight and impact.
+        include_orders: Whether the answer lists the outcomes over the admissible orders of several contacts.
+        include_covariance: Whether the state's covariance is carried through flight and impact.
         problem: Whether to solve the problem in a plane of motion or in space.
         plane: The plane of motion of a planar problem. If it is None, the best fitting plane is found.
         out_of_plane_tolerance: m/s, >= 0. Motion out of the plane up to this counts as planar. None means the
@@ -78,8 +78,8 @@ class ImpactQuestion(Record):
     horizon: float | None = None
     restitution_law: RestitutionLaw = RestitutionLaw.POISSON
     several_contacts_law: SeveralContactsLaw | InTime = SeveralContactsLaw.SEQUENTIAL
-    want_orders: bool = False
-    want_covariance: bool = False
+    include_orders: bool = False
+    include_covariance: bool = False
     problem: Problem = Problem.AUTOMATIC
     plane: PlaneOfMotion | None = None
     out_of_plane_tolerance: float | None = None

@@ -12,10 +12,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from contact_dynamics.contact.contact import MOST_CONTACTS
+from contact_dynamics.contact.contact import MAX_CONTACTS
 from contact_dynamics.errors import InvalidFieldError, TooLargeError
 from contact_dynamics.impact import ImpactOutcome, RestitutionLaw, StrikingBodies, spatial_impacts
-from contact_dynamics.questions.knowledge import Knowledge, check_optional, or_default
+from contact_dynamics.questions.context import Context, check_optional, or_default
 from contact_dynamics.records import Record
 from contact_dynamics.tumbling import states_of_many
 from contact_dynamics.validation import FloatArray, check_array
@@ -30,7 +30,7 @@ from contact_dynamics.world import Body
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-MOST_STATES = MOST_CONTACTS
+MAX_STATES = MAX_CONTACTS
 """Most states in one question. A batch of so many impacts takes about a second."""
 
 
@@ -47,7 +47,7 @@ class ManyStates(Record):
     Raises:
         InvalidFieldError: the arrays have different lengths, a number is not finite, or a quaternion is not
             unit. The message names the row.
-        TooLargeError: more than `MOST_STATES` states.
+        TooLargeError: more than `MAX_STATES` states.
     """
 
     p_WB_W: FloatArray
@@ -65,8 +65,8 @@ class ManyStates(Record):
     def __post_init__(self) -> None:
         """Check the arrays."""
         count = len(check_array("p_WB_W", self.p_WB_W, (None, 3)))
-        if count > MOST_STATES:
-            raise TooLargeError("states", f"{count} states", f"at most {MOST_STATES}")
+        if count > MAX_STATES:
+            raise TooLargeError("states", f"{count} states", f"at most {MAX_STATES}")
         for name, width in (("p_WB_W", 3), ("q_WB", 4), ("v_WB_W", 3), ("w_WB_W", 3)):
             object.__setattr__(self, name, check_array(name, getattr(self, name), (count, width)))
         object.__setattr__(self, "q_WB", check_unit_rows("q_WB", self.q_WB, 4))
@@ -182,15 +182,13 @@ class ManyImpactsAnswer(Record):
         return len(self.states)
 
 
-def answer_tumblings(
-    question: ManyTumblingsQuestion, knowledge: Knowledge | None = None
-) -> ManyTumblingsAnswer:
+def answer_tumblings(question: ManyTumblingsQuestion, context: Context | None = None) -> ManyTumblingsAnswer:
     """Answer a question about many free bodies.
 
     Raises:
         ContactDynamicsError: a body is not known, or a number is not allowed; the message names its row.
     """
-    known = Knowledge() if knowledge is None else knowledge
+    known = Context() if context is None else context
     body = known.world.body(question.body) if isinstance(question.body, str) else question.body
     then = states_of_many(
         body.mass_properties.I_B,
@@ -205,13 +203,13 @@ def answer_tumblings(
     return ManyTumblingsAnswer(body_name=body.name, p_FB_F=body.p_FB_F, states=states)
 
 
-def answer_impacts(question: ManyImpactsQuestion, knowledge: Knowledge | None = None) -> ManyImpactsAnswer:
+def answer_impacts(question: ManyImpactsQuestion, context: Context | None = None) -> ManyImpactsAnswer:
     """Answer a question about many impacts.
 
     Raises:
         ContactDynamicsError: a body is not known, or a number is not allowed; the message names its row.
     """
-    known = Knowledge() if knowledge is None else knowledge
+    known = Context() if context is None else context
     body = known.world.body(question.body) if isinstance(question.body, str) else question.body
     before, tolerance = (
         question.states,

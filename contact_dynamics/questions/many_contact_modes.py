@@ -16,7 +16,7 @@ from contact_dynamics.contact.uncertainty import EXACT_CONTACTS
 from contact_dynamics.errors import ContactDynamicsError, InvalidFieldError, TooLargeError
 from contact_dynamics.questions import contact_modes
 from contact_dynamics.questions.contact_mode_question import ContactModeQuestion
-from contact_dynamics.questions.knowledge import Knowledge, or_default
+from contact_dynamics.questions.context import Context, or_default
 from contact_dynamics.questions.subject import subject_of
 from contact_dynamics.questions.touching import in_contact
 from contact_dynamics.questions.uncertain_state import UncertainState
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from contact_dynamics.questions.uncertain_state import KnownState
     from contact_dynamics.rigid_body.body import BodyState
 
-MOST_CANDIDATES: Final = 1000
+MAX_CANDIDATES: Final = 1000
 """Most candidates in one question. In the plane so many take about a second, with four contacts."""
 
 
@@ -53,7 +53,7 @@ class ManyContactModesQuestion(Record):
 
     Raises:
         InvalidFieldError: the arrays have different lengths, or a number is not finite.
-        TooLargeError: more than `MOST_CANDIDATES` candidates.
+        TooLargeError: more than `MAX_CANDIDATES` candidates.
     """
 
     asked: ContactModeQuestion
@@ -78,8 +78,8 @@ class ManyContactModesQuestion(Record):
         forces = check_rows("forces_W", self.forces_W, (3,))
         counts = _counts(self.contact_counts)
         most = max(len(forces), len(counts))
-        if most > MOST_CANDIDATES:
-            raise TooLargeError("forces_W", f"{most} candidates", f"at most {MOST_CANDIDATES}")
+        if most > MAX_CANDIDATES:
+            raise TooLargeError("forces_W", f"{most} candidates", f"at most {MAX_CANDIDATES}")
         torques = check_array("torques_W", self.torques_W, (len(forces), 3))
         if counts:
             given = 0 if self.asked.contacts is None else len(self.asked.contacts)
@@ -147,14 +147,14 @@ class ManyContactModesAnswer(Record):
         return len(self.verdicts)
 
 
-def answer(question: ManyContactModesQuestion, knowledge: Knowledge | None = None) -> ManyContactModesAnswer:
+def answer(question: ManyContactModesQuestion, context: Context | None = None) -> ManyContactModesAnswer:
     """Answer a question about many candidates.
 
     Raises:
         ContactDynamicsError: a body or its state is not known, nothing touches, or a candidate is not
             allowed. The message names the candidate.
     """
-    known = Knowledge() if knowledge is None else knowledge
+    known = Context() if context is None else context
     asked = question.asked
     subject = subject_of(asked.body, asked.state, known)
     tolerance = or_default(asked.distance_tolerance, known.defaults.distance_tolerance)
@@ -182,12 +182,12 @@ def answer(question: ManyContactModesQuestion, knowledge: Knowledge | None = Non
         asked,
         body=subject.body,
         state=state,
-        want_wrenches=False,
-        want_statics=False,
-        want_impact=False,
-        want_probabilities=False,
+        include_wrenches=False,
+        include_statics=False,
+        include_impact=False,
+        include_probabilities=False,
         uncertainty=EXACT_CONTACTS,
-        want_geometry_margins=False,
+        include_geometry_margins=False,
     )
     found = [_candidate(i, question, shared, sets[i % len(sets)], known) for i in range(len(question))]
     modes = [mode for each in found for mode in each.modes]
@@ -204,7 +204,7 @@ def answer(question: ManyContactModesQuestion, knowledge: Knowledge | None = Non
         modes=tuple(mode.mode for mode in modes),
         accelerations_W=np.array([mode.acceleration_W for mode in modes]).reshape(-1, 3),
         angular_accelerations_W=np.array([mode.angular_acceleration_W for mode in modes]).reshape(-1, 3),
-        margins=np.array(margins, dtype=np.float64) if asked.want_margins else None,
+        margins=np.array(margins, dtype=np.float64) if asked.include_margins else None,
     )
 
 
@@ -213,7 +213,7 @@ def _candidate(
     question: ManyContactModesQuestion,
     shared: ContactModeQuestion,
     contacts: ContactSet,
-    known: Knowledge,
+    known: Context,
 ) -> ContactModeAnswer:
     try:
         force, torque = question.forces_W[i], question.torques_W[i]

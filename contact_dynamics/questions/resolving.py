@@ -130,7 +130,7 @@ def sequence_resolved(impact: ImpactSequence, before: Before) -> ResolvedImpact:
         several_contacts_law=SeveralContactsLaw.SEQUENTIAL,
         outcome=told.outcome,
         jams=told.jams,
-        converged=impact.end != SequenceEnd.MOST_STRIKES,
+        converged=impact.end != SequenceEnd.MAX_STRIKES,
         state=impact.state,
         impulses_W=impulses,
         compression_impulses_W=told.compression_W,

@@ -15,7 +15,7 @@ from contact_dynamics.landing.earliest import next_landing
 from contact_dynamics.landing.plane_arrival import first_contact
 from contact_dynamics.landing.search_work import SearchWork
 from contact_dynamics.motion.integrated import ForcedMotion
-from contact_dynamics.questions.knowledge import check_optional, or_default
+from contact_dynamics.questions.context import check_optional, or_default
 from contact_dynamics.questions.touching import check_has_shape
 from contact_dynamics.records import NamedInt, Record
 from contact_dynamics.validation import (
@@ -32,23 +32,23 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
-    from contact_dynamics.questions.knowledge import Knowledge
+    from contact_dynamics.questions.context import Context
     from contact_dynamics.questions.subject import Subject
     from contact_dynamics.tumbling import FreeMotion
 
-MOST_SAMPLES: Final = 20_000
+MAX_SAMPLES: Final = 20_000
 """Largest number of samples in one answer, which has then 2.2 MB of numbers. More would stall the middleware
 for longer than the answer takes."""
 
-MOST_INTEGRATED_TURNS: Final = 100.0
+MAX_INTEGRATED_TURNS: Final = 100.0
 """Longest motion under torque or drag in one answer, in turns at the present rate. It takes 1 or 2 s of
 computing, during which a server answers nobody else."""
 
-MOST_INTEGRATED_STEPS: Final = 6000
+MAX_INTEGRATED_STEPS: Final = 6000
 """Largest number of the integrator's steps in one answer. A body that a torque spins up takes more steps than
 its present rate says, and a server answers nobody else meanwhile."""
 
-MOST_SEARCHED_TURNS: Final = 1000.0
+MAX_SEARCHED_TURNS: Final = 1000.0
 """Longest search for a contact in one answer, in turns. A body that spins close to a surface without touching
 it takes a millisecond a turn, during which a server answers nobody else."""
 
@@ -63,7 +63,7 @@ class AtTimes(Record):
 
     Raises:
         InvalidFieldError: there is no time, or one is negative, not finite, or before the one in front of it.
-        TooLargeError: more than `MOST_SAMPLES` times.
+        TooLargeError: more than `MAX_SAMPLES` times.
     """
 
     times: FloatArray
@@ -93,7 +93,7 @@ class AtStamps(Record):
 
     Raises:
         InvalidFieldError: there is no stamp, or one is before the one in front of it.
-        TooLargeError: more than `MOST_SAMPLES` stamps.
+        TooLargeError: more than `MAX_SAMPLES` stamps.
     """
 
     stamps_ns: tuple[int, ...]
@@ -229,13 +229,13 @@ class Event(Record):
 
 
 def times_of(
-    sampling: Sampling, subject: Subject, motion: FreeMotion | ForcedMotion, knowledge: Knowledge
+    sampling: Sampling, subject: Subject, motion: FreeMotion | ForcedMotion, context: Context
 ) -> tuple[FloatArray, Event | None]:
     """Return the times, (n,), s after the state's stamp, at which a motion is asked for, and what ends them.
 
     Raises:
         InvalidFieldError: the motion would be integrated or searched for too long.
-        TooLargeError: more samples than `MOST_SAMPLES`.
+        TooLargeError: more samples than `MAX_SAMPLES`.
         NoContactError: contact is asked for of a body that has no shape.
     """
     if isinstance(sampling, AtTimes):
@@ -246,29 +246,29 @@ def times_of(
         times = np.array([seconds_between(begin_ns, stamp) for stamp in sampling.stamps_ns])
         _check_reach("stamps_ns", motion, times)
         return times, None
-    duration = or_default(sampling.duration, knowledge.defaults.horizon)
-    rate = or_default(sampling.rate, knowledge.defaults.rate)
+    duration = or_default(sampling.duration, context.defaults.horizon)
+    rate = or_default(sampling.rate, context.defaults.rate)
     searches = isinstance(sampling, UntilContact | UntilPlane)
     _check_reach("duration", motion, np.array([duration]), search=searches)
     event = None
     if isinstance(sampling, UntilContact):
-        event = _contact(subject, motion, knowledge, duration)
+        event = _contact(subject, motion, context, duration)
     elif isinstance(sampling, UntilPlane):
         event = _plane_reached(sampling, subject, motion, duration)
     return _at_rate(rate, duration, None if event is None else event.seconds), event
 
 
 def _contact(
-    subject: Subject, motion: FreeMotion | ForcedMotion, knowledge: Knowledge, duration: float
+    subject: Subject, motion: FreeMotion | ForcedMotion, context: Context, duration: float
 ) -> Event | None:
     check_has_shape(subject.body)
     landing = next_landing(
         subject.body,
         subject.state,
-        knowledge.world,
+        context.world,
         horizon=duration,
-        distance_tolerance=knowledge.defaults.distance_tolerance,
-        velocity_tolerance=knowledge.defaults.velocity_tolerance,
+        distance_tolerance=context.defaults.distance_tolerance,
+        velocity_tolerance=context.defaults.velocity_tolerance,
         motion=motion,
         work=SearchWork("duration"),
     )
@@ -311,9 +311,9 @@ def _check_reach(
 ) -> None:
     """Refuse what would be integrated or searched for too long, before it is."""
     if isinstance(motion, ForcedMotion):
-        most, when = MOST_INTEGRATED_TURNS, "under torque or drag"
+        most, when = MAX_INTEGRATED_TURNS, "under torque or drag"
     elif search:
-        most, when = MOST_SEARCHED_TURNS, "to search for a contact"
+        most, when = MAX_SEARCHED_TURNS, "to search for a contact"
     else:
         return  # the closed form reaches everywhere
     check_turns(field, motion, times, most, when)
@@ -353,5 +353,5 @@ def _ascending(field: str, times: ArrayLike) -> FloatArray:
 
 
 def _check_count(field: str, count: float) -> None:
-    if count > MOST_SAMPLES:
-        raise TooLargeError(field, f"{count:.9g} samples", f"at most {MOST_SAMPLES}")
+    if count > MAX_SAMPLES:
+        raise TooLargeError(field, f"{count:.9g} samples", f"at most {MAX_SAMPLES}")

@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     from contact_dynamics.plane.types import PlanarVelocity
     from contact_dynamics.rigid_body.body import BodyState, MassProperties
 
-MOST_CONTACTS_IN_ORDERS: Final = 4
+MAX_CONTACTS_IN_ORDERS: Final = 4
 """Up to this many contacts the outcomes over all orders are listed. These are 24 sequences and take some
 milliseconds."""
 
@@ -223,6 +223,6 @@ def _orders(
     case: ModeCase, body: MassProperties, state: BodyState, contacts: ContactSet, verdict: ModeVerdict
 ) -> OrderedOutcomes | None:
     """Return the outcomes over the orders of contacts that approach, or None for too many contacts."""
-    if verdict != ModeVerdict.IMPACT or len(contacts) > MOST_CONTACTS_IN_ORDERS:
+    if verdict != ModeVerdict.IMPACT or len(contacts) > MAX_CONTACTS_IN_ORDERS:
         return None
     return outcomes_over_orders(body, state, contacts, velocity_tolerance=case.velocity_tolerance)

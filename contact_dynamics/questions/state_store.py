@@ -29,7 +29,7 @@ FUTURE_TOLERANCE: Final = 0.5
 """s. By default a stamp may be ahead of the clock by this much. The clocks of two machines that NTP keeps
 differ by far less."""
 
-MOST_STATES: Final = 20_000
+MAX_STATES: Final = 20_000
 """States of one body that are kept, where nothing else is said: 20 s at 1 kHz, some 20 MB of Odometry."""
 
 CLOCK_SET_BACK: Final = "the clock was set back"
@@ -45,7 +45,7 @@ class StateStore:
         history: float,
         timeout: float,
         future_tolerance: float = FUTURE_TOLERANCE,
-        most_states: int = MOST_STATES,
+        max_states: int = MAX_STATES,
     ) -> None:
         """Begin without states.
 
@@ -53,10 +53,10 @@ class StateStore:
             history: s, for how long states are kept.
             timeout: s. A state that is older when it is asked about is refused.
             future_tolerance: s. A state whose stamp is farther ahead of the clock is refused.
-            most_states: how many of a body are kept, however fast they come. The oldest go first.
+            max_states: how many of a body are kept, however fast they come. The oldest go first.
         """
         self.change_limits(
-            history=history, timeout=timeout, future_tolerance=future_tolerance, most_states=most_states
+            history=history, timeout=timeout, future_tolerance=future_tolerance, max_states=max_states
         )
         self._tracks: dict[str, _Track] = {}
         self._arrivals: defaultdict[str, Arrivals] = defaultdict(Arrivals)
@@ -81,14 +81,14 @@ class StateStore:
         self._keep(body_name, stamp_ns, read, now_ns)
 
     def change_limits(
-        self, *, history: float, timeout: float, future_tolerance: float, most_states: int = MOST_STATES
+        self, *, history: float, timeout: float, future_tolerance: float, max_states: int = MAX_STATES
     ) -> None:
         """Keep and refuse states by other limits from now on; see `StateStore`."""
         self._history = history
         self._history_ns = to_ns(history)
         self._timeout_ns = to_ns(timeout)
         self._future_tolerance_ns = to_ns(future_tolerance)
-        self._most_states = most_states
+        self._most_states = max_states
 
     def refuse(self, body_name: str, reason: object, *, was_kept: bool = False) -> None:
         """Note, for whoever asks and finds none, that a state is not kept, or was kept and cannot be read."""
@@ -190,7 +190,7 @@ class StateStore:
             history=self._history,
             timeout=to_seconds(self._timeout_ns),
             future_tolerance=to_seconds(self._future_tolerance_ns),
-            most_states=self._most_states,
+            max_states=self._most_states,
         )
         for body_name, stamp_ns, seconds in wanted:
             if now_ns is not None:

@@ -31,7 +31,7 @@ from contact_dynamics.world import Body
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from contact_dynamics.questions.knowledge import Knowledge
+    from contact_dynamics.questions.context import Context
     from contact_dynamics.rigid_body.body import MassProperties
 
     Fitting: TypeAlias = Callable[[MassProperties, Sequence[BodyState]], FitResult]
@@ -106,14 +106,14 @@ class Subject(Record):
 
 
 def subject_of(
-    body: Body | str, source: StateSource, knowledge: Knowledge, *, fit: Fitting | None = None
+    body: Body | str, source: StateSource, context: Context, *, fit: Fitting | None = None
 ) -> Subject:
     """Return the body that a question names or describes, in the state that it gives or refers to.
 
     Args:
         body: The body, or its name in the known world.
         source: Its state, or a reference to a published one.
-        knowledge: What is known.
+        context: What is known.
         fit: A function that finds the state that fits a window of published ones best. By default a free
             flight is fitted.
 
@@ -127,19 +127,19 @@ def subject_of(
         TooLargeError: the window has more states than are fitted.
     """
     if isinstance(body, str):
-        body = knowledge.world.body(body)
+        body = context.world.body(body)
     if isinstance(source, BodyState):
         return Subject(body=body, state=source)
     if isinstance(source, UncertainState):
         return Subject(body=body, state=source.state, covariance=source.covariance)
-    known, later = _published(body, source, knowledge)
+    known, later = _published(body, source, context)
     if source.fit_window == 0.0:
         newest = Subject(body=body, state=state_of(known[-1]), covariance=_covariance(known[-1]))
-        return _moved(newest, later, source.stamp_ns, knowledge)
+        return _moved(newest, later, source.stamp_ns, context)
     states = [state_of(each) for each in known]
     try:
         if fit is None:
-            best = kept_fit(body.mass_properties, states, gravity_W=knowledge.world.gravity_W)
+            best = kept_fit(body.mass_properties, states, gravity_W=context.world.gravity_W)
         else:
             best = fit(body.mass_properties, states)
     except InvalidFieldError as error:
@@ -159,7 +159,7 @@ def subject_of(
         fit=quality,
         by_gravity=best.by_gravity or (0.0, 0.0),
     )
-    return _moved(found, None, source.stamp_ns, knowledge)
+    return _moved(found, None, source.stamp_ns, context)
 
 
 def _check_fit(fit: FitResult, states: Sequence[BodyState]) -> None:
@@ -217,7 +217,7 @@ def changed_body(known: Body, mass_properties: MassProperties, p_FB_F: FloatArra
 
 
 def _published(
-    body: Body, source: PublishedState, knowledge: Knowledge
+    body: Body, source: PublishedState, context: Context
 ) -> tuple[Sequence[KnownState], KnownState | None]:
     """Return the published states that are asked for, by time, as states of the body's centre of mass.
 
@@ -226,23 +226,23 @@ def _published(
     name = body.name
     if not name:
         raise InvalidFieldError("body_name", name, "the name of a known body, or a state of its own")
-    now_ns = None if knowledge.now_ns is None else knowledge.now_ns()
+    now_ns = None if context.now_ns is None else context.now_ns()
     later: KnownState | None = None
     if source.stamp_ns is None:
-        newest = knowledge.states.newest(name, now_ns=now_ns)
+        newest = context.states.newest(name, now_ns=now_ns)
     else:
-        newest, later = knowledge.states.around(name, source.stamp_ns, now_ns=now_ns)
+        newest, later = context.states.around(name, source.stamp_ns, now_ns=now_ns)
     window = source.fit_window
-    states = knowledge.states.window(name, newest, window) if window > 0.0 else [newest]
+    states = context.states.window(name, newest, window) if window > 0.0 else [newest]
     # States are published of the known body. The one asked about may share its name and have another mass.
-    known = knowledge.world.body(name)
+    known = context.world.body(name)
     if body is not known:
         states = [_carried_over(state, known, body) for state in states]
         later = None if later is None else _carried_over(later, known, body)
     return states, later
 
 
-def _moved(subject: Subject, later: KnownState | None, stamp_ns: int | None, knowledge: Knowledge) -> Subject:
+def _moved(subject: Subject, later: KnownState | None, stamp_ns: int | None, context: Context) -> Subject:
     """Return a subject at the stamp asked for: between its state and the later one, or in free motion."""
     state = subject.state
     if stamp_ns is None or stamp_ns == state.stamp_ns:
@@ -256,11 +256,11 @@ def _moved(subject: Subject, later: KnownState | None, stamp_ns: int | None, kno
         return replace(
             subject, state=between, covariance=(1.0 - share) * subject.covariance + share * covariance
         )
-    ahead, horizon = seconds_between(state.stamp_ns, stamp_ns), knowledge.defaults.horizon
+    ahead, horizon = seconds_between(state.stamp_ns, stamp_ns), context.defaults.horizon
     if ahead > horizon:
         found = f"{ahead:.9g} s after the newest state"
         raise InvalidFieldError("stamp", found, f"at most {horizon:g} s, the default horizon")
-    motion = free_motion(subject.body.mass_properties, state, gravity_W=knowledge.world.gravity_W)
+    motion = free_motion(subject.body.mass_properties, state, gravity_W=context.world.gravity_W)
     covariance = subject.covariance
     if covariance is not None:
         covariance = covariance_along(motion, covariance, [ahead]).covariances[0]

@@ -9,9 +9,9 @@ import numpy as np
 
 from contact_dynamics.errors import InvalidFieldError, TooLargeError
 from contact_dynamics.impact import RestitutionLaw, SeveralContactsLaw
+from contact_dynamics.questions.context import Context, or_default
 from contact_dynamics.questions.extent import check_extent
-from contact_dynamics.questions.knowledge import Knowledge, or_default
-from contact_dynamics.questions.sample_times import MOST_SAMPLES as MOST_TIMES
+from contact_dynamics.questions.sample_times import MAX_SAMPLES as MAX_TIMES
 from contact_dynamics.questions.subject import NEWEST, FitQuality, StateSource, subject_of
 from contact_dynamics.records import Record
 from contact_dynamics.rigid_body.body import BodyState
@@ -26,8 +26,8 @@ from contact_dynamics.toss import (
     sampled_toss,
     toss,
 )
-from contact_dynamics.toss.one_toss import HORIZON, MOST_ALTERNATIVES
-from contact_dynamics.toss.sampled import MOST_SAMPLES, MOST_STRIKES
+from contact_dynamics.toss.one_toss import HORIZON, MAX_ALTERNATIVES
+from contact_dynamics.toss.sampled import MAX_SAMPLES, MAX_STRIKES
 from contact_dynamics.toss.uncertainty import EXACT, check_factors
 from contact_dynamics.tumbling import Trajectory
 from contact_dynamics.validation import FloatArray, check_positive, check_whole
@@ -42,8 +42,8 @@ class TossSampling(Record):
     """Samples of what is not known exactly.
 
     Attributes:
-        count: How many, 1 to `toss.sampled.MOST_SAMPLES`.
-        strikes: How many next strikes the tree has, 1 to `toss.sampled.MOST_STRIKES`. None means `STRIKES`.
+        count: How many, 1 to `toss.sampled.MAX_SAMPLES`.
+        strikes: How many next strikes the tree has, 1 to `toss.sampled.MAX_STRIKES`. None means `STRIKES`.
         to_rest: Whether samples are followed to rest, which takes each of them a hundred
             times as long, or longer.
         seed: Samples are drawn from it, >= 0.
@@ -62,10 +62,10 @@ class TossSampling(Record):
 
     def __post_init__(self) -> None:
         """Check the numbers."""
-        if check_whole("samples", self.count, 1) > MOST_SAMPLES:
-            raise TooLargeError("samples", self.count, f"at most {MOST_SAMPLES}")
+        if check_whole("samples", self.count, 1) > MAX_SAMPLES:
+            raise TooLargeError("samples", self.count, f"at most {MAX_SAMPLES}")
         if self.strikes is not None:
-            check_whole("strikes", self.strikes, 1, MOST_STRIKES)
+            check_whole("strikes", self.strikes, 1, MAX_STRIKES)
         check_whole("seed", self.seed, 0, 2**32 - 1)
 
 
@@ -80,8 +80,8 @@ class TossQuestion(Record):
         several_contacts_law: The law for several contacts that strike at one instant.
         horizon: s, > 0. How far the motion is followed. None means `toss.one_toss.HORIZON`.
         rate: Hz, > 0. Samples of the trajectory a second. None means the default.
-        most_alternatives: How many other ways are followed where mechanics does not decide. None means
-            `toss.one_toss.MOST_ALTERNATIVES`.
+        max_alternatives: How many other ways are followed where mechanics does not decide. None means
+            `toss.one_toss.MAX_ALTERNATIVES`.
         sampling: What to sample for a distribution, or None for none.
         lasting_factors: (s,), >= 0, the friction of each known surface where contact lasts, relative to that
             of its strikes. Without any, those of the sampling's uncertainty hold, and without these those of
@@ -98,7 +98,7 @@ class TossQuestion(Record):
     several_contacts_law: SeveralContactsLaw = SeveralContactsLaw.SEQUENTIAL
     horizon: float | None = None
     rate: float | None = None
-    most_alternatives: int | None = None
+    max_alternatives: int | None = None
     sampling: TossSampling | None = None
     lasting_factors: FloatArray = field(default_factory=lambda: np.zeros(0))
 
@@ -107,8 +107,8 @@ class TossQuestion(Record):
         for name in ("horizon", "rate"):
             value = getattr(self, name)
             object.__setattr__(self, name, None if value is None else check_positive(name, value))
-        if self.most_alternatives is not None:
-            check_whole("most_alternatives", self.most_alternatives, 0)
+        if self.max_alternatives is not None:
+            check_whole("max_alternatives", self.max_alternatives, 0)
         factors = check_factors("lasting_factors", self.lasting_factors)
         if self.sampling is not None:
             sampled = self.sampling.uncertainty.lasting_factors
@@ -176,20 +176,20 @@ class TossAnswer(Record):
         return (self.toss, *self.alternatives)
 
 
-def answer(question: TossQuestion, knowledge: Knowledge | None = None) -> TossAnswer:
-    """Answer a question about a toss. Without ``knowledge`` no body is known by name, and no surface.
+def answer(question: TossQuestion, context: Context | None = None) -> TossAnswer:
+    """Answer a question about a toss. Without ``context`` no body is known by name, and no surface.
 
     Raises:
         ContactDynamicsError: something is asked for that is not known, not allowed or not supported. The
             message names it.
     """
-    known = Knowledge() if knowledge is None else knowledge
+    known = Context() if context is None else context
     subject = subject_of(question.body, question.state, known)
     body, state = subject.body, subject.state
     check_extent(body.mass_properties, state)
     horizon = or_default(question.horizon, HORIZON)
     rate = or_default(question.rate, known.defaults.rate)
-    most = question.most_alternatives
+    most = question.max_alternatives
     sampling, distribution = question.sampling, None
     if sampling is not None:
         distribution = sampled_toss(
@@ -215,7 +215,7 @@ def answer(question: TossQuestion, knowledge: Knowledge | None = None) -> TossAn
         restitution_law=question.restitution_law,
         several_contacts_law=question.several_contacts_law,
         horizon=horizon,
-        most_alternatives=MOST_ALTERNATIVES if most is None else most,
+        max_alternatives=MAX_ALTERNATIVES if most is None else most,
         lasting_factors=question.lasting_factors,
         distance_tolerance=known.defaults.distance_tolerance,
     )
@@ -234,9 +234,9 @@ def answer(question: TossQuestion, knowledge: Knowledge | None = None) -> TossAn
 def _path(went: Toss, rate: float) -> TossPath:
     """Return a toss as it is told, with the motion at a rate, Hz."""
     count = went.seconds * rate
-    if count > MOST_TIMES - 1:
+    if count > MAX_TIMES - 1:
         found = f"{count:.9g} samples until {went.seconds:.3g} s"
-        raise TooLargeError("rate", found, f"at most {MOST_TIMES}")
+        raise TooLargeError("rate", found, f"at most {MAX_TIMES}")
     times = np.append(np.arange(math.ceil(count - 1e-9)) / rate, went.seconds)  # without a last one twice
     return TossPath(
         end=went.end,

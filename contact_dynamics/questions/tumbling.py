@@ -10,10 +10,10 @@ from contact_dynamics.motion.covariance import CarriedCovariance, covariance_alo
 from contact_dynamics.motion.forces import NO_DRAG, NO_WRENCH, ConstantWrench, Drag
 from contact_dynamics.motion.integrated import ForcedMotion, Method, motion_of
 from contact_dynamics.motion.integrated_fit import fit_motion
+from contact_dynamics.questions.context import Context
 from contact_dynamics.questions.kept_fits import kept_fit
-from contact_dynamics.questions.knowledge import Knowledge
 from contact_dynamics.questions.sample_times import (
-    MOST_INTEGRATED_STEPS,
+    MAX_INTEGRATED_STEPS,
     AtRate,
     Event,
     Sampling,
@@ -48,13 +48,13 @@ if TYPE_CHECKING:
 FLIPS: Final = 3
 """An answer has this many of the next flips."""
 
-MOST_COVARIANCES: Final = 2000
+MAX_COVARIANCES: Final = 2000
 """Largest number of samples with covariances in one answer. More would stall the middleware."""
 
-MOST_CARRIED_TURNS: Final = 30.0
+MAX_CARRIED_TURNS: Final = 30.0
 """Longest motion under torque or drag with covariances, in turns. It takes 1 or 2 s of computing."""
 
-MOST_CURVE_POINTS: Final = 10_000
+MAX_CURVE_POINTS: Final = 10_000
 """Largest number of points of polhode and herpolhode in one answer. More would stall the middleware."""
 
 
@@ -69,8 +69,8 @@ class TumblingQuestion(Record):
         gravity_W: (3,), m/s^2, world axes. If it is None, the known world's gravity acts.
         wrench: A constant wrench that acts besides gravity.
         drag: Drag in still air.
-        want_covariance: Whether the answer has the state's covariance at each sample.
-        curve_points: Number of points of polhode and herpolhode in the answer, at most `MOST_CURVE_POINTS`.
+        include_covariance: Whether the answer has the state's covariance at each sample.
+        curve_points: Number of points of polhode and herpolhode in the answer, at most `MAX_CURVE_POINTS`.
 
     Raises:
         InvalidFieldError: gravity is not three finite numbers.
@@ -83,7 +83,7 @@ class TumblingQuestion(Record):
     gravity_W: FloatArray | None = None
     wrench: ConstantWrench = NO_WRENCH
     drag: Drag = NO_DRAG
-    want_covariance: bool = False
+    include_covariance: bool = False
     curve_points: int = 0
 
     if TYPE_CHECKING:
@@ -97,7 +97,7 @@ class TumblingQuestion(Record):
             gravity_W: ArrayLike | None = ...,
             wrench: ConstantWrench = ...,
             drag: Drag = ...,
-            want_covariance: bool = ...,
+            include_covariance: bool = ...,
             curve_points: int = ...,
         ) -> None:
             """Take whatever NumPy makes arrays of."""
@@ -107,8 +107,8 @@ class TumblingQuestion(Record):
         if self.gravity_W is not None:
             object.__setattr__(self, "gravity_W", check_array("gravity_W", self.gravity_W, (3,)))
         points = check_whole("curve_points", self.curve_points, 0)
-        if points > MOST_CURVE_POINTS:
-            raise TooLargeError("curve_points", points, f"at most {MOST_CURVE_POINTS}")
+        if points > MAX_CURVE_POINTS:
+            raise TooLargeError("curve_points", points, f"at most {MAX_CURVE_POINTS}")
         object.__setattr__(self, "curve_points", points)
 
 
@@ -144,13 +144,13 @@ class TumblingAnswer(Record):
     curves: RollingCurves | None
 
 
-def answer(question: TumblingQuestion, knowledge: Knowledge | None = None) -> TumblingAnswer:
-    """Answer a question about tumbling. Without ``knowledge`` no body is known by name, and no surface.
+def answer(question: TumblingQuestion, context: Context | None = None) -> TumblingAnswer:
+    """Answer a question about tumbling. Without ``context`` no body is known by name, and no surface.
 
     Raises:
         ContactDynamicsError: something is asked for that is not known or not allowed. The message names it.
     """
-    known = Knowledge() if knowledge is None else knowledge
+    known = Context() if context is None else context
     forces = _Forces(
         gravity_W=known.world.gravity_W if question.gravity_W is None else question.gravity_W,
         wrench=question.wrench,
@@ -166,7 +166,7 @@ def answer(question: TumblingQuestion, knowledge: Knowledge | None = None) -> Tu
         state=subject.state,
         fit=subject.fit,
         trajectory=motion.at(times),
-        covariance=_covariance(subject, motion, times) if question.want_covariance else None,
+        covariance=_covariance(subject, motion, times) if question.include_covariance else None,
         method=method,
         event=event,
         poinsot=picture,
@@ -191,7 +191,7 @@ class _Forces:
             gravity_W=self.gravity_W,
             wrench=self.wrench,
             drag=self.drag,
-            most_steps=MOST_INTEGRATED_STEPS,
+            max_steps=MAX_INTEGRATED_STEPS,
         )
 
     def fit(self, body: MassProperties, states: Sequence[BodyState]) -> FitResult:
@@ -204,7 +204,7 @@ class _Forces:
             gravity_W=self.gravity_W,
             wrench=self.wrench,
             drag=self.drag,
-            most_steps=MOST_INTEGRATED_STEPS,
+            max_steps=MAX_INTEGRATED_STEPS,
         )
 
 
@@ -225,8 +225,8 @@ def _rotation(
 
 
 def _covariance(subject: Subject, motion: FreeMotion | ForcedMotion, times: FloatArray) -> CarriedCovariance:
-    if len(times) > MOST_COVARIANCES:
-        raise TooLargeError("times", f"{len(times)} samples with covariances", f"at most {MOST_COVARIANCES}")
+    if len(times) > MAX_COVARIANCES:
+        raise TooLargeError("times", f"{len(times)} samples with covariances", f"at most {MAX_COVARIANCES}")
     if isinstance(motion, ForcedMotion):
-        check_turns("times", motion, times, MOST_CARRIED_TURNS, "with covariances under torque or drag")
+        check_turns("times", motion, times, MAX_CARRIED_TURNS, "with covariances under torque or drag")
     return covariance_along(motion, covariance_of(subject), times)

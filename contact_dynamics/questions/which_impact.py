@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from contact_dynamics.contact.contact import ContactSet
 from contact_dynamics.errors import NoContactError, NotSupportedError
 from contact_dynamics.landing.earliest import next_landing
+from contact_dynamics.questions.context import Context, or_default
 from contact_dynamics.questions.extent import check_contacts, check_extent
 from contact_dynamics.questions.impact_question import ImpactQuestion, InTime
-from contact_dynamics.questions.knowledge import Knowledge, or_default
 from contact_dynamics.questions.problem import Problem
 from contact_dynamics.questions.resolved_impact import Before
 from contact_dynamics.questions.subject import Subject, subject_of
@@ -46,23 +46,23 @@ class Strike(Record):
         return Before(body=self.subject.body.mass_properties, state=self.state)
 
 
-def strike_of(question: ImpactQuestion, knowledge: Knowledge) -> Strike:
+def strike_of(question: ImpactQuestion, context: Context) -> Strike:
     """Return the impact that a question means, at the contacts that it states or at the next landing.
 
     Raises:
         ContactDynamicsError: nothing strikes, or a part of the question is not known or not supported.
     """
-    subject = subject_of(question.body, question.state, knowledge)
-    other = None if question.other is None else subject_of(question.other, question.other_state, knowledge)
+    subject = subject_of(question.body, question.state, context)
+    other = None if question.other is None else subject_of(question.other, question.other_state, context)
     for one in (subject, other):
         if one is not None:
             check_extent(one.body.mass_properties, one.state)
-    velocity_tolerance = or_default(question.velocity_tolerance, knowledge.defaults.velocity_tolerance)
-    distance_tolerance = or_default(question.distance_tolerance, knowledge.defaults.distance_tolerance)
+    velocity_tolerance = or_default(question.velocity_tolerance, context.defaults.velocity_tolerance)
+    distance_tolerance = or_default(question.distance_tolerance, context.defaults.distance_tolerance)
     seconds, state = 0.0, subject.state
     if question.contacts is not None:
         contacts = contacts_of(
-            question.contacts, subject, knowledge.world, distance_tolerance=distance_tolerance
+            question.contacts, subject, context.world, distance_tolerance=distance_tolerance
         )
         _ = contacts.impact_restitutions
     elif other is not None:
@@ -72,7 +72,7 @@ def strike_of(question: ImpactQuestion, knowledge: Knowledge) -> Strike:
         seconds, state, contacts = _landing(
             question,
             subject,
-            knowledge,
+            context,
             velocity_tolerance=velocity_tolerance,
             distance_tolerance=distance_tolerance,
         )
@@ -93,22 +93,22 @@ def _check_supported(question: ImpactQuestion, *, contact_count: int) -> None:
     """Raise `NotSupportedError` for combinations that a question can ask for and no law here answers."""
     in_time = isinstance(question.several_contacts_law, InTime)
     is_planar, has_other = question.problem is Problem.PLANAR, question.other is not None
-    if has_other and (question.want_orders or is_planar or in_time):
+    if has_other and (question.include_orders or is_planar or in_time):
         message = (
             "other: found a second body, allowed with it are the problem SPATIAL or AUTOMATIC, the laws "
-            "SEQUENTIAL or SIMULTANEOUS, and no want_orders"
+            "SEQUENTIAL or SIMULTANEOUS, and no include_orders"
         )
         raise NotSupportedError(message)
     if in_time and is_planar:
         message = "problem: found PLANAR, allowed for strikes in time is SPATIAL: space contains the plane"
         raise NotSupportedError(message)
-    if in_time and question.want_orders:
-        message = "want_orders: found true, allowed for strikes in time is false: time is the order"
+    if in_time and question.include_orders:
+        message = "include_orders: found true, allowed for strikes in time is false: time is the order"
         raise NotSupportedError(message)
     one_contact = contact_count == 1 and not is_planar and not in_time
-    if question.want_covariance and (has_other or not one_contact):
+    if question.include_covariance and (has_other or not one_contact):
         message = (
-            "want_covariance: found true, allowed at one contact with the world in space, and not for "
+            "include_covariance: found true, allowed at one contact with the world in space, and not for "
             "strikes in time"
         )
         raise NotSupportedError(message)
@@ -117,18 +117,18 @@ def _check_supported(question: ImpactQuestion, *, contact_count: int) -> None:
 def _landing(
     question: ImpactQuestion,
     subject: Subject,
-    knowledge: Knowledge,
+    context: Context,
     *,
     velocity_tolerance: float,
     distance_tolerance: float,
 ) -> tuple[float, BodyState, ContactSet]:
     """Return when a body lands, s after its state, its state then, and its contacts."""
     check_has_shape(subject.body)
-    horizon = or_default(question.horizon, knowledge.defaults.horizon)
+    horizon = or_default(question.horizon, context.defaults.horizon)
     landing = next_landing(
         subject.body,
         subject.state,
-        knowledge.world,
+        context.world,
         horizon=horizon,
         distance_tolerance=distance_tolerance,
         velocity_tolerance=velocity_tolerance,

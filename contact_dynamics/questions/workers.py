@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from multiprocessing.connection import Connection
     from multiprocessing.process import BaseProcess
 
-    from contact_dynamics.questions.knowledge import Knowledge
+    from contact_dynamics.questions.context import Context
 
 Question = TypeVar("Question")
 Answer = TypeVar("Answer")
@@ -51,13 +51,13 @@ class WorkerLimits:
         count: How many there are. Zero answers every question in the process that asks.
         deadline: s, from when a question is handed over until it is answered or refused.
         memory: MB that one may take for an answer.
-        most_waiting: How many questions may wait while all workers are busy.
+        max_waiting: How many questions may wait while all workers are busy.
     """
 
     count: int = 2
     deadline: float = 5.0
     memory: int = 1000
-    most_waiting: int = 8
+    max_waiting: int = 8
 
 
 class _Ready:
@@ -70,7 +70,7 @@ class WorkerFault(Exception):  # noqa: N818  it is no error of a question
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Job:
-    work: tuple[Callable[..., object], object, Knowledge]
+    work: tuple[Callable[..., object], object, Context]
     seconds: float  # that it may take
     until: float  # s, monotonic
     done: Callable[..., object]
@@ -116,9 +116,9 @@ class Workers:
 
     def ask(
         self,
-        answer: Callable[[Question, Knowledge], Answer],
+        answer: Callable[[Question, Context], Answer],
         question: Question,
-        knowledge: Knowledge,
+        context: Context,
         done: Callable[[Answer | Exception], object],
     ) -> None:
         """Have a question answered.
@@ -126,25 +126,25 @@ class Workers:
         Args:
             answer: answers it; a function of a module, which a worker imports.
             question: the question.
-            knowledge: what is known. It must not change, so ask with an `excerpt`.
+            context: what is known. It must not change, so ask with an `excerpt`.
             done: takes the answer, or an exception, in another thread: a `ContactDynamicsError` that the
                 question met, or a `WorkerFault`.
 
         Raises:
             BusyError: as many questions as may wait are waiting.
         """
-        most = len(self._workers) + self.limits.most_waiting
+        most = len(self._workers) + self.limits.max_waiting
         with self._lock:
             if self._open >= most:
                 message = (
                     f"{most} questions that take long are being answered or wait, which is the most (workers "
-                    "and most_waiting)"
+                    "and max_waiting)"
                 )
                 raise BusyError(message)
             self._open += 1
         seconds = self.limits.deadline
         job = _Job(
-            work=(answer, question, knowledge), seconds=seconds, until=time.monotonic() + seconds, done=done
+            work=(answer, question, context), seconds=seconds, until=time.monotonic() + seconds, done=done
         )
         self._jobs.put(job)
 
@@ -288,13 +288,13 @@ def _answer_questions(pipe: Connection, memory: int, priority: int) -> None:
         pipe.send(_Ready())
     while True:
         try:
-            answer, question, knowledge, seconds = pipe.recv()
+            answer, question, context, seconds = pipe.recv()
         except (EOFError, OSError):  # who asks is gone
             return
         signal.setitimer(signal.ITIMER_REAL, seconds)
         outcome: object
         try:
-            outcome = answer(question, knowledge)
+            outcome = answer(question, context)
         except ContactDynamicsError as error:
             outcome = error
         except MemoryError:

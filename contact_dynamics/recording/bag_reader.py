@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
     from contact_dynamics.recording.file_messages import StoredMessage
 
-_MOST_TOLD: Final = 5  # number of damaged places that are listed one by one
+_MAX_TOLD: Final = 5  # number of damaged places that are listed one by one
 _NAME: Final = re.compile(r"(_(?P<number>\d+))?(?P<kind>\.mcap|\.db3)(\.zstd|\.zst|\.lz4)?$")
 
 
@@ -230,6 +230,6 @@ def _files_of(folder: Path) -> list[Path]:
 
 
 def _described(path: Path, losses: list[Loss]) -> str:
-    told = "; ".join(str(loss) for loss in losses[:_MOST_TOLD])
-    more = f"; and {len(losses) - _MOST_TOLD} places more" if len(losses) > _MOST_TOLD else ""
+    told = "; ".join(str(loss) for loss in losses[:_MAX_TOLD])
+    more = f"; and {len(losses) - _MAX_TOLD} places more" if len(losses) > _MAX_TOLD else ""
     return f"{path} is damaged or was cut short, all but this was read: {told}{more}"

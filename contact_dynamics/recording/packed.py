@@ -25,7 +25,7 @@ MAGICS: Final = {b"\x28\xb5\x2f\xfd": b"zstd", b"\x04\x22\x4d\x18": b"lz4"}
 SUFFIXES: Final = (".zstd", ".zst", ".lz4")
 """The ending of a packed file's name."""
 
-MOST_BYTES: Final = 64 * 1024 * 1024
+MAX_BYTES: Final = 64 * 1024 * 1024
 """The size of the largest message that is unpacked, bytes."""
 
 _PIECE: Final = 1024 * 1024  # bytes
@@ -35,17 +35,17 @@ def unpacked_message(data: bytes) -> bytes:
     """Return a message as it was serialised.
 
     Raises:
-        InvalidFieldError: the message is damaged, or larger than `MOST_BYTES`.
+        InvalidFieldError: the message is damaged, or larger than `MAX_BYTES`.
     """
     compression = MAGICS.get(data[:4])
     if compression is None:
         return data
     try:
-        found = uncompressed(compression, data, MOST_BYTES)
+        found = uncompressed(compression, data, MAX_BYTES)
     except Exception as error:  # noqa: BLE001  damaged bytes make the libraries raise nearly anything
         raise InvalidFieldError("data", f"a packed message ({error})", "data that can be unpacked") from None
-    if len(found) > MOST_BYTES:
-        raise InvalidFieldError("data", "a packed message", f"at most {MOST_BYTES} bytes when unpacked")
+    if len(found) > MAX_BYTES:
+        raise InvalidFieldError("data", "a packed message", f"at most {MAX_BYTES} bytes when unpacked")
     return found
 
 

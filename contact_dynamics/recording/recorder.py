@@ -73,7 +73,7 @@ class RecorderStatus:
         written: Number of messages in the file, which a kill cannot lose.
         lost: Number of messages dropped because the disk failed, the queue was full, or they were invalid.
         waiting: Number of messages that are not in the file yet.
-        most_waiting_bytes: The most memory that waiting messages have taken so far, bytes.
+        max_waiting_bytes: The most memory that waiting messages have taken so far, bytes.
         is_interrupted: Whether nothing is written now, which is a problem of that kind.
         problems: The problems so far, by their kind.
     """
@@ -81,7 +81,7 @@ class RecorderStatus:
     written: int
     lost: int
     waiting: int
-    most_waiting_bytes: int
+    max_waiting_bytes: int
     is_interrupted: bool
     problems: Mapping[LogProblem, Problem]
 
@@ -162,7 +162,7 @@ class Recorder(ClosedAtTheEnd):
                 written=self._written,
                 lost=self._lost,
                 waiting=self._given - self._written - self._lost,
-                most_waiting_bytes=self._most_waiting_bytes,
+                max_waiting_bytes=self._most_waiting_bytes,
                 is_interrupted=not self._is_writing(),
                 problems=dict(self._problems),
             )

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 EVENT_TOPIC_SUFFIX: Final = "/_service_event"
 
-MOST_HELD: Final = 10_000
+MAX_HELD: Final = 10_000
 """Answered calls that wait for one before them. A request whose response was lost must not hold up all of a
 log, nor fill the memory."""
 
@@ -57,7 +57,7 @@ class ServiceCall:
         return _content(self.response_event, "response")
 
 
-def service_calls(messages: Iterable[LoggedMessage], *, most_held: int = MOST_HELD) -> Iterator[ServiceCall]:
+def service_calls(messages: Iterable[LoggedMessage], *, max_held: int = MAX_HELD) -> Iterator[ServiceCall]:
     """Yield the calls in the order in which their requests came.
 
     A hard question is answered after quick ones that came later, so a call waits here until those before it
@@ -65,7 +65,7 @@ def service_calls(messages: Iterable[LoggedMessage], *, most_held: int = MOST_HE
 
     Args:
         messages: the messages of a log, also others than events.
-        most_held: how many answered calls wait for one before them, >= 0.
+        max_held: how many answered calls wait for one before them, >= 0.
     """
     open_calls: dict[_Key, ServiceCall] = {}  # in the order of their requests
     answered: set[_Key] = set()  # those of them whose response has come
@@ -91,7 +91,7 @@ def service_calls(messages: Iterable[LoggedMessage], *, most_held: int = MOST_HE
             answered.add(key)
         while open_calls:
             first = next(iter(open_calls))
-            if first not in answered and len(answered) <= most_held:
+            if first not in answered and len(answered) <= max_held:
                 break
             answered.discard(first)
             yield open_calls.pop(first)

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from contact_dynamics.recording.errors import NotALogError
 from contact_dynamics.recording.file_messages import Loss, Span, StoredMessage, Topic
-from contact_dynamics.recording.packed import MOST_BYTES
+from contact_dynamics.recording.packed import MAX_BYTES
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator
@@ -31,7 +31,7 @@ _TOPICS_OF_DASHING: Final = "SELECT id, name, type, serialization_format, '' FRO
 _SPANNED: Final = " AND timestamp >= ? AND timestamp < ?"
 _LEAST_NS: Final = -(2**63)
 _LATEST_NS: Final = 2**63 - 1
-_MOST_ID: Final = 2**63 - 1
+_MAX_ID: Final = 2**63 - 1
 
 
 class SqliteMessages:
@@ -112,7 +112,7 @@ class SqliteMessages:
             database = sqlite3.connect(f"{address}?{options}", uri=True, check_same_thread=False)
             try:
                 if hasattr(database, "setlimit"):  # not yet in Python 3.10
-                    database.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, MOST_BYTES)
+                    database.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, MAX_BYTES)
                 tables = database.execute("SELECT name FROM sqlite_master WHERE type = 'table'")
                 found = {name for (name,) in tables}
             except sqlite3.Error as caught:
@@ -160,7 +160,7 @@ class SqliteMessages:
         with suppress(sqlite3.Error):
             for (number,) in self._database.execute("SELECT max(id) FROM messages"):
                 return number if isinstance(number, int) else 0
-        return min(_MOST_ID, self._path.stat().st_size)  # no file has more rows than bytes
+        return min(_MAX_ID, self._path.stat().st_size)  # no file has more rows than bytes
 
     def _lose(self, reason: str) -> None:
         loss = Loss(path=self._path, begin=0, end=self._path.stat().st_size, messages=None, reason=reason)

@@ -17,8 +17,8 @@ from contact_dynamics.nodes.reconfiguring import CONFIGURED_ANEW, bodies_read_ot
 from contact_dynamics.nodes.run_record import LoggedParameters
 from contact_dynamics.nodes.services import service_of_type
 from contact_dynamics.nodes.state_sources import no_message, state_sources
+from contact_dynamics.questions.context import Context
 from contact_dynamics.questions.extent import check_believable
-from contact_dynamics.questions.knowledge import Knowledge
 from contact_dynamics.questions.state_store import CLOCK_SET_BACK, StateStore
 from contact_dynamics.questions.uncertain_state import state_of
 from contact_dynamics.recording.cdr import decode_without_ros
@@ -71,10 +71,10 @@ class ServerAgain:
             history=parameters.state_history,
             timeout=parameters.state_timeout,
             future_tolerance=parameters.future_tolerance,
-            most_states=parameters.most_states,
+            max_states=parameters.max_states,
         )
         self._static = TransformTree()
-        self._knowledge = Knowledge(
+        self._context = Context(
             world=parameters.world,
             states=self._states,
             defaults=parameters.defaults,
@@ -149,10 +149,10 @@ class ServerAgain:
         self.refused.setdefault(topic, Refused(reason=str(error))).count += 1
         self._states.refuse(body_name, said_by_server)
 
-    def knowledge_at(self, asked_ns: int) -> Knowledge:
+    def context_at(self, asked_ns: int) -> Context:
         """Return what is known at a time, ns by the clock of the states."""
         self._asked_ns = asked_ns
-        return self._knowledge
+        return self._context
 
     def question_from(self, service_type: str, request: Any) -> Question:
         """Return the question that a request asks.
@@ -186,7 +186,7 @@ class ServerAgain:
         service = service_of_type(service_type)
         response = make_response()
         try:
-            service.serve(request, response, self._knowledge, world_frame=self._parameters.world_frame)
+            service.serve(request, response, self._context, world_frame=self._parameters.world_frame)
         except Exception as error:  # noqa: BLE001  the server reports a fault of its own too, and goes on
             response = make_response()
             report_error(response, error)
@@ -203,14 +203,14 @@ class ServerAgain:
             history=parameters.state_history,
             timeout=parameters.state_timeout,
             future_tolerance=parameters.future_tolerance,
-            most_states=parameters.most_states,
+            max_states=parameters.max_states,
         )
         changed = bodies_read_otherwise(before, parameters)
         for name in changed:
             self._states.forget(name, CONFIGURED_ANEW)
         if changed:
             self._find_sources()
-        self._knowledge = replace(self._knowledge, world=parameters.world, defaults=parameters.defaults)
+        self._context = replace(self._context, world=parameters.world, defaults=parameters.defaults)
 
     def _find_sources(self) -> None:
         sources = state_sources(self._parameters, static=self._static)

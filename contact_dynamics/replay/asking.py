@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
     from contact_dynamics.nodes.parameter_reader import ParameterSource
     from contact_dynamics.nodes.services import Answer
-    from contact_dynamics.questions.knowledge import Knowledge
+    from contact_dynamics.questions.context import Context
     from contact_dynamics.recording.file_messages import Span
     from contact_dynamics.replay.again import Refused, ServerAgain
     from contact_dynamics.replay.events import Event
@@ -151,7 +151,7 @@ class AskedEvents:
         answer, status, message = None, OK, ""
         try:
             state = PublishedState(fit_window=self._asking.fit_window)
-            answer = _ask(name, body_name, state, self._server.knowledge_at(stamp_ns))
+            answer = _ask(name, body_name, state, self._server.context_at(stamp_ns))
         except ContactDynamicsError as error:
             status, message = code_name(error), str(error)
         service = service_of_type(QUESTIONS[name])
@@ -170,9 +170,9 @@ class AskedEvents:
         )
 
 
-def _ask(name: str, body: str, state: PublishedState, knowledge: Knowledge) -> Answer:
+def _ask(name: str, body: str, state: PublishedState, context: Context) -> Answer:
     if name == LANDING:
-        return ask(TumblingQuestion(body=body, state=state, sampling=UntilContact()), knowledge)
+        return ask(TumblingQuestion(body=body, state=state, sampling=UntilContact()), context)
     if name == IMPACT:
-        return ask(ImpactQuestion(body=body, state=state), knowledge)
-    return ask(ContactModeQuestion(body=body, state=state), knowledge)
+        return ask(ImpactQuestion(body=body, state=state), context)
+    return ask(ContactModeQuestion(body=body, state=state), context)

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
     from contact_dynamics.world import World
 
-_MOST_WAITING: Final = 10_000
+_MAX_WAITING: Final = 10_000
 """Rows that wait for what is measured. Beyond, the oldest is given without."""
 
 COLUMNS: Final[dict[str, type]] = {
@@ -106,7 +106,7 @@ class Rows:
             else:
                 self._waiting.append(self._row(event))
                 self._weight += self._waiting[-1].weight
-            while self._waiting and (self._is_done(self._waiting[0]) or self._weight > _MOST_WAITING):
+            while self._waiting and (self._is_done(self._waiting[0]) or self._weight > _MAX_WAITING):
                 self._weight -= self._waiting[0].weight
                 yield from self._finished(self._waiting.popleft())
         for waiting in self._waiting:

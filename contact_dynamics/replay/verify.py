@@ -23,10 +23,10 @@ if TYPE_CHECKING:
 
     from contact_dynamics.replay.again import ServerAgain
 
-MOST_TOLD: Final = 10
+MAX_TOLD: Final = 10
 """The differences of this many questions are kept, those of the largest ones."""
 
-MOST_FIELDS_TOLD: Final = 5
+MAX_FIELDS_TOLD: Final = 5
 """This many fields of one answer are kept, those that differ most."""
 
 
@@ -195,7 +195,7 @@ def note_difference(
         other = OtherAnswer(
             service=service, number=tally.questions, asked_ns=asked_ns, differences=tuple(told)
         )
-        found.others = sorted([*found.others, other], key=lambda each: -each.differences[0].size)[:MOST_TOLD]
+        found.others = sorted([*found.others, other], key=lambda each: -each.differences[0].size)[:MAX_TOLD]
     elif same:
         tally.equal += 1
     else:
@@ -206,7 +206,7 @@ def _beyond(found: Iterable[Difference], tolerance: float) -> tuple[bool, list[D
     """Return whether there is no difference at all, and the largest ones beyond the tolerance."""
     listed = list(found)
     told = [each for each in listed if tolerance == 0.0 or each.size > tolerance]
-    return not listed, sorted(told, key=lambda each: -each.size)[:MOST_FIELDS_TOLD]
+    return not listed, sorted(told, key=lambda each: -each.size)[:MAX_FIELDS_TOLD]
 
 
 def _unreadable(found: Verification, tally: ServiceTally, reason: str) -> None:

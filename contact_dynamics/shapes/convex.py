@@ -34,10 +34,10 @@ from contact_dynamics.validation import (
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-MOST_VERTICES: Final = 10_000
+MAX_VERTICES: Final = 10_000
 """Longest list of vertices accepted. A convex shape with more should be simplified first."""
 
-MOST_RIMS: Final = 1_000
+MAX_RIMS: Final = 1_000
 """Longest list of rims accepted. The shapes of this file have at most two."""
 
 
@@ -74,7 +74,7 @@ class ConvexShape(Record):
     Raises:
         InvalidFieldError: a number is not finite or beyond `LARGEST_NUMBER`, a radius is negative, or an axis
             is not unit.
-        TooLargeError: there are more than `MOST_VERTICES` vertices or `MOST_RIMS` rims.
+        TooLargeError: there are more than `MAX_VERTICES` vertices or `MAX_RIMS` rims.
     """
 
     vertices: FloatArray = field(default_factory=lambda: np.zeros((0, 3)))
@@ -91,10 +91,10 @@ class ConvexShape(Record):
     def __post_init__(self) -> None:
         """Check all fields."""
         vertices = check_magnitude("vertices", check_array("vertices", self.vertices, (None, 3)))
-        if len(vertices) > MOST_VERTICES:
-            raise TooLargeError("vertices", f"{len(vertices)} vertices", f"at most {MOST_VERTICES}")
-        if len(self.rims) > MOST_RIMS:
-            raise TooLargeError("rims", f"{len(self.rims)} rims", f"at most {MOST_RIMS}")
+        if len(vertices) > MAX_VERTICES:
+            raise TooLargeError("vertices", f"{len(vertices)} vertices", f"at most {MAX_VERTICES}")
+        if len(self.rims) > MAX_RIMS:
+            raise TooLargeError("rims", f"{len(self.rims)} rims", f"at most {MAX_RIMS}")
         object.__setattr__(self, "vertices", _distinct(vertices))
         object.__setattr__(self, "rims", tuple(_checked(*rim) for rim in self.rims))
         object.__setattr__(self, "rounding", check_within("rounding", self.rounding, 0.0, LARGEST_NUMBER))

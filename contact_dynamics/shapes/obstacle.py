@@ -10,7 +10,7 @@ import numpy as np
 from contact_dynamics.errors import InvalidFieldError, TooLargeError
 from contact_dynamics.records import Record
 from contact_dynamics.shapes.concavity import warn_if_concave
-from contact_dynamics.shapes.convex import MOST_VERTICES
+from contact_dynamics.shapes.convex import MAX_VERTICES
 from contact_dynamics.shapes.hull_features import Features, hull_features
 from contact_dynamics.validation import (
     FloatArray,
@@ -38,7 +38,7 @@ class Obstacle(Record):
     Raises:
         InvalidFieldError: a number is not finite, a corner is beyond `LARGEST_NUMBER`, all corners are on a
             line, mu < 0, or e is outside [0, 1].
-        TooLargeError: there are more than `MOST_VERTICES` corners.
+        TooLargeError: there are more than `MAX_VERTICES` corners.
     """
 
     name: str
@@ -55,8 +55,8 @@ class Obstacle(Record):
     def __post_init__(self) -> None:
         """Check all fields and find faces and edges."""
         vertices = check_magnitude("vertices_W", check_array("vertices_W", self.vertices_W, (None, 3)))
-        if len(vertices) > MOST_VERTICES:
-            raise TooLargeError("vertices_W", f"{len(vertices)} vertices", f"at most {MOST_VERTICES}")
+        if len(vertices) > MAX_VERTICES:
+            raise TooLargeError("vertices_W", f"{len(vertices)} vertices", f"at most {MAX_VERTICES}")
         object.__setattr__(self, "vertices_W", vertices)
         object.__setattr__(self, "friction", check_not_negative("friction", self.friction))
         object.__setattr__(self, "restitution", check_within("restitution", self.restitution, 0.0, 1.0))

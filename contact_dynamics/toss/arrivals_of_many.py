@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from contact_dynamics.numerics.arithmetic import FloatArray
     from contact_dynamics.toss.solid import Solid
 
-_MOST_STEPS: Final = 200
+_MAX_STEPS: Final = 200
 """Steps towards one arrival, after which a sample counts as one that never arrives. Ten are usual."""
 
 
@@ -87,7 +87,7 @@ def arrivals_of_many(
     if pauses is not None:
         move(np.arange(n))
     active = np.arange(n)
-    for _ in range(_MOST_STEPS):
+    for _ in range(_MAX_STEPS):
         heights, rates = _heights(normals, levels, corners[active], [each[active] for each in then])
         # What arrives is as near as counts, and still comes nearer. Of several, the fastest strikes first.
         speeds = np.where(heights <= SAMPLED_ARRIVAL, rates, np.inf).reshape(len(active), -1)

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from contact_dynamics.toss.solid import Numbers, Solid
     from contact_dynamics.validation import FloatArray
 
-_MOST_STEPS: Final = 12
+_MAX_STEPS: Final = 12
 _FARTHEST: Final = 0.5
 """rad. The largest turn of a step: a friction cone is round."""
 
@@ -48,7 +48,7 @@ def turned_along_accelerations(solid: Solid, y: Numbers, mode: tuple[Held, ...])
             found.append(dot(across, moved.at(solid, touch, arm_of(solid, pose, touch))))
         return np.array(found)
 
-    for _ in range(_MOST_STEPS):
+    for _ in range(_MAX_STEPS):
         off = sideways(mode)
         if np.abs(off).max() <= enough:
             break

@@ -27,19 +27,19 @@ if TYPE_CHECKING:
 
     from contact_dynamics.toss.solid import Matrix3
 
-MOST_SWEEPS: Final = 400
+MAX_SWEEPS: Final = 400
 """Sweeps over all contacts after which the problem counts as not solved. Four corners need some fifty."""
 
 PLAIN_SWEEPS: Final = 100
 """Sweeps after which their limit is sought. Where contacts jam, ten thousand sweeps would be needed."""
 
-_MOST_FURTHER_SWEEPS: Final = 1000
+_MAX_FURTHER_SWEEPS: Final = 1000
 """Sweeps after which the problem counts as not solved where their limit is sought."""
 
 FURTHER_SWEEPS: Final = 10
 """Sweeps from which their limit is sought, again and again."""
 
-_MOST_TURNS: Final = 60
+_MAX_TURNS: Final = 60
 """Steps towards the direction in which one contact slides."""
 
 _DIRECTIONS: Final = 48
@@ -87,7 +87,7 @@ def cone_forces(
     if scale == 0.0:
         return pushes, motions
     seen: list[list[Vector3]] = []
-    for sweep in range(_MOST_FURTHER_SWEEPS if enough > 0.0 else MOST_SWEEPS):
+    for sweep in range(_MAX_FURTHER_SWEEPS if enough > 0.0 else MAX_SWEEPS):
         change = _sweep(response, sites, pushes, motions)
         if change <= CONE_SWEEPS_CONVERGED * scale:
             return (pushes, motions) if _lowest(motions) >= -FORCE_ROUNDING * scale else None
@@ -194,7 +194,7 @@ def _sliding(own: Matrix3, m: Vector3, mu: float, hold: tuple[float, float]) -> 
         return p, m[0] + p * (c - mu * (a * x + b * y)), m[1] + p * (e - mu * (b * x + d * y))
 
     angle = math.atan2(-hold[1], -hold[0]) if hold != (0.0, 0.0) else math.atan2(m[1], m[0])
-    for _ in range(_MOST_TURNS):
+    for _ in range(_MAX_TURNS):
         x, y = math.cos(angle), math.sin(angle)
         p, u, v = pushed(x, y)
         if p == 0.0:
@@ -230,7 +230,7 @@ def _sliding_by_halves(
         if left * right > 0.0 or ahead < 0.0 or further < 0.0:
             continue
         low, high = 2.0 * math.pi * k / _DIRECTIONS, 2.0 * math.pi * (k + 1) / _DIRECTIONS
-        for _ in range(_MOST_TURNS):
+        for _ in range(_MAX_TURNS):
             middle = 0.5 * (low + high)
             value, _, push = across(middle)
             low, high = (middle, high) if value * left > 0.0 else (low, middle)

@@ -53,7 +53,7 @@ if TYPE_CHECKING:
 Kick: TypeAlias = "Callable[[Solid, Numbers, Numbers, Touch], Numbers]"
 """Takes the body, the states before and after a strike, and the contact, and returns another state after."""
 
-MOST_STEPS: Final = 100_000
+MAX_STEPS: Final = 100_000
 """Steps in contact, after which a toss ends unfinished. A ball that rolls takes some thirteen a turn."""
 
 _ROUNDS: Final = 4
@@ -72,7 +72,7 @@ _LONGER: Final = 4.0
 _SHARE: Final = 0.25
 """Length of a short step, relative to the time that is passed over."""
 
-_MOST_LAID: Final = 3
+_MAX_LAID: Final = 3
 """How often a sample is laid flat. One that rattles on goes on as a toss does."""
 
 _SLOWER: Final = 0.25
@@ -89,7 +89,7 @@ class Following:
         law: What the coefficients of restitution mean.
         several_contacts_law: The law for several contacts that strike at one instant.
         horizon: s, how far a toss is followed.
-        most_events: How many events are followed.
+        max_events: How many events are followed.
         error: The error that one step of a contact phase may have (`phase.phase`).
         kick: What changes velocities after the strike of a single contact, or None.
         flat_after: After so many strikes, a body that only rattles on a face is laid flat (`laid_flat`). If
@@ -108,7 +108,7 @@ class Following:
         *,
         several_contacts_law: SeveralContactsLaw = SeveralContactsLaw.SEQUENTIAL,
         horizon: float,
-        most_events: int,
+        max_events: int,
         error: float,
         kick: Kick | None = None,
         flat_after: int | None = None,
@@ -117,7 +117,7 @@ class Following:
     ) -> None:
         self.solid, self.properties, self.shape = solid, properties, shape
         self.law, self.several_contacts_law, self.horizon = law, several_contacts_law, horizon
-        self.most_events, self.error = most_events, error
+        self.max_events, self.error = max_events, error
         self.kick, self.flat_after, self.thorough = kick, flat_after, thorough
         self.has_pieces = has_pieces
 
@@ -156,9 +156,9 @@ class Run(Course):
 
     def _to_end(self) -> Asking[TossEnd]:
         touching = self.touching_now(STRIKES)
-        for _ in range(_ROUNDS * self.runs.most_events):
-            if len(self.events) >= self.runs.most_events or self.steps >= MOST_STEPS:
-                return TossEnd.MOST_EVENTS
+        for _ in range(_ROUNDS * self.runs.max_events):
+            if len(self.events) >= self.runs.max_events or self.steps >= MAX_STEPS:
+                return TossEnd.MAX_EVENTS
             if self.now >= self.runs.horizon:
                 return TossEnd.HORIZON
             touching = self._laid_flat(touching)
@@ -172,7 +172,7 @@ class Run(Course):
             if touching and self._rests(touching):
                 return TossEnd.RESTS
             touching = yield from self._go_on(touching)
-        return TossEnd.MOST_EVENTS
+        return TossEnd.MAX_EVENTS
 
     def _go_on(self, touching: list[Touch]) -> Asking[list[Touch]]:
         """Go on from contacts that neither approach nor leave, and return what touches then."""
@@ -400,7 +400,7 @@ class Run(Course):
     def _laid_flat(self, touching: list[Touch]) -> list[Touch]:
         """Lay a body that only rattles on a face flat on it, if it may be, and return what touches then."""
         after = self.runs.flat_after
-        if after is None or self.struck < after or self.laid >= _MOST_LAID:
+        if after is None or self.struck < after or self.laid >= _MAX_LAID:
             return touching
         flat = laid_flat(self.solid, self.y, self.faces)
         if flat is None:

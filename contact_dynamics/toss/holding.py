@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from contact_dynamics.toss.held import Held
     from contact_dynamics.toss.solid import Matrix3, Numbers, Solid, Touch
 
-_MOST_SWEEPS: Final = 200
+_MAX_SWEEPS: Final = 200
 """Sweeps over corners that are below a flat. Some ten are usual."""
 
 
@@ -88,7 +88,7 @@ def out_of_flats(solid: Solid, y: Numbers) -> Numbers:
     pushes = [(normal, times(pose.inverse, moment)) for normal, moment in rows]
     response = responses(1.0 / solid.mass, rows, pushes)
     lift = [0.0] * len(near)
-    for _ in range(_MOST_SWEEPS):
+    for _ in range(_MAX_SWEEPS):
         least = 0.0
         for i, (height, _) in enumerate(near):
             now = height + sum(a * b for a, b in zip(response[i], lift, strict=True))

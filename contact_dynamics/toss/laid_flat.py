@@ -36,7 +36,7 @@ cube of a decimetre moves by a millimetre at this share, or at a tenth of it."""
 NEARLY_FLUSH: Final = 0.1
 """Share of the reach within which corners can belong to the face below."""
 
-MOST_CORNERS: Final = 10
+MAX_CORNERS: Final = 10
 """Corners of a face, of which any three are tried as those that it stands on."""
 
 SAME_FACE: Final = 0.03
@@ -64,12 +64,12 @@ Faces: TypeAlias = "dict[tuple[int, ...], _Face | None]"
 def laid_flat(solid: Solid, y: Numbers, faces: Faces) -> Numbers | None:
     """Return the state of a body that slides flush on a face, or None if it does more than rattle on one.
 
-    Only a body near a single flat is laid on it, and only with `MOST_CORNERS` there at most. ``faces`` are
+    Only a body near a single flat is laid on it, and only with `MAX_CORNERS` there at most. ``faces`` are
     those of this body that are known, and gets others that are looked for.
     """
     low = NEARLY_FLUSH * solid.reach
     near = [touch for height, _, touch in heights_and_rates(solid, y) if height < low]
-    if not 3 <= len(near) <= MOST_CORNERS or any(surface != near[0][0] for surface, _ in near):
+    if not 3 <= len(near) <= MAX_CORNERS or any(surface != near[0][0] for surface, _ in near):
         return None
     flat = solid.flats[near[0][0]]
     n, pressing = flat.normal, -dot(solid.gravity, flat.normal)

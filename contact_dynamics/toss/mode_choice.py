@@ -45,7 +45,7 @@ if TYPE_CHECKING:
 
 Mode = tuple[Held, ...]
 
-_MOST_CORRECTIONS: Final = 30
+_MAX_CORRECTIONS: Final = 30
 """Rounds of corrections of a guessed mode. One to three are usual."""
 
 _FEW_CORRECTIONS: Final = 8
@@ -174,7 +174,7 @@ def corrected(solid: Solid, y: Numbers, guess: Mode, free: Free) -> Mode | None:
     """
     starts = {one.touch: one for one in guess}
     held = {one.touch: one for one in guess}
-    for k in range(_MOST_CORRECTIONS):
+    for k in range(_MAX_CORRECTIONS):
         mode = tuple(held.values())
         if k >= _FEW_CORRECTIONS:
             mode = turned_along_accelerations(solid, y, mode)

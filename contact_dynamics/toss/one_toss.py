@@ -36,11 +36,11 @@ if TYPE_CHECKING:
 HORIZON: Final = 10.0
 """s. A body that is tossed by hand rests within two."""
 
-MOST_EVENTS: Final = 10_000
+MAX_EVENTS: Final = 10_000
 """Events after which a toss ends unfinished. A toss of a box takes ten to fifty, and one of a smooth body
 among four flats takes thousands."""
 
-MOST_ALTERNATIVES: Final = 8
+MAX_ALTERNATIVES: Final = 8
 """Other ways that are followed, if no other number is asked for."""
 
 
@@ -52,8 +52,8 @@ def toss(
     restitution_law: RestitutionLaw = RestitutionLaw.POISSON,
     several_contacts_law: SeveralContactsLaw = SeveralContactsLaw.SEQUENTIAL,
     horizon: float = HORIZON,
-    most_events: int = MOST_EVENTS,
-    most_alternatives: int = MOST_ALTERNATIVES,
+    max_events: int = MAX_EVENTS,
+    max_alternatives: int = MAX_ALTERNATIVES,
     error: float = PHASE_ERROR,
     lasting_factors: ArrayLike = (),
     distance_tolerance: float = DISTANCE_TOLERANCE,
@@ -67,8 +67,8 @@ def toss(
         restitution_law: What the coefficients of restitution mean. ENERGETIC only goes with SEQUENTIAL.
         several_contacts_law: The law for several contacts that strike at one instant.
         horizon: s, > 0. How far the motion is followed.
-        most_events: How many events to follow at most, >= 1.
-        most_alternatives: How many other ways to follow at most, >= 0, where mechanics does not decide.
+        max_events: How many events to follow at most, >= 1.
+        max_alternatives: How many other ways to follow at most, >= 0, where mechanics does not decide.
         error: m, m/s, at least `LEAST_PHASE_ERROR`. The error that one step of a contact phase may have.
             Angles count with the body's reach.
         lasting_factors: (s,), >= 0, the friction of each surface where contact lasts, relative to that of
@@ -94,10 +94,10 @@ def toss(
         restitution_law,
         several_contacts_law=several_contacts_law,
         horizon=check_positive("horizon", horizon),
-        most_events=check_whole("most_events", most_events, 1),
+        max_events=check_whole("max_events", max_events, 1),
         error=check_within("error", error, LEAST_PHASE_ERROR, LARGEST_NUMBER),
     )
-    most = check_whole("most_alternatives", most_alternatives, 0)
+    most = check_whole("max_alternatives", max_alternatives, 0)
     main = runs.run(state, ())
     waiting = deque(_other_ways(main, 0))
     others: list[Toss] = []

@@ -42,10 +42,10 @@ if TYPE_CHECKING:
     from contact_dynamics.toss.asked import Asking
     from contact_dynamics.toss.solid import Numbers, Pose, Solid, Touch
 
-MOST_PHASE_STEPS: Final = 20_000
+MAX_PHASE_STEPS: Final = 20_000
 """Steps after which a phase ends unfinished. A tenth of a second of sliding or tipping takes some twenty."""
 
-_MOST_SHORT_STEPS: Final = 60
+_MAX_SHORT_STEPS: Final = 60
 """Such steps after which a phase ends. Sliding that stops takes some ten."""
 
 LARGEST_STEP: Final = 0.2
@@ -110,14 +110,14 @@ def phase(
     resolved = max(SLIDING_STOPPED, min(RESOLVED_SLIDING * error, COARSE_SLIDING_STOPPED))
     before_stop, _ = _sliding(solid, y, pushed, mode, resolved=resolved)
     fast, short = kinetic_energy_of(solid, y) > slow, 0
-    for _ in range(MOST_PHASE_STEPS):
+    for _ in range(MAX_PHASE_STEPS):
         longest = _before_arrival(solid, y, held)
         step = min(step, longest, until - now, before_stop)
         asked = AskedStep(solid, y, pushed, mode, span=step, scales=scales, error=error)
         yield asked
         trial, size, after = asked.trial, asked.size, asked.after
         short += step < CREEPING_STEP
-        if short > _MOST_SHORT_STEPS:
+        if short > _MAX_SHORT_STEPS:
             return Phase(PhaseEnd.CREEPS, now, y, steps)
         if size > 1.0 and step > PHASE_LEAST_STEP:
             step *= max(0.2, 0.9 * size**-0.2)

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from contact_dynamics.toss.phase_step import PhaseStep
     from contact_dynamics.toss.solid import Flat, Numbers, Solid, Touch
 
-_MOST_ROOT_STEPS: Final = 60
+_MAX_ROOT_STEPS: Final = 60
 
 Watched: TypeAlias = "list[tuple[Flat, list[tuple[Vector3, float]]]]"
 """The corners that could come down on each flat, m, body axes, with the depths, m, that they may have."""
@@ -126,7 +126,7 @@ def _crossing(value: Callable[[float], float], bad: float, span: float, enough: 
         return bad
     b, f_b = 0.0, max(value(0.0), 0.0) + half
     share = 0.5
-    for _ in range(_MOST_ROOT_STEPS):
+    for _ in range(_MAX_ROOT_STEPS):
         x = a + share * (b - a)
         f_x = value(x) + half
         if abs(f_x) < half:

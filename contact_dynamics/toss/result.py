@@ -46,7 +46,7 @@ class TossEnd(NamedInt):
     """The body rests."""
     HORIZON = 1
     """The time that was asked for is over, and the body still moves."""
-    MOST_EVENTS = 2
+    MAX_EVENTS = 2
     """The bound on the number of events, or of steps in contact, was reached."""
     UNDECIDED = 3
     """No contact mode was found to be consistent, and no impact settled that. Short steps pass over such

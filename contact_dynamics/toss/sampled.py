@@ -37,7 +37,7 @@ from contact_dynamics.toss.law_spread import LawSpread
 from contact_dynamics.toss.solid import solid_of
 from contact_dynamics.toss.strikes_of_many import ManyStrikes, SampleEnd, strikes_of_many
 from contact_dynamics.toss.to_rest import check_processes, followed_to_rest
-from contact_dynamics.toss.uncertainty import EXACT, MOST_SPREAD, TossUncertainty, draw
+from contact_dynamics.toss.uncertainty import EXACT, MAX_SPREAD, TossUncertainty, draw
 from contact_dynamics.tumbling.motion import check_extent
 from contact_dynamics.validation import check_array, check_magnitude, check_positive, check_whole
 from contact_dynamics.validation_batches import check_covariance
@@ -54,13 +54,13 @@ if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
     from contact_dynamics.world import Body, World
 
-MOST_SAMPLES: Final = 2000
+MAX_SAMPLES: Final = 2000
 """Most samples of one toss."""
 
-MOST_STRIKES: Final = 10
+MAX_STRIKES: Final = 10
 """Deepest tree of next strikes."""
 
-MOST_GHOSTS: Final = 30
+MAX_GHOSTS: Final = 30
 """Samples whose poses are kept for pictures."""
 
 _SAME_FACE: Final = 0.999  # cosine between normals of one face
@@ -95,8 +95,8 @@ def sampled_toss(
         by_gravity: s^2 and s, by how much the best position and velocity change with gravity, as
             `FitResult.by_gravity`. A state that does not depend on gravity has zeros.
         uncertainty: How uncertain parameters and law are.
-        count: Number of samples, from 1 to `MOST_SAMPLES`.
-        strikes: How many next strikes the tree has, from 1 to `MOST_STRIKES`.
+        count: Number of samples, from 1 to `MAX_SAMPLES`.
+        strikes: How many next strikes the tree has, from 1 to `MAX_STRIKES`.
         to_rest: Whether samples are followed to rest.
         seed: Samples are drawn from it, >= 0. The same seed draws the same ones.
         law: What the coefficients of restitution mean. ENERGETIC only goes with SEQUENTIAL.
@@ -115,17 +115,17 @@ def sampled_toss(
     Raises:
         NoContactError: the body has no shape that could touch anything.
         NotSupportedError: the shape has rims, or a surface is an obstacle.
-        TooLargeError: there are more samples than `MOST_SAMPLES`.
+        TooLargeError: there are more samples than `MAX_SAMPLES`.
         InvalidFieldError: a number is out of its range, the state's covariance is not positive semidefinite
-            or is larger than `MOST_SPREAD` squared, the parameters' covariance has another size than the
+            or is larger than `MAX_SPREAD` squared, the parameters' covariance has another size than the
             world's surfaces ask for, there are not as many factors as surfaces, or ``processes`` is neither a
             whole number >= 1 nor an executor, or the body is deeper in a surface than the tolerance.
         BrokenProcessPool: a process died, for example because the main module is not guarded as said above.
     """
     shared_by = check_processes(processes)
-    if check_whole("count", count, 1) > MOST_SAMPLES:
-        raise TooLargeError("count", count, f"at most {MOST_SAMPLES}")
-    strikes = check_whole("strikes", strikes, 1, MOST_STRIKES)
+    if check_whole("count", count, 1) > MAX_SAMPLES:
+        raise TooLargeError("count", count, f"at most {MAX_SAMPLES}")
+    strikes = check_whole("strikes", strikes, 1, MAX_STRIKES)
     horizon = check_positive("horizon", horizon)
     if covariance is not None:
         covariance = check_covariance("covariance", covariance)
@@ -140,7 +140,7 @@ def sampled_toss(
         state,
         world,
         covariance=covariance,
-        by_gravity=check_magnitude("by_gravity", check_array("by_gravity", by_gravity, (2,)), MOST_SPREAD),
+        by_gravity=check_magnitude("by_gravity", check_array("by_gravity", by_gravity, (2,)), MAX_SPREAD),
         uncertainty=uncertainty,
         count=count,
         chance=chance,
@@ -263,7 +263,7 @@ def _faces(rests: list[Vector3], count: int) -> tuple[FloatArray, FloatArray]:
 
 def _ghosts(told: ManyStrikes, rests: dict[int, Followed], count: int) -> Ghosts:
     rows = []
-    for i in range(min(count, MOST_GHOSTS)):
+    for i in range(min(count, MAX_GHOSTS)):
         for k in np.flatnonzero(told.corners[:, i] >= 0).tolist():
             at = (told.p_WB_W[k, i], told.q_WB[k, i], told.v_WB_W[k, i], told.w_WB_W[k, i])
             rows.append((i, k + 1, np.concatenate(at)))

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from contact_dynamics.toss.mode_choice import Choice
     from contact_dynamics.toss.solid import Numbers, Solid, Touch
 
-MOST_STRIKES_AT_ONCE: Final = 100
+MAX_STRIKES_AT_ONCE: Final = 100
 """Strikes of one instant after which contacts that still approach jam, and have an impact without restitution
 together. A prism that lands on a face of eight corners takes some twenty."""
 
@@ -92,7 +92,7 @@ def strike(
             fastest, with those that tie with it.
     """
     struck: list[Struck] = []
-    for k in range(MOST_STRIKES_AT_ONCE):
+    for k in range(MAX_STRIKES_AT_ONCE):
         if min(rates) >= -(_slow(solid) if k >= _JAMS_AFTER else STRIKES):
             break
         settled = _settled(solid, y, touching, rates)

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 FEWEST_AT_ONCE: Final = 32
 """Samples below which one after the other is faster than all at once."""
 
-MOST_FURTHER: Final = 50
+MAX_FURTHER: Final = 50
 """Strikes that are followed beyond those to tell of. A body that still bounces then goes on by itself."""
 
 
@@ -112,7 +112,7 @@ def strikes_of_many(
         last=(state[0], state[1], state[2], state[3]),
     )
     going = np.arange(n)
-    for k in range(depth + (MOST_FURTHER if further else 0)):
+    for k in range(depth + (MAX_FURTHER if further else 0)):
         if len(going) < (FEWEST_AT_ONCE if k >= depth else 1):
             break
         found = arrivals_of_many(

@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 BLOCK: Final = 250
 """About so many samples make a block. Blocks of half the size take a tenth longer in all."""
 
-_MOST_EVENTS: Final = 500
+_MAX_EVENTS: Final = 500
 
 
 class Followed(NamedTuple):
@@ -212,7 +212,7 @@ def _begun(block: _Block, i: int) -> Run:
         block.law,
         several_contacts_law=block.several_contacts_law,
         horizon=block.horizon - float(block.now[i]),
-        most_events=_MOST_EVENTS,
+        max_events=_MAX_EVENTS,
         error=SAMPLED_PHASE_ERROR,
         kick=block.kicks[i],
         flat_after=block.lacking[i],

@@ -29,14 +29,14 @@ if TYPE_CHECKING:
     from contact_dynamics.rigid_body.body import BodyState
     from contact_dynamics.world import Body, World
 
-MOST_PARAMETERS: Final = 100
+MAX_PARAMETERS: Final = 100
 """So many parameters may be uncertain. A request's list is bounded, and nobody has 47 uncertain surfaces."""
 
 
-MOST_SPREAD: Final = 1e6
+MAX_SPREAD: Final = 1e6
 """Largest standard deviation of anything that is uncertain about a toss, in SI units."""
 
-MOST_INERTIA_SPREAD: Final = 10.0
+MAX_INERTIA_SPREAD: Final = 10.0
 """Largest standard deviation of the inertia, as a relative change. Samples have e to the power of it."""
 
 
@@ -62,8 +62,8 @@ class TossUncertainty(Record):
 
     Raises:
         InvalidFieldError: the matrix is not a covariance, a number is negative or not finite, a standard
-            deviation is larger than `MOST_SPREAD`, or there are not as many standard deviations as factors.
-        TooLargeError: the matrix has more than `MOST_PARAMETERS` rows.
+            deviation is larger than `MAX_SPREAD`, or there are not as many standard deviations as factors.
+        TooLargeError: the matrix has more than `MAX_PARAMETERS` rows.
     """
 
     covariance: FloatArray = field(default_factory=lambda: np.zeros((0, 0)))
@@ -90,13 +90,13 @@ class TossUncertainty(Record):
     def __post_init__(self) -> None:
         """Check all fields."""
         rows = check_array("covariance", self.covariance, (None, None))
-        if len(rows) > MOST_PARAMETERS:
-            raise TooLargeError("covariance", len(rows), f"at most {MOST_PARAMETERS}")
-        check_magnitude("covariance", rows, MOST_SPREAD**2)
+        if len(rows) > MAX_PARAMETERS:
+            raise TooLargeError("covariance", len(rows), f"at most {MAX_PARAMETERS}")
+        check_magnitude("covariance", rows, MAX_SPREAD**2)
         matrix = check_covariance("covariance", rows, len(rows)) if len(rows) else rows
         object.__setattr__(self, "covariance", matrix)
         for name in ("velocity", "spin", "height"):
-            object.__setattr__(self, name, check_within(name, getattr(self, name), 0.0, MOST_SPREAD))
+            object.__setattr__(self, name, check_within(name, getattr(self, name), 0.0, MAX_SPREAD))
         for name in ("lasting_factors", "lasting_factor_stds"):
             object.__setattr__(self, name, check_factors(name, getattr(self, name)))
         count = len(self.lasting_factors)
@@ -106,8 +106,8 @@ class TossUncertainty(Record):
 
 
 def check_factors(field: str, values: ArrayLike) -> FloatArray:
-    """Return numbers from 0 to `MOST_SPREAD`, (s,)."""
-    factors = check_magnitude(field, check_array(field, values, (None,)), MOST_SPREAD)
+    """Return numbers from 0 to `MAX_SPREAD`, (s,)."""
+    factors = check_magnitude(field, check_array(field, values, (None,)), MAX_SPREAD)
     if (factors < 0.0).any():
         raise InvalidFieldError(field, factors, "numbers >= 0")
     return factors
@@ -172,8 +172,8 @@ def draw(
 
     Raises:
         InvalidFieldError: the parameters' covariance has another size than the world's surfaces ask for,
-            there are not as many factors as surfaces, or a variance is too large (`MOST_SPREAD`,
-            `MOST_INERTIA_SPREAD`).
+            there are not as many factors as surfaces, or a variance is too large (`MAX_SPREAD`,
+            `MAX_INERTIA_SPREAD`).
     """
     flats = [surface for surface in world.surfaces if isinstance(surface, Surface)]
     s = len(flats)
@@ -184,11 +184,11 @@ def draw(
             f"{whole - 3} rows, two for each of {s} surfaces and four more, or {whole} with gravity, or none"
         )
         raise InvalidFieldError("covariance", f"{size} rows", allowed)
-    if size and uncertainty.covariance[2 * s + 3, 2 * s + 3] > MOST_INERTIA_SPREAD**2:
+    if size and uncertainty.covariance[2 * s + 3, 2 * s + 3] > MAX_INERTIA_SPREAD**2:
         found = f"a variance of the inertia of {uncertainty.covariance[2 * s + 3, 2 * s + 3]:g}"
-        raise InvalidFieldError("covariance", found, f"at most {MOST_INERTIA_SPREAD**2:g}")
+        raise InvalidFieldError("covariance", found, f"at most {MAX_INERTIA_SPREAD**2:g}")
     if covariance is not None:
-        check_magnitude("state.covariance", covariance, MOST_SPREAD**2)
+        check_magnitude("state.covariance", covariance, MAX_SPREAD**2)
     off = _normal(uncertainty.covariance, count, chance) if size else np.zeros((count, whole - 3))
     off = np.column_stack([off, np.zeros((count, whole - off.shape[1]))])
     pulled = off[:, 2 * s + 4 :]

@@ -108,7 +108,7 @@ def harmonics(xi: Any, eta: Any, peaks: tuple[Any, Any], *, functions: ModuleTyp
     largest_p, largest_q = (p, q) if functions is math else (float(p.max()), float(q.max()))
     A_even, A_odd, B_even, B_odd = [1.0], [0.0], [1.0], [0.0]
     inner, sign, q_2j, p_j, s_j = 1.0, 1.0, 1.0, 1.0, 1.0
-    for j in range(1, MOST_TERMS):
+    for j in range(1, MAX_TERMS):
         if largest_q ** (2 * j * (j - 1)) * largest_p**j < NEGLIGIBLE_TERM:
             break
         sign, q_2j, p_j, s_j = -sign, q_2j * (q * q), p_j * p, s_j * s
@@ -119,7 +119,7 @@ def harmonics(xi: Any, eta: Any, peaks: tuple[Any, Any], *, functions: ModuleTyp
         B_odd.append(sign * (outer * s_j - inner * p_j))
         inner = outer * q_2j
     theta_2, theta_3, square, power = [1.0], [1.0], 1.0, 1.0
-    for n in range(1, MOST_TERMS):
+    for n in range(1, MAX_TERMS):
         if largest_q ** (n * n) < NEGLIGIBLE_TERM:
             break
         square = square * power * (power * q)  # q^(n^2)
@@ -197,13 +197,13 @@ def _powers_of_cosine(coefficients: Sequence[Any], table: Sequence[Sequence[floa
 def _chebyshev(first: Sequence[float], second: Sequence[float]) -> tuple[tuple[float, ...], ...]:
     """Return powers of x of P_0, P_1 and P_j = 2 x P_j-1 - P_j-2."""
     rows = [tuple(first), tuple(second)]
-    for _ in range(MOST_TERMS - 2):
+    for _ in range(MAX_TERMS - 2):
         older, newer = (*rows[-2], *(0.0,) * 2), (0.0, *rows[-1])
         rows.append(tuple(2.0 * x - y for x, y in zip(newer, older, strict=False)))
     return tuple(rows)
 
 
-MOST_TERMS: Final = 10
+MAX_TERMS: Final = 10
 """At the switch, exp(-n^2) is negligible from n = 7 on."""
 
 COSINES: Final = _chebyshev((1.0,), (0.0, 1.0))

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from decimal import Decimal
 
-MOST_TURNED: Final = 1e16
+MAX_TURNED: Final = 1e16
 """Angle, rad, beyond which times are refused. Neighbouring doubles are then more than a turn apart, and the
 phases' double-doubles no longer hold the last bits of a turn."""
 
@@ -74,7 +74,7 @@ def constants_of(inertia: bytes, attitude: bytes, rate: bytes, precision: Precis
         alpha, beta, _, _ = form.cayley_klein(0.0)
         q_LP = (beta.imag, -beta.real, alpha.imag, alpha.real)
         q_WL = normalised(product(q, conjugate(product(q_LP, q_PB))))
-    farthest = min(MOST_TURNED / max(largest_rate(rotation), 1.0 / LARGEST_NUMBER), LARGEST_NUMBER)
+    farthest = min(MAX_TURNED / max(largest_rate(rotation), 1.0 / LARGEST_NUMBER), LARGEST_NUMBER)
     with within(DECIMALS.sums):
         regime = regime_of(frame, rotation)
     return Constants(frame, rotation, form, q_WL, q_PB, along, across, farthest, regime)

@@ -54,7 +54,7 @@ class Flips(Record):
     deviations: FloatArray
 
 
-MOST_FLIPS: Final = 10_000
+MAX_FLIPS: Final = 10_000
 """Largest number of flips that are asked for at once. Their deviations take 80 MB."""
 
 
@@ -67,10 +67,10 @@ def next_flips(motion: FreeMotion, count: int, *, covariance: ArrayLike | None =
     the same pairs, around the given one.
 
     Raises:
-        InvalidFieldError: the count is not a whole number from 0 to `MOST_FLIPS`, or the matrix is not a
+        InvalidFieldError: the count is not a whole number from 0 to `MAX_FLIPS`, or the matrix is not a
             covariance (`validation_batches.check_covariance`).
     """
-    count = check_whole("count", count, 0, MOST_FLIPS)
+    count = check_whole("count", count, 0, MAX_FLIPS)
     if covariance is not None:
         covariance = check_covariance("covariance", covariance)
     regime, rotation = motion.regime, motion.rotation

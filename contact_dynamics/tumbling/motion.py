@@ -167,7 +167,7 @@ class FreeMotion(Record):
 
         Raises:
             InvalidFieldError: the time is not finite, or by then the body has turned more than
-                `constants.MOST_TURNED`.
+                `constants.MAX_TURNED`.
         """
         check_within("seconds", seconds, -self.farthest, self.farthest)
         return self.sample(seconds).as_state(self.state.stamp_ns, seconds)
@@ -177,7 +177,7 @@ class FreeMotion(Record):
 
         Raises:
             InvalidFieldError: the times are not a flat list of finite numbers, or by the farthest of them the
-                body has turned more than `constants.MOST_TURNED`.
+                body has turned more than `constants.MAX_TURNED`.
         """
         times = check_magnitude("seconds", check_array("seconds", seconds, (None,)), self.farthest)
         if len(times) <= FEW:

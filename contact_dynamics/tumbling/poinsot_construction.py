@@ -169,7 +169,7 @@ def _sensitivity_of_spin(motion: FreeMotion) -> float:
     return math.inf if abs(middle_B @ w_B) > 0.5 * np.linalg.norm(w_B) else 1.0
 
 
-MOST_POINTS: Final = 1_000_000
+MAX_POINTS: Final = 1_000_000
 """Points of rolling curves, which take some three seconds and 200 MB."""
 
 
@@ -197,12 +197,12 @@ def rolling_curves(motion: FreeMotion, count: int) -> RollingCurves:
     where there is no period.
 
     Raises:
-        TooLargeError: there are more than `MOST_POINTS` points.
+        TooLargeError: there are more than `MAX_POINTS` points.
         InvalidFieldError: ``count`` is not a whole number >= 1, or the period is so long that doubles do not
             tell turns apart in it, as it may be in bodies whose moments differ by their last digits.
     """
-    if check_whole("count", count, 1) > MOST_POINTS:
-        raise TooLargeError("count", count, f"at most {MOST_POINTS}")
+    if check_whole("count", count, 1) > MAX_POINTS:
+        raise TooLargeError("count", count, f"at most {MAX_POINTS}")
     rotation = motion.rotation
     if isinstance(rotation, Spin) or motion.regime in CONSTANT_RATE:
         return RollingCurves(

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 FORCE_LENGTH: Final = 0.6
 """Length of the longest force arrow, relative to the body's size. Labels say how much force it stands for."""
 
-MOST_MODES: Final = 6
+MAX_MODES: Final = 6
 """Largest number of modes that are drawn. Further modes are only listed in words."""
 
 LETTERS: Final = "letters"
@@ -78,7 +78,7 @@ def draw_contact_modes(recording: rr.RecordingStream, shape: Shape, answer: Cont
 
 def mode_names() -> list[str]:
     """Return the names of the entities that hold one mode each."""
-    return [f"mode_{i}" for i in range(1, MOST_MODES + 1)]
+    return [f"mode_{i}" for i in range(1, MAX_MODES + 1)]
 
 
 def _draw_mode(

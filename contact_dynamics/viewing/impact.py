@@ -42,7 +42,7 @@ LABELS: Final = ("impulse_label", "velocity_label")
 CONE_HEIGHT: Final = 0.35
 """Relative to the size of the body."""
 
-MOST_STRIKES: Final = 5
+MAX_STRIKES: Final = 5
 """This many strikes of a sequence, those with the largest impulses, have a label and the body drawn."""
 
 _CONE_FACETS: Final = 32
@@ -167,7 +167,7 @@ def velocity_labels(answer: ImpactAnswer, size: float, measured: str = "") -> rr
 def main_strikes(strikes: Sequence[SequenceStrike]) -> list[int]:
     """Return the indices of the strikes with the largest impulses, in the order of time."""
     sizes = [float(np.linalg.norm(strike.impulse_W)) for strike in strikes]
-    return sorted(sorted(range(len(strikes)), key=lambda i: -sizes[i])[:MOST_STRIKES])
+    return sorted(sorted(range(len(strikes)), key=lambda i: -sizes[i])[:MAX_STRIKES])
 
 
 def _struck(answer: ImpactAnswer) -> tuple[list[int], FloatArray, FloatArray]:

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from contact_dynamics.viewing.kept_recording import KeptRecording
 
-MOST_BEHIND: Final = 30
+MAX_BEHIND: Final = 30
 """Looks at a viewer, of which each finds that it has not taken all that was drawn. Then it hangs."""
 
 _PATIENCE_S: Final = 0.01  # a viewer that takes what is drawn has taken it within a millisecond
@@ -39,7 +39,7 @@ class LiveViewer:
     @property
     def hangs(self) -> bool:
         """Whether nothing is drawn to it, because it has not taken what was drawn before."""
-        return self._behind >= MOST_BEHIND
+        return self._behind >= MAX_BEHIND
 
     def look(self) -> None:
         """Find out whether the viewer lives and keeps up, and give the picture to one that is back."""

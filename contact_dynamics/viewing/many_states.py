@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from contact_dynamics.questions.many import ManyTumblingsAnswer
     from contact_dynamics.validation import FloatArray
 
-MOST_OUTLINES: Final = 100
+MAX_OUTLINES: Final = 100
 """Outlines of the body for this many states, evenly among all. Each state has its point and its arrows."""
 
 ARROW_SECONDS: Final = 0.1
@@ -40,7 +40,7 @@ def draw_many_states(
     is_impact = isinstance(answer, ManyImpactsAnswer)
     color = palette.IMPACT if is_impact else palette.PREDICTED
     recording.log(f"{path}/states", rr.Points3D(states.p_WB_W, colors=color, radii=_POINT))
-    chosen = np.unique(np.linspace(0, len(states) - 1, min(len(states), MOST_OUTLINES)).round().astype(int))
+    chosen = np.unique(np.linspace(0, len(states) - 1, min(len(states), MAX_OUTLINES)).round().astype(int))
     edges = [edge for i in chosen for edge in outline(shape, states.p_WB_W[i], states.q_WB[i])]
     faint = palette.translucent(color, 0.45)
     recording.log(f"{path}/outlines", rr.LineStrips3D(strips_3d(edges), colors=faint, radii=_OUTLINE_WIDTH))

@@ -46,7 +46,7 @@ if TYPE_CHECKING:
 OF_ONE_BODY: Final = (ENERGY, MOMENTUM, ANGULAR_MOMENTUM, ANGULAR_VELOCITY)
 """The entities of the curves that one body has at a time: it must have mass properties."""
 
-_MOST_ACCELERATION: Final = 20.0
+_MAX_ACCELERATION: Final = 20.0
 """m/s^2. A body that was struck or lost from view for a while is not taken for one that was put elsewhere."""
 
 _SLACK: Final = 0.05
@@ -132,7 +132,7 @@ def _put_elsewhere(way: Trajectory) -> NDArray[np.bool_]:
     """Tell which states after the first cannot be where velocities took the body from the state before."""
     seconds, speeds = np.diff(way.seconds), np.linalg.norm(way.v_WB_W, axis=1)
     onwards = np.maximum(seconds, 0.0)  # where a clock is set back, no way leads from one state to the next
-    reach = (speeds[:-1] + speeds[1:]) * onwards + _MOST_ACCELERATION * onwards**2 + _SLACK
+    reach = (speeds[:-1] + speeds[1:]) * onwards + _MAX_ACCELERATION * onwards**2 + _SLACK
     return np.asarray(np.linalg.norm(np.diff(way.p_WB_W, axis=0), axis=1) > reach)
 
 

@@ -15,7 +15,7 @@ from contact_dynamics.diagrams.mode_map import look_alike
 from contact_dynamics.diagrams.planar_modes import map_of_answer, modes_side_by_side
 from contact_dynamics.diagrams.wrench_chart import DirectionChart
 from contact_dynamics.viewing import palette
-from contact_dynamics.viewing.contact_modes import MOST_MODES
+from contact_dynamics.viewing.contact_modes import MAX_MODES
 from contact_dynamics.viewing.entities import MODE_MAP, PLANAR_MODES
 from contact_dynamics.viewing.mode_map import draw_applied, draw_mode_map
 from contact_dynamics.viewing.planar_scene import draw_planar_scene, upright
@@ -42,7 +42,7 @@ def draw_planar_modes(
     """
     view = modes_side_by_side(answer, plane, outline=outline)
     low, high = view.low, view.high
-    for i in range(MOST_MODES):
+    for i in range(MAX_MODES):
         path = f"{PLANAR_MODES}/mode_{i + 1}"
         if i >= len(view.titles):
             recording.log(path, rr.Clear(recursive=True))

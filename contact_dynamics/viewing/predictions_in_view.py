@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
     from contact_dynamics.viewing.bodies_in_world import BodiesInWorld
 
-MOST_KEPT: Final = 500
+MAX_KEPT: Final = 500
 """States of a body, 2 s at 250 Hz. An answer that comes later than that is not drawn beside the earliest."""
 
 
@@ -92,7 +92,7 @@ class PredictionsInView:
         if has_energy:
             self._conserved_ns[body_name] = states[-1].stamp_ns
         is_compared = self._compare(body_name, states)
-        self._kept.setdefault(body_name, deque(maxlen=MOST_KEPT)).extend(states)
+        self._kept.setdefault(body_name, deque(maxlen=MAX_KEPT)).extend(states)
         return is_compared
 
     def come(

@@ -22,9 +22,9 @@ if TYPE_CHECKING:
 
 GRID_SPACING: Final = 0.1
 """m. The distance of the lines on a surface. It is ten times wider, and so on, if there would be more than
-`MOST_GRID_LINES` lines."""
+`MAX_GRID_LINES` lines."""
 
-MOST_GRID_LINES: Final = 100
+MAX_GRID_LINES: Final = 100
 
 _EDGE_WIDTH: Final = -1.5  # a negative size is in points of the screen
 _GRID_WIDTH: Final = -0.6
@@ -55,7 +55,7 @@ def surface_parts(surface: Surface, *, center_W: FloatArray, side: float) -> dic
         albedo_factor=palette.SURFACE,
     )
     spacing = GRID_SPACING
-    while side / spacing > MOST_GRID_LINES:
+    while side / spacing > MAX_GRID_LINES:
         spacing *= 10.0
     places = np.arange(-1.0, 1.0 + spacing / side, 2.0 * spacing / side)
     lines = [

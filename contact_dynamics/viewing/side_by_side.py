@@ -16,7 +16,7 @@ from contact_dynamics.viewing import palette
 if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
 
-MOST_DRAWN: Final = 48
+MAX_DRAWN: Final = 48
 """Events that are drawn: more could not be told apart."""
 
 COLUMN_COUNT: Final = 6

@@ -27,11 +27,11 @@ if TYPE_CHECKING:
     from contact_dynamics.toss.distribution import Region
     from contact_dynamics.validation import FloatArray
 
-MOST_OUTLINES: Final = 4
+MAX_OUTLINES: Final = 4
 """Outlines of the body along the toss, at its first strikes. Many small rebounds follow at nearly one place.
 """
 
-MOST_STRIKING: Final = 6
+MAX_STRIKING: Final = 6
 """Samples whose strikes have outlines. More would hide the toss."""
 
 _PATH: Final = -2.0  # a negative size is in points of the screen
@@ -69,7 +69,7 @@ def _draw_toss(recording: rr.RecordingStream, path: str, shape: Shape, answer: T
     recording.log(f"{path}/strikes", rr.Points3D(points, colors=palette.IMPACT, radii=_POINT))
     edges = [
         edge
-        for event in strikes[:MOST_OUTLINES]
+        for event in strikes[:MAX_OUTLINES]
         for edge in outline(shape, event.state.p_WB_W, event.state.q_WB)
     ]
     recording.log(f"{path}/outlines", rr.LineStrips3D(strips_3d(edges), colors=palette.IMPACT, radii=_OTHER))
@@ -99,7 +99,7 @@ def _draw_fan(recording: rr.RecordingStream, path: str, shape: Shape, told: Toss
     for name, chosen, shown in (
         (
             "strikes",
-            (ghosts.strikes > 0) & (ghosts.samples < MOST_STRIKING),
+            (ghosts.strikes > 0) & (ghosts.samples < MAX_STRIKING),
             palette.translucent(palette.IMPACT, 0.35),
         ),
         ("rests", ghosts.strikes == 0, color),

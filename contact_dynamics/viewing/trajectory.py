@@ -23,10 +23,10 @@ if TYPE_CHECKING:
     from contact_dynamics.tumbling import Trajectory
     from contact_dynamics.validation import FloatArray
 
-MOST_PATH_POINTS: Final = 2000
+MAX_PATH_POINTS: Final = 2000
 """If there are more samples than this, they are thinned out evenly. It is the width of a screen."""
 
-MOST_OUTLINES: Final = 6
+MAX_OUTLINES: Final = 6
 """Number of outlines of the body along the path, evenly in time, besides the one at its end. A short path has
 one for each length of the body."""
 
@@ -65,7 +65,7 @@ def draw_trajectory(
     strip = rr.LineStrips3D(strips_3d([_thinned(trajectory)]), colors=palette.PREDICTED, radii=_PATH_WIDTH)
     recording.log(f"{path}/path", strip)
     travelled = float(np.linalg.norm(np.diff(trajectory.p_WB_W, axis=0), axis=1).sum())
-    count = min(MOST_OUTLINES, int(travelled / shape.size))
+    count = min(MAX_OUTLINES, int(travelled / shape.size))
     times = np.linspace(trajectory.seconds[0], trajectory.seconds[-1], count + 2)[1:-1]
     chosen = np.abs(trajectory.seconds[:, None] - times).argmin(axis=0)
     outlines = [outline(shape, trajectory.p_WB_W[i], trajectory.q_WB[i]) for i in chosen]
@@ -99,7 +99,7 @@ def draw_earlier_path(
 
 def _thinned(trajectory: Trajectory) -> FloatArray:
     last = len(trajectory) - 1
-    samples = np.unique(np.linspace(0, last, min(last + 1, MOST_PATH_POINTS)).round().astype(int))
+    samples = np.unique(np.linspace(0, last, min(last + 1, MAX_PATH_POINTS)).round().astype(int))
     thinned: FloatArray = trajectory.p_WB_W[samples]
     return thinned
 

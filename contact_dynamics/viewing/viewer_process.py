@@ -30,7 +30,7 @@ _START_S: Final = 15.0
 _WINDOW_S: Final = 5.0  # s, after which a viewer that listens and still lives counts as open
 _POLL_S: Final = 0.05
 _DRAWS: Final = "wgpu adapter"  # the viewer logs this once it has a window and a graphics adapter
-_MOST_WORDS: Final = 4  # number of the viewer's lines that are shown
+_MAX_WORDS: Final = 4  # number of the viewer's lines that are shown
 _COLORS: Final = re.compile(r"\x1b\[[0-9;]*m")
 _NO_SCREEN: Final = re.compile(r"\bDISPLAY\b.* (?:is|are) (?:not )?set")
 _ADVICE_WITHOUT_SCREEN: Final = (
@@ -144,8 +144,8 @@ def _words(output: IO[bytes]) -> str:
     begins = [i for i, line in enumerate(lines) if line.startswith(("Error:", "thread '"))]
     if begins:
         lines = [line for line in lines[begins[-1] :] if not _LOGGED.match(line)]
-        return " ".join(lines[:_MOST_WORDS])
-    return " ".join(lines[-_MOST_WORDS:]) or "it printed nothing"
+        return " ".join(lines[:_MAX_WORDS])
+    return " ".join(lines[-_MAX_WORDS:]) or "it printed nothing"
 
 
 def viewer_executable() -> str:

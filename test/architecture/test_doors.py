@@ -28,7 +28,7 @@ CHAPTERS = (
     "toss",
     "questions",
 )
-MOST_ON_THE_FIRST_PAGE = 30
+MAX_ON_THE_FIRST_PAGE = 30
 
 
 def door(chapter: str) -> ModuleType:
@@ -42,7 +42,7 @@ def test_the_first_page_is_short() -> None:
         for name in contact_dynamics.__all__
         if not isinstance(getattr(contact_dynamics, name), ModuleType)
     ]
-    assert len(first) <= MOST_ON_THE_FIRST_PAGE
+    assert len(first) <= MAX_ON_THE_FIRST_PAGE
     chapters = {chapter.rpartition(".")[2] for chapter in CHAPTERS}
     assert {*first, *chapters} == set(contact_dynamics.__all__)
 

@@ -9,18 +9,18 @@ from typing import Any
 
 import pytest
 
-from contact_dynamics.contact.contact import MOST_CONTACTS
+from contact_dynamics.contact.contact import MAX_CONTACTS
 from contact_dynamics.contact_modes.result import ModeVerdict, Refusal
 from contact_dynamics.impact import ImpactOutcome, PathEvent, RestitutionLaw, SequenceEnd
 from contact_dynamics.motion.integrated import Method
 from contact_dynamics.questions import EventKind, Problem
-from contact_dynamics.questions.many import MOST_STATES
-from contact_dynamics.questions.many_contact_modes import MOST_CANDIDATES
-from contact_dynamics.questions.sample_times import MOST_SAMPLES
-from contact_dynamics.questions.tumbling import FLIPS, MOST_COVARIANCES, MOST_CURVE_POINTS
+from contact_dynamics.questions.many import MAX_STATES
+from contact_dynamics.questions.many_contact_modes import MAX_CANDIDATES
+from contact_dynamics.questions.sample_times import MAX_SAMPLES
+from contact_dynamics.questions.tumbling import FLIPS, MAX_COVARIANCES, MAX_CURVE_POINTS
 from contact_dynamics.toss import TossEnd, TossEventKind, UndecidedReason
 from contact_dynamics.toss.distribution import BranchKind
-from contact_dynamics.toss.uncertainty import MOST_PARAMETERS
+from contact_dynamics.toss.uncertainty import MAX_PARAMETERS
 from contact_dynamics_interfaces.msg import (
     BodyStates,
     ContactSet,
@@ -136,23 +136,23 @@ def test_status_codes_are_the_same_in_all_services() -> None:
 @pytest.mark.parametrize(
     ("message", "field", "most"),
     [
-        (PredictTumbling.Request, "times", MOST_SAMPLES),
-        (PredictTumbling.Request, "stamps_ns", MOST_SAMPLES),
-        (Trajectory, "times", MOST_SAMPLES),
-        (Trajectory, "orientations", 4 * MOST_SAMPLES),
-        (Trajectory, "covariances", 144 * MOST_COVARIANCES),
-        (Trajectory, "covariances_trusted", MOST_COVARIANCES),
+        (PredictTumbling.Request, "times", MAX_SAMPLES),
+        (PredictTumbling.Request, "stamps_ns", MAX_SAMPLES),
+        (Trajectory, "times", MAX_SAMPLES),
+        (Trajectory, "orientations", 4 * MAX_SAMPLES),
+        (Trajectory, "covariances", 144 * MAX_COVARIANCES),
+        (Trajectory, "covariances_trusted", MAX_COVARIANCES),
         (Poinsot, "flip_times", FLIPS),
-        (Poinsot, "curve_times", MOST_CURVE_POINTS),
-        (Poinsot, "polhode", 3 * MOST_CURVE_POINTS),
-        (ContactSet, "frictions", MOST_CONTACTS),
-        (ContactSet, "positions", 3 * MOST_CONTACTS),
-        (ContactSet, "surface_names", MOST_CONTACTS),
-        (BodyStates, "orientations", 4 * MOST_STATES),
-        (PredictImpactBatch.Response, "outcomes", MOST_STATES),
-        (PredictContactModeBatch.Request, "contact_counts", MOST_CANDIDATES),
-        (PredictContactModeBatch.Request, "torques", 3 * MOST_CANDIDATES),
-        (PredictToss.Request, "parameter_covariance", MOST_PARAMETERS**2),
+        (Poinsot, "curve_times", MAX_CURVE_POINTS),
+        (Poinsot, "polhode", 3 * MAX_CURVE_POINTS),
+        (ContactSet, "frictions", MAX_CONTACTS),
+        (ContactSet, "positions", 3 * MAX_CONTACTS),
+        (ContactSet, "surface_names", MAX_CONTACTS),
+        (BodyStates, "orientations", 4 * MAX_STATES),
+        (PredictImpactBatch.Response, "outcomes", MAX_STATES),
+        (PredictContactModeBatch.Request, "contact_counts", MAX_CANDIDATES),
+        (PredictContactModeBatch.Request, "torques", 3 * MAX_CANDIDATES),
+        (PredictToss.Request, "parameter_covariance", MAX_PARAMETERS**2),
         (Impact, "outcome_probabilities", len(ImpactOutcome)),
     ],
 )

@@ -36,7 +36,7 @@ def whole_toss(
             w_WB_W=random.uniform(-3.0, 3.0, 3),
         )
         world = replace(WORLD, surfaces=(floor,))
-        went = toss(BRICK, state, world, most_alternatives=0, lasting_factors=[friction / STRIKES])
+        went = toss(BRICK, state, world, max_alternatives=0, lasting_factors=[friction / STRIKES])
         if went.end == TossEnd.RESTS:
             break
     times = np.arange(round((went.seconds + 0.15) * RATE)) / RATE

@@ -16,7 +16,7 @@ from contact_dynamics.errors import InvalidFieldError, TooLargeError
 from contact_dynamics.landing.earliest import next_landing
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.shapes.convex import (
-    MOST_RIMS,
+    MAX_RIMS,
     ConvexShape,
     Rim,
     box,
@@ -221,7 +221,7 @@ def test_what_is_no_shape_is_refused_by_name(words: str, make: object) -> None:
 def test_too_many_rims() -> None:
     rim = Rim((0.0, 0.0, 0.0), (0.0, 0.0, 1.0), 1.0)
     with pytest.raises(TooLargeError, match="rims"):
-        ConvexShape(rims=(rim,) * (MOST_RIMS + 1))
+        ConvexShape(rims=(rim,) * (MAX_RIMS + 1))
 
 
 def test_a_ball_lands_and_a_can_lands_on_its_side() -> None:

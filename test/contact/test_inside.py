@@ -25,8 +25,8 @@ from contact_dynamics.questions import impact as impact_questions
 from contact_dynamics.questions import toss as toss_questions
 from contact_dynamics.questions import tumbling as tumbling_questions
 from contact_dynamics.questions.contact_mode_question import ContactModeQuestion
+from contact_dynamics.questions.context import Context, Defaults
 from contact_dynamics.questions.impact_question import ImpactQuestion, InTime
-from contact_dynamics.questions.knowledge import Defaults, Knowledge
 from contact_dynamics.questions.sample_times import UntilContact
 from contact_dynamics.questions.toss import TossQuestion
 from contact_dynamics.questions.tumbling import TumblingQuestion
@@ -46,8 +46,8 @@ def sunk(depth: float) -> BodyState:
     return BodyState(p_WB_W=[0, 0, 0.05 - depth], q_WB=[0, 0, 0, 1], v_WB_W=[0, 0, -0.5], w_WB_W=[0, 0, 0])
 
 
-def known(tolerance: float) -> Knowledge:
-    return Knowledge(world=WORLD, defaults=Defaults(distance_tolerance=tolerance))
+def known(tolerance: float) -> Context:
+    return Context(world=WORLD, defaults=Defaults(distance_tolerance=tolerance))
 
 
 FINDERS: dict[str, Callable[[float, float], object]] = {

@@ -89,7 +89,7 @@ def test_what_holds_within_the_errors_of_contacts_has_words() -> None:
             contacts=contacts,
             force_W=(5.0, 0.0, 0.0),
             uncertainty=ContactUncertainty(frictions=frictions),
-            want_geometry_margins=margins,
+            include_geometry_margins=margins,
         )
         return "; ".join(contact_modes_in_words(ask(question)))
 

@@ -9,7 +9,7 @@ import numpy as np
 from contact_dynamics.evaluation.asking import Informed
 from contact_dynamics.evaluation.motion import MeasuredMotion, motions_of
 from contact_dynamics.evaluation.recording import Recording
-from contact_dynamics.questions.knowledge import Defaults
+from contact_dynamics.questions.context import Defaults
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.shapes import box, sphere
 from contact_dynamics.world import Body, Surface, World

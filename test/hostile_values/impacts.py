@@ -40,11 +40,11 @@ IMPACTS: Calls = {
     "several_impact": (several_impact, SEVERAL),
     "outcomes_over_orders": (
         impact.outcomes_over_orders,
-        {**SEVERAL, "most_orders": 2},
+        {**SEVERAL, "max_orders": 2},
     ),
     "outcomes_at_once": (
         impact.outcomes_at_once,
-        {**SEVERAL, "most_orders": 2},
+        {**SEVERAL, "max_orders": 2},
     ),
     "outcomes_over_interleavings": (
         impact.outcomes_over_interleavings,
@@ -124,7 +124,7 @@ IMPACTS: Calls = {
             "state": STATE,
             "world": WORLD,
             "window": 0.5,
-            "most_strikes": 3,
+            "max_strikes": 3,
             "distance_tolerance": 1e-6,
             "velocity_tolerance": 1e-9,
             "hold_step": None,
@@ -137,7 +137,7 @@ IMPACTS: Calls = {
             "contacts": CONTACTS,
             "gravity_W": [0.0, 0.0, -9.8],
             "window": 0.05,
-            "most_strikes": 3,
+            "max_strikes": 3,
             "distance_tolerance": 1e-6,
             "velocity_tolerance": 1e-9,
             "hold_step": None,

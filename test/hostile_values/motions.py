@@ -9,7 +9,7 @@ from contact_dynamics.motion import ConstantWrench, Drag, motion_of
 from hostile_values.shared import BALL, STATE, STATES, WHERE, Calls
 
 FREE = free_motion(BALL, STATE)
-FORCED = motion.forced_motion(BALL, STATE, drag=Drag(linear=0.1), most_steps=500)
+FORCED = motion.forced_motion(BALL, STATE, drag=Drag(linear=0.1), max_steps=500)
 FLIPPING = free_motion(BALL, replace(STATE, w_WB_W=[0.01, 5.0, 0.01]))
 SEEN = [FREE.state_at(seconds) for seconds in (0.0, 0.01, 0.02, 0.03)]
 MOMENTS = [0.1, 0.2, 0.25]
@@ -19,7 +19,7 @@ APPLIED = {
     "wrench": ConstantWrench(force=[1.0, 0.0, 0.0]),
     "drag": Drag(linear=0.1),
     "wrench_of": None,
-    "most_steps": 100,
+    "max_steps": 100,
 }
 
 MOTIONS: Calls = {

@@ -15,8 +15,8 @@ TOSSES: Calls = {
         {
             **TOSSED,
             "horizon": 0.1,
-            "most_events": 3,
-            "most_alternatives": 0,
+            "max_events": 3,
+            "max_alternatives": 0,
             "error": 1e-6,
             "lasting_factors": [0.8],
         },

@@ -65,7 +65,7 @@ IMPACTS: dict[str, Callable[[], object]] = {
     "distribution": lambda: spatial_impact_distribution(BODY, FALLING, POINT, covariance=1e-6 * np.eye(12)),
     "question": lambda: impact_questions.answer(ImpactQuestion(body=CUBE, state=FALLING, contacts=FEET)),
     "modes that want an impact": lambda: modes_questions.answer(
-        ContactModeQuestion(body=CUBE, state=FALLING, contacts=FEET, want_impact=True)
+        ContactModeQuestion(body=CUBE, state=FALLING, contacts=FEET, include_impact=True)
     ),
 }
 

@@ -149,7 +149,7 @@ def impact_questions(draw: st.DrawFn) -> ImpactQuestion:
     other = draw(some(bodies()))
     other_state = draw(known_states()) if other is not None else NEWEST
     in_time = st.builds(
-        InTime, strike_window=positive, most_strikes=st.integers(1, 2**32 - 1), hold_step=some(positive)
+        InTime, strike_window=positive, max_strikes=st.integers(1, 2**32 - 1), hold_step=some(positive)
     )
     law = draw(st.one_of(st.sampled_from(SeveralContactsLaw), in_time))
     finds_or_mirrors = contacts is None or is_planar or isinstance(law, InTime)
@@ -162,8 +162,8 @@ def impact_questions(draw: st.DrawFn) -> ImpactQuestion:
         horizon=draw(some(not_negative)) if contacts is None else None,
         restitution_law=draw(st.sampled_from(RestitutionLaw)),
         several_contacts_law=law,
-        want_orders=draw(flags),
-        want_covariance=draw(flags),
+        include_orders=draw(flags),
+        include_covariance=draw(flags),
         problem=problem,
         plane=draw(planes) if is_planar else None,
         out_of_plane_tolerance=draw(some(not_negative)) if is_planar else None,

@@ -95,14 +95,14 @@ def many_contact_modes_questions(draw: st.DrawFn) -> ManyContactModesQuestion:
         draw(contact_mode_questions()),
         force_W=np.zeros(3),
         torque_W=np.zeros(3),
-        want_wrenches=False,
-        want_statics=False,
-        want_impact=False,
+        include_wrenches=False,
+        include_statics=False,
+        include_impact=False,
         uncertainty=EXACT_CONTACTS,
-        want_geometry_margins=False,
-        want_probabilities=False,
+        include_geometry_margins=False,
+        include_probabilities=False,
     )
-    if not asked.want_margins:
+    if not asked.include_margins:
         asked = replace(asked, margin_length=None)
     given = 0 if asked.contacts is None else len(asked.contacts)
     counts = draw(st.sampled_from([(), (given,), (1,) * given] if given else [()]))

@@ -185,7 +185,7 @@ def toss_questions(draw: st.DrawFn) -> TossQuestion:
         several_contacts_law=draw(st.sampled_from(SeveralContactsLaw)),
         horizon=draw(some(positive)),
         rate=draw(some(positive)),
-        most_alternatives=draw(some(indices)),
+        max_alternatives=draw(some(indices)),
         sampling=sampled,
         lasting_factors=[1.5] if sampled or draw(flags) else [],
     )

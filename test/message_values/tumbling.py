@@ -150,6 +150,6 @@ def tumbling_questions(draw: st.DrawFn) -> TumblingQuestion:
             axes=draw(st.sampled_from(WrenchAxes)),
         ),
         drag=draw(st.builds(Drag, linear=positive, quadratic_angular=positive if twisted else st.just(0.0))),
-        want_covariance=draw(flags),
+        include_covariance=draw(flags),
         curve_points=0 if twisted else draw(indices),
     )

@@ -349,7 +349,7 @@ def test_a_past_that_grows_without_bounds_is_refused_where_it_does() -> None:
 
 def test_endless_work_is_refused() -> None:
     with pytest.raises(InvalidFieldError, match="10 steps"):
-        forced_motion(BODY, state(), most_steps=10).state_at(1e9)
+        forced_motion(BODY, state(), max_steps=10).state_at(1e9)
 
 
 @pytest.mark.parametrize("times", [[math.nan], [[0.0]], ["soon"]])

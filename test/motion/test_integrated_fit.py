@@ -136,4 +136,4 @@ def test_misuse_is_refused_by_name() -> None:
     with pytest.raises(InvalidFieldError, match=r"seconds: found .* the motion stays within bounds"):
         fit_motion(BODY, states, drag=Drag(quadratic=50.0))
     with pytest.raises(InvalidFieldError, match=r"no further than 2 steps"):
-        fit_motion(BODY, states, most_steps=2, **FORCES["drag"])
+        fit_motion(BODY, states, max_steps=2, **FORCES["drag"])

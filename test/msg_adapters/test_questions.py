@@ -183,9 +183,9 @@ def test_a_second_body_is_there_where_anything_is_said_of_it() -> None:
 
 READ_WITH: dict[str, dict[str, Any]] = {
     "rate": {"sampling": 2, "times": []},
-    "margin_length": {"want_margins": True},
+    "margin_length": {"include_margins": True},
     "strike_window": {"several_contacts_law": 2},
-    "most_strikes": {"several_contacts_law": 2},
+    "max_strikes": {"several_contacts_law": 2},
 }
 """What a request says besides, so that a field of it is read."""
 
@@ -231,7 +231,7 @@ READ_WITH: dict[str, dict[str, Any]] = {
         (PredictTumbling, "rate", [0.0], InvalidFieldError, "rate: found 0"),
         (PredictContactMode, "margin_length", [0.0], InvalidFieldError, "margin_length: found 0"),
         (PredictImpact, "strike_window", [0.0], InvalidFieldError, "strike_window: found 0"),
-        (PredictImpact, "most_strikes", [0], InvalidFieldError, "most_strikes: found 0"),
+        (PredictImpact, "max_strikes", [0], InvalidFieldError, "max_strikes: found 0"),
     ],
 )
 def test_an_error_names_the_field_of_the_request(

@@ -82,8 +82,8 @@ def _values(field: str, request: Any) -> Any:
 FLAT: dict[type, Any] = {bool: True, int: 1, float: 0.25, str: "cube"}
 LISTED: dict[str, Any] = {
     "friction_facets": [12],
-    "most_strikes": [7],
-    "most_alternatives": [3],
+    "max_strikes": [7],
+    "max_alternatives": [3],
     "strikes": [2],
     "stamps_ns": [5],
     "parameter_covariance": [1e-4 * (i == j) for i in range(6) for j in range(6)],
@@ -99,9 +99,9 @@ CHOICES = {
     "problem": (0, 1, 2),
     "sampling": (0, 1, 2, 3, 4),
     "several_contacts_law": (0, 1, 2),
-    "want_margins": (False, True),
-    "want_statics": (False, True),
-    "want_geometry_margins": (False, True),
+    "include_margins": (False, True),
+    "include_statics": (False, True),
+    "include_geometry_margins": (False, True),
     "samples": (0, 5),
     "other_body_name": ("", "cube"),
 }

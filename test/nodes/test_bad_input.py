@@ -143,7 +143,7 @@ def out_of_plane(request: Any) -> None:
 
 def margin_length(request: Any) -> None:
     """A metric without sense, where it is used."""
-    request.want_margins, request.margin_length = True, [-1.0]
+    request.include_margins, request.margin_length = True, [-1.0]
 
 
 def crooked_plane(request: Any) -> None:
@@ -182,7 +182,7 @@ CASES = [
     (PredictContactMode, put("gravity", 5), "INVALID_FIELD", "gravity: found 5"),
     (PredictImpact, put("state.linear_velocity.z", 1.0), "SEPARATING", "v_n = 1 m/s"),
     (PredictImpact, put("restitution_law", 3), "INVALID_FIELD", "restitution_law: found 3"),
-    (PredictImpact, put("want_covariance", value=True), "INVALID_FIELD", "state.covariance: found none"),
+    (PredictImpact, put("include_covariance", value=True), "INVALID_FIELD", "state.covariance: found none"),
     (PredictImpact, put("other_body_name", "brick"), "NO_STATE", "state of 'brick': none was published yet"),
     (PredictImpact, put("other_body_name", "cat"), "UNKNOWN_BODY", "found 'cat'"),
     (PredictImpact, put("other_inertia.m", -1.0), "INVALID_FIELD", "mass: found -1.0"),

@@ -98,7 +98,7 @@ def pushed_brick(pushes: list[float]) -> PredictContactModeBatch.Request:
         body_name="brick",
         state_source=PredictContactModeBatch.Request.STATE_EXPLICIT,
         forces=[number for push in pushes for number in (push, 0.0, 0.0)],
-        want_margins=True,
+        include_margins=True,
         problem=PredictContactModeBatch.Request.PLANAR,
     )
     request.state.pose.position.z, request.plane_normal.y = 0.025, -1.0
@@ -113,7 +113,7 @@ def test_many_wrenches_have_the_modes_of_single_calls(client: Client, count: int
     assert list(answer.mode_counts) == [1] * count
     assert set(answer.verdicts) == {answer.UNIQUE}
     for i in range(0, count, max(1, count // 4)):
-        single = PredictContactMode.Request(body_name="brick", want_margins=True, problem=1)
+        single = PredictContactMode.Request(body_name="brick", include_margins=True, problem=1)
         single.state_source, single.state = answer_state(pushes[i], single)
         (mode,) = client.ask(single).modes
         assert answer.modes[i] == mode.mode

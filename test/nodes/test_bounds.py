@@ -51,7 +51,7 @@ def carried_under_strong_drag() -> Any:
     request = explicit(PredictTumbling)
     request.state.angular_velocity.x = 1.0
     request.state.covariance = (1e-6 * np.eye(12)).ravel().tolist()
-    request.linear_drag, request.want_covariance = 1000.0, True
+    request.linear_drag, request.include_covariance = 1000.0, True
     request.times = []
     request.sampling, request.duration, request.rate = request.AT_RATE, [10.0], [10.0]
     return request
@@ -109,7 +109,7 @@ def test_a_published_spin_without_sense_is_not_believed_and_silences_nobody(clie
 
 def test_valid_questions_that_were_internal_errors_are_answered_or_refused(client: Client) -> None:
     leaving = explicit(PredictContactMode)
-    leaving.state.linear_velocity.z, leaving.want_margins = 0.5, True
+    leaving.state.linear_velocity.z, leaving.include_margins = 0.5, True
     answer = client.ask(leaving)
     assert answer.status == answer.OK, answer.message
     window = client.ask(PredictTumbling.Request(body_name="brick", fit_window=1e300))

@@ -167,11 +167,11 @@ def test_fewer_states_are_kept_from_now_on(configured: Configured) -> None:
     msg.header.frame_id, msg.header.stamp = "world", first
     states.publish(msg)
     client.spin_until(lambda: client.ask(question).status == 0)
-    assert configured.set(most_states=3, warn_every=0.0, silent_after=0.5, client_gone_for=0.0) == ""
+    assert configured.set(max_states=3, warn_every=0.0, silent_after=0.5, client_gone_for=0.0) == ""
     for _ in range(3):
         publish()
     client.spin_until(lambda: client.ask(question).status == PredictTumbling.Response.NO_STATE)
-    assert "most_states: found 0" in configured.set(most_states=0)
+    assert "max_states: found 0" in configured.set(max_states=0)
     assert_reproduced(configured, questions=2)
 
 

@@ -34,7 +34,7 @@ def block_on_incline(mu: float) -> PredictContactMode.Request:
 def test_below_the_friction_angle_it_stays_and_the_margin_is_the_way_to_sliding(client: Client) -> None:
     mu = math.tan(math.radians(30.0))
     request = block_on_incline(mu)
-    request.want_margins = request.want_statics = True
+    request.include_margins = request.include_statics = True
     answer = client.ask(request)
     assert (answer.status, answer.verdict, answer.problem) == (answer.OK, answer.UNIQUE, request.PLANAR)
     (mode,) = answer.modes
@@ -54,7 +54,7 @@ def test_below_the_friction_angle_it_stays_and_the_margin_is_the_way_to_sliding(
 
 def test_a_wrench_just_beyond_the_margin_has_the_mode_that_was_foretold(client: Client) -> None:
     request = block_on_incline(math.tan(math.radians(30.0)))
-    request.want_margins = True
+    request.include_margins = True
     (mode,) = client.ask(request).modes
     for part, expected in ((0.999, ["ff"]), (1.001, list(mode.margin_modes))):
         force = part * np.array(mode.margin_wrench[:3])
@@ -87,7 +87,7 @@ def test_seen_from_behind_left_and_right_change_places(client: Client) -> None:
 def test_every_mode_comes_with_the_wrenches_that_bring_it_about(client: Client) -> None:
     """Only sets of consistent modes contain the applied wrench. Generators are in their half-spaces."""
     request = block_on_incline(math.tan(math.radians(30.0)))
-    request.want_wrenches = True
+    request.include_wrenches = True
     answer = client.ask(request)
     assert sorted(found.mode for found in answer.wrench_sets) == sorted(answer.kinematic_modes)
     weight = np.array([0.0, 0.0, -MASS * G, 0.0, 0.0, 0.0])

@@ -69,11 +69,11 @@ def modes_told(verdict: int, modes: list[Any]) -> str:
 
 def contact_mode_told(request: Any, answer: Any) -> str:
     asked_for = {
-        "want_wrenches": answer.wrench_sets,
-        "want_statics": answer.equilibrium,
-        "want_impact": answer.impact,
-        "want_geometry_margins": answer.geometry_margins,
-        "want_margins": answer.modes and answer.modes[0].margin == answer.modes[0].margin,
+        "include_wrenches": answer.wrench_sets,
+        "include_statics": answer.equilibrium,
+        "include_impact": answer.impact,
+        "include_geometry_margins": answer.geometry_margins,
+        "include_margins": answer.modes and answer.modes[0].margin == answer.modes[0].margin,
     }
     for field, found in asked_for.items():
         assert bool(found) == getattr(request, field), field

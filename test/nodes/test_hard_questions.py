@@ -31,7 +31,7 @@ APART = ("-r", f"__ns:={NAMESPACE}")
 
 @pytest.fixture(scope="module")
 def client() -> Iterator[Client]:
-    limits = ("-p", f"answer_deadline:={DEADLINE_S}", "-p", "workers:=1", "-p", "most_waiting:=1")
+    limits = ("-p", f"answer_deadline:={DEADLINE_S}", "-p", "workers:=1", "-p", "max_waiting:=1")
     with process("server", *ARGUMENTS, *limits, ready="ready"):
         client = Client()
         try:
@@ -78,7 +78,7 @@ def test_hard_questions_are_refused_in_time_and_quick_ones_are_answered_meanwhil
     assert "no answer within 0.4 s" in late.message
     assert late.message.endswith("(answer_deadline)")
     busy = next(each.result() for each in futures if each.result().status == codes.BUSY)
-    assert busy.message.endswith("(workers and most_waiting)")
+    assert busy.message.endswith("(workers and max_waiting)")
     assert late.computation_time < DEADLINE_S + QUICKLY_S
 
 
@@ -120,7 +120,7 @@ def test_a_server_that_a_busy_machine_stops_answers_all_the_same() -> None:
 
 
 def test_answers_that_are_ready_while_the_server_ends_do_not_make_it_fail() -> None:
-    arguments = ("-p", "answer_deadline:=3600.0", "-p", "workers:=2", "-p", "most_waiting:=1000")
+    arguments = ("-p", "answer_deadline:=3600.0", "-p", "workers:=2", "-p", "max_waiting:=1000")
     with process("server", *ARGUMENTS, *APART, *arguments, ready="ready") as server:
         client = Client(NAMESPACE)
         try:

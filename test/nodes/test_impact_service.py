@@ -96,7 +96,7 @@ def test_a_brick_that_lands_flat_strikes_with_four_corners(client: Client) -> No
 
 def test_in_sequence_no_corner_approaches_afterwards_and_the_orders_spread(client: Client) -> None:
     request = falling_brick(height=0.025 + 0.5 * G * 0.3**2)
-    request.want_orders = True
+    request.include_orders = True
     answer = client.ask(request)
     assert answer.status == answer.OK, answer.message
     impact = answer.impact
@@ -211,9 +211,9 @@ def test_the_window_and_the_number_of_strikes_end_a_sequence(client: Client) -> 
     assert answer.impact.sequence_end == Impact.NOTHING_STRIKES
     assert len(set(answer.impact.strike_contacts)) == 2  # the edge that landed
     request = tilted_brick_in_time()
-    request.most_strikes = [1]
+    request.max_strikes = [1]
     answer = client.ask(request)
-    assert answer.impact.sequence_end == Impact.MOST_STRIKES
+    assert answer.impact.sequence_end == Impact.MAX_STRIKES
     assert not answer.impact.converged
     assert len(answer.impact.strike_times) == 2  # both corners of the edge, which strike as one
 
@@ -270,8 +270,8 @@ def test_a_contact_that_leaves_strikes_when_it_comes_back(client: Client) -> Non
     ("field", "value", "expected"),
     [
         ("problem", PredictImpact.Request.PLANAR, "problem: found PLANAR"),
-        ("want_orders", True, "want_orders: found true"),
-        ("want_covariance", True, "want_covariance: found true"),
+        ("include_orders", True, "include_orders: found true"),
+        ("include_covariance", True, "include_covariance: found true"),
         ("other_body_name", "cat", "found 'cat'"),
     ],
 )
@@ -322,7 +322,7 @@ def test_several_contacts_in_a_plane(client: Client, law: str) -> None:
     kept = rocking_block(request)
     request.problem = request.PLANAR
     request.several_contacts_law = getattr(request, law)
-    request.want_orders = True
+    request.include_orders = True
     answer = client.ask(request)
     assert answer.status == answer.OK, answer.message
     assert answer.problem == request.PLANAR
@@ -382,7 +382,7 @@ def test_a_plate_that_falls_on_another_with_four_corners(
     total = np.array(numbers(first.linear_velocity)) + numbers(second.linear_velocity)
     np.testing.assert_allclose(total, [0.0, 0.0, -1.0], atol=1e-12)
     assert answer.impact.kinetic_energy_after <= 1.0 + 1e-12
-    request.want_orders = True
+    request.include_orders = True
     answer = client.ask(request)
     assert answer.status == answer.NOT_SUPPORTED
     assert "other: found a second body" in answer.message

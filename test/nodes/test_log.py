@@ -113,7 +113,7 @@ def questions(number: int) -> list[Any]:
     )
     modes = PredictContactModeBatch.Request(state_source=mode.STATE_EXPLICIT, body_name="brick")
     modes.state, modes.forces = mode.state, [0.1 * number, 0.0, 0.0, 0.0, 0.0, 9.0]
-    toss = PredictToss.Request(body_name="brick", most_alternatives=[0], samples=5, seed=number)
+    toss = PredictToss.Request(body_name="brick", max_alternatives=[0], samples=5, seed=number)
     toss.state_source, toss.state.pose.position.z = toss.STATE_EXPLICIT, 0.2
     return [
         modes,

@@ -43,7 +43,7 @@ def flight(number: int) -> Any:
 def hard() -> Any:
     """A question that a worker answers."""
     request = PredictContactMode.Request(
-        state_source=PredictContactMode.Request.STATE_EXPLICIT, body_name="brick", want_margins=True
+        state_source=PredictContactMode.Request.STATE_EXPLICIT, body_name="brick", include_margins=True
     )
     request.state.pose.position.z = 0.025
     request.state.pose.orientation.w = 1.0

@@ -61,7 +61,7 @@ def share_at_rest(client: Client, *, has_covariance: bool, **asked: Any) -> floa
         rests = answer.verdict == answer.UNIQUE and [mode.mode for mode in answer.modes] == ["ffff"]
         right += rests
         assert len(answer.probable_modes) == len(answer.mode_probabilities)
-        if asked.get("want_probabilities") and rests:
+        if asked.get("include_probabilities") and rests:
             assert answer.probable_modes[0] == "ffff"
             assert (
                 0.3 < sum(answer.mode_probabilities) < 1.1
@@ -82,7 +82,7 @@ def configured(tmp_path: Path, request: pytest.FixtureRequest) -> Iterator[Clien
 def test_a_published_covariance_tells_noise_from_motion(configured: Client) -> None:
     """Without it, no tolerance does."""
     assert (
-        share_at_rest(configured, has_covariance=True, want_margins=True, want_probabilities=True)
+        share_at_rest(configured, has_covariance=True, include_margins=True, include_probabilities=True)
         >= (DRAWS - 1) / DRAWS
     )
     tolerances = {"velocity_tolerance": [0.02], "distance_tolerance": [0.001]}

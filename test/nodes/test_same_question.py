@@ -12,9 +12,9 @@ from contact_dynamics.motion.forces import ConstantWrench, Drag, WrenchAxes
 from contact_dynamics.questions import (
     AtRate,
     ContactModeQuestion,
+    Context,
     Defaults,
     ImpactQuestion,
-    Knowledge,
     Problem,
     TumblingQuestion,
     UncertainState,
@@ -40,7 +40,7 @@ BRICK = Body(
     vertices_B=box_vertices([0.15, 0.09, 0.05]),
 )
 FLOOR = Surface(name="floor", p_WS_W=[0, 0, 0], normal_W=[0, 0, 1], friction=0.3, restitution=0.45)
-KNOWLEDGE = Knowledge(
+CONTEXT = Context(
     world=World(bodies=(BRICK,), surfaces=(FLOOR,), gravity_W=[0.0, 0.0, -9.80665]),
     defaults=Defaults(velocity_tolerance=1e-9, distance_tolerance=1e-6, out_of_plane_tolerance=1e-6),
 )
@@ -138,7 +138,7 @@ def tumbling_asked_twice() -> Iterator[tuple[Any, TumblingQuestion]]:
         duration=[0.5],
         wrench_in_body_axes=True,
         linear_drag=0.1,
-        want_covariance=True,
+        include_covariance=True,
     )
     pushed.applied_wrench.force.x, pushed.applied_wrench.torque.z = 0.5, 0.25
     pushed.state.covariance = COVARIANCE.ravel().tolist()
@@ -150,37 +150,39 @@ def tumbling_asked_twice() -> Iterator[tuple[Any, TumblingQuestion]]:
             sampling=AtRate(rate=20.0, duration=0.5),
             wrench=ConstantWrench(force=[0.5, 0, 0], torque=[0, 0, 0.25], axes=WrenchAxes.BODY),
             drag=Drag(linear=0.1),
-            want_covariance=True,
+            include_covariance=True,
         ),
     )
 
 
 def test_tumbling(client: Client) -> None:
     for request, question in tumbling_asked_twice():
-        answer = tumbling.answer(question, KNOWLEDGE)
+        answer = tumbling.answer(question, CONTEXT)
         check_same(client, request, tumbling_answer_to_msg(answer, world_frame="world"))
 
 
 def impacts_asked_twice() -> Iterator[tuple[Any, ImpactQuestion]]:
     """Yield requests about impacts with the same questions in Python."""
     yield about(PredictImpact, BRICK, TOSSED), ImpactQuestion(body="brick", state=TOSSED)
-    on_feet = about(PredictImpact, ROD, TOSSED, contact_source=1, want_orders=True)
+    on_feet = about(PredictImpact, ROD, TOSSED, contact_source=1, include_orders=True)
     contacts_to_msg(FEET, into=on_feet.contacts)
     yield (
         on_feet,
-        ImpactQuestion(body=ROD, state=exact(TOSSED, ROD), contacts=FEET, want_orders=True),
+        ImpactQuestion(body=ROD, state=exact(TOSSED, ROD), contacts=FEET, include_orders=True),
     )
 
 
 def test_impact(client: Client) -> None:
     for request, question in impacts_asked_twice():
-        answer = impact.answer(question, KNOWLEDGE)
+        answer = impact.answer(question, CONTEXT)
         check_same(client, request, impact_answer_to_msg(answer, world_frame="world"))
 
 
 def modes_asked_twice() -> Iterator[tuple[Any, ContactModeQuestion]]:
     """Yield requests about contact modes with the same questions in Python."""
-    pushed = about(PredictContactMode, BRICK, LEVEL, want_margins=True, want_wrenches=True, want_statics=True)
+    pushed = about(
+        PredictContactMode, BRICK, LEVEL, include_margins=True, include_wrenches=True, include_statics=True
+    )
     pushed.applied_wrench.force.x = 0.75
     yield (
         pushed,
@@ -188,9 +190,9 @@ def modes_asked_twice() -> Iterator[tuple[Any, ContactModeQuestion]]:
             body="brick",
             state=LEVEL,
             force_W=[0.75, 0, 0],
-            want_margins=True,
-            want_wrenches=True,
-            want_statics=True,
+            include_margins=True,
+            include_wrenches=True,
+            include_statics=True,
         ),
     )
     dropped = about(
@@ -199,18 +201,18 @@ def modes_asked_twice() -> Iterator[tuple[Any, ContactModeQuestion]]:
         TOSSED,
         contact_source=1,
         problem=PredictContactMode.Request.SPATIAL,
-        want_impact=True,
+        include_impact=True,
     )
     contacts_to_msg(FEET, into=dropped.contacts)
     yield (
         dropped,
         ContactModeQuestion(
-            body=ROD, state=exact(TOSSED, ROD), contacts=FEET, problem=Problem.SPATIAL, want_impact=True
+            body=ROD, state=exact(TOSSED, ROD), contacts=FEET, problem=Problem.SPATIAL, include_impact=True
         ),
     )
 
 
 def test_contact_modes(client: Client) -> None:
     for request, question in modes_asked_twice():
-        answer = contact_modes.answer(question, KNOWLEDGE)
+        answer = contact_modes.answer(question, CONTEXT)
         check_same(client, request, contact_mode_answer_to_msg(answer, world_frame="world"))

@@ -19,7 +19,7 @@ PROBLEMS = ["PLANAR", "SPATIAL"]
 
 def asking(problem: str, points: list[tuple[float, float]], normals: list[float], mu: float) -> Any:
     """A ball-like body of m = I = 1 at the origin that touches the world in the plane of x and z."""
-    request = PredictContactMode.Request(want_impact=True)
+    request = PredictContactMode.Request(include_impact=True)
     request.problem = getattr(request, problem)
     request.inertia.m = request.inertia.ixx = request.inertia.iyy = request.inertia.izz = 1.0
     request.state_source, request.contact_source = request.STATE_EXPLICIT, request.CONTACTS_EXPLICIT
@@ -121,7 +121,7 @@ def test_two_feet_that_land_strike_in_turn_and_every_order_is_told(client: Clien
 
 def test_a_brick_that_falls_flat(client: Client) -> None:
     """Four contacts from geometry, with the configured restitution, in its plane of motion."""
-    request = PredictContactMode.Request(body_name="brick", want_impact=True)
+    request = PredictContactMode.Request(body_name="brick", include_impact=True)
     request.state_source = request.STATE_EXPLICIT
     request.state.pose.position.z = 0.025
     request.state.linear_velocity.z = -1.0
@@ -142,7 +142,7 @@ def test_a_brick_that_falls_flat(client: Client) -> None:
 
 def test_nothing_is_settled_that_was_not_asked_for_or_needs_none(client: Client) -> None:
     request = slot("PLANAR")
-    request.want_impact = False
+    request.include_impact = False
     answer = client.ask(request)
     assert (answer.verdict, len(answer.impact), len(answer.modes_after_impact)) == (2, 0, 0)
     resting = asking("PLANAR", [(-1.0, -1.0), (1.0, -1.0)], [1.0, 1.0], 0.5)

@@ -245,7 +245,7 @@ def test_statics_of_a_brick_that_is_pushed_askew(client: Client) -> None:
     way = np.array([math.cos(0.5), math.sin(0.5), 0.0])
     for share, holds in ((0.9, True), (1.001, False)):
         request = brick_on_floor()
-        request.want_statics, request.margin_length = True, [1e-3]
+        request.include_statics, request.margin_length = True, [1e-3]
         force = request.applied_wrench.force
         force.x, force.y, force.z = (share * MU * MASS * G * way).tolist()
         answer = client.ask(request)
@@ -264,7 +264,7 @@ def test_statics_of_a_brick_that_is_pushed_askew(client: Client) -> None:
 def test_margins_of_a_brick_in_space(client: Client) -> None:
     """At rest on four feet, the margin is the distance to the side of the friction cone or pyramid."""
     request = brick_on_floor()
-    request.problem, request.want_margins, request.margin_length = request.SPATIAL, True, [1e-4]
+    request.problem, request.include_margins, request.margin_length = request.SPATIAL, True, [1e-4]
     request.friction_facets = [16]
     answer = client.ask(request)
     (mode,) = answer.modes
@@ -285,7 +285,7 @@ def test_margins_of_a_brick_in_space(client: Client) -> None:
 def test_margin_of_a_brick_that_begins_to_slide_askew(client: Client) -> None:
     """Back to the edge of its friction cones, which lean against the push, torques costing nearly all."""
     request = brick_on_floor()
-    request.want_margins, request.margin_length = True, [1e-4]
+    request.include_margins, request.margin_length = True, [1e-4]
     request.applied_wrench.force.x = request.applied_wrench.force.y = 1.0
     answer = client.ask(request)
     assert (answer.status, answer.problem) == (answer.OK, request.SPATIAL)

@@ -112,7 +112,7 @@ def test_poses_alone_are_states_with_velocities(client: Client) -> None:
 
 
 def test_published_covariances_are_those_of_the_question(client: Client) -> None:
-    """Without them a question with want_covariance needs a fit_window."""
+    """Without them a question with include_covariance needs a fit_window."""
     poses = client.publisher(PoseWithCovarianceStamped, "/certain/pose")
     twists = client.publisher(TwistWithCovarianceStamped, "/certain/twist")
 
@@ -125,7 +125,7 @@ def test_published_covariances_are_those_of_the_question(client: Client) -> None
         poses.publish(stamped(at, stamp_ns))
         twists.publish(stamped(moving, stamp_ns))
 
-    answer = publish_all(client, "certain", publish, want_covariance=True)
+    answer = publish_all(client, "certain", publish, include_covariance=True)
     covariance = np.array(answer.trajectory.covariances).reshape(12, 12)
     np.testing.assert_allclose(covariance, np.diag([1e-6] * 6 + [4e-6] * 6), rtol=0.0, atol=1e-18)
 

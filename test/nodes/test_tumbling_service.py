@@ -233,7 +233,7 @@ def test_an_endless_search_is_refused_rather_than_begun(client: Client) -> None:
         ("angular_velocity", lambda r: setattr(r.state.angular_velocity, "x", 1e200)),
         ("inertia", lambda r: setattr(r.inertia, "ixx", 1e-200)),
         ("position", lambda r: setattr(r.state.pose.position, "x", -1e300)),
-        ("want_covariance|state.covariance", lambda r: setattr(r, "want_covariance", True)),
+        ("include_covariance|state.covariance", lambda r: setattr(r, "include_covariance", True)),
     ],
 )
 def test_numbers_beyond_reason_are_refused_by_name(client: Client, field: str, spoil: object) -> None:

@@ -66,7 +66,7 @@ def test_margins_in_the_geometry_bracket_where_it_slips(client: Client) -> None:
     request = tripod(push)
     request.contacts.positions, request.contacts.normals = [0.0, 0.0, 0.0], [0.0, 0.0, 1.0]
     request.contacts.frictions, request.contacts.restitutions = [FRICTION], [0.0]
-    request.want_geometry_margins = True
+    request.include_geometry_margins = True
     answer = client.ask(request)
     assert answer.status == answer.OK, answer.message
     assert "points or normals that may be off" in answer.out_of_plane_reason

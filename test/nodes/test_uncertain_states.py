@@ -27,7 +27,7 @@ def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Client]:
 def test_a_ball_in_flight_spreads_by_its_velocity(client: Client) -> None:
     """Without tumbling: var(p) = var(p0) + t^2 var(v), and the same of the orientation."""
     request = PredictTumbling.Request(
-        state_source=PredictTumbling.Request.STATE_EXPLICIT, want_covariance=True
+        state_source=PredictTumbling.Request.STATE_EXPLICIT, include_covariance=True
     )
     request.inertia.m = request.inertia.ixx = request.inertia.iyy = request.inertia.izz = 1.0
     request.state.covariance = COVARIANCE.ravel().tolist()
@@ -45,7 +45,7 @@ def test_a_ball_in_flight_spreads_by_its_velocity(client: Client) -> None:
 def test_drag_lets_errors_of_velocity_fade(client: Client) -> None:
     """With linear drag k: var(v) e^(-2 k t), and var(p) + var(v) ((1 - e^(-k t)) / k)^2."""
     request = PredictTumbling.Request(
-        state_source=PredictTumbling.Request.STATE_EXPLICIT, want_covariance=True
+        state_source=PredictTumbling.Request.STATE_EXPLICIT, include_covariance=True
     )
     request.inertia.m = request.inertia.ixx = request.inertia.iyy = request.inertia.izz = 1.0
     request.state.covariance = COVARIANCE.ravel().tolist()
@@ -77,7 +77,7 @@ def test_an_uncertain_landing_has_probabilities_that_sum_to_one(client: Client) 
     request.state.linear_velocity.x = 0.5
     request.state.angular_velocity.x = 3.0
     request.state.covariance = COVARIANCE.ravel().tolist()
-    request.want_covariance = True
+    request.include_covariance = True
     answer = client.ask(request)
     assert answer.status == answer.OK, answer.message
     impact = answer.impact
@@ -106,7 +106,7 @@ def test_a_fit_to_the_last_states_does_not_care_for_a_bad_velocity(client: Clien
         msg.twist.twist.linear.x = 9.0
         publisher.publish(msg)
     last = (count - 1) / RATE
-    request = PredictTumbling.Request(body_name="brick", fit_window=1.0, times=[0.0], want_covariance=True)
+    request = PredictTumbling.Request(body_name="brick", fit_window=1.0, times=[0.0], include_covariance=True)
     request.state_source, request.stamp = request.STATE_AT_STAMP, msg.header.stamp
     answers = []
 

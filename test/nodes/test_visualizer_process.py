@@ -41,7 +41,7 @@ from nodes.visualizer_bench import CONFIGURATION, body_state, odometry
         ({"rrd_path": "a.rrd", "surface_side": -1.0}, "surface_side"),
         ({"rrd_path": "a.rrd", "predictions": 0}, "predictions"),
         ({"rrd_path": "a.rrd", "rrd_file_size": -1}, "rrd_file_size"),
-        ({"rrd_path": "a.rrd", "rrd_most_files": -1}, "rrd_most_files"),
+        ({"rrd_path": "a.rrd", "rrd_max_files": -1}, "rrd_max_files"),
         ({"serve": True, "viewer_memory": "much"}, "viewer_memory: found 'much'"),
         ({"serve": True, "web_port": 65536}, "web_port"),
     ],
@@ -136,7 +136,7 @@ def test_the_picture_follows_the_configuration_of_the_server(tmp_path: Path) -> 
 
             client.spin_until(is_drawn)
             configure(tables)  # nothing new
-            configure({"most_states": 1000})  # nothing that is drawn
+            configure({"max_states": 1000})  # nothing that is drawn
             configure({"surface.table.point": [0.0, 0.0, 0.75]})
             wait_for(visualizer, "brick, floor, table")
             # What comes after all events of the changes stands in the next line.

@@ -58,7 +58,7 @@ def test_1_inconsistent_rod(client: Client) -> None:
 
 
 def test_1_the_inconsistency_is_settled_as_an_impact_when_asked(client: Client) -> None:
-    request = PredictContactMode.Request(want_impact=True)
+    request = PredictContactMode.Request(include_impact=True)
     planar_request(request, ROD, math.tan(ALPHA))
     request.state.linear_velocity.x = -1.0
     answer = client.ask(request)

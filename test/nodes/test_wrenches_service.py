@@ -68,7 +68,7 @@ def test_margins_of_a_block_to_tipping_and_sliding(
     client: Client, length: float, margin: float, beyond: set[str]
 ) -> None:
     request = block()
-    request.want_margins, request.margin_length = True, [length]
+    request.include_margins, request.margin_length = True, [length]
     (mode,) = client.ask(request).modes
     assert mode.mode == "ff"
     assert mode.margin == pytest.approx(margin, rel=1e-4)  # the other way out costs a little, not nothing
@@ -83,7 +83,7 @@ def test_every_margin_in_a_tray_leads_to_the_modes_that_it_foretells(client: Cli
     chance = np.random.default_rng(seed)
     pushed = chance.uniform(-15.0, 15.0, 6) * [1.0, 0.0, 1.0, 0.0, 1.0, 0.0]
     request = apply(tray(0.05), pushed)
-    request.want_margins = True
+    request.include_margins = True
     answer = client.ask(request)
     assert found(answer)
     for mode in answer.modes:
@@ -99,7 +99,7 @@ def test_every_margin_in_a_tray_leads_to_the_modes_that_it_foretells(client: Cli
 
 def test_a_wedged_body_has_no_margin_to_lose(client: Client) -> None:
     request = tray()
-    request.want_margins = True
+    request.include_margins = True
     by_mode = {mode.mode: mode for mode in client.ask(request).modes}
     assert math.isinf(by_mode["ffff"].margin)
     np.testing.assert_array_equal(by_mode["ffff"].margin_wrench, 0.0)
@@ -112,7 +112,7 @@ def test_the_tray_has_a_map_of_its_modes(client: Client) -> None:
     """What the generators of each mode make brings it about: lecture 26's `rsrs` among them."""
     request = tray()
     request.gravity = request.GRAVITY_NONE
-    request.want_wrenches = True
+    request.include_wrenches = True
     answer = client.ask(request)
     assert [one.mode for one in answer.wrench_sets] == sorted(answer.kinematic_modes)
     assert {"ffff", "rsrs", "ssss"} <= set(answer.kinematic_modes)
@@ -128,7 +128,7 @@ def test_the_tray_has_a_map_of_its_modes(client: Client) -> None:
 def test_the_blocks_set_of_holding_wrenches_is_that_of_its_feet(client: Client) -> None:
     """Fixed: F_z <= 0, |F_x| <= mu |F_z|, and the line of force meets the floor between the feet."""
     request = block()
-    request.want_wrenches = True
+    request.include_wrenches = True
     answer = client.ask(request)
     (held,) = [one for one in answer.wrench_sets if one.mode == "ff"]
     sides = np.array(held.half_spaces).reshape(-1, 7)
@@ -147,7 +147,7 @@ def test_the_blocks_set_of_holding_wrenches_is_that_of_its_feet(client: Client) 
 
 def brick_in_space() -> Any:
     """The configured brick, flat on the configured floor, pushed askew to its axes so that it slides."""
-    request = PredictContactMode.Request(body_name="brick", want_wrenches=True)
+    request = PredictContactMode.Request(body_name="brick", include_wrenches=True)
     request.state_source, request.state.pose.position.z = request.STATE_EXPLICIT, 0.025
     request.applied_wrench.force.x = request.applied_wrench.force.y = 1.0
     return request
@@ -193,7 +193,7 @@ def test_facets_of_a_map_in_space_are_those_asked_for_and_too_many_are_refused(c
 
 
 def statics(client: Client, request: Any) -> Any:
-    request.want_statics = True
+    request.include_statics = True
     answer = client.ask(request)
     assert answer.status == answer.OK, answer.message
     return answer

@@ -24,7 +24,7 @@ class Resting(NamedTuple):
     offsets: tuple[float, float]  # of points, m, and normals, rad
 
 
-def resting(seed: int, *, most_friction: float = 0.9) -> Resting:
+def resting(seed: int, *, max_friction: float = 0.9) -> Resting:
     """Return a body at rest whose contacts use at most a part of their friction."""
     chance = np.random.default_rng(seed)
     points, normals = _places(KINDS[seed % len(KINDS)], chance)
@@ -35,7 +35,7 @@ def resting(seed: int, *, most_friction: float = 0.9) -> Resting:
     normals /= np.linalg.norm(normals, axis=1)[:, None]
     frictions = chance.choice([0.2, 0.5, 1.0, 2.0], size=len(points))
     return Resting(
-        points, normals, frictions, _load(chance, points, normals, most_friction * frictions), offsets
+        points, normals, frictions, _load(chance, points, normals, max_friction * frictions), offsets
     )
 
 

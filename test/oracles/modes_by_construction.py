@@ -14,7 +14,7 @@ MASS = 2.0
 INERTIA = np.diag([0.3, 0.4, 0.5])  # kg m^2, world axes
 CLEARLY = 0.01  # m/s^2: how fast what separates or slides does so at least
 ROUNDING = 1e-9
-MOST_GRIP = 0.95  # the part of its friction that a contact that sticks uses at most
+MAX_GRIP = 0.95  # the part of its friction that a contact that sticks uses at most
 
 
 class Made(NamedTuple):
@@ -69,7 +69,7 @@ def _tried(chance: np.random.Generator, *, turns: bool) -> Made | None:
         if letter == "f":
             ways[i] = np.cross(normals[i], chance.normal(size=3))
         ways[i] /= np.linalg.norm(ways[i])
-        grip = float(chance.uniform(0.0, MOST_GRIP)) if letter == "f" else 1.0
+        grip = float(chance.uniform(0.0, MAX_GRIP)) if letter == "f" else 1.0
         if letter != "s":
             forces[i] = chance.uniform(0.1, 2.0) * (normals[i] - grip * frictions[i] * ways[i])
     force = MASS * motion[:3] - forces.sum(axis=0)

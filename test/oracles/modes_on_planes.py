@@ -13,7 +13,7 @@ import numpy as np
 
 CLEARLY = 0.02  # m/s^2 and m/s: how fast what separates or slides does so at least
 ROUNDING = 1e-10
-MOST_GRIP = 0.95  # the part of its friction that a contact that sticks uses at most
+MAX_GRIP = 0.95  # the part of its friction that a contact that sticks uses at most
 MASS = 2.0
 INERTIA = np.diag([0.3, 0.4, 0.5])  # kg m^2, world axes
 
@@ -73,7 +73,7 @@ def _tried(chance: np.random.Generator, *, moves: bool, most: int) -> Made | Non
         if not slides[i]:
             way = ways[i]
             if across[i] < ROUNDING:
-                grip = float(chance.uniform(0.0, MOST_GRIP))
+                grip = float(chance.uniform(0.0, MAX_GRIP))
                 way = np.cross(normals[i], chance.normal(size=3))
             elif across[i] < CLEARLY:
                 return None

@@ -36,8 +36,8 @@ from contact_dynamics.plots import (
 )
 from contact_dynamics.questions import (
     ContactModeQuestion,
+    Context,
     ImpactQuestion,
-    Knowledge,
     Problem,
     TossQuestion,
     TossSampling,
@@ -94,7 +94,7 @@ def tumbling() -> TumblingAnswer:
         state=uncertain,
         sampling=sampling,
         gravity_W=GRAVITY_W,
-        want_covariance=True,
+        include_covariance=True,
         curve_points=100,
     )
     return ask(question)
@@ -142,8 +142,8 @@ def resting(*, in_plane: bool) -> ContactModeAnswer:
             gravity_W=GRAVITY_W,
             problem=Problem.PLANAR if in_plane else Problem.SPATIAL,
             plane=PlaneOfMotion(normal_W=[0.0, -1.0, 0.0]) if in_plane else None,
-            want_margins=True,
-            want_wrenches=True,
+            include_margins=True,
+            include_wrenches=True,
         )
     )
 
@@ -216,10 +216,10 @@ def tossed() -> TossAnswer:
         body=CUBE,
         state=UncertainState(state=state, covariance=covariance),
         rate=50.0,
-        most_alternatives=1,
+        max_alternatives=1,
         sampling=TossSampling(count=30, to_rest=True, uncertainty=TossUncertainty(velocity=0.02, spin=0.3)),
     )
-    return ask(question, Knowledge(world=World(bodies=(CUBE,), surfaces=(floor,))))
+    return ask(question, Context(world=World(bodies=(CUBE,), surfaces=(floor,))))
 
 
 DIAGRAMS: dict[str, Callable[[Axes], None]] = {

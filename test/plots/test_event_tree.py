@@ -14,7 +14,7 @@ pytest.importorskip("matplotlib", reason="matplotlib of requirements/test.txt is
 
 from matplotlib.figure import Figure
 
-from contact_dynamics.diagrams.toss_tree import MOST_FACES, rest_in_words
+from contact_dynamics.diagrams.toss_tree import MAX_FACES, rest_in_words
 from contact_dynamics.impact import RestitutionLaw
 from contact_dynamics.plots import draw_event_tree, save_figure
 from contact_dynamics.rigid_body.body import BodyState
@@ -88,7 +88,7 @@ def test_the_event_tree_in_svg_is_the_distributions(told: TossDistribution, tmp_
         assert f"{branch.strike}. corner {branch.corner} strikes: {branch.probability:.0%}" in words
     assert f"what {told.samples} samples do next" in words
     assert "rests on its face towards " in words
-    for normal, share in list(zip(told.face_normals_B, told.face_probabilities, strict=True))[:MOST_FACES]:
+    for normal, share in list(zip(told.face_normals_B, told.face_probabilities, strict=True))[:MAX_FACES]:
         axis = int(np.abs(normal).argmax())
         face = f"{'-' if normal[axis] > 0.0 else '+'}{'xyz'[axis]}"  # it lies on the face that looks down
         assert f"{face}: {share:.0%}" in words

@@ -63,7 +63,7 @@ def log(tmp_path_factory: pytest.TempPathFactory) -> Path:
     impact.state.pose.orientation.x, impact.state.pose.orientation.w = 0.3, 0.9539392
     impact.state.linear_velocity.x = 0.5
     standing = PredictContactMode.Request(
-        body_name="brick", state_source=PredictContactMode.Request.STATE_EXPLICIT, want_margins=True
+        body_name="brick", state_source=PredictContactMode.Request.STATE_EXPLICIT, include_margins=True
     )
     standing.state.pose.position.z = 0.025
     with server_and_client(folder, params_file=ROOT / "config" / "server.yaml") as client:

@@ -17,9 +17,9 @@ from contact_dynamics.questions import (
     AtStamps,
     AtTimes,
     ContactModeQuestion,
+    Context,
     ImpactQuestion,
     InTime,
-    Knowledge,
     Problem,
     PublishedState,
     StateStore,
@@ -55,19 +55,19 @@ NAMES = ("cube", "ball")
 FEW_MS = 4_000_000  # ns
 
 
-def knowledge() -> Knowledge:
+def context() -> Context:
     """A cube and a ball, of which some states were published, above a floor with a step on it."""
     states = StateStore(history=5.0, timeout=0.5)
     for name in NAMES:
         for number in range(5):
             stamp_ns = number * FEW_MS
             states.add(name, state(1.0, v=(0.1, 0.0, -1e-9 * 9.8 * stamp_ns), stamp_ns=stamp_ns))
-    return Knowledge(world=World(bodies=(CUBE, BALL), surfaces=(FLOOR, STEP)), states=states)
+    return Context(world=World(bodies=(CUBE, BALL), surfaces=(FLOOR, STEP)), states=states)
 
 
-def knowledge_of_flats() -> Knowledge:
+def knowledge_of_flats() -> Context:
     """The same with a wall instead of the step: tosses are among flats."""
-    known = knowledge()
+    known = context()
     return replace(known, world=replace(known.world, surfaces=(FLOOR, WALL)))
 
 
@@ -190,7 +190,7 @@ def tumbling_questions(draw: st.DrawFn) -> TumblingQuestion:
             axes=draw(st.sampled_from(WrenchAxes)),
         ),
         drag=Drag(linear=draw(sizes), quadratic_angular=draw(sizes)) if forces else Drag(),
-        want_covariance=draw(st.booleans()),
+        include_covariance=draw(st.booleans()),
         curve_points=draw(st.sampled_from([0, 1, 2, 50])),
     )
 
@@ -200,7 +200,7 @@ def impact_questions(draw: st.DrawFn) -> ImpactQuestion:
     in_time = st.builds(
         InTime,
         strike_window=sizes,
-        most_strikes=st.sampled_from([1, 50, 2**32 - 1]),
+        max_strikes=st.sampled_from([1, 50, 2**32 - 1]),
         hold_step=optional_sizes,
     )
     other = draw(st.sampled_from([None, None, None, "ball", "cube"]))
@@ -213,8 +213,8 @@ def impact_questions(draw: st.DrawFn) -> ImpactQuestion:
         horizon=draw(optional_sizes),
         restitution_law=draw(st.sampled_from(RestitutionLaw)),
         several_contacts_law=draw(st.one_of(st.sampled_from(SeveralContactsLaw), in_time)),
-        want_orders=draw(st.booleans()),
-        want_covariance=draw(st.booleans()),
+        include_orders=draw(st.booleans()),
+        include_covariance=draw(st.booleans()),
         problem=draw(st.sampled_from(Problem)),
         plane=draw(planes),
         out_of_plane_tolerance=draw(optional_sizes),
@@ -283,10 +283,10 @@ def contact_mode_questions(draw: st.DrawFn) -> ContactModeQuestion:
         distance_tolerance=draw(optional_sizes),
         friction_facets=draw(st.sampled_from([0, 0, 3, 8])),
         margin_length=draw(optional_sizes),
-        want_margins=draw(st.booleans()),
-        want_wrenches=draw(st.booleans()),
-        want_statics=draw(st.booleans()),
-        want_impact=draw(st.booleans()),
+        include_margins=draw(st.booleans()),
+        include_wrenches=draw(st.booleans()),
+        include_statics=draw(st.booleans()),
+        include_impact=draw(st.booleans()),
     )
 
 
@@ -334,7 +334,7 @@ def toss_questions(draw: st.DrawFn) -> TossQuestion:
         restitution_law=draw(st.sampled_from(RestitutionLaw)),
         horizon=draw(st.one_of(st.just(0.5), st.just(0.5), sizes)),
         rate=draw(optional_sizes),
-        most_alternatives=draw(st.sampled_from([None, 0, 0, 1])),
+        max_alternatives=draw(st.sampled_from([None, 0, 0, 1])),
         sampling=draw(st.one_of(st.none(), sampling)),
         lasting_factors=draw(st.sampled_from([(), (), (1.0, 0.5), (0.0, 1e300)])),
     )

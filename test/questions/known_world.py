@@ -9,9 +9,9 @@ from contact_dynamics.contact.contact import ContactSet
 from contact_dynamics.questions import (
     AtTimes,
     ContactModeQuestion,
+    Context,
     Defaults,
     ImpactQuestion,
-    Knowledge,
     TumblingQuestion,
     ask,
 )
@@ -33,7 +33,7 @@ FLOOR = Surface(
     name="floor", p_WS_W=[0, 0, 0], normal_W=[0, 0, 1], friction=FRICTION, restitution=RESTITUTION
 )
 WORLD = World(bodies=(CUBE,), surfaces=(FLOOR,))
-KNOWLEDGE = Knowledge(world=WORLD, defaults=Defaults(distance_tolerance=1e-9))
+CONTEXT = Context(world=WORLD, defaults=Defaults(distance_tolerance=1e-9))
 
 
 def state(
@@ -68,12 +68,16 @@ def ask_each() -> dict[str, Any]:
         "tumbling": ask(
             TumblingQuestion(body=CUBE, state=spinning, sampling=AtTimes(times=[0.0, 0.1]), curve_points=3)
         ),
-        "impact": ask(ImpactQuestion(body="cube", state=falling), KNOWLEDGE),
+        "impact": ask(ImpactQuestion(body="cube", state=falling), CONTEXT),
         "contact_modes": ask(
             ContactModeQuestion(
-                body="cube", state=RESTING, force_W=[math.pi, 0, 0], want_margins=True, want_statics=True
+                body="cube",
+                state=RESTING,
+                force_W=[math.pi, 0, 0],
+                include_margins=True,
+                include_statics=True,
             ),
-            KNOWLEDGE,
+            CONTEXT,
         ),
     }
     return {name: one.to_dict() for name, one in answers.items()}

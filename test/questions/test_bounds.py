@@ -15,9 +15,9 @@ from contact_dynamics.motion.forces import Drag
 from contact_dynamics.questions import (
     AtRate,
     ContactModeQuestion,
+    Context,
     ImpactQuestion,
     InTime,
-    Knowledge,
     PublishedState,
     StateStore,
     TumblingQuestion,
@@ -28,7 +28,7 @@ from contact_dynamics.questions import (
 from contact_dynamics.questions.subject import changed_body
 from contact_dynamics.rigid_body.body import MassProperties
 from contact_dynamics.world import Body
-from questions.known_world import CUBE, KNOWLEDGE, SIDE, WORLD, state
+from questions.known_world import CONTEXT, CUBE, SIDE, WORLD, state
 
 FAST_SPIN = (1e9, 1e8, 1e8)  # rad/s, as a broken driver sends
 
@@ -87,7 +87,7 @@ TOO_LARGE = {
             state=UncertainState(state=state(w=(1.0, 2.0, 3.0)), covariance=1e-6 * np.eye(12)),
             drag=Drag(linear=5000.0),
             sampling=AtRate(duration=3.0, rate=10.0),
-            want_covariance=True,
+            include_covariance=True,
         ),
         "times: found 3 s, in which neighbours",
     ),
@@ -100,7 +100,7 @@ def test_what_takes_too_long_is_refused_by_name(name: str) -> None:
     messages = []
     for _ in range(2 if "far away" in name else 1):  # counted, not timed: the same question ends alike
         with pytest.raises(TooLargeError) as refused:
-            ask(question, KNOWLEDGE)
+            ask(question, CONTEXT)
         messages.append(str(refused.value))
     assert messages[0].startswith(words)
     assert len(set(messages)) == 1
@@ -116,7 +116,7 @@ def test_what_takes_too_long_is_refused_by_name(name: str) -> None:
         ),
         (
             ContactModeQuestion(
-                body="cube", state=state(v=(0.0, 0.0, 1e16)), contacts=ring(3), want_margins=True
+                body="cube", state=state(v=(0.0, 0.0, 1e16)), contacts=ring(3), include_margins=True
             ),
             "v_WB_W: found 1e+16, allowed is numbers of at most 1e+15 for contacts",
         ),
@@ -161,7 +161,7 @@ def test_what_takes_too_long_is_refused_by_name(name: str) -> None:
         ),
         (
             ContactModeQuestion(
-                body="cube", state=state(), contacts=ring(3), want_statics=True, margin_length=5e-324
+                body="cube", state=state(), contacts=ring(3), include_statics=True, margin_length=5e-324
             ),
             "margin_length: found 4.94066e-324, allowed is a number from 1e-15 to 1e+15",
         ),
@@ -169,7 +169,7 @@ def test_what_takes_too_long_is_refused_by_name(name: str) -> None:
 )
 def test_numbers_that_no_contact_has_are_refused_by_name(question: Any, words: str) -> None:
     with pytest.raises(InvalidFieldError) as refused:
-        ask(question, KNOWLEDGE)
+        ask(question, CONTEXT)
     assert str(refused.value).startswith(words)
 
 
@@ -181,7 +181,7 @@ def test_a_window_of_any_length_takes_what_is_kept() -> None:
             "cube",
             state(1.0 - 0.5 * 9.80665e-18 * stamp_ns**2, v=(0, 0, -9.80665e-9 * stamp_ns), stamp_ns=stamp_ns),
         )
-    known = Knowledge(world=WORLD, states=states)
+    known = Context(world=WORLD, states=states)
     answers = [
         ask(TumblingQuestion(body="cube", state=PublishedState(fit_window=window)), known)
         for window in (5.0, 1e300)
@@ -192,7 +192,7 @@ def test_a_window_of_any_length_takes_what_is_kept() -> None:
 def test_a_body_that_leaves_all_contacts_has_margins() -> None:
     leaving = state(0.5 * SIDE, v=(0.0, 0.0, 0.5))
     try:
-        answer = ask(ContactModeQuestion(body="cube", state=leaving, want_margins=True), KNOWLEDGE)
+        answer = ask(ContactModeQuestion(body="cube", state=leaving, include_margins=True), CONTEXT)
     except ContactDynamicsError as error:
         pytest.fail(str(error))
     assert [mode.mode for mode in answer.modes] == ["ssss"]
@@ -210,4 +210,4 @@ def test_states_that_leave_a_motion_open_are_refused() -> None:
     with pytest.raises(
         InvalidFieldError, match=r"fit_window: found .* numbers that leave a part of the motion open"
     ):
-        ask(question, Knowledge(world=WORLD, states=states))
+        ask(question, Context(world=WORLD, states=states))

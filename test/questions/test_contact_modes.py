@@ -15,7 +15,7 @@ from contact_dynamics.plane.projection import PlaneOfMotion
 from contact_dynamics.questions import ContactModeQuestion, Problem
 from contact_dynamics.questions.contact_modes import answer
 from contact_dynamics.world import World
-from questions.known_world import CUBE, FRICTION, GRAVITY, KNOWLEDGE, MASS, RESTING, SIDE, below, state
+from questions.known_world import CONTEXT, CUBE, FRICTION, GRAVITY, MASS, RESTING, SIDE, below, state
 
 ROUNDING = 1e-12  # a few operations on numbers of order 1 to 10
 HALF = 0.5 * SIDE
@@ -36,20 +36,20 @@ def test_a_body_a_state_and_contacts_are_enough() -> None:
 
 
 def test_contacts_are_found_from_the_shape() -> None:
-    found = answer(AT_REST, KNOWLEDGE)
+    found = answer(AT_REST, CONTEXT)
     assert found.contacts.surfaces == ("floor",) * 4
     np.testing.assert_allclose(found.contacts.frictions, FRICTION)
     assert [mode.mode for mode in found.modes] == ["ffff"]
     forces = found.modes[0].contact_forces_W
     np.testing.assert_allclose(forces.sum(axis=0), [0, 0, WEIGHT], rtol=0.0, atol=1e-9)
     with pytest.raises(NoContactError) as caught:
-        answer(replace(AT_REST, state=state(HALF + 2e-4)), KNOWLEDGE)
+        answer(replace(AT_REST, state=state(HALF + 2e-4)), CONTEXT)
     assert str(caught.value) == (
         "contacts: no point of 'cube' is within 1e-09 m of a surface (distance_tolerance): the nearest, "
         "'floor', is 0.0002 m away"
     )
     with pytest.raises(NoContactError, match="'cube' is within 1e-09 m of a surface: the world has none"):
-        answer(AT_REST, replace(KNOWLEDGE, world=World(bodies=(CUBE,))))
+        answer(AT_REST, replace(CONTEXT, world=World(bodies=(CUBE,))))
 
 
 @pytest.mark.parametrize("exponent", [-30, -100, -139, -141, -155, -162, -200, -300, -318])
@@ -57,7 +57,7 @@ def test_contacts_are_found_from_the_shape() -> None:
 def test_a_weight_of_any_size_is_answered(problem: Problem, exponent: int) -> None:
     """Squares of such a force are zero, and it is not."""
     gravity_W = np.array([0.0, 0.0, -float(f"1e{exponent}")])
-    found = answer(replace(AT_REST, gravity_W=gravity_W, problem=problem, plane=FROM_THE_SIDE), KNOWLEDGE)
+    found = answer(replace(AT_REST, gravity_W=gravity_W, problem=problem, plane=FROM_THE_SIDE), CONTEXT)
     assert [mode.mode for mode in found.modes] == ["ffff"]
 
 
@@ -66,7 +66,7 @@ def test_a_push_beyond_friction_makes_it_slide(problem: Problem) -> None:
     """In the plane of motion it slides right, in space along x, with (F - mu m g) / m."""
     push = 1.5 * HOLDS
     question = replace(AT_REST, force_W=np.array([push, 0.0, 0.0]), problem=problem)
-    found = answer(replace(question, plane=FROM_THE_SIDE), KNOWLEDGE)
+    found = answer(replace(question, plane=FROM_THE_SIDE), CONTEXT)
     (mode,) = found.modes
     np.testing.assert_allclose(mode.acceleration_W, [(push - HOLDS) / MASS, 0, 0], rtol=0.0, atol=1e-9)
     if problem is Problem.PLANAR:
@@ -91,7 +91,7 @@ def test_right_is_the_same_direction_under_every_load_and_motion(degrees: int, m
     else:  # the foot is half a side below the centre of mass
         spin = np.cross(along, [0.0, 0.0, 1.0]) * 0.3 / HALF
         asked = replace(asked, state=state(w=tuple(spin)))
-    found = answer(asked, KNOWLEDGE)
+    found = answer(asked, CONTEXT)
     assert found.plane is not None
     towards = along[0] + along[1] if abs(along[0] + along[1]) > 1e-9 else along[0]
     assert [mode.mode for mode in found.modes] == ["r" if towards > 0.0 else "l"]
@@ -106,7 +106,7 @@ def test_a_level_plane_is_seen_from_above(sign: float) -> None:
     push = ContactModeQuestion(
         body="cube", state=state(), contacts=wall, gravity_W=[0, 0, 0], force_W=[-1, sign, 0]
     )
-    found = answer(push, KNOWLEDGE)
+    found = answer(push, CONTEXT)
     assert found.plane is not None
     np.testing.assert_array_equal(found.plane.normal_W, [0, 0, 1])
     assert [mode.mode for mode in found.modes] == ["l" if sign > 0.0 else "r"]
@@ -116,8 +116,8 @@ def test_the_margin_is_what_is_left_of_friction() -> None:
     """The margin is the shortest way in the metric. Along the push alone it would be mu m g - F."""
     push = 0.25 * HOLDS
     found = answer(
-        replace(AT_REST, force_W=np.array([push, 0.0, 0.0]), plane=FROM_THE_SIDE, want_margins=True),
-        KNOWLEDGE,
+        replace(AT_REST, force_W=np.array([push, 0.0, 0.0]), plane=FROM_THE_SIDE, include_margins=True),
+        CONTEXT,
     )
     assert found.margins is not None
     (margin,) = found.margins
@@ -129,7 +129,9 @@ def test_the_margin_is_what_is_left_of_friction() -> None:
 
 
 def test_statics_and_wrenches() -> None:
-    found = answer(replace(AT_REST, plane=FROM_THE_SIDE, want_statics=True, want_wrenches=True), KNOWLEDGE)
+    found = answer(
+        replace(AT_REST, plane=FROM_THE_SIDE, include_statics=True, include_wrenches=True), CONTEXT
+    )
     assert found.statics is not None
     assert found.statics.equilibrium is Certainty.CERTAIN
     assert not found.statics.wedged
@@ -141,7 +143,7 @@ def test_statics_and_wrenches() -> None:
     assert holds["ssss"] < 0.0
     in_space = answer(
         ContactModeQuestion(
-            body=CUBE, state=state(), contacts=below(), problem=Problem.SPATIAL, want_wrenches=True
+            body=CUBE, state=state(), contacts=below(), problem=Problem.SPATIAL, include_wrenches=True
         )
     )
     assert (in_space.wrench_facets, in_space.friction_facets) == (4, 8)
@@ -156,7 +158,7 @@ def test_a_foot_that_approaches_is_settled_by_an_impact(problem: Problem) -> Non
         state=state(v=(0.0, 0.0, -1.0)),
         contacts=below(restitution=0.0),
         problem=problem,
-        want_impact=True,
+        include_impact=True,
     )
     found = answer(question)
     assert (found.verdict, found.approaching, found.modes) == (ModeVerdict.IMPACT, (0,), ())
@@ -169,12 +171,12 @@ def test_a_foot_that_approaches_is_settled_by_an_impact(problem: Problem) -> Non
 
 def test_automatic_says_why_it_went_to_space() -> None:
     pushed = replace(AT_REST, force_W=np.array([1.0, 2.0, 0.0]), torque_W=np.array([0.0, 0.0, 0.1]))
-    found = answer(pushed, KNOWLEDGE)
+    found = answer(pushed, CONTEXT)
     assert found.problem is Problem.SPATIAL
     assert "out of the plane" in found.out_of_plane_reason
     assert math.isnan(found.out_of_plane)
     with pytest.raises(OutOfPlaneError, match="out of the plane"):
-        answer(replace(pushed, problem=Problem.PLANAR), KNOWLEDGE)
+        answer(replace(pushed, problem=Problem.PLANAR), CONTEXT)
 
 
 def test_numbers_without_sense_are_refused() -> None:

@@ -22,7 +22,7 @@ from contact_dynamics.questions.many_contact_modes import ManyContactModesQuesti
 from contact_dynamics.questions.many_contact_modes import answer as answer_contact_modes
 from questions import fuzzed
 
-KNOWLEDGE = fuzzed.knowledge()
+CONTEXT = fuzzed.context()
 FLATS = fuzzed.knowledge_of_flats()
 KINDS = (
     fuzzed.tumbling_questions,
@@ -53,15 +53,15 @@ def check_answered(question: Any) -> None:
         warnings.simplefilter("ignore", RuntimeWarning)  # numbers that overflow are not hidden in an answer
         with contextlib.suppress(ContactDynamicsError):
             if isinstance(question, ManyTumblingsQuestion):
-                answer_tumblings(question, KNOWLEDGE)
+                answer_tumblings(question, CONTEXT)
             elif isinstance(question, ManyImpactsQuestion):
-                answer_impacts(question, KNOWLEDGE)
+                answer_impacts(question, CONTEXT)
             elif isinstance(question, ManyContactModesQuestion):
-                answer_contact_modes(question, KNOWLEDGE)
+                answer_contact_modes(question, CONTEXT)
             elif isinstance(question, TossQuestion):
                 ask(question, FLATS)
             else:
-                ask(question, KNOWLEDGE)
+                ask(question, CONTEXT)
 
 
 HASTE = settings(

@@ -19,18 +19,18 @@ from contact_dynamics.errors import (
 from contact_dynamics.impact import ImpactOutcome, RestitutionLaw, SequenceEnd, SeveralContactsLaw
 from contact_dynamics.plane.projection import PlaneOfMotion
 from contact_dynamics.questions import (
+    Context,
     ImpactQuestion,
     InTime,
-    Knowledge,
     Problem,
     UncertainState,
 )
 from contact_dynamics.questions.impact import answer
 from questions.known_world import (
+    CONTEXT,
     CUBE,
     FRICTION,
     GRAVITY,
-    KNOWLEDGE,
     MASS,
     MOMENT,
     RESTITUTION,
@@ -94,14 +94,14 @@ def test_the_plane_says_what_space_says() -> None:
 
 
 def test_a_body_in_flight_lands_first() -> None:
-    found = answer(ImpactQuestion(body="cube", state=state(), horizon=1.0), KNOWLEDGE)
+    found = answer(ImpactQuestion(body="cube", state=state(), horizon=1.0), CONTEXT)
     seconds = math.sqrt(2.0 * (1.0 - HALF) / GRAVITY)
     assert found.seconds_to_contact == pytest.approx(seconds, abs=ROUNDING)
     assert found.state.v_WB_W[2] == pytest.approx(-GRAVITY * seconds, abs=1e-11)
     assert found.contacts.surfaces == ("floor",) * 4
     assert found.impact.outcome is not None
     with pytest.raises(NoContactError, match=r"touches no surface within the horizon of 0\.1 s"):
-        answer(ImpactQuestion(body="cube", state=state(), horizon=0.1), KNOWLEDGE)
+        answer(ImpactQuestion(body="cube", state=state(), horizon=0.1), CONTEXT)
 
 
 def test_equal_bodies_without_friction_exchange_their_velocities() -> None:
@@ -130,7 +130,7 @@ def test_two_feet_at_once_or_in_turn() -> None:
     found = answer(at_once).impact
     np.testing.assert_allclose(found.impulses_W[:, 2], [0.5 * MASS, 0.5 * MASS], rtol=0.0, atol=1e-9)
     assert (found.outcome, len(found.path_W), len(found.compression_impulses_W)) == (None, 0, 0)
-    in_turn = answer(replace(question, want_orders=True)).impact
+    in_turn = answer(replace(question, include_orders=True)).impact
     assert in_turn.outcome is not None
     assert in_turn.path_W.shape == (len(in_turn.path_events), 3)
     assert in_turn.orders[0] == ()  # both feet tie, and strike as one
@@ -142,8 +142,8 @@ def test_two_feet_at_once_or_in_turn() -> None:
 def test_strikes_in_time_begin_at_the_first() -> None:
     """A plate that lands on one edge rocks over to the other within milliseconds."""
     tilted = state(v=(0.0, 0.0, -1.0), w=(0.0, 0.4, 0.0))
-    law = InTime(strike_window=0.05, most_strikes=20)
-    found = answer(ImpactQuestion(body="cube", state=tilted, several_contacts_law=law), KNOWLEDGE)
+    law = InTime(strike_window=0.05, max_strikes=20)
+    found = answer(ImpactQuestion(body="cube", state=tilted, several_contacts_law=law), CONTEXT)
     strikes = found.impact.strikes
     assert len(strikes) > 1
     assert strikes[0].seconds == 0.0
@@ -159,7 +159,9 @@ def test_strikes_in_time_begin_at_the_first() -> None:
 def test_an_uncertain_state_has_a_chance_of_each_outcome() -> None:
     covariance = np.diag([1e-8] * 6 + [1e-2] * 3 + [1e-4] * 3)
     uncertain = UncertainState(state=SLIDING, covariance=covariance)
-    found = answer(ImpactQuestion(body=CUBE, state=uncertain, contacts=below(), want_covariance=True)).impact
+    found = answer(
+        ImpactQuestion(body=CUBE, state=uncertain, contacts=below(), include_covariance=True)
+    ).impact
     assert found.outcome_probabilities is not None
     assert found.outcome_probabilities.sum() + found.miss_probability == pytest.approx(1.0, abs=1e-9)
     assert found.outcome_probabilities[ImpactOutcome.SLIDES] > 0.9
@@ -186,7 +188,7 @@ def test_the_law_of_restitution_is_the_one_asked_for(law: RestitutionLaw) -> Non
         ),
         ({"contacts": below().subset([])}, NoContactError, "contacts: found none"),
         (
-            {"other": CUBE, "other_state": SLIDING, "want_orders": True},
+            {"other": CUBE, "other_state": SLIDING, "include_orders": True},
             NotSupportedError,
             "found a second body",
         ),
@@ -196,7 +198,7 @@ def test_the_law_of_restitution_is_the_one_asked_for(law: RestitutionLaw) -> Non
             NotSupportedError,
             "allowed for strikes in time is SPATIAL",
         ),
-        ({"want_covariance": True}, InvalidFieldError, r"state\.covariance: found none"),
+        ({"include_covariance": True}, InvalidFieldError, r"state\.covariance: found none"),
         (
             {
                 "problem": Problem.PLANAR,
@@ -218,7 +220,7 @@ def test_what_cannot_be_answered_is_named(
 ) -> None:
     question = replace(ImpactQuestion(body=CUBE, state=SLIDING, contacts=below()), **change)  # type: ignore[arg-type]
     with pytest.raises(error, match=words):
-        answer(question, Knowledge())
+        answer(question, Context())
 
 
 def test_numbers_without_sense_are_refused() -> None:
@@ -231,6 +233,6 @@ def test_numbers_without_sense_are_refused() -> None:
     for name in ("strike_window", "hold_step"):
         with pytest.raises(InvalidFieldError, match=f"{name}: found nan"):
             InTime(**{name: math.nan})  # type: ignore[arg-type]
-    for name in ("strike_window", "most_strikes", "hold_step"):
+    for name in ("strike_window", "max_strikes", "hold_step"):
         with pytest.raises(InvalidFieldError, match=f"{name}: found 0"):
             InTime(**{name: 0})  # type: ignore[arg-type]

@@ -11,9 +11,9 @@ import pytest
 from contact_dynamics.contact.contact import ContactSet
 from contact_dynamics.errors import InvalidFieldError, TooLargeError
 from contact_dynamics.impact import ImpactOutcome, RestitutionLaw
-from contact_dynamics.questions import AtTimes, ImpactQuestion, Knowledge, TumblingQuestion, ask
+from contact_dynamics.questions import AtTimes, Context, ImpactQuestion, TumblingQuestion, ask
 from contact_dynamics.questions.many import (
-    MOST_STATES,
+    MAX_STATES,
     ManyImpactsQuestion,
     ManyStates,
     ManyTumblingsQuestion,
@@ -24,7 +24,7 @@ from contact_dynamics.rigid_body.body import BodyState
 from questions.known_world import CUBE, WORLD
 
 COUNT = 40
-KNOWN = Knowledge(world=WORLD)
+KNOWN = Context(world=WORLD)
 NOTHING = np.zeros((0, 3))
 
 
@@ -129,6 +129,6 @@ def test_what_is_not_allowed_is_named(changes: dict[str, Any], words: str) -> No
 
 
 def test_more_states_than_are_answered_are_counted() -> None:
-    rows = np.zeros((MOST_STATES + 1, 3))
+    rows = np.zeros((MAX_STATES + 1, 3))
     with pytest.raises(TooLargeError, match="states: found 10001 states, allowed is at most 10000"):
-        ManyStates(p_WB_W=rows, q_WB=np.zeros((MOST_STATES + 1, 4)), v_WB_W=rows, w_WB_W=rows)
+        ManyStates(p_WB_W=rows, q_WB=np.zeros((MAX_STATES + 1, 4)), v_WB_W=rows, w_WB_W=rows)

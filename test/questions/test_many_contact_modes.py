@@ -10,9 +10,9 @@ import pytest
 from contact_dynamics import Body, BodyState, ContactSet
 from contact_dynamics.contact_modes import ModeVerdict
 from contact_dynamics.errors import ContactDynamicsError, InvalidFieldError, NoContactError, TooLargeError
-from contact_dynamics.questions import ContactModeQuestion, Knowledge, ask
+from contact_dynamics.questions import ContactModeQuestion, Context, ask
 from contact_dynamics.questions.many_contact_modes import (
-    MOST_CANDIDATES,
+    MAX_CANDIDATES,
     ManyContactModesAnswer,
     ManyContactModesQuestion,
     answer,
@@ -20,7 +20,7 @@ from contact_dynamics.questions.many_contact_modes import (
 from contact_dynamics.questions.problem import Problem
 from questions.known_world import CUBE, WORLD
 
-KNOWN = Knowledge(world=WORLD)
+KNOWN = Context(world=WORLD)
 LYING = BodyState(p_WB_W=[0, 0, 0.1], q_WB=[0, 0, 0, 1], v_WB_W=[0, 0, 0], w_WB_W=[0, 0, 0])
 ON_FLOOR = ContactModeQuestion(body="cube", state=LYING, distance_tolerance=1e-6)
 
@@ -62,7 +62,7 @@ def test_many_wrenches_are_as_many_single_questions() -> None:
 
 def test_margins_come_where_they_are_asked_for() -> None:
     forces, torques = (rows[::3] for rows in candidates())
-    asked = replace(ON_FLOOR, want_margins=True)
+    asked = replace(ON_FLOOR, include_margins=True)
     found = answer(ManyContactModesQuestion(asked=asked, forces_W=forces, torques_W=torques), KNOWN)
     assert found.margins is not None
     for i in range(len(forces)):
@@ -131,7 +131,7 @@ def test_arrays_that_do_not_fit_are_refused() -> None:
         ManyContactModesQuestion(
             asked=ON_FLOOR, forces_W=[[0, 0, 0], [0, np.nan, 0]], torques_W=np.zeros((2, 3))
         )
-    many = np.zeros((MOST_CANDIDATES + 1, 3))
+    many = np.zeros((MAX_CANDIDATES + 1, 3))
     with pytest.raises(TooLargeError, match="forces_W: found 1001 candidates, allowed is at most 1000"):
         ManyContactModesQuestion(asked=ON_FLOOR, forces_W=many, torques_W=many)
 

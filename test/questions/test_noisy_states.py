@@ -12,7 +12,7 @@ from scipy.stats import chi2, ncx2
 from contact_dynamics.contact.noise import REST_LEVEL
 from contact_dynamics.contact_modes import ModeVerdict
 from contact_dynamics.errors import InvalidFieldError
-from contact_dynamics.questions import ContactModeAnswer, ContactModeQuestion, Knowledge, UncertainState, ask
+from contact_dynamics.questions import ContactModeAnswer, ContactModeQuestion, Context, UncertainState, ask
 from contact_dynamics.questions.many_contact_modes import ManyContactModesQuestion
 from contact_dynamics.questions.many_contact_modes import answer as answer_many
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
@@ -25,7 +25,7 @@ BRICK = Body(
     vertices_B=box_vertices([0.15, 0.09, 0.05]),
 )
 FLOOR = Surface(name="floor", p_WS_W=[0, 0, 0], normal_W=[0, 0, 1], friction=FRICTION, restitution=0.45)
-KNOWLEDGE = Knowledge(world=World(bodies=(BRICK,), surfaces=(FLOOR,)))
+CONTEXT = Context(world=World(bodies=(BRICK,), surfaces=(FLOOR,)))
 MOTION_CAPTURE = np.array([2e-4, 2e-3, 0.02, 0.2])  # m, rad, m/s, rad/s
 
 
@@ -54,7 +54,7 @@ def wrong_at_rest(draws: int, scale: float, push: float) -> int:
         azimuth = chance.uniform(-3.0, 3.0)
         force_W = push * FRICTION * WEIGHT * np.array([np.cos(azimuth), np.sin(azimuth), 0.0])
         question = ContactModeQuestion(body="brick", state=measured(chance, scale=scale), force_W=force_W)
-        found = ask(question, KNOWLEDGE)
+        found = ask(question, CONTEXT)
         wrong += (found.verdict, modes_of(found)) != (ModeVerdict.UNIQUE, ["ffff"])
     return wrong
 
@@ -77,7 +77,7 @@ def test_a_sliding_brick_slides_on_all_its_feet() -> None:
     chance, right = np.random.default_rng(4), 0
     for _ in range(20):
         question = ContactModeQuestion(body="brick", state=measured(chance, scale=1.0, speed=0.4))
-        right += modes_of(ask(question, KNOWLEDGE)) == ["cccc"]
+        right += modes_of(ask(question, CONTEXT)) == ["cccc"]
     assert right >= 19
 
 
@@ -87,7 +87,7 @@ def test_without_its_noise_the_same_states_are_hardly_ever_at_rest() -> None:
     for _ in range(20):
         state = measured(chance, scale=1.0).state
         tolerances = {"velocity_tolerance": MOTION_CAPTURE[2], "distance_tolerance": 1e-3}
-        right += modes_of(ask(ContactModeQuestion(body="brick", state=state, **tolerances), KNOWLEDGE)) == [
+        right += modes_of(ask(ContactModeQuestion(body="brick", state=state, **tolerances), CONTEXT)) == [
             "ffff"
         ]
     assert right < 4
@@ -95,11 +95,11 @@ def test_without_its_noise_the_same_states_are_hardly_ever_at_rest() -> None:
 
 def test_the_answer_has_the_state_that_it_is_about() -> None:
     noisy = measured(np.random.default_rng(6), scale=1.0)
-    found = ask(ContactModeQuestion(body="brick", state=noisy), KNOWLEDGE)
+    found = ask(ContactModeQuestion(body="brick", state=noisy), CONTEXT)
     assert np.abs(found.state.v_WB_W).max() < 1e-15
     np.testing.assert_allclose(found.contacts.p_WC_W[:, 2], 0.0, rtol=0.0, atol=1e-15)
     np.testing.assert_allclose(found.state.p_WB_W, noisy.state.p_WB_W, rtol=0.0, atol=4 * MOTION_CAPTURE[0])
-    again = ask(ContactModeQuestion(body="brick", state=found.state), KNOWLEDGE)
+    again = ask(ContactModeQuestion(body="brick", state=found.state), CONTEXT)
     assert modes_of(again) == modes_of(found)
 
 
@@ -111,7 +111,7 @@ def test_the_probability_of_rest_is_that_of_chi_squared(deviations_off: float) -
         p_WB_W=[0.1, 0.2, 0.025], q_WB=[0, 0, 0, 1], v_WB_W=[deviations_off * 0.02, 0, 0], w_WB_W=[0, 0, 0]
     )
     noisy = UncertainState(state=state, covariance=np.diag(deviations**2))
-    found = ask(ContactModeQuestion(body="brick", state=noisy, want_probabilities=True), KNOWLEDGE)
+    found = ask(ContactModeQuestion(body="brick", state=noisy, include_probabilities=True), CONTEXT)
     assert found.probabilities is not None
     shares = {each.mode: each.probability for each in found.probabilities}
     expected = ncx2.cdf(chi2.ppf(REST_LEVEL, 6), 6, deviations_off**2)
@@ -124,7 +124,7 @@ def test_the_probability_of_rest_is_that_of_chi_squared(deviations_off: float) -
 def test_probabilities_need_a_covariance() -> None:
     exact = measured(np.random.default_rng(8), scale=0.0).state
     with pytest.raises(InvalidFieldError, match=r"state\.covariance: found none"):
-        ask(ContactModeQuestion(body="brick", state=exact, want_probabilities=True), KNOWLEDGE)
+        ask(ContactModeQuestion(body="brick", state=exact, include_probabilities=True), CONTEXT)
 
 
 @pytest.mark.parametrize("counts", [(), (4, 4)])
@@ -132,7 +132,7 @@ def test_candidates_have_the_answers_of_single_questions(counts: tuple[int, ...]
     noisy = measured(np.random.default_rng(7), scale=1.0)
     single = ContactModeQuestion(body="brick", state=noisy)
     if counts:
-        feet = ask(single, KNOWLEDGE).contacts
+        feet = ask(single, CONTEXT).contacts
         single = replace(single, contacts=feet)
     forces = np.array([[0.3, 0.1, 0.0], [0.5, -0.4, 0.0]])
     asked = single if not counts else replace(single, contacts=feet.subset([0, 1, 2, 3, 0, 1, 2, 3]))
@@ -140,7 +140,7 @@ def test_candidates_have_the_answers_of_single_questions(counts: tuple[int, ...]
         ManyContactModesQuestion(
             asked=asked, forces_W=forces, torques_W=np.zeros((2, 3)), contact_counts=counts
         ),
-        KNOWLEDGE,
+        CONTEXT,
     )
-    alone = [ask(replace(single, force_W=force), KNOWLEDGE) for force in forces]
+    alone = [ask(replace(single, force_W=force), CONTEXT) for force in forces]
     assert list(many.modes) == [mode for each in alone for mode in modes_of(each)] == ["ffff", "ffff"]

@@ -11,8 +11,8 @@ from contact_dynamics.errors import InvalidFieldError, NoStateError, StaleStateE
 from contact_dynamics.motion.free_fit import fit_free_motion
 from contact_dynamics.questions import (
     AtTimes,
+    Context,
     Defaults,
-    Knowledge,
     PublishedState,
     StateStore,
     TumblingQuestion,
@@ -41,12 +41,12 @@ def rising(stamp_ns: int) -> BodyState:
     )
 
 
-def watching(*stamps_ns: int, now_ns: int | None = None) -> Knowledge:
+def watching(*stamps_ns: int, now_ns: int | None = None) -> Context:
     """Return what is known after states of the cube were published."""
     states = StateStore(history=10.0, timeout=0.5)
     for stamp_ns in stamps_ns:
         states.add("cube", rising(stamp_ns))
-    return Knowledge(world=WORLD, states=states, now_ns=None if now_ns is None else lambda: now_ns)
+    return Context(world=WORLD, states=states, now_ns=None if now_ns is None else lambda: now_ns)
 
 
 def test_the_newest_state_is_taken_unless_another_is_asked_for() -> None:
@@ -158,7 +158,7 @@ def test_a_fit_finds_the_toss_that_was_published() -> None:
     assert subject.covariance.shape == (12, 12)
 
 
-def spinning(rate: float, per_second: float, *, published: float) -> Knowledge:
+def spinning(rate: float, per_second: float, *, published: float) -> Context:
     """Return what is known after ten states of the cube, which turns about z and rests otherwise."""
     states = StateStore(history=10.0, timeout=0.5)
     for k in range(10):
@@ -173,7 +173,7 @@ def spinning(rate: float, per_second: float, *, published: float) -> Knowledge:
                 stamp_ns=round(1e9 * k / per_second),
             ),
         )
-    return Knowledge(world=WORLD, states=states)
+    return Context(world=WORLD, states=states)
 
 
 @pytest.mark.parametrize(("rate", "per_second"), [(100.0, 30.0), (400.0, 120.0)])
@@ -211,7 +211,7 @@ def test_a_fit_to_states_of_another_motion_is_an_error() -> None:
         half = 0.5 * (k > 4)
         states.add("cube", replace(state, q_WB=[np.sin(half), 0.0, 0.0, np.cos(half)]))
     with pytest.raises(InvalidFieldError, match=r"fit_window: found 10 states that the motion found misses"):
-        subject_of("cube", PublishedState(fit_window=1.0), Knowledge(world=WORLD, states=states))
+        subject_of("cube", PublishedState(fit_window=1.0), Context(world=WORLD, states=states))
 
 
 def test_a_load_moves_the_centre_of_mass_and_leaves_the_body_where_it_is() -> None:
@@ -229,7 +229,7 @@ def test_a_load_moves_the_centre_of_mass_and_leaves_the_body_where_it_is() -> No
 
 
 def test_a_state_that_is_said_needs_no_knowledge() -> None:
-    nothing = Knowledge()
+    nothing = Context()
     assert subject_of(CUBE, state(), nothing).covariance is None
     uncertain = UncertainState(state=state(), covariance=np.eye(12))
     np.testing.assert_array_equal(subject_of(CUBE, uncertain, nothing).covariance, np.eye(12))
@@ -287,13 +287,13 @@ def test_a_fit_that_is_kept_is_that_of_the_same_body_states_and_gravity() -> Non
     floating = replace(known, world=replace(WORLD, gravity_W=np.array([0.0, 0.0, -1.0])))
     light = replace(CUBE, mass_properties=MassProperties(mass=0.5, I_B=np.diag([1e-3, 2e-3, 2.5e-3])))
     for _ in range(2):
-        for body, knowledge in (("cube", known), ("cube", floating), (light, known)):
+        for body, context in (("cube", known), ("cube", floating), (light, known)):
             for stamp_ns in (90 * MS, 80 * MS):
                 source = PublishedState(fit_window=0.05, stamp_ns=stamp_ns)
-                found = subject_of(body, source, knowledge)
+                found = subject_of(body, source, context)
                 states = [rising(each) for each in range(stamp_ns - 50 * MS, stamp_ns + 1, 10 * MS)]
                 expected = fit_free_motion(
-                    found.body.mass_properties, states, gravity_W=knowledge.world.gravity_W
+                    found.body.mass_properties, states, gravity_W=context.world.gravity_W
                 )
                 np.testing.assert_array_equal(found.state.p_WB_W, expected.state.p_WB_W)
                 np.testing.assert_array_equal(found.state.w_WB_W, expected.state.w_WB_W)

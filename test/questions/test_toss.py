@@ -9,7 +9,7 @@ import pytest
 
 from contact_dynamics.errors import ContactDynamicsError, InvalidFieldError, TooLargeError
 from contact_dynamics.impact import RestitutionLaw, SeveralContactsLaw
-from contact_dynamics.questions import Knowledge, TossQuestion, TossSampling, UncertainState, ask
+from contact_dynamics.questions import Context, TossQuestion, TossSampling, UncertainState, ask
 from contact_dynamics.rigid_body import inertia
 from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.shapes import box
@@ -21,7 +21,7 @@ CUBE = Body(
     name="cube", mass_properties=inertia.box(size=SIZE, mass=0.37).mass_properties, shape=box(size=SIZE)
 )
 FLOOR = Surface(name="floor", p_WS_W=[0, 0, 0], normal_W=[0, 0, 1], friction=0.2, restitution=0.15)
-KNOWN = Knowledge(world=World(bodies=(CUBE,), surfaces=(FLOOR,)))
+KNOWN = Context(world=World(bodies=(CUBE,), surfaces=(FLOOR,)))
 THROWN = BodyState(
     p_WB_W=[0, 0, 0.2],
     q_WB=[0.3, 0.2, 0.1, 0.9273618495],
@@ -50,7 +50,7 @@ def test_the_answer_is_the_toss() -> None:
 
 def test_what_is_left_out_is_as_the_library_has_it() -> None:
     """Ten seconds of horizon; the default rate; eight other ways."""
-    short = ask(TossQuestion(body="cube", state=THROWN, horizon=0.1, most_alternatives=0), KNOWN)
+    short = ask(TossQuestion(body="cube", state=THROWN, horizon=0.1, max_alternatives=0), KNOWN)
     assert (short.toss.end, short.toss.seconds) == (TossEnd.HORIZON, 0.1)
     assert len(short.toss.trajectory.seconds) == 0.1 * KNOWN.defaults.rate + 1
     assert short.alternatives == ()
@@ -58,7 +58,7 @@ def test_what_is_left_out_is_as_the_library_has_it() -> None:
 
 def test_a_distribution_comes_with_samples() -> None:
     sampling = TossSampling(count=30, uncertainty=TossUncertainty(velocity=0.02, spin=0.3))
-    answer = ask(TossQuestion(body="cube", state=UNCERTAIN, sampling=sampling, most_alternatives=0), KNOWN)
+    answer = ask(TossQuestion(body="cube", state=UNCERTAIN, sampling=sampling, max_alternatives=0), KNOWN)
     told = answer.distribution
     assert told is not None
     assert told.samples == 30
@@ -71,7 +71,7 @@ def test_a_distribution_comes_with_samples() -> None:
     [
         (lambda: TossQuestion(body="cube", horizon=0.0), "horizon: found 0"),
         (lambda: TossQuestion(body="cube", rate=float("nan")), "rate: found nan"),
-        (lambda: TossQuestion(body="cube", most_alternatives=-1), "most_alternatives: found -1"),
+        (lambda: TossQuestion(body="cube", max_alternatives=-1), "max_alternatives: found -1"),
         (lambda: TossSampling(count=0), "samples: found 0"),
         (lambda: TossSampling(count=2001), "samples: found 2001, allowed is at most 2000"),
         (lambda: TossSampling(count=1, strikes=11), "strikes: found 11"),
@@ -129,7 +129,7 @@ def test_two_lists_of_factors_are_refused() -> None:
 
 def test_a_trajectory_of_too_many_samples_is_refused() -> None:
     with pytest.raises(TooLargeError, match=r"rate: found .* samples"):
-        ask(TossQuestion(body="cube", state=THROWN, rate=1e6, most_alternatives=0), KNOWN)
+        ask(TossQuestion(body="cube", state=THROWN, rate=1e6, max_alternatives=0), KNOWN)
 
 
 @pytest.mark.parametrize("law", SeveralContactsLaw)

@@ -25,16 +25,16 @@ from contact_dynamics.questions import (
     UntilContact,
     UntilPlane,
 )
-from contact_dynamics.questions.tumbling import MOST_CURVE_POINTS, answer
+from contact_dynamics.questions.tumbling import MAX_CURVE_POINTS, answer
 from contact_dynamics.tumbling import Regime
-from questions.known_world import CUBE, GRAVITY, KNOWLEDGE, MASS, MOMENT, SIDE, state
+from questions.known_world import CONTEXT, CUBE, GRAVITY, MASS, MOMENT, SIDE, state
 
 ROUNDING = 1e-12  # a few operations on numbers of order 1 to 10
 TOSSED = state(v=(1.0, -0.5, 2.0), w=(0.0, 0.0, 3.0), stamp_ns=5_000_000_000)
 
 
 def test_a_body_and_a_state_are_enough() -> None:
-    """Without knowledge: on the parabola, turning steadily, at 100 Hz for 2 s."""
+    """Without context: on the parabola, turning steadily, at 100 Hz for 2 s."""
     found = answer(TumblingQuestion(body=CUBE, state=TOSSED))
     t = found.trajectory.seconds
     np.testing.assert_allclose(t, np.arange(201) / 100.0, rtol=0.0, atol=ROUNDING)
@@ -70,7 +70,7 @@ def test_gravity_of_its_own() -> None:
 def test_it_ends_where_a_corner_meets_the_floor() -> None:
     """The lower face of a cube that does not turn falls by what its centre is above half a side."""
     question = TumblingQuestion(body="cube", state=state(), sampling=UntilContact(rate=10.0, duration=1.0))
-    found = answer(question, KNOWLEDGE)
+    found = answer(question, CONTEXT)
     seconds = math.sqrt(2.0 * (1.0 - 0.5 * SIDE) / GRAVITY)
     assert found.event is not None
     assert (found.event.kind, found.event.surface) == (EventKind.CONTACT, "floor")
@@ -128,14 +128,14 @@ def test_a_covariance_grows_with_the_square_of_time() -> None:
         body=CUBE,
         state=UncertainState(state=TOSSED, covariance=covariance),
         sampling=AtTimes(times=[0.0, 0.5]),
-        want_covariance=True,
+        include_covariance=True,
     )
     found = answer(question)
     assert found.covariance is not None
     assert found.covariance.covariances[1, 0, 0] == pytest.approx(1e-6 + 0.25 * 4e-4, rel=1e-9)
     assert found.covariance.trusted.all()
     with pytest.raises(InvalidFieldError, match=r"state\.covariance: found none"):
-        answer(TumblingQuestion(body=CUBE, state=TOSSED, want_covariance=True))
+        answer(TumblingQuestion(body=CUBE, state=TOSSED, include_covariance=True))
 
 
 def test_curves_have_as_many_points_as_asked_for() -> None:
@@ -143,7 +143,7 @@ def test_curves_have_as_many_points_as_asked_for() -> None:
     assert found.curves is not None
     assert found.curves.polhode_B.shape == (4, 3)
     with pytest.raises(TooLargeError, match="curve_points: found 10001"):
-        TumblingQuestion(body=CUBE, curve_points=MOST_CURVE_POINTS + 1)
+        TumblingQuestion(body=CUBE, curve_points=MAX_CURVE_POINTS + 1)
 
 
 @pytest.mark.parametrize(

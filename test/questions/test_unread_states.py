@@ -79,7 +79,7 @@ def test_of_a_body_whose_states_all_cannot_be_read_none_is_known() -> None:
 
 def test_no_more_are_kept_than_stated_and_the_oldest_go_first() -> None:
     reads = Reads()
-    store = StateStore(history=1.0, timeout=1.0, most_states=3)
+    store = StateStore(history=1.0, timeout=1.0, max_states=3)
     for stamp_ns in (5, 1, 4, 2, 3):
         store.add_unread("ball", stamp_ns, reads.of(stamp_ns))
     assert [each.stamp_ns for each in store.window("ball", store.newest("ball"), 1.0)] == [3, 4, 5]
@@ -167,7 +167,7 @@ def test_an_excerpt_answers_as_the_whole() -> None:
         now_ns = None if rng.random() < 0.3 else int(rng.integers(130, 200))
         seconds = 1e-9 * int(rng.integers(0, 40))
         whole, other = (
-            StateStore(history=30e-9, timeout=20e-9, future_tolerance=5e-9, most_states=10) for _ in range(2)
+            StateStore(history=30e-9, timeout=20e-9, future_tolerance=5e-9, max_states=10) for _ in range(2)
         )
         for store in (whole, other):
             for each in stamps:

@@ -14,8 +14,8 @@ from contact_dynamics.plane.projection import PlaneOfMotion
 from contact_dynamics.questions import contact_modes as modes_questions
 from contact_dynamics.questions import impact as impact_questions
 from contact_dynamics.questions.contact_mode_question import ContactModeQuestion
+from contact_dynamics.questions.context import Context
 from contact_dynamics.questions.impact_question import ImpactQuestion, InTime
-from contact_dynamics.questions.knowledge import Knowledge
 from contact_dynamics.questions.problem import Problem
 from contact_dynamics.shapes import box, capsule, cylinder, sphere
 from contact_dynamics.shapes.convex import ConvexShape
@@ -24,9 +24,9 @@ from msg_adapters.impact import impact_answer_to_msg
 MASS = MassProperties(mass=0.37, I_B=8.1e-4 * np.eye(3))
 CUBE = Body(name="cube", mass_properties=MASS, shape=box(size=(0.1, 0.1, 0.1)))
 FLOOR = Surface(name="floor", p_WS_W=[0, 0, 0], normal_W=[0, 0, 1], friction=0.3, restitution=0.5)
-KNOWN = Knowledge(world=World(bodies=(CUBE,), surfaces=(FLOOR,)))
+KNOWN = Context(world=World(bodies=(CUBE,), surfaces=(FLOOR,)))
 FLAT = BodyState(p_WB_W=[0, 0, 0.05], q_WB=[0, 0, 0, 1], v_WB_W=[0, 0, -1], w_WB_W=[0, 0, 0])
-DECIDES = re.compile(r"differ by up to ([\d.e-]+) m/s and ([\d.e-]+) rad/s; want_orders lists")
+DECIDES = re.compile(r"differ by up to ([\d.e-]+) m/s and ([\d.e-]+) rad/s; include_orders lists")
 
 
 @pytest.mark.parametrize("law", RestitutionLaw)

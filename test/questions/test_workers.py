@@ -19,7 +19,7 @@ from contact_dynamics.constants import STANDARD_GRAVITY_W
 from contact_dynamics.errors import BusyError, InvalidFieldError, TookTooLongError, TooLargeError
 from contact_dynamics.questions import (
     AtTimes,
-    Knowledge,
+    Context,
     PublishedState,
     StateStore,
     TumblingQuestion,
@@ -27,7 +27,7 @@ from contact_dynamics.questions import (
     ask,
     tumbling,
 )
-from contact_dynamics.questions.effort import MOST_QUICK_FITTED, excerpt, is_quick
+from contact_dynamics.questions.effort import MAX_QUICK_FITTED, excerpt, is_quick
 from contact_dynamics.questions.workers import WorkerFault, WorkerLimits, Workers
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.shapes.convex import box
@@ -39,7 +39,7 @@ FOR_EVER = 10**10  # powers of three that no worker computes in this time
 
 @pytest.fixture(scope="module")
 def workers() -> Iterator[Workers]:
-    workers = Workers(WorkerLimits(count=1, deadline=PATIENCE_S, memory=300, most_waiting=0))
+    workers = Workers(WorkerLimits(count=1, deadline=PATIENCE_S, memory=300, max_waiting=0))
     yield workers
     workers.close()
 
@@ -50,7 +50,7 @@ def outcome(workers: Workers, answer: Callable[..., Any], question: Any, known: 
     return outcomes.get(timeout=2.0 * PATIENCE_S)
 
 
-def brick_world() -> Knowledge:
+def brick_world() -> Context:
     brick = Body(
         name="brick",
         mass_properties=MassProperties(mass=1.0, I_B=0.1 * np.eye(3)),
@@ -68,7 +68,7 @@ def brick_world() -> Knowledge:
             stamp_ns=1_000_000 * i,
         )
         states.add_unread("brick", state.stamp_ns, lambda state=state: state)  # type: ignore[misc]
-    return Knowledge(world=world, states=states, now_ns=lambda: 200_000_000)
+    return Context(world=world, states=states, now_ns=lambda: 200_000_000)
 
 
 @pytest.mark.parametrize(
@@ -115,10 +115,10 @@ def test_a_fault_comes_back_with_its_place(workers: Workers) -> None:
 
 
 def test_past_its_deadline_a_worker_is_killed_and_the_next_question_is_answered() -> None:
-    workers = Workers(WorkerLimits(count=1, deadline=PATIENCE_S, memory=300, most_waiting=1))
+    workers = Workers(WorkerLimits(count=1, deadline=PATIENCE_S, memory=300, max_waiting=1))
     assert outcome(workers, pow, 2, 5) == 32  # it is warm
     workers.close()
-    workers = Workers(WorkerLimits(count=1, deadline=2.0, memory=300, most_waiting=1))
+    workers = Workers(WorkerLimits(count=1, deadline=2.0, memory=300, max_waiting=1))
     try:
         assert isinstance(outcome(workers, pow, 3, FOR_EVER), TookTooLongError)
         deadline = time.monotonic() + PATIENCE_S
@@ -131,7 +131,7 @@ def test_past_its_deadline_a_worker_is_killed_and_the_next_question_is_answered(
 def test_a_worker_that_was_killed_while_it_waited_costs_no_question() -> None:
     """As by a kernel that is short of memory: it was not the question that is asked next."""
     others = active_children()
-    workers = Workers(WorkerLimits(count=1, deadline=PATIENCE_S, memory=300, most_waiting=1))
+    workers = Workers(WorkerLimits(count=1, deadline=PATIENCE_S, memory=300, max_waiting=1))
     try:
         for _ in range(3):
             assert outcome(workers, pow, 2, 5) == 32
@@ -143,18 +143,18 @@ def test_a_worker_that_was_killed_while_it_waited_costs_no_question() -> None:
 
 
 def test_a_worker_for_whom_there_was_no_room_is_started_when_there_is() -> None:
-    workers = Workers(WorkerLimits(count=1, deadline=PATIENCE_S, memory=300, most_waiting=1))
+    workers = Workers(WorkerLimits(count=1, deadline=PATIENCE_S, memory=300, max_waiting=1))
     before = resource.getrlimit(resource.RLIMIT_NOFILE)
     try:
         assert outcome(workers, pow, 2, 5) == 32
-        workers.limits = WorkerLimits(count=1, deadline=0.1, memory=300, most_waiting=1)
+        workers.limits = WorkerLimits(count=1, deadline=0.1, memory=300, max_waiting=1)
         lowest_free = os.dup(0)
         os.close(lowest_free)
         resource.setrlimit(resource.RLIMIT_NOFILE, (lowest_free, before[1]))
         assert isinstance(outcome(workers, pow, 3, FOR_EVER), TookTooLongError)
         assert isinstance(outcome(workers, pow, 2, 5), WorkerFault)
         resource.setrlimit(resource.RLIMIT_NOFILE, before)
-        workers.limits = WorkerLimits(count=1, deadline=PATIENCE_S, memory=300, most_waiting=1)
+        workers.limits = WorkerLimits(count=1, deadline=PATIENCE_S, memory=300, max_waiting=1)
         assert outcome(workers, pow, 2, 5) == 32
     finally:
         resource.setrlimit(resource.RLIMIT_NOFILE, before)
@@ -162,7 +162,7 @@ def test_a_worker_for_whom_there_was_no_room_is_started_when_there_is() -> None:
 
 
 def test_when_all_work_and_the_queue_is_full_a_question_is_refused_at_once() -> None:
-    workers = Workers(WorkerLimits(count=1, deadline=PATIENCE_S, memory=300, most_waiting=1))
+    workers = Workers(WorkerLimits(count=1, deadline=PATIENCE_S, memory=300, max_waiting=1))
     workers.ask(pow, 3, FOR_EVER, lambda _: None)  # type: ignore[arg-type]
     workers.ask(pow, 3, FOR_EVER, lambda _: None)  # type: ignore[arg-type]
     with pytest.raises(BusyError, match="2 questions"):
@@ -191,10 +191,10 @@ def test_what_counts_as_quick() -> None:
         p_WB_W=(0.0, 0.0, 1.0), q_WB=(0.0, 0.0, 0.0, 1.0), v_WB_W=np.zeros(3), w_WB_W=(1e9, 1e8, 1e8)
     )
     assert not is_quick(TumblingQuestion(body="brick", state=spinning, sampling=UntilContact()), known)
-    known = Knowledge(world=known.world)
+    known = Context(world=known.world)
     fit = TumblingQuestion(body="brick", state=PublishedState(fit_window=1.0))
     assert is_quick(fit, known)  # it is refused at once, since no state was published
-    for number in range(MOST_QUICK_FITTED + 1):
+    for number in range(MAX_QUICK_FITTED + 1):
         assert is_quick(fit, known)
         known.states.add("brick", at_rest(stamp_ns=1_000_000 * number))
     assert not is_quick(fit, known)

@@ -137,7 +137,7 @@ def test_stalled_disk_costs_memory_up_to_the_bound_then_messages() -> None:
     for _ in range(30):
         recorder.record("/pose", bytes(100), log_time_ns=0)
     status = recorder.status
-    assert (status.lost, status.waiting, status.most_waiting_bytes) == (20, 10, 3000)
+    assert (status.lost, status.waiting, status.max_waiting_bytes) == (20, 10, 3000)
     assert len(problems) == 1
     assert "keep up" in problems[0]
     writer.go.set()

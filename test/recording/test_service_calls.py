@@ -61,10 +61,10 @@ def test_a_lost_response_does_not_hold_up_the_rest_of_a_log() -> None:
     request, response = EventType.REQUEST_RECEIVED, EventType.RESPONSE_SENT
     events = [event(request, GID_A, 0)]  # it is never answered
     events += [event(kind, GID_A, number) for number in range(1, 20) for kind in (request, response)]
-    calls = list(service_calls(events, most_held=5))
+    calls = list(service_calls(events, max_held=5))
     assert [call.sequence_number for call in calls] == list(range(20))
     assert [call.response_event is None for call in calls] == [True] + 19 * [False]
-    first = next(service_calls(iter(events[: 2 * 6 + 1]), most_held=5))
+    first = next(service_calls(iter(events[: 2 * 6 + 1]), max_held=5))
     assert first.sequence_number == 0  # five are held, and with the sixth it goes
 
 

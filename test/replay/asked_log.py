@@ -83,11 +83,11 @@ def odometry(stamp: Any, number: int) -> Odometry:
 def questions(number: int, now: Time) -> list[Any]:
     """What depends on the newest states, and what depends on the question alone; some are refused."""
     until = PredictTumbling.Request(body_name="brick", sampling=PredictTumbling.Request.UNTIL_CONTACT)
-    fitted = PredictTumbling.Request(body_name="brick", fit_window=0.2, want_covariance=True)
-    at_stamp = PredictTumbling.Request(body_name="brick", fit_window=0.02, want_covariance=True)
+    fitted = PredictTumbling.Request(body_name="brick", fit_window=0.2, include_covariance=True)
+    at_stamp = PredictTumbling.Request(body_name="brick", fit_window=0.02, include_covariance=True)
     at_stamp.state_source, at_stamp.stamp = at_stamp.STATE_AT_STAMP, now  # after the newest state
     standing = PredictContactMode.Request(
-        state_source=PredictContactMode.Request.STATE_EXPLICIT, body_name="brick", want_margins=True
+        state_source=PredictContactMode.Request.STATE_EXPLICIT, body_name="brick", include_margins=True
     )
     standing.state.pose.position.z = 0.025
     standing.applied_wrench.force.x = 0.2 * number
@@ -115,7 +115,7 @@ def about_tosses(number: int) -> list[Any]:
     sampled.velocity_spread, sampled.spin_spread, sampled.height_spread = 0.02, 0.3, 0.001
     sampled.lasting_factors, sampled.lasting_factor_stds = [1.3], [0.1]
     return [
-        PredictToss.Request(body_name="brick", most_alternatives=[0], rate=[10.0]),
+        PredictToss.Request(body_name="brick", max_alternatives=[0], rate=[10.0]),
         sampled,
         PredictToss.Request(body_name="brick", samples=10_000),
     ]

@@ -13,7 +13,7 @@ from rosbags.rosbag2 import Writer as RosbagsWriter
 from rosbags.typesys import Stores, get_typestore
 
 from contact_dynamics import Body, BodyState, MassProperties, Surface, World
-from contact_dynamics.questions import ImpactQuestion, Knowledge, ask
+from contact_dynamics.questions import Context, ImpactQuestion, ask
 from contact_dynamics.shapes import sphere
 from contact_dynamics.tumbling import free_motion
 from msg_adapters.stamps import stamp_to_msg
@@ -48,7 +48,7 @@ THROWN = BodyState(
 
 def flight() -> list[BodyState]:
     """States that strike once; the last ones are before the second strike, which comes after 0.98 s."""
-    impact = ask(ImpactQuestion(body="ball", state=THROWN), Knowledge(world=WORLD))
+    impact = ask(ImpactQuestion(body="ball", state=THROWN), Context(world=WORLD))
     before = free_motion(BALL.mass_properties, THROWN)
     after = free_motion(BALL.mass_properties, impact.impact.state)
     states = []

@@ -83,7 +83,7 @@ def test_each_contact_phase_is_that_of_the_oracle(seed: int, friction: float, er
     one = world(friction)
     body = HeldBody(MASS, BRICK.mass_properties.I_B, BRICK.shape.vertices, friction, GRAVITY)
     solid = solid_of(BRICK, one)
-    went = toss(BRICK, thrown(seed), one, most_alternatives=0, error=error)
+    went = toss(BRICK, thrown(seed), one, max_alternatives=0, error=error)
     checked = 0
     for corners, letters, steps in phases(went):
         start = np.array(steps[0].y)

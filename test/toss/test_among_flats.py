@@ -130,7 +130,7 @@ def corners_at(body: Body, p: NDArray[np.float64], q: NDArray[np.float64]) -> ND
 
 def check_ends_well(body: Body, state: BodyState, world: World) -> Toss:
     """Check all that has to hold of a toss, by the motion that it returns."""
-    went = toss(body, state, world, horizon=HORIZON, most_alternatives=0)
+    went = toss(body, state, world, horizon=HORIZON, max_alternatives=0)
     assert went.end in {TossEnd.RESTS, TossEnd.HORIZON}
     mass = body.mass_properties
     begun = [*went.starts, *(event.seconds for event in went.events)]

@@ -76,7 +76,7 @@ def sticks(mode: Mode | None) -> bool:
     return mode is not None and len(mode) == 2 and not any(one.slides for one in mode)
 
 
-def least_friction(case: OnEdge) -> float | None:
+def min_friction(case: OnEdge) -> float | None:
     """The friction from which on both corners stick, if they do for any."""
     low, high = 1e-3, 50.0
     if not sticks(case.mode(high)):
@@ -127,7 +127,7 @@ def test_an_edge_whose_friction_hardly_suffices_begins_to_slide_as_coulomb_says(
     swept = 0
     for seed in range(12 * block, 12 * (block + 1)):
         case = on_edge(seed)
-        least = least_friction(case)
+        least = min_friction(case)
         if least is None:
             continue
         swept += 1

@@ -84,7 +84,7 @@ def test_a_tip_in_a_groove_turns_as_on_a_ball_joint() -> None:
     p = -turn.apply(TIP)
     state = BodyState(p_WB_W=p, q_WB=turn.as_quat(), v_WB_W=np.cross(w, p), w_WB_W=w)
     seconds = 0.15
-    went = toss(body, state, world, horizon=seconds, most_alternatives=0)
+    went = toss(body, state, world, horizon=seconds, max_alternatives=0)
     assert went.end == TossEnd.HORIZON
     assert [(each.kind, each.mode) for each in went.events] == [(TossEventKind.NEW_MODE, "ff")]
     about_tip = body.mass_properties.I_B + (TIP @ TIP) * np.eye(3) - np.outer(TIP, TIP)
@@ -128,7 +128,7 @@ def test_bodies_in_grooves_come_to_an_end_and_gain_no_energy(seed: int) -> None:
         w_WB_W=5.0 * rng.normal(size=3),
     )
     world = groove(rng.uniform(0.3, 1.1), rng.uniform(0.1, 1.5), restitution=0.3 * rng.random())
-    went = toss(body, state, world, horizon=1.5, most_alternatives=0)
+    went = toss(body, state, world, horizon=1.5, max_alternatives=0)
     times = np.linspace(0.0, went.seconds, 100)
     moved = went.at(times)
     energies = []

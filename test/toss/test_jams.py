@@ -53,7 +53,7 @@ def test_a_cube_in_a_groove_does_not_freeze_at_one_instant(
 ) -> None:
     """Two corners settled in turn for ever at 0.50232 s, and one mode came again and again at 0.24659 s."""
     state = BodyState(p_WB_W=[0, 0, 0.3], q_WB=np.array(q) / np.linalg.norm(q), v_WB_W=v, w_WB_W=w)
-    went = toss(CUBE, state, groove(0.5), most_alternatives=0)
+    went = toss(CUBE, state, groove(0.5), max_alternatives=0)
     assert went.end == TossEnd.RESTS
     assert len(went.events) < 200
     assert went.energy.lost_in_strikes > 0.0
@@ -156,7 +156,7 @@ def test_a_body_without_friction_rests_in_a_corner() -> None:
     state = BodyState(
         p_WB_W=[0, 0, 0.25], q_WB=[0, 0.3826834, 0, 0.9238795], v_WB_W=[0, 0, 0], w_WB_W=[0, 0, 0]
     )
-    went = toss(CUBE, state, room, horizon=5.0, most_alternatives=0)
+    went = toss(CUBE, state, room, horizon=5.0, max_alternatives=0)
     assert went.end == TossEnd.RESTS
     assert went.state.p_WB_W[2] == pytest.approx(0.05 * math.sqrt(2.0), abs=1e-6)
 

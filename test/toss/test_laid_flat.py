@@ -103,7 +103,7 @@ def test_a_sample_rests_where_the_toss_does(seed: int) -> None:
         w_WB_W=chance.uniform(-1.0, 1.0, 3),
     )
     world = World(bodies=(body,), surfaces=(FLOOR,))
-    alone = toss(body, state, world, most_alternatives=0)
+    alone = toss(body, state, world, max_alternatives=0)
     told = sampled_toss(body, state, world, count=1, to_rest=True, law=RestitutionLaw.POISSON, horizon=5.0)
     assert alone.end == TossEnd.RESTS
     assert told.rest is not None

@@ -12,7 +12,7 @@ from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.impact import RestitutionLaw
 from contact_dynamics.shapes import box
 from contact_dynamics.toss import TossUncertainty, sampled_toss
-from contact_dynamics.toss.uncertainty import MOST_INERTIA_SPREAD, MOST_SPREAD
+from contact_dynamics.toss.uncertainty import MAX_INERTIA_SPREAD, MAX_SPREAD
 
 SIZE = (0.1, 0.08, 0.06)
 BRICK = Body(
@@ -31,7 +31,7 @@ def spread(variance: float, *, rows: int = 9, only: int | None = None) -> np.nda
     matrix = np.zeros((rows, rows))
     each = range(rows) if only is None else [only]
     for k in each:
-        matrix[k, k] = min(variance, MOST_INERTIA_SPREAD**2) if k == 5 and only is None else variance
+        matrix[k, k] = min(variance, MAX_INERTIA_SPREAD**2) if k == 5 and only is None else variance
     return matrix
 
 
@@ -52,13 +52,13 @@ def ask(uncertainty: TossUncertainty, covariance: np.ndarray = EXACT_STATE) -> N
 @pytest.mark.parametrize(
     "given",
     [
-        {"velocity": MOST_SPREAD},
-        {"spin": MOST_SPREAD},
+        {"velocity": MAX_SPREAD},
+        {"spin": MAX_SPREAD},
         {"height": 1.0},
         {"covariance": spread(1.0)},
-        {"covariance": spread(MOST_SPREAD**2, only=0)},
-        {"covariance": spread(MOST_INERTIA_SPREAD**2, only=5)},
-        {"lasting_factors": [MOST_SPREAD], "lasting_factor_stds": [MOST_SPREAD]},
+        {"covariance": spread(MAX_SPREAD**2, only=0)},
+        {"covariance": spread(MAX_INERTIA_SPREAD**2, only=5)},
+        {"lasting_factors": [MAX_SPREAD], "lasting_factor_stds": [MAX_SPREAD]},
     ],
 )
 def test_the_largest_are_sampled(given: dict[str, Any]) -> None:
@@ -68,7 +68,7 @@ def test_the_largest_are_sampled(given: dict[str, Any]) -> None:
 @pytest.mark.parametrize("field", ["velocity", "spin", "height"])
 def test_a_larger_spread_is_refused_by_name(field: str) -> None:
     with pytest.raises(InvalidFieldError, match=rf"{field}: found .*, allowed is a number in \[0, 1e\+06\]"):
-        TossUncertainty(**{field: np.nextafter(MOST_SPREAD, np.inf)})
+        TossUncertainty(**{field: np.nextafter(MAX_SPREAD, np.inf)})
 
 
 def test_a_larger_variance_is_refused_by_name() -> None:

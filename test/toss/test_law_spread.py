@@ -42,13 +42,13 @@ def changes_of_many() -> np.ndarray:
         law=RestitutionLaw.POISSON,
         horizon=5.0,
     ).ghosts
-    strike = toss(BRICK, STATE, WORLD, most_events=1, most_alternatives=0).events[0].state
+    strike = toss(BRICK, STATE, WORLD, max_events=1, max_alternatives=0).events[0].state
     return np.hstack([found.v_WB_W - strike.v_WB_W, found.w_WB_W - strike.w_WB_W])
 
 
 def changes_of_one() -> np.ndarray:
     """Of the same strike, asked for one sample after the other."""
-    event = toss(BRICK, STATE, WORLD, most_events=1, most_alternatives=0).events[0]
+    event = toss(BRICK, STATE, WORLD, max_events=1, max_alternatives=0).events[0]
     after = [*event.state.p_WB_W, *event.state.q_WB, *event.state.v_WB_W, *event.state.w_WB_W]
     before = [*after[:7], *STATE.v_WB_W, *STATE.w_WB_W]
     spread = LawSpread(UNCERTAINTY, 60, np.random.default_rng(0))
@@ -59,7 +59,7 @@ def changes_of_one() -> np.ndarray:
 
 @pytest.mark.parametrize("changes_of", [changes_of_many, changes_of_one])
 def test_changes_of_spin_are_those_of_an_impulse_that_changes_the_velocity(changes_of: object) -> None:
-    event = toss(BRICK, STATE, WORLD, most_events=1, most_alternatives=0).events[0]
+    event = toss(BRICK, STATE, WORLD, max_events=1, max_alternatives=0).events[0]
     R = event.state.R_WB
     inertia_W = R @ BRICK.mass_properties.I_B @ R.T
     changes = changes_of()  # type: ignore[operator]

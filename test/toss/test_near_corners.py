@@ -94,7 +94,7 @@ def test_two_corners_in_place_of_each_at_any_distance_come_to_rest(seed: int) ->
         w_WB_W=5.0 * chance.normal(size=3),
     )
     body = brick(np.concatenate([corners, other]), size)
-    went = toss(body, thrown, world(body), most_alternatives=0)
+    went = toss(body, thrown, world(body), max_alternatives=0)
     assert went.end is TossEnd.RESTS
     heights = (went.state.p_WB_W + body.shape.vertices @ went.state.R_WB.T)[:, 2]
     assert -2.0 * SAME_CORNER < heights.min() < 2.0 * SAME_CORNER

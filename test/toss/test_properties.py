@@ -47,7 +47,7 @@ def energies(body: Body, went: Toss, times: np.ndarray) -> np.ndarray:
 @pytest.mark.parametrize("seed", range(12))
 def test_energy_never_grows_nothing_penetrates_and_rest_is_rest(seed: int) -> None:
     body, state, world = drawn(seed)
-    went = toss(body, state, world, most_alternatives=0)
+    went = toss(body, state, world, max_alternatives=0)
     assert went.end == TossEnd.RESTS
     times = np.linspace(0.0, went.seconds, 200)
     # A step may be off by 1e-7 m/s, and bodies here have some 1 kg and 3 m/s.
@@ -72,7 +72,7 @@ def test_energy_never_grows_nothing_penetrates_and_rest_is_rest(seed: int) -> No
 @pytest.mark.parametrize("seed", range(6))
 def test_the_motion_has_no_gaps_but_for_impulses(seed: int) -> None:
     body, state, world = drawn(seed)
-    went = toss(body, state, world, most_alternatives=0)
+    went = toss(body, state, world, max_alternatives=0)
     for time in sorted({event.seconds for event in went.events}):
         before, after = went.state_at(max(time - 1e-9, 0.0)), went.state_at(time)
         assert after.p_WB_W == pytest.approx(before.p_WB_W, abs=1.1e-6)
@@ -97,7 +97,7 @@ def test_the_result_does_not_depend_on_the_steps() -> None:
         w_WB_W=[0.0, 0.0, 0.0],
     )
     world = World(surfaces=(Surface(**FLOOR, friction=0.3, restitution=0.0),), gravity_W=[0, 0, -G])
-    coarse, fine = (toss(body, state, world, most_alternatives=0, error=error) for error in (1e-7, 1e-11))
+    coarse, fine = (toss(body, state, world, max_alternatives=0, error=error) for error in (1e-7, 1e-11))
     first = next(event.seconds for event in fine.strikes)
     times = np.linspace(0.0, 0.999 * first, 40)
     assert coarse.at(times).p_WB_W == pytest.approx(fine.at(times).p_WB_W, abs=2e-6)
@@ -115,7 +115,7 @@ def test_a_box_that_lands_flat_tells_that_the_order_of_its_corners_is_open() -> 
     )
     state = BodyState(p_WB_W=[0, 0, 0.1], q_WB=[0, 0, 0, 1], v_WB_W=[0.3, 0, 0], w_WB_W=[0, 0, 0])
     world = World(surfaces=(Surface(**FLOOR, friction=0.3, restitution=0.2),), gravity_W=[0, 0, -G])
-    went = toss(cube, state, world, most_alternatives=3)
+    went = toss(cube, state, world, max_alternatives=3)
     first = went.undecided[0]
     assert (first.reason, first.options, first.taken) == (UndecidedReason.STRIKE_TOGETHER, 4, 0)
     assert first.seconds == pytest.approx(math.sqrt(2.0 * 0.05 / G), abs=1e-9)
@@ -128,14 +128,14 @@ def test_a_box_that_lands_flat_tells_that_the_order_of_its_corners_is_open() -> 
 
 def test_the_same_question_has_the_same_answer_to_the_last_bit() -> None:
     body, state, world = drawn(3)
-    once, again = (toss(body, state, world, most_alternatives=0) for _ in range(2))
+    once, again = (toss(body, state, world, max_alternatives=0) for _ in range(2))
     assert once.state.p_WB_W.tolist() == again.state.p_WB_W.tolist()
     assert [event.seconds for event in once.events] == [event.seconds for event in again.events]
 
 
 def test_bad_input_is_refused_by_name() -> None:
     body, state, world = drawn(0)
-    for wrong in ({"horizon": 0.0}, {"most_events": 0}, {"most_alternatives": -1}, {"error": math.nan}):
+    for wrong in ({"horizon": 0.0}, {"max_events": 0}, {"max_alternatives": -1}, {"error": math.nan}):
         (field,) = wrong
         with pytest.raises(InvalidFieldError, match=field):
             toss(body, state, world, **wrong)  # type: ignore[arg-type]
@@ -153,7 +153,7 @@ def test_bad_input_is_refused_by_name() -> None:
 
 def test_a_ball_that_rolls_on_for_years_ends_at_the_bound_on_steps(monkeypatch: pytest.MonkeyPatch) -> None:
     """Each step is short beside a turn, so a horizon without end would take as long."""
-    monkeypatch.setattr("contact_dynamics.toss.following.MOST_STEPS", 200)
+    monkeypatch.setattr("contact_dynamics.toss.following.MAX_STEPS", 200)
     ball = Body(
         name="ball",
         mass_properties=inertia.sphere(radius=0.05, mass=0.3).mass_properties,
@@ -162,6 +162,6 @@ def test_a_ball_that_rolls_on_for_years_ends_at_the_bound_on_steps(monkeypatch: 
     floor = Surface(**FLOOR, friction=0.5, restitution=0.0)
     state = BodyState(p_WB_W=[0, 0, 0.05], q_WB=[0, 0, 0, 1], v_WB_W=[1, 0, 0], w_WB_W=[0, 0, 0])
     went = toss(ball, state, World(surfaces=(floor,)), horizon=1e9)
-    assert went.end == TossEnd.MOST_EVENTS
+    assert went.end == TossEnd.MAX_EVENTS
     assert 1.0 < went.seconds < 1e4
     assert went.state.v_WB_W[0] == pytest.approx(5.0 / 7.0, rel=1e-6)  # it rolls

@@ -35,7 +35,7 @@ def errors(index: int, path: Path) -> Errors:
     recorded = read_cube_toss(path, index=index)
     world = World(surfaces=(recorded.surface,), gravity_W=recorded.gravity_W)
     state = recorded.state(EARLY)
-    went = toss(recorded.body, state, world, most_alternatives=0)
+    went = toss(recorded.body, state, world, max_alternatives=0)
     assert went.end == TossEnd.RESTS
     landing = next_landing(recorded.body, state, world, horizon=2.0)
     assert landing is not None

@@ -63,7 +63,7 @@ def test_exact_samples_strike_as_the_toss_does(seed: int) -> None:
         depth=3,
         horizon=5.0,
     )
-    events = toss(BRICK, state, WORLD, most_alternatives=0).events
+    events = toss(BRICK, state, WORLD, max_alternatives=0).events
     strikes = [event for event in events if event.kind == TossEventKind.STRIKES]
     followed = int((many.corners[:, 0] >= 0).sum())
     assert followed == 3 or many.ends[0] == SampleEnd.STAYS

@@ -48,7 +48,7 @@ def thrown(chance: np.random.Generator) -> BodyState:
 
 def first_strikes(state: BodyState, world: World) -> list[TossEvent]:
     """The first two strikes, with what happens between them left out."""
-    went = toss(CUBE, state, world, most_events=8, most_alternatives=0)
+    went = toss(CUBE, state, world, max_events=8, max_alternatives=0)
     return [event for event in went.events if event.kind == TossEventKind.STRIKES][:2]
 
 
@@ -107,7 +107,7 @@ def test_regions_hold_where_the_law_is_off_by_impulses_at_the_contact() -> None:
     held = []
     while len(held) < 60:
         state = thrown(chance)
-        went = toss(CUBE, state, WORLD, most_events=1, most_alternatives=0)
+        went = toss(CUBE, state, WORLD, max_events=1, max_alternatives=0)
         (first,) = went.events
         tail = 0.8881 * np.sqrt(3.0 / chance.chisquare(3.0))
         push = tail * np.sqrt(0.9) * velocity * chance.standard_normal(3)
@@ -152,7 +152,7 @@ def test_regions_hold_where_the_law_is_off_by_impulses_at_the_contact() -> None:
 
 def recorded(state: BodyState, seconds: float, chance: np.random.Generator) -> Observed | None:
     """What is found in a made recording of a toss, or None if it has no first strike."""
-    went = toss(CUBE, state, WORLD, horizon=seconds, most_alternatives=0)
+    went = toss(CUBE, state, WORLD, horizon=seconds, max_alternatives=0)
     times = np.arange(chance.uniform(0.0, 1.0 / RATE), seconds, 1.0 / RATE)
     states = [
         replace(

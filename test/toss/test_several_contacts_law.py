@@ -35,7 +35,7 @@ def dropped(law: SeveralContactsLaw, restitution_law: RestitutionLaw = Restituti
         several_contacts_law=law,
         restitution_law=restitution_law,
         horizon=0.25,
-        most_alternatives=0,
+        max_alternatives=0,
     )
 
 
@@ -71,7 +71,7 @@ def test_the_strikes_of_one_instant_are_those_of_several_impact(law: SeveralCont
         v_WB_W=[0.3, 0.4, -1.0],
         w_WB_W=[0, 0.5, 0],
     )
-    went = toss(brick, state, WORLD, several_contacts_law=law, horizon=0.3, most_alternatives=0)
+    went = toss(brick, state, WORLD, several_contacts_law=law, horizon=0.3, max_alternatives=0)
     time = went.events[0].seconds
     struck = [event for event in went.events if event.seconds == time]
     assert {event.kind for event in struck} >= {TossEventKind.STRIKES}

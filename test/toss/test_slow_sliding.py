@@ -13,7 +13,7 @@ from contact_dynamics.world import Body, Surface, World
 
 SIZE = (0.1, 0.12, 0.07)
 PROPERTIES = inertia.box(size=SIZE, mass=0.4).mass_properties
-MOST_STEPS = 1500  # the two tosses took 33 000 and 12 000 while sliding went on, and take 100 to 700
+MAX_STEPS = 1500  # the two tosses took 33 000 and 12 000 while sliding went on, and take 100 to 700
 
 
 def thrown(seed: int, *, uneven: bool, error: float) -> Toss:
@@ -36,7 +36,7 @@ def thrown(seed: int, *, uneven: bool, error: float) -> Toss:
     flat = Surface(
         name="flat", p_WS_W=[0, 0, 0], normal_W=normal / np.linalg.norm(normal), friction=0.8, restitution=0.3
     )
-    return toss(body, start, World(surfaces=(flat,)), error=error, most_alternatives=0)
+    return toss(body, start, World(surfaces=(flat,)), error=error, max_alternatives=0)
 
 
 @pytest.mark.parametrize("error", [1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9])
@@ -44,9 +44,9 @@ def thrown(seed: int, *, uneven: bool, error: float) -> Toss:
 def test_a_corner_that_slides_slowly_stops_in_few_steps(seed: int, uneven: bool, error: float) -> None:  # noqa: FBT001
     went = thrown(seed, uneven=uneven, error=error)
     assert went.end is TossEnd.RESTS
-    assert len(went.pieces) < MOST_STEPS * max(1.0, (1e-7 / error) ** 0.25)
+    assert len(went.pieces) < MAX_STEPS * max(1.0, (1e-7 / error) ** 0.25)
 
 
 def test_drawn_tosses_take_few_steps() -> None:
     for seed in range(2000, 2040):
-        assert len(thrown(seed, uneven=seed % 2 == 1, error=1e-7).pieces) < MOST_STEPS
+        assert len(thrown(seed, uneven=seed % 2 == 1, error=1e-7).pieces) < MAX_STEPS

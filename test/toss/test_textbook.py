@@ -200,7 +200,7 @@ def test_a_plate_that_is_tilted_past_its_edge_tips_over_and_one_before_it_rocks_
     for angle, face in ((balance + 0.02, 0), (balance - 0.02, 2)):
         q = [0.0, math.sin(0.5 * angle), 0.0, math.cos(0.5 * angle)]
         height = 0.5 * (size[2] * math.cos(angle) + size[0] * math.sin(angle))
-        went = toss(plate, at([0.0, 0.0, height], [0, 0, 0], [0, 0, 0], q), rough, most_alternatives=0)
+        went = toss(plate, at([0.0, 0.0, height], [0, 0, 0], [0, 0, 0], q), rough, max_alternatives=0)
         assert went.end == TossEnd.RESTS
         assert abs(went.resting_normal_B[face]) == pytest.approx(1.0, abs=1e-9)
         assert went.state.p_WB_W[2] == pytest.approx(0.5 * size[face], abs=1e-9)
@@ -210,7 +210,7 @@ def test_a_cube_that_slides_into_a_wall_strikes_it_and_rests() -> None:
     wall = Surface(name="wall", p_WS_W=[0.5, 0, 0], normal_W=[-1.0, 0, 0], friction=0.0, restitution=0.5)
     cube = brick((0.1, 0.1, 0.1))
     both = World(surfaces=(floor(friction=0.2, restitution=0.0), wall), gravity_W=[0, 0, -G])
-    went = toss(cube, at([0, 0, 0.05], [2.0, 0, 0], [0, 0, 0]), both, most_alternatives=0)
+    went = toss(cube, at([0, 0, 0.05], [2.0, 0, 0], [0, 0, 0]), both, max_alternatives=0)
     struck = [event for event in went.strikes if "wall" in event.surfaces]
     speed = math.sqrt(2.0**2 - 2.0 * 0.2 * G * 0.45)
     assert struck[0].seconds == pytest.approx((2.0 - speed) / (0.2 * G), abs=1e-7)

@@ -190,7 +190,7 @@ def test_tosses_that_go_on_together_end_where_they_do_alone() -> None:
         body.shape,
         RestitutionLaw.POISSON,
         horizon=3.0,
-        most_events=300,
+        max_events=300,
         error=SAMPLED_PHASE_ERROR,
         flat_after=2,
         has_pieces=False,

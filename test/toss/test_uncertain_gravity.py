@@ -83,7 +83,7 @@ def test_made_tosses_are_in_the_regions_that_fits_to_their_flights_lead_to() -> 
             w_WB_W=chance.normal(0.0, 3.0, 3),
         )
         own = WORLD.gravity_W + np.append(chance.normal(0.0, SIDEWAYS, 2), 0.0)
-        went = toss(BRICK, state, replace(WORLD, gravity_W=own), most_alternatives=0, most_events=1)
+        went = toss(BRICK, state, replace(WORLD, gravity_W=own), max_alternatives=0, max_events=1)
         (strike,) = went.events
         assert strike.kind == TossEventKind.STRIKES
         flight = free_motion(BRICK.mass_properties, state, gravity_W=own)

@@ -11,7 +11,7 @@ from contact_dynamics.plane.projection import PlaneOfMotion
 from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.viewing import palette
 from contact_dynamics.viewing.contact_modes import (
-    MOST_MODES,
+    MAX_MODES,
     color_of_letters,
     draw_contact_modes,
     letters_of_contacts,
@@ -100,7 +100,7 @@ def test_each_mode_is_an_entity_of_its_own(
     recording: rr.RecordingStream, read: Callable[[], Drawn], body: Body, two_contacts: ContactSet
 ) -> None:
     up = np.array([[0.0, 0.0, 1.0], [0.0, 0.0, 1.0]])
-    many = [mode_of("ff", up * (i + 1)) for i in range(MOST_MODES + 2)]
+    many = [mode_of("ff", up * (i + 1)) for i in range(MAX_MODES + 2)]
     answer = contact_mode_answer(AT_REST, two_contacts, *many)
     draw_contact_modes(recording, convex_shape(body.vertices_B), answer)
     drawn = read()

@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from contact_dynamics.contact.contact import ContactSet
-from contact_dynamics.diagrams.planar_modes import MOST_SETS
+from contact_dynamics.diagrams.planar_modes import MAX_SETS
 from contact_dynamics.diagrams.planar_scene import silhouette
 from contact_dynamics.diagrams.shape import convex_shape
 from contact_dynamics.plane.projection import PlaneOfMotion
-from contact_dynamics.questions import ContactModeQuestion, Knowledge, Problem
+from contact_dynamics.questions import ContactModeQuestion, Context, Problem
 from contact_dynamics.questions.contact_modes import answer
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.viewing.picture import Picture
@@ -57,8 +57,8 @@ def answer_of(
         gravity_W=np.zeros(3),
         problem=Problem.PLANAR,
         plane=PLANE,
-        want_margins=True,
-        want_wrenches=True,
+        include_margins=True,
+        include_wrenches=True,
     )
     return answer(question)
 
@@ -117,7 +117,7 @@ def test_a_map_of_too_many_modes_is_left_out(
 ) -> None:
     found = answer_of(force=ALONG)
     assert found.wrench_sets is not None
-    many = replace(found, wrench_sets=found.wrench_sets[:1] * (MOST_SETS + 1))
+    many = replace(found, wrench_sets=found.wrench_sets[:1] * (MAX_SETS + 1))
     assert draw_planar_map(recording, many, PLANE, None) is None
     drawn = read()
     assert drawn.last("/mode_map", "Clear:is_recursive") == [True]
@@ -154,9 +154,9 @@ def test_the_force_dual_shows_the_wrench_in_question_and_the_acceleration_centre
         torque_W=[0.0, 0.1 * weight, 0.0],
         problem=Problem.PLANAR,
         plane=PLANE,
-        want_wrenches=True,
+        include_wrenches=True,
     )
-    found = answer(question, Knowledge(world=world))
+    found = answer(question, Context(world=world))
     assert [mode.mode for mode in found.modes] == ["sf"]
     picture = Picture(recording, world, surface_side=1.0)
     for stamp_ns in (1, 2):

@@ -13,8 +13,8 @@ from contact_dynamics.plane.projection import PlaneOfMotion
 from contact_dynamics.questions import (
     AtRate,
     ContactModeQuestion,
+    Context,
     ImpactQuestion,
-    Knowledge,
     Problem,
     TossQuestion,
     TossSampling,
@@ -53,12 +53,12 @@ def draw_tumbling(picture: Picture, world: World, read_back: Callable[[Any], Any
     question = TumblingQuestion(
         body="brick", state=FALLING, sampling=AtRate(rate=50.0, duration=0.5), curve_points=40
     )
-    answer = tumbling.answer(question, Knowledge(world=world))
+    answer = tumbling.answer(question, Context(world=world))
     picture.show_tumbling(read_back(answer))
 
 
 def draw_impact(picture: Picture, world: World, read_back: Callable[[Any], Any]) -> None:
-    answer = impact.answer(ImpactQuestion(body="brick", state=FALLING), Knowledge(world=world))
+    answer = impact.answer(ImpactQuestion(body="brick", state=FALLING), Context(world=world))
     picture.show_impact(read_back(answer))
 
 
@@ -78,21 +78,21 @@ def draw_modes(picture: Picture, world: World, read_back: Callable[[Any], Any]) 
         force_W=[1.5, 0.0, 0.0],
         problem=Problem.PLANAR,
         plane=SEEN_FROM_THE_SIDE,
-        want_margins=True,
-        want_wrenches=True,
-        want_statics=True,
+        include_margins=True,
+        include_wrenches=True,
+        include_statics=True,
     )
-    picture.show_contact_modes(read_back(contact_modes.answer(question, Knowledge(world=world))))
+    picture.show_contact_modes(read_back(contact_modes.answer(question, Context(world=world))))
 
 
 def draw_toss(picture: Picture, world: World, read_back: Callable[[Any], Any]) -> None:
     question = TossQuestion(
         body="brick",
         state=UncertainState(state=FALLING, covariance=1e-4 * np.eye(12)),
-        most_alternatives=1,
+        max_alternatives=1,
         sampling=TossSampling(count=25),
     )
-    picture.show_toss(read_back(toss.answer(question, Knowledge(world=world))))
+    picture.show_toss(read_back(toss.answer(question, Context(world=world))))
 
 
 PAIRS = {

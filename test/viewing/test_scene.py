@@ -14,7 +14,7 @@ from contact_dynamics.shapes.obstacle import Obstacle
 from contact_dynamics.viewing.entities import body_entity
 from contact_dynamics.viewing.picture import Picture
 from contact_dynamics.viewing.scene import (
-    MOST_GRID_LINES,
+    MAX_GRID_LINES,
     body_parts,
     draw_axes,
     surface_parts,
@@ -54,7 +54,7 @@ def test_a_surface_is_a_square_in_its_plane_below_the_centre(
     foot = corners.mean(axis=0)
     np.testing.assert_allclose(np.cross(center - foot, TILTED.normal_W), np.zeros(3), atol=10 * tolerance)
     grid = drawn.array("/world/surfaces/ramp/grid", "LineStrips3D:strips")
-    assert 2 <= len(grid) <= 2 * (MOST_GRID_LINES + 2)
+    assert 2 <= len(grid) <= 2 * (MAX_GRID_LINES + 2)
     np.testing.assert_allclose(TILTED.gaps(grid), np.zeros(grid.shape[:2]), atol=tolerance)
     distances = np.abs((grid - foot) @ np.array(tangents_near_x(TILTED.normal_W)).T).max()
     assert distances <= 0.5 * side * (1.0 + 1e-5) + tolerance

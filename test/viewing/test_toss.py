@@ -11,10 +11,10 @@ import pytest
 from contact_dynamics.diagrams.shape import convex_shape
 from contact_dynamics.diagrams.toss_tree import tree_of
 from contact_dynamics.diagrams.toss_words import toss_in_words
-from contact_dynamics.questions import Knowledge, TossQuestion, TossSampling, UncertainState, ask
+from contact_dynamics.questions import Context, TossQuestion, TossSampling, UncertainState, ask
 from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.toss import TossEventKind
-from contact_dynamics.viewing.toss import MOST_STRIKING, draw_toss
+from contact_dynamics.viewing.toss import MAX_STRIKING, draw_toss
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -36,10 +36,10 @@ def thrown(world: World) -> TossAnswer:
     question = TossQuestion(
         body="brick",
         state=UncertainState(state=state, covariance=4e-4 * np.eye(12)),
-        most_alternatives=1,
+        max_alternatives=1,
         sampling=TossSampling(count=40),
     )
-    return ask(question, Knowledge(world=world))
+    return ask(question, Context(world=world))
 
 
 def test_path_strikes_and_tree_are_those_of_the_answer(
@@ -69,7 +69,7 @@ def test_path_strikes_and_tree_are_those_of_the_answer(
     assert np.mean(begin, axis=(0, 1)) == pytest.approx(answer.toss.trajectory.p_WB_W[0], abs=1e-6)
     assert f"corner {answer.toss.events[0].corners[0]} strikes" in nodes[0].text
     outlines = drawn.array(f"{TOSS}/samples/strikes", "LineStrips3D:strips")
-    shown = (told.ghosts.strikes > 0) & (told.ghosts.samples < MOST_STRIKING)
+    shown = (told.ghosts.strikes > 0) & (told.ghosts.samples < MAX_STRIKING)
     assert len(outlines) == 12 * np.count_nonzero(shown)
 
 

@@ -13,8 +13,8 @@ from contact_dynamics.tumbling import free_motion
 from contact_dynamics.viewing import palette
 from contact_dynamics.viewing.trajectory import (
     DEVIATIONS,
-    MOST_OUTLINES,
-    MOST_PATH_POINTS,
+    MAX_OUTLINES,
+    MAX_PATH_POINTS,
     draw_trajectory,
 )
 
@@ -101,14 +101,14 @@ def test_what_no_double_holds_is_not_drawn(
     assert read().last(f"{PREDICTED}/uncertainty", "Ellipsoids3D:centers") == []
 
 
-@pytest.mark.parametrize("samples", [1, 2, 3, 50 * MOST_PATH_POINTS + 7])
+@pytest.mark.parametrize("samples", [1, 2, 3, 50 * MAX_PATH_POINTS + 7])
 def test_any_number_of_samples_keeps_both_ends(
     recording: rr.RecordingStream, read: Callable[[], Drawn], body: Body, state: BodyState, samples: int
 ) -> None:
     trajectory = free_motion(body.mass_properties, state).at(np.linspace(0.0, 0.5, samples))
     draw_trajectory(recording, "brick", convex_shape(body.vertices_B), trajectory)
     path = read().array(f"{PREDICTED}/path", "LineStrips3D:strips")[0]
-    assert len(path) == min(samples, MOST_PATH_POINTS)
+    assert len(path) == min(samples, MAX_PATH_POINTS)
     np.testing.assert_allclose(path[[0, -1]], trajectory.p_WB_W[[0, -1]], atol=1e-6)
 
 
@@ -134,7 +134,7 @@ def test_a_body_without_shape_has_a_path_all_the_same(
     assert drawn.last(f"{PREDICTED}/end", "LineStrips3D:strips") == []
 
 
-@pytest.mark.parametrize(("speed", "count"), [(0.0, 0), (1.0, 0), (10.0, 2), (1000.0, MOST_OUTLINES)])
+@pytest.mark.parametrize(("speed", "count"), [(0.0, 0), (1.0, 0), (10.0, 2), (1000.0, MAX_OUTLINES)])
 def test_a_longer_path_has_more_outlines(
     recording: rr.RecordingStream, read: Callable[[], Drawn], *, body: Body, speed: float, count: int
 ) -> None:

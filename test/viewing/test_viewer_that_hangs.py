@@ -14,7 +14,7 @@ import pytest
 import rerun as rr
 
 from contact_dynamics.viewing.kept_recording import KeptRecording
-from contact_dynamics.viewing.live_viewer import MOST_BEHIND, LiveViewer
+from contact_dynamics.viewing.live_viewer import MAX_BEHIND, LiveViewer
 from contact_dynamics.viewing.measured import set_time
 from contact_dynamics.viewing.ports import LOCAL, connection_problem, local_url
 from contact_dynamics.viewing.viewer_process import viewer_executable
@@ -59,14 +59,14 @@ def test_nothing_is_drawn_to_it_until_it_goes_on(server: subprocess.Popen[bytes]
     url = local_url(free_port)
     recording = KeptRecording()
     viewer = LiveViewer(recording, url, on_problem=told.append)
-    for _ in range(2 * MOST_BEHIND):  # it keeps up
+    for _ in range(2 * MAX_BEHIND):  # it keeps up
         draw(recording, 1)
         viewer.look()
         time.sleep(0.01)
     assert told == []
     server.send_signal(signal.SIGSTOP)
     draw(recording, 100)  # more than the sockets take
-    for _ in range(MOST_BEHIND):
+    for _ in range(MAX_BEHIND):
         viewer.look()
     assert told == [f"the viewer at {url} hangs: it gets the picture when it goes on"]
     assert viewer.hangs

@@ -42,14 +42,14 @@ class BoundedContact(NamedTuple):
     Attributes:
         normal: The row of its normal acceleration, and the wrench of a unit normal force.
         tangent: The row of its tangential acceleration, and the wrench of a unit tangential force.
-        least_friction: The smallest coefficient of friction in the box.
-        most_friction: The largest coefficient of friction in the box.
+        min_friction: The smallest coefficient of friction in the box.
+        max_friction: The largest coefficient of friction in the box.
     """
 
     normal: Bounded
     tangent: Bounded
-    least_friction: float
-    most_friction: float
+    min_friction: float
+    max_friction: float
 
     def edges(self, *slopes: float) -> Bounded:
         """Return the wrenches of forces with f_n = 1 and f_t = each of ``slopes``."""

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from contact_dynamics.contact_modes.planar.problem import ContactRow, PlanarCase
     from contact_dynamics.plane.types import Vector2
 
-_MOST_EQUATIONS: Final = 3
+_MAX_EQUATIONS: Final = 3
 """A planar body has three freedoms, so no more equations can be independent."""
 
 _DIRECTION: Final = {LEFT: -1.0, RIGHT: 1.0}
@@ -100,7 +100,7 @@ class IndependentModes:
         return forces if refused is None else refused.by_more_than_rounding
 
     def _unknowns(self, letters: Letters) -> list[_Unknown] | None:
-        if len(letters) > _MOST_EQUATIONS or self._never_slips:
+        if len(letters) > _MAX_EQUATIONS or self._never_slips:
             return None
         equations: list[_Equation] = []
         for letter in letters:
@@ -108,7 +108,7 @@ class IndependentModes:
             if known is None:
                 known = self._equations[letter] = self._equations_of(*letter)
             equations += known
-        if len(equations) > _MOST_EQUATIONS:
+        if len(equations) > _MAX_EQUATIONS:
             return None
         responses = _solved(equations)
         if responses is None:

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from contact_dynamics.contact_modes.planar.result import PlanarMode
     from contact_dynamics.validation import FloatArray
 
-_MOST_EQUATIONS: Final = 3
+_MAX_EQUATIONS: Final = 3
 """A planar body has three freedoms."""
 
 _INSIDE: Final = 0.99
@@ -45,7 +45,7 @@ def holds_everywhere(problem: PlanarContactProblem, mode: PlanarMode, box: Conta
     """Return whether it is proven that a consistent mode is consistent everywhere in a box."""
     contacts = bounded_contacts(problem, box)
     equations = sum({SEPARATES: 0, STICKS: 2}.get(letter, 1) for letter in mode.mode)
-    if equations <= _MOST_EQUATIONS:
+    if equations <= _MAX_EQUATIONS:
         return _solves_everywhere(problem, mode.mode, contacts)
     return set(mode.mode) == {STICKS} and _rests_everywhere(problem, box, contacts)
 
@@ -64,9 +64,9 @@ def _solves_everywhere(problem: PlanarContactProblem, mode: str, contacts: list[
             rows += [contact.normal, contact.tangent]
             wrenches += [contact.normal, contact.tangent]
         elif letter != SEPARATES:
-            middle = 0.5 * (contact.least_friction + contact.most_friction)
+            middle = 0.5 * (contact.min_friction + contact.max_friction)
             edge = contact.edges(middle if letter == SLIDES_LEFT else -middle)
-            spread = 0.5 * (contact.most_friction - contact.least_friction)
+            spread = 0.5 * (contact.max_friction - contact.min_friction)
             largest = abs(contact.tangent.rows) + contact.tangent.errors
             rows.append(contact.normal)
             wrenches.append(Bounded(edge.rows, edge.errors + spread * largest))
@@ -99,7 +99,7 @@ def _obeys(mode: str, contacts: list[BoundedContact], x: FloatArray, off: FloatA
         if least < 0.0:
             return False
         if letter == STICKS:
-            if abs(x[at + 1]) + off[at + 1] > contact.least_friction * least:
+            if abs(x[at + 1]) + off[at + 1] > contact.min_friction * least:
                 return False
             at += 2
             continue
@@ -123,7 +123,7 @@ def _rests_everywhere(
     from scipy.optimize import linprog
 
     slippery = [
-        replace(contact, friction=bounded.least_friction)
+        replace(contact, friction=bounded.min_friction)
         for contact, bounded in zip(problem.contacts, contacts, strict=True)
     ]
     try:
@@ -136,7 +136,7 @@ def _rests_everywhere(
     radius = _INSIDE * held.stable_disturbance
     if math.isinf(radius):
         radius = _BALL_OF_ALL * (float(np.linalg.norm(w)) or 1.0)
-    edges = stacked([contact.edges(contact.least_friction, -contact.least_friction) for contact in contacts])
+    edges = stacked([contact.edges(contact.min_friction, -contact.min_friction) for contact in contacts])
     for corner in radius * np.vstack([np.eye(3), -np.eye(3)]):
         found = linprog(edges.sizes, A_eq=edges.rows.T, b_eq=-(w + corner), method="highs")
         if found.x is None or found.fun > radius / math.sqrt(3.0):

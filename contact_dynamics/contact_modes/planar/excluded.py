@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from contact_dynamics.contact_modes.planar.result import PlanarMode
     from contact_dynamics.validation import FloatArray
 
-MOST_PROGRAMS: Final = 3000
+MAX_PROGRAMS: Final = 3000
 """Linear programs after which a proof is given up. A box on four feet takes some hundred."""
 
 _LARGEST_EDGE: Final = 1e4
@@ -55,7 +55,7 @@ def no_other_mode(problem: PlanarContactProblem, mode: PlanarMode, box: ContactU
     size = float(np.linalg.norm(w))
     if size == 0.0:
         return set(mode.mode) == {STICKS}
-    if any(abs(one.edges(one.most_friction).rows).max() > _LARGEST_EDGE for one in contacts):
+    if any(abs(one.edges(one.max_friction).rows).max() > _LARGEST_EDGE for one in contacts):
         return False
     proof = _Proof(contacts, w / size, mode.mode)
     try:
@@ -76,7 +76,7 @@ class _Proof:
         self._contacts = contacts
         self._w = w
         self._allowed = allowed
-        self._left = MOST_PROGRAMS
+        self._left = MAX_PROGRAMS
 
     def excludes(self, signs: FloatArray, letters: str) -> bool:
         """Return whether no mode but the allowed one begins with ``letters`` in an octant of motions."""
@@ -156,7 +156,7 @@ def _at_most(row: Bounded, signs: FloatArray) -> FloatArray:
 
 
 def _edges(contact: BoundedContact, letter: str) -> Bounded:
-    least, most = contact.least_friction, contact.most_friction
+    least, most = contact.min_friction, contact.max_friction
     if letter == SLIDES_LEFT:
         return contact.edges(least, most)
     if letter == SLIDES_RIGHT:

@@ -43,7 +43,7 @@ if TYPE_CHECKING:
 
     from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarWrench, Vector2
 
-MOST_PLANAR_CONTACTS: Final = 1000
+MAX_PLANAR_CONTACTS: Final = 1000
 """Largest number of contacts that is accepted. The modes of n contacts have about 4 n^2 letters in all."""
 
 
@@ -69,7 +69,7 @@ class PlanarContactProblem(Record):
 
     Raises:
         InvalidFieldError: a tolerance is negative, or an uncertainty is of another number of contacts.
-        TooLargeError: more than `MOST_PLANAR_CONTACTS` contacts.
+        TooLargeError: more than `MAX_PLANAR_CONTACTS` contacts.
     """
 
     body: PlanarBody
@@ -83,8 +83,8 @@ class PlanarContactProblem(Record):
     def __post_init__(self) -> None:
         """Check the tolerances and the number of contacts."""
         n = len(self.contacts)
-        if n > MOST_PLANAR_CONTACTS:
-            raise TooLargeError("contacts", f"{n} contacts", f"at most {MOST_PLANAR_CONTACTS}")
+        if n > MAX_PLANAR_CONTACTS:
+            raise TooLargeError("contacts", f"{n} contacts", f"at most {MAX_PLANAR_CONTACTS}")
         object.__setattr__(self, "contacts", tuple(self.contacts))
         # The defaults need no check. One contact is answered in microseconds, of which checks take some.
         if self.uncertainty is not EXACT_CONTACTS:

@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
     from contact_dynamics.plane.types import Vector2
 
-_MOST_INDEPENDENT: Final = 3
+_MAX_INDEPENDENT: Final = 3
 """No more wrenches can be independent in the plane."""
 
 
@@ -234,7 +234,7 @@ class ModeWrenches:
     def _uniqueness(self, acting: list[Vector3]) -> tuple[bool, bool]:
         """Return whether forces and motion are unique if edges with the wrenches ``acting`` can act."""
         motions = orthonormal(self._motions())
-        if not motions and len(acting) > _MOST_INDEPENDENT:
+        if not motions and len(acting) > _MAX_INDEPENDENT:
             return False, True
         height = () if self._case.lift is None else (0.0,)
         forces = orthonormal((*normalised(wrench), *height) for wrench in acting)

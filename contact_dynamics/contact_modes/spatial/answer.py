@@ -100,8 +100,8 @@ def spatial_contact_modes(problem: SpatialContactProblem) -> SpatialModeAnswer:
     """Return the verdict on a contact set in space and all consistent modes.
 
     Raises:
-        TooLargeError: more contacts touch than `spatial.problem.MOST_DYNAMIC_CONTACTS`. Or the search takes
-            more trials than `pyramid_programs.MOST_EXAMINED`, which happens where hundreds of sectors are
+        TooLargeError: more contacts touch than `spatial.problem.MAX_DYNAMIC_CONTACTS`. Or the search takes
+            more trials than `pyramid_programs.MAX_EXAMINED`, which happens where hundreds of sectors are
             consistent and ``sharpen`` is false.
     """
     case = spatial_case(problem)
@@ -125,7 +125,7 @@ def modes_of_case(
             then need not have all modes where it has several.
 
     Raises:
-        TooLargeError: the search takes more trials than `pyramid_programs.MOST_EXAMINED`.
+        TooLargeError: the search takes more trials than `pyramid_programs.MAX_EXAMINED`.
     """
     if problem.sharpen:
         found = evidenced(case, search, beside_rest=beside_rest)

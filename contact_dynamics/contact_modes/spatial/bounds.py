@@ -35,16 +35,16 @@ class BoundedContact(NamedTuple):
             Each is also the wrench of a unit force along that axis.
         errors: (6,), by how much each coordinate of such a row, or of a row of any unit vector, may be off.
         size: The largest length of a row's error.
-        least_friction: The smallest coefficient of friction in the box.
-        most_friction: The largest coefficient of friction in the box.
+        min_friction: The smallest coefficient of friction in the box.
+        max_friction: The largest coefficient of friction in the box.
     """
 
     frame: FloatArray
     rows: FloatArray
     errors: FloatArray
     size: float
-    least_friction: float
-    most_friction: float
+    min_friction: float
+    max_friction: float
 
 
 class BoundedBody(NamedTuple):
@@ -84,8 +84,8 @@ def bounded_body(problem: SpatialContactProblem, box: ContactUncertainty) -> Bou
                 rows=frame @ jacobians[i],
                 errors=np.array([turned] * 3 + [moved] * 3),
                 size=turned + moved,
-                least_friction=max(0.0, friction - frictions),
-                most_friction=friction + frictions,
+                min_friction=max(0.0, friction - frictions),
+                max_friction=friction + frictions,
             )
         )
     return BoundedBody(found, inertia, np.concatenate([problem.force_W, problem.torque_W / rho]))

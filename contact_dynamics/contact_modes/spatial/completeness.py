@@ -49,7 +49,7 @@ if TYPE_CHECKING:
     from contact_dynamics.contact_modes.spatial.search import Search
     from contact_dynamics.validation import FloatArray
 
-_MOST_PROGRAMS: Final = 3000
+_MAX_PROGRAMS: Final = 3000
 """The search for missed modes is given up after this many linear programs of 0.3 ms."""
 
 _CARE: Final = 3
@@ -234,7 +234,7 @@ class _Work(PyramidPrograms):
 
     def _count(self) -> None:
         self.examined += 1
-        if self.examined > _MOST_PROGRAMS:
+        if self.examined > _MAX_PROGRAMS:
             raise _TooManyError
 
     def _forces(

@@ -27,7 +27,7 @@ _WELL_INSIDE: Final = 0.02
 """A unit point serves as inner point if its product with each unit row is larger than this. Otherwise a
 linear program looks for one."""
 
-_MOST_CHOICES: Final = 300
+_MAX_CHOICES: Final = 300
 """As many choices of d - 1 rows are tried one by one, which takes a millisecond. With more of them a convex
 hull is faster, but that needs SciPy, whose first import takes tenths of a second."""
 
@@ -127,7 +127,7 @@ def extreme_rays(rows: FloatArray, inner: FloatArray) -> FloatArray:
     d = rows.shape[1]
     if d == 1:
         return np.sign(inner)[None, :]
-    if math.comb(len(rows), d - 1) <= _MOST_CHOICES:
+    if math.comb(len(rows), d - 1) <= _MAX_CHOICES:
         return _rays_by_choice(rows)
     inner = inner / np.linalg.norm(inner)
     across = np.linalg.svd(inner[None, :])[2][1:]

@@ -38,7 +38,7 @@ _GOLDEN: Final = 0.6180339887498949
 """The golden ratio less one. Its multiples are spread evenly modulo 1, which gives edge forces weights
 without ties."""
 
-_MOST_STEPS: Final = 500
+_MAX_STEPS: Final = 500
 """The largest number of steps of the primal simplex. After a fifth of them Bland's rule holds, which cannot
 cycle. The dual simplex is doubtful after so many. Tens are common, and rounding can make it go in circles."""
 
@@ -46,7 +46,7 @@ cycle. The dual simplex is doubtful after so many. Tens are common, and rounding
 _CLEAR: Final = 1e3
 """A refusal is beyond doubt only if a condition is missed by this many times its estimated rounding."""
 
-_MOST_FORCE: Final = 1e4
+_MAX_FORCE: Final = 1e4
 """This is a multiple of the load. A refusal is beyond doubt only if entries that count as zero could matter
 only with edge forces larger than this."""
 
@@ -211,7 +211,7 @@ class Program:
         table, fixed = self._table, self._fixed
         if len(fixed) == 0:
             return True
-        for _ in range(_MOST_STEPS):
+        for _ in range(_MAX_STEPS):
             values = table[_HEAD:, -1]
             missed = np.maximum(-values, values * fixed)
             worst = int(missed.argmax())
@@ -223,7 +223,7 @@ class Program:
             if able.size == 0:
                 by = float(missed[worst])
                 self.doubtful = by <= _CLEAR * self._noise or (
-                    by <= _MOST_FORCE * least_pivot and by <= _MOST_FORCE * float(helps.max(initial=0.0))
+                    by <= _MAX_FORCE * least_pivot and by <= _MAX_FORCE * float(helps.max(initial=0.0))
                 )
                 return False
             enters = able[(table[0, able] / helps[able]).argmin()]
@@ -310,11 +310,11 @@ class Program:
         for k, name in enumerate(self._columns):
             if 0 <= name < len(weights):
                 table[0, k] += weights[name]
-        for step in range(_MOST_STEPS):
+        for step in range(_MAX_STEPS):
             gains = (table[0, :-1] < -ROW_TOLERANCE).nonzero()[0]
             if gains.size == 0:
                 return True
-            enters = int(gains[0] if 5 * step > _MOST_STEPS else gains[table[0, gains].argmin()])
+            enters = int(gains[0] if 5 * step > _MAX_STEPS else gains[table[0, gains].argmin()])
             falls = (table[_HEAD:, enters] < -ROW_TOLERANCE).nonzero()[0]
             if falls.size == 0:
                 return False

@@ -89,7 +89,7 @@ def _solves_everywhere(body: BoundedBody, mode: str) -> bool:
                 return False
             continue
         (pressing, *across), (off_pressing, *off_across) = forces[at : at + 3], off[at : at + 3]
-        if math.hypot(*across) + math.hypot(*off_across) > one.least_friction * (pressing - off_pressing):
+        if math.hypot(*across) + math.hypot(*off_across) > one.min_friction * (pressing - off_pressing):
             return False
         at += 3
     return True
@@ -98,7 +98,7 @@ def _solves_everywhere(body: BoundedBody, mode: str) -> bool:
 def _rests_everywhere(problem: SpatialContactProblem, body: BoundedBody) -> bool:
     from scipy.optimize import linprog
 
-    least = np.array([one.least_friction for one in body.contacts])
+    least = np.array([one.min_friction for one in body.contacts])
     slippery = replace(problem, contacts=replace(problem.contacts, frictions=least))
     try:
         held = spatial_statics(slippery)
@@ -111,7 +111,7 @@ def _rests_everywhere(problem: SpatialContactProblem, body: BoundedBody) -> bool
         radius = _BALL_OF_ALL * (float(np.linalg.norm(body.wrench)) or 1.0)
     edges, costs = [], []
     for one in body.contacts:
-        forces = linearised_cone(np.array([1.0, 0.0, 0.0]), one.least_friction, problem.friction_facets)
+        forces = linearised_cone(np.array([1.0, 0.0, 0.0]), one.min_friction, problem.friction_facets)
         edges.append(forces @ one.rows)
         costs.append(math.hypot(one.errors[0], one.errors[-1]) * np.linalg.norm(forces, axis=1))
     U, cost = np.vstack(edges), np.concatenate(costs)

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from contact_dynamics.contact_modes.spatial.pyramid_programs import Touching
     from contact_dynamics.validation import FloatArray
 
-_MOST_STEPS: Final = 12
+_MAX_STEPS: Final = 12
 """Each step solves for the forces, in 0.1 ms, once for each contact that slides. Four steps suffice where
 there is a solution nearby."""
 
@@ -87,7 +87,7 @@ def _followed(mode: Sliding, turning: list[int], angles: FloatArray) -> FloatArr
 def _by_newton(mode: Sliding, turning: list[int], angles: FloatArray) -> FloatArray | None:
     """Turn friction against the sliding by Newton's method, from given angles."""
     step: FloatArray = np.zeros(len(turning))
-    for _ in range(_MOST_STEPS):
+    for _ in range(_MAX_STEPS):
         found = _solved(mode, turning, angles + step)
         if found is None:
             step = 0.5 * step  # back towards directions that gave the mode

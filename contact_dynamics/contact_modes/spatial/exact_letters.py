@@ -35,10 +35,10 @@ if TYPE_CHECKING:
     from contact_dynamics.contact_modes.spatial.search import Search
     from contact_dynamics.validation import FloatArray
 
-_MOST_STEPS: Final = 25
+_MAX_STEPS: Final = 25
 """The largest number of Newton's steps. From forces that are close, some five are enough."""
 
-_MOST_SWAPPED: Final = 5
+_MAX_SWAPPED: Final = 5
 """The largest number of contacts that are tried sticking and sliding. Each of them doubles the number of
 letters."""
 
@@ -47,7 +47,7 @@ def letters_near(search: Search, letters: str) -> Iterator[str]:
     """Yield letters in which the contacts that stay and have friction stick or slide in any combination."""
     stays = [letter != SEPARATES for letter in letters]
     swapped = [i for i, one in enumerate(search.pyramids) if stays[i] and one.frame is not None]
-    if len(swapped) > _MOST_SWAPPED:
+    if len(swapped) > _MAX_SWAPPED:
         yield letters
         return
     for chosen in itertools.product((STAYS, STICKS), repeat=len(swapped)):
@@ -120,7 +120,7 @@ def _solved(system: _System, forces: FloatArray, *, shared: bool) -> FloatArray 
     unknowns: FloatArray = system.start(forces)
     if len(unknowns) == 0:
         return None
-    for _ in range(_MOST_STEPS):
+    for _ in range(_MAX_STEPS):
         missed, slopes = system.at(unknowns)
         sizes = np.linalg.norm(slopes, axis=0)
         sizes[sizes == 0.0] = 1.0

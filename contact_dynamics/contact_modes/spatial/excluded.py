@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from contact_dynamics.contact_modes.spatial.bounds import BoundedBody
     from contact_dynamics.contact_modes.spatial.problem import SpatialContactProblem
 
-MOST_PROGRAMS: Final = 3000
+MAX_PROGRAMS: Final = 3000
 """Linear programs after which a proof is given up. A box on four feet takes up to two thirds of them, and
 one on three a tenth."""
 
@@ -66,7 +66,7 @@ def no_other_mode(problem: SpatialContactProblem, mode: str, box: ContactUncerta
     body = bounded_body(problem, box)
     if not np.any(body.wrench):
         return set(mode) == {STICKS}
-    if any((1.0 + one.most_friction) * abs(one.rows).max() > _LARGEST_EDGE for one in body.contacts):
+    if any((1.0 + one.max_friction) * abs(one.rows).max() > _LARGEST_EDGE for one in body.contacts):
         return False
     proof = _Proof(body, mode)
     try:
@@ -90,7 +90,7 @@ class _Proof:
         self._inverse = np.linalg.inv(self._body.inertia)
         self._allowed = allowed
         self._rests = set(allowed) == {STICKS}
-        self._left = MOST_PROGRAMS
+        self._left = MAX_PROGRAMS
         self._ways = UncertainWays(body.contacts)
         self._reasons = Reasons(self._body, self._ways, rests=self._rests)
 

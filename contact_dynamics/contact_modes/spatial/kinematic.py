@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from contact_dynamics.rigid_body.body import BodyState
     from contact_dynamics.validation import FloatArray
 
-MOST_SPATIAL_CONTACTS: Final = 64
+MAX_SPATIAL_CONTACTS: Final = 64
 """The longest list of contacts that is accepted. A cone in R^6 can have n^2 rays, and more faces than
 that."""
 
@@ -49,18 +49,18 @@ def spatial_kinematic_modes(
 
     Args:
         state: The state of the body, with its origin at the centre of mass.
-        contacts: At most `MOST_SPATIAL_CONTACTS`.
+        contacts: At most `MAX_SPATIAL_CONTACTS`.
         velocity_tolerance: m/s, >= 0. A contact's normal velocity within it counts as zero, and so does an
             angular velocity that moves no contact relative to the centre of mass by more than that.
 
     Raises:
         InvalidFieldError: the tolerance is negative.
-        TooLargeError: more than `MOST_SPATIAL_CONTACTS` contacts.
+        TooLargeError: more than `MAX_SPATIAL_CONTACTS` contacts.
     """
     tolerance = check_not_negative("velocity_tolerance", velocity_tolerance)
     n = len(contacts)
-    if n > MOST_SPATIAL_CONTACTS:
-        raise TooLargeError("contacts", f"{n} contacts", f"at most {MOST_SPATIAL_CONTACTS}")
+    if n > MAX_SPATIAL_CONTACTS:
+        raise TooLargeError("contacts", f"{n} contacts", f"at most {MAX_SPATIAL_CONTACTS}")
     check_speeds(state, contacts)
     velocities = state.velocity_of_point(contacts.p_WC_W)
     v_n = np.sum(contacts.normals_W * velocities, axis=1)

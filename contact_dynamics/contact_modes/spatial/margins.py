@@ -81,7 +81,7 @@ def spatial_mode_margins(
 
     Raises:
         InvalidFieldError: the length is not > 0.
-        TooLargeError: as for `spatial_contact_modes`, or more than `MOST_EDGES` edges of all pyramids.
+        TooLargeError: as for `spatial_contact_modes`, or more than `MAX_EDGES` edges of all pyramids.
     """
     body, wrench, friction_facets = problem.body, problem.wrench_W, problem.friction_facets
     own = body.mean_radius_of_gyration

@@ -6,7 +6,7 @@ boundaries in the order of their distances. Just behind a boundary the mode eith
 to which the whole boundary belongs. The friction pyramids keep their orientation meanwhile.
 
 The margin is NaN where only a part of what lies behind a boundary belongs to the mode, which happens where
-loads are shared in many ways. It is NaN too where more than `MOST_BEGINNING` contacts begin to slide, and for
+loads are shared in many ways. It is NaN too where more than `MAX_BEGINNING` contacts begin to slide, and for
 contacts at rest of a body that turns.
 """
 
@@ -36,11 +36,11 @@ if TYPE_CHECKING:
     from contact_dynamics.contact_modes.spatial.search import Found, Search
     from contact_dynamics.validation import FloatArray
 
-MOST_PROBES: Final = 64
+MAX_PROBES: Final = 64
 """So many boundaries are looked behind by a search for modes, of some 10 ms each, before the margin counts as
 unknown. Most lead to a cone that is known or next to one, which takes less."""
 
-MOST_BEGINNING: Final = 4
+MAX_BEGINNING: Final = 4
 """The largest number of contacts that begin to slide. More of them have too many ways to go through."""
 
 
@@ -94,7 +94,7 @@ def union_margin(
         facets: Edges of the friction pyramids.
     """
     beginning = sum(one.item >= 0 for one in found.letters)
-    if case.motion.at_rest and not np.any(case.motion.turning) and beginning <= MOST_BEGINNING:
+    if case.motion.at_rest and not np.any(case.motion.turning) and beginning <= MAX_BEGINNING:
         union = _Union(case, search, "".join(one.letter for one in found.letters), facets)
         # Each way of sliding counts here, and there can be more of them than the search accepts.
         with contextlib.suppress(TooLargeError):
@@ -112,7 +112,7 @@ def _gone_through(union: _Union, wrench: FloatArray, stretch: FloatArray) -> Uni
     heap = _boundaries(cone, wrench, stretch, numbers)
     heapq.heapify(heap)
     probes = 0
-    while probes < MOST_PROBES:
+    while probes < MAX_PROBES:
         side = _next(heap, wrench, stretch)
         if side is None or side.nearest is None:
             return UnionMargin(math.inf, np.zeros(6), None)

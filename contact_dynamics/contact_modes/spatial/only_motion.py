@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from contact_dynamics.contact_modes.spatial.search import Search
     from contact_dynamics.validation import FloatArray
 
-_MOST_STEPS: Final = 12
+_MAX_STEPS: Final = 12
 """The largest number of Newton's steps to forces that friction of a common motion allows. Five are enough."""
 
 
@@ -103,7 +103,7 @@ def rests_alone(search: Search) -> bool:
     pressing = np.linalg.lstsq(normal, -wrench, rcond=ROW_TOLERANCE)[0]
     common = np.zeros(seen.shape[1])
     enough = FORCES_ROUNDING * float(np.linalg.norm(wrench))
-    for _ in range(_MOST_STEPS):
+    for _ in range(_MAX_STEPS):
         ways = gripping @ (seen @ common)  # (n, 3), times the coefficient of friction
         edges = normal - np.einsum("ijk,ij->ki", contacts.points, ways)
         missed = wrench + edges @ pressing

@@ -31,11 +31,11 @@ if TYPE_CHECKING:
     from contact_dynamics.rigid_body.body import BodyState, MassProperties
     from contact_dynamics.validation import FloatArray
 
-MOST_EDGES: Final = 128
+MAX_EDGES: Final = 128
 """The largest number of edges of all friction pyramids together. Their cone in R^6 has thousands of
 facets."""
 
-MOST_DYNAMIC_CONTACTS: Final = 32
+MAX_DYNAMIC_CONTACTS: Final = 32
 """The largest number of touching contacts that is accepted. They take a tenth of a second, or two seconds
 where many modes are consistent."""
 
@@ -59,7 +59,7 @@ class SpatialContactProblem(Record):
     Attributes:
         body: Mass and angular inertia.
         state: The state of the body, with its origin at the centre of mass.
-        contacts: Contacts of any kind. At most `MOST_DYNAMIC_CONTACTS` of them touch.
+        contacts: Contacts of any kind. At most `MAX_DYNAMIC_CONTACTS` of them touch.
         force_W: (3,), N, on the body besides its contact forces, gravity included, world axes.
         torque_W: (3,), N m, on the body besides that of its contact forces, about the centre of mass, world
             axes.
@@ -180,7 +180,7 @@ def spatial_case(problem: SpatialContactProblem) -> SpatialCase | tuple[int, ...
     """Return the case, or the contacts that approach.
 
     Raises:
-        TooLargeError: more contacts touch than `MOST_DYNAMIC_CONTACTS`.
+        TooLargeError: more contacts touch than `MAX_DYNAMIC_CONTACTS`.
     """
     body, state, contacts = problem.body, problem.state, problem.contacts
     tolerance = problem.velocity_tolerance
@@ -190,8 +190,8 @@ def spatial_case(problem: SpatialContactProblem) -> SpatialCase | tuple[int, ...
     if np.any(v_n < -tolerance):
         return tuple(int(i) for i in np.flatnonzero(v_n < -tolerance))
     touching = np.flatnonzero(v_n <= tolerance)
-    if len(touching) > MOST_DYNAMIC_CONTACTS:
-        raise TooLargeError("contacts", f"{len(touching)} contacts", f"at most {MOST_DYNAMIC_CONTACTS}")
+    if len(touching) > MAX_DYNAMIC_CONTACTS:
+        raise TooLargeError("contacts", f"{len(touching)} contacts", f"at most {MAX_DYNAMIC_CONTACTS}")
     sliding = velocities - v_n[:, None] * contacts.normals_W
     sliding[np.linalg.norm(sliding, axis=1) <= tolerance] = 0.0
     w = state.w_WB_W
@@ -212,12 +212,12 @@ def search_of_few_edges(case: SpatialCase, facets: int) -> Search:
     """Return the search for the modes of a case whose friction pyramids have few edges.
 
     Raises:
-        TooLargeError: the pyramids have more than `MOST_EDGES` edges together.
+        TooLargeError: the pyramids have more than `MAX_EDGES` edges together.
     """
     search = search_of(case, facets)
     edges = sum(len(pyramid.edges) for pyramid in search.pyramids)
-    if edges > MOST_EDGES:
-        raise TooLargeError("contacts", f"{edges} edges of friction pyramids", f"at most {MOST_EDGES}")
+    if edges > MAX_EDGES:
+        raise TooLargeError("contacts", f"{edges} edges of friction pyramids", f"at most {MAX_EDGES}")
     return search
 
 

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from contact_dynamics.contact_modes.spatial.options import Option, Pyramid
     from contact_dynamics.validation import FloatArray
 
-MOST_EXAMINED: Final = 30_000
+MAX_EXAMINED: Final = 30_000
 """The search is given up after this many trials of some 0.1 ms. Where the motion of a body on many feet is
 not unique, hundreds of combinations of their sectors may be consistent, and the search looks for all of
 them."""
@@ -159,10 +159,10 @@ class PyramidPrograms:
 
     def _count(self) -> None:
         self.examined += 1
-        if self.examined > MOST_EXAMINED:
+        if self.examined > MAX_EXAMINED:
             raise TooLargeError(
                 "contacts",
-                f"{len(self.touching)} whose modes take more than {MOST_EXAMINED} trials",
+                f"{len(self.touching)} whose modes take more than {MAX_EXAMINED} trials",
                 "fewer contacts, or other friction_facets",
             )
 

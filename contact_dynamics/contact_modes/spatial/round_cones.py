@@ -38,10 +38,10 @@ if TYPE_CHECKING:
     from contact_dynamics.contact_modes.spatial.search import Search
     from contact_dynamics.validation import FloatArray
 
-_MOST_FORCE: Final = 1e3
+_MAX_FORCE: Final = 1e3
 """This is a multiple of the load. A motion separates if only larger forces could take its power."""
 
-_MOST_EDGES: Final = 400
+_MAX_EDGES: Final = 400
 """The largest number of edges that are tried. A dozen are enough, unless the load lies on the border of the
 sum."""
 
@@ -241,7 +241,7 @@ def _nearest(demand: _Demand, normals: FloatArray, frictions: FloatArray) -> Hel
     edges: list[FloatArray] = []
     spans, shares = np.zeros((len(target), 0)), np.zeros(0)
     rest = target
-    for _ in range(_MOST_EDGES):
+    for _ in range(_MAX_EDGES):
         left = math.sqrt(rest @ rest)
         sized = sizes * rest
         unbalanced = math.sqrt(sized @ sized)
@@ -258,7 +258,7 @@ def _nearest(demand: _Demand, normals: FloatArray, frictions: FloatArray) -> Hel
         cosines = np.array([helps for _, helps in found]) / np.where(effects > 0.0, effects, 1.0)
         best = int(cosines.argmax()) if len(cosines) else -1
         helps = float(cosines[best]) if len(cosines) else 0.0
-        if helps * _MOST_FORCE * load <= left and left > ROUND_CONE_ROUNDING * load:
+        if helps * _MAX_FORCE * load <= left and left > ROUND_CONE_ROUNDING * load:
             return Held(None, certain=not wide or unbalanced > ROUND_CONE_WIDE)
         if helps <= ROUND_CONE_NO_HELP:
             break

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from contact_dynamics.contact_modes.spatial.search import Search
     from contact_dynamics.validation import FloatArray
 
-_MOST_STEPS: Final = 12
+_MAX_STEPS: Final = 12
 """The largest number of steps from one direction. From directions that lead to a solution, some five are
 enough."""
 
@@ -154,7 +154,7 @@ def _turned(problem: _Problem, direction: FloatArray, slowest: float) -> FloatAr
         direction: (p,), of the common motion.
         slowest: The least size of the motion.
     """
-    for _ in range(_MOST_STEPS):
+    for _ in range(_MAX_STEPS):
         direction = direction / np.linalg.norm(direction)
         ways = problem.slides @ direction
         speeds = np.linalg.norm(ways, axis=1)

@@ -30,11 +30,11 @@ if TYPE_CHECKING:
     from contact_dynamics.contact.contact import ContactSet
     from contact_dynamics.validation import FloatArray
 
-MOST_SLIDING_CONTACTS: Final = 8
+MAX_SLIDING_CONTACTS: Final = 8
 """The longest list of contacts that is accepted. Eight in general position have tens of thousands of
 modes."""
 
-MOST_PLANES: Final = 4
+MAX_PLANES: Final = 4
 """The largest number of lines through a contact."""
 
 _WAYS: Final = "0123456789ABCDEF"
@@ -49,18 +49,18 @@ def spatial_sliding_modes(contacts: ContactSet, *, planes: int = 2) -> tuple[str
     the odd digit 2 k + 1 is the sector between this line and the next.
 
     Args:
-        contacts: At most `MOST_SLIDING_CONTACTS`.
-        planes: The number of lines through each contact, from 2 to `MOST_PLANES`. They are the borders of the
+        contacts: At most `MAX_SLIDING_CONTACTS`.
+        planes: The number of lines through each contact, from 2 to `MAX_PLANES`. They are the borders of the
             sectors of a friction pyramid with twice as many edges.
 
     Raises:
         InvalidFieldError: too few or too many planes.
-        TooLargeError: more than `MOST_SLIDING_CONTACTS` contacts.
+        TooLargeError: more than `MAX_SLIDING_CONTACTS` contacts.
     """
     n = len(contacts)
-    planes = check_whole("planes", planes, 2, MOST_PLANES)
-    if n > MOST_SLIDING_CONTACTS:
-        raise TooLargeError("contacts", f"{n} contacts", f"at most {MOST_SLIDING_CONTACTS}")
+    planes = check_whole("planes", planes, 2, MAX_PLANES)
+    if n > MAX_SLIDING_CONTACTS:
+        raise TooLargeError("contacts", f"{n} contacts", f"at most {MAX_SLIDING_CONTACTS}")
     if n == 0:
         return ("",)
     check_magnitude("p_WC_W", contacts.p_WC_W)

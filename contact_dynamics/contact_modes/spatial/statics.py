@@ -25,7 +25,7 @@ from contact_dynamics.contact_modes.spatial.answer import modes_of_case
 from contact_dynamics.contact_modes.spatial.cone import cone_of
 from contact_dynamics.contact_modes.spatial.problem import (
     FRICTION_FACETS,
-    MOST_EDGES,
+    MAX_EDGES,
     search_of,
     spatial_case,
 )
@@ -53,15 +53,15 @@ def spatial_statics(problem: SpatialContactProblem, *, margin_length: float | No
     Raises:
         InvalidFieldError: the length is not > 0.
         UndecidedError: the contacts are so nearly the same that rounding decides whether the body can rest.
-        TooLargeError: more than `MOST_EDGES` edges, or more contacts than `spatial_contact_modes` accepts.
+        TooLargeError: more than `MAX_EDGES` edges, or more contacts than `spatial_contact_modes` accepts.
     """
     body, state, contacts = problem.body, problem.state, problem.contacts
     force, torque, friction_facets = problem.force_W, problem.torque_W, problem.friction_facets
     own = body.mean_radius_of_gyration
     length = own if margin_length is None else check_size("margin_length", margin_length)
-    if len(contacts) * friction_facets > MOST_EDGES:
+    if len(contacts) * friction_facets > MAX_EDGES:
         found = f"{len(contacts)} contacts of {friction_facets} edges"
-        raise TooLargeError("contacts", found, f"at most {MOST_EDGES} edges together")
+        raise TooLargeError("contacts", found, f"at most {MAX_EDGES} edges together")
     arms = contacts.p_WC_W - state.p_WB_W
     start = force / body.mass + np.cross(np.linalg.solve(body.inertia_in_world(state.R_WB), torque), arms)
     pyramids = [

@@ -10,7 +10,7 @@ every contact set in the box:
 If there is no proof, contact sets in the box are sampled, and the verdicts that they have are listed. Whether
 more verdicts occur is then not known.
 
-There are proofs only for bodies at rest with at most `MOST_PROVEN_CONTACTS`. Each contact's errors are
+There are proofs only for bodies at rest with at most `MAX_PROVEN_CONTACTS`. Each contact's errors are
 independent of the others', and the body's mass and the applied wrench are known. Four feet that slide
 together have no proof, since they do so only if they lie exactly in a plane.
 """
@@ -46,7 +46,7 @@ SAMPLES: Final = 64
 """Contact sets that are tried if there is no proof. Half of them are at the border of the box, and in half of
 these all contacts are off the same way."""
 
-MOST_PROVEN_CONTACTS: Final = 4
+MAX_PROVEN_CONTACTS: Final = 4
 """The largest number of contacts that proofs are tried for. The programs grow exponentially with them."""
 
 
@@ -79,7 +79,7 @@ def is_certain(problem: SpatialContactProblem, answer: SpatialModeAnswer, box: C
     if n == 0:
         return True
     case = spatial_case(problem)
-    if not isinstance(case, SpatialCase) or n > MOST_PROVEN_CONTACTS:
+    if not isinstance(case, SpatialCase) or n > MAX_PROVEN_CONTACTS:
         return False
     if not case.motion.at_rest or len(case.touching) < n or case.sliding.any():
         return False

@@ -120,7 +120,7 @@ def _lines(contact: BoundedContact, way: UncertainWay) -> FloatArray:
 
 def _edges(contact: BoundedContact, way: UncertainWay) -> FloatArray:
     """Return edges, (k, 3), of a cone in the contact's frame that holds all forces of a way."""
-    least, most = contact.least_friction, contact.most_friction
+    least, most = contact.min_friction, contact.max_friction
     if way.letter == SEPARATES:
         return np.zeros((0, 3))
     if way.letter == STAYS:  # its force is opposite to its sliding

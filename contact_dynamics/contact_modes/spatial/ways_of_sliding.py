@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from contact_dynamics.contact_modes.spatial.search import Search
     from contact_dynamics.validation import FloatArray
 
-MOST_MEETINGS: Final = 10_000
+MAX_MEETINGS: Final = 10_000
 """The largest number of sets of planes of one arrangement whose common lines are computed, in about a
 second."""
 
@@ -36,7 +36,7 @@ def ways_of(search: Search) -> list[tuple[Way, ...]]:
     """Return all that touching contacts can do together, each with a `Way` for every contact.
 
     Raises:
-        TooLargeError: more than `MOST_MEETINGS` sets of planes meet in lines.
+        TooLargeError: more than `MAX_MEETINGS` sets of planes meet in lines.
         UndecidedError: rounding decides which ways of sliding there are.
     """
     touching = search.touching
@@ -123,11 +123,11 @@ def _way(signs: list[int], count: int) -> Way:
 def _check_size(rows: FloatArray) -> None:
     rank = int((np.linalg.svd(rows, compute_uv=False) > ROW_TOLERANCE).sum())
     meetings = math.comb(len(rows), max(rank - 1, 0))
-    if meetings > MOST_MEETINGS:
+    if meetings > MAX_MEETINGS:
         raise TooLargeError(
             "contacts",
             f"{meetings} sets of planes that part their ways of sliding",
-            f"at most {MOST_MEETINGS}: fewer contacts, or fewer friction_facets",
+            f"at most {MAX_MEETINGS}: fewer contacts, or fewer friction_facets",
         )
 
 

@@ -44,7 +44,7 @@ WRENCH_FACETS: Final = 4
 """The number of edges of a friction pyramid that keeps the sets few. The ways of sliding grow as its square
 or cube."""
 
-MOST_WRENCH_SETS: Final = 2000
+MAX_WRENCH_SETS: Final = 2000
 """The largest number of sets of one answer. Each takes a millisecond or two. A box on four feet has 200 to
 350 sets with pyramids of four edges, and some 1300 with eight."""
 
@@ -103,9 +103,9 @@ def spatial_wrench_sets(
     Raises:
         InvalidFieldError: modes that are not strings of s, f and c.
         UndecidedError: the contacts are so nearly the same that rounding decides the sets.
-        TooLargeError: as for `spatial_contact_modes`; or more than `MOST_WRENCH_SETS` sets, more than
-            `spatial.problem.MOST_EDGES` edges of all pyramids, or too many ways of sliding
-            (`ways_of_sliding.MOST_MEETINGS`).
+        TooLargeError: as for `spatial_contact_modes`; or more than `MAX_WRENCH_SETS` sets, more than
+            `spatial.problem.MAX_EDGES` edges of all pyramids, or too many ways of sliding
+            (`ways_of_sliding.MAX_MEETINGS`).
 
     Source: lecture 26, "Force dual for dynamic contact problem"; Huang, Cheng and Mason 2020 for the ways.
     """
@@ -117,8 +117,8 @@ def spatial_wrench_sets(
     search = search_of_few_edges(case, friction_facets)
     every = [(_letters(case, ways), ways) for ways in ways_of(search)]
     wanted = sorted(one for one in every if modes is None or one[0] in modes)
-    if len(wanted) > MOST_WRENCH_SETS:
-        allowed = f"at most {MOST_WRENCH_SETS}: fewer contacts, or fewer friction_facets"
+    if len(wanted) > MAX_WRENCH_SETS:
+        allowed = f"at most {MAX_WRENCH_SETS}: fewer contacts, or fewer friction_facets"
         raise TooLargeError("contacts", f"{len(wanted)} sets of wrenches", allowed)
     metric = np.array([1.0, 1.0, 1.0, *[body.mean_radius_of_gyration] * 3])
     turning = wrench - case.motion.wrench  # the part of the wrench that a turning body needs

@@ -24,7 +24,7 @@ class SequenceEnd(NamedInt):
     CHATTERS = 2
     """A contact's rebounds shrink by a ratio and have no height any more. Infinitely many strikes end at the
     limit time, and from then on the contact stays."""
-    MOST_STRIKES = 3
+    MAX_STRIKES = 3
     """The bound on the number of strikes was reached."""
     WINDOW_ENDED = 4
     """Nothing has struck within the window after the given state. The body may land later."""
@@ -93,7 +93,7 @@ class ImpactSequence(Record):
             "the last one; a longer window follows the flight on",
             SequenceEnd.STAYS: f"flight is over: the contacts {stay} stay; contact modes say what follows",
             SequenceEnd.CHATTERS: f"infinitely many rebounds end: the contacts {stay} stay from then on",
-            SequenceEnd.MOST_STRIKES: f"the bound of {len(self.strikes)} strikes was reached; the body may "
+            SequenceEnd.MAX_STRIKES: f"the bound of {len(self.strikes)} strikes was reached; the body may "
             "strike again at once",
             SequenceEnd.WINDOW_ENDED: f"no strike within the window of {self.window:g} s after the state; a "
             "longer window, or `next_landing`, may find one",

@@ -52,7 +52,7 @@ if TYPE_CHECKING:
 STRIKE_WINDOW: Final = 0.05
 """s. A cube of 0.1 m whose first corner has struck at 1 m/s lands with the others within it."""
 
-MOST_STRIKES: Final = 200
+MAX_STRIKES: Final = 200
 """Strikes after which a sequence ends unfinished. Rebounds of e = 0.9 have lost their height by then."""
 
 
@@ -63,7 +63,7 @@ def impact_sequence(
     *,
     restitution_law: RestitutionLaw = RestitutionLaw.POISSON,
     window: float = STRIKE_WINDOW,
-    most_strikes: int = MOST_STRIKES,
+    max_strikes: int = MAX_STRIKES,
     distance_tolerance: float = DISTANCE_TOLERANCE,
     velocity_tolerance: float = VELOCITY_TOLERANCE,
     hold_step: float | None = None,
@@ -76,7 +76,7 @@ def impact_sequence(
         world: Surfaces and gravity.
         restitution_law: What the coefficients of restitution mean.
         window: s, > 0. The longest flight after which a strike still belongs to the landing.
-        most_strikes: How many strikes to resolve at most, >= 1.
+        max_strikes: How many strikes to resolve at most, >= 1.
         distance_tolerance: m, >= 0. A corner within it of a surface touches.
         velocity_tolerance: m/s, > 0. A contact that approaches less fast does not strike.
         hold_step: s, > 0. Where a contact stays, the sequence goes on in steps of this length. If it is None,
@@ -107,7 +107,7 @@ def impact_sequence(
         hold_step=held,
         work=work,
     )
-    return sequence.run(state, check_positive("window", window), most_strikes)
+    return sequence.run(state, check_positive("window", window), max_strikes)
 
 
 def impact_sequence_of(
@@ -118,7 +118,7 @@ def impact_sequence_of(
     gravity_W: ArrayLike = STANDARD_GRAVITY_W,
     restitution_law: RestitutionLaw = RestitutionLaw.POISSON,
     window: float = STRIKE_WINDOW,
-    most_strikes: int = MOST_STRIKES,
+    max_strikes: int = MAX_STRIKES,
     distance_tolerance: float = DISTANCE_TOLERANCE,
     velocity_tolerance: float = VELOCITY_TOLERANCE,
     hold_step: float | None = None,
@@ -134,7 +134,7 @@ def impact_sequence_of(
         gravity_W: (3,), m/s^2, world axes.
         restitution_law: What the coefficients of restitution mean.
         window: s, > 0. The longest flight after which a strike still belongs to the landing.
-        most_strikes: How many strikes to resolve at most, >= 1.
+        max_strikes: How many strikes to resolve at most, >= 1.
         distance_tolerance: m, >= 0. A point within it of its plane touches.
         velocity_tolerance: m/s, > 0. A contact that approaches less fast does not strike.
         hold_step: s, > 0. Where a contact stays, the sequence goes on in steps of this length. If it is None,
@@ -164,4 +164,4 @@ def impact_sequence_of(
     sequence = StrikeByStrike(
         body, gravity, meetings, restitution_law, tolerance=tolerance, hold_step=held, work=work
     )
-    return sequence.run(state, check_positive("window", window), most_strikes)
+    return sequence.run(state, check_positive("window", window), max_strikes)

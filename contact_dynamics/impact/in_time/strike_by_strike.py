@@ -33,7 +33,7 @@ HELD: Final = 2.0
 """Largest approach of a held contact, relative to the speed that a step of free motion gives it. If it is
 faster, something else struck."""
 
-MOST_HELD: Final = 100
+MAX_HELD: Final = 100
 """Bound on the impulses that hold contacts at one instant. Two ends of a rod need four, the corners of a face
 some ten."""
 
@@ -69,9 +69,9 @@ class StrikeByStrike:
         self.staying: tuple[int, ...] = ()
         self.order_is_open = False
 
-    def run(self, state: BodyState, window: float, most_strikes: int) -> ImpactSequence:
+    def run(self, state: BodyState, window: float, max_strikes: int) -> ImpactSequence:
         """Return the sequence from a state on. Each strike comes within a window, s, of the one before."""
-        most = check_whole("most_strikes", most_strikes, 1)
+        most = check_whole("max_strikes", max_strikes, 1)
         end = self._strike_on(state, window, most)
         if end == SequenceEnd.NOTHING_STRIKES and not self.strikes:
             end = SequenceEnd.WINDOW_ENDED
@@ -105,14 +105,14 @@ class StrikeByStrike:
                     self.staying, self.limit = (), None
                 state = landing.state
                 now += landing.seconds
-                still = HELD_STILL if held < MOST_HELD else HELD
+                still = HELD_STILL if held < MAX_HELD else HELD
                 if landing.strikes and not self._approaches_by(landing, still):
                     if self._approaches_by(landing, HELD):
                         held += 1
                         state = self._impacts(landing, self._next(landing), held=True)[0].state
                         continue
                     if len(self.strikes) >= most:  # contacts that strike as one may pass the bound
-                        return SequenceEnd.MOST_STRIKES
+                        return SequenceEnd.MAX_STRIKES
                     state = self._strike(landing, now)
                     until = now + window
                     continue

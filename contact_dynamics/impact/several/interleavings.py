@@ -41,14 +41,14 @@ if TYPE_CHECKING:
     from contact_dynamics.rigid_body.body import BodyState, MassProperties
     from contact_dynamics.validation import FloatArray
 
-MOST_INTERLEAVINGS: Final = 10_000
+MAX_INTERLEAVINGS: Final = 10_000
 """Largest number of interleavings to draw, which bounds memory and time."""
 
 INCREMENTS: Final = 200
 """Increments in which the impulse grows that stops the fastest approach. The errors of a drawn outcome are of
 first order in them, below a hundredth of the change of velocity."""
 
-MOST_INCREMENTS: Final = 5000
+MAX_INCREMENTS: Final = 5000
 """Increments after which an interleaving counts as not converged."""
 
 _ORDERS: Final = 24
@@ -96,7 +96,7 @@ def outcomes_over_interleavings(
         state: Pose and velocities just before.
         contacts: All contacts that touch. There is at least one.
         velocity_tolerance: m/s, > 0. A contact that approaches less fast does not strike.
-        samples: How many interleavings to draw, from 1 to `MOST_INTERLEAVINGS`.
+        samples: How many interleavings to draw, from 1 to `MAX_INTERLEAVINGS`.
         seed: Seed of the draw. The same question with the same seed has the same answer.
 
     Raises:
@@ -105,7 +105,7 @@ def outcomes_over_interleavings(
         TooLargeError: the orders take more strikes together than `outcomes_over_orders` allows.
     """
     tolerance = check_positive("velocity_tolerance", velocity_tolerance)
-    samples = check_whole("samples", samples, 1, MOST_INTERLEAVINGS)
+    samples = check_whole("samples", samples, 1, MAX_INTERLEAVINGS)
     rng = np.random.default_rng(check_whole("seed", seed, 0))
     touching = Touching([body], contacts, [(0, None)] * len(contacts), RestitutionLaw.ENERGETIC, tolerance)
     check_touching(touching, [state])
@@ -115,7 +115,7 @@ def outcomes_over_interleavings(
         contacts,
         restitution_law=RestitutionLaw.ENERGETIC,
         velocity_tolerance=tolerance,
-        most_orders=_ORDERS,
+        max_orders=_ORDERS,
     )
     inverse = inverse_mass_matrix(body.mass, body.inertia_in_world(state.R_WB))
     twist = np.concatenate([state.v_WB_W, state.w_WB_W])
@@ -153,7 +153,7 @@ def _draw(
     due = np.zeros((samples, n))
     favour = _favours(rng, (samples, n))
     live = np.arange(samples)
-    for _ in range(MOST_INCREMENTS):
+    for _ in range(MAX_INCREMENTS):
         v_n = twists[live] @ seen.rows[:, 2].T
         open_ = (v_n < -tolerance) | (due[live] > NOTHING_DUE * work)
         going = open_.any(axis=1)

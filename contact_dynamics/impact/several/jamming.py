@@ -42,10 +42,10 @@ if TYPE_CHECKING:
     from contact_dynamics.contact.contact import ContactSet
     from contact_dynamics.validation import FloatArray
 
-MOST_JAMMED_CONTACTS: Final = 64
+MAX_JAMMED_CONTACTS: Final = 64
 """Longest list of contacts accepted. Its complementarity problem takes a second or so."""
 
-MOST_DIRECTIONS: Final = 2048
+MAX_DIRECTIONS: Final = 2048
 """Bound on the directions of friction over all contacts. Their complementarity problem takes 40 MB."""
 
 _ZERO: Final = 100.0
@@ -101,7 +101,7 @@ def jamming_impact(
     Raises:
         InvalidFieldError: there are no contacts, a number is not finite or beyond `LARGEST_NUMBER`, the
             tolerance is negative, the plane's normal is not unit, or the facets are no whole number >= 3.
-        TooLargeError: there are more than `MOST_JAMMED_CONTACTS` contacts, or more than `MOST_DIRECTIONS`
+        TooLargeError: there are more than `MAX_JAMMED_CONTACTS` contacts, or more than `MAX_DIRECTIONS`
             directions of friction over all of them.
     """
     tolerance = check_within("velocity_tolerance", velocity_tolerance, 0.0, LARGEST_NUMBER)
@@ -112,16 +112,16 @@ def jamming_impact(
         plane_normal_W = check_unit("plane_normal_W", plane_normal_W, 3)
     if len(contacts) == 0:
         raise InvalidFieldError("contacts", "none", "at least one contact")
-    if len(contacts) > MOST_JAMMED_CONTACTS:
+    if len(contacts) > MAX_JAMMED_CONTACTS:
         raise TooLargeError(
-            "contacts", f"{len(contacts)} contacts", f"at most {MOST_JAMMED_CONTACTS} that jam"
+            "contacts", f"{len(contacts)} contacts", f"at most {MAX_JAMMED_CONTACTS} that jam"
         )
     facets = check_facets(friction_facets)
-    if len(contacts) * facets > MOST_DIRECTIONS:
+    if len(contacts) * facets > MAX_DIRECTIONS:
         raise TooLargeError(
             "friction_facets",
             f"{facets}, with {len(contacts)} contacts",
-            f"at most {MOST_DIRECTIONS} over all contacts",
+            f"at most {MAX_DIRECTIONS} over all contacts",
         )
     restitutions = contacts.impact_restitutions
     w, inertia = state.w_WB_W, body.inertia_in_world(state.R_WB)

@@ -47,13 +47,13 @@ if TYPE_CHECKING:
     from contact_dynamics.rigid_body.body import BodyState, MassProperties
     from contact_dynamics.validation import FloatArray
 
-MOST_ORDERS: Final = 120
+MAX_ORDERS: Final = 120
 """Number of orders that `outcomes_over_orders` tries. These are all orders of up to five contacts."""
 
 FIRST_TRIED: Final = 8
 """Contacts that a warning of an open order names and tries as the first: as many as a flat rim has."""
 
-MOST_STRIKES_OVER_ORDERS: Final = 6000
+MAX_STRIKES_OVER_ORDERS: Final = 6000
 """Bound on the strikes of all these orders together, which take some 2 s. An order takes ten or twenty
 strikes, and more only where contacts throw each other back for long."""
 
@@ -111,7 +111,7 @@ def outcomes_over_orders(
     *,
     restitution_law: RestitutionLaw = RestitutionLaw.POISSON,
     velocity_tolerance: float = VELOCITY_TOLERANCE,
-    most_orders: int = MOST_ORDERS,
+    max_orders: int = MAX_ORDERS,
 ) -> OrderedOutcomes:
     """Return the outcomes of the sequential law over its admissible orders.
 
@@ -126,16 +126,16 @@ def outcomes_over_orders(
         contacts: All contacts that touch. There is at least one.
         restitution_law: What the coefficients of restitution mean.
         velocity_tolerance: m/s, > 0. A contact that approaches less fast does not strike.
-        most_orders: How many priorities to try, >= 1. The answer's ``complete`` says whether these were all.
+        max_orders: How many priorities to try, >= 1. The answer's ``complete`` says whether these were all.
 
     Raises:
         SeparatingContactError: every contact separates.
-        InvalidFieldError: there are no contacts, the tolerance is not > 0, or ``most_orders`` is no whole
+        InvalidFieldError: there are no contacts, the tolerance is not > 0, or ``max_orders`` is no whole
             number >= 1.
-        TooLargeError: the orders take more strikes together than `MOST_STRIKES_OVER_ORDERS`.
+        TooLargeError: the orders take more strikes together than `MAX_STRIKES_OVER_ORDERS`.
     """
     tolerance = check_positive("velocity_tolerance", velocity_tolerance)
-    most_orders = check_whole("most_orders", most_orders, 1)
+    max_orders = check_whole("max_orders", max_orders, 1)
     touching = Touching([body], contacts, [(0, None)] * len(contacts), restitution_law, tolerance)
     check_touching(touching, [state])
     own = strike_in_turn(touching, [state])
@@ -144,12 +144,12 @@ def outcomes_over_orders(
         found[()] = _velocities(own.states[0])
     lost, struck = 0, len(own.strikes)
     priorities = permutations(range(len(contacts)))
-    for priority in islice(priorities, most_orders):
+    for priority in islice(priorities, max_orders):
         turn = strike_in_turn(touching, [state], priority=priority)
         struck += len(turn.strikes)
-        if struck > MOST_STRIKES_OVER_ORDERS:
+        if struck > MAX_STRIKES_OVER_ORDERS:
             count = f"{len(contacts)} contacts, over whose orders there are more strikes"
-            raise TooLargeError("contacts", count, f"at most {MOST_STRIKES_OVER_ORDERS} over all orders")
+            raise TooLargeError("contacts", count, f"at most {MAX_STRIKES_OVER_ORDERS} over all orders")
         if turn.verdict == SeveralVerdict.RESOLVED:
             found[turn.order] = _velocities(turn.states[0])
         else:
@@ -188,7 +188,7 @@ def order_warning(
     if len(first) == 1:
         return (
             "after the first strike several contacts approach at once, whose order rigid-body mechanics does "
-            "not decide; want_orders lists the outcomes"
+            "not decide; include_orders lists the outcomes"
         )
     outcomes = [
         np.concatenate([_velocities(state) for state in turn.states]).reshape(-1, 6)
@@ -202,7 +202,7 @@ def order_warning(
     return (
         f"contacts {named} approach at once and {how}, but rigid-body mechanics does not decide their order: "
         f"with another one first, velocities differ by up to {linear:.3g} m/s and {angular:.3g} rad/s; "
-        "want_orders lists the outcomes"
+        "include_orders lists the outcomes"
     )
 
 
@@ -213,7 +213,7 @@ def outcomes_at_once(
     *,
     restitution_law: RestitutionLaw = RestitutionLaw.POISSON,
     velocity_tolerance: float = VELOCITY_TOLERANCE,
-    most_orders: int = MOST_ORDERS,
+    max_orders: int = MAX_ORDERS,
 ) -> OrderedOutcomes:
     """Return the outcomes of several solutions of SIMULTANEOUS. If they differ, the law has no unique answer.
 
@@ -226,21 +226,21 @@ def outcomes_at_once(
         contacts: All contacts that touch. There is at least one.
         restitution_law: Poisson's or Newton's law.
         velocity_tolerance: m/s, > 0. A contact that approaches less fast does not strike.
-        most_orders: How many orders to try, >= 1. The answer's ``complete`` says whether these were all.
+        max_orders: How many orders to try, >= 1. The answer's ``complete`` says whether these were all.
 
     Raises:
         SeparatingContactError: every contact separates.
-        InvalidFieldError: there are no contacts, the tolerance is not > 0, ``most_orders`` is no whole number
+        InvalidFieldError: there are no contacts, the tolerance is not > 0, ``max_orders`` is no whole number
             >= 1, or the law is the energetic one.
     """
     tolerance = check_positive("velocity_tolerance", velocity_tolerance)
-    most_orders = check_whole("most_orders", most_orders, 1)
+    max_orders = check_whole("max_orders", max_orders, 1)
     touching = Touching([body], contacts, [(0, None)] * len(contacts), restitution_law, tolerance)
     check_touching(touching, [state])
     found: dict[tuple[int, ...], FloatArray] = {}
     lost = 0
     orders = permutations(range(len(contacts)))
-    for order in (None, *islice(orders, most_orders)):
+    for order in (None, *islice(orders, max_orders)):
         _, (after,), verdict = strike_at_once(touching, [state], order=order)
         if verdict == SeveralVerdict.RESOLVED:
             found[order or ()] = _velocities(after)

@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from contact_dynamics.rigid_body.body import BodyState, MassProperties
     from contact_dynamics.validation import FloatArray
 
-MOST_STRIKES: Final = 1000
+MAX_STRIKES: Final = 1000
 """Single impacts after which a sequence counts as not converged. Sequences of body and floor shrink by a
 fixed factor each round, so that they come to rest within a few dozen."""
 
@@ -173,7 +173,7 @@ def strike_in_turn(
     tie, is_open, ties = 0.0, False, False
     if first is not None:
         strikes.append((first, _strike(touching, now, first)))
-    while len(strikes) < MOST_STRIKES:
+    while len(strikes) < MAX_STRIKES:
         velocities = _relative_velocities(touching, now)
         tie = tie or TIED_APPROACH * float(np.abs(velocities).max())
         approach = np.einsum("ij,ij->i", velocities, touching.contacts.normals_W)

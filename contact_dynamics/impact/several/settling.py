@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from contact_dynamics.rigid_body.body import BodyState, MassProperties
     from contact_dynamics.validation import FloatArray
 
-MOST_JAMS: Final = 10
+MAX_JAMS: Final = 10
 """Jamming impacts after which the case counts as not settled."""
 
 
@@ -46,7 +46,7 @@ def settling_impact(
     """Return one impact that stands for all jamming impacts until ``is_settled`` holds of the state.
 
     Its impulses are the sums over the impacts. The verdict is NOT_CONVERGED if the contacts are not settled
-    after `MOST_JAMS` impacts. The arguments without a word here mean what they mean in `jamming_impact`.
+    after `MAX_JAMS` impacts. The arguments without a word here mean what they mean in `jamming_impact`.
 
     Args:
         body: Mass and angular inertia.
@@ -61,7 +61,7 @@ def settling_impact(
 
     Raises:
         InvalidFieldError: there are no contacts, or `jamming_impact` refuses a number.
-        TooLargeError: there are more than `MOST_JAMMED_CONTACTS` contacts.
+        TooLargeError: there are more than `MAX_JAMMED_CONTACTS` contacts.
     """
     jam = partial(
         jamming_impact,
@@ -74,7 +74,7 @@ def settling_impact(
         velocity_tolerance=velocity_tolerance,
     )
     total = jam(state)
-    for _ in range(MOST_JAMS - 1):
+    for _ in range(MAX_JAMS - 1):
         if total.verdict != SeveralVerdict.RESOLVED or is_settled(total.state):
             return total
         again = jam(total.state)

@@ -33,19 +33,19 @@ from contact_dynamics.validation import FloatArray
 if TYPE_CHECKING:
     from contact_dynamics.contact.contact import ContactSet
 
-MOST_SWEEPS: Final = 5000
+MAX_SWEEPS: Final = 5000
 """Number of sweeps after which the problem counts as not converged."""
 
-MOST_PROJECTIONS: Final = 100_000
+MAX_PROJECTIONS: Final = 100_000
 """Bound on the projections of single impulses in one problem, which take some 2 s. Up to 20 contacts,
-`MOST_SWEEPS` ends the problem before."""
+`MAX_SWEEPS` ends the problem before."""
 
-_MOST_STEPS: Final = 20_000
+_MAX_STEPS: Final = 20_000
 """Bound on the steps of all contacts at once. They are smaller than those of one contact after the other,
 and cheaper."""
 
-_MOST_PRODUCTS: Final = 2_000_000_000
-"""Bound on the products in all these steps, which take some 2 s. Up to 105 contacts, `_MOST_STEPS` ends the
+_MAX_PRODUCTS: Final = 2_000_000_000
+"""Bound on the products in all these steps, which take some 2 s. Up to 105 contacts, `_MAX_STEPS` ends the
 problem before."""
 
 
@@ -88,7 +88,7 @@ def simultaneous_impulses(
             order.
 
     Raises:
-        TooLargeError: there are so many contacts that `MOST_PROJECTIONS` do not settle their impulses.
+        TooLargeError: there are so many contacts that `MAX_PROJECTIONS` do not settle their impulses.
         InvalidFieldError: the law is another one.
     """
     if law not in {RestitutionLaw.POISSON, RestitutionLaw.NEWTON}:
@@ -159,7 +159,7 @@ def _together(problem: _Problem) -> tuple[FloatArray, bool]:
     free = rows @ twist
     impulses = least[:, None] * normals
     scale = float(abs(free + response @ impulses.ravel()).max())
-    for _ in range(min(_MOST_STEPS, max(_MOST_PRODUCTS // (3 * n) ** 2, 1))):
+    for _ in range(min(_MAX_STEPS, max(_MAX_PRODUCTS // (3 * n) ** 2, 1))):
         velocity = (free + response @ impulses.ravel()).reshape(n, 3)
         v_n = np.einsum("ij,ij->i", velocity, normals)
         p = np.maximum(np.einsum("ij,ij->i", impulses, normals) - step_size * (v_n - bounce), least)
@@ -187,7 +187,7 @@ def _in_turn(problem: _Problem, order: tuple[int, ...]) -> tuple[FloatArray, boo
     scale = float(abs(jacobian @ twist).max())
     # One over the largest eigenvalue of a block is a step for which its projection converges.
     steps = 1.0 / np.linalg.eigvalsh(blocks)[:, -1]
-    sweeps = min(MOST_SWEEPS, max(MOST_PROJECTIONS // len(normals), 1))
+    sweeps = min(MAX_SWEEPS, max(MAX_PROJECTIONS // len(normals), 1))
     for _ in range(sweeps):
         change = 0.0
         for i in order:
@@ -206,8 +206,8 @@ def _in_turn(problem: _Problem, order: tuple[int, ...]) -> tuple[FloatArray, boo
             change = max(change, float(abs(blocks[i] @ step).max()))
         if change <= SWEEPS_CONVERGED * scale:
             return impulses, True
-    if sweeps < MOST_SWEEPS:
+    if sweeps < MAX_SWEEPS:
         found = f"{len(normals)} contacts at once, whose impulses do not settle in {sweeps} sweeps"
-        allowed = f"{MOST_PROJECTIONS // MOST_SWEEPS} contacts or fewer, or SEQUENTIAL (0)"
+        allowed = f"{MAX_PROJECTIONS // MAX_SWEEPS} contacts or fewer, or SEQUENTIAL (0)"
         raise TooLargeError("contacts", found, allowed)
     return impulses, False

@@ -15,7 +15,7 @@ import numpy as np
 
 from contact_dynamics.impact.law import ImpactOutcome, RestitutionLaw
 from contact_dynamics.impact.spatial.batch_restitution import ManyProgress, crossings, taken
-from contact_dynamics.impact.spatial.path import MOST_STRETCHES, at_stop, slide
+from contact_dynamics.impact.spatial.path import MAX_STRETCHES, at_stop, slide
 from contact_dynamics.impact.spatial.sliding_law import ESCAPE_ROUNDS, SlidingLaw
 from contact_dynamics.impact.spatial.stop import (
     FARTHEST,
@@ -122,7 +122,7 @@ class _Slide:
         self.ends_before = np.full(len(self.u1), -1)
         slowest = STOPPED * self.first_speed
         whole = self.sliding
-        for stretch in range(MOST_STRETCHES):
+        for stretch in range(MAX_STRETCHES):
             if lanes.size <= FEW:
                 for lane in lanes.tolist():
                     self._alone(lane, started=stretch > 0)

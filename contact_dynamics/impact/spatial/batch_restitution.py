@@ -14,7 +14,7 @@ import numpy as np
 
 from contact_dynamics.impact.law import RULES, RestitutionLaw
 from contact_dynamics.impact.spatial.restitution import Progress
-from contact_dynamics.impact.spatial.taylor import MOST_ITERATIONS, value, value_and_slope
+from contact_dynamics.impact.spatial.taylor import MAX_ITERATIONS, value, value_and_slope
 from contact_dynamics.tolerances import EVENT_LOCATED
 
 if TYPE_CHECKING:
@@ -225,7 +225,7 @@ def crossings(series: list[FloatArray], level: FloatArray, begin: FloatArray, en
     s = np.where(last != first, begin + (end - begin) * part, end)
     result = s.copy()
     lanes = np.arange(len(s))
-    for _ in range(MOST_ITERATIONS):
+    for _ in range(MAX_ITERATIONS):
         total, slope = value_and_slope(series, s)
         excess = total - level
         beyond = (excess > 0.0) == rising

@@ -19,7 +19,7 @@ from contact_dynamics.impact.spatial.taylor import SlidingSeries, crossing, valu
 from contact_dynamics.numerics.elementwise import Number
 from contact_dynamics.tolerances import STOPPED
 
-MOST_STRETCHES: Final = 2000
+MAX_STRETCHES: Final = 2000
 
 
 class SpatialPath(NamedTuple):
@@ -109,7 +109,7 @@ def slide(
     u1, u2 = u
     slowest = STOPPED * first_speed
     with_work = progress.rule.needs_work
-    for _ in range(MOST_STRETCHES):
+    for _ in range(MAX_STRETCHES):
         speed = math.sqrt(u1 * u1 + u2 * u2)
         d1, d2 = u1 / speed, u2 / speed
         speeding, lifting = sliding.speeding(d1, d2), sliding.lifting(d1, d2)

@@ -36,7 +36,7 @@ SURE: Final = 0.5
 """Length of a stretch, in s, where the last terms underflow to zero, so that they do not say how far the
 series reaches. The direction hardly turns over this length."""
 
-MOST_ITERATIONS: Final = 100
+MAX_ITERATIONS: Final = 100
 
 _SHARES: Final = tuple(1.0 / n for n in range(1, ORDER + 2))
 
@@ -151,7 +151,7 @@ def crossing(series: list[float], level: float, begin: float, end: float) -> flo
     s = end
     if last != first:
         s = begin + (end - begin) * min(max((level - first) / (last - first), 0.0), 1.0)
-    for _ in range(MOST_ITERATIONS):
+    for _ in range(MAX_ITERATIONS):
         total, slope = value_and_slope(series, s)
         excess = total - level
         if (excess > 0.0) == rising:

@@ -23,7 +23,7 @@ from contact_dynamics.tolerances import EXACTLY_EQUAL_MOMENTS
 if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
 
-_MOST_SWEEPS: Final = 30
+_MAX_SWEEPS: Final = 30
 """Bound on the sweeps. Convergence takes four to eight."""
 
 
@@ -80,7 +80,7 @@ def _of_bytes(data: bytes) -> PrincipalFrame[Decimal]:
 def _diagonalise(matrix: list[list[Decimal]], axes: list[list[Decimal]]) -> None:
     """Make ``matrix`` diagonal, and turn ``axes`` (columns) with it (Golub and Van Loan, 8.5)."""
     negligible = EXACTLY_EQUAL_MOMENTS / 10**5 * sum(abs(matrix[i][i]) for i in range(3))
-    for _ in range(_MOST_SWEEPS):
+    for _ in range(_MAX_SWEEPS):
         if all(abs(matrix[p][q]) <= negligible for p, q in ((0, 1), (0, 2), (1, 2))):
             return
         for p, q, other in ((0, 1, 2), (0, 2, 1), (1, 2, 0)):

@@ -77,7 +77,7 @@ PredictContactMode::Request::SharedPtr pushed()
   request->state.pose.position.z = 0.025;
   request->applied_wrench.force.x = 2.0;
   request->plane_normal.y = -1.0;
-  request->want_margins = true;
+  request->include_margins = true;
   return request;
 }
 }  // namespace

@@ -214,7 +214,7 @@ def test_rays_by_choice_are_those_of_a_hull(draw: int, monkeypatch: pytest.Monke
     if np.linalg.matrix_rank(rows) < d:  # the cone would hold a line
         rows = np.vstack([rows, np.eye(d) * np.sign(inner)[:, None]])
     by_choice = spatial_cone.extreme_rays(rows, inner)
-    monkeypatch.setattr(spatial_cone, "_MOST_CHOICES", 0)
+    monkeypatch.setattr(spatial_cone, "_MAX_CHOICES", 0)
     by_hull = spatial_cone.extreme_rays(rows, inner)
     vanishing = [{tuple(np.abs(ray @ rows.T) <= 1e-8) for ray in rays} for rays in (by_choice, by_hull)]
     assert vanishing[0] == vanishing[1]

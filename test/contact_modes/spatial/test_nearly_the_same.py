@@ -119,7 +119,7 @@ def test_two_contacts_side_by_side_far_from_the_centre(gap: float) -> None:
 
 @pytest.mark.parametrize("seed", sweep(len(KINDS), whole=4 * len(KINDS)))
 def test_questions_about_one_case_do_not_contradict_each_other(seed: int) -> None:
-    problem = problem_of(resting(seed, most_friction=1.0))
+    problem = problem_of(resting(seed, max_friction=1.0))
     n = len(problem.contacts)
     answer = contact_modes(problem)
     letters = [mode.mode for mode in answer.modes]

@@ -101,7 +101,7 @@ def test_a_drop_that_takes_longer_than_the_window_says_so() -> None:
     assert len(impact_sequence(PIN, state, world, window=1.0).strikes) > 0
     elastic = impact_sequence(PIN, state, world_of(PIN, floor(e=1.0)), window=0.4)
     assert elastic.message.startswith("no further strike within the window of 0.4 s after the last one")
-    bounded = impact_sequence(PIN, state, world_of(PIN, floor(e=1.0)), window=1.0, most_strikes=2)
+    bounded = impact_sequence(PIN, state, world_of(PIN, floor(e=1.0)), window=1.0, max_strikes=2)
     assert bounded.message.startswith("the bound of 2 strikes was reached")
     rests = impact_sequence(PIN, dropped_pin(0.002), world)
     assert rests.message.startswith("infinitely many rebounds end: the contacts 0 stay")
@@ -109,9 +109,9 @@ def test_a_drop_that_takes_longer_than_the_window_says_so() -> None:
 
 def test_the_number_of_strikes_is_bounded() -> None:
     sequence = impact_sequence(
-        PIN, dropped_pin(0.001), world_of(PIN, floor(e=1.0)), window=1.0, most_strikes=3
+        PIN, dropped_pin(0.001), world_of(PIN, floor(e=1.0)), window=1.0, max_strikes=3
     )
-    assert (sequence.end, sequence.order) == (SequenceEnd.MOST_STRIKES, (0, 0, 0))
+    assert (sequence.end, sequence.order) == (SequenceEnd.MAX_STRIKES, (0, 0, 0))
 
 
 ROD = Body(
@@ -312,7 +312,7 @@ def test_energy_never_grows_and_nothing_sinks_in(seed: int, e: float, mu: float,
 
 def test_no_friction_and_no_loss_keep_the_energy() -> None:
     body, state = random_toss(7)
-    sequence = impact_sequence(body, state, world_of(body, floor(e=1.0)), window=0.2, most_strikes=20)
+    sequence = impact_sequence(body, state, world_of(body, floor(e=1.0)), window=0.2, max_strikes=20)
     assert len(sequence.strikes) > 3
     assert energy(body, sequence.state) == pytest.approx(energy(body, state), rel=1e-12)
 
@@ -357,8 +357,8 @@ def test_refusals() -> None:
     state, world = dropped_pin(0.01), world_of(PIN, floor(e=0.5))
     with pytest.raises(InvalidFieldError, match="window"):
         impact_sequence(PIN, state, world, window=0.0)
-    with pytest.raises(InvalidFieldError, match="most_strikes"):
-        impact_sequence(PIN, state, world, most_strikes=0)
+    with pytest.raises(InvalidFieldError, match="max_strikes"):
+        impact_sequence(PIN, state, world, max_strikes=0)
     with pytest.raises(InvalidFieldError, match="velocity_tolerance"):
         impact_sequence(PIN, state, world, velocity_tolerance=0.0)
     with pytest.raises(InvalidFieldError, match="distance_tolerance"):
@@ -421,7 +421,7 @@ def test_a_rod_that_turns_about_a_held_end_strikes_with_the_other(friction: floa
     world = world_of(ROD, floor(e=0.0, mu=friction))
     ended = impact_sequence(ROD, state, world, window=0.3)
     assert (ended.end, ended.strikes, ended.staying) == (SequenceEnd.STAYS, (), (0,))
-    held = impact_sequence(ROD, state, world, window=0.3, most_strikes=1, hold_step=step)
+    held = impact_sequence(ROD, state, world, window=0.3, max_strikes=1, hold_step=step)
     assert held.order == (1,)
     strike = held.strikes[0]
     assert strike.seconds == pytest.approx(expected, abs=1.5 * step)
@@ -437,7 +437,7 @@ def test_holding_takes_energy_and_never_gives(seed: int, e: float, mu: float) ->
     body, state = random_toss(seed)
     step = 1e-3
     sequence = impact_sequence(
-        body, state, world_of(body, floor(e=e, mu=mu)), window=0.02, hold_step=step, most_strikes=12
+        body, state, world_of(body, floor(e=e, mu=mu)), window=0.02, hold_step=step, max_strikes=12
     )
     energies = [energy(body, state)]
     for strike in sequence.strikes:
@@ -456,8 +456,8 @@ def test_what_leaves_is_not_held() -> None:
     """A sequence that no contact ends is the same with and without holding."""
     body, state = random_toss(1)
     world = world_of(body, floor(e=0.9))
-    free = impact_sequence(body, state, world, window=0.1, most_strikes=4)
-    held = impact_sequence(body, state, world, window=0.1, most_strikes=4, hold_step=1e-3)
+    free = impact_sequence(body, state, world, window=0.1, max_strikes=4)
+    held = impact_sequence(body, state, world, window=0.1, max_strikes=4, hold_step=1e-3)
     assert free.limit_seconds is None
     assert [strike.seconds for strike in held.strikes] == [strike.seconds for strike in free.strikes]
     with pytest.raises(InvalidFieldError, match="hold_step"):

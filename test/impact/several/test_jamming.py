@@ -18,7 +18,7 @@ from contact_dynamics.contact_modes import (
 from contact_dynamics.errors import InvalidFieldError, TooLargeError
 from contact_dynamics.impact import SeveralImpact, SeveralVerdict, planar_impact
 from contact_dynamics.impact.several.jamming import jamming_impact
-from contact_dynamics.impact.several.settling import MOST_JAMS, settling_impact
+from contact_dynamics.impact.several.settling import MAX_JAMS, settling_impact
 from contact_dynamics.numerics.lemke import solve_complementarity
 from contact_dynamics.plane.in_space import planar_in_space
 from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
@@ -204,7 +204,7 @@ def test_what_never_settles_says_so() -> None:
     asked = []
     impact = settling_impact(body, state, touching, is_settled=lambda now: bool(asked.append(now)), **how)
     assert impact.verdict == SeveralVerdict.NOT_CONVERGED
-    assert len(asked) == MOST_JAMS
+    assert len(asked) == MAX_JAMS
     once = jamming_impact(body, state, touching, **how)
     np.testing.assert_allclose(impact.state.v_WB_W, once.state.v_WB_W, atol=1e-6)  # it stopped at once
 

@@ -269,7 +269,7 @@ def test_orders_and_their_outcomes_are_those_of_exact_strikes(most: int) -> None
     """The law's own outcome comes first, of corners that tie, then those of priorities as they are listed."""
     body = MassProperties(mass=0.5, I_B=np.diag([1 / 1000, 1 / 800, 1 / 700]))
     contacts = floor_contacts([[float(x), float(y), 0.0] for x, y in CORNERS], friction=0.0, restitution=0.5)
-    outcomes = outcomes_over_orders(body, falling(0.1, [0.0, 0.0, -1.0]), contacts, most_orders=most)
+    outcomes = outcomes_over_orders(body, falling(0.1, [0.0, 0.0, -1.0]), contacts, max_orders=most)
     priorities = itertools.islice(itertools.permutations(range(3)), most)
     expected = {(): in_turn(None)[1], **dict(in_turn(priority) for priority in priorities)}
     assert outcomes.orders == tuple(expected)

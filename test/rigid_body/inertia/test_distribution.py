@@ -15,7 +15,7 @@ from contact_dynamics.rigid_body import inertia
 from contact_dynamics.rigid_body.body import MassProperties
 from contact_dynamics.rigid_body.inertia import MassDistribution
 from contact_dynamics.shapes.convex import sphere
-from contact_dynamics.world import MOST_VERTICES, Body, box_vertices
+from contact_dynamics.world import MAX_VERTICES, Body, box_vertices
 from oracles.inertia_particles import sums
 
 vectors = st.tuples(*[st.floats(-5.0, 5.0)] * 3).map(np.array)
@@ -242,7 +242,7 @@ def test_other_misuse_is_refused_by_name() -> None:
     with pytest.raises(InvalidFieldError, match=r"axis_F: .*unit"):
         ball.radius_of_gyration((0.0, 0.0, 2.0))
     with pytest.raises(TooLargeError, match=r"vertices"):
-        Body.of("ball", ball, vertices_F=np.zeros((MOST_VERTICES + 1, 3)))
+        Body.of("ball", ball, vertices_F=np.zeros((MAX_VERTICES + 1, 3)))
     with pytest.raises(InvalidFieldError, match=r"masses: found -1.0"):
         inertia.particles([1.0, -1.0], np.zeros((2, 3)))
     with pytest.raises(InvalidFieldError, match=r"masses: .*at least one"):

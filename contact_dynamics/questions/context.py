@@ -1,4 +1,4 @@
-"""The knowledge that questions are answered with: the world, the published states, and defaults."""
+"""The context that questions are answered with: the world, the published states, and defaults."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ class Defaults(Record):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class Knowledge(Record):
+class Context(Record):
     """What is known when a question is asked.
 
     Attributes:
