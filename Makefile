@@ -20,7 +20,7 @@ export PIP_USER := 0
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help demo test test-matrix test-slow sweeps fuzz coverage lint types bench docs setup venv clean FORCE
+.PHONY: help demo test test-matrix test-slow sweeps fuzz coverage lint types bench docs pictures setup venv clean FORCE
 
 help: ## print this
 	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(MAKEFILE_LIST) | while IFS='	' read -r name text; do \
@@ -73,6 +73,9 @@ bench: $(MADE)/bench ## measure speed and accuracy, peers beside us; WRITE=1 ren
 docs: $(MADE)/test ## the documents as a site with a reference, in site/
 	@NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build --quiet
 	@echo "Open site/index.html in a browser. To search it too: $(BIN)/python -m http.server -d site"
+
+pictures: $(MADE)/test ## the viewer's pictures in docs/, with the moving one of the README
+	@$(BIN)/python scripts/viewer_pictures.py
 
 setup: $(MADE)/package $(MADE)/interfaces ## make the environment in .venv and nothing else
 venv: setup

@@ -15,7 +15,7 @@ from contact_dynamics.contact_modes.planar.wrench_sets import length_of
 from contact_dynamics.contact_modes.spatial.applied_wrench import applied_wrench
 from contact_dynamics.diagrams.mode_map import LIVE_RESOLUTION, chart_for
 from contact_dynamics.diagrams.planar_scene import planar_scene_of
-from contact_dynamics.diagrams.words import margin_in_words
+from contact_dynamics.diagrams.words import margin_in_words, mode_in_words
 from contact_dynamics.diagrams.wrench_chart import DirectionChart, ForceDualChart
 from contact_dynamics.questions.planar_view import seen_contacts, seen_modes, seen_wrench, seen_wrench_set
 
@@ -102,7 +102,10 @@ def modes_side_by_side(
     low, high = everything.min(axis=0), everything.max(axis=0)
     size = float(np.linalg.norm(high - low)) or NO_SIZE
     margins = [margin_in_words(margin) for margin in answer.margins or ()] or [""] * len(modes)
-    titles = [f"{mode.mode} {margin}" for mode, margin in zip(modes, margins, strict=True)]
+    titles = [
+        f"{mode.mode}: {mode_in_words(mode.mode)} {margin}".rstrip()
+        for mode, margin in zip(modes, margins, strict=True)
+    ]
     return ModesSideBySide(
         titles=titles or ["approaches" if answer.approaching else "no consistent mode"],
         modes=modes,

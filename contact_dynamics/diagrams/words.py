@@ -172,6 +172,15 @@ def mode_in_words(mode: str) -> str:
     return f"it tips ({words})" if set(kinds) == {SEPARATES, STICKS} else words
 
 
+def contacts_in_words(letters: str, count: int) -> str:
+    """Return words such as "2 contacts slide left". The letters of several modes are joined by `|`."""
+    if letters == "?":
+        return "no mode"
+    several = count > 1
+    words = " or ".join(LETTERS[letter][several] for letter in letters.split("|"))
+    return f"{count} contacts {words}" if several else words
+
+
 def many_in_words(answer: ManyTumblingsAnswer | ManyImpactsAnswer) -> list[str]:
     """Return words for how many states there are, and what the impacts do."""
     count = f"has {len(answer.states)} states"

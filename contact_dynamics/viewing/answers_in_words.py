@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import rerun as rr
 
-from contact_dynamics.viewing.entities import ANSWER_LOG, NEWEST_ANSWERS
+from contact_dynamics.viewing.entities import ANSWER_LOG, NEWEST_ANSWERS, SUMMARY
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -21,12 +21,14 @@ class AnswersInWords:
         self._newest: dict[str, str] = {}  # by kind
 
     def tell(self, kind: str, text: str, *, is_error: bool = False) -> None:
-        """Write an answer into both, at the time that was set."""
+        """Write an answer into both, and its first words into the summary, at the time that was set."""
         level = rr.TextLogLevel.WARN if is_error else rr.TextLogLevel.INFO
         self._recording.log(ANSWER_LOG, rr.TextLog(f"{kind}: {text}", level=level))
         self._newest[kind] = text
         document = "\n\n".join(f"**{kind}**: {newest}" for kind, newest in self._newest.items())
         self._recording.log(NEWEST_ANSWERS, rr.TextDocument(document, media_type=rr.MediaType.MARKDOWN))
+        summary = f"**{kind}**: {text.partition(';')[0]}"
+        self._recording.log(SUMMARY, rr.TextDocument(summary, media_type=rr.MediaType.MARKDOWN))
 
 
 def sentence(

@@ -35,6 +35,7 @@ from contact_dynamics.viewing.entities import (
     SCENE,
     SINCE_START,
     SPEED,
+    SUMMARY,
     TIMELINE,
     TOSSES,
     WHOSE,
@@ -72,6 +73,9 @@ DIAGRAMS: Final = {
     POINSOT: "Poinsot",
 }
 """The diagrams. Each has a tab beside the scene once there is something to see, and the first is open."""
+
+COLORS_IN_WORDS: Final = "solid: measured, orange: predicted, red: impact, violet: friction cone"
+"""The short legend, in the title of each scene."""
 
 _DISTANCE: Final = 1.0  # distance of the eye, relative to the diagonal of what it shows
 _ELEVATION: Final = 0.33  # height of the eye above what it looks at, relative to its horizontal distance
@@ -148,6 +152,7 @@ def make_blueprint(
         scene = _scene("Motion", body_names, eye, without=_all_but(PREDICTED))
         whose = rrb.TextDocumentView(origin=WHOSE, name="Whose curves")
         pages.append(_page("Energy and momentum", scene, [], _of_one_body(), words=[whose]))
+    pages.append(_words(shown))
     return rrb.Blueprint(
         rrb.Tabs(*pages, active_tab=0),
         rrb.BlueprintPanel(state=rrb.PanelState.Collapsed),
@@ -162,15 +167,24 @@ def _all_but(*drawn: str) -> list[str]:
 
 
 def _overview(scene: rrb.Spatial3DView, shown: Collection[str]) -> rrb.Horizontal:
+    """Return the page that opens first: a large scene, a diagram, a curve, the newest answer in a line."""
     views = [_diagram(origin) for origin in DIAGRAMS if origin in shown]
     diagrams = [rrb.Tabs(*views, active_tab=0)] if views else []
-    curves = [_height(), _speed(), *([_error()] if ERROR in shown else [])]
-    words: list[rrb.View] = [rrb.TextDocumentView(origin=LEGEND, name="Legend")]
+    curve = _error() if ERROR in shown else _height()
+    aside = rrb.Vertical(*diagrams, curve, row_shares=[3] * len(diagrams) + [2])
+    main: rrb.Spatial3DView | rrb.Vertical = scene
     if ANSWERS in shown:
-        words = [_told(), rrb.TextLogView(origin=ANSWER_LOG, name="All answers"), *words]
-    shares = [5] * len(diagrams) + [2] * len(curves) + [4]
-    aside = rrb.Vertical(*diagrams, *curves, rrb.Tabs(*words, active_tab=0), row_shares=shares)
-    return rrb.Horizontal(scene, aside, column_shares=[3, 2], name="Overview")
+        summary = rrb.TextDocumentView(origin=SUMMARY, name="Newest answer")
+        main = rrb.Vertical(scene, summary, row_shares=[7, 1])
+    return rrb.Horizontal(main, aside, column_shares=[3, 2], name="Overview")
+
+
+def _words(shown: Collection[str]) -> rrb.Horizontal:
+    words: list[rrb.View] = []
+    if ANSWERS in shown:
+        words = [_told(), rrb.TextLogView(origin=ANSWER_LOG, name="All answers")]
+    legend = rrb.TextDocumentView(origin=LEGEND, name="Legend")
+    return rrb.Horizontal(*([rrb.Vertical(*words)] if words else []), legend, name="Answers and legend")
 
 
 def _page(
@@ -198,7 +212,7 @@ def _scene(
     return rrb.Spatial3DView(
         origin="/",
         contents=[f"+ {SCENE}/**", *(f"- {part}/**" for part in without)],
-        name=name,
+        name=f"{name} ({COLORS_IN_WORDS})",
         background=rrb.Background(color=palette.BACKGROUND, kind=rrb.BackgroundKind.SolidColor),
         line_grid=False,
         eye_controls=controls,
@@ -232,7 +246,7 @@ def _of_one_body() -> list[rrb.View]:
 
 
 def _error() -> rrb.TimeSeriesView:
-    return _curves(ERROR, "Distance of the measured from the predicted place, m")
+    return _curves(ERROR, "Error of the predicted position, m")
 
 
 def _told() -> rrb.TextDocumentView:

@@ -1,4 +1,4 @@
-"""Draws contact modes in the scene: letters and friction cones at the contacts, and each consistent mode.
+"""Draws contact modes in the scene: friction cones, words for what the contacts do, each consistent mode.
 
 Each mode has an entity of its own, `mode_1`, `mode_2` and so on, with its contact forces, sliding directions
 and acceleration. The viewer shows the first. The eye beside a mode's name switches it on.
@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 import rerun as rr
 
+from contact_dynamics.diagrams.words import contacts_in_words
 from contact_dynamics.questions.planar_view import beyond, sliding_directions
 from contact_dynamics.viewing import palette
 from contact_dynamics.viewing.entities import contacts_entity
@@ -32,6 +33,9 @@ MAX_MODES: Final = 6
 LETTERS: Final = "letters"
 """The labels of the contacts. Only those of the newest answer are in view."""
 
+LABEL_DEPTH: Final = 0.3
+"""How far below the contacts their label is, relative to the body's size, so that they are seen."""
+
 _ACCELERATION_LENGTH: Final = 0.6  # length of the arrow at the centre of mass, relative to the body's size
 _SLIDING_LENGTH: Final = 0.3  # length of the arrows of sliding directions, relative to the body's size
 _CONE_HEIGHT: Final = 0.25  # relative to the body's size
@@ -51,14 +55,7 @@ def draw_contact_modes(recording: rr.RecordingStream, shape: Shape, answer: Cont
     colors = np.array([color_of_letters(text) for text in letters], dtype=np.uint8).reshape(-1, 4)
     points = rr.Points3D(contacts.p_WC_W, colors=colors, radii=_POINT_SIZE * size)
     recording.log(f"{path}/points", points)
-    words = rr.Points3D(
-        contacts.p_WC_W,
-        colors=[palette.readable(color_of_letters(text)) for text in letters],
-        radii=0.0,
-        labels=letters,
-        show_labels=True,
-    )
-    recording.log(f"{path}/{LETTERS}", words)
+    recording.log(f"{path}/{LETTERS}", _labels(letters, answer, size=size))
     cones = friction_cones(
         contacts.p_WC_W, contacts.normals_W, contacts.frictions, height=_CONE_HEIGHT * size
     )
@@ -123,6 +120,25 @@ def _draw_mode(
 def letters_of_contacts(modes: tuple[str, ...], count: int) -> list[str]:
     """Return each contact's letters in all modes, each once, joined by `|`, or `?` if there is no mode."""
     return ["|".join(dict.fromkeys(mode[i] for mode in modes)) or "?" for i in range(count)]
+
+
+def _labels(letters: list[str], answer: ContactModeAnswer, *, size: float) -> rr.Points3D:
+    """Return one label for the contacts with the same letters and the same normal, below them."""
+    normals_W = answer.contacts.normals_W
+    groups: dict[tuple[str, tuple[float, ...]], list[int]] = {}
+    for i, text in enumerate(letters):
+        groups.setdefault((text, tuple(normals_W[i].round(2).tolist())), []).append(i)
+    places = [
+        answer.contacts.p_WC_W[group].mean(axis=0) - LABEL_DEPTH * size * normals_W[group[0]]
+        for group in groups.values()
+    ]
+    return rr.Points3D(
+        places,
+        colors=[palette.readable(color_of_letters(text)) for text, _ in groups],
+        radii=0.0,
+        labels=[contacts_in_words(text, len(group)) for (text, _), group in groups.items()],
+        show_labels=True,
+    )
 
 
 def color_of_letters(letters: str) -> palette.Color:

@@ -41,6 +41,7 @@ ERROR: Final = "error"
 ANSWERS: Final = "answers"
 ANSWER_LOG: Final = "answers/log"
 NEWEST_ANSWERS: Final = "answers/newest"
+SUMMARY: Final = "answers/summary"
 LEGEND: Final = "legend"
 
 

@@ -36,6 +36,15 @@ ARROW_LENGTH: Final = 1.1
 ARROW_WIDTH: Final = 0.016
 """Relative to the size of the body."""
 
+LABEL_REACH: Final = 1.15
+"""How far out the label of a velocity is, relative to its arrow."""
+
+LABEL_DEPTH: Final = 0.35
+"""How far below the contact the label of its impulse is, relative to the body's size."""
+
+AFTER_DEPTH: Final = 0.75
+"""The same for the label of the velocity after it."""
+
 LABELS: Final = ("impulse_label", "velocity_label")
 """The labels of an impact. Only those of the newest impact are in view."""
 
@@ -58,12 +67,15 @@ class Arrows:
     vectors: FloatArray  # (n, 3), in the unit, world axes
     unit: str
     colors: tuple[palette.Color, ...]  # (n,)
+    arrives: tuple[bool, ...] = ()  # (n,), whether the arrow ends at its origin; by default none does
 
     def drawn(self, size: float) -> rr.Arrows3D:
         """Return the arrows to draw. The longest suits a body of that size, m."""
+        vectors = self.vectors * self.scale(size)
+        back = np.reshape(self.arrives or np.zeros(len(vectors)), (-1, 1))
         return rr.Arrows3D(
-            origins=self.origins,
-            vectors=self.tips(size) - self.origins,
+            origins=self.origins - back * vectors,
+            vectors=vectors,
             colors=self._colors(),
             radii=ARROW_WIDTH * size,
         )
@@ -77,9 +89,13 @@ class Arrows:
         colors = [palette.readable(color) for color in self.colors]
         return rr.Points3D(places, colors=colors, radii=0.0, labels=words, show_labels=True)
 
-    def tips(self, size: float) -> FloatArray:
-        """Return the tips of the arrows, (n, 3), m, world, for a body of that size, m."""
-        return self.origins + self.vectors * self.scale(size)
+    def far_ends(self, size: float, *, reach: float = 1.0) -> FloatArray:
+        """Return the ends away from the origins, (n, 3), m, world, for a body of that size, m.
+
+        With a ``reach`` above 1 they are that much farther out.
+        """
+        sides = np.where(np.reshape(self.arrives or np.zeros(len(self.vectors)), (-1, 1)), -1.0, 1.0)
+        return self.origins + sides * self.vectors * (reach * self.scale(size))
 
     def scale(self, size: float) -> float:
         """Return the drawn length of one unit, m, for a body of that size, m."""
@@ -112,7 +128,7 @@ def draw_impact(
     velocities = velocity_arrows(answer)
     recording.log(f"{path}/impulse", impulses.drawn(size))
     main = main_strikes(impact.strikes)
-    recording.log(f"{path}/impulse_label", _impulse_labels(impact.strikes, impulses, main, size=size))
+    recording.log(f"{path}/impulse_label", _impulse_labels(answer, struck, impulses, main, size=size))
     recording.log(f"{path}/velocity", velocities.drawn(size))
     recording.log(f"{path}/velocity_label", velocity_labels(answer, size))
     recording.log(f"{path}/measured_velocity", rr.Clear(recursive=False))  # the impact before had one
@@ -142,7 +158,10 @@ def draw_impact(
 
 
 def velocity_arrows(answer: ImpactAnswer) -> Arrows:
-    """Return the velocities of the moving bodies before and after an impact, two arrows for each body."""
+    """Return the velocities of the moving bodies before and after an impact, two arrows for each body.
+
+    The first ends at the centre of mass and the second begins there.
+    """
     impact, other = answer.impact, answer.other
     moving = [(answer.state.p_WB_W, answer.state.v_WB_W, impact.state.v_WB_W)]
     if other is not None and impact.other_state is not None:
@@ -152,6 +171,7 @@ def velocity_arrows(answer: ImpactAnswer) -> Arrows:
         vectors=np.array([v_W for _, *both in moving for v_W in both]),
         unit="m/s",
         colors=(palette.BEFORE_IMPACT, palette.AFTER_IMPACT) * len(moving),
+        arrives=(True, False) * len(moving),
     )
 
 
@@ -161,7 +181,11 @@ def velocity_labels(answer: ImpactAnswer, size: float, measured: str = "") -> rr
     words = ["before", "predicted after"] * (len(velocities.origins) // 2)
     if measured:
         words[1] = f"{measured}, predicted"
-    return velocities.labels(velocities.tips(size), before=words)
+    places = velocities.far_ends(size, reach=LABEL_REACH)
+    contacts = answer.contacts
+    if len(contacts):  # the body leaves along this velocity, where a label would cover it
+        places[1] = (contacts.p_WC_W - AFTER_DEPTH * size * contacts.normals_W).mean(axis=0)
+    return velocities.labels(places, before=words)
 
 
 def main_strikes(strikes: Sequence[SequenceStrike]) -> list[int]:
@@ -184,10 +208,11 @@ def _struck(answer: ImpactAnswer) -> tuple[list[int], FloatArray, FloatArray]:
 
 
 def _impulse_labels(
-    strikes: Sequence[SequenceStrike], impulses: Arrows, main: list[int], *, size: float
+    answer: ImpactAnswer, struck: list[int], impulses: Arrows, main: list[int], *, size: float
 ) -> rr.Points3D:
+    strikes = answer.impact.strikes
     if not strikes:
-        return impulses.labels(impulses.origins)
+        return impulses.labels(impulses.origins - LABEL_DEPTH * size * answer.contacts.normals_W[struck])
     labelled = replace(
         impulses,
         origins=impulses.origins[main],
@@ -195,7 +220,7 @@ def _impulse_labels(
         colors=(palette.IMPACT,) * len(main),
     )
     numbers = [f"{i + 1}. at {1e3 * strikes[i].seconds:.1f} ms:" for i in main]
-    return labelled.labels(impulses.tips(size)[main], before=numbers)
+    return labelled.labels(impulses.far_ends(size)[main], before=numbers)
 
 
 def _paths(answer: ImpactAnswer, *, scale: float) -> list[FloatArray]:

@@ -27,8 +27,8 @@ if TYPE_CHECKING:
 _LINE_WIDTH: Final = -1.2  # a negative size is in points of the screen
 _PATH_WIDTH: Final = -2.5
 _POINT_SIZE: Final = -5.0
-_BESIDE: Final = 1.45  # distance of the labels' centres from the normal, relative to the picture's height
-_ROOM: Final = 2.5  # where labels end, relative to the picture's height
+_BESIDE: Final = 1.35  # distance of the labels' centres from the normal, relative to the picture's height
+_ROOM: Final = 2.2  # where labels end, relative to the picture's height
 _APART: Final = 0.18  # least distance of labels from each other, relative to the picture's height
 _AXIS_NAMES: Final = ("tangential impulse, N s", "normal impulse, N s")
 _ABOVE: Final = 1.15  # where the name of the upper axis ends, relative to the picture's height
@@ -67,7 +67,7 @@ def draw_impulse_space(
         _strips(recording, [entity, name], strips, color)
     _strips(recording, [entity, "path"], [space.path], palette.IMPACT, width=_PATH_WIDTH)
     texts = [
-        f"{EVENTS[event]}: {t:.3g}, {n:.3g} N s"
+        f"{EVENTS[event]}: {t:.3g}, {n:.3g}"
         for event, (t, n) in zip(space.events, space.points.tolist(), strict=True)
     ]
     shown = rr.Points2D(_on_screen(space.points), colors=palette.IMPACT, radii=_POINT_SIZE)

@@ -9,7 +9,7 @@ LEGEND_TEXT: Final = """\
 | --- | --- |
 | body, trail and thick curves in the body's colour | measured; a single body is blue grey |
 | orange path, outlines, thin curves | the newest prediction; faint: the three paths before it |
-| curve *distance of the measured from the predicted place* | of the centre of mass |
+| curve *error of the predicted position* | distance of the measured from the predicted centre of mass |
 | orange ellipsoids | two deviations of the predicted centre of mass; white: not to be relied on |
 | orange translucent body | end of the newest prediction |
 | red outlines, arrows | each body at its newest predicted impact, impulses on it |

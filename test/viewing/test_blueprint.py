@@ -6,7 +6,14 @@ import numpy as np
 import pytest
 from rerun.chunk import RrdReader
 
-from contact_dynamics.viewing.blueprint import DIAGRAMS, LOWEST_DISTANCE, Eye, eye_on, make_blueprint
+from contact_dynamics.viewing.blueprint import (
+    COLORS_IN_WORDS,
+    DIAGRAMS,
+    LOWEST_DISTANCE,
+    Eye,
+    eye_on,
+    make_blueprint,
+)
 from contact_dynamics.viewing.entities import (
     ANSWERS,
     CONTACTS,
@@ -64,7 +71,7 @@ def test_the_eye_is_where_the_path_bulges_to() -> None:
 
 HEIGHT = "Height of the centre of mass, m (thin: predicted)"
 SPEED = "Speed of the centre of mass, m/s (thin: predicted)"
-APART = "Distance of the measured from the predicted place, m"
+APART = "Error of the predicted position, m"
 OF_ONE_BODY = [
     "Whose curves",
     "Energy, J (thin: predicted)",
@@ -72,14 +79,15 @@ OF_ONE_BODY = [
     "Angular momentum, kg m²/s (thin: predicted)",
     "Angular velocity, rad/s (thin: predicted)",
 ]
-OVERVIEW = ["Scene", HEIGHT, SPEED, "Legend"]
-TOLD = ["Newest answers", "All answers"]
+OVERVIEW = ["Scene", HEIGHT, "Legend"]
+COMPARED = ["Scene", APART, "Legend"]
+TOLD = ["Newest answer", "Newest answers", "All answers"]
 PAGES = {
     "nothing yet": ([], OVERVIEW, []),
     "a refusal": ([ANSWERS], [*OVERVIEW, *TOLD], []),
     "a flight": (
         [ANSWERS, PREDICTED, POINSOT, ERROR],
-        [*OVERVIEW, *TOLD, "Poinsot", APART, "Flight", "Poinsot", HEIGHT, SPEED, APART],
+        [*COMPARED, *TOLD, "Poinsot", "Flight", "Poinsot", HEIGHT, SPEED, APART],
         ["Flight"],
     ),
     "an impact": (
@@ -115,9 +123,8 @@ PAGES = {
     "everything": (
         [ANSWERS, PREDICTED, IMPACTS, CONTACTS, TOSSES, MANY, ERROR, ENERGY, *DIAGRAMS],
         [
-            *OVERVIEW,
+            *COMPARED,
             *TOLD,
-            APART,
             *DIAGRAMS.values(),
             "Flight",
             "Poinsot",
@@ -152,8 +159,9 @@ PAGES = {
 def test_each_question_has_a_page_and_what_is_not_there_has_no_panel(tmp_path: Path, case: str) -> None:
     shown, views, pages = PAGES[case]
     names, _ = names_and_paths(tmp_path, eye=None, shown=shown)
-    assert sorted(names["ViewBlueprint"]) == sorted(views)
-    assert sorted(names["ContainerBlueprint"]) == sorted(["Overview", *pages])
+    found = [name.removesuffix(f" ({COLORS_IN_WORDS})") for name in names["ViewBlueprint"]]
+    assert sorted(found) == sorted(views)
+    assert sorted(names["ContainerBlueprint"]) == sorted(["Overview", *pages, "Answers and legend"])
 
 
 @pytest.mark.parametrize(

@@ -11,6 +11,7 @@ from contact_dynamics.plane.projection import PlaneOfMotion
 from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.viewing import palette
 from contact_dynamics.viewing.contact_modes import (
+    LABEL_DEPTH,
     MAX_MODES,
     color_of_letters,
     draw_contact_modes,
@@ -82,7 +83,7 @@ def test_points_carry_letters_and_forces_their_direction(
     answer = contact_mode_answer(AT_REST, two_contacts, mode_of("sr", forces, slides=slides))
     draw_contact_modes(recording, convex_shape(body.vertices_B), answer)
     drawn = read()
-    assert drawn.last(f"{CONTACTS}/letters", "Points3D:labels") == ["s", "r"]
+    assert drawn.last(f"{CONTACTS}/letters", "Points3D:labels") == ["separates", "slides right"]
     colors = [color.to_bytes(4, "big") for color in drawn.last(f"{CONTACTS}/points", "Points3D:colors")]
     assert colors == [bytes(palette.SEPARATE), bytes(palette.SLIDE)]
     assert drawn.last(f"{CONTACTS}/mode_1/forces", "Arrows3D:labels") == ["0.5 N"]
@@ -94,6 +95,20 @@ def test_points_carry_letters_and_forces_their_direction(
     assert (f"{CONTACTS}/cones", "Mesh3D:vertex_positions") in drawn.values
     edges = drawn.array(f"{CONTACTS}/body", "LineStrips3D:strips")  # where the answer is about it
     np.testing.assert_allclose(edges.reshape(-1, 3).mean(axis=0), [0.0, 0.0, 0.1], atol=1e-6)
+
+
+def test_contacts_that_do_the_same_have_one_label_below_them(
+    recording: rr.RecordingStream, read: Callable[[], Drawn], body: Body, two_contacts: ContactSet
+) -> None:
+    up = np.array([[0.0, 0.0, 1.0], [0.0, 0.0, 1.0]])
+    answer = contact_mode_answer(AT_REST, two_contacts, mode_of("ff", up), mode_of("rr", up))
+    shape = convex_shape(body.vertices_B)
+    draw_contact_modes(recording, shape, answer)
+    drawn = read()
+    assert drawn.last(f"{CONTACTS}/letters", "Points3D:labels") == ["2 contacts stay fixed or slide right"]
+    (place,) = drawn.array(f"{CONTACTS}/letters", "Points3D:positions")
+    below = two_contacts.p_WC_W.mean(axis=0) - LABEL_DEPTH * shape.size * two_contacts.normals_W[0]
+    np.testing.assert_allclose(place, below, atol=1e-6)  # float32 positions
 
 
 def test_each_mode_is_an_entity_of_its_own(
@@ -121,7 +136,7 @@ def test_no_consistent_mode_is_drawn_as_a_question(
 ) -> None:
     draw_contact_modes(recording, convex_shape(body.vertices_B), contact_mode_answer(AT_REST, two_contacts))
     drawn = read()
-    assert drawn.last(f"{CONTACTS}/letters", "Points3D:labels") == ["?", "?"]
+    assert drawn.last(f"{CONTACTS}/letters", "Points3D:labels") == ["no mode"]
     assert drawn.last(f"{CONTACTS}/mode_1", "Clear:is_recursive") == [True]
 
 

@@ -11,7 +11,7 @@ from contact_dynamics.diagrams.impulse_space import main_contact
 from contact_dynamics.diagrams.shape import convex_shape
 from contact_dynamics.impact import ImpactOutcome, PathEvent
 from contact_dynamics.questions import SequenceStrike, StruckBody
-from contact_dynamics.viewing.impact import draw_impact, friction_cones, main_strikes
+from contact_dynamics.viewing.impact import LABEL_DEPTH, draw_impact, friction_cones, main_strikes
 from viewing.answers import impact_answer, of_two
 
 if TYPE_CHECKING:
@@ -49,7 +49,8 @@ def test_arrows_point_along_what_they_stand_for_and_say_how_much(
     two_contacts: ContactSet,
 ) -> None:
     impulses = np.array([[0.0, 0.0, 0.0], [0.3, 0.0, 0.4]])
-    draw_impact(recording, convex_shape(body.vertices_B), answer_of(state, two_contacts, impulses))
+    shape = convex_shape(body.vertices_B)
+    draw_impact(recording, shape, answer_of(state, two_contacts, impulses))
     drawn = read()
     assert drawn.last(f"{IMPACT}/impulse_label", "Points3D:labels") == ["0.5 N s"]
     arrow = drawn.array(f"{IMPACT}/impulse", "Arrows3D:vectors")
@@ -58,6 +59,8 @@ def test_arrows_point_along_what_they_stand_for_and_say_how_much(
     np.testing.assert_allclose(
         drawn.array(f"{IMPACT}/impulse", "Arrows3D:origins"), [[-0.1, 0, 0]], rtol=1e-6
     )
+    (place,) = drawn.array(f"{IMPACT}/impulse_label", "Points3D:positions")
+    np.testing.assert_allclose(place, [-0.1, 0.0, -LABEL_DEPTH * shape.size], rtol=1e-6)
     before, after = drawn.array(f"{IMPACT}/velocity", "Arrows3D:vectors")
     np.testing.assert_allclose(before / after, state.v_WB_W / [0.25, 0.1, 0.5], rtol=1e-5)  # one scale
     np.testing.assert_allclose(
@@ -114,9 +117,9 @@ def test_a_body_that_is_struck_is_drawn_with_its_velocities(
         "before 1 m/s",
         "predicted after 0.5 m/s",
     ]
-    np.testing.assert_allclose(
-        drawn.array(f"{IMPACT}/velocity", "Arrows3D:origins")[2:], np.tile([2.0, 0.0, 0.0], (2, 1))
-    )
+    origins = drawn.array(f"{IMPACT}/velocity", "Arrows3D:origins")[2:]
+    before, _ = drawn.array(f"{IMPACT}/velocity", "Arrows3D:vectors")[2:]
+    np.testing.assert_allclose([origins[0] + before, origins[1]], np.tile([2.0, 0.0, 0.0], (2, 1)))
     edges = drawn.array(f"{IMPACT}/body", "LineStrips3D:strips")
     assert len(edges) == 2 * len(shape.edges_B)
     assert edges[len(shape.edges_B) :, :, 0].min() > 1.5

@@ -235,6 +235,7 @@ def test_the_newest_answer_of_each_kind_stands_in_words_and_all_in_the_log(
     picture.tell("Impact", "third", stamp_ns=STAMP_NS + 2, is_error=True)
     drawn = read()
     assert drawn.last("/answers/newest", "TextDocument:text") == ["**Impact**: third\n\n**Tumbling**: second"]
+    assert drawn.last("/answers/summary", "TextDocument:text") == ["**Impact**: third"]
     texts = [text for _, (text,) in drawn.values["/answers/log", "TextLog:text"]]
     assert texts == ["Impact: first", "Tumbling: second", "Impact: third"]
     levels = [level for _, (level,) in drawn.values["/answers/log", "TextLog:level"]]
