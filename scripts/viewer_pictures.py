@@ -33,7 +33,7 @@ SLOWER = 4.0  # the moving picture, than the toss
 FRAMES_PER_S = 12.0
 TOSS_S = 1.5  # s of the toss that it shows
 LAST_FRAME_MS = 2000
-MOST_BYTES = 3_000_000
+MAX_BYTES = 3_000_000
 
 
 class Viewer:
@@ -132,8 +132,8 @@ def demo(folder: Path) -> None:
     frames[0].save(
         path, save_all=True, append_images=frames[1:], duration=durations, loop=0, quality=60, method=6
     )
-    if path.stat().st_size > MOST_BYTES:
-        message = f"{path} must have at most {MOST_BYTES} bytes, got {path.stat().st_size}"
+    if path.stat().st_size > MAX_BYTES:
+        message = f"{path} must have at most {MAX_BYTES} bytes, got {path.stat().st_size}"
         raise ValueError(message)
 
 
