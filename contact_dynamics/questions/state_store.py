@@ -16,6 +16,8 @@ from contact_dynamics.errors import InvalidFieldError, NoStateError, StaleStateE
 from contact_dynamics.questions.arrivals import Arrivals
 from contact_dynamics.questions.uncertain_state import UncertainState
 from contact_dynamics.rigid_body.body import BodyState
+from contact_dynamics.validation import check_not_negative, check_whole
+from contact_dynamics.validation_types import checks_types
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
@@ -54,6 +56,10 @@ class StateStore:
             timeout: s. A state that is older when it is asked about is refused.
             future_tolerance: s. A state whose stamp is farther ahead of the clock is refused.
             max_states: how many of a body are kept, however fast they come. The oldest go first.
+
+        Raises:
+            InvalidFieldError: a duration is negative, infinite or no number, or ``max_states`` is no whole
+                number >= 1.
         """
         self.change_limits(
             history=history, timeout=timeout, future_tolerance=future_tolerance, max_states=max_states
@@ -61,6 +67,7 @@ class StateStore:
         self._tracks: dict[str, _Track] = {}
         self._arrivals: defaultdict[str, Arrivals] = defaultdict(Arrivals)
 
+    @checks_types
     def add(self, body_name: str, state: KnownState, *, now_ns: int | None = None) -> None:
         """Keep a state. ``now_ns`` is the present time, ns. Without it, any stamp is accepted.
 
@@ -83,12 +90,12 @@ class StateStore:
     def change_limits(
         self, *, history: float, timeout: float, future_tolerance: float, max_states: int = MAX_STATES
     ) -> None:
-        """Keep and refuse states by other limits from now on; see `StateStore`."""
-        self._history = history
-        self._history_ns = to_ns(history)
-        self._timeout_ns = to_ns(timeout)
-        self._future_tolerance_ns = to_ns(future_tolerance)
-        self._most_states = max_states
+        """Keep and reject states by other limits from now on; see `StateStore`."""
+        self._history = check_not_negative("history", history)
+        self._history_ns = to_ns(self._history)
+        self._timeout_ns = to_ns(check_not_negative("timeout", timeout))
+        self._future_tolerance_ns = to_ns(check_not_negative("future_tolerance", future_tolerance))
+        self._max_states = check_whole("max_states", max_states, 1)
 
     def refuse(self, body_name: str, reason: object, *, was_kept: bool = False) -> None:
         """Note, for whoever asks and finds none, that a state is not kept, or was kept and cannot be read."""
@@ -109,6 +116,7 @@ class StateStore:
         for body_name in list(self._tracks):
             self.forget(body_name, reason)
 
+    @checks_types
     def newest(self, body_name: str, *, now_ns: int | None = None) -> KnownState:
         """Return the newest state. Without the present time, ns, it may be of any age.
 
@@ -125,6 +133,7 @@ class StateStore:
             raise NoStateError(message)
         return state if now_ns is None else self._fresh(body_name, state, now_ns)
 
+    @checks_types
     def window(self, body_name: str, newest: KnownState, seconds: float) -> list[KnownState]:
         """Return the states of the last ``seconds`` up to ``newest``, by time, and one for each stamp."""
         track = self._tracks.get(body_name, _Track())
@@ -190,7 +199,7 @@ class StateStore:
             history=self._history,
             timeout=to_seconds(self._timeout_ns),
             future_tolerance=to_seconds(self._future_tolerance_ns),
-            max_states=self._most_states,
+            max_states=self._max_states,
         )
         for body_name, stamp_ns, seconds in wanted:
             if now_ns is not None:
@@ -234,7 +243,7 @@ class StateStore:
         if track is None:
             track = self._tracks[body_name] = _Track()
         track.add(stamp_ns, state)
-        track.forget_before(track.stamps[-1] - self._history_ns, most=self._most_states)
+        track.forget_before(track.stamps[-1] - self._history_ns, most=self._max_states)
 
     def _forget_future(self, body_name: str, now_ns: int) -> None:
         """Forget states too far ahead of the clock, which came before the clock began or was set back."""

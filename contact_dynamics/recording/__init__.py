@@ -15,6 +15,7 @@ from contact_dynamics.recording.limits import Compression, LogLimits
 from contact_dynamics.recording.qos import OfferedQos
 from contact_dynamics.recording.recorder import Recorder, RecorderStatus
 from contact_dynamics.recording.service_calls import EVENT_TOPIC_SUFFIX, ServiceCall, service_calls
+from contact_dynamics.validation_types import check_types_of
 
 __all__ = [
     "EVENT_TOPIC_SUFFIX",
@@ -36,3 +37,5 @@ __all__ = [
     "decode_without_ros",
     "service_calls",
 ]
+
+check_types_of(globals())

@@ -27,6 +27,7 @@ from contact_dynamics.recording.mcap_messages import McapMessages
 from contact_dynamics.recording.packed import SUFFIXES, unpacked_file, unpacked_message
 from contact_dynamics.recording.sqlite_messages import SqliteMessages
 from contact_dynamics.recording.standard_types import standard_definition
+from contact_dynamics.validation_types import checks_types
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator
@@ -61,6 +62,7 @@ class LoggedMessage:
 class BagReader:
     """A log to read from. Each call of a method reads the files again."""
 
+    @checks_types
     def __init__(self, path: str | Path) -> None:
         """Find the files of a log.
 

@@ -46,6 +46,7 @@ from contact_dynamics.recording.definitions import find_definition
 from contact_dynamics.recording.errors import LogExistsError, LogFailedError
 from contact_dynamics.recording.gaps import Gap, record_of_gaps
 from contact_dynamics.recording.limits import UNLIMITED, LogLimits
+from contact_dynamics.validation_types import checks_types
 from contact_dynamics.version import version_of_this_package
 
 if TYPE_CHECKING:
@@ -67,6 +68,7 @@ class _Finished:
 class BagWriter(ClosedAtTheEnd):
     """A log that is being written, as a context manager. Methods raise `OSError` if the disk refuses."""
 
+    @checks_types
     def __init__(
         self,
         folder: str | Path,
