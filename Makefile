@@ -33,8 +33,11 @@ demo: $(MADE)/package $(MADE)/interfaces ## play a toss and compare predictions 
 # One process more than there are processors, because a quarter of the time goes by in waiting for processes and DDS. More
 # than four gain little: the longest files of the nodes' tests wait most.
 JOBS ?= $(shell n=$$(nproc 2>/dev/null || echo 1); [ "$$n" -gt 3 ] && n=3; echo $$((n + 1)))
+PROCESSES = $(if $(filter-out 1,$(JOBS)),-n $(JOBS) --dist loadfile)
 test: lint types $(MADE)/test ## lint, types and the tests; JOBS=1 runs them in one process
-	@$(BIN)/python -m pytest $(if $(filter-out 1,$(JOBS)),-n $(JOBS) --dist loadfile)
+	@$(BIN)/python -m pytest $(PROCESSES)
+	@echo "The impacts again, without the compiled core."
+	@CONTACT_DYNAMICS_PLAIN=1 $(BIN)/python -m pytest -q $(PROCESSES) test/impact
 
 test-matrix: ## the physics with the oldest and newest NumPy and SciPy, on every Python and several kinds of processors
 	@setup/matrix.sh $(VENV)-matrix
@@ -52,7 +55,7 @@ fuzz: $(MADE)/test ## ask 10 000 questions of all kinds, with numbers of every s
 
 coverage: $(MADE)/test ## which lines the tests do not reach, in coverage_html/ too
 	@$(BIN)/python -m coverage erase
-	@$(BIN)/python -m coverage run -m pytest -q
+	@CONTACT_DYNAMICS_PLAIN=1 $(BIN)/python -m coverage run -m pytest -q
 	@$(BIN)/python -m coverage combine -q
 	@$(BIN)/python -m coverage html -q -d coverage_html
 	@$(BIN)/python -m coverage report
@@ -104,11 +107,13 @@ $(MADE)/interfaces: $(addprefix $(INTERFACES)/,CMakeLists.txt package.xml msg sr
 	@setup/build_interfaces.sh $(VENV)
 	@mv $@.begun $@
 
-# The package is installed in place, so a change of the sources works at once. pip leaves out its data files then, so they
-# are linked to where ROS looks for them. They are linked one by one, because `ros2 launch` does not follow a linked folder.
+# The package is installed in place, so a change of the sources works at once, unless they are compiled. pip leaves out its data
+# files then, so they are linked to where ROS looks for them. They are linked one by one, because `ros2 launch` does not follow
+# a linked folder.
 SHARE := $(VENV)/share/contact_dynamics
+CORE := $(wildcard $(addprefix contact_dynamics/,*.pxd */*.pxd */*/*.pxd))
 INDEX := $(VENV)/share/ament_index/resource_index/packages
-$(MADE)/package: setup.py package.xml pyproject.toml Makefile $(wildcard config launch config/*.yaml config/*.xml launch/*.launch.py) $(MADE)/wheels
+$(MADE)/package: setup.py package.xml pyproject.toml Makefile $(CORE) $(CORE:.pxd=.py) $(wildcard config launch config/*.yaml config/*.xml launch/*.launch.py) $(MADE)/wheels
 	@touch $@.begun
 	@$(INSTALL) --no-deps --no-build-isolation --editable .
 	@rm -rf $(SHARE)

@@ -16,6 +16,9 @@ rmdir "$1"-matrix 2>/dev/null || true
 # setuptools and the tools of `make test` fill these again.
 rm -rf contact_dynamics.egg-info coverage_html site .coverage .hypothesis .mypy_cache .pytest_cache .ruff_cache
 
+# The compiled core, which was built in place.
+find contact_dynamics -name '*.cpython-*.so' -delete 2>/dev/null || true
+
 # The name shows that a folder is the demo's, and files in it that only the demo writes.
 for run in demo_output/[0-9][0-9][0-9][0-9]-[0-9][0-9]-[0-9][0-9]_*; do
     if [ -e "$run/parameters.yaml" ] && [ -e "$run/toss_publisher.txt" ]; then

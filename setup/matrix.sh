@@ -12,8 +12,8 @@ tests=${TESTS:-test}
 # What needs ROS, rerun, Matplotlib or the built environment is not physics. test/test_setup/test_matrix.py holds that nothing else does.
 beside="nodes demo recording replay viewing plots msg_adapters evaluation test_setup architecture"
 beside="$beside test_examples.py test_document_types.py test_quoted_numbers.py test_site.py cases/test_page.py test_lecture_figures.py"
-# pytest-xdist is one of them.
-tools=$(grep -E '^(pytest|hypothesis|mpmath)\b' requirements/test.txt)
+# pytest-xdist is one of them. The others compile the core.
+tools="$(grep -E '^(pytest|hypothesis|mpmath)\b' requirements/test.txt) $(grep -E '^(cython|setuptools)\b' requirements/build.txt)"
 
 mkdir -p "$folder"
 jobs=$(nproc 2>/dev/null || echo 1)
@@ -59,7 +59,8 @@ install() { # environment, program, which wheels
         newest) wanted="--upgrade numpy scipy" ;;
     esac
     # shellcheck disable=SC2086
-    "$here/install.sh" "$1" --only-binary numpy,scipy -r requirements/core.txt $tools $wanted
+    "$here/install.sh" "$1" --only-binary numpy,scipy -r requirements/core.txt $tools $wanted &&
+        "$1/bin/python" setup.py -q build_ext --inplace
 }
 
 # OpenBLAS picks its kernels by the processor; these it can be told to take, where the processor has their instructions.

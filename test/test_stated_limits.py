@@ -38,7 +38,7 @@ NOT_REFUSED = {
     "impact.several.settling.MAX_JAMS",
     "impact.several.simultaneous.MAX_SWEEPS",
     "impact.spatial.path.MAX_STRETCHES",
-    "impact.spatial.taylor.MAX_ITERATIONS",
+    "impact.spatial.path.MAX_ITERATIONS",
     "motion.whole_turns.MAX_NOISE_RATIO",
     "motion.whole_turns.MAX_ORIENTATION_RESIDUAL",
     "questions.effort.MAX_QUICK_CANDIDATES",

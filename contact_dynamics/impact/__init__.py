@@ -6,9 +6,8 @@ functions return (`result`). `several` treats several contacts at once. `in_time
 other, with flight between them. `distribution` is for uncertain states.
 
 - In the plane, the impulse path is Routh's construction (`routh`). In `two_bodies`, both bodies may move.
-- In space, a contact responds in all directions (`response`) and slides by its `sliding_law`, so that the
-  `path` bends. The path is a `taylor` series up to where sliding comes to a `stop`, and `restitution` says
-  where it ends. Batches do the same for many at once (`batch_paths`, `batch_restitution`).
+- In space, a contact responds in all directions (`response`), and its sliding direction swerves, so that the
+  impulse `path` bends.
 - Several contacts strike in turn (`sequential`, in all `orders`) or at once (`simultaneous`), also in the
   plane (`planar`). Their impulses may also interleave in any way (`interleavings`). Contacts that do not
   approach can jam (`jamming`) until that is over (`settling`).

@@ -1,15 +1,14 @@
 """This file names the restitution laws and what can happen during an impact (Mason, lecture 27).
 
-Compression collects an amount, and restitution returns a share of it. `RestitutionRule` says for each law
-which amount this is and where restitution ends. It serves paths in space, which are not known in advance. In
-the plane the path is known, and the three ends are closed forms in the middle of one computation
-(`planar.routh`, and `planar.batch` for many). A call there would take a tenth of the time of the computation.
+Compression collects an amount, and restitution returns a share of it. `spatial.path` has for each law a
+`RestitutionRule`, which says which amount this is and where restitution ends, on paths that are not known in
+advance. In the plane the path is known, and the three ends are closed forms in the middle of one computation
+(`planar.routh`, and `planar.batch` for many).
 """
 
 from __future__ import annotations
 
-import math
-from typing import TYPE_CHECKING, Any, Final, NoReturn, TypeVar
+from typing import TYPE_CHECKING, Any, NoReturn
 
 import numpy as np
 
@@ -20,11 +19,7 @@ from contact_dynamics.validation_types import Expected, check_type
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from contact_dynamics.numerics.elementwise import Real
     from contact_dynamics.validation import FloatArray
-
-Series = TypeVar("Series")
-"""What is known of a quantity along a path."""
 
 
 class RestitutionLaw(NamedInt):
@@ -46,139 +41,6 @@ def refuse_unknown(law: NoReturn) -> NoReturn:
     """
     message = f"restitution_law: found {law}, which is not written down here"
     raise NotImplementedError(message)
-
-
-class RestitutionRule:
-    """The rule of Poisson's law: it says what compression collects and where restitution ends.
-
-    Numbers are floats, or arrays with one element for each impact. Both give the same bits. ``due`` is what
-    restitution still owes, in the unit of the amount. ``final`` is the velocity at which Newton's law ends
-    the impact, m/s.
-    """
-
-    law = RestitutionLaw.POISSON
-    needs_work = False
-    """Whether the work of the normal impulse must be known on the way."""
-
-    def share(self, restitution: Real, v_n: Real) -> Real:
-        """Return the part of the amount that restitution gives back, for a coefficient e.
-
-        ``v_n``, m/s, is the normal velocity before the impact, on which e may depend.
-        """
-        del v_n
-        return restitution
-
-    def final(self, restitution: Real, v_n: Real) -> Real:
-        """Return the velocity at which Newton's law ends an impact that begins with ``v_n``, m/s."""
-        return restitution * -v_n
-
-    def amount(self, p: Real, work: Real) -> Real:
-        """Return the amount that a normal impulse, N s, collects or gives back while it does some work, J."""
-        del work
-        return p
-
-    def is_done(self, *, p: Real, v_n: Real, work: Real, due: Real, final: Real) -> Any:
-        """Return whether restitution is over once an impulse, with its work, has led to v_n."""
-        del v_n, final
-        return self.amount(p, work) >= due
-
-    def distance(self, v_n: float, lifting: float, due: float, final: float) -> float:
-        """Return the normal impulse, N s, that is left until restitution is over.
-
-        The normal velocity grows by ``lifting`` for each N s.
-        """
-        del v_n, lifting, final
-        return due
-
-    def distances(
-        self, v_n: FloatArray, lifting: FloatArray, due: FloatArray, final: FloatArray
-    ) -> FloatArray:
-        """Return `distance` for many impacts. Where one impact branches, this selects elements instead."""
-        del v_n, lifting, final
-        return due
-
-    def meter(self, velocity: Series, impulse: Series, work: Series) -> Series:
-        """Return which series along a path tells when restitution is over."""
-        del velocity, work
-        return impulse
-
-    def level(self, first: Real, due: Real, final: Real) -> Real:
-        """Return the value that the meter has when restitution is over.
-
-        ``first`` is the value of the meter at the beginning of the stretch.
-        """
-        del final
-        return first + due
-
-
-class _Newton(RestitutionRule):
-    """Newton's law looks at the normal velocity alone."""
-
-    law = RestitutionLaw.NEWTON
-
-    def is_done(self, *, p: Real, v_n: Real, work: Real, due: Real, final: Real) -> Any:
-        del p, work, due
-        return v_n >= final
-
-    def distance(self, v_n: float, lifting: float, due: float, final: float) -> float:
-        del due
-        missing = final - v_n
-        if missing <= 0.0:
-            return 0.0
-        return missing / lifting if lifting > 0.0 else math.inf
-
-    def distances(
-        self, v_n: FloatArray, lifting: FloatArray, due: FloatArray, final: FloatArray
-    ) -> FloatArray:
-        del due
-        missing = final - v_n
-        return np.where(missing <= 0.0, 0.0, np.where(lifting > 0.0, missing / lifting, math.inf))
-
-    def meter(self, velocity: Series, impulse: Series, work: Series) -> Series:
-        del impulse, work
-        return velocity
-
-    def level(self, first: Real, due: Real, final: Real) -> Real:
-        del first, due
-        return final
-
-
-class _Energetic(RestitutionRule):
-    """The energetic law collects work, of which e squared is given back."""
-
-    law = RestitutionLaw.ENERGETIC
-    needs_work = True
-
-    def share(self, restitution: Real, v_n: Real) -> Real:
-        del v_n
-        return restitution * restitution
-
-    def amount(self, p: Real, work: Real) -> Real:
-        del p
-        return work
-
-    def distance(self, v_n: float, lifting: float, due: float, final: float) -> float:
-        del final
-        if due <= 0.0:
-            return 0.0
-        square = v_n * v_n + 2.0 * lifting * due
-        return 2.0 * due / (v_n + math.sqrt(square)) if square > 0.0 else math.inf
-
-    def distances(
-        self, v_n: FloatArray, lifting: FloatArray, due: FloatArray, final: FloatArray
-    ) -> FloatArray:
-        del final
-        square = v_n * v_n + 2.0 * lifting * due
-        distance = np.where(square > 0.0, 2.0 * due / (v_n + np.sqrt(square)), math.inf)
-        return np.where(due <= 0.0, 0.0, distance)
-
-    def meter(self, velocity: Series, impulse: Series, work: Series) -> Series:
-        del velocity, impulse
-        return work
-
-
-RULES: Final = {rule.law: rule for rule in (RestitutionRule(), _Newton(), _Energetic())}
-"""The rule of each law."""
 
 
 class ImpactOutcome(NamedInt):

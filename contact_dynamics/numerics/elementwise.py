@@ -8,7 +8,6 @@ NumPy's are not used for those. `sum` is not used either, because it compensates
 from __future__ import annotations
 
 import math
-from itertools import repeat
 from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
 
 import numpy as np
@@ -29,22 +28,9 @@ def sqrt(x: Real) -> Real:
     return math.sqrt(x) if isinstance(x, float) else np.sqrt(x)
 
 
-def power(x: Real, exponent: float) -> Real:
-    """Return ``x`` >= 0 to the power of ``exponent``."""
-    if isinstance(x, float):
-        one: float = x**exponent
-        return one
-    return np.array(list(map(pow, x.tolist(), repeat(exponent))))
-
-
 def larger(x: Real, y: Real | float) -> Real:
     """Return the larger of two. ``y`` may be a float where ``x`` is an array."""
     return max(x, y) if isinstance(x, float) else np.maximum(x, y)
-
-
-def smaller(x: Real, y: Real | float) -> Real:
-    """Return the smaller of two. ``y`` may be a float where ``x`` is an array."""
-    return min(x, y) if isinstance(x, float) else np.minimum(x, y)
 
 
 def sign(x: Real) -> Real:

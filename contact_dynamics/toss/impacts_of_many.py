@@ -7,9 +7,8 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 
 from contact_dynamics.impact.law import ImpactOutcome
-from contact_dynamics.impact.spatial.batch_paths import trace_all
+from contact_dynamics.impact.spatial.path import trace_all
 from contact_dynamics.impact.spatial.response import contact_axes, pushed, responding
-from contact_dynamics.impact.spatial.sliding_law import SlidingLaw, followed_friction
 from contact_dynamics.tolerances import STRIKES
 from contact_dynamics.toss.one_impact import Struck
 from contact_dynamics.toss.solid import arm_of, pose_of, velocity_of
@@ -31,11 +30,9 @@ def strike_together(asked: list[AskedImpact]) -> None:
     u1, u2, v_n = axes.components(velocity_of(pose, body.r))
     still = np.sqrt(u1 * u1 + u2 * u2) <= STRIKES
     u1, u2, v_n = np.where(still, 0.0, u1), np.where(still, 0.0, u2), np.where(v_n >= -STRIKES, 0.0, v_n)
-    mu = followed_friction(flat.strike_friction[0])
-    sliding = SlidingLaw(axes.l1, axes.l2, axes.k1, axes.k2, axes.kn, mu)
-    # Formulas are also evaluated for cases that they are not meant for. Those values are not used.
-    with np.errstate(all="ignore"):
-        paths = trace_all(sliding, (u1, u2), v_n, restitution=flat.restitution[0], law=asked[0].law)
+    mu, e = flat.strike_friction[0], flat.restitution[0]
+    columns = (axes.l1, axes.l2, axes.k1, axes.k2, axes.kn, mu, u1, u2, v_n, e)
+    paths = trace_all(np.column_stack([np.broadcast_to(x, len(asked)) for x in columns]), asked[0].law)
     impulse = axes.in_world(paths.impulse)
     v, w = pushed(body, impulse)
     after = np.array([*v, *w]).T.tolist()

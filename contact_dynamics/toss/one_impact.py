@@ -5,9 +5,8 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, NamedTuple
 
-from contact_dynamics.impact.spatial.path import trace
+from contact_dynamics.impact.spatial.path import SlidingLaw, trace
 from contact_dynamics.impact.spatial.response import contact_axes, pushed, responding
-from contact_dynamics.impact.spatial.sliding_law import SlidingLaw, followed_friction
 from contact_dynamics.tolerances import STRIKES
 from contact_dynamics.toss.solid import arm_of, pose_of, velocity_of
 
@@ -45,7 +44,7 @@ def routh(
         u1 = u2 = 0.0
     if v_n >= -STRIKES:  # it jams, without approach
         v_n = 0.0
-    sliding = SlidingLaw(axes.l1, axes.l2, axes.k1, axes.k2, axes.kn, followed_friction(friction))
+    sliding = SlidingLaw(axes.l1, axes.l2, axes.k1, axes.k2, axes.kn, friction)
     path = trace(sliding, (u1, u2), v_n, restitution=flat.restitution, law=law)
     impulse = axes.in_world(path.impulse)
     v, w = pushed(body, impulse)

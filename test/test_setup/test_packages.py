@@ -157,7 +157,7 @@ def test_the_metadata_describe_the_package_and_invent_nobody() -> None:
 
 def test_an_sdist_holds_the_project_and_installs(tmp_path: Path) -> None:
     leave = shutil.ignore_patterns(
-        ".*", "__pycache__", "*.egg-info", "build", "install", "log", "demo_output"
+        ".*", "__pycache__", "*.egg-info", "*.so", "build", "install", "log", "demo_output"
     )
     checkout = shutil.copytree(ROOT, tmp_path / "a checkout", symlinks=True, ignore=leave)
     command = [sys.executable, "setup.py", "-q", "sdist", "--formats=gztar"]
@@ -192,6 +192,8 @@ def test_an_sdist_holds_the_project_and_installs(tmp_path: Path) -> None:
     assert "usage: contact-dynamics" in answer.stdout
     assert (installed / "contact_dynamics" / "measured" / "tosses" / "brick.csv").exists()
     assert (installed / "share" / "contact_dynamics" / "config" / "server.yaml").exists()
+    core = {file.suffix for file in (installed / "contact_dynamics" / "impact" / "spatial").glob("path.*")}
+    assert core == {".py", ".pxd", ".so"}
 
 
 def test_colcon_finds_both_packages_from_the_root() -> None:

@@ -24,9 +24,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from contact_dynamics.impact.spatial.path import trace
+from contact_dynamics.impact.spatial.path import SlidingLaw, trace
 from contact_dynamics.impact.spatial.result import SpatialImpact
-from contact_dynamics.impact.spatial.sliding_law import SlidingLaw, followed_friction
 from contact_dynamics.numerics.vectors import point_jacobians, tangents_by_sign
 from contact_dynamics.rigid_body.body import inverse_mass_matrix
 from contact_dynamics.tolerances import NO_SHARED_RESPONSE
@@ -142,7 +141,7 @@ def strike_as_one(
         l2, k2, u2 = kn, 0.0, 0.0
     if float(np.hypot(u1, u2)) <= tolerance:
         u1 = u2 = 0.0
-    sliding = SlidingLaw(l1, l2, k1, k2, kn, followed_friction(float(contacts.frictions[0])))
+    sliding = SlidingLaw(l1, l2, k1, k2, kn, float(contacts.frictions[0]))
     path = trace(sliding, (u1, u2), v_n, restitution=float(contacts.impact_restitutions[0]), law=law)
     impulses = np.einsum("a,kaj->kj", np.array(path.impulse), axes) / k
     after = pushed(response, states, impulses)

@@ -1,1 +1,5 @@
-"""This chapter resolves impacts in space."""
+"""This chapter resolves impacts in space. Its `path` is part of the compiled core."""
+
+from contact_dynamics.numerics.compiled import import_core
+
+import_core("contact_dynamics.impact.spatial.path")

@@ -1,7 +1,6 @@
 """This file resolves many impacts in space at once, with the numbers of `one_contact` to the last bit.
 
-Contacts slide in lock-step (`batch_paths`). As in `one_contact`, there are closed forms where the direction
-is invariant: for spheres, central impacts, planar problems and contacts without friction. The vertices of the
+Responses are worked out together, and paths one after the other by the code of one (`path`). Vertices of the
 impulse paths are not kept.
 """
 
@@ -15,7 +14,7 @@ import numpy as np
 from contact_dynamics.errors import NORMAL_HINT, InvalidFieldError, SeparatingContactError
 from contact_dynamics.impact.energy import ManyEnergies
 from contact_dynamics.impact.law import RestitutionLaw, check_law_rows
-from contact_dynamics.impact.spatial.batch_paths import trace_all
+from contact_dynamics.impact.spatial.path import trace_all
 from contact_dynamics.impact.spatial.response import (
     Responding,
     contact_axes,
@@ -23,7 +22,6 @@ from contact_dynamics.impact.spatial.response import (
     responding,
     velocity_at_contact,
 )
-from contact_dynamics.impact.spatial.sliding_law import SlidingLaw, followed_friction
 from contact_dynamics.records import Record
 from contact_dynamics.tolerances import (
     LARGEST_ARM,
@@ -47,8 +45,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
 _CHUNK: Final = 8192
-"""Cases that are worked out together. A larger number saves little, and each case takes 2 kB while it slides.
-"""
+"""Cases whose responses are worked out together. Ctrl-C acts between two of them."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -252,10 +249,9 @@ def _strike(
     v_n[rests] = 0.0
     counted = zip(velocity, axes.in_world((u1, u2, v_n)), strict=True)
     velocity = tuple(np.where((still | rests) & ~apart, without, whole) for whole, without in counted)
-    mu = followed_friction(np.broadcast_to(rows["frictions"], count))
-    e = np.broadcast_to(rows["restitutions"], count)
-    sliding = SlidingLaw(axes.l1, axes.l2, axes.k1, axes.k2, axes.kn, mu)
-    paths = trace_all(sliding, (u1, u2), v_n, restitution=e, law=law)
+    mu, e = (np.broadcast_to(rows[name], count) for name in ("frictions", "restitutions"))
+    columns = (axes.l1, axes.l2, axes.k1, axes.k2, axes.kn, mu, u1, u2, v_n, e)
+    paths = trace_all(np.column_stack(columns), law)
     for component, kept in zip((*paths.u, paths.v_n), parting, strict=True):
         component[apart] = kept
     impulse = axes.in_world(paths.impulse)

@@ -3,7 +3,7 @@
 The model is that of the plane (`impact.planar`): bodies are rigid, the impact has no duration, friction is
 Coulomb's, and only the contact's force acts. In space the sliding direction swerves while the impulse grows.
 The path obeys an ordinary differential equation in the normal impulse (lecture 27 carried to space; Routh
-1860; Keller 1986). It is solved to rounding (`sliding_law`, `taylor`, `path`), and in closed form where the
+1860; Keller 1986). It is solved to rounding (`path`), and in closed form where the
 direction stays constant. The impulses on two bodies are opposite, so only their relative velocity matters,
 and the contact's inverse inertia is the sum of both (`response`).
 
@@ -21,7 +21,7 @@ import numpy as np
 
 from contact_dynamics.errors import NORMAL_HINT, InvalidFieldError, SeparatingContactError
 from contact_dynamics.impact.law import RestitutionLaw
-from contact_dynamics.impact.spatial.path import trace
+from contact_dynamics.impact.spatial.path import SlidingLaw, trace
 from contact_dynamics.impact.spatial.response import (
     Responding,
     contact_axes,
@@ -31,7 +31,6 @@ from contact_dynamics.impact.spatial.response import (
     velocity_at_contact,
 )
 from contact_dynamics.impact.spatial.result import SpatialImpact
-from contact_dynamics.impact.spatial.sliding_law import SlidingLaw, followed_friction
 from contact_dynamics.tolerances import LARGEST_ARM, LARGEST_NUMBER, VELOCITY_TOLERANCE
 from contact_dynamics.validation import (
     check_not_negative,
@@ -136,7 +135,7 @@ def _impact(
         v_n = 0.0
     if still or rests:
         velocity = axes.in_world((u1, u2, v_n))
-    sliding = SlidingLaw(axes.l1, axes.l2, axes.k1, axes.k2, axes.kn, followed_friction(contact.friction))
+    sliding = SlidingLaw(axes.l1, axes.l2, axes.k1, axes.k2, axes.kn, contact.friction)
     path = trace(sliding, (u1, u2), v_n, restitution=restitution, law=law)
 
     impulse = axes.in_world(path.impulse)

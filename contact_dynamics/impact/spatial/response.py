@@ -1,7 +1,7 @@
 """How a contact in space responds to an impulse, and what an impulse does to a body.
 
 Contact axes are two tangents and the normal. The tangents are the principal ones of the tangential block of
-the inverse inertia, as the sliding equations need them (`sliding_law`). Everything is written by component,
+the inverse inertia, as the sliding equations need them (`path`). Everything is written by component,
 so that the same lines serve one case and many (`elementwise`).
 
 The inverse inertia of a pair of bodies is the sum of both, because their impulses are opposite, and so are

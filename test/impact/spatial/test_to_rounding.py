@@ -16,8 +16,7 @@ import pytest
 from mpmath import mpf
 
 from contact_dynamics.impact import RestitutionLaw
-from contact_dynamics.impact.spatial.path import trace
-from contact_dynamics.impact.spatial.sliding_law import SlidingLaw
+from contact_dynamics.impact.spatial.path import SlidingLaw, trace
 from oracles import impact_swerving
 
 ROUNDINGS = 12
@@ -70,9 +69,9 @@ def errors(seed: int, kind: str, law: RestitutionLaw, *, beside: bool) -> tuple[
     sliding, u, v_n, e = drawn(rng, SLENDER[kind])
     if beside:
         u = beside_an_invariant_direction(rng, sliding, math.hypot(*u))
-    l1, l2, k1, k2, kn, mu = sliding
-    response = [[l1, 0.0, k1], [0.0, l2, k2], [k1, k2, kn]]
-    exact = impact_swerving.impulse(response, u, v_n, mu=mu, e=e, law=law.name.lower())
+    k1, k2 = sliding.k1, sliding.k2
+    response = [[sliding.l1, 0.0, k1], [0.0, sliding.l2, k2], [k1, k2, sliding.kn]]
+    exact = impact_swerving.impulse(response, u, v_n, mu=sliding.mu, e=e, law=law.name.lower())
     found = trace(sliding, u, v_n, restitution=e, law=law).impulse
     size = math.sqrt(sum(float(x) ** 2 for x in exact))
     error = max(abs(float(mpf(a) - b)) for a, b in zip(found, exact, strict=True))

@@ -1,0 +1,62 @@
+"""This file imports modules of the compiled core: those that have a `.pxd` with C types beside their `.py`.
+
+Both forms give the same bits, and the compiled one is much faster. Python imports it by itself where it
+exists, even if it was built from older sources. So compiled modules carry a checksum of their sources, and
+where it does not fit, the `.py` runs. The variable `CONTACT_DYNAMICS_PLAIN=1` in the environment chooses the
+`.py` too, for tests, coverage and debuggers.
+"""
+
+from __future__ import annotations
+
+import importlib
+import importlib.util
+import os
+import sys
+import warnings
+import zlib
+from pathlib import Path
+from typing import Final
+
+PLAIN: Final = "CONTACT_DYNAMICS_PLAIN"
+
+SLOWER: Final = "impacts in space take 3 to 4 times as long, and large batches of them 50 to 70 times"
+"""The cost of running without the compiled core. `make bench` measures it with `CONTACT_DYNAMICS_PLAIN=1`."""
+
+
+def checksum(source: Path) -> int:
+    """Return the checksum of a `.py` file and the `.pxd` beside it, which setup.py compiles in."""
+    return zlib.crc32(source.read_bytes() + source.with_suffix(".pxd").read_bytes()) & 0x7FFFFFFF
+
+
+def import_core(module: str) -> None:
+    """Import a module, of a package that is being imported, in its compiled form if that is up to date.
+
+    Otherwise a warning says so, unless `CONTACT_DYNAMICS_PLAIN` chooses plain Python.
+    """
+    if module in sys.modules:
+        return
+    package, _, name = module.rpartition(".")
+    source = Path(sys.modules[package].__path__[0], f"{name}.py")
+    if os.environ.get(PLAIN, "0") in {"", "0"}:
+        try:
+            built = getattr(importlib.import_module(module), "SOURCE_CRC", None)
+        except ImportError as error:
+            problem = f"cannot be imported ({error})"
+        else:
+            if built == checksum(source):
+                return
+            problem = "is missing" if built is None else "was built from other sources"
+        warnings.warn(
+            f"the compiled core of contact_dynamics {problem}; {module} runs as plain Python: {SLOWER}. "
+            "Where there is a C compiler, `make setup` in a clone or `pip install` builds it. "
+            f"{PLAIN}=1 in the environment silences this warning",
+            RuntimeWarning,
+            stacklevel=3,
+        )
+    spec = importlib.util.spec_from_file_location(module, source)
+    if spec is None or spec.loader is None:
+        raise ImportError(module)
+    plain = importlib.util.module_from_spec(spec)
+    sys.modules[module] = plain
+    spec.loader.exec_module(plain)
+    setattr(sys.modules[package], name, plain)

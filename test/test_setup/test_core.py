@@ -1,0 +1,148 @@
+"""The compiled core gives the same bits as the Python that it comes from, and an outdated one is not used.
+
+Numbers are compared as they are, since both round each operation alike. So fused multiply-adds, which round
+once where Python rounds twice, must stay off even where the compiler is told to use the processor's own.
+"""
+
+from __future__ import annotations
+
+import importlib
+import os
+import re
+import shutil
+import subprocess
+import sys
+from importlib.machinery import EXTENSION_SUFFIXES
+from importlib.util import module_from_spec, spec_from_file_location
+from pathlib import Path
+from types import ModuleType
+
+import numpy as np
+import pytest
+
+from contact_dynamics.impact.law import RestitutionLaw
+from contact_dynamics.impact.spatial import path
+from contact_dynamics.numerics.compiled import import_core
+from impact.spatial.test_to_rounding import SLENDER, beside_an_invariant_direction, drawn
+
+ROOT = Path(__file__).parents[2]
+SOURCE = ROOT / "contact_dynamics" / "impact" / "spatial" / "path.py"
+COUNT = 300
+SUFFIX = EXTENSION_SUFFIXES[0]
+
+
+def loaded(file: Path) -> ModuleType:
+    """Return the module of a file, beside the one that is imported."""
+    spec = spec_from_file_location("path", file)
+    assert spec is not None
+    assert spec.loader is not None
+    module = module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def bits(module: ModuleType) -> list[object]:
+    """Return what a module finds on drawn paths, one by one and together."""
+    rng = np.random.default_rng(3)
+    found: list[object] = []
+    for law in RestitutionLaw:
+        rows = []
+        for i in range(COUNT):
+            sliding, u, v_n, e = drawn(rng, list(SLENDER.values())[i % 3])
+            if i % 5 == 0:
+                u = beside_an_invariant_direction(rng, sliding, float(np.hypot(*u)))
+            elif i % 5 == 1:
+                v_n = 0.0
+            elif i % 5 == 2 and i % 2:
+                u = (0.0, 0.0)
+            numbers = [getattr(sliding, name) for name in ("l1", "l2", "k1", "k2", "kn", "mu")]
+            rows.append([*numbers, *u, v_n, e])
+            found.append(module.trace(module.SlidingLaw(*numbers), u, v_n, restitution=e, law=law))
+        together = module.trace_all(np.array(rows), law)
+        found += [*together.outcomes.tolist(), np.array([*together.impulse, *together.u]).tolist()]
+    return found
+
+
+def test_the_suite_runs_with_the_compiled_core() -> None:
+    assert (path.__file__ or "").endswith(SUFFIX)
+
+
+def test_compiled_and_plain_give_the_same_bits() -> None:
+    plain = loaded(SOURCE)
+    assert (plain.__file__ or "").endswith(".py")
+    assert bits(plain) == bits(path)
+
+
+@pytest.mark.skipif(
+    " fma " not in Path("/proc/cpuinfo").read_text(encoding="utf-8"), reason="the processor fuses nothing"
+)
+def test_a_build_for_a_processor_that_fuses_gives_the_same_bits(tmp_path: Path) -> None:
+    command = [sys.executable, "setup.py", "-q", "build_ext", "-b", tmp_path / "lib", "-t", tmp_path / "temp"]
+    subprocess.run(
+        command, cwd=ROOT, env={**os.environ, "CFLAGS": "-O3 -mfma"}, capture_output=True, check=True
+    )
+    (built,) = (tmp_path / "lib").rglob(f"path{SUFFIX}")
+    assert bits(loaded(built)) == bits(path)
+
+
+def test_lists_in_python_are_as_long_as_arrays_in_c() -> None:
+    types = SOURCE.with_suffix(".pxd").read_text(encoding="utf-8")
+    lengths = {int(length) for length in re.findall(r"double\[(\d+)\]", types)}
+    assert lengths == {int(length) for length in re.findall(r"\[0\.0\] \* (\d+)", SOURCE.read_text("utf-8"))}
+    plain = loaded(SOURCE)
+    assert lengths == {plain.ORDER + 1, plain.ORDER + 2, plain.TERMS + 1, plain.SLOW_TERMS + 1}
+
+
+@pytest.fixture
+def package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A package of its own with a copy of the core's sources, `copied_core.path`."""
+    folder = tmp_path / "copied_core"
+    folder.mkdir()
+    (folder / "__init__.py").touch()
+    for suffix in (".py", ".pxd"):
+        shutil.copy(SOURCE.with_suffix(suffix), folder)
+    monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.delenv("CONTACT_DYNAMICS_PLAIN", raising=False)
+    for name in ("copied_core", "copied_core.path"):
+        monkeypatch.delitem(sys.modules, name, raising=False)
+    importlib.import_module("copied_core")
+    return folder
+
+
+def imported() -> str:
+    """Import the copy, and return its file's name."""
+    import_core("copied_core.path")
+    module = importlib.import_module("copied_core.path")
+    assert sys.modules["copied_core"].path is module  # type: ignore[attr-defined]
+    return Path(module.__file__ or "").name
+
+
+def test_a_core_of_these_sources_is_used(package: Path) -> None:
+    shutil.copy(path.__file__ or "", package)
+    assert imported() == f"path{SUFFIX}"
+
+
+def test_a_core_of_other_sources_is_not_used(package: Path) -> None:
+    shutil.copy(path.__file__ or "", package)
+    with (package / "path.py").open("a", encoding="utf-8") as source:
+        source.write("# edited\n")
+    with pytest.warns(RuntimeWarning, match="was built from other sources; copied_core.path runs as plain"):
+        assert imported() == "path.py"
+
+
+def test_a_core_that_cannot_be_imported_is_not_used(package: Path) -> None:
+    (package / f"path{SUFFIX}").write_bytes(b"no library")
+    with pytest.warns(RuntimeWarning, match="cannot be imported"):
+        assert imported() == "path.py"
+
+
+@pytest.mark.usefixtures("package")
+def test_without_a_core_a_warning_says_how_much_slower_it_is() -> None:
+    with pytest.warns(RuntimeWarning, match="is missing; .* 3 to 4 times as long, .* 50 to 70 times"):
+        assert imported() == "path.py"
+
+
+def test_plain_python_can_be_chosen(package: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    shutil.copy(path.__file__ or "", package)
+    monkeypatch.setenv("CONTACT_DYNAMICS_PLAIN", "1")
+    assert imported() == "path.py"
