@@ -1,18 +1,24 @@
-"""A hook of MkDocs: pages that stand outside of docs/, and links that leave docs/.
+"""A hook of MkDocs: pages from outside of docs/, links that leave docs/, and the order of all pages.
 
 The documents are written for people who read them in the repository, so they link to sources and to pages
-beside docs/. The site gets those pages too. A link to a source file becomes its name, because the site has no
-sources.
+beside docs/. The site gets those pages too, and the examples as pages with code. A link to another source
+file becomes its name.
 """
 
 from __future__ import annotations
 
+import ast
+import json
 import os
 import re
+from base64 import b64decode
+from itertools import pairwise
 from pathlib import Path, PurePosixPath
 from typing import Any
 
 from mkdocs.structure.files import File, Files
+from mkdocs.structure.nav import Navigation
+from mkdocs.structure.pages import Page
 
 ROOT = Path(__file__).parents[1]
 PAGES = {
@@ -22,6 +28,25 @@ PAGES = {
     "contributing.md": "CONTRIBUTING.md",
 }
 """The pages of the site that come from elsewhere in the repository."""
+
+CODE = {
+    f"code/{path.stem}.md": str(path.relative_to(ROOT))
+    for path in (
+        *(ROOT / "scripts" / f"{name}.py" for name in ("lecture_figures", "page_figures", "viewer_pictures")),
+        ROOT / "benchmarks" / "_reliability.py",
+        *sorted((ROOT / "examples").glob("*.py")),
+    )
+}
+"""The pages that show the examples and what draws the pictures, as code."""
+
+NOTEBOOKS = {
+    f"notebooks/{path.stem}.md": f"docs/notebooks/{path.name}"
+    for path in sorted((ROOT / "docs" / "notebooks").glob("*.ipynb"))
+}
+"""The pages that show the notebooks."""
+
+SECTION_PAGES = {"guides.md", "reference.md", "explanation.md"}
+"""The first pages of sections, which link to every page of theirs."""
 
 LINK = re.compile(r"(?<!!)\[((?:[^\[\]]|\[[^\]]*\])*)\]\(([^)\s:#]+)(#[^)\s]*)?\)")
 IMAGE = re.compile(r"(!\[[^\]]*\])\(docs/([^)\s]+)\)")
@@ -50,13 +75,80 @@ def interface_files() -> str:
     return "\n".join(parts)
 
 
+def code_page(source: str) -> str:
+    """Return a page with a Python file, and a heading for each of its functions and classes."""
+    text = (ROOT / source).read_text(encoding="utf-8")
+    lines = text.splitlines()
+    named = [part for part in ast.parse(text).body if isinstance(part, ast.FunctionDef | ast.ClassDef)]
+    begins = [min([part.lineno, *(each.lineno for each in part.decorator_list)]) - 1 for part in named]
+    parts = [
+        "---\nsearch:\n  exclude: true\n---\n\n",
+        f"# {source}\n\n",
+        _as_code(lines[: min(begins, default=None)]),
+    ]
+    for part, begin, end in zip(named, begins, [*begins[1:], None], strict=False):
+        parts.append(f"## {part.name} {{ #{part.name} }}\n\n{_as_code(lines[begin:end])}")
+    return "".join(parts)
+
+
+def _as_code(lines: list[str]) -> str:
+    code = "\n".join(lines).strip("\n")
+    return f"```python\n{code}\n```\n\n"
+
+
+def notebook_page(source: str) -> tuple[str, dict[str, bytes]]:
+    """Return a notebook as a page, and its pictures by their names."""
+    path = ROOT / source
+    parts, pictures = [], {}
+    for cell in json.loads(path.read_text(encoding="utf-8"))["cells"]:
+        text = "".join(cell["source"])
+        parts.append(text if cell["cell_type"] == "markdown" else f"```python\n{text}\n```")
+        for output in cell.get("outputs", []):
+            if "text" in output:
+                parts.append(f"```text\n{''.join(output['text'])}```")
+            elif "image/png" in output["data"]:
+                name = f"{path.stem}-{len(pictures)}.png"
+                pictures[name] = b64decode("".join(output["data"]["image/png"]))
+                parts.append(f"![What the code above draws]({name})")
+    parts.insert(1, f'<a href="{path.name}" download>Download this notebook</a>')
+    return "\n\n".join(parts), pictures
+
+
 def on_files(files: Files, config: Any) -> Files:
     """Add the pages from elsewhere."""
     files.append(File.generated(config, INTERFACE_FILES, content=interface_files()))
+    for name, source in CODE.items():
+        files.append(File.generated(config, name, content=code_page(source)))
+    for name, source in NOTEBOOKS.items():
+        page, pictures = notebook_page(source)
+        files.append(File.generated(config, name, content=page))
+        for picture, content in pictures.items():
+            files.append(File.generated(config, f"notebooks/{picture}", content=content))
     for name, source in PAGES.items():
         text = (ROOT / source).read_text(encoding="utf-8")
         files.append(File.generated(config, name, content=IMAGE.sub(r"\1(\2)", text)))
     return files
+
+
+def on_nav(nav: Navigation, files: Files, **_: Any) -> Navigation:
+    """Put each page that is not in the menu into the section whose first page links to it.
+
+    The links to the previous and the next page go through all of them.
+    """
+    chain: list[Page] = []
+    for section in nav.items:
+        listed = [child for child in section.children or [] if isinstance(child, Page)]
+        first = listed[0].file
+        linked = LINK.findall(first.content_string) if first.src_uri in SECTION_PAGES else []
+        found = [files.get_file_from_path(target.replace(".ipynb", ".md")) for _, target, _ in linked]
+        pages = [file.page for file in found if file is not None and file.page is not None]
+        for page in [listed[0], *pages, *listed[1:]]:
+            page.parent = page.parent or section
+            if page.parent is section and page not in chain:
+                chain.append(page)
+    for before, after in pairwise(chain):
+        before.next_page, after.previous_page = after, before
+    return nav
 
 
 def on_page_markdown(markdown: str, page: Any, **_: Any) -> str:
@@ -70,7 +162,7 @@ def link_on_site(link: re.Match[str], name: str, source: PurePosixPath) -> str:
     """Return the link as the page of that name needs it. What leads nowhere stays, and MkDocs complains."""
     text, target, anchor = link.groups()
     path = os.path.normpath(source.parent / target)
-    elsewhere = {of: page for page, of in PAGES.items()}
+    elsewhere = {of: page for page, of in (PAGES | CODE | NOTEBOOKS).items()}
     definition = re.fullmatch(r"contact_dynamics_interfaces/(?:srv|msg)/(\w+)\.(?:srv|msg)", path)
     if definition and (ROOT / path).is_file():
         to = os.path.relpath(INTERFACE_FILES, PurePosixPath(name).parent)

@@ -1,10 +1,11 @@
-"""The figures of docs/lectures.md are those that `python scripts/lecture_figures.py` draws."""
+"""The figures of the documents are those that the scripts in scripts/ draw."""
 
 from __future__ import annotations
 
 import importlib.util
 import re
 import xml.etree.ElementTree as ET
+from functools import cache
 from pathlib import Path
 from types import ModuleType
 
@@ -16,14 +17,14 @@ pytest.importorskip("matplotlib", reason="matplotlib of requirements/test.txt is
 from contact_dynamics.plots import save_figure
 from running_server import ROOT
 
-FOLDER = ROOT / "docs" / "lectures"
+SCRIPTS = {"lecture_figures": ROOT / "docs" / "lectures", "page_figures": ROOT / "docs" / "figures"}
 NUMBER = re.compile(r"-?\d+(?:\.\d+)?")
 PIXEL = 0.05  # of 1/72 inch: another processor rounds otherwise, and nobody sees it
 
 
-@pytest.fixture(scope="module")
-def script() -> ModuleType:
-    found = importlib.util.spec_from_file_location("lecture_figures", ROOT / "scripts" / "lecture_figures.py")
+@cache
+def script(name: str) -> ModuleType:
+    found = importlib.util.spec_from_file_location(name, ROOT / "scripts" / f"{name}.py")
     assert found is not None
     assert found.loader is not None
     module = importlib.util.module_from_spec(found)
@@ -46,17 +47,23 @@ def drawn_of(path: Path) -> tuple[list[str], np.ndarray, str]:
     return words, np.array(places), made.group()
 
 
-def test_the_page_shows_every_figure(script: ModuleType) -> None:
-    page = (ROOT / "docs" / "lectures.md").read_text(encoding="utf-8")
-    shown = re.findall(r"\(lectures/(\w+)\.svg\)", page)
-    assert sorted(shown) == sorted(script.FIGURES)
-    assert {path.stem for path in FOLDER.iterdir()} == set(shown)
+@pytest.mark.parametrize("name", SCRIPTS)
+def test_the_pages_show_every_figure(name: str) -> None:
+    folder = SCRIPTS[name]
+    pages = "".join(page.read_text(encoding="utf-8") for page in (ROOT / "docs").rglob("*.md"))
+    shown = set(re.findall(rf"!\[[^\]]+\]\((?:\.\./)?{folder.name}/(\w+)\.svg\)", pages))
+    assert shown == set(script(name).FIGURES)
+    assert {path.stem for path in folder.iterdir()} == shown
 
 
-@pytest.mark.parametrize("path", sorted(FOLDER.glob("*.svg")), ids=lambda path: path.stem)
-def test_a_figure_is_current(path: Path, script: ModuleType, tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("name", "path"),
+    [(name, path) for name, folder in SCRIPTS.items() for path in sorted(folder.glob("*.svg"))],
+    ids=lambda each: each.stem if isinstance(each, Path) else "",
+)
+def test_a_figure_is_current(name: str, path: Path, tmp_path: Path) -> None:
     again = tmp_path / path.name
-    save_figure(script.FIGURES[path.stem](), again)
+    save_figure(script(name).FIGURES[path.stem](), again)
     words, places, made = drawn_of(path)
     new_words, new_places, new_made = drawn_of(again)
     assert new_words == words
