@@ -1,7 +1,7 @@
 """An extension of griffe, which reads the docstrings for the site: chapters are described by their purpose.
 
-The first paragraph of a chapter's docstring says what it is for. The others say what is in which of its files,
-which concerns those who change them.
+The first paragraph of a chapter says what it is for. The others say what is in which of its files, which
+concerns those who change them.
 """
 
 from typing import Any

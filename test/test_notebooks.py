@@ -1,0 +1,38 @@
+"""The notebooks run from beginning to end, and print what is stored in them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from running_server import ROOT
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+nbformat = pytest.importorskip(
+    "nbformat", reason="NOT RUN: nbclient of requirements/test.txt is not installed"
+)
+nbclient = pytest.importorskip(
+    "nbclient", reason="NOT RUN: nbclient of requirements/test.txt is not installed"
+)
+pytest.importorskip("ipykernel", reason="NOT RUN: ipykernel of requirements/test.txt is not installed")
+
+FOLDER = ROOT / "docs" / "notebooks"
+
+
+@pytest.mark.parametrize("path", sorted(FOLDER.glob("*.ipynb")), ids=lambda path: path.stem)
+def test_a_notebook_prints_what_it_shows(path: Path) -> None:
+    stored = nbformat.read(path, as_version=4)
+    run = nbclient.NotebookClient(nbformat.read(path, as_version=4), timeout=60).execute()
+    assert outputs(run) == outputs(stored)
+
+
+def outputs(notebook: Any) -> list[list[str]]:
+    """Return what each cell has printed. Of pictures it has the kind alone: versions draw differently."""
+    return [
+        [output.text if output.output_type == "stream" else output.output_type for output in cell.outputs]
+        for cell in notebook.cells
+        if cell.cell_type == "code"
+    ]
