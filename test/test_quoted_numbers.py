@@ -102,6 +102,8 @@ NOT_MEASURED: dict[
         "steps of 0.2 ms",
         "50 % region",
         "90 % region",
+        "ideal values are 50 % and 90 %",
+        "with a probability of 90 %",
         "below a tenth of a millimetre",
     ],  # SAMPLED_SETTLING_HEIGHT
     "contact_dynamics_interfaces/README.md": [
