@@ -3,12 +3,12 @@
 Compression collects an amount, and restitution returns a share of it. `spatial.path` has for each law a
 `RestitutionRule`, which says which amount this is and where restitution ends, on paths that are not known in
 advance. In the plane the path is known, and the three ends are closed forms in the middle of one computation
-(`planar.routh`, and `planar.batch` for many).
+(`planar.routh`).
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -32,15 +32,6 @@ class RestitutionLaw(NamedInt):
     with friction."""
     ENERGETIC = 2
     """e squared is the work that the normal impulse returns over the work that it took (Stronge 1990)."""
-
-
-def refuse_unknown(law: NoReturn) -> NoReturn:
-    """Raise `NotImplementedError` for a law that a caller has no branch for. Mypy finds such a caller first.
-
-    Where every member of `RestitutionLaw` has its branch, nothing is left for the argument to be.
-    """
-    message = f"restitution_law: found {law}, which is not written down here"
-    raise NotImplementedError(message)
 
 
 class ImpactOutcome(NamedInt):

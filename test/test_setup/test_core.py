@@ -21,19 +21,21 @@ import numpy as np
 import pytest
 
 from contact_dynamics.impact.law import RestitutionLaw
+from contact_dynamics.impact.planar import routh
 from contact_dynamics.impact.spatial import path
 from contact_dynamics.numerics.compiled import import_core
 from impact.spatial.test_to_rounding import SLENDER, beside_an_invariant_direction, drawn
 
 ROOT = Path(__file__).parents[2]
-SOURCE = ROOT / "contact_dynamics" / "impact" / "spatial" / "path.py"
+IMPACT = ROOT / "contact_dynamics" / "impact"
+SOURCE = IMPACT / "spatial" / "path.py"
 COUNT = 300
 SUFFIX = EXTENSION_SUFFIXES[0]
 
 
 def loaded(file: Path) -> ModuleType:
     """Return the module of a file, beside the one that is imported."""
-    spec = spec_from_file_location("path", file)
+    spec = spec_from_file_location(file.name.partition(".")[0], file)
     assert spec is not None
     assert spec.loader is not None
     module = module_from_spec(spec)
@@ -63,14 +65,38 @@ def bits(module: ModuleType) -> list[object]:
     return found
 
 
+def planar_bits(module: ModuleType) -> list[object]:
+    """Return what a module finds on drawn planar strikes, one by one and together."""
+    rng = np.random.default_rng(4)
+    mass, inertia = 10.0 ** rng.uniform(-1.0, 1.0, size=(2, COUNT))
+    friction, e, angle = (
+        10.0 ** rng.uniform(-1.5, 0.7, COUNT),
+        rng.uniform(size=COUNT),
+        rng.normal(size=COUNT),
+    )
+    v_x, v_y, w, r_x, r_y = rng.normal(size=(5, COUNT))
+    n_x, n_y = np.cos(angle), np.sin(angle)
+    side = np.where((v_x - w * r_y) * n_x + (v_y + w * r_x) * n_y > 0.0, -1.0, 1.0)
+    columns = [mass, inertia, friction, e, v_x, v_y, w, r_x, r_y, side * n_x, side * n_y]
+    found: list[object] = []
+    for law in RestitutionLaw:
+        outcomes, results, separating = module.planar_strikes(columns, law, 1e-9)
+        assert separating is None
+        found += [outcomes.tolist(), results.tolist()]
+        response = module.inverse_inertia(1.0, 0.7, -1.0, -4.0)
+        found += [module.impulse_path(-1.0, v_n, response, 0.3, 0.5, law) for v_n in (0.0, -1.0)]
+    return found
+
+
 def test_the_suite_runs_with_the_compiled_core() -> None:
-    assert (path.__file__ or "").endswith(SUFFIX)
+    assert all((module.__file__ or "").endswith(SUFFIX) for module in (path, routh))
 
 
 def test_compiled_and_plain_give_the_same_bits() -> None:
     plain = loaded(SOURCE)
     assert (plain.__file__ or "").endswith(".py")
     assert bits(plain) == bits(path)
+    assert planar_bits(loaded(IMPACT / "planar" / "routh.py")) == planar_bits(routh)
 
 
 @pytest.mark.skipif(
@@ -83,6 +109,8 @@ def test_a_build_for_a_processor_that_fuses_gives_the_same_bits(tmp_path: Path) 
     )
     (built,) = (tmp_path / "lib").rglob(f"path{SUFFIX}")
     assert bits(loaded(built)) == bits(path)
+    (built,) = (tmp_path / "lib").rglob(f"routh{SUFFIX}")
+    assert planar_bits(loaded(built)) == planar_bits(routh)
 
 
 def test_lists_in_python_are_as_long_as_arrays_in_c() -> None:

@@ -1,21 +1,16 @@
-"""This file resolves many planar impacts at once.
-
-The operations of `routh` and `one_contact` are repeated in the same order on arrays. Every number equals that
-of the single call to the last bit, because both round all these operations correctly: sums, products,
-quotients and square roots. Branches become masks.
-"""
+"""This file resolves many planar impacts, one after the other by the code of one (`routh`)."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from contact_dynamics.errors import NORMAL_HINT, SeparatingContactError
 from contact_dynamics.impact.energy import ManyEnergies
-from contact_dynamics.impact.law import ImpactOutcome, RestitutionLaw, refuse_unknown
-from contact_dynamics.impact.planar.routh import LARGEST_FRICTION
+from contact_dynamics.impact.law import RestitutionLaw
+from contact_dynamics.impact.planar.one_contact import refuse_separating
+from contact_dynamics.impact.planar.routh import planar_strikes
 from contact_dynamics.tolerances import VELOCITY_TOLERANCE
 from contact_dynamics.validation import FloatArray, check_magnitude, check_not_negative
 from contact_dynamics.validation_batches import (
@@ -30,23 +25,6 @@ from contact_dynamics.validation_batches import (
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
-
-_CHUNK: Final = 4096
-
-# The index of an outcome is a sum: 1 if sliding stops early, 2 if it stops late, 4 if friction holds.
-_OUTCOMES: Final = np.array(
-    [
-        ImpactOutcome.SLIDES,
-        ImpactOutcome.REVERSES_IN_COMPRESSION,
-        ImpactOutcome.REVERSES_IN_RESTITUTION,
-        ImpactOutcome.SLIDES,
-        ImpactOutcome.SLIDES,
-        ImpactOutcome.STICKS_IN_COMPRESSION,
-        ImpactOutcome.STICKS_IN_RESTITUTION,
-        ImpactOutcome.SLIDES,
-    ],
-    dtype=np.int64,
-)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -123,15 +101,10 @@ def planar_impacts(
     }
     count = common_length(fields)
     columns = [np.broadcast_to(column, count) for rows in fields.values() for column in np.atleast_2d(rows.T)]
-    outcomes = np.empty(count, dtype=np.int64)
-    results = np.empty((11, count))
-    # Chunks whose columns stay in the cache make this about twice as fast.
-    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-        for first in range(0, count, _CHUNK):
-            chunk = slice(first, first + _CHUNK)
-            outcomes[chunk] = _strike(
-                [x[chunk] for x in columns], results[:, chunk], restitution_law, tolerance, first
-            )
+    outcomes, results, separating = planar_strikes(columns, restitution_law, tolerance)
+    if separating is not None:
+        case, v_n = separating
+        refuse_separating(v_n, tolerance, f" of case {case}")
     return PlanarImpacts(
         restitution_law=restitution_law,
         outcomes=outcomes,
@@ -142,125 +115,3 @@ def planar_impacts(
         velocities_before_C=results[7:9].T,
         velocities_after_C=results[9:11].T,
     )
-
-
-def _strike(
-    columns: list[FloatArray], results: FloatArray, law: RestitutionLaw, tolerance: float, first: int
-) -> NDArray[np.int64]:
-    """Fill ``results``, (11, n), with the planar impacts of some cases, and return the outcomes."""
-    mass, inertia, friction, restitution, v_x, v_y, w, r_x, r_y, n_x, n_y = columns
-    c_x = v_x - w * r_y
-    c_y = v_y + w * r_x
-    v_t = c_x * n_y - c_y * n_x
-    v_n = c_x * n_x + c_y * n_y
-    for i in np.flatnonzero(v_n > tolerance)[:1]:
-        raise SeparatingContactError(
-            f"contact normal velocity of case {first + i}",
-            f"v_n = {v_n[i]:.9g} m/s",
-            f"at most {tolerance:g} m/s, since above it nothing strikes ({NORMAL_HINT})",
-        )
-    v_n[v_n >= -tolerance] = 0.0
-    v_t[(v_t >= -tolerance) & (v_t <= tolerance)] = 0.0
-    r_t = r_x * n_y - r_y * n_x
-    r_n = r_x * n_x + r_y * n_y
-    response = _response(mass, inertia, r_t, r_n)
-    outcomes, t_c, p_c, t_end, p_end, v_t_end, v_n_end = _paths(
-        v_t, v_n, *response, friction, restitution, law
-    )
-    i_x = t_end * n_y + p_end * n_x
-    i_y = p_end * n_y - t_end * n_x
-    parts = (
-        v_x + i_x / mass,
-        v_y + i_y / mass,
-        w + (r_t * p_end - r_n * t_end) / inertia,
-        *(t_end, p_end, t_c, p_c, v_t, v_n, v_t_end, v_n_end),
-    )
-    for whole, part in zip(results, parts, strict=True):
-        whole[:] = part
-    return outcomes
-
-
-def _response(
-    mass: FloatArray, inertia: FloatArray, r_t: FloatArray, r_n: FloatArray
-) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    """Return `routh.inverse_inertia` of each case, by its four numbers."""
-    per_mass = 1.0 / mass
-    return (
-        per_mass + r_n * r_n / inertia,
-        -(r_t * r_n) / inertia,
-        per_mass + r_t * r_t / inertia,
-        per_mass * (per_mass + (r_t * r_t + r_n * r_n) / inertia),
-    )
-
-
-def _paths(  # noqa: PLR0917 - the columns of one table
-    v_t: FloatArray,
-    v_n: FloatArray,
-    a: FloatArray,
-    b: FloatArray,
-    c: FloatArray,
-    det: FloatArray,
-    friction: FloatArray,
-    e: FloatArray,
-    law: RestitutionLaw,
-) -> tuple[NDArray[np.int64], FloatArray, FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]:
-    """Return what `routh.impulse_path` finds in each case.
-
-    After the outcomes come the impulses at the end of compression (tangential, normal), those at the end of
-    the impact, and the velocities afterwards.
-    """
-    mu = np.minimum(friction, LARGEST_FRICTION)
-    holds = abs(b) <= mu * a
-    rests = v_t == 0.0
-    s = np.where(rests & holds, 0.0, np.copysign(1.0, np.where(rests, b, v_t)))
-    slowing = mu * a - s * b
-    p_stop = np.where(s == 0.0, 0.0, np.where(slowing > 0.0, abs(v_t) / slowing, np.inf))
-    rate_1 = c - s * mu * b
-    jams = (s != 0.0) & (rate_1 < 0.0)
-    nothing = (v_n == 0.0) & ~jams
-
-    rate_2 = np.where(holds, det / a, c + s * mu * b)
-    v_stop = np.where(p_stop < np.inf, v_n + rate_1 * p_stop, np.inf)
-    early = v_stop <= 0.0
-    p_c = np.where(early, p_stop - v_stop / rate_2, -v_n / rate_1)
-    rate = np.where(early, rate_2, rate_1)
-
-    if law is RestitutionLaw.POISSON:
-        gain = e * p_c
-        v_end = rate * gain
-        p_end = p_c + gain
-        late = ~early & (p_end > p_stop)
-        v_end = np.where(late, v_stop + rate_2 * (p_end - p_stop), v_end)
-    elif law is RestitutionLaw.NEWTON:
-        v_end = e * -v_n
-        gain = v_end / rate
-        p_end = p_c + gain
-        late = ~early & (p_end > p_stop)
-        p_end = np.where(late, p_stop + (v_end - v_stop) / rate_2, p_end)
-    elif law is RestitutionLaw.ENERGETIC:
-        taken = np.where(early, -(v_n + v_stop) * p_stop - v_stop * (p_c - p_stop), -v_n * p_c)
-        gain = e * np.sqrt(taken / rate)
-        v_end = rate * gain
-        p_end = p_c + gain
-        late = ~early & (p_end > p_stop)
-        rest = e * e * taken - v_stop * (p_stop - p_c)
-        after = rest / (v_stop + np.sqrt(v_stop * v_stop + rate_2 * rest))
-        p_end = np.where(late, p_stop + after, p_end)
-        v_end = np.where(late, v_stop + rate_2 * after, v_end)
-    else:
-        refuse_unknown(law)
-
-    s_mu = s * mu
-    stops = early | late
-    t_c = np.where(early, np.where(holds, -(v_t + b * p_c) / a, s_mu * (p_c - p_stop - p_stop)), -s_mu * p_c)
-    t_end = np.where(
-        stops, np.where(holds, -(v_t + b * p_end) / a, s_mu * (p_end - p_stop - p_stop)), -s_mu * p_end
-    )
-    v_t_end = np.where(stops & holds, 0.0, v_t + a * t_end + b * p_end)
-
-    outcomes = _OUTCOMES[(early + 2 * late + 4 * holds).astype(np.intp)]
-    outcomes[s == 0.0] = ImpactOutcome.STICKS_THROUGHOUT
-    outcomes[nothing] = ImpactOutcome.NO_IMPULSE
-    for result in (t_c, p_c, t_end, p_end, v_end):
-        result[nothing] = 0.0
-    return outcomes, t_c, p_c, t_end, p_end, np.where(nothing, v_t, v_t_end), v_end

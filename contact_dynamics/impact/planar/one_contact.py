@@ -11,11 +11,13 @@ Other files treat several contacts at once (`impact.several`), two moving bodies
 
 from __future__ import annotations
 
+from typing import NoReturn
+
 from contact_dynamics.errors import NORMAL_HINT, SeparatingContactError
 from contact_dynamics.impact.law import RestitutionLaw
 from contact_dynamics.impact.planar.result import PlanarImpact
-from contact_dynamics.impact.planar.routh import impulse_path, inverse_inertia
-from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, Vector2
+from contact_dynamics.impact.planar.routh import PlanarStrike
+from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity
 from contact_dynamics.tolerances import VELOCITY_TOLERANCE
 from contact_dynamics.validation import check_not_negative
 
@@ -46,43 +48,37 @@ def planar_impact(
     """
     restitution = contact.impact_restitution
     tolerance = check_not_negative("velocity_tolerance", velocity_tolerance)
-    n_x, n_y = contact.normal
-    r_x, r_y = contact.r
-    v_x, v_y = velocity.v
-    w = velocity.w
-    c_x = v_x - w * r_y
-    c_y = v_y + w * r_x
-    v_t, v_n = approach(c_x * n_y - c_y * n_x, c_x * n_x + c_y * n_y, tolerance)
-    r_t = r_x * n_y - r_y * n_x
-    r_n = r_x * n_x + r_y * n_y
-    response = inverse_inertia(body.mass, body.inertia, r_t, r_n)
-    path = impulse_path(v_t, v_n, response, contact.friction, restitution, restitution_law)
-    i_t = path.t_end
-    i_n = path.p_end
-    i_x = i_t * n_y + i_n * n_x
-    i_y = i_n * n_y - i_t * n_x
+    strike = PlanarStrike(restitution_law)
+    if not strike.strike(
+        body.mass,
+        body.inertia,
+        contact.friction,
+        restitution,
+        *velocity.v,
+        velocity.w,
+        *contact.r,
+        *contact.normal,
+        tolerance,
+    ):
+        refuse_separating(strike.v_n_before, tolerance)
     return PlanarImpact(
         restitution_law=restitution_law,
-        velocity=PlanarVelocity(
-            v=(v_x + i_x / body.mass, v_y + i_y / body.mass), w=w + (r_t * i_n - r_n * i_t) / body.inertia
-        ),
-        velocity_before_C=(v_t, v_n),
-        inverse_inertia=response,
-        contact_path=path,
-        impulse=(i_x, i_y),
+        velocity=PlanarVelocity(v=(strike.v_x, strike.v_y), w=strike.w),
+        velocity_before_C=(strike.v_t_before, strike.v_n_before),
+        inverse_inertia=strike.response,
+        contact_path=strike.path,
+        impulse=(strike.i_x, strike.i_y),
     )
 
 
-def approach(v_t: float, v_n: float, tolerance: float) -> Vector2:
-    """Return the contact's velocity, in which components within ``tolerance`` count as 0.
+def refuse_separating(v_n: float, tolerance: float, case: str = "") -> NoReturn:
+    """Raise the error of a contact, m/s, that separates.
 
     Raises:
-        SeparatingContactError: ``v_n`` is above the tolerance.
+        SeparatingContactError: always.
     """
-    if v_n > tolerance:
-        raise SeparatingContactError(
-            "contact normal velocity",
-            f"v_n = {v_n:.9g} m/s",
-            f"at most {tolerance:g} m/s, since above it nothing strikes ({NORMAL_HINT})",
-        )
-    return (0.0 if -tolerance <= v_t <= tolerance else v_t, 0.0 if v_n >= -tolerance else v_n)
+    raise SeparatingContactError(
+        f"contact normal velocity{case}",
+        f"v_n = {v_n:.9g} m/s",
+        f"at most {tolerance:g} m/s, since above it nothing strikes ({NORMAL_HINT})",
+    )

@@ -12,7 +12,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from contact_dynamics.impact.law import RestitutionLaw
-from contact_dynamics.impact.planar.one_contact import approach
+from contact_dynamics.impact.planar.one_contact import refuse_separating
 from contact_dynamics.impact.planar.result import PlanarImpact
 from contact_dynamics.impact.planar.routh import impulse_path, pair_inverse_inertia
 from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, Vector2, check_vector2
@@ -56,7 +56,10 @@ def planar_pair_impact(
     (u_x, u_y), z = other_velocity.v, other_velocity.w
     c_x = (v_x - u_x) - (w * r_y - z * s_y)
     c_y = (v_y - u_y) + (w * r_x - z * s_x)
-    v_t, v_n = approach(c_x * n_y - c_y * n_x, c_x * n_x + c_y * n_y, tolerance)
+    v_t, v_n = c_x * n_y - c_y * n_x, c_x * n_x + c_y * n_y
+    if v_n > tolerance:
+        refuse_separating(v_n, tolerance)
+    v_t, v_n = 0.0 if -tolerance <= v_t <= tolerance else v_t, 0.0 if v_n >= -tolerance else v_n
     response = pair_inverse_inertia(
         (body.mass, body.inertia, r_x * n_y - r_y * n_x, r_x * n_x + r_y * n_y),
         (other.mass, other.inertia, s_x * n_y - s_y * n_x, s_x * n_x + s_y * n_y),
