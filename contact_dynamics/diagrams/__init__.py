@@ -7,5 +7,6 @@ In reading order: the faces and edges of bodies (`shape`), lecture 27's impulse 
 lecture 26's body with its contacts (`planar_scene`, `planar_modes`), charts of applied wrenches
 (`wrench_chart`) and the map of modes on them (`mode_map`), lecture 26's construction for one mode
 (`force_dual`), lecture 25's rolling ellipsoid (`poinsot`), energies and momenta over a trajectory
-(`trajectory_curves`), and what answers say in words (`words`).
+(`trajectory_curves`), how far a flight goes until a surface is in its way (`outside`), and answers in words
+(`words`).
 """

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 import rerun as rr
 
+from contact_dynamics.contact_modes.spatial.applied_wrench import applied_wrench
 from contact_dynamics.diagrams.words import contacts_in_words
 from contact_dynamics.questions.planar_view import beyond, sliding_directions
 from contact_dynamics.viewing import palette
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
     from contact_dynamics.contact_modes import SpatialMode
     from contact_dynamics.diagrams.shape import Shape
     from contact_dynamics.questions.contact_modes import ContactModeAnswer
+    from contact_dynamics.rigid_body.body import MassProperties
 
 FORCE_LENGTH: Final = 0.6
 """Length of the longest force arrow, relative to the body's size. Labels say how much force it stands for."""
@@ -44,10 +46,16 @@ _POINT_SIZE: Final = 0.035  # radius of points, relative to the body's size
 _ARROW_WIDTH: Final = 0.01  # relative to the body's size
 
 
-def draw_contact_modes(recording: rr.RecordingStream, shape: Shape, answer: ContactModeAnswer) -> None:
+def draw_contact_modes(
+    recording: rr.RecordingStream,
+    shape: Shape,
+    answer: ContactModeAnswer,
+    *,
+    body: MassProperties | None = None,
+) -> None:
     """Draw an answer about contact modes in the scene, at the recording's current time.
 
-    ``shape`` is that of the body.
+    ``shape`` is that of the body. Its applied force is drawn if its mass properties, ``body``, are known.
     """
     path, size = contacts_entity(answer.body_name), shape.size
     contacts = answer.contacts
@@ -61,16 +69,43 @@ def draw_contact_modes(recording: rr.RecordingStream, shape: Shape, answer: Cont
     )
     recording.log(f"{path}/cones", rr.Clear(recursive=False) if cones is None else cones)
     edges = list(outline(shape, answer.state.p_WB_W, answer.state.q_WB))
-    body = rr.LineStrips3D(
+    lines = rr.LineStrips3D(
         strips_3d(edges), colors=palette.translucent(palette.NORMAL, 0.6), radii=_OUTLINE_WIDTH
     )
-    recording.log(f"{path}/body", body)
+    recording.log(f"{path}/body", lines)
+    _draw_applied(recording, f"{path}/applied", answer, body, size=size)
     for i, name in enumerate(mode_names()):
         mode_path = f"{path}/{name}"
         if i < len(answer.modes):
             _draw_mode(recording, mode_path, answer.modes[i], answer, size=size)
         else:
             recording.log(mode_path, rr.Clear(recursive=True))
+
+
+def _draw_applied(
+    recording: rr.RecordingStream,
+    path: str,
+    answer: ContactModeAnswer,
+    body: MassProperties | None,
+    *,
+    size: float,
+) -> None:
+    """Draw the force that acts on the body besides its contacts: gravity, and what pushes it."""
+    if body is None or not answer.modes:
+        recording.log(path, rr.Clear(recursive=False))
+        return
+    force_W = applied_wrench(body, answer.state, answer.contacts, answer.modes[0])[:3]
+    amount = float(np.linalg.norm(force_W))
+    vectors = [force_W / amount * (FORCE_LENGTH * size)] if amount > 0.0 else []
+    arrows = rr.Arrows3D(
+        origins=[answer.state.p_WB_W] * len(vectors),
+        vectors=vectors,
+        colors=palette.NORMAL,
+        radii=_ARROW_WIDTH * size,
+        labels=[f"gravity and load: {amount:.3g} N"] * len(vectors),
+        show_labels=True,
+    )
+    recording.log(path, arrows)
 
 
 def mode_names() -> list[str]:

@@ -43,6 +43,11 @@ class Framing:
         """The middle of what is in sight, (3,), m."""
         return 0.5 * (self._low_W + self._high_W)
 
+    @property
+    def extent(self) -> float:
+        """The extent of what is in sight with its margin, m."""
+        return float(np.linalg.norm(self._high_W - self._low_W)) + self._margin
+
     def turn_to(self, path_W: FloatArray, *, margin: float) -> Eye:
         """Return the eye that looks at a path, (n, 3), m, and the bodies about it, and has a margin, m."""
         self._path_W, self._margin = path_W, margin

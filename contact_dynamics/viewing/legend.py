@@ -23,6 +23,7 @@ LEGEND_TEXT: Final = """\
 | green, pink, cyan points and arrows | contacts that stay fixed, slide, separate; their contact forces |
 | white outline | the body that the newest answer about contact modes is about |
 | thin pink arrow | which way a contact slides |
+| white arrow | gravity and applied load together, at the centre of mass |
 | orange arrow | acceleration of the centre of mass, or of contacts |
 
 The longest arrow of each kind is drawn as long as suits the body: read its label. Strikes in sequence are

@@ -10,6 +10,7 @@ import rerun as rr
 
 from contact_dynamics.constants import ns_after, to_ns
 from contact_dynamics.diagrams.after_impact import AwaitedImpacts
+from contact_dynamics.diagrams.outside import outside
 from contact_dynamics.diagrams.planar_scene import silhouette
 from contact_dynamics.diagrams.toss_words import toss_in_words
 from contact_dynamics.diagrams.words import (
@@ -32,7 +33,7 @@ from contact_dynamics.questions.many import ManyImpactsAnswer
 from contact_dynamics.tumbling.regime import Regime
 from contact_dynamics.viewing.after_impact import draw_after_impact
 from contact_dynamics.viewing.answers_in_words import AnswersInWords, sentence
-from contact_dynamics.viewing.blueprint import WINDOW_S, make_blueprint
+from contact_dynamics.viewing.blueprint import LOWEST_DISTANCE, WINDOW_S, make_blueprint
 from contact_dynamics.viewing.contact_modes import draw_contact_modes
 from contact_dynamics.viewing.diagrams_in_view import DiagramsInView
 from contact_dynamics.viewing.entities import (
@@ -110,6 +111,7 @@ class Picture:
         self._predictions = PredictionsInView(recording, self._bodies, up_W=self._world.up_W)
         self._framing = Framing(self._world.up_W)
         self._eye: Eye | None = None
+        self._sees_path = False  # after that the view belongs to the user
         self._shown: set[str] = set()  # what the arrangement has views of
         # Stamps, ns, and positions, m, of the last `WINDOW_S`.
         self._recent: deque[tuple[int, FloatArray]] = deque()
@@ -161,23 +163,24 @@ class Picture:
             computation_time: s, how long the answer took, or None if that is not known.
         """
         stamp_ns = answer.state.stamp_ns or now_ns
-        name, trajectory, rotation = answer.body_name, answer.trajectory, answer.poinsot
+        name, rotation = answer.body_name, answer.poinsot
         set_time(self._recording, stamp_ns)
-        draw_trajectory(
-            self._recording, name, self._bodies.shape(name), trajectory, covariance=answer.covariance
-        )
+        shape = self._bodies.shape(name)
+        trajectory, in_the_way = outside(answer.trajectory, shape, self._world.surfaces)
+        draw_trajectory(self._recording, name, shape, trajectory, covariance=answer.covariance)
         earlier = self._predictions.newest(name)
         if earlier is not None and len(earlier.trajectory) > 0 and self._earlier > 0:
             place = earlier.number % self._earlier
             draw_earlier_path(self._recording, name, earlier.trajectory, place=place)
         curves = self._predict(name, trajectory, begin_ns=stamp_ns)
-        if len(trajectory) > 0 and self._eye is None:
-            self._look_at(trajectory.p_WB_W)  # after that the view belongs to the user
+        self._look_along(trajectory)
         if rotation is not None and answer.curves is not None and rotation.regime is not Regime.AT_REST:
             self._poinsot.come(name, rotation, answer.curves, answer.state, stamp_ns=stamp_ns)
             self._bring_up(PREDICTED, POINSOT, ANSWERS, *curves)
         self._bring_up(PREDICTED, ANSWERS, *curves)
         words = tumbling_in_words(answer)
+        if in_the_way:
+            words.append(f"drawn until {in_the_way} is in its way")
         self._tell_answer(TUMBLING, name, words, remark, computation_time, stamp_ns=stamp_ns)
 
     def show_impact(
@@ -227,7 +230,9 @@ class Picture:
         set_time(self._recording, stamp_ns)
         shape = self._bodies.shape(name)
         self._letters.come(name, stamp_ns)
-        draw_contact_modes(self._recording, shape, answer)
+        draw_contact_modes(self._recording, shape, answer, body=self._bodies.mass_properties(name))
+        if self._eye is None:
+            self._look_at(answer.state.p_WB_W[None])
         if plane is not None:
             outline = silhouette(shape, plane.axes_W @ answer.state.R_WB)
             body = self._bodies.mass_properties(name)
@@ -253,8 +258,7 @@ class Picture:
         set_time(self._recording, stamp_ns)
         draw_toss(self._recording, self._bodies.shape(name), answer, up_W=self._world.up_W)
         curves = self._predict(name, answer.toss.trajectory, begin_ns=stamp_ns)
-        if self._eye is None:
-            self._look_at(answer.toss.trajectory.p_WB_W)
+        self._look_along(answer.toss.trajectory)
         self._bring_up(TOSSES, ANSWERS, *curves)
         self._tell_answer(TOSS, name, toss_in_words(answer), remark, computation_time, stamp_ns=stamp_ns)
 
@@ -353,6 +357,12 @@ class Picture:
         said = sentence(body_name, words, remark=remark, computation_time=computation_time)
         self.tell(kind, said, stamp_ns=stamp_ns)
 
+    def _look_along(self, trajectory: Trajectory) -> None:
+        """Turn the view towards the first trajectory that is predicted."""
+        if len(trajectory) > 0 and not self._sees_path:
+            self._sees_path = True
+            self._look_at(trajectory.p_WB_W)
+
     def _look_at(self, points_W: FloatArray) -> None:
         """Turn the view towards a path and the bodies about it."""
         self._look(self._framing.turn_to(points_W, margin=self._bodies.largest_size))
@@ -362,7 +372,7 @@ class Picture:
         if eye is None:
             return
         self._eye = eye
-        self._world.center_at(self._framing.center_W)
+        self._world.center_at(self._framing.center_W, extent=max(self._framing.extent, LOWEST_DISTANCE))
         self._arrange()
 
     def _bring_up(self, *shown: str) -> None:

@@ -14,6 +14,8 @@ from contact_dynamics.viewing.entities import SCENE, SURFACES, entity, trail_ent
 from contact_dynamics.viewing.strips import strips_3d
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from contact_dynamics.diagrams.shape import Shape
     from contact_dynamics.shapes.obstacle import Obstacle
     from contact_dynamics.validation import FloatArray
@@ -44,27 +46,52 @@ def surface_path(name: str) -> str:
     return entity(SURFACES, name)
 
 
-def surface_parts(surface: Surface, *, center_W: FloatArray, side: float) -> dict[str, Part]:
-    """Return a square of a surface with that side, m, about the point nearest to ``center_W``, (3,), m."""
+def surface_parts(
+    surface: Surface, *, center_W: FloatArray, side: float, among: Sequence[Surface] = ()
+) -> dict[str, Part]:
+    """Return a square of a surface with that side, m, about the point nearest to ``center_W``, (3,), m.
+
+    It ends where it meets the surfaces that it is ``among``.
+    """
+    others = [other for other in among if float(np.linalg.norm(np.cross(other.normal_W, surface.normal_W)))]
     p_W = center_W - float(surface.gaps(center_W)) * surface.normal_W
     u_W, v_W = (0.5 * side * tangent for tangent in tangents_near_x(surface.normal_W))
+    corners = _clipped(p_W + np.array([-u_W - v_W, u_W - v_W, u_W + v_W, v_W - u_W]), others)
+    if len(corners) < 3:
+        return {}
     patch = rr.Mesh3D(
-        vertex_positions=p_W + np.array([-u_W - v_W, u_W - v_W, u_W + v_W, v_W - u_W]),
-        triangle_indices=[[0, 1, 2], [0, 2, 3]],
-        vertex_normals=np.tile(surface.normal_W, (4, 1)),
+        vertex_positions=corners,
+        triangle_indices=[[0, i, i + 1] for i in range(1, len(corners) - 1)],
+        vertex_normals=np.tile(surface.normal_W, (len(corners), 1)),
         albedo_factor=palette.SURFACE,
     )
     spacing = GRID_SPACING
     while side / spacing > MAX_GRID_LINES:
         spacing *= 10.0
     places = np.arange(-1.0, 1.0 + spacing / side, 2.0 * spacing / side)
-    lines = [
+    whole = [
         p_W + np.array([a * s - b, a * s + b]) for a, b in ((u_W, v_W), (v_W, u_W)) for s in places.tolist()
     ]
+    lines = [line[:2] for line in (_clipped(line, others) for line in whole) if len(line) > 1]
     return {
         "patch": patch,
         "grid": rr.LineStrips3D(strips_3d(lines), colors=palette.SURFACE_GRID, radii=_GRID_WIDTH),
     }
+
+
+def _clipped(corners_W: FloatArray, others: Sequence[Surface]) -> FloatArray:
+    """Return the corners of the part of a convex polygon or line, (n, 3), m, that is above other surfaces."""
+    for other in others:
+        gaps = other.gaps(corners_W).tolist()
+        kept = []
+        for i, gap in enumerate(gaps):
+            before = gaps[i - 1]
+            if (gap < 0.0) != (before < 0.0):
+                kept.append(corners_W[i] + gap / (gap - before) * (corners_W[i - 1] - corners_W[i]))
+            if gap >= 0.0:
+                kept.append(corners_W[i])
+        corners_W = np.reshape(kept, (-1, 3))
+    return corners_W
 
 
 def obstacle_parts(obstacle: Obstacle) -> dict[str, Part]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
@@ -23,9 +23,15 @@ from contact_dynamics.world import Surface
 if TYPE_CHECKING:
     import rerun as rr
 
+    from contact_dynamics.shapes.obstacle import Obstacle
     from contact_dynamics.validation import FloatArray
     from contact_dynamics.viewing.scenery import Part
     from contact_dynamics.world import World
+
+
+GROUND: Final = 5.0
+"""Side of the largest square that a surface is drawn as, relative to the extent of what is looked at. A wall
+that is much larger than a body hides it."""
 
 
 class WorldInView:
@@ -45,6 +51,7 @@ class WorldInView:
         self._in_scene: list[str] = []  # the bodies that are drawn
         self._first_ns: int | None = None  # stamp of the first state
         self._center_W: FloatArray | None = None  # the middle of what is looked at
+        self._extent = surface_side  # m, of what is looked at
         self.bodies = BodiesInWorld(world)
         gravity = float(np.linalg.norm(world.gravity_W))
         self.up_W = -world.gravity_W / gravity if gravity > 0.0 else np.array([0.0, 0.0, 1.0])
@@ -53,6 +60,11 @@ class WorldInView:
         for name in self.bodies.names:
             style_series(recording, name, self.bodies.color(name))
             style_after_impact(recording, name, self.bodies.color(name))
+
+    @property
+    def surfaces(self) -> tuple[Surface | Obstacle, ...]:
+        """The world's surfaces."""
+        return tuple(self._world.surfaces)
 
     @property
     def gravity_W(self) -> FloatArray:
@@ -67,9 +79,9 @@ class WorldInView:
         if self._first_ns is None:
             self._first_ns = stamp_ns
 
-    def center_at(self, center_W: FloatArray) -> None:
-        """Put the ground below a point, (3,), m."""
-        self._center_W = center_W
+    def center_at(self, center_W: FloatArray, *, extent: float) -> None:
+        """Put the ground below a point, (3,), m, where what is looked at has an extent, m."""
+        self._center_W, self._extent = center_W, extent
         self._draw_surfaces()
 
     def change(self, world: World, *, stamp_ns: int) -> None:
@@ -93,11 +105,13 @@ class WorldInView:
 
     def _surfaces(self) -> dict[str, dict[str, Part]]:
         """Return the parts of the surfaces by their paths."""
+        flats = [surface for surface in self._world.surfaces if isinstance(surface, Surface)]
         return {
             surface_path(surface.name): surface_parts(
                 surface,
                 center_W=surface.p_WS_W if self._center_W is None else self._center_W,
-                side=self._surface_side,
+                side=min(self._surface_side, GROUND * self._extent),
+                among=flats,
             )
             if isinstance(surface, Surface)
             else obstacle_parts(surface)

@@ -111,6 +111,20 @@ def test_contacts_that_do_the_same_have_one_label_below_them(
     np.testing.assert_allclose(place, below, atol=1e-6)  # float32 positions
 
 
+def test_what_acts_besides_the_contacts_is_an_arrow(
+    recording: rr.RecordingStream, read: Callable[[], Drawn], body: Body, two_contacts: ContactSet
+) -> None:
+    """What the mode of 2 m/s^2 downwards has from its two contacts of 1 N upwards, and from this force."""
+    up = np.array([[0.0, 0.0, 1.0], [0.0, 0.0, 1.0]])
+    answer = contact_mode_answer(AT_REST, two_contacts, mode_of("ff", up))
+    draw_contact_modes(recording, convex_shape(body.vertices_B), answer, body=body.mass_properties)
+    drawn = read()
+    amount = 2.0 * body.mass_properties.mass + 2.0
+    assert drawn.last(f"{CONTACTS}/applied", "Arrows3D:labels") == [f"gravity and load: {amount:.3g} N"]
+    (arrow,) = drawn.array(f"{CONTACTS}/applied", "Arrows3D:vectors")
+    np.testing.assert_allclose(arrow / np.linalg.norm(arrow), [0.0, 0.0, -1.0], atol=1e-6)
+
+
 def test_each_mode_is_an_entity_of_its_own(
     recording: rr.RecordingStream, read: Callable[[], Drawn], body: Body, two_contacts: ContactSet
 ) -> None:

@@ -60,6 +60,26 @@ def test_a_surface_is_a_square_in_its_plane_below_the_centre(
     assert distances <= 0.5 * side * (1.0 + 1e-5) + tolerance
 
 
+def test_a_wall_rises_from_the_floor_and_the_floor_ends_at_the_wall(
+    recording: rr.RecordingStream, read: Callable[[], Drawn]
+) -> None:
+    floor = Surface(name="floor", p_WS_W=np.zeros(3), normal_W=[0.0, 0.0, 1.0], friction=0.3, restitution=0.5)
+    wall = Surface(name="wall", p_WS_W=[0.15, 0, 0], normal_W=[-1.0, 0.0, 0.0], friction=0.3, restitution=0.5)
+    for surface in (floor, wall):
+        parts = surface_parts(surface, center_W=np.zeros(3), side=1.0, among=(floor, wall))
+        Scenery(recording).draw(surface_path(surface.name), parts)
+    drawn = read()
+    tolerance = 1e-6  # m, float32
+    for name in ("floor", "wall"):
+        for part in (
+            drawn.array(f"/world/surfaces/{name}/patch", "Mesh3D:vertex_positions"),
+            drawn.array(f"/world/surfaces/{name}/grid", "LineStrips3D:strips"),
+        ):
+            assert floor.gaps(part).min() >= -tolerance
+            assert wall.gaps(part).min() >= -tolerance
+            assert part[..., 1].min() < -0.49
+
+
 @given(st.tuples(*[st.floats(-1.0, 1.0)] * 3).filter(lambda v: np.linalg.norm(v) > 1e-3))
 def test_tangents_and_normal_are_a_right_handed_frame(direction: tuple[float, float, float]) -> None:
     normal = np.array(direction) / np.linalg.norm(direction)
