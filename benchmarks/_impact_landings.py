@@ -263,9 +263,9 @@ def _at_once(shape: Body, landing: MeasuredLanding, world: World, within: float)
     found = next_landing(shape, landing.before, world, horizon=landing.seconds)
     if found is None or not found.strikes:
         return landing.before
-    contacts = find_contacts(shape, found.state, world.surfaces, distance_tolerance=within)
+    contacts = find_contacts(shape, found.state, world, distance_tolerance=within)
     try:
-        return several_impact(shape.mass_properties, found.state, contacts).state
+        return several_impact(shape, found.state, contacts).state
     except SeparatingContactError:
         return found.state
 

@@ -121,6 +121,14 @@ def _in_words(shape: tuple[int | None, ...]) -> str:
     return f"({lengths},)" if len(shape) == 1 else f"({lengths})"
 
 
+def check_sides(size: ArrayLike, y: float | None, z: float | None) -> FloatArray:
+    """Return the side lengths, (3,), of a box along x, y, z, given as one sequence or as three numbers."""
+    if y is None and z is None:
+        return check_array("size", size, (3,))
+    sides: list[Any] = [size, y, z]
+    return check_array("size, y, z", sides, (3,))
+
+
 def check_magnitude(field: str, value: FloatArray, most: float = LARGEST_NUMBER) -> FloatArray:
     """Return ``value`` if no number in it is larger than ``most`` in magnitude."""
     largest = float(np.abs(value).max(initial=0.0))

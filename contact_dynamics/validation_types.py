@@ -91,7 +91,8 @@ def checks_types(function: Callable[P, R]) -> Callable[P, R]:
 def checks_fields(post_init: Callable[[Any], None], annotations: Mapping[str, str]) -> Callable[[Any], None]:
     """Return a record's ``__post_init__`` that checks the types of the fields first.
 
-    A sequence becomes a tuple, which nobody can change afterwards.
+    A sequence becomes a tuple, which nobody can change afterwards. A field that is made from other types than
+    it has is a ``field(metadata={"accepts": ...})``, with an annotation of these.
     """
     if _is_numeric(annotations.values()):
         return post_init
@@ -102,7 +103,7 @@ def checks_fields(post_init: Callable[[Any], None], annotations: Mapping[str, st
         nonlocal expected_of
         if expected_of is None:
             given = {
-                one.name: annotations[one.name]
+                one.name: one.metadata.get("accepts", annotations[one.name])
                 for one in dataclasses.fields(self)
                 if one.init and one.name in annotations
             }
@@ -177,9 +178,9 @@ def _expected_in_words(expected: Expected) -> str:
         elif kind is _FUNCTION:
             words.append("a function")
         elif kind not in {np.bool_, Iterator}:
-            words.append(_with_article(kind.__name__))
+            words.append(vars(kind).get("ALLOWED", _with_article(kind.__name__)))
     if expected.elements is not None:
-        each = " or ".join(kind.__name__ for kind in expected.elements.types)
+        each = " or ".join(vars(kind).get("ALLOWED", kind.__name__) for kind in expected.elements.types)
         words.insert(0, f"a sequence of {each}")
     return " or ".join(words)
 

@@ -13,7 +13,7 @@ import numpy as np
 from contact_dynamics.constants import STANDARD_GRAVITY_W
 from contact_dynamics.errors import InvalidFieldError, UnknownBodyError
 from contact_dynamics.records import Record
-from contact_dynamics.rigid_body.body import MassProperties
+from contact_dynamics.rigid_body.body import HasMassProperties, MassProperties
 from contact_dynamics.shapes.concavity import warn_if_concave
 from contact_dynamics.shapes.convex import MAX_VERTICES, NO_SHAPE, ConvexShape, box_vertices, polyhedron
 from contact_dynamics.shapes.obstacle import Obstacle
@@ -39,7 +39,7 @@ LONGEST_NAME: Final = 256
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class Body(Record):
+class Body(HasMassProperties):
     """A rigid body that questions name.
 
     Attributes:

@@ -44,10 +44,10 @@ for strike in sequence.strikes[:6]:
     )
 print(f"  in all {len(sequence.strikes)} strikes, then it {sequence.end.name.lower().replace('_', ' ')}")
 
-corners = find_contacts(brick, landing.state, world.surfaces, distance_tolerance=0.01)
+corners = find_contacts(brick, landing.state, world, distance_tolerance=0.01)
 print(f"as if its {len(corners)} corners struck at once, velocity and spin after:")
 for law in SeveralContactsLaw:
-    after = several_impact(brick.mass_properties, landing.state, corners, several_contacts_law=law).state
+    after = several_impact(brick, landing.state, corners, several_contacts_law=law).state
     print(f"  {law.name.lower()}: {after.v_WB_W.round(3)} m/s, {after.w_WB_W.round(2)} rad/s")
-spread = outcomes_over_orders(brick.mass_properties, landing.state, corners).spread
+spread = outcomes_over_orders(brick, landing.state, corners).spread
 print(f"  over all orders they differ by up to {spread[:3].max():.2f} m/s and {spread[3:].max():.1f} rad/s")

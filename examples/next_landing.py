@@ -25,7 +25,7 @@ if landing is None:
 corner, velocity = landing.contacts.p_WC_W[0].round(4) + 0.0, landing.velocities_W[0].round(3)
 print(f"a corner strikes after {landing.seconds:.4f} s, at {corner} m, with {velocity} m/s")
 
-impact = spatial_impact(box.mass_properties, landing.state, landing.contacts[0])
+impact = spatial_impact(box, landing.state, landing.contacts[0])
 outcome = impact.outcome.name.lower().replace("_", " ")
 print(f"its contact {outcome}, with an impulse of {impact.impulse_W.round(3)} N s")
 after = impact.state

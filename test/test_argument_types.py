@@ -39,7 +39,11 @@ TOUCH = PlanarContact(**TIP)
 PUSH = PlanarWrench(f=(0.0, -1.0))
 
 WRONG: list[tuple[Any, dict[str, Any], str]] = [
-    (free_motion, {"body": BOX, "state": STATE}, "body must be a MassProperties, got a Body"),
+    (
+        free_motion,
+        {"body": "box", "state": STATE},
+        "body must be a Body or its MassProperties, got 'box', a str",
+    ),
     (spatial_impact, {"body": BALL, "state": STATE, "contact": CONTACTS}, "contact must be a Contact, got a"),
     (
         impact.several_impact,
@@ -102,8 +106,11 @@ def test_an_argument_is_checked_by_place_and_by_name() -> None:
 
 
 def test_the_field_that_was_meant_is_named() -> None:
-    with pytest.raises(WrongTypeError, match=r"got a Body, whose mass_properties is one$"):
-        free_motion(BOX, STATE)
+    motion = free_motion(BOX, STATE)
+    with pytest.raises(
+        WrongTypeError, match=r"^state must be a BodyState, got a FreeMotion, whose state is one$"
+    ):
+        free_motion(BOX, motion)
 
 
 def test_a_sequence_may_be_any_and_becomes_a_tuple() -> None:

@@ -41,7 +41,7 @@ def at(p: tuple[float, float, float], q: np.ndarray | None = None) -> BodyState:
 
 
 def test_a_face_flush_on_the_floor_touches_with_its_four_corners() -> None:
-    contacts = find_contacts(BOX, at((5.0, 0.0, 3.0)), [FLOOR])
+    contacts = find_contacts(BOX, at((5.0, 0.0, 3.0)), World(surfaces=(FLOOR,)))
     assert len(contacts) == 4
     assert {tuple(point) for point in contacts.p_WC_W.tolist()} == {
         (x, y, 0.0) for x in (4.0, 6.0) for y in (-2.0, 2.0)
@@ -54,11 +54,11 @@ def test_a_face_flush_on_the_floor_touches_with_its_four_corners() -> None:
 
 def test_edges_corners_and_two_surfaces_at_once() -> None:
     on_an_edge = Rotation.from_euler("x", math.atan2(4.0, 6.0)).as_quat()
-    assert len(find_contacts(BOX, at((0.0, 0.0, math.sqrt(13.0)), on_an_edge), [FLOOR])) == 2
-    in_the_corner = find_contacts(BOX, at((0.0, 0.0, 3.0)), [FLOOR, WALL])
+    assert len(find_contacts(BOX, at((0.0, 0.0, math.sqrt(13.0)), on_an_edge), World(surfaces=(FLOOR,)))) == 2
+    in_the_corner = find_contacts(BOX, at((0.0, 0.0, 3.0)), World(surfaces=(FLOOR, WALL)))
     assert in_the_corner.surfaces == ("floor",) * 4 + ("wall",) * 4
-    assert len(find_contacts(BOX, at((0.0, 0.0, 30.0)), [FLOOR])) == 0
-    assert len(find_contacts(BOX, at((0.0, 0.0, 3.0)), [])) == 0
+    assert len(find_contacts(BOX, at((0.0, 0.0, 30.0)), World(surfaces=(FLOOR,)))) == 0
+    assert len(find_contacts(BOX, at((0.0, 0.0, 3.0)), World(surfaces=()))) == 0
 
 
 @given(gap=st.floats(-0.1, 0.1), tolerance=st.floats(0.0, 0.05))
@@ -69,9 +69,9 @@ def test_the_tolerance_decides_what_touches(gap: float, tolerance: float) -> Non
         with pytest.raises(
             InvalidFieldError, match=r"deep in 'floor', allowed is at most the distance_tolerance"
         ):
-            find_contacts(BOX, state, [FLOOR], distance_tolerance=tolerance)
+            find_contacts(BOX, state, World(surfaces=(FLOOR,)), distance_tolerance=tolerance)
         return
-    found = find_contacts(BOX, state, [FLOOR], distance_tolerance=tolerance)
+    found = find_contacts(BOX, state, World(surfaces=(FLOOR,)), distance_tolerance=tolerance)
     assert len(found) == (4 if height <= tolerance else 0)
 
 

@@ -33,7 +33,7 @@ def ours(bounces: float) -> float:
         landing = next_landing(ball, state, world, horizon=2.0)
         if landing is None:
             break
-        state = spatial_impact(ball.mass_properties, landing.state, landing.contacts[0]).state
+        state = spatial_impact(ball, landing.state, landing.contacts[0]).state
     return float(state.v_WB_W[2]) ** 2 / (-2.0 * STANDARD_GRAVITY_W[2])
 
 

@@ -35,17 +35,19 @@ if TYPE_CHECKING:
     from contact_dynamics.rigid_body.body import BodyState
     from contact_dynamics.shapes.obstacle import Obstacle
     from contact_dynamics.validation import FloatArray
-    from contact_dynamics.world import Body
+    from contact_dynamics.world import Body, World
 
 
 def find_contacts(
     body: Body,
     state: BodyState,
-    surfaces: Sequence[Surface | Obstacle],
+    world: World,
     *,
     distance_tolerance: float = DISTANCE_TOLERANCE,
 ) -> ContactSet:
-    """Return the contacts of a body with the surfaces, in their order. On a flat, rims come after corners.
+    """Return the contacts of a body with the world's surfaces, in their order.
+
+    On a flat, rims come after corners.
 
     A point touches if its height above the surface is at most ``distance_tolerance`` (m), or its depth below
     it. Measured poses penetrate by their noise, so that they need a tolerance as large. A rim lies flush if
@@ -57,8 +59,8 @@ def find_contacts(
             not finite.
         NotSupportedError: a rim of the body is at an edge of an obstacle (`on_obstacles`).
     """
-    check_not_inside(body, state, surfaces, distance_tolerance=distance_tolerance)
-    return contacts_within(body, state, surfaces, distance_tolerance)
+    check_not_inside(body, state, world.surfaces, distance_tolerance=distance_tolerance)
+    return contacts_within(body, state, world.surfaces, distance_tolerance)
 
 
 def check_not_inside(

@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 
     from contact_dynamics.contact.contact import Contact
     from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity
-    from contact_dynamics.rigid_body.body import BodyState, MassProperties
+    from contact_dynamics.rigid_body.body import BodyState, HasMassProperties
 
 MAX_SAMPLES: Final = 1_000_000
 
@@ -124,7 +124,7 @@ def planar_impact_distribution(
 
 
 def spatial_impact_distribution(
-    body: MassProperties,
+    body: HasMassProperties,
     state: BodyState,
     contact: Contact,
     *,
@@ -139,7 +139,7 @@ def spatial_impact_distribution(
     The contact is a point of the body: it moves and turns with each drawn pose. The normal stays.
 
     Args:
-        body: Mass and angular inertia.
+        body: A `Body`, or its `MassProperties`.
         state: Mean of the state just before.
         contact: The contact as it is at the mean pose, with its normal into the body, friction and
             restitution.
@@ -157,6 +157,7 @@ def spatial_impact_distribution(
             semidefinite, or the number of samples is odd or outside [2, 1 000 000]. A covariance beyond
             `MAX_VARIANCE` and a seed that is no whole number >= 0 are refused too.
     """
+    body = body.mass_properties
     tolerance = check_not_negative("velocity_tolerance", velocity_tolerance)
     check_striking(body, state, contact.p_WC_W)
     draws = _draw(covariance, 12, samples, seed)

@@ -32,7 +32,7 @@ from contact_dynamics.motion.free_derivative import state_derivatives
 from contact_dynamics.motion.integrated import ForcedMotion
 from contact_dynamics.motion.integrated_derivative import forced_state_derivatives
 from contact_dynamics.records import Record
-from contact_dynamics.rigid_body.body import BodyState, MassProperties
+from contact_dynamics.rigid_body.body import BodyState, HasMassProperties
 from contact_dynamics.rotations.many import rotation_vectors, turned
 from contact_dynamics.tolerances import LARGEST_NUMBER, NEGATIVE_VARIANCE_TOLERANCE
 from contact_dynamics.tumbling import FreeMotion, Precision, free_motion
@@ -85,7 +85,7 @@ class CarriedCovariance(Record):
 
 
 def propagate_covariance(
-    body: MassProperties,
+    body: HasMassProperties,
     state: BodyState,
     covariance: ArrayLike,
     times: ArrayLike,

@@ -27,7 +27,7 @@ from contact_dynamics.motion.free_derivative import rotation_derivatives
 from contact_dynamics.motion.whole_turns import MAX_NOISE_RATIO, chosen_motion, turns_near
 from contact_dynamics.numerics.gauss_newton import Fit, gauss_newton
 from contact_dynamics.records import Record
-from contact_dynamics.rigid_body.body import BodyState, MassProperties
+from contact_dynamics.rigid_body.body import BodyState, HasMassProperties, MassProperties
 from contact_dynamics.rotations.many import matrices_of, rotation_vectors, turned
 from contact_dynamics.tolerances import SMALL_STEP
 from contact_dynamics.tumbling import FreeMotion, Precision, free_motion
@@ -115,7 +115,7 @@ class FitResult(Record):
 
 
 def fit_free_motion(
-    body: MassProperties,
+    body: HasMassProperties,
     states: Sequence[BodyState],
     *,
     gravity_W: ArrayLike = STANDARD_GRAVITY_W,
@@ -134,6 +134,7 @@ def fit_free_motion(
             three finite numbers.
         TooLargeError: more than `MAX_STATES` states.
     """
+    body = body.mass_properties
     if len(states) < FEWEST_STATES:
         raise InvalidFieldError("states", f"{len(states)} states", f"at least {FEWEST_STATES}")
     if len(states) > MAX_STATES:

@@ -33,7 +33,7 @@ from contact_dynamics.motion.equations import VARIABLES, MotionLaw
 from contact_dynamics.motion.forces import NO_DRAG, NO_WRENCH, ConstantWrench, Drag, WrenchAxes
 from contact_dynamics.motion.steps import IntegratedStep, Steps
 from contact_dynamics.records import NamedInt, Record
-from contact_dynamics.rigid_body.body import BodyState, MassProperties
+from contact_dynamics.rigid_body.body import BodyState, HasMassProperties, MassProperties
 from contact_dynamics.rotations.many import make_continuous
 from contact_dynamics.tolerances import LARGEST_NUMBER
 from contact_dynamics.tumbling import FreeMotion, Sample, Trajectory, free_motion
@@ -167,7 +167,7 @@ class ChosenMotion(NamedTuple):
 
 
 def motion_of(
-    body: MassProperties,
+    body: HasMassProperties,
     state: BodyState,
     *,
     gravity_W: ArrayLike = STANDARD_GRAVITY_W,
@@ -181,6 +181,7 @@ def motion_of(
     A constant force in world axes is a change of gravity, and the motion is then still in closed form.
     Arguments and errors are those of `forced_motion`.
     """
+    body = body.mass_properties
     if turns_or_drags(wrench, drag, wrench_of):
         forced = forced_motion(
             body,
@@ -203,7 +204,7 @@ def turns_or_drags(wrench: ConstantWrench, drag: Drag, wrench_of: WrenchFunction
 
 
 def forced_motion(
-    body: MassProperties,
+    body: HasMassProperties,
     state: BodyState,
     *,
     gravity_W: ArrayLike = STANDARD_GRAVITY_W,
@@ -222,6 +223,7 @@ def forced_motion(
         InvalidFieldError: gravity is not three finite numbers; a number is beyond `LARGEST_NUMBER`; or the
             function does not return two vectors of three finite numbers, now or whenever the motion calls it.
     """
+    body = body.mass_properties
     gravity = check_array("gravity_W", gravity_W, (3,))
     max_steps = check_whole("max_steps", max_steps, 1)
     check_extent(body, state, gravity)

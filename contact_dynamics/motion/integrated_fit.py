@@ -26,7 +26,7 @@ from contact_dynamics.motion.integrated import MAX_STEPS, ForcedMotion, forced_m
 from contact_dynamics.motion.integrated_derivative import forced_state_derivatives
 from contact_dynamics.motion.whole_turns import chosen_motion
 from contact_dynamics.numerics.gauss_newton import Fit, gauss_newton
-from contact_dynamics.rigid_body.body import BodyState, MassProperties
+from contact_dynamics.rigid_body.body import BodyState, HasMassProperties, MassProperties
 from contact_dynamics.rotations.many import rotation_vectors, turned
 from contact_dynamics.tolerances import LEAST_NOISE, SMALL_STEP
 from contact_dynamics.validation import FloatArray, check_array, check_magnitude
@@ -45,7 +45,7 @@ the second."""
 
 
 def fit_motion(
-    body: MassProperties,
+    body: HasMassProperties,
     states: Sequence[BodyState],
     *,
     gravity_W: ArrayLike = STANDARD_GRAVITY_W,
@@ -66,6 +66,7 @@ def fit_motion(
         InvalidFieldError, TooLargeError: as in `fit_free_motion` and `forced_motion`, and where the motion
             grows without bounds into the past within the window.
     """
+    body = body.mass_properties
     gravity = check_magnitude("gravity_W", check_array("gravity_W", gravity_W, (3,)))
     if not turns_or_drags(wrench, drag, wrench_of):
         return fit_free_motion(body, states, gravity_W=gravity + wrench.force / body.mass, noise=noise)

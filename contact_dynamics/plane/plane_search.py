@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
     from contact_dynamics.contact.contact import ContactSet
     from contact_dynamics.plane.projection import PlanarProblem, PlaneFit, ProblemInFloats
-    from contact_dynamics.rigid_body.body import BodyState, MassProperties
+    from contact_dynamics.rigid_body.body import BodyState, HasMassProperties, MassProperties
     from contact_dynamics.validation import FloatArray
 
 
@@ -55,7 +55,7 @@ def project_onto_best_plane(
 
 
 def best_plane(
-    body: MassProperties,
+    body: HasMassProperties,
     state: BodyState,
     contacts: ContactSet,
     *,
@@ -79,6 +79,7 @@ def best_plane(
         InvalidFieldError: the wrench is not three finite numbers each, or the tolerance is negative.
         OutOfPlaneError: no plane contains all contact normals and the force.
     """
+    body = body.mass_properties
     force, torque = check_vector3("force_W", force_W), check_vector3("torque_W", torque_W)
     tolerance = check_not_negative("speed_tolerance", speed_tolerance)
     return _best_fit(in_floats(body, state, contacts), force, torque, tolerance).plane

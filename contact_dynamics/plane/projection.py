@@ -24,7 +24,7 @@ from contact_dynamics.errors import OutOfPlaneError
 from contact_dynamics.numerics.vectors import Vector3, cross, dot, norm, normalised, scaled, without
 from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench, Vector2
 from contact_dynamics.records import Record
-from contact_dynamics.rigid_body.body import BodyState, MassProperties
+from contact_dynamics.rigid_body.body import BodyState, HasMassProperties, MassProperties
 from contact_dynamics.tolerances import OUT_OF_PLANE_RATIO, OUT_OF_PLANE_SPEED
 from contact_dynamics.validation import (
     FloatArray,
@@ -100,7 +100,7 @@ class PlanarProblem(Record):
 
 
 def project_onto_plane(
-    body: MassProperties,
+    body: HasMassProperties,
     state: BodyState,
     contacts: ContactSet,
     *,
@@ -112,7 +112,7 @@ def project_onto_plane(
     """Return the problem in the plane.
 
     Args:
-        body: mass properties.
+        body: A `Body`, or its `MassProperties`.
         state: pose and velocity.
         contacts: the contacts in space.
         plane: the plane of motion.
@@ -125,6 +125,7 @@ def project_onto_plane(
         OutOfPlaneError: velocity, a contact normal, the wrench or the inertia leaves the plane by more than
             its tolerance.
     """
+    body = body.mass_properties
     seen = in_floats(body, state, contacts)
     force, torque = check_vector3("force_W", force_W), check_vector3("torque_W", torque_W)
     tolerance = check_not_negative("speed_tolerance", speed_tolerance)

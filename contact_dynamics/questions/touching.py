@@ -37,7 +37,7 @@ def contacts_of(
         return named
     body = subject.body
     check_has_shape(body)
-    contacts = find_contacts(body, subject.state, world.surfaces, distance_tolerance=distance_tolerance)
+    contacts = find_contacts(body, subject.state, world, distance_tolerance=distance_tolerance)
     if len(contacts) == 0:
         message = f"contacts: no point of {body.name!r} is within {distance_tolerance:g} m of a surface"
         nearest = nearest_surface(body, subject.state, world.surfaces)

@@ -8,6 +8,7 @@ properties from particles, shapes and meshes, and has principal axes.
 from contact_dynamics.rigid_body import inertia
 from contact_dynamics.rigid_body.body import (
     BodyState,
+    HasMassProperties,
     MassProperties,
     angular_momentum,
     kinetic_energy,
@@ -18,6 +19,7 @@ from contact_dynamics.validation_types import check_types_of
 
 __all__ = [
     "BodyState",
+    "HasMassProperties",
     "MassProperties",
     "angular_momentum",
     "inertia",

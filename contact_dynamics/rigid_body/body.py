@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
@@ -29,8 +29,21 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
 
+class HasMassProperties(Record):
+    """What a call takes that needs mass and inertia, but no shape: a `Body`, or its `MassProperties`."""
+
+    __slots__ = ()
+    ALLOWED: ClassVar[str] = "a Body or its MassProperties"
+
+    if TYPE_CHECKING:
+
+        @property
+        def mass_properties(self) -> MassProperties:
+            """Mass and angular inertia about the centre of mass."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class MassProperties(Record):
+class MassProperties(HasMassProperties):
     """Mass and angular inertia of a rigid body (lecture 24, "Angular inertia").
 
     Attributes:
@@ -54,6 +67,11 @@ class MassProperties(Record):
         """Check both fields."""
         object.__setattr__(self, "mass", check_positive("mass", self.mass))
         object.__setattr__(self, "I_B", _check_inertia("I_B", self.I_B))
+
+    @property
+    def mass_properties(self) -> MassProperties:
+        """These mass properties, so that calls take them in the place of a `Body`."""
+        return self
 
     def inertia_in_world(self, R_WB: FloatArray) -> FloatArray:
         """Return the angular inertia in world axes, (3, 3), kg m^2 (lecture 25, eq. 11)."""
@@ -160,24 +178,27 @@ def inverse_mass_matrix(mass: float, inertia_W: FloatArray) -> FloatArray:
     return inverse
 
 
-def momentum(body: MassProperties, state: BodyState) -> FloatArray:
+def momentum(body: HasMassProperties, state: BodyState) -> FloatArray:
     """Return the linear momentum m v, (3,), kg m/s, world axes (lecture 24)."""
+    body = body.mass_properties
     return body.mass * state.v_WB_W
 
 
-def angular_momentum(body: MassProperties, state: BodyState) -> FloatArray:
+def angular_momentum(body: HasMassProperties, state: BodyState) -> FloatArray:
     """Return L = I w about the centre of mass, (3,), kg m^2/s, world axes (lecture 24)."""
+    body = body.mass_properties
     return body.inertia_in_world(state.R_WB) @ state.w_WB_W
 
 
-def kinetic_energy(body: MassProperties, state: BodyState) -> float:
+def kinetic_energy(body: HasMassProperties, state: BodyState) -> float:
     """Return the kinetic energy of translation and rotation, J (lecture 24; lecture 25, eq. 23)."""
+    body = body.mass_properties
     v = check_magnitude("v_WB_W", state.v_WB_W)
     translation = 0.5 * body.mass * float(v @ v)
     return translation + rotational_energy(body, state)
 
 
-def rotational_energy(body: MassProperties, state: BodyState) -> float:
+def rotational_energy(body: HasMassProperties, state: BodyState) -> float:
     """Return the kinetic energy of rotation, w . L / 2, J (lecture 25, eq. 23)."""
     return 0.5 * float(check_magnitude("w_WB_W", state.w_WB_W) @ angular_momentum(body, state))
 

@@ -26,6 +26,7 @@ from contact_dynamics.validation import (
     check_array,
     check_magnitude,
     check_positive,
+    check_sides,
     check_unit,
     check_vector3,
     check_within,
@@ -145,9 +146,9 @@ def polygon(outline: ArrayLike) -> ConvexShape:
     return ConvexShape(vertices=np.column_stack([corners, np.zeros(len(corners))]))
 
 
-def box(*, size: ArrayLike) -> ConvexShape:
-    """Return a box of full side lengths (3,), m, each > 0."""
-    sides = [_positive(f"size[{i}]", x) for i, x in enumerate(check_array("size", size, (3,)).tolist())]
+def box(size: ArrayLike, y: float | None = None, z: float | None = None) -> ConvexShape:
+    """Return a box of full side lengths, m, each > 0: one (3,), or three numbers, as `box(0.1, 0.2, 0.3)`."""
+    sides = [_positive(f"size[{i}]", x) for i, x in enumerate(check_sides(size, y, z).tolist())]
     return ConvexShape(vertices=box_vertices(sides))
 
 
@@ -157,12 +158,12 @@ def box_vertices(size: ArrayLike) -> FloatArray:
     return signs * (0.5 * check_array("size", size, (3,)))
 
 
-def sphere(*, radius: float) -> ConvexShape:
+def sphere(radius: float) -> ConvexShape:
     """Return a ball of a radius, m, > 0."""
     return ConvexShape(vertices=np.zeros((1, 3)), rounding=_positive("radius", radius))
 
 
-def capsule(*, radius: float, length: float) -> ConvexShape:
+def capsule(radius: float, length: float) -> ConvexShape:
     """Return a rod with round ends, about z. ``length``, m, >= 0, is between the centres of its two balls."""
     half = 0.5 * check_within("length", length, 0.0, LARGEST_NUMBER)
     return ConvexShape(
@@ -170,20 +171,20 @@ def capsule(*, radius: float, length: float) -> ConvexShape:
     )
 
 
-def cylinder(*, radius: float, length: float) -> ConvexShape:
+def cylinder(radius: float, length: float) -> ConvexShape:
     """Return a cylinder about z, lengths in m. If the length is 0, it is a disc without thickness."""
     radius, half = _positive("radius", radius), 0.5 * check_within("length", length, 0.0, LARGEST_NUMBER)
     rims = (Rim((0.0, 0.0, -half), _Z, radius), Rim((0.0, 0.0, half), _Z, radius))
     return ConvexShape(rims=rims if half > 0.0 else rims[:1])
 
 
-def cone(*, radius: float, height: float) -> ConvexShape:
+def cone(radius: float, height: float) -> ConvexShape:
     """Return a cone about z, lengths in m. Its base is at z = 0, its tip at z = ``height`` > 0."""
     rim = Rim((0.0, 0.0, 0.0), _Z, _positive("radius", radius))
     return ConvexShape(vertices=np.array([[0.0, 0.0, _positive("height", height)]]), rims=(rim,))
 
 
-def rounded(shape: ConvexShape, *, radius: float) -> ConvexShape:
+def rounded(shape: ConvexShape, radius: float) -> ConvexShape:
     """Return a shape with a ball of ``radius``, m, >= 0, rolled over it. It grows by that on all sides."""
     return replace(shape, rounding=shape.rounding + check_within("radius", radius, 0.0, LARGEST_NUMBER))
 

@@ -24,7 +24,7 @@ from contact_dynamics.constants import STANDARD_GRAVITY_W, ns_after
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.numerics.arithmetic import Precision
 from contact_dynamics.records import Record
-from contact_dynamics.rigid_body.body import BodyState, MassProperties
+from contact_dynamics.rigid_body.body import BodyState, HasMassProperties, MassProperties
 from contact_dynamics.rotations.many import make_continuous
 from contact_dynamics.rotations.one import (
     Quaternion,
@@ -244,7 +244,7 @@ class FreeMotion(Record):
 
 
 def free_motion(
-    body: MassProperties,
+    body: HasMassProperties,
     state: BodyState,
     *,
     gravity_W: ArrayLike = STANDARD_GRAVITY_W,
@@ -260,6 +260,7 @@ def free_motion(
         InvalidFieldError: gravity is not three finite numbers, or a number is beyond what doubles can square
             (`LARGEST_NUMBER`).
     """
+    body = body.mass_properties
     gravity = check_array("gravity_W", gravity_W, (3,))
     check_extent(body, state, gravity)
     constants = constants_of(body.I_B.tobytes(), state.q_WB.tobytes(), state.w_WB_W.tobytes(), precision)

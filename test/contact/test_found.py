@@ -55,7 +55,7 @@ def at(p: tuple[float, float, float], turn: Rotation | None = None) -> BodyState
 
 
 def test_a_ball_in_a_corner_touches_floor_and_wall_in_one_point_each() -> None:
-    found = find_contacts(body(sphere(radius=0.3)), at((0.7, 2.0, 0.3)), [FLOOR, WALL])
+    found = find_contacts(body(sphere(radius=0.3)), at((0.7, 2.0, 0.3)), World(surfaces=(FLOOR, WALL)))
     np.testing.assert_allclose(found.p_WC_W, [[0.7, 2.0, 0.0], [1.0, 2.0, 0.3]], atol=1e-15)
     assert found.surfaces == ("floor", "wall")
     assert found.frictions.tolist() == [0.5, 0.2]
@@ -64,7 +64,9 @@ def test_a_ball_in_a_corner_touches_floor_and_wall_in_one_point_each() -> None:
 
 
 def test_a_cylinder_on_its_side_touches_with_the_two_ends_of_its_line() -> None:
-    found = find_contacts(body(cylinder(radius=0.1, length=0.5)), at((0.0, 0.0, 0.1), ON_SIDE), [FLOOR])
+    found = find_contacts(
+        body(cylinder(radius=0.1, length=0.5)), at((0.0, 0.0, 0.1), ON_SIDE), World(surfaces=(FLOOR,))
+    )
     ends = found.p_WC_W[np.argsort(found.p_WC_W[:, 1])]
     np.testing.assert_allclose(ends, [[0.0, -0.25, 0.0], [0.0, 0.25, 0.0]], atol=1e-15)
     curvatures = found.body_curvatures
@@ -75,7 +77,9 @@ def test_a_cylinder_on_its_side_touches_with_the_two_ends_of_its_line() -> None:
 
 
 def test_a_cylinder_on_its_base_touches_in_the_stated_points_of_its_rim() -> None:
-    found = find_contacts(body(cylinder(radius=0.1, length=0.5)), at((1.0, 0.0, 0.25)), [FLOOR])
+    found = find_contacts(
+        body(cylinder(radius=0.1, length=0.5)), at((1.0, 0.0, 0.25)), World(surfaces=(FLOOR,))
+    )
     assert len(found) == RIM_POINTS
     np.testing.assert_allclose(np.hypot(found.p_WC_W[:, 0] - 1.0, found.p_WC_W[:, 1]), 0.1, rtol=1e-14)
     np.testing.assert_allclose(found.p_WC_W[0], [1.1, 0.0, 0.0], atol=1e-15)  # towards the body's x
@@ -92,7 +96,9 @@ def test_a_tilted_disc_touches_in_its_lowest_point_with_the_curvature_of_its_sha
     rotation = Rotation.from_euler("zx", [turn, tilt])
     radius = 0.2
     found = find_contacts(
-        body(cylinder(radius=radius, length=0.0)), at((0.0, 0.0, radius * math.sin(tilt)), rotation), [FLOOR]
+        body(cylinder(radius=radius, length=0.0)),
+        at((0.0, 0.0, radius * math.sin(tilt)), rotation),
+        World(surfaces=(FLOOR,)),
     )
     assert len(found) == 1
     assert found.p_WC_W[0, 2] == pytest.approx(0.0, abs=1e-15)
@@ -110,18 +116,22 @@ def test_a_tilted_disc_touches_in_its_lowest_point_with_the_curvature_of_its_sha
 
 
 def test_a_capsule_a_cone_and_a_rounded_box() -> None:
-    lying = find_contacts(body(capsule(radius=0.1, length=0.4)), at((0.0, 0.0, 0.1), ON_SIDE), [FLOOR])
+    lying = find_contacts(
+        body(capsule(radius=0.1, length=0.4)), at((0.0, 0.0, 0.1), ON_SIDE), World(surfaces=(FLOOR,))
+    )
     assert len(lying) == 2
     assert np.ptp(lying.p_WC_W[:, 1]) == pytest.approx(0.4)
     # a cone on its side: its base rim and its tip, tilted by its half angle
     half = math.atan2(0.3, 0.4)
     on_side = Rotation.from_euler("y", math.pi / 2.0 + half)
     height = -min(on_side.apply([[0.3, 0.0, 0.0], [-0.3, 0.0, 0.0], [0.0, 0.0, 0.4]])[:, 2])
-    found = find_contacts(body(cone(radius=0.3, height=0.4)), at((0.0, 0.0, height), on_side), [FLOOR])
+    found = find_contacts(
+        body(cone(radius=0.3, height=0.4)), at((0.0, 0.0, height), on_side), World(surfaces=(FLOOR,))
+    )
     assert len(found) == 2
     assert math.dist(*found.p_WC_W) == pytest.approx(0.5)
     pillow = rounded(box(size=(0.4, 0.2, 0.1)), radius=0.02)
-    found = find_contacts(body(pillow), at((0.0, 0.0, 0.07)), [FLOOR])
+    found = find_contacts(body(pillow), at((0.0, 0.0, 0.07)), World(surfaces=(FLOOR,)))
     assert len(found) == 4
     np.testing.assert_allclose(np.abs(found.p_WC_W), [[0.2, 0.1, 0.0]] * 4, atol=1e-15)
 
@@ -134,9 +144,9 @@ def test_the_tolerance_decides_what_touches(gap: float, tolerance: float) -> Non
             with pytest.raises(
                 InvalidFieldError, match=r"m deep in 'floor', allowed is at most the distance_tol"
             ):
-                find_contacts(body(shape), state, [FLOOR], distance_tolerance=tolerance)
+                find_contacts(body(shape), state, World(surfaces=(FLOOR,)), distance_tolerance=tolerance)
             continue
-        found = find_contacts(body(shape), state, [FLOOR], distance_tolerance=tolerance)
+        found = find_contacts(body(shape), state, World(surfaces=(FLOOR,)), distance_tolerance=tolerance)
         touches = (height + gap) - height <= tolerance
         assert (len(found) > 0) == touches
 

@@ -51,7 +51,7 @@ def known(tolerance: float) -> Context:
 
 
 FINDERS: dict[str, Callable[[float, float], object]] = {
-    "contacts": lambda d, t: find_contacts(CUBE, sunk(d), WORLD.surfaces, distance_tolerance=t),
+    "contacts": lambda d, t: find_contacts(CUBE, sunk(d), WORLD, distance_tolerance=t),
     "landing": lambda d, t: next_landing(CUBE, sunk(d), WORLD, horizon=1.0, distance_tolerance=t),
     "in time": lambda d, t: impact_sequence(CUBE, sunk(d), WORLD, distance_tolerance=t),
     "toss": lambda d, t: toss(CUBE, sunk(d), WORLD, distance_tolerance=t),
@@ -106,16 +106,18 @@ def test_the_depth_is_that_of_the_lowest_point(shape: ConvexShape, height: float
     state = BodyState(p_WB_W=[0, 0, height - depth], q_WB=[0, 0, 0, 1], v_WB_W=[0, 0, 0], w_WB_W=[0, 0, 0])
     for surface in (FLOOR, table):
         with pytest.raises(InvalidFieldError, match=rf"'it' {depth:.6g}\d* m deep in '{surface.name}'"):
-            find_contacts(body, state, [surface])
-        assert len(find_contacts(body, state, [surface], distance_tolerance=1.01 * depth)) > 0
+            find_contacts(body, state, World(surfaces=(surface,)))
+        assert (
+            len(find_contacts(body, state, World(surfaces=(surface,)), distance_tolerance=1.01 * depth)) > 0
+        )
 
 
 def test_a_ceiling_and_a_wall_count_from_their_own_side() -> None:
     ceiling = Surface(name="ceiling", p_WS_W=[0, 0, 1], normal_W=[0, 0, -1], friction=0.3, restitution=0.3)
     for height in (0.9, 0.95):
         free = BodyState(p_WB_W=[0, 0, height], q_WB=[0, 0, 0, -1], v_WB_W=[0, 0, 0], w_WB_W=[0, 0, 0])
-        found = find_contacts(CUBE, free, [FLOOR, ceiling])
+        found = find_contacts(CUBE, free, World(surfaces=(FLOOR, ceiling)))
         assert len(found) == (4 if math.isclose(height, 0.95) else 0)
     through = BodyState(p_WB_W=[0, 0, 0.96], q_WB=[0, 0, 0, 1], v_WB_W=[0, 0, 0], w_WB_W=[0, 0, 0])
     with pytest.raises(InvalidFieldError, match=r"0\.01 m deep in 'ceiling'"):
-        find_contacts(CUBE, through, [FLOOR, ceiling])
+        find_contacts(CUBE, through, World(surfaces=(FLOOR, ceiling)))

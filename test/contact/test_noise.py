@@ -18,7 +18,7 @@ from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.shapes.convex import ConvexShape, cylinder, rounded, sphere
 from contact_dynamics.shapes.convex import box as box_of
-from contact_dynamics.world import Body, Surface
+from contact_dynamics.world import Body, Surface, World
 
 SIZE = np.array([0.15, 0.09, 0.05])
 DEVIATIONS = np.repeat([2e-4, 2e-3, 0.02, 0.2], 3)  # m, rad, m/s, rad/s
@@ -53,7 +53,7 @@ def measured(true: BodyState, chance: np.random.Generator, deviations: np.ndarra
 
 def settled(of: Body, noisy: NoisyState, *surfaces: Surface) -> tuple[BodyState, ContactSet]:
     noisy = touching(of, noisy, surfaces, **HOW)
-    contacts = find_contacts(of, noisy.state, surfaces, **HOW)
+    contacts = find_contacts(of, noisy.state, World(surfaces=tuple(surfaces)), **HOW)
     return resting(noisy, contacts, **STILL).state, contacts
 
 
@@ -128,7 +128,7 @@ def test_a_box_that_rocks_on_an_edge_rests_on_two_feet_and_lifts_the_others() ->
 
 def test_a_box_that_falls_and_one_in_flight_stay_as_they_are() -> None:
     falls = NoisyState.of(state([0, 0, 0.5 * SIZE[2]], v=(0.0, 0.0, -1.0)), COVARIANCE)
-    contacts = find_contacts(BOX, falls.state, [FLOOR], **HOW)
+    contacts = find_contacts(BOX, falls.state, World(surfaces=(FLOOR,)), **HOW)
     found = resting(falls, contacts, **STILL).state
     assert found.velocity_of_point(contacts.p_WC_W)[:, 2].max() < -0.9
     flies = NoisyState.of(state([0, 0, 0.5 * SIZE[2] + 0.01]), COVARIANCE)
@@ -139,7 +139,7 @@ def test_without_noise_nothing_changes() -> None:
     exact = NoisyState.of(state([0, 0, 0.5 * SIZE[2]], v=(1e-6, 0.0, 0.0)), np.zeros((12, 12)))
     found = touching(BOX, exact, [FLOOR], **HOW)
     assert found.state is exact.state
-    contacts = find_contacts(BOX, exact.state, [FLOOR], **HOW)
+    contacts = find_contacts(BOX, exact.state, World(surfaces=(FLOOR,)), **HOW)
     assert resting(exact, contacts, **STILL).state is exact.state
 
 

@@ -84,7 +84,7 @@ def kinds(found: ContactSet) -> list[str]:
 
 def test_a_brick_that_reaches_over_the_edge_of_a_table() -> None:
     """Half of it: two of its corners, and two places where its sides cross the edge."""
-    found = find_contacts(body(BRICK), at((1.0, 0.0, 0.05)), [TABLE])
+    found = find_contacts(body(BRICK), at((1.0, 0.0, 0.05)), World(surfaces=(TABLE,)))
     assert sorted(kinds(found)) == ["corner on face"] * 2 + ["edge on edge"] * 2
     points = {tuple(point) for point in np.round(found.p_WC_W, 12).tolist()}
     assert points == {(0.8, -0.1, 0.0), (0.8, 0.1, 0.0), (1.0, -0.1, 0.0), (1.0, 0.1, 0.0)}
@@ -95,37 +95,39 @@ def test_a_brick_that_reaches_over_the_edge_of_a_table() -> None:
 
 
 def test_over_the_corner_of_a_table() -> None:
-    found = find_contacts(body(BRICK), at((1.0, 1.0, 0.05)), [TABLE])
+    found = find_contacts(body(BRICK), at((1.0, 1.0, 0.05)), World(surfaces=(TABLE,)))
     assert sorted(kinds(found)) == ["corner on face", "edge on edge", "edge on edge", "face on corner"]
 
 
 def test_beside_the_table_nothing_touches() -> None:
-    assert len(find_contacts(body(BRICK), at((1.3, 0.0, 0.05)), [TABLE])) == 0
-    assert len(find_contacts(body(BRICK), at((1.3, 0.0, -0.5)), [TABLE])) == 0
-    assert len(find_contacts(body(BRICK), at((0.0, 0.0, -0.5)), [TABLE])) == 0
+    assert len(find_contacts(body(BRICK), at((1.3, 0.0, 0.05)), World(surfaces=(TABLE,)))) == 0
+    assert len(find_contacts(body(BRICK), at((1.3, 0.0, -0.5)), World(surfaces=(TABLE,)))) == 0
+    assert len(find_contacts(body(BRICK), at((0.0, 0.0, -0.5)), World(surfaces=(TABLE,)))) == 0
 
 
 def test_a_plate_is_touched_from_below_too() -> None:
-    found = find_contacts(body(BRICK), at((0.0, 0.0, -0.05)), [TABLE])
+    found = find_contacts(body(BRICK), at((0.0, 0.0, -0.05)), World(surfaces=(TABLE,)))
     assert len(found) == 4
     np.testing.assert_allclose(found.normals_W, [[0.0, 0.0, -1.0]] * 4, atol=1e-15)
 
 
 def test_a_brick_on_a_spike_touches_with_its_face() -> None:
     turn = Rotation.from_euler("xyz", [0.1, 0.2, 0.3])
-    found = find_contacts(body(BRICK), at(tuple(turn.apply([0.03, 0.02, 0.05])), turn), [SPIKE])
+    found = find_contacts(
+        body(BRICK), at(tuple(turn.apply([0.03, 0.02, 0.05])), turn), World(surfaces=(SPIKE,))
+    )
     assert kinds(found) == ["face on corner"]
     np.testing.assert_allclose(found.p_WC_W, np.zeros((1, 3)), atol=1e-12)
     np.testing.assert_allclose(found.normals_W[0], turn.apply([0.0, 0.0, 1.0]), atol=1e-12)
 
 
 def test_a_brick_on_a_ridge_flush_and_on_edge() -> None:
-    flush = find_contacts(body(BRICK), at((0.0, 0.0, 0.05)), [RIDGE])
+    flush = find_contacts(body(BRICK), at((0.0, 0.0, 0.05)), World(surfaces=(RIDGE,)))
     assert kinds(flush) == ["edge on edge"] * 2
     np.testing.assert_allclose(np.abs(flush.p_WC_W), [[0.0, 0.1, 0.0]] * 2, atol=1e-15)
     on_edge = Rotation.from_euler("x", 0.5)
     height = -float(corners_of(on_edge)[:, 2].min())
-    crossed = find_contacts(body(BRICK), at((0.05, 0.0, height), on_edge), [RIDGE])
+    crossed = find_contacts(body(BRICK), at((0.05, 0.0, height), on_edge), World(surfaces=(RIDGE,)))
     assert kinds(crossed) == ["edge on edge"]
     np.testing.assert_allclose(crossed.normals_W, [[0.0, 0.0, 1.0]], atol=1e-12)
     np.testing.assert_allclose(crossed.p_WC_W[:, [0, 2]], [[0.0, 0.0]], atol=1e-12)
@@ -134,7 +136,7 @@ def test_a_brick_on_a_ridge_flush_and_on_edge() -> None:
 def test_two_ridges_cross_in_one_point() -> None:
     roof = polyhedron(-ROOF)
     turn = Rotation.from_euler("z", 1.0)
-    found = find_contacts(body(roof), at((0.0, 0.2, 0.0), turn), [RIDGE])
+    found = find_contacts(body(roof), at((0.0, 0.2, 0.0), turn), World(surfaces=(RIDGE,)))
     assert kinds(found) == ["edge on edge"]
     np.testing.assert_allclose(found.normals_W, [[0.0, 0.0, 1.0]], atol=1e-12)
     assert found.p_WC_W[0] == pytest.approx((0.0, 0.2, 0.0), abs=1e-12)
@@ -144,7 +146,7 @@ def test_two_ridges_cross_in_one_point() -> None:
 
 def test_a_brick_on_its_like_touches_with_four_corners() -> None:
     below = obstacle(BRICK.vertices - [0.0, 0.0, 0.05])
-    found = find_contacts(body(BRICK), at((0.0, 0.0, 0.05)), [below])
+    found = find_contacts(body(BRICK), at((0.0, 0.0, 0.05)), World(surfaces=(below,)))
     assert kinds(found) == ["corner on face"] * 4
 
 
@@ -159,7 +161,7 @@ def test_a_brick_on_its_like_touches_with_four_corners() -> None:
 def test_a_ball_on_a_face_an_edge_and_a_corner(
     p: tuple[float, float, float], normal: tuple[float, float, float] | None, side: tuple[float, float]
 ) -> None:
-    found = find_contacts(body(sphere(radius=0.1)), at(p), [TABLE])
+    found = find_contacts(body(sphere(radius=0.1)), at(p), World(surfaces=(TABLE,)))
     assert sides(found.body_curvatures) == [(10.0, 10.0)]
     assert sides(found.surface_curvatures) == [side]
     expected = (np.array(p) - (1.0, 1.0, 0.0)) / 0.1 if normal is None else normal
@@ -214,7 +216,9 @@ def test_contacts_are_the_extreme_points_of_the_overlap(turn: float, x: float, y
     rotation = Rotation.from_euler("z", turn)
     base = rotation.apply(box_vertices((0.8, 0.5, 0.0)))[:, :2] + np.array([x, y])
     top = TABLE.vertices_W[:, :2]
-    found = find_contacts(body(box(size=(0.8, 0.5, 0.1))), at((x, y, 0.05), rotation), [TABLE])
+    found = find_contacts(
+        body(box(size=(0.8, 0.5, 0.1))), at((x, y, 0.05), rotation), World(surfaces=(TABLE,))
+    )
     inside = distance(np.c_[base, np.zeros(8)], TABLE.vertices_W) < 1e-9
     assert (len(found) > 0) == inside
     for angle in np.linspace(0.0, 6.0, 9):
@@ -303,21 +307,21 @@ ON_SIDE = Rotation.from_euler("y", 90.0, degrees=True)
 
 
 def test_a_can_that_stands_on_a_table_and_reaches_over_its_edge() -> None:
-    inside = find_contacts(body(CAN), at((0.0, 0.0, 0.2)), [TABLE])
+    inside = find_contacts(body(CAN), at((0.0, 0.0, 0.2)), World(surfaces=(TABLE,)))
     assert kinds(inside) == ["corner on face"] * 8
-    over = find_contacts(body(CAN), at((1.0, 0.0, 0.2)), [TABLE])
+    over = find_contacts(body(CAN), at((1.0, 0.0, 0.2)), World(surfaces=(TABLE,)))
     assert sorted(kinds(over)) == ["corner on face"] * 5  # two of the eight are on the edge
-    further = find_contacts(body(CAN), at((0.97, 0.0, 0.2)), [TABLE])
+    further = find_contacts(body(CAN), at((0.97, 0.0, 0.2)), World(surfaces=(TABLE,)))
     assert sorted(kinds(further)) == ["corner on face"] * 5 + ["edge on edge"] * 2
     assert further.p_WC_W[:, 0].max() == pytest.approx(1.0)
-    assert len(find_contacts(body(CAN), at((1.11, 0.0, 0.2)), [TABLE])) == 0
+    assert len(find_contacts(body(CAN), at((1.11, 0.0, 0.2)), World(surfaces=(TABLE,)))) == 0
 
 
 @pytest.mark.parametrize("shape", [CAN, PILL])
 def test_a_can_and_a_pill_on_their_sides_reach_over_the_edge_with_their_line(shape: ConvexShape) -> None:
-    lying = find_contacts(body(shape), at((0.5, 0.0, 0.1), ON_SIDE), [TABLE])
+    lying = find_contacts(body(shape), at((0.5, 0.0, 0.1), ON_SIDE), World(surfaces=(TABLE,)))
     np.testing.assert_allclose(np.sort(lying.p_WC_W[:, 0]), [0.3, 0.7], atol=1e-12)
-    over = find_contacts(body(shape), at((0.9, 0.0, 0.1), ON_SIDE), [TABLE])
+    over = find_contacts(body(shape), at((0.9, 0.0, 0.1), ON_SIDE), World(surfaces=(TABLE,)))
     np.testing.assert_allclose(np.sort(over.p_WC_W[:, 0]), [0.7, 1.0], atol=1e-12)
     at_edge = int(over.p_WC_W[:, 0].argmax())
     assert sides(over.surface_curvatures)[at_edge] == (0.0, INF)
@@ -340,19 +344,21 @@ ALONG = Rotation.from_euler("x", 90.0, degrees=True)  # the edge of the table at
 
 def test_a_rim_at_an_edge_is_refused() -> None:
     with pytest.raises(NotSupportedError, match="shape: found a rim at an edge of obstacle 'it'"):
-        find_contacts(body(CAN), at((1.06, 0.0, 0.08), ALONG), [TABLE], distance_tolerance=1e-3)
+        find_contacts(
+            body(CAN), at((1.06, 0.0, 0.08), ALONG), World(surfaces=(TABLE,)), distance_tolerance=1e-3
+        )
     with pytest.raises(NotSupportedError, match="shape: found a rim"):
         drop(at((1.06, 0.0, 0.5), ALONG), CAN)
-    assert len(find_contacts(body(CAN), at((1.061, 0.0, 0.081), ALONG), [TABLE])) == 0
+    assert len(find_contacts(body(CAN), at((1.061, 0.0, 0.081), ALONG), World(surfaces=(TABLE,)))) == 0
 
 
 def test_a_pill_along_an_edge_touches_with_its_two_ends_or_the_edge_s() -> None:
-    found = find_contacts(body(PILL), at((1.06, 0.0, 0.08), ALONG), [TABLE])
+    found = find_contacts(body(PILL), at((1.06, 0.0, 0.08), ALONG), World(surfaces=(TABLE,)))
     np.testing.assert_allclose(found.normals_W, [[0.6, 0.0, 0.8]] * 2, atol=1e-12)
     np.testing.assert_allclose(np.sort(found.p_WC_W[:, 1]), [-0.2, 0.2], atol=1e-12)
     assert sides(found.body_curvatures) == [(10.0, 10.0)] * 2
     assert sides(found.surface_curvatures) == [(0.0, INF)] * 2
-    out = find_contacts(body(PILL), at((1.06, 0.9, 0.08), ALONG), [TABLE])
+    out = find_contacts(body(PILL), at((1.06, 0.9, 0.08), ALONG), World(surfaces=(TABLE,)))
     np.testing.assert_allclose(np.sort(out.p_WC_W[:, 1]), [0.7, 1.0], atol=1e-12)
     corner = int(out.p_WC_W[:, 1].argmax())
     assert sides(out.body_curvatures)[corner] == (0.0, pytest.approx(10.0))
@@ -360,11 +366,11 @@ def test_a_pill_along_an_edge_touches_with_its_two_ends_or_the_edge_s() -> None:
 
 
 def test_a_pill_across_a_ridge_and_one_whose_end_is_on_a_spike() -> None:
-    across = find_contacts(body(PILL), at((0.05, 0.3, 0.1), ON_SIDE), [RIDGE])
+    across = find_contacts(body(PILL), at((0.05, 0.3, 0.1), ON_SIDE), World(surfaces=(RIDGE,)))
     np.testing.assert_allclose(across.p_WC_W, [[0.0, 0.3, 0.0]], atol=1e-12)
     assert sides(across.body_curvatures) == [(0.0, 10.0)]
     assert sides(across.surface_curvatures) == [(0.0, INF)]
-    upright = find_contacts(body(PILL), at((0.0, 0.0, 0.3)), [SPIKE])
+    upright = find_contacts(body(PILL), at((0.0, 0.0, 0.3)), World(surfaces=(SPIKE,)))
     np.testing.assert_allclose(upright.p_WC_W, [[0.0, 0.0, 0.0]], atol=1e-12)
     assert sides(upright.body_curvatures) == [(10.0, 10.0)]
     assert sides(upright.surface_curvatures) == [(INF, INF)]
@@ -398,7 +404,7 @@ def test_every_contact_is_on_both_and_where_they_are_nearest(
     if shape.rounding > 0.0:  # then the gap is the distance
         assert site.gap == pytest.approx(distance(core, which.vertices_W) - shape.rounding, abs=1e-6)
     place = np.array(p) - site.gap * site.normal_W
-    found = find_contacts(body(shape), at(tuple(place), turn), [which])
+    found = find_contacts(body(shape), at(tuple(place), turn), World(surfaces=(which,)))
     if shape.rounding > 0.0:
         assert len(found) > 0
     for point, normal in zip(found.p_WC_W, found.normals_W, strict=True):
@@ -425,6 +431,6 @@ def test_what_is_no_obstacle_is_refused(vertices: object) -> None:
 def test_a_body_without_shape_is_refused() -> None:
     nothing = Body(name="body", mass_properties=STUFF)
     with pytest.raises(NoContactError, match="'body': found no shape"):
-        find_contacts(nothing, at((0.0, 0.0, 0.0)), [TABLE])
+        find_contacts(nothing, at((0.0, 0.0, 0.0)), World(surfaces=(TABLE,)))
     with pytest.raises(InvalidFieldError, match="shape_B: found nothing"):
         drop(at((0.0, 0.0, 0.0)), ConvexShape())

@@ -69,7 +69,7 @@ CALLS_WITH_CONTACTS: Calls = {
     ),
     "find_contacts": (
         find_contacts,
-        {"body": BOX, "state": STATE, "surfaces": WORLD.surfaces, "distance_tolerance": 1.0},
+        {"body": BOX, "state": STATE, "world": WORLD, "distance_tolerance": 1.0},
     ),
     "PlanarContactProblem": (
         PlanarContactProblem,

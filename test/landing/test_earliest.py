@@ -69,7 +69,7 @@ def test_a_body_without_a_shape_is_refused_by_name() -> None:
     with pytest.raises(NoContactError, match=words):
         next_landing(point, state(1.0), WORLD, horizon=1.0)
     with pytest.raises(NoContactError, match=words):
-        find_contacts(point, state(1.0), WORLD.surfaces)
+        find_contacts(point, state(1.0), WORLD)
     with pytest.raises(NoContactError, match=words):
         impact_sequence(point, state(1.0), WORLD)
 
@@ -81,7 +81,7 @@ def test_senseless_limits_are_refused_by_name(field: str, value: float) -> None:
         next_landing(BOX, state(1.0), WORLD, **{"horizon": 1.0, field: value})
     if field == "distance_tolerance":
         with pytest.raises(InvalidFieldError, match=rf"^{field}: found {value}"):
-            find_contacts(BOX, state(1.0), WORLD.surfaces, distance_tolerance=value)
+            find_contacts(BOX, state(1.0), WORLD, distance_tolerance=value)
 
 
 def test_beyond_the_horizon_nothing_lands() -> None:

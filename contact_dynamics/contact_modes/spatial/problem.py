@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from contact_dynamics.contact.contact import ContactSet
-    from contact_dynamics.rigid_body.body import BodyState, MassProperties
+    from contact_dynamics.rigid_body.body import BodyState, HasMassProperties, MassProperties
     from contact_dynamics.validation import FloatArray
 
 MAX_EDGES: Final = 128
@@ -57,7 +57,7 @@ class SpatialContactProblem(Record):
     (`dataclasses.replace`). Statics take 128 edges in all.
 
     Attributes:
-        body: Mass and angular inertia.
+        body: A `Body`, or its `MassProperties`, which are kept.
         state: The state of the body, with its origin at the centre of mass.
         contacts: Contacts of any kind. At most `MAX_DYNAMIC_CONTACTS` of them touch.
         force_W: (3,), N, on the body besides its contact forces, gravity included, world axes.
@@ -80,7 +80,7 @@ class SpatialContactProblem(Record):
             more than 1000. Or the uncertainty is of another number of contacts.
     """
 
-    body: MassProperties
+    body: MassProperties = field(metadata={"accepts": "HasMassProperties"})
     state: BodyState
     contacts: ContactSet
     force_W: FloatArray
@@ -95,7 +95,7 @@ class SpatialContactProblem(Record):
         def __init__(
             self,
             *,
-            body: MassProperties,
+            body: HasMassProperties,
             state: BodyState,
             contacts: ContactSet,
             force_W: ArrayLike,
@@ -107,7 +107,8 @@ class SpatialContactProblem(Record):
         ) -> None: ...
 
     def __post_init__(self) -> None:
-        """Check the wrench, the facets and the tolerance."""
+        """Take the mass properties of a body. Check the wrench, the facets and the tolerance."""
+        object.__setattr__(self, "body", self.body.mass_properties)
         object.__setattr__(self, "force_W", check_vector3("force_W", self.force_W))
         object.__setattr__(self, "torque_W", check_vector3("torque_W", self.torque_W))
         tolerance = check_not_negative("velocity_tolerance", self.velocity_tolerance)

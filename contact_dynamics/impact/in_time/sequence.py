@@ -46,7 +46,7 @@ if TYPE_CHECKING:
 
     from contact_dynamics.contact.contact import ContactSet
     from contact_dynamics.impact.in_time.result import ImpactSequence
-    from contact_dynamics.rigid_body.body import BodyState, MassProperties
+    from contact_dynamics.rigid_body.body import BodyState, HasMassProperties
     from contact_dynamics.world import Body, World
 
 STRIKE_WINDOW: Final = 0.05
@@ -111,7 +111,7 @@ def impact_sequence(
 
 
 def impact_sequence_of(
-    body: MassProperties,
+    body: HasMassProperties,
     state: BodyState,
     contacts: ContactSet,
     *,
@@ -128,7 +128,7 @@ def impact_sequence_of(
     Each point strikes its own plane alone. It strikes now if it approaches, and again whenever it comes back.
 
     Args:
-        body: Mass and angular inertia.
+        body: A `Body`, or its `MassProperties`.
         state: Pose and velocities.
         contacts: All contacts that touch, approaching or not.
         gravity_W: (3,), m/s^2, world axes.
@@ -145,6 +145,7 @@ def impact_sequence_of(
         InvalidFieldError: a number is not allowed, or a contact has curvature, so that it is no fixed point
             of the body.
     """
+    body = body.mass_properties
     tolerance = check_positive("velocity_tolerance", velocity_tolerance)
     held = None if hold_step is None else check_positive("hold_step", hold_step)
     if contacts.body_curvatures is not None or contacts.surface_curvatures is not None:

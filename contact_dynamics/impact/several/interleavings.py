@@ -28,7 +28,7 @@ from contact_dynamics.impact.several.result import InterleavedOutcomes
 from contact_dynamics.impact.several.sequential import Touching, check_touching
 from contact_dynamics.numerics.nonnegative_least_squares import nearest_combination
 from contact_dynamics.numerics.vectors import point_jacobians
-from contact_dynamics.rigid_body.body import inverse_mass_matrix
+from contact_dynamics.rigid_body.body import HasMassProperties, inverse_mass_matrix
 from contact_dynamics.tolerances import LARGEST_GRIP, NOTHING_DUE, VELOCITY_TOLERANCE
 from contact_dynamics.validation import check_positive, check_whole
 
@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from contact_dynamics.contact.contact import ContactSet
-    from contact_dynamics.rigid_body.body import BodyState, MassProperties
+    from contact_dynamics.rigid_body.body import BodyState
     from contact_dynamics.validation import FloatArray
 
 MAX_INTERLEAVINGS: Final = 10_000
@@ -81,7 +81,7 @@ class _Set(NamedTuple):
 
 
 def outcomes_over_interleavings(
-    body: MassProperties,
+    body: HasMassProperties,
     state: BodyState,
     contacts: ContactSet,
     *,
@@ -92,7 +92,7 @@ def outcomes_over_interleavings(
     """Return outcomes of interleaved impacts at several contacts, under the energetic law, and their bounds.
 
     Args:
-        body: Mass and angular inertia.
+        body: A `Body`, or its `MassProperties`.
         state: Pose and velocities just before.
         contacts: All contacts that touch. There is at least one.
         velocity_tolerance: m/s, > 0. A contact that approaches less fast does not strike.
@@ -104,6 +104,7 @@ def outcomes_over_interleavings(
         InvalidFieldError: there are no contacts, the tolerance is not > 0, or a count is not allowed.
         TooLargeError: the orders take more strikes together than `outcomes_over_orders` allows.
     """
+    body = body.mass_properties
     tolerance = check_positive("velocity_tolerance", velocity_tolerance)
     samples = check_whole("samples", samples, 1, MAX_INTERLEAVINGS)
     rng = np.random.default_rng(check_whole("seed", seed, 0))

@@ -32,7 +32,7 @@ from contact_dynamics.impact.several.result import SeveralContactsLaw, SeveralIm
 from contact_dynamics.impact.spatial.one_contact import check_striking
 from contact_dynamics.numerics.lemke import solve_complementarity
 from contact_dynamics.numerics.vectors import point_jacobians, tangents_towards
-from contact_dynamics.rigid_body.body import BodyState, MassProperties, inverse_mass_matrix
+from contact_dynamics.rigid_body.body import BodyState, HasMassProperties, inverse_mass_matrix
 from contact_dynamics.tolerances import HELD_INDEPENDENT, LARGEST_NUMBER, SHORT_TIMES, VELOCITY_TOLERANCE
 from contact_dynamics.validation import check_array, check_magnitude, check_unit, check_within
 
@@ -73,7 +73,7 @@ class _Impulses(NamedTuple):
 
 
 def jamming_impact(
-    body: MassProperties,
+    body: HasMassProperties,
     state: BodyState,
     contacts: ContactSet,
     *,
@@ -88,7 +88,7 @@ def jamming_impact(
     The verdict is NOT_CONVERGED if no impulses were found that keep the body out of the world.
 
     Args:
-        body: Mass and angular inertia.
+        body: A `Body`, or its `MassProperties`.
         state: Pose and velocities just before.
         contacts: All contacts that touch. There is at least one.
         force_W: (3,), N, the force applied besides contact forces, gravity included, world axes.
@@ -104,6 +104,7 @@ def jamming_impact(
         TooLargeError: there are more than `MAX_JAMMED_CONTACTS` contacts, or more than `MAX_DIRECTIONS`
             directions of friction over all of them.
     """
+    body = body.mass_properties
     tolerance = check_within("velocity_tolerance", velocity_tolerance, 0.0, LARGEST_NUMBER)
     force = check_magnitude("force_W", check_array("force_W", force_W, (3,)))
     torque = check_magnitude("torque_W", check_array("torque_W", torque_W, (3,)))

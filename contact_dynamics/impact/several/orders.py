@@ -44,7 +44,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from contact_dynamics.contact.contact import ContactSet
-    from contact_dynamics.rigid_body.body import BodyState, MassProperties
+    from contact_dynamics.rigid_body.body import BodyState, HasMassProperties, MassProperties
     from contact_dynamics.validation import FloatArray
 
 MAX_ORDERS: Final = 120
@@ -59,7 +59,7 @@ strikes, and more only where contacts throw each other back for long."""
 
 
 def several_impact(
-    body: MassProperties,
+    body: HasMassProperties,
     state: BodyState,
     contacts: ContactSet,
     *,
@@ -70,7 +70,7 @@ def several_impact(
     """Return what the impact of ``body`` at all ``contacts`` does, under a named law.
 
     Args:
-        body: Mass and angular inertia.
+        body: A `Body`, or its `MassProperties`.
         state: Pose and velocities just before.
         contacts: All contacts that touch, approaching or not. There is at least one.
         several_contacts_law: The law for several contacts.
@@ -105,7 +105,7 @@ def several_impact(
 
 
 def outcomes_over_orders(
-    body: MassProperties,
+    body: HasMassProperties,
     state: BodyState,
     contacts: ContactSet,
     *,
@@ -121,7 +121,7 @@ def outcomes_over_orders(
     Where it strikes tied contacts as one, it has an empty order, and comes first.
 
     Args:
-        body: Mass and angular inertia.
+        body: A `Body`, or its `MassProperties`.
         state: Pose and velocities just before.
         contacts: All contacts that touch. There is at least one.
         restitution_law: What the coefficients of restitution mean.
@@ -134,6 +134,7 @@ def outcomes_over_orders(
             number >= 1.
         TooLargeError: the orders take more strikes together than `MAX_STRIKES_OVER_ORDERS`.
     """
+    body = body.mass_properties
     tolerance = check_positive("velocity_tolerance", velocity_tolerance)
     max_orders = check_whole("max_orders", max_orders, 1)
     touching = Touching([body], contacts, [(0, None)] * len(contacts), restitution_law, tolerance)
@@ -207,7 +208,7 @@ def order_warning(
 
 
 def outcomes_at_once(
-    body: MassProperties,
+    body: HasMassProperties,
     state: BodyState,
     contacts: ContactSet,
     *,
@@ -221,7 +222,7 @@ def outcomes_at_once(
     comes first, with an empty order. Solutions that no order leads to are not found.
 
     Args:
-        body: Mass and angular inertia.
+        body: A `Body`, or its `MassProperties`.
         state: Pose and velocities just before.
         contacts: All contacts that touch. There is at least one.
         restitution_law: Poisson's or Newton's law.
@@ -233,6 +234,7 @@ def outcomes_at_once(
         InvalidFieldError: there are no contacts, the tolerance is not > 0, ``max_orders`` is no whole number
             >= 1, or the law is the energetic one.
     """
+    body = body.mass_properties
     tolerance = check_positive("velocity_tolerance", velocity_tolerance)
     max_orders = check_whole("max_orders", max_orders, 1)
     touching = Touching([body], contacts, [(0, None)] * len(contacts), restitution_law, tolerance)

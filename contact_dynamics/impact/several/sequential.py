@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
     from contact_dynamics.contact.contact import ContactSet
     from contact_dynamics.impact.spatial.result import SpatialImpact
-    from contact_dynamics.rigid_body.body import BodyState, MassProperties
+    from contact_dynamics.rigid_body.body import BodyState, HasMassProperties, MassProperties
     from contact_dynamics.validation import FloatArray
 
 MAX_STRIKES: Final = 1000
@@ -42,7 +42,7 @@ fixed factor each round, so that they come to rest within a few dozen."""
 
 
 def bodies_impact(
-    bodies: Sequence[MassProperties],
+    bodies: Sequence[HasMassProperties],
     states: Sequence[BodyState],
     contacts: ContactSet,
     pairs: Sequence[tuple[int, int | None]],
@@ -54,7 +54,7 @@ def bodies_impact(
     """Return what an impact at all ``contacts`` of several bodies does, under a named law.
 
     Args:
-        bodies: Mass and angular inertia of each.
+        bodies: Each a `Body`, or its `MassProperties`.
         states: Pose and velocities of each just before.
         contacts: All contacts that touch, approaching or not. There is at least one.
         pairs: For each contact, the body that its normal points into and the other one. Both are indices into
@@ -68,9 +68,10 @@ def bodies_impact(
         InvalidFieldError: there are no contacts, lists differ in length, an index has no body, the tolerance
             is not > 0, or ENERGETIC and SIMULTANEOUS are asked for together.
     """
+    masses = [each.mass_properties for each in bodies]
     tolerance = check_positive("velocity_tolerance", velocity_tolerance)
-    _check_pairs(bodies, states, contacts, pairs)
-    touching = Touching(bodies, contacts, pairs, restitution_law, tolerance)
+    _check_pairs(masses, states, contacts, pairs)
+    touching = Touching(masses, contacts, pairs, restitution_law, tolerance)
     before = check_touching(touching, states)
     strikes: tuple[tuple[int, SpatialImpact], ...] = ()
     order_is_open = False

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
     from contact_dynamics.contact.contact import ContactSet
     from contact_dynamics.impact.several.result import SeveralImpact
-    from contact_dynamics.rigid_body.body import BodyState, MassProperties
+    from contact_dynamics.rigid_body.body import BodyState, HasMassProperties
     from contact_dynamics.validation import FloatArray
 
 MAX_JAMS: Final = 10
@@ -32,7 +32,7 @@ MAX_JAMS: Final = 10
 
 
 def settling_impact(
-    body: MassProperties,
+    body: HasMassProperties,
     state: BodyState,
     contacts: ContactSet,
     *,
@@ -49,7 +49,7 @@ def settling_impact(
     after `MAX_JAMS` impacts. The arguments without a word here mean what they mean in `jamming_impact`.
 
     Args:
-        body: Mass and angular inertia.
+        body: A `Body`, or its `MassProperties`.
         state: Pose and velocities just before.
         contacts: All contacts that touch. There is at least one.
         is_settled: A function that says whether some mode of a state is consistent, or a contact approaches.

@@ -38,12 +38,12 @@ from contact_dynamics.validation import (
 
 if TYPE_CHECKING:
     from contact_dynamics.contact.contact import Contact
-    from contact_dynamics.rigid_body.body import BodyState, MassProperties
+    from contact_dynamics.rigid_body.body import BodyState, HasMassProperties, MassProperties
     from contact_dynamics.validation import FloatArray
 
 
 def spatial_impact(
-    body: MassProperties,
+    body: HasMassProperties,
     state: BodyState,
     contact: Contact,
     *,
@@ -53,7 +53,7 @@ def spatial_impact(
     """Return what the impact of ``body`` does.
 
     Args:
-        body: Mass and angular inertia.
+        body: A `Body`, or its `MassProperties`.
         state: Pose and velocities just before.
         contact: The contact, with its normal into the body, friction and restitution. Curvatures play no part
             in an impact.
@@ -66,15 +66,16 @@ def spatial_impact(
         InvalidFieldError: the tolerance is negative, a velocity or the contact's distance from a centre of
             mass is beyond `LARGEST_NUMBER`, or a mass or moment of inertia is, or is below its inverse.
     """
+    body = body.mass_properties
     return _impact(
         body, state, None, None, contact, law=restitution_law, velocity_tolerance=velocity_tolerance
     )
 
 
 def spatial_pair_impact(
-    body: MassProperties,
+    body: HasMassProperties,
     state: BodyState,
-    other: MassProperties,
+    other: HasMassProperties,
     other_state: BodyState,
     contact: Contact,
     *,
@@ -97,6 +98,8 @@ def spatial_pair_impact(
         InvalidFieldError: the tolerance is negative, a velocity or the contact's distance from a centre of
             mass is beyond `LARGEST_NUMBER`, or a mass or moment of inertia is, or is below its inverse.
     """
+    body = body.mass_properties
+    other = other.mass_properties
     return _impact(
         body, state, other, other_state, contact, law=restitution_law, velocity_tolerance=velocity_tolerance
     )

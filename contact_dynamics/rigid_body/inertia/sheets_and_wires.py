@@ -24,20 +24,20 @@ if TYPE_CHECKING:
     from contact_dynamics.rigid_body.inertia.distribution import MassDistribution
 
 
-def rod(*, length: float, mass: float | None = None, density: float | None = None) -> MassDistribution:
+def rod(length: float, *, mass: float | None = None, density: float | None = None) -> MassDistribution:
     """Return a straight wire along z; density in kg/m."""
     h = check_length("length", length)
     return centered(mass_of(h, mass=mass, density=density), (0.0, 0.0, h * h / 12.0))
 
 
-def ring(*, radius: float, mass: float | None = None, density: float | None = None) -> MassDistribution:
+def ring(radius: float, *, mass: float | None = None, density: float | None = None) -> MassDistribution:
     """Return a circle of wire about z; density in kg/m."""
     r = check_length("radius", radius)
     total = mass_of(2.0 * math.pi * r, mass=mass, density=density)
     return centered(total, (r * r / 2.0, r * r / 2.0, 0.0))
 
 
-def plate(*, size: ArrayLike, mass: float | None = None, density: float | None = None) -> MassDistribution:
+def plate(size: ArrayLike, *, mass: float | None = None, density: float | None = None) -> MassDistribution:
     """Return a rectangular sheet of full side lengths (2,) along x, y, normal to z; density in kg/m^2."""
     x, y = check_array("size", size, (2,)).tolist()
     if min(x, y) <= 0.0:
@@ -47,7 +47,7 @@ def plate(*, size: ArrayLike, mass: float | None = None, density: float | None =
     return centered(total, (x * x / 12.0, y * y / 12.0, 0.0))
 
 
-def disc(*, radius: float, mass: float | None = None, density: float | None = None) -> MassDistribution:
+def disc(radius: float, *, mass: float | None = None, density: float | None = None) -> MassDistribution:
     """Return a circular sheet, normal to z; density in kg/m^2."""
     r = check_length("radius", radius)
     total = mass_of(math.pi * r * r, mass=mass, density=density)
@@ -55,7 +55,7 @@ def disc(*, radius: float, mass: float | None = None, density: float | None = No
 
 
 def spherical_shell(
-    *, radius: float, mass: float | None = None, density: float | None = None
+    radius: float, *, mass: float | None = None, density: float | None = None
 ) -> MassDistribution:
     """Return a sphere's surface; density in kg/m^2."""
     r = check_length("radius", radius)
@@ -64,7 +64,7 @@ def spherical_shell(
 
 
 def cylindrical_shell(
-    *, radius: float, length: float, mass: float | None = None, density: float | None = None
+    radius: float, length: float, *, mass: float | None = None, density: float | None = None
 ) -> MassDistribution:
     """Return a cylinder's curved surface, open at both ends, along z; density in kg/m^2."""
     r, h = check_length("radius", radius), check_length("length", length)

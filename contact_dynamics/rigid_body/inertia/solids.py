@@ -18,20 +18,27 @@ import numpy as np
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.rigid_body.inertia.distribution import MassDistribution
 from contact_dynamics.rigid_body.inertia.mass_or_density import check_length, check_length_or_none, mass_of
-from contact_dynamics.validation import check_array
+from contact_dynamics.validation import check_array, check_sides
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
 
-def box(*, size: ArrayLike, mass: float | None = None, density: float | None = None) -> MassDistribution:
-    """Return a box of full side lengths (3,) along x, y, z, about its centre."""
-    x, y, z = _lengths("size", size)
-    total = mass_of(x * y * z, mass=mass, density=density)
-    return centered(total, (x * x / 12.0, y * y / 12.0, z * z / 12.0))
+def box(
+    size: ArrayLike,
+    y: float | None = None,
+    z: float | None = None,
+    *,
+    mass: float | None = None,
+    density: float | None = None,
+) -> MassDistribution:
+    """Return a box of full side lengths along x, y, z, about its centre: one (3,) or three numbers."""
+    a, b, c = _lengths("size", check_sides(size, y, z))
+    total = mass_of(a * b * c, mass=mass, density=density)
+    return centered(total, (a * a / 12.0, b * b / 12.0, c * c / 12.0))
 
 
-def sphere(*, radius: float, mass: float | None = None, density: float | None = None) -> MassDistribution:
+def sphere(radius: float, *, mass: float | None = None, density: float | None = None) -> MassDistribution:
     """Return a ball about its centre."""
     r = check_length("radius", radius)
     return ellipsoid(semi_axes=(r, r, r), mass=mass, density=density)
@@ -50,7 +57,7 @@ def hollow_sphere(
 
 
 def ellipsoid(
-    *, semi_axes: ArrayLike, mass: float | None = None, density: float | None = None
+    semi_axes: ArrayLike, *, mass: float | None = None, density: float | None = None
 ) -> MassDistribution:
     """Return an ellipsoid of semi-axes (3,) along x, y, z, about its centre."""
     a, b, c = _lengths("semi_axes", semi_axes)
@@ -58,7 +65,7 @@ def ellipsoid(
     return centered(total, (a * a / 5.0, b * b / 5.0, c * c / 5.0))
 
 
-def hemisphere(*, radius: float, mass: float | None = None, density: float | None = None) -> MassDistribution:
+def hemisphere(radius: float, *, mass: float | None = None, density: float | None = None) -> MassDistribution:
     """Return half a ball. Its flat face is in z = 0, centred, and its dome is towards +z."""
     r = check_length("radius", radius)
     total = mass_of(2.0 / 3.0 * math.pi * r**3, mass=mass, density=density)
@@ -66,7 +73,7 @@ def hemisphere(*, radius: float, mass: float | None = None, density: float | Non
 
 
 def cylinder(
-    *, radius: float, length: float, mass: float | None = None, density: float | None = None
+    radius: float, length: float, *, mass: float | None = None, density: float | None = None
 ) -> MassDistribution:
     """Return a circular cylinder along z, about its centre."""
     return _tube(check_length("radius", radius), 0.0, length, mass, density)
@@ -85,7 +92,7 @@ def tube(
 
 
 def capsule(
-    *, radius: float, length: float, mass: float | None = None, density: float | None = None
+    radius: float, length: float, *, mass: float | None = None, density: float | None = None
 ) -> MassDistribution:
     """Return a cylinder along z, of that length >= 0, with a half ball on each end, about its centre."""
     r, h = check_length("radius", radius), check_length_or_none("length", length)
@@ -98,10 +105,10 @@ def capsule(
 
 
 def cone(
-    *,
     radius: float,
     height: float,
     top_radius: float = 0.0,
+    *,
     mass: float | None = None,
     density: float | None = None,
 ) -> MassDistribution:

@@ -23,7 +23,7 @@ from contact_dynamics.plane.projection import PlaneOfMotion, project_onto_plane
 from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.shapes.convex import cylinder, sphere
-from contact_dynamics.world import Body, Surface
+from contact_dynamics.world import Body, Surface, World
 
 G = 10.0
 M, R = 2.0, 0.25
@@ -161,7 +161,7 @@ def test_a_ball_found_on_the_floor_rolls_and_pivots_without_force_but_its_weight
         shape=sphere(radius=R),
     )
     now = state((0.1, 0.7, -0.1, 0.7), (1.0, -0.5, 0.0), (0.5 / R, 1.0 / R, 6.0))
-    contacts = find_contacts(ball, now, [FLOOR])
+    contacts = find_contacts(ball, now, World(surfaces=(FLOOR,)))
     answer = contact_modes(
         SpatialContactProblem(
             body=ball.mass_properties, state=now, contacts=contacts, force_W=(0.0, 0.0, -M * G)
@@ -179,7 +179,7 @@ def test_a_can_found_on_its_side_rolls_in_space_as_in_its_plane() -> None:
         shape=cylinder(radius=R, length=0.4),
     )
     lying = state((math.sqrt(0.5), 0.0, 0.0, math.sqrt(0.5)), (3.0, 0.0, 0.0), (0.0, 3.0 / R, 0.0))
-    contacts = find_contacts(can, lying, [FLOOR])
+    contacts = find_contacts(can, lying, World(surfaces=(FLOOR,)))
     assert len(contacts) == 2
     problem = project_onto_plane(
         can.mass_properties,
@@ -248,4 +248,9 @@ def test_a_can_that_rolls_may_do_what_one_at_rest_may(turned: float) -> None:
         v_WB_W=3.0 * ahead,
         w_WB_W=np.cross([0.0, 0.0, 1.0], ahead) * 3.0 / radius,
     )
-    assert spatial_kinematic_modes(lying, find_contacts(can, lying, [FLOOR])) == ("cc", "cs", "sc", "ss")
+    assert spatial_kinematic_modes(lying, find_contacts(can, lying, World(surfaces=(FLOOR,)))) == (
+        "cc",
+        "cs",
+        "sc",
+        "ss",
+    )
