@@ -14,18 +14,24 @@ what is in it. All of it needs NumPy and SciPy, but no ROS.
 - `plane`: a `PlanarBody` and its kin, and the way from space to a plane of motion and back.
 - `landing`: where a flight ends (`next_landing`).
 - `contact_modes`: does each contact separate, slide or stay (lecture 26)? State a `PlanarContactProblem` or
-  a `SpatialContactProblem`, and ask it: ``contact_modes.contact_modes(problem)``.
+  a `SpatialContactProblem`, and ask it: ``contact_modes(problem)``, `mode_margins`, `statics`.
 - `impact`: velocities after an impact (lecture 27): `planar_impact`, `spatial_impact`, several contacts at
   once (`several_impact`) or one after the other in time (`impact_sequence`).
-- `toss`: the whole motion of a body from a state in flight to rest (`toss.toss`).
+- `toss`: the whole motion of a body from a state in flight to rest: ``toss(body, state, world)``, and with
+  uncertain inputs `sampled_toss`.
 - `questions`: what the services answer, asked in Python: one question with all its options, one answer.
+
+A chapter with a function of its name, `contact_modes` or `toss`, can be called as that function.
 
 `errors` has what misuse raises, and `tolerances` says what counts as zero.
 """
 
+import inspect
+from types import ModuleType
+from typing import TYPE_CHECKING, Any
+
 from contact_dynamics import (
     contact,
-    contact_modes,
     impact,
     landing,
     motion,
@@ -33,11 +39,16 @@ from contact_dynamics import (
     questions,
     rigid_body,
     shapes,
-    toss,
     tumbling,
 )
 from contact_dynamics.contact import Contact, ContactSet, find_contacts
-from contact_dynamics.contact_modes import ModeVerdict, PlanarContactProblem, SpatialContactProblem
+from contact_dynamics.contact_modes import (
+    ModeVerdict,
+    PlanarContactProblem,
+    SpatialContactProblem,
+    mode_margins,
+    statics,
+)
 from contact_dynamics.errors import ContactDynamicsError
 from contact_dynamics.impact import (
     RestitutionLaw,
@@ -51,8 +62,36 @@ from contact_dynamics.motion import motion_of
 from contact_dynamics.plane import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
 from contact_dynamics.rigid_body import BodyState, MassProperties, inertia
 from contact_dynamics.shapes import Obstacle
+from contact_dynamics.toss import sampled_toss
 from contact_dynamics.tumbling import free_motion
 from contact_dynamics.world import Body, Surface, World
+
+if TYPE_CHECKING:  # what a call of them is
+    from contact_dynamics.contact_modes import contact_modes
+    from contact_dynamics.toss import toss
+else:
+    from contact_dynamics import contact_modes, toss
+
+
+class _CallableChapter(ModuleType):
+    """A chapter that is called as its function of the same name."""
+
+    def __call__(self, *args: Any, **kwargs: Any) -> Any:
+        """Call the function."""
+        return _own_function(self)(*args, **kwargs)
+
+    @property
+    def __signature__(self) -> inspect.Signature:
+        """The function's signature, which help and completion show."""
+        return inspect.signature(_own_function(self))
+
+
+def _own_function(chapter: ModuleType) -> Any:
+    return vars(chapter)[chapter.__name__.rpartition(".")[2]]
+
+
+for _chapter in (contact_modes, toss):
+    _chapter.__class__ = _CallableChapter
 
 
 def __getattr__(name: str) -> str:
@@ -90,6 +129,7 @@ __all__ = [
     "impact_sequence",
     "inertia",
     "landing",
+    "mode_margins",
     "motion",
     "motion_of",
     "next_landing",
@@ -97,9 +137,11 @@ __all__ = [
     "plane",
     "questions",
     "rigid_body",
+    "sampled_toss",
     "several_impact",
     "shapes",
     "spatial_impact",
+    "statics",
     "toss",
     "tumbling",
 ]

@@ -6,8 +6,10 @@ import importlib
 import inspect
 import subprocess
 import sys
+from collections.abc import Iterable
 from pathlib import Path
 from types import ModuleType
+from typing import Any
 
 import pytest
 
@@ -28,7 +30,7 @@ CHAPTERS = (
     "toss",
     "questions",
 )
-MAX_ON_THE_FIRST_PAGE = 30
+MAX_ON_THE_FIRST_PAGE = 32
 
 
 def door(chapter: str) -> ModuleType:
@@ -83,10 +85,30 @@ def test_a_name_means_one_thing() -> None:
         for name in module.__all__:
             if chapter != "shapes":
                 assert seen.setdefault(name, getattr(module, name)) is getattr(module, name), name
-    # `contact_modes` has a function of its name, which the first page does not show.
+    # A chapter that is called as its function of the same name is not that function.
     chapters = {chapter.rpartition(".")[2] for chapter in CHAPTERS}
     for name in set(contact_dynamics.__all__) - chapters:
         assert seen.get(name, getattr(contact_dynamics, name)) is getattr(contact_dynamics, name), name
+
+
+def test_a_chapter_with_a_function_of_its_name_is_called_as_it() -> None:
+    """Both spellings work, and everything else of the chapter is still there."""
+    for chapter in CHAPTERS:
+        module = door(chapter)
+        function = vars(module).get(chapter)
+        if inspect.isfunction(function):
+            assert chapter in {"contact_modes", "toss"}
+            called = getattr(contact_dynamics, chapter)
+            assert inspect.signature(called) == inspect.signature(function)
+            assert sys.modules[f"contact_dynamics.{chapter}"] is called
+            with pytest.raises(TypeError, match=r"^(body|problem) must be a "):
+                called(*["no question"] * sum(one.default is one.empty for one in _parameters(function)))
+        else:
+            assert not callable(module), chapter
+
+
+def _parameters(function: Any) -> Iterable[inspect.Parameter]:
+    return inspect.signature(function).parameters.values()
 
 
 def test_every_shape_stands_on_its_chapters_page() -> None:
