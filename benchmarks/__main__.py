@@ -33,7 +33,7 @@ def main() -> int:
     chosen = asked.names or names
     unknown = sorted(set(chosen) - set(names))
     if unknown:
-        parser.error(f"found {', '.join(unknown)}, allowed are {', '.join(names)}")
+        parser.error(f"must be one of {', '.join(names)}, got {', '.join(unknown)}")
     if asked.documents:
         write_documents()
         redraw()

@@ -1,6 +1,6 @@
 """The errors that misuse raises. There is one root, and one class for each cause.
 
-Messages name the field, the value found and what is allowed. An expected physical outcome (separating,
+Messages name the field, what is allowed and the value received. An expected physical outcome (separating,
 inconsistent, ambiguous) is a result and never an error.
 """
 
@@ -14,10 +14,16 @@ class ContactDynamicsError(Exception):
 
 
 class InvalidFieldError(ContactDynamicsError, ValueError):
-    """A field holds a value that is not allowed: NaN, a negative mass, a quaternion that is not unit, ..."""
+    """A field has a value that is not allowed: NaN, a negative mass, a quaternion that is not unit, ...
+
+    Attributes:
+        field: The field.
+        found: The value received.
+        allowed: What the field must be: the words of the message between "must be" and "got".
+    """
 
     def __init__(self, field: str, found: object, allowed: str) -> None:
-        super().__init__(f"{field}: found {_short(found)}, allowed is {allowed}")
+        super().__init__(f"{field} must be {allowed}, got {_short(found)}")
         self.field = field
         self.found = found
         self.allowed = allowed
@@ -29,10 +35,6 @@ class InvalidFieldError(ContactDynamicsError, ValueError):
 
 class WrongTypeError(InvalidFieldError, TypeError):
     """An argument or a field has another type than its annotation says: a `Body` for a `MassProperties`."""
-
-    def __init__(self, field: str, found: object, allowed: str) -> None:
-        super().__init__(field, found, allowed)
-        self.args = (f"{field} must be {allowed}, got {_short(found)}",)
 
 
 class TooLargeError(InvalidFieldError):

@@ -40,7 +40,7 @@ def check_positive(field: str, value: Any) -> float:
     """Return ``value`` as a float > 0."""
     number = check_finite(field, value)
     if number <= 0.0:
-        raise InvalidFieldError(field, value, "a number > 0")
+        raise InvalidFieldError(field, value, "> 0")
     return number
 
 
@@ -48,7 +48,7 @@ def check_not_negative(field: str, value: Any) -> float:
     """Return ``value`` as a float >= 0."""
     number = check_finite(field, value)
     if number < 0.0:
-        raise InvalidFieldError(field, value, "a number >= 0")
+        raise InvalidFieldError(field, value, ">= 0")
     return number
 
 
@@ -56,7 +56,7 @@ def check_within(field: str, value: Any, lowest: float, highest: float) -> float
     """Return ``value`` as a float in the closed interval [lowest, highest]."""
     number = check_finite(field, value)
     if not lowest <= number <= highest:
-        raise InvalidFieldError(field, value, f"a number in [{lowest:g}, {highest:g}]")
+        raise InvalidFieldError(field, value, f"in [{lowest:g}, {highest:g}]")
     return number
 
 
@@ -97,15 +97,15 @@ def check_array(field: str, value: ArrayLike, shape: tuple[int | None, ...]) -> 
     except (TypeError, ValueError, OverflowError):
         raise InvalidFieldError(field, value, f"numbers of shape {_in_words(shape)}") from None
     if array.shape != shape and not _fits(array.shape, shape):
-        raise InvalidFieldError(field, f"shape {array.shape}", f"shape {_in_words(shape)}")
+        raise InvalidFieldError(field, f"shape {array.shape}", f"of shape {_in_words(shape)}")
     # Where a sum is finite, so are its terms: the faster test for a few of them.
     surely_finite = array.size <= _FEW and math.isfinite(sum(array.ravel().tolist()))
     if not surely_finite and not np.isfinite(array).all():
         if shape[:1] != (None,):
-            raise InvalidFieldError(field, array, "finite numbers only")
+            raise InvalidFieldError(field, array, "finite")
         rows = np.isfinite(array.reshape(len(array), -1)).all(axis=1)
         first = int(rows.argmin())
-        raise InvalidFieldError(f"{field}[{first}]", array[first], "finite numbers only")
+        raise InvalidFieldError(f"{field}[{first}]", array[first], "finite")
     array.flags.writeable = False
     return array
 
@@ -133,7 +133,7 @@ def check_magnitude(field: str, value: FloatArray, most: float = LARGEST_NUMBER)
     """Return ``value`` if no number in it is larger than ``most`` in magnitude."""
     largest = float(np.abs(value).max(initial=0.0))
     if not largest <= most:
-        raise InvalidFieldError(field, f"{largest:g}", f"numbers of at most {most:g}, by size")
+        raise InvalidFieldError(field, f"{largest:g}", f"at most {most:g} in magnitude")
     return value
 
 

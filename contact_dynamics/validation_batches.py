@@ -55,27 +55,25 @@ def check_rows(
 
 def check_positive_rows(field: str, value: ArrayLike) -> FloatArray:
     """Return numbers > 0, (N,)."""
-    return check_rows(field, value, (), "a number > 0", lambda x: x > 0.0)
+    return check_rows(field, value, (), "> 0", lambda x: x > 0.0)
 
 
 def check_sizes(field: str, rows: FloatArray) -> FloatArray:
     """Return numbers > 0 if none is beyond `LARGEST_NUMBER` or below its inverse."""
     least = 1.0 / LARGEST_NUMBER
     for i in np.flatnonzero((rows < least) | (rows > LARGEST_NUMBER))[:1]:
-        raise InvalidFieldError(
-            f"{field}[{i}]", float(rows[i]), f"a number from {least:g} to {LARGEST_NUMBER:g}"
-        )
+        raise InvalidFieldError(f"{field}[{i}]", float(rows[i]), f"in [{least:g}, {LARGEST_NUMBER:g}]")
     return rows
 
 
 def check_not_negative_rows(field: str, value: ArrayLike) -> FloatArray:
     """Return numbers >= 0, (N,)."""
-    return check_rows(field, value, (), "a number >= 0", lambda x: x >= 0.0)
+    return check_rows(field, value, (), ">= 0", lambda x: x >= 0.0)
 
 
 def check_share_rows(field: str, value: ArrayLike) -> FloatArray:
     """Return numbers in [0, 1], (N,)."""
-    return check_rows(field, value, (), "a number in [0, 1]", lambda x: (x >= 0.0) & (x <= 1.0))
+    return check_rows(field, value, (), "in [0, 1]", lambda x: (x >= 0.0) & (x <= 1.0))
 
 
 def check_unit_rows(field: str, value: ArrayLike, width: int) -> FloatArray:

@@ -24,5 +24,5 @@ def version_of_this_package() -> str:
     try:
         return version(_NAME)
     except PackageNotFoundError:
-        message = f"__version__: found no package.xml beside {_NAME}, allowed is that or an installed package"
+        message = f"__version__ requires an installed package, or a package.xml beside {_NAME}"
         raise AttributeError(message) from None

@@ -216,7 +216,7 @@ class World(Record):
         object.__setattr__(self, "gravity_W", check_array("gravity_W", self.gravity_W, (3,)))
         names = [body.name for body in self.bodies]
         if len(set(names)) < len(names):
-            raise InvalidFieldError("bodies", names, "names that differ")
+            raise InvalidFieldError("bodies", names, "different names")
 
     @checks_types
     def body(self, name: str) -> Body:
@@ -225,5 +225,5 @@ class World(Record):
             if body.name == name:
                 return body
         known = ", ".join(repr(body.name) for body in self.bodies) or "none"
-        message = f"body_name: found {name!r}, allowed are the known bodies: {known}"
+        message = f"body_name must be one of the known bodies ({known}), got {name!r}"
         raise UnknownBodyError(message)

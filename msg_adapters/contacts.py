@@ -38,7 +38,7 @@ def contacts_from_msg(msg: ContactSetMsg) -> ContactSet:
         )
     for field in ("surface_velocities", "surface_accelerations"):
         if any(getattr(msg, field)):
-            raise NotSupportedError(f"contacts.{field}: found numbers, allowed is none in this version")
+            raise NotSupportedError(f"contacts.{field} must be none in this version, got numbers")
     body_curvatures, surface_curvatures = _sides(msg)
     try:
         return ContactSet(

@@ -8,5 +8,5 @@ from contact_dynamics.errors import FrameMismatchError
 def check_frame(field: str, found: str, expected: str) -> None:
     """Raise `FrameMismatchError` if a message's frame is not the expected one."""
     if found != expected:
-        message = f"{field}: found {found!r}, allowed is {expected!r}"
+        message = f"{field} must be {expected!r}, got {found!r}"
         raise FrameMismatchError(message)

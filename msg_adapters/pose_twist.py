@@ -60,7 +60,7 @@ def body_state_from_pose_twist(
         v_WF, w_WF = R_WF @ v_WF, R_WF @ w_WF
     elif twist.header.frame_id != world_frame:
         found = twist.header.frame_id
-        message = f"twist header.frame_id: found {found!r}, allowed are {world_frame!r} and {body_frame!r}"
+        message = f"twist header.frame_id must be {world_frame!r} or {body_frame!r}, got {found!r}"
         raise FrameMismatchError(message)
     return state_of_center_of_mass(
         p_WF_W=vector_from_msg(pose.pose.position),

@@ -131,7 +131,7 @@ def write_contact_modes(
     """Write what requests about one candidate and about many have in common."""
     write_subject(msg, question.body, question.state, world, world_frame)
     if isinstance(question.state, PublishedState) and question.state.fit_window > 0.0:
-        message = f"fit_window: found {question.state.fit_window:g}, allowed about contact modes is 0"
+        message = f"fit_window must be 0 for contact modes, got {question.state.fit_window:g}"
         raise NotSupportedError(message)
     _write_contacts(msg, question.contacts)
     write_gravity(msg, question.gravity_W)
@@ -190,7 +190,7 @@ def _write_other(
         state = known_state_to_msg(source, body_name=body.name, world_frame=world_frame, p_FB_F=body.p_FB_F)
         msg.other_state = [state]
     elif source.stamp_ns != stamp_ns or source.fit_window > 0.0:
-        message = "other_state: found a published one, allowed is that of the request's stamp, without a fit"
+        message = "other_state must be that of the request's stamp, without a fit, got a published one"
         raise NotSupportedError(message)
 
 
@@ -200,9 +200,7 @@ def asked_inertia(body: Body, world: World) -> Inertia | None:
     if body in named:
         return None
     if not named and (body.name or not body.shape.is_empty):
-        message = (
-            f"body: found {body.name!r}, which the world does not know; allowed is one without name and shape"
-        )
+        message = f"body must be one of the world's, or one without name and shape, got {body.name!r}"
         raise NotSupportedError(message)
     return mass_properties_to_msg(body.mass_properties, body.p_FB_F)
 
@@ -220,7 +218,7 @@ def write_gravity(msg: GravityRequest, gravity_W: FloatArray | None) -> None:
         NotSupportedError: it is neither the configured one nor zero.
     """
     if gravity_W is not None and gravity_W.any():
-        message = f"gravity_W: found {gravity_W.tolist()}, allowed is the server's, or zero"
+        message = f"gravity_W must be the server's, or zero, got {gravity_W.tolist()}"
         raise NotSupportedError(message)
     msg.gravity = msg.GRAVITY_AS_CONFIGURED if gravity_W is None else msg.GRAVITY_NONE
 

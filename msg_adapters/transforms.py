@@ -112,14 +112,12 @@ class TransformTree:
                 link = self._link(other)
                 if link is not None and link.stamp_ns not in {None, stamp_ns}:
                     message = (
-                        f"{field}: found {frame!r}, whose frame {other!r} was last told at "
-                        f"{link.stamp_ns} ns, allowed is one told at {stamp_ns} ns or a static one"
+                        f"{field} must be a frame with a static transform, or with one at {stamp_ns} ns, got "
+                        f"{frame!r}, whose frame {other!r} was last published at {link.stamp_ns} ns"
                     )
                     raise FrameMismatchError(message)
             return to_other[shared].inverse().of(inner)
-        message = (
-            f"{field}: found {frame!r}, allowed is {in_frame!r}, or a frame with a known transform to it"
-        )
+        message = f"{field} must be {in_frame!r}, or a frame with a known transform to it, got {frame!r}"
         raise FrameMismatchError(message)
 
     def _up(self, frame: str) -> Iterator[tuple[str, FramePose]]:

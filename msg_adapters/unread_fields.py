@@ -68,7 +68,7 @@ def check_unread(request: object, table: Iterable[ReadIf]) -> None:
                 found = leaf.read(request)
                 if found != leaf.default and not _is_empty(found):
                     known = _either([condition.words(request) for condition in conditions])
-                    allowed = f"the default unless {known}, since it is not read otherwise"
+                    allowed = f"left out unless {known}"
                     shown = found if isinstance(found, str) or not hasattr(found, "__iter__") else list(found)
                     raise InvalidFieldError(leaf.path, shown, allowed)
 

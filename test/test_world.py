@@ -67,7 +67,7 @@ def test_the_tolerance_decides_what_touches(gap: float, tolerance: float) -> Non
     state = at((0.0, 0.0, 3.0 + gap))
     if height < -max(tolerance, DISTANCE_TOLERANCE):
         with pytest.raises(
-            InvalidFieldError, match=r"deep in 'floor', allowed is at most the distance_tolerance"
+            InvalidFieldError, match=r"must be at most the distance_tolerance.*, got .*deep in 'floor'"
         ):
             find_contacts(BOX, state, World(surfaces=(FLOOR,)), distance_tolerance=tolerance)
         return
@@ -88,12 +88,12 @@ def contacts(**changes: object) -> ContactSet:
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
-        ({"frictions": np.array([0.5, -0.1])}, r"^frictions\[1\]: found -0.1"),
-        ({"restitutions": np.array([1.1, 0.0])}, r"^restitutions\[0\]: found 1.1"),
+        ({"frictions": np.array([0.5, -0.1])}, r"^frictions\[1\] must be .*, got -0.1"),
+        ({"restitutions": np.array([1.1, 0.0])}, r"^restitutions\[0\] must be .*, got 1.1"),
         ({"normals_W": np.array([[0.0, 0.0, 1.0], [0.0, 0.0, 0.0]])}, r"^normals_W\[1\]"),
-        ({"normals_W": np.array([[0.0, 0.0, 1.0]])}, r"^normals_W: found shape \(1, 3\)"),
+        ({"normals_W": np.array([[0.0, 0.0, 1.0]])}, r"^normals_W must be .*, got shape \(1, 3\)"),
         ({"p_WC_W": np.full((2, 3), math.nan)}, r"^p_WC_W"),
-        ({"surfaces": ("floor",)}, "^surfaces: found 1 names"),
+        ({"surfaces": ("floor",)}, "^surfaces must be .*, got 1 names"),
     ],
 )
 def test_contacts_that_make_no_sense_are_refused(changes: dict[str, object], words: str) -> None:
@@ -120,9 +120,9 @@ def test_a_subset_keeps_rows_together() -> None:
 def test_an_unknown_body_is_refused_with_those_that_are_known() -> None:
     world = World(bodies=(BOX,))
     assert world.body("box") is BOX
-    with pytest.raises(UnknownBodyError, match="found 'cat', allowed are the known bodies: 'box'"):
+    with pytest.raises(UnknownBodyError, match=r"must be one of the known bodies .'box'., got 'cat'"):
         world.body("cat")
-    with pytest.raises(InvalidFieldError, match="names that differ"):
+    with pytest.raises(InvalidFieldError, match="different names"):
         World(bodies=(BOX, BOX))
 
 
@@ -145,15 +145,18 @@ def test_a_surface_that_makes_no_sense_is_refused(field: str, value: object) -> 
 @pytest.mark.parametrize(
     ("make", "words"),
     [
-        (lambda: ConvexShape(vertices=[[1e155, 0.0, 0.0]]), r"vertices: found 1e\+155"),
-        (lambda: sphere(radius=1e61), r"radius: found 1e\+61"),
-        (lambda: cylinder(radius=1e61, length=1.0), r"radius: found 1e\+61"),
-        (lambda: cylinder(radius=1.0, length=4e60), r"length: found 4e\+60"),
-        (lambda: box(size=[1.0, 1e61, 1.0]), r"size\[1\]: found 1e\+61"),
-        (lambda: sphere(radius=1.0).moved([0.0, 2e60, 0.0]), r"offset: found 2e\+60"),
-        (lambda: surface("far", (0.0, 0.0, -1e61), (0.0, 0.0, 1.0)), r"p_WS_W: found 1e\+61"),
-        (lambda: Body(name="b", mass_properties=STUFF, p_FB_F=[1e61, 0, 0]), r"p_FB_F: found 1e\+61"),
-        (lambda: obstacle_of_size(1e61), r"vertices_W: found 1e\+61"),
+        (lambda: ConvexShape(vertices=[[1e155, 0.0, 0.0]]), r"vertices must be .*, got 1e\+155"),
+        (lambda: sphere(radius=1e61), r"radius must be .*, got 1e\+61"),
+        (lambda: cylinder(radius=1e61, length=1.0), r"radius must be .*, got 1e\+61"),
+        (lambda: cylinder(radius=1.0, length=4e60), r"length must be .*, got 4e\+60"),
+        (lambda: box(size=[1.0, 1e61, 1.0]), r"size\[1\] must be .*, got 1e\+61"),
+        (lambda: sphere(radius=1.0).moved([0.0, 2e60, 0.0]), r"offset must be .*, got 2e\+60"),
+        (lambda: surface("far", (0.0, 0.0, -1e61), (0.0, 0.0, 1.0)), r"p_WS_W must be .*, got 1e\+61"),
+        (
+            lambda: Body(name="b", mass_properties=STUFF, p_FB_F=[1e61, 0, 0]),
+            r"p_FB_F must be .*, got 1e\+61",
+        ),
+        (lambda: obstacle_of_size(1e61), r"vertices_W must be .*, got 1e\+61"),
     ],
 )
 def test_lengths_whose_squares_overflow_are_refused_by_name(make: Callable[[], object], words: str) -> None:

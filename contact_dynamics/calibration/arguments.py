@@ -57,6 +57,6 @@ def _groups(text: str) -> tuple[Free, ...]:
     groups = []
     for name in (part.strip() for part in text.split(",")):
         if name not in known:
-            raise argparse.ArgumentTypeError(f"found {name!r}, allowed is {', '.join(known)}, or all")
+            raise argparse.ArgumentTypeError(f"must be one of {', '.join(known)}, or all, got {name!r}")
         groups.append(known[name])
     return tuple(groups)

@@ -61,7 +61,7 @@ def calibrate(
         NotSupportedError: the body's shape has no corners.
     """
     if not motions:
-        raise InvalidFieldError("motions", "none", "one at least")
+        raise InvalidFieldError("motions", "none", "at least one")
     bodies = sorted({motion.body.name for motion in motions})
     if len(bodies) > 1:
         raise InvalidFieldError("motions", f"states of {', '.join(bodies)}", "those of one body")

@@ -110,8 +110,8 @@ class Model:
         """
         if body.shape.is_empty or body.shape.rims:
             raise NotSupportedError(
-                f"body {body.name!r}: found {'rims of a round shape' if body.shape.rims else 'no shape'}, "
-                "a calibration needs corners: a box or vertices, with rounding or without, or a sphere"
+                f"body {body.name!r} must have corners (a box or vertices, rounded or not, or a sphere) "
+                f"for a calibration, got {'rims of a round shape' if body.shape.rims else 'no shape'}"
             )
         self.body = body
         self.surfaces = tuple(surfaces)

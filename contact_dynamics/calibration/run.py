@@ -79,7 +79,7 @@ def _motions(
         reasons = "; ".join(f"{name}: {reason}" for name, reason in refused)
         what = f"states of body {given.body!r}" if given.body else "states of a body"
         why = f" ({reasons})" if reasons else ""
-        raise InvalidFieldError("RECORDING", f"none with {what}{why}", "one at least")
+        raise InvalidFieldError("RECORDING", f"none with {what}{why}", "at least one")
     return motions, names, refused
 
 

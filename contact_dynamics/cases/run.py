@@ -21,7 +21,7 @@ def main(arguments: list[str]) -> int:
     given = parser.parse_args(arguments)
     unknown = [name for name in given.names if name not in CASES]
     if unknown:
-        parser.error(f"NAME: found {', '.join(unknown)}, allowed are {', '.join(CASES)}")
+        parser.error(f"NAME must be one of {', '.join(CASES)}, got {', '.join(unknown)}")
     if given.published:
         return _compare_published()
     names = given.names or list(CASES)

@@ -30,7 +30,7 @@ from contact_dynamics.validation_types import checks_types
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-_NEEDED: Final = "a number in [0, 1] for each contact of an impact"
+_NEEDED: Final = "in [0, 1] at each contact of an impact"
 
 MAX_CONTACTS: Final = 10_000
 """Longest list of contacts accepted. Real sets have far fewer, and a service can still answer for so many."""
@@ -231,7 +231,7 @@ def all_or_none(restitutions: list[float | None]) -> list[float] | None:
     if not known:
         return None
     if len(known) < len(restitutions):
-        raise InvalidFieldError("restitution", "none at some contacts", "one at each contact, or at none")
+        raise InvalidFieldError("restitution", "none at some contacts", "given at every contact or at none")
     return known
 
 
@@ -271,7 +271,7 @@ def _check_each(
             raise InvalidFieldError(f"normals_W[{i}]", normals[i].tolist(), "a unit vector")
     for i, friction in enumerate(frictions.tolist()):
         if friction < 0.0:
-            raise InvalidFieldError(f"frictions[{i}]", friction, "a number >= 0")
+            raise InvalidFieldError(f"frictions[{i}]", friction, ">= 0")
     for i, restitution in enumerate(() if restitutions is None else restitutions.tolist()):
         if not 0.0 <= restitution <= 1.0:
-            raise InvalidFieldError(f"restitutions[{i}]", restitution, "a number in [0, 1]")
+            raise InvalidFieldError(f"restitutions[{i}]", restitution, "in [0, 1]")

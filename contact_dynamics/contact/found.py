@@ -145,7 +145,7 @@ def nearest_surface(
 def check_has_shape(body: Body) -> None:
     """Raise `NoContactError` where a body has no shape that could touch anything."""
     if body.shape.is_empty:
-        message = f"body {body.name!r}: found no shape, allowed is a body with `vertices_B` or a `shape`"
+        message = f"body {body.name!r} must have `vertices_B` or a `shape`, got neither"
         raise NoContactError(message)
 
 

@@ -120,7 +120,9 @@ def touches_of(
         return []
     theirs, n_W = obstacle.features, site.normal_W
     if shape.rims and float((theirs.normals @ n_W).max()) < 1.0 - SAME_POINT:
-        message = f"shape: found a rim at an edge of obstacle {obstacle.name!r}, allowed is one at a face"
+        message = (
+            f"shape must touch with a rim at a face only, got a rim at an edge of obstacle {obstacle.name!r}"
+        )
         raise NotSupportedError(message)
     frame = tangent_rows(n_W)
     touches = list(flat_touches(shape, p_WB_W, R_WB, n_W, level=site.level, tolerance=tolerance))

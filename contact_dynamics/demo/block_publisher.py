@@ -53,7 +53,7 @@ class BlockPublisher(Node):
         parameters = read_server_parameters(NodeParameters(self, read_only=True))
         topics = [source.topics[0] for each in parameters.sources[:1] for source in each.sources]
         if not topics or not parameters.world.surfaces:
-            raise NotSupportedError("needed are a body with an odometry_topic, and a surface")
+            raise NotSupportedError("a body with an odometry_topic and a surface are required")
         self._body, self._frame = parameters.world.bodies[0], parameters.world_frame
         self._child_frame = parameters.sources[0].frame
         self._block = SprungBlock.resting(self._body, parameters.world)

@@ -61,7 +61,7 @@ class Commentator(Node):
         parameters = read_server_parameters(NodeParameters(self, read_only=True))
         topics = [source.topics[0] for each in parameters.sources[:1] for source in each.sources]
         if not topics:
-            raise NotSupportedError("bodies: found none to ask about, needed is one with an odometry_topic")
+            raise NotSupportedError("bodies must have one with an odometry_topic, got none")
         self._body = parameters.world.bodies[0]
         self._comment = {
             THROWN_BOX: self._comment_on_the_box,

@@ -26,7 +26,7 @@ def claim_domain() -> int:
         domain = 1 + (os.getpid() + offset) % _DOMAINS
         if domain not in in_use and _claim(domain):
             return domain
-    raise RuntimeError(f"ROS domains 1 to {_DOMAINS}: found all in use, needed is a free one")
+    raise RuntimeError(f"one of the ROS domains 1 to {_DOMAINS} must be free, got all in use")
 
 
 def _claim(domain: int) -> bool:

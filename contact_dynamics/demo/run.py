@@ -54,7 +54,7 @@ def main(arguments: list[str]) -> int:
     try:
         folder = _new_folder(given.output)
     except OSError as error:
-        print(f"--output: found {given.output!r}, allowed is a folder to write in ({error})", file=sys.stderr)
+        print(f"--output must be a folder to write in ({error}), got {given.output!r}", file=sys.stderr)
         return 2
     ensure_ros_log_directory()
     try:

@@ -102,7 +102,7 @@ class SprungBlock:
         """
         corners = sorted({(float(x), float(z)) for x, _, z in body.shape.vertices.tolist()})
         if len(corners) < 3 or body.shape.rounding > 0.0:
-            raise NotSupportedError(f"body {body.name!r}: found a shape that is round, allowed are corners")
+            raise NotSupportedError(f"body {body.name!r} must have corners, got a round shape")
         flats = [_flat(surface) for surface in world.surfaces]
         below = -min(z for _, z in corners)
         weight = -body.mass_properties.mass * float(world.gravity_W[2])
@@ -164,6 +164,6 @@ class SprungBlock:
 
 def _flat(surface: object) -> _Flat:
     if not isinstance(surface, Surface) or surface.normal_W[1] != 0.0:
-        raise NotSupportedError(f"surface {surface!r}: allowed are flats whose normals have no part along y")
+        raise NotSupportedError(f"surface must be a flat whose normal has no part along y, got {surface!r}")
     (px, _, pz), (nx, _, nz) = surface.p_WS_W.tolist(), surface.normal_W.tolist()
     return _Flat(point=(px, pz), normal=(nx, nz), friction=surface.friction)

@@ -136,7 +136,7 @@ def _seconds(text: str) -> float:
     except ValueError:
         value = 0.0
     if not 0.0 < value < float("inf"):
-        raise argparse.ArgumentTypeError(f"found {text!r}, allowed is a number of milliseconds > 0")
+        raise argparse.ArgumentTypeError(f"must be a number of milliseconds > 0, got {text!r}")
     return value
 
 
@@ -144,11 +144,11 @@ def _laws(text: str) -> tuple[str, ...]:
     laws = tuple(each.strip() for each in text.split(","))
     for law in laws:
         if law not in LAWS:
-            raise argparse.ArgumentTypeError(f"found {law!r}, allowed is {', '.join(LAWS)}")
+            raise argparse.ArgumentTypeError(f"must be one of {', '.join(LAWS)}, got {law!r}")
     return laws
 
 
 def _count(text: str) -> int:
     if not text.isdigit() or int(text) < 1:
-        raise argparse.ArgumentTypeError(f"found {text!r}, allowed is a whole number >= 1")
+        raise argparse.ArgumentTypeError(f"must be a whole number >= 1, got {text!r}")
     return int(text)

@@ -22,7 +22,7 @@ def run_on_recordings(
     """Parse arguments that name recordings, do the work, and return the exit code. Errors are printed."""
     given = parser.parse_args(arguments)
     if not given.recordings:  # here, so that a mistyped option is named first
-        parser.error("found no RECORDING, needed is one at least")
+        parser.error("at least one RECORDING is required")
     try:
         return work(given)
     except (ContactDynamicsError, OSError) as error:

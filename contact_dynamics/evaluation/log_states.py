@@ -70,7 +70,7 @@ def recording_of_log(path: Path, *, config: Path | None = None) -> Recording:
             run = log.run()
             if PARAMETERS not in run and "world_frame" not in run:
                 raise NotALogError(
-                    f"{path}: found no record of how its run was configured, needed is --config"
+                    f"{path}: --config is required, since the log has no record of its run's configuration"
                     f"{f' ({log.damage})' if log.damage else ''}"
                 )
             source = LoggedParameters(run)

@@ -80,7 +80,7 @@ class Settings(Record):
     def __post_init__(self) -> None:
         """Check all three."""
         if not self.horizons or not self.laws:
-            raise InvalidFieldError("horizons, laws", "an empty list", "one at least of each")
+            raise InvalidFieldError("horizons, laws", "an empty list", "at least one of each")
         horizons = tuple(sorted({check_positive("horizons", horizon) for horizon in self.horizons}))
         object.__setattr__(self, "horizons", horizons)
         object.__setattr__(self, "fit_window", check_positive("fit_window", self.fit_window))

@@ -78,7 +78,5 @@ def first_touch(
         if now >= until:
             return None
         now = min(now + step, bound.until, until)
-    message = (
-        f"obstacle {obstacle.name!r}: found a body close to it until {now:g} s, allowed is one that passes"
-    )
+    message = f"obstacle {obstacle.name!r}: the body must pass it, got a body close to it until {now:g} s"
     raise NotSupportedError(message)

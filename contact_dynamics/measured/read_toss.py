@@ -31,14 +31,12 @@ def read_toss(path: str | Path = DEFAULT_RECORDING, *, index: int | None = None)
     if index is not None:
         chosen = index
     if not file.is_file():
-        raise FileNotFoundError(
-            f"TOSS: found no file {str(file)!r}, allowed is a toss recording (.csv or .npz)"
-        )
+        raise FileNotFoundError(f"TOSS must be a toss recording (.csv or .npz), got no file {str(file)!r}")
     if file.suffix == ".npz":
         return read_cube_toss(file, index=chosen)
     if file.suffix == ".csv":
         if chosen is not None:
-            raise InvalidFieldError("TOSS", str(path), "no index: a .csv holds one toss")
+            raise InvalidFieldError("TOSS", str(path), "a path without an index, since a .csv has one toss")
         return read_toss_csv(file)
     raise InvalidFieldError("TOSS", str(path), "a toss recording (.csv or .npz)")
 

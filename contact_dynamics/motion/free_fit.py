@@ -143,7 +143,7 @@ def fit_free_motion(
     since_newest = [state.stamp_ns - newest for state in states]
     for earlier, later in itertools.pairwise(since_newest):
         if earlier >= later:
-            raise InvalidFieldError("states", f"stamps {later - earlier} ns apart", "> 0")
+            raise InvalidFieldError("states", f"stamps {later - earlier} ns apart", "more than 0 ns apart")
     seconds = seconds_since(0, since_newest)
     gravity = check_magnitude("gravity_W", check_array("gravity_W", gravity_W, (3,)))
     place = _fit_place(states, seconds, gravity, noise)

@@ -67,11 +67,11 @@ class GivenParameters:
         wanted = default if isinstance(default, type) else type(default)
         if not isinstance(found, wanted) or (isinstance(found, bool) and wanted is not bool):
             meant = likely_misspelling(name, self.values) if found is None else ""
-            message = f"{self._before}{name}: found {found!r}, needed is: {description}{meant}"
+            message = f"{self._before}{name} is required ({description}), got {found!r}{meant}"
             raise ConfigurationError(message)
         number: Any = found  # it has the default's type, which is a number where there are bounds
         if bounds is not None and not bounds[0] <= number <= bounds[1]:
-            message = f"{self._before}{name}: found {found!r}, allowed is {bounds[0]:g} to {bounds[1]:g}"
+            message = f"{self._before}{name} must be in [{bounds[0]:g}, {bounds[1]:g}], got {found!r}"
             raise ConfigurationError(message)
         self.read[name] = ReadParameter(found, description, bounds)
         return found

@@ -231,10 +231,7 @@ class InboxNode(Node):
         try:
             clock.callback(msg)
         except ValueError:  # rclpy has no time before zero; the clock stays where it was
-            warn(
-                f"{clock.topic_name}: message ignored: clock.sec: found {msg.clock.sec}, "
-                "allowed is a number >= 0"
-            )
+            warn(f"{clock.topic_name}: message ignored: clock.sec must be >= 0, got {msg.clock.sec}")
 
     def _after_the_question(self, received_ns: int) -> int:
         """Return when a message came; one that came while a question was being taken counts as later."""
@@ -246,5 +243,5 @@ class InboxNode(Node):
 
 def _allowed(qos: QoSProfile) -> SetParametersResult:
     """Tell whether an overridden QoS can be served: a queue without room would take nothing, silently."""
-    reason = "" if qos.depth > 0 else f"depth: found {qos.depth}, allowed is a whole number > 0"
+    reason = "" if qos.depth > 0 else f"depth must be a whole number > 0, got {qos.depth}"
     return SetParametersResult(successful=not reason, reason=reason)

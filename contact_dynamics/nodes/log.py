@@ -174,5 +174,5 @@ def _new_bag(
             except LogExistsError:
                 number += 1
     except (OSError, RuntimeError) as error:  # the latter for the home of a user who is not there
-        message = f"log_directory: found {directory!r}, allowed is a folder to write to ({error})"
+        message = f"log_directory must be a folder to write to ({error}), got {directory!r}"
         raise ConfigurationError(message) from None

@@ -65,12 +65,12 @@ class NodeParameters:
             self._given.get(name, ""), default if isinstance(default, type) else type(default)
         )
         if allowed:
-            message = f"{name}: found {self._given[name]}, allowed is {allowed} ({description})"
+            message = f"{name} must be {allowed} ({description}), got {self._given[name]}"
             raise ConfigurationError(message)
         given = self._node._parameter_overrides.get(name)  # noqa: SLF001  rclpy has no public way to it
         number: Any = None if given is None else given.value
         if bounds and type(number) is type(default) and not bounds[0] <= number <= bounds[1]:
-            message = f"{name}: found {number!r}, allowed is {bounds[0]:g} to {bounds[1]:g} ({description})"
+            message = f"{name} must be in [{bounds[0]:g}, {bounds[1]:g}] ({description}), got {number!r}"
             raise ConfigurationError(message)
         try:
             value = self._node.declare_parameter(name, declared, descriptor).value
@@ -79,9 +79,7 @@ class NodeParameters:
             raise ConfigurationError(message) from None
         if value is None:
             given_names = self._node._parameter_overrides  # noqa: SLF001
-            message = (
-                f"{name}: found nothing, needed is: {description}{likely_misspelling(name, given_names)}"
-            )
+            message = f"{name} is required ({description}){likely_misspelling(name, given_names)}"
             raise ConfigurationError(message)
         return value
 
@@ -96,7 +94,7 @@ class NodeParameters:
         try:
             resolved: str = self._node.resolve_topic_name(topic)
         except RuntimeError as error:
-            message = f"{name}: found {topic!r}, allowed is a topic's name ({error})"
+            message = f"{name} must be a topic's name ({error}), got {topic!r}"
             raise ConfigurationError(message) from None
         self.topics[name] = resolved
         return resolved

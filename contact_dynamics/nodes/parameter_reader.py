@@ -86,7 +86,7 @@ class ParameterReader:
         least, most = bounds
         found: float = self.read(name, default, description, (0.0, most))
         if 0.0 < found < least:
-            message = f"{name}: found {found:g} {unit}, allowed is 0, or {least:g} {unit} to {most:g} {unit}"
+            message = f"{name} must be 0 or in [{least:g}, {most:g}] {unit}, got {found:g} {unit}"
             raise ConfigurationError(message)
         return found or None
 
@@ -101,7 +101,7 @@ class ParameterReader:
             return []
         found = [_checked_name(f"{name}[{i}]", each) for i, each in enumerate(given)]
         if len(set(found)) < len(found):
-            message = f"{name}: found {found}, allowed are names that differ"
+            message = f"{name} must be different names, got {found}"
             raise ConfigurationError(message)
         return found
 
@@ -113,8 +113,7 @@ class ParameterReader:
         found = self._configured(name, topic)
         if found.full_name in self._topics:
             message = (
-                f"{name}: found {topic!r}, allowed is another topic than that of "
-                f"{self._topics[found.full_name]}"
+                f"{name} must be another topic than that of {self._topics[found.full_name]}, got {topic!r}"
             )
             raise ConfigurationError(message)
         self._topics[found.full_name] = name

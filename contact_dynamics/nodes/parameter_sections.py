@@ -60,7 +60,7 @@ def read_sections(path: Path) -> tuple[Section, ...]:
     """
     content, repeated = _content(path)
     if not isinstance(content, dict) or not content:
-        message = f"{path}: found no parameters, needed are those of {ANY_NODE} or of a node by its name"
+        message = f"{path} must have parameters of {ANY_NODE} or of a node by its name, got none"
         raise ConfigurationError(message)
     if twice := [str(each) for each in repeated if not each.name]:
         message = f"{path}: {'; '.join(twice)}"
@@ -93,8 +93,8 @@ def check_sections(path: Path, sections: Sequence[Section], full_name: str) -> s
     if len(others) == len(sections):
         nearest = _nearest(others, full_name)
         message = (
-            f"{path}: found parameters of {' and of '.join(others)} alone, which do not apply to this node. "
-            f"Allowed are {ANY_NODE} and {full_name}, and {nearest} is the nearest to it"
+            f"{path} must have parameters of {ANY_NODE} or {full_name}, got only those of "
+            f"{' and of '.join(others)}, which do not apply to this node; {nearest} is the nearest name"
         )
         raise ConfigurationError(message)
     misspelled = [name for name in others if _is_misspelled(name, full_name)]
@@ -138,7 +138,7 @@ def _sections(path: Path, content: dict[str, Any], above: str) -> Iterator[Secti
         elif isinstance(inner, dict) and inner and _VALUES not in inner:
             yield from _sections(path, inner, name)
         else:
-            message = f"{path}: {name.lstrip('/')}: found no {_VALUES}, needed are names with values"
+            message = f"{path}: {name.lstrip('/')} must have {_VALUES} (names with values)"
             raise ConfigurationError(message)
 
 

@@ -171,7 +171,7 @@ def _read_log_before_answer(reader: ParameterReader, *, is_logged: bool) -> bool
         description="Whether an answer leaves only once it is on the disk, with all that it depends on.",
     )
     if is_before and not is_logged:
-        message = "log_before_answer: found true, allowed is false where log is false"
+        message = "log_before_answer must be false where log is false, got true"
         raise ConfigurationError(message)
     return is_before
 
@@ -181,7 +181,7 @@ def _read_log_limits(reader: ParameterReader) -> LogLimits:
     allowed = ", ".join(names)
     compression = reader.read("log_compression", Compression.ZSTD.value, f"How the log is packed: {allowed}.")
     if compression not in names:
-        message = f"log_compression: found {compression!r}, allowed is one of {allowed}"
+        message = f"log_compression must be one of {allowed}, got {compression!r}"
         raise ConfigurationError(message)
     least = LEAST_FILE_BYTES / MEGABYTE
     file_size = reader.zero_or(
@@ -206,7 +206,7 @@ def _read_log_limits(reader: ParameterReader) -> LogLimits:
         unit="MB",
     )
     if size_limit is not None and file_size is None:
-        message = f"log_size_limit: found {size_limit:g} MB, allowed is 0 where log_file_size is 0"
+        message = f"log_size_limit must be 0 where log_file_size is 0, got {size_limit:g} MB"
         raise ConfigurationError(message)
     return LogLimits(
         compression=Compression(compression),

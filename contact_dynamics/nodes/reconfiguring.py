@@ -46,8 +46,8 @@ def check_change(before: ServerParameters, after: ServerParameters) -> None:
     ]
     if changed:
         message = (
-            f"{', '.join(changed)}: found a change while the server is configured, allowed is one after the "
-            "lifecycle transition 'cleanup' and before 'configure'"
+            f"{', '.join(changed)} must be changed after the lifecycle transition 'cleanup' and before "
+            "'configure', got a change while the server is configured"
         )
         raise ConfigurationError(message)
 

@@ -31,7 +31,7 @@ class RepeatedKey(NamedTuple):
     def __str__(self) -> str:
         """Return in words which key stands where."""
         key = self.name or "/".join(self.section)
-        return f"{key}: found in lines {self.lines[0]} and {self.lines[1]}, allowed is once"
+        return f"{key} must appear once, got lines {self.lines[0]} and {self.lines[1]}"
 
 
 def repeated_keys(root: Any) -> tuple[RepeatedKey, ...]:

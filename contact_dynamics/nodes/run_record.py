@@ -103,7 +103,7 @@ class LoggedParameters:
             return default
         wanted = default if isinstance(default, type) else type(default)
         if not isinstance(found, wanted):
-            message = f"{name}: found {found!r} in the log, needed is: {description}"
+            message = f"{name} is required ({description}), got {found!r} in the log"
             raise ConfigurationError(message)
         return found
 
@@ -135,5 +135,5 @@ def _from_text(name: str, text: str, default: Any) -> Any:
         array = _ARRAY.fullmatch(text)
         return ast.literal_eval(array[1] if array else text)
     except (ValueError, SyntaxError):
-        message = f"{name}: found {text!r} in the log, which is no {kind.__name__}"
+        message = f"{name} must be of type {kind.__name__}, got {text!r} in the log"
         raise ConfigurationError(message) from None

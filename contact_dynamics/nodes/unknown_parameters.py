@@ -63,6 +63,6 @@ def _unknown(name: str, known: Collection[str], listed: Callable[[str], Iterable
         own_name = rest.rpartition(".")[0] or rest
         allowed = list(listed(listing))
         if own_name not in allowed:
-            return f"{name}: found {kind} {own_name!r}, allowed is one that {listing} lists: {allowed}"
+            return f"{name} must be about one of the names in {listing} {allowed}, got {kind} {own_name!r}"
     nearest = difflib.get_close_matches(name, known, n=1, cutoff=0.0)
     return f"{name}: there is no such parameter; the nearest is {nearest[0]}"

@@ -72,10 +72,10 @@ def read_visualizer_parameters(source: NodeParameters) -> VisualizerParameters:
     )
     chosen = [name for name, on in (("spawn", spawn), ("serve", serve), ("connect", bool(url))) if on]
     if len(chosen) > 1:
-        message = f"{' and '.join(chosen)}: found {len(chosen)} ways to a viewer, allowed is one"
+        message = f"only one of spawn, serve and connect must be set, got {' and '.join(chosen)}"
         raise ConfigurationError(message)
     if not chosen and not rrd_path:
-        message = "rrd_path, spawn, serve, connect: found none, needed is somewhere to draw to"
+        message = "one of rrd_path, spawn, serve and connect is required: the picture needs a place to go"
         raise ConfigurationError(message)
     try:
         sinks = Sinks(

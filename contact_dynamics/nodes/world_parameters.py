@@ -100,7 +100,7 @@ def _read_deviations(reader: ParameterReader, key: str) -> tuple[float, ...]:
         return ()
     if len(found) != 4 or not all(0.0 <= deviation <= MAX_DEVIATION for deviation in found):
         allowed = f"four numbers from 0 to {MAX_DEVIATION:g} (or [0.0]: exact)"
-        raise ConfigurationError(f"{name}: found {found}, allowed are {allowed}")
+        raise ConfigurationError(f"{name} must be {allowed}, got {found}")
     return tuple(found)
 
 
@@ -117,13 +117,13 @@ def _read_sources(reader: ParameterReader, key: str) -> tuple[ConfiguredSource, 
         "Topic of the body's geometry_msgs/TwistStamped. If empty, velocities come from the poses.",
     )
     if twist is not None and pose is None:
-        message = f"{key}.twist_topic: found {twist.name!r}, allowed is none without a pose_topic"
+        message = f"{key}.twist_topic must be none without a pose_topic, got {twist.name!r}"
         raise ConfigurationError(message)
     name = reader.read(f"{key}.source", "", "Name of another source of states. Not used if empty.")
     topics = reader.topics(f"{key}.source_topics", "Topics of that source.")
     if bool(name) != bool(topics):
         found = f"{name!r} and {[topic.name for topic in topics]}"
-        message = f"{key}.source and {key}.source_topics: found {found}, allowed are both or none"
+        message = f"{key}.source and {key}.source_topics must be both or none, got {found}"
         raise ConfigurationError(message)
     sources = []
     if odometry is not None:

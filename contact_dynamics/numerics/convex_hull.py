@@ -66,6 +66,6 @@ def hull_of(field: str, points: FloatArray) -> Hull:
             equations=np.column_stack([outward, hull.equations[:, -1] - outward @ middle]),
         )
     raise UndecidedError(
-        f"{field}: found a convex hull that hangs on rounding (Qhull gave up in {_TRIALS} rotations), "
-        "allowed are points and directions that are either the same or clearly apart"
+        f"{field} must be points and directions that are either the same or clearly apart, got a convex hull "
+        f"that hangs on rounding (Qhull gave up in {_TRIALS} rotations)"
     )

@@ -202,11 +202,11 @@ def check_vector2(field: str, value: Vector2) -> Vector2:
 def _check_number(field: str, value: Any) -> float:
     number = check_finite(field, value)
     if abs(number) > LARGEST_NUMBER:
-        raise InvalidFieldError(field, value, f"a number of at most {LARGEST_NUMBER:g}, by size")
+        raise InvalidFieldError(field, value, f"at most {LARGEST_NUMBER:g} in magnitude")
     return number
 
 
 def _check_size(field: str, value: float) -> float:
     if not 1.0 / LARGEST_NUMBER <= value <= LARGEST_NUMBER:
-        raise InvalidFieldError(field, value, f"a number from {1.0 / LARGEST_NUMBER:g} to {LARGEST_NUMBER:g}")
+        raise InvalidFieldError(field, value, f"in [{1.0 / LARGEST_NUMBER:g}, {LARGEST_NUMBER:g}]")
     return value

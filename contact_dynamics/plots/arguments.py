@@ -45,5 +45,5 @@ def _count(text: str) -> int:
     except ValueError:
         value = 0
     if value < 1:
-        raise argparse.ArgumentTypeError(f"found {text}, allowed is a whole number >= 1")
+        raise argparse.ArgumentTypeError(f"must be a whole number >= 1, got {text}")
     return value

@@ -32,9 +32,7 @@ def main(arguments: list[str]) -> int:
     parser = plot_parser()
     given = parser.parse_args(arguments)
     if given.log is None or given.output is None:  # argparse would complain of this before a mistyped option
-        parser.error(
-            f"found {'no LOG' if given.log is None else 'no --output'}, needed are LOG and --output DIR"
-        )
+        parser.error(f"{'LOG' if given.log is None else '--output DIR'} is required")
     answered = drawn = 0
     try:
         given.output.mkdir(parents=True, exist_ok=True)

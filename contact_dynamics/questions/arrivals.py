@@ -31,7 +31,7 @@ class Arrivals:
         """Return in words why there is no state."""
         if not self.came:
             return "none was published yet"
-        return f"none of {self.came} that came is kept; {self.fate}"
+        return f"none of {self.came} messages was kept: {self.fate}"
 
     def keep(self) -> None:
         """Note a state that came and is kept."""
@@ -44,8 +44,8 @@ class Arrivals:
         self.rejected += 1
         self.reason = str(reason)
         self.newest_is_rejected = True
-        self.fate = f"the last was refused: {reason}"
+        self.fate = f"the last was rejected because {reason}"
 
     def throw_away(self, reason: str) -> None:
         """Note that states that were kept are not any more."""
-        self.fate = f"they were thrown away when {reason}"
+        self.fate = f"they were discarded when {reason}"

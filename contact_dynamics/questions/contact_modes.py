@@ -73,7 +73,7 @@ IMPACT: Final = ""
 """What stands instead of a mode in the probabilities where a contact approaches."""
 
 _UNCERTAIN: Final = (
-    "contacts: found points or normals that may be off, which are in a plane only if their errors are"
+    "contacts must be exact to be in a plane, got uncertain points or normals, whose errors may leave it"
 )
 
 

@@ -72,7 +72,7 @@ def check_mass(body: MassProperties) -> None:
     moments = body.I_B.diagonal().tolist()
     for name, value in (("mass", body.mass), *(("I_B", moment) for moment in moments)):
         if not 1.0 / MAX_INERTIA <= value <= MAX_INERTIA:
-            allowed = f"a number from {1.0 / MAX_INERTIA:g} to {MAX_INERTIA:g} for contacts"
+            allowed = f"in [{1.0 / MAX_INERTIA:g}, {MAX_INERTIA:g}] for contacts"
             raise InvalidFieldError(name, f"{value:g}", allowed)
 
 
@@ -98,7 +98,7 @@ def check_contacts(contacts: ContactSet) -> None:
 def check_margin_length(length: float | None) -> None:
     """Refuse a length by which torques cannot be divided, by name."""
     if length is not None and not 1.0 / MAX_IN_CONTACT <= length <= MAX_IN_CONTACT:
-        allowed = f"a number from {1.0 / MAX_IN_CONTACT:g} to {MAX_IN_CONTACT:g}"
+        allowed = f"in [{1.0 / MAX_IN_CONTACT:g}, {MAX_IN_CONTACT:g}]"
         raise InvalidFieldError("margin_length", f"{length:g}", allowed)
 
 
@@ -112,4 +112,4 @@ def check_vector(name: str, vector: FloatArray) -> None:
     """Refuse a vector, (3,), with a number that is too large, by that name."""
     largest = max(map(abs, vector.tolist()))
     if not largest <= MAX_IN_CONTACT:
-        raise InvalidFieldError(name, f"{largest:g}", f"numbers of at most {MAX_IN_CONTACT:g} for contacts")
+        raise InvalidFieldError(name, f"{largest:g}", f"at most {MAX_IN_CONTACT:g} for contacts")

@@ -179,8 +179,8 @@ def _in_time(question: ImpactQuestion, law: InTime, strike: Strike, context: Con
         )
     if not sequence.strikes and sequence.end == SequenceEnd.STAYS:
         message = (
-            "contacts: found one that stays and none that strikes (a question about contact modes says what "
-            "follows; a hold_step goes on over it)"
+            "contacts: at least one must strike, got one that stays (a contact mode question says what "
+            "follows; a hold_step continues beyond it)"
         )
         raise NoContactError(message)
     if not sequence.strikes:

@@ -79,7 +79,7 @@ class AtTimes(Record):
         if len(times) == 0:
             raise InvalidFieldError("times", "none", "at least one time")
         if times[0] < 0.0:
-            raise InvalidFieldError("times[0]", times[0], "a number >= 0 (stamps reach into the past)")
+            raise InvalidFieldError("times[0]", times[0], ">= 0 (stamps reach into the past)")
         object.__setattr__(self, "times", times)
 
 

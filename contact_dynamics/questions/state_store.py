@@ -170,9 +170,8 @@ class StateStore:
         gap_ns = later.stamp_ns - earlier.stamp_ns
         if gap_ns > self._timeout_ns:
             message = (
-                f"state of {body_name!r} at {stamp_ns} ns: the states around it are "
-                f"{to_seconds(gap_ns):.3f} s apart, allowed is at most "
-                f"{to_seconds(self._timeout_ns):g} s (state_timeout)"
+                f"state of {body_name!r} at {stamp_ns} ns: the states around it must be at most "
+                f"{to_seconds(self._timeout_ns):g} s apart (state_timeout), got {to_seconds(gap_ns):.3f} s"
             )
             raise StaleStateError(message)
         return earlier, later
@@ -257,8 +256,8 @@ class StateStore:
         age_ns = asked_ns - state.stamp_ns
         if age_ns > self._timeout_ns:
             message = (
-                f"state of {body_name!r}: the newest is {to_seconds(age_ns):.3f} s old, "
-                f"allowed is at most {to_seconds(self._timeout_ns):g} s (state_timeout)"
+                f"state of {body_name!r}: the newest must be at most {to_seconds(self._timeout_ns):g} s old "
+                f"(state_timeout), got {to_seconds(age_ns):.3f} s"
             )
             arrivals = self.arrivals(body_name)
             if arrivals.newest_is_rejected:

@@ -32,7 +32,7 @@ def contacts_of(
     """
     if named is not None:
         if len(named) == 0:
-            message = "contacts: found none, allowed is at least one"
+            message = "contacts must be at least one, got none"
             raise NoContactError(message)
         return named
     body = subject.body
@@ -107,6 +107,6 @@ def check_has_shape(body: Body) -> None:
     """Raise `NoContactError` for a body without a shape that could touch anything."""
     if body.shape.is_empty:
         message = (
-            f"contacts: body {body.name!r} has no shape to find them from, allowed are explicit contacts"
+            f"contacts must be given explicitly, since body {body.name!r} has no shape to find them from"
         )
         raise NoContactError(message)

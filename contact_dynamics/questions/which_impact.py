@@ -66,7 +66,7 @@ def strike_of(question: ImpactQuestion, context: Context) -> Strike:
         )
         _ = contacts.impact_restitutions
     elif other is not None:
-        message = "contacts: found none for two bodies, allowed is to state them: shapes meet the world alone"
+        message = "contacts of two bodies must be given explicitly: only those with the world are found"
         raise NotSupportedError(message)
     else:
         seconds, state, contacts = _landing(
@@ -95,21 +95,21 @@ def _check_supported(question: ImpactQuestion, *, contact_count: int) -> None:
     is_planar, has_other = question.problem is Problem.PLANAR, question.other is not None
     if has_other and (question.include_orders or is_planar or in_time):
         message = (
-            "other: found a second body, allowed with it are the problem SPATIAL or AUTOMATIC, the laws "
-            "SEQUENTIAL or SIMULTANEOUS, and no include_orders"
+            "with a second body (other), problem must be SPATIAL or AUTOMATIC, several_contacts_law "
+            "SEQUENTIAL or SIMULTANEOUS, and include_orders false"
         )
         raise NotSupportedError(message)
     if in_time and is_planar:
-        message = "problem: found PLANAR, allowed for strikes in time is SPATIAL: space contains the plane"
+        message = "problem must be SPATIAL for SEQUENTIAL_IN_TIME, got PLANAR: space contains the plane"
         raise NotSupportedError(message)
     if in_time and question.include_orders:
-        message = "include_orders: found true, allowed for strikes in time is false: time is the order"
+        message = "include_orders must be false for SEQUENTIAL_IN_TIME, got true: time is the order"
         raise NotSupportedError(message)
     one_contact = contact_count == 1 and not is_planar and not in_time
     if question.include_covariance and (has_other or not one_contact):
         message = (
-            "include_covariance: found true, allowed at one contact with the world in space, and not for "
-            "strikes in time"
+            "include_covariance must be false except at one contact with the world in space, and without "
+            "SEQUENTIAL_IN_TIME, got true"
         )
         raise NotSupportedError(message)
 

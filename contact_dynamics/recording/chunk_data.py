@@ -24,7 +24,7 @@ def uncompressed(compression: bytes, data: bytes, size: int) -> bytes:
     elif compression == b"lz4":
         pieces = _lz4_pieces(data)
     else:
-        message = f"compression: found {compression!r}, allowed is zstd, lz4 or none"
+        message = f"compression must be zstd, lz4 or none, got {compression!r}"
         raise ValueError(message)
     found: list[bytes] = []
     for piece in pieces:

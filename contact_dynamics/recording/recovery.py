@@ -76,7 +76,7 @@ def recover(path: Path, folder: Path, *, on_progress: Callable[[int], object] = 
     paths = BagReader(path).paths
     for each in paths:
         if ".db3" in each.name:
-            message = f"{each}: found SQLite, allowed is MCAP; `sqlite3 {each.name} .recover` repairs it"
+            message = f"{each} must be MCAP, got SQLite, which `sqlite3 {each.name} .recover` repairs"
             raise NotSupportedError(message)
     try:
         folder.mkdir(parents=True)

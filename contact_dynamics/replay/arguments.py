@@ -264,14 +264,14 @@ def _sentence(text: str) -> str:
 def _not_negative(text: str) -> float:
     value = _number(text)
     if not 0.0 <= value < math.inf:
-        raise argparse.ArgumentTypeError(f"found {text}, allowed is a number >= 0")
+        raise argparse.ArgumentTypeError(f"must be >= 0, got {text}")
     return value
 
 
 def _positive(text: str) -> float:
     value = _number(text)
     if not 0.0 < value < math.inf:
-        raise argparse.ArgumentTypeError(f"found {text}, allowed is a number > 0")
+        raise argparse.ArgumentTypeError(f"must be > 0, got {text}")
     return value
 
 
@@ -279,4 +279,4 @@ def _number(text: str) -> float:
     try:
         return float(text)
     except ValueError:
-        raise argparse.ArgumentTypeError(f"found {text}, allowed is a number") from None
+        raise argparse.ArgumentTypeError(f"must be a number, got {text}") from None

@@ -116,7 +116,7 @@ def _topics(text: str) -> dict[str, str]:
     body, _, names = text.partition("=")
     found = names.split(",")
     if not body or not all(found) or len(found) > 2:
-        message = f"--topics: found {text!r}, allowed are BODY=ODOMETRY and BODY=POSE,TWIST"
+        message = f"--topics must be BODY=ODOMETRY or BODY=POSE,TWIST, got {text!r}"
         raise ConfigurationError(message)
     odometry, pose, twist = ("", *found) if len(found) == 2 else (found[0], "", "")
     key = f"body.{body}"

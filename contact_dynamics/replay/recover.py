@@ -20,7 +20,7 @@ def main(arguments: list[str]) -> int:
     parser = recover_parser()
     given = parser.parse_args(arguments)
     if given.log is None:  # argparse would complain of this before it complains of a mistyped option
-        parser.error("found no LOG, needed is one")
+        parser.error("a LOG is required")
     path = Path(given.log)
     named = path.resolve() if path.name in {"", ".."} else path  # . and .. are no names
     folder = Path(given.out) if given.out else named.with_name(f"{named.name.partition('.')[0]}_recovered")

@@ -50,7 +50,7 @@ def main(arguments: list[str]) -> int:
     ours, of_ros = _split(arguments)
     given = parser.parse_args(ours)
     if of_ros and given.mode != PUBLISH:
-        parser.error(f"--ros-args: found with {given.mode}, allowed is it with {PUBLISH}")
+        parser.error(f"--ros-args must be used with {PUBLISH}, got {given.mode}")
     if given.mode == PUBLISH and given.rate != 1.0 and not stamps_as_logged(given):
         parser.error(
             f"--rate must be 1 where stamps are moved to the present, got {given.rate:g}: velocities do not "
@@ -58,7 +58,7 @@ def main(arguments: list[str]) -> int:
         )
     if given.mode == VERIFY:
         if not given.logs:  # argparse would complain of this before it complains of a mistyped option
-            parser.error("found no LOG, needed is one at least")
+            parser.error("at least one LOG is required")
         return _verify(given)
     lacking = _lacking(given.mode)
     if lacking:

@@ -62,7 +62,7 @@ def check_definitions(path: Path, definitions: Mapping[str, str], version: str |
     ]
     if differing:
         raise NotSupportedError(
-            f"{path}: found other fields of {', '.join(differing)} than this program knows: another state of "
-            f"contact_dynamics wrote the log (version {version or 'not told'}), allowed is to replay "
-            "it with that"
+            f"{path}: fields of {', '.join(differing)} must be those of this version, got others: the "
+            f"log was written by another version of contact_dynamics ({version or 'not recorded'}); replay "
+            "it with that one"
         )

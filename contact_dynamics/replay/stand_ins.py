@@ -59,8 +59,8 @@ def _put(module: ModuleType, name: str, part: str, message_type: type[Message]) 
         setattr(owner, name, message_type)
     elif stands.FIELDS != message_type.FIELDS:
         raise NotSupportedError(
-            f"{message_type.__name__}: found other fields in this log than in the one before, "
-            "allowed is to replay each log in a process of its own"
+            f"{message_type.__name__}: logs replayed together must have the same fields, got other fields "
+            "than in the log before; replay each log in a process of its own"
         )
 
 

@@ -128,16 +128,14 @@ def solid_of(
     check_has_shape(body)
     if body.shape.rims:
         message = (
-            f"body {body.name!r}: found a shape with rims, allowed for a whole toss are corners and balls: "
-            "give a rim as a polygon of corners"
+            f"body {body.name!r} must have corners or be made of balls for a whole toss, got a shape with "
+            "rims: give a rim as a polygon of corners"
         )
         raise NotSupportedError(message)
     surfaces = [each for each in world.surfaces if isinstance(each, Surface)]
     for each in world.surfaces:
         if not isinstance(each, Surface):
-            message = (
-                f"surface {each.name!r}: found an obstacle, allowed for a whole toss are flats without end"
-            )
+            message = f"surface {each.name!r} must be an unbounded flat for a whole toss, got an obstacle"
             raise NotSupportedError(message)
     flats = []
     for surface, factor in zip(surfaces, factors_of(lasting_factors, surfaces).tolist(), strict=True):

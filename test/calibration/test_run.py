@@ -21,6 +21,7 @@ from contact_dynamics.evaluation.command import NOTHING
 from contact_dynamics.measured.read_toss import DEFAULT_RECORDING
 from contact_dynamics.nodes.parameter_file import ParameterFile
 from contact_dynamics.nodes.parameters import read_server_parameters
+from message_words import says
 
 needs_yaml = pytest.mark.skipif(
     importlib.util.find_spec("yaml") is None, reason="PyYAML of requirements/test.txt is not installed"
@@ -107,7 +108,7 @@ def test_a_configuration_that_does_not_count_is_told(
 ) -> None:
     arguments = [str(DEFAULT_RECORDING), "--no-trajectories", "--config"]
     assert main([*arguments, str(tmp_path / "nowhere.yaml")]) == NOTHING
-    assert "--config: found no file" in capsys.readouterr().err
+    assert says(capsys.readouterr().err, "--config must be ..., got no file")
     (tmp_path / "server.yaml").write_text("/**:\n  ros__parameters: {}\n", encoding="utf-8")
     assert main([*arguments, str(tmp_path / "server.yaml")]) in {0, 1}
     assert "--config does not count for the body and surface of a toss" in capsys.readouterr().err
@@ -151,4 +152,4 @@ def test_an_unknown_parameter_is_refused_with_those_that_are_known(
 ) -> None:
     with pytest.raises(SystemExit):
         calibrate_parser().parse_args(["log", "--free", "friction,mass"])
-    assert "found 'mass', allowed is friction, restitution" in capsys.readouterr().err
+    assert says(capsys.readouterr().err, "must be one of friction, restitution..., got 'mass'")

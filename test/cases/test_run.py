@@ -9,6 +9,7 @@ import pytest
 from contact_dynamics.cases import run
 from contact_dynamics.cases.every_case import CASES
 from contact_dynamics.cases.report import shown
+from message_words import says
 
 
 def test_it_prints_the_exact_answer_and_ours(capsys: pytest.CaptureFixture[str]) -> None:
@@ -41,7 +42,7 @@ def test_an_unknown_name_is_refused_with_those_that_there_are(capsys: pytest.Cap
         run.main(["ladders"])
     assert ended.value.code == 2
     told = capsys.readouterr().err
-    assert "found ladders, allowed are creeping_capsule" in told
+    assert says(told, "must be one of creeping_capsule..., got ladders")
 
 
 @pytest.mark.parametrize(

@@ -343,11 +343,11 @@ ALONG = Rotation.from_euler("x", 90.0, degrees=True)  # the edge of the table at
 
 
 def test_a_rim_at_an_edge_is_refused() -> None:
-    with pytest.raises(NotSupportedError, match="shape: found a rim at an edge of obstacle 'it'"):
+    with pytest.raises(NotSupportedError, match=r"shape must .*, got a rim at an edge of obstacle 'it'"):
         find_contacts(
             body(CAN), at((1.06, 0.0, 0.08), ALONG), World(surfaces=(TABLE,)), distance_tolerance=1e-3
         )
-    with pytest.raises(NotSupportedError, match="shape: found a rim"):
+    with pytest.raises(NotSupportedError, match=r"shape must .*, got a rim"):
         drop(at((1.06, 0.0, 0.5), ALONG), CAN)
     assert len(find_contacts(body(CAN), at((1.061, 0.0, 0.081), ALONG), World(surfaces=(TABLE,)))) == 0
 
@@ -415,7 +415,7 @@ def test_every_contact_is_on_both_and_where_they_are_nearest(
 
 def test_a_body_that_hovers_is_refused() -> None:
     still = free_motion(STUFF, at((0.0, 0.0, 0.05 + 1e-8), w=(0.0, 0.0, 30.0)), gravity_W=np.zeros(3))
-    with pytest.raises(NotSupportedError, match="obstacle 'it': found a body close to it"):
+    with pytest.raises(NotSupportedError, match=r"obstacle 'it': .*, got a body close to it"):
         first_touch(still, BRICK, TABLE, horizon=10.0)
 
 
@@ -430,7 +430,7 @@ def test_what_is_no_obstacle_is_refused(vertices: object) -> None:
 
 def test_a_body_without_shape_is_refused() -> None:
     nothing = Body(name="body", mass_properties=STUFF)
-    with pytest.raises(NoContactError, match="'body': found no shape"):
+    with pytest.raises(NoContactError, match=r"'body' must have .*"):
         find_contacts(nothing, at((0.0, 0.0, 0.0)), World(surfaces=(TABLE,)))
-    with pytest.raises(InvalidFieldError, match="shape_B: found nothing"):
+    with pytest.raises(InvalidFieldError, match=r"shape_B must be .*, got nothing"):
         drop(at((0.0, 0.0, 0.0)), ConvexShape())

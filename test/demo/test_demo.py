@@ -29,6 +29,7 @@ from contact_dynamics.measured.read_toss import DEFAULT_RECORDING, read_toss
 from contact_dynamics.measured.recorded_toss import Toss
 from contact_dynamics.recording import BagReader, service_calls
 from contact_dynamics.replay.verify import verify_log
+from message_words import says
 
 ROOT = Path(__file__).parents[2]
 BESIDE = ROOT.parent / "shared" / "data" / "cube_tosses" / "tosses.npz"
@@ -435,10 +436,10 @@ def test_the_usage_shows_what_must_be_given(
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (["--toss", "nowhere.csv"], "TOSS: found no file 'nowhere.csv'"),
-        (["--toss", f"{ROOT / 'README.md'}"], "README.md, allowed is a toss recording"),
-        (["--toss", f"{DEFAULT_RECORDING}#1"], "allowed is no index: a .csv holds one toss"),
-        (["--output", f"{ROOT / 'README.md'}"], f"{str(ROOT / 'README.md')!r}, allowed is a folder"),
+        (["--toss", "nowhere.csv"], "TOSS must be ..., got no file 'nowhere.csv'"),
+        (["--toss", f"{ROOT / 'README.md'}"], "must be a toss recording..., got ...README.md"),
+        (["--toss", f"{DEFAULT_RECORDING}#1"], "must be no index: a .csv holds one toss"),
+        (["--output", f"{ROOT / 'README.md'}"], f"must be a folder..., got ...{str(ROOT / 'README.md')!r}"),
     ],
 )
 def test_a_wrong_argument_is_named_and_nothing_is_started(
@@ -446,7 +447,7 @@ def test_a_wrong_argument_is_named_and_nothing_is_started(
 ) -> None:
     assert main(["demo", *arguments]) == 2
     printed = capsys.readouterr()
-    assert words in printed.err
+    assert says(printed.err, words)
     assert printed.out == ""
 
 
@@ -464,4 +465,4 @@ def test_the_toss_publisher_takes_the_arguments_that_ros_launch_appends() -> Non
         check=False,
     )  # fmt: skip
     assert done.returncode == 2
-    assert "found no file 'nowhere.csv'" in done.stderr
+    assert "got no file 'nowhere.csv'" in done.stderr

@@ -21,6 +21,7 @@ from contact_dynamics.evaluation.run import main
 from contact_dynamics.evaluation.settings import Settings
 from contact_dynamics.measured.read_toss import DEFAULT_RECORDING, read_toss
 from evaluation.made_logs import BRIEF, parameters_of_toss, write_log
+from message_words import says
 from replay.asked_log import BLOCKED
 from running_server import ROOT
 from viewing.drawn import read_drawn
@@ -100,7 +101,7 @@ def test_a_folder_is_searched_and_what_is_bad_in_it_is_named(
     assert printed.startswith("1 recordings, 480 states")
     assert "not evaluated: 2 recordings" in printed
     assert f"{tmp_path / 'bad.mcap'}: NotALogError" in printed
-    assert f"{tmp_path / 'nowhere'}: found no such file or folder" in printed
+    assert says(printed, f"{tmp_path / 'nowhere'} must be ..., got no such file or folder")
     assert main([str(tmp_path / "bad.mcap"), *QUICK]) == 2
 
 
@@ -153,7 +154,7 @@ def test_what_cannot_be_read_or_written_is_said_before_the_work(
     monkeypatch.chdir(tmp_path)
     assert main([BRICK, *arguments]) == 2
     told = capsys.readouterr()
-    assert named in told.err
+    assert says(told.err, named)
     assert told.out == ""
 
 
@@ -161,8 +162,8 @@ def test_what_cannot_be_read_or_written_is_said_before_the_work(
     ("arguments", "named"),
     [
         (["--horizons", "20,soon"], "found 'soon'"),
-        (["--laws", "hooke"], "found 'hooke', allowed is poisson, newton, energetic, in time"),
-        (["--jobs", "0"], "found '0', allowed is a whole number >= 1"),
+        (["--laws", "hooke"], "must be poisson, newton, energetic, in time..., got 'hooke'"),
+        (["--jobs", "0"], "must be a whole number >= 1..., got '0'"),
         ([], "found no RECORDING"),
     ],
 )
@@ -171,7 +172,7 @@ def test_a_wrong_argument_is_named(
 ) -> None:
     with pytest.raises(SystemExit):
         main([*([BRICK] if arguments else []), *arguments])
-    assert named in capsys.readouterr().err
+    assert says(capsys.readouterr().err, named)
 
 
 @pytest.fixture(scope="module")

@@ -243,14 +243,14 @@ def test_bodies_refuse_what_they_cannot_mean() -> None:
     body, state = MassProperties(mass=1.0, I_B=np.eye(3)), moving([0.0, 0.0, 0.0], [0.0, 0.0, -1.0])
     contacts = contacts_at([[0.0, 0.0, -1.0]], normal=(0.0, 0.0, 1.0), friction=0.0, restitution=0.0)
     for pairs, text in (
-        ([], r"pairs: found \[\]"),
-        ([(0, 0)], r"pairs\[0\]: found \(0, 0\)"),
+        ([], r"pairs must be .*, got \[\]"),
+        ([(0, 0)], r"pairs\[0\] must be .*, got \(0, 0\)"),
         ([(0, 2)], r"pairs\[0\]"),
         ([(-1, None)], r"pairs\[0\]"),
     ):
         with pytest.raises(InvalidFieldError, match=text):
             bodies_impact([body, body], [state, state], contacts, pairs)
-    with pytest.raises(InvalidFieldError, match="states: found 1 states"):
+    with pytest.raises(InvalidFieldError, match=r"states must be .*, got 1 states"):
         bodies_impact([body, body], [state], contacts, [(0, 1)])
     with pytest.raises(SeparatingContactError):
         bodies_impact([body, body], [moving([0, 0, 0], [0, 0, 1.0]), state], contacts, [(0, 1)])

@@ -154,7 +154,7 @@ def test_beyond_the_horizon_is_no_contact() -> None:
 
 
 def test_a_body_without_corners_is_refused() -> None:
-    with pytest.raises(InvalidFieldError, match=r"^shape_B: found nothing, allowed is a shape or at least"):
+    with pytest.raises(InvalidFieldError, match=r"^shape_B must be a shape or at least.*, got nothing"):
         first_contact(toss(1.0), np.zeros((0, 3)), FLOOR, UP, horizon=1.0)
 
 

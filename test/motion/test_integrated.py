@@ -343,7 +343,7 @@ def test_a_past_that_grows_without_bounds_is_refused_where_it_does() -> None:
     """The speed under v' = -q/m v |v| backwards from v0 is infinite at t = -m / (q v0)."""
     motion = forced_motion(SPHERE, state(v=(4.0, 0.0, 0.0)), drag=Drag(quadratic=1.0), gravity_W=np.zeros(3))
     assert motion.state_at(-0.49).v_WB_W[0] == pytest.approx(4.0 / (1.0 - 0.98), rel=1e-9)
-    with pytest.raises(InvalidFieldError, match=r"seconds: found -1 s.* -0\.5 s"):
+    with pytest.raises(InvalidFieldError, match=r"seconds must be .* -0\.5 s, got -1 s"):
         motion.at([0.0, -1.0])
 
 

@@ -129,11 +129,11 @@ def test_without_forces_it_is_the_free_fit_in_the_fall_that_remains() -> None:
 
 def test_misuse_is_refused_by_name() -> None:
     states = window(FORCES["drag"])
-    with pytest.raises(InvalidFieldError, match="states: found 2 states"):
+    with pytest.raises(InvalidFieldError, match=r"states must be .*, got 2 states"):
         fit_motion(BODY, states[-2:], **FORCES["drag"])
     with pytest.raises(InvalidFieldError, match="gravity"):
         fit_motion(BODY, states, gravity_W=[math.nan, 0.0, 0.0], **FORCES["drag"])
-    with pytest.raises(InvalidFieldError, match=r"seconds: found .* the motion stays within bounds"):
+    with pytest.raises(InvalidFieldError, match=r"seconds must be .* the motion stays within bounds"):
         fit_motion(BODY, states, drag=Drag(quadratic=50.0))
     with pytest.raises(InvalidFieldError, match=r"no further than 2 steps"):
         fit_motion(BODY, states, max_steps=2, **FORCES["drag"])

@@ -43,7 +43,7 @@ def test_more_contacts_than_the_interface_allows_are_counted() -> None:
     at = data.index((10_000).to_bytes(4, "little"))
     data[at : at + 4] = (10_001).to_bytes(4, "little")
     msg = deserialize_message(bytes(data[: at + 8]) + bytes(8) + bytes(data[at + 8 :]), ContactSetMsg)
-    with pytest.raises(TooLargeError, match="contacts: found 10001 contacts, allowed is at most 10000"):
+    with pytest.raises(TooLargeError, match=r"contacts must be at most 10000.*, got 10001 contacts"):
         contacts_from_msg(msg)
 
 
@@ -99,11 +99,11 @@ def test_kinds_alone_and_one_curvature_in_all_directions() -> None:
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
-        ({"kinds": [0, 1]}, r"contacts\.kinds: found 2 kinds"),
+        ({"kinds": [0, 1]}, r"contacts\.kinds must be .*, got 2 kinds"),
         ({"kinds": [0, 1, 3]}, r"contacts\.kinds\[2\]"),
-        ({"kinds": [2, 0, 0]}, r"contacts\.body_curvatures: found 0 numbers"),
+        ({"kinds": [2, 0, 0]}, r"contacts\.body_curvatures must be .*, got 0 numbers"),
         ({"kinds": [2, 0, 0], "body_curvatures": [1.0, 0.0, 0.0]}, r"contacts\.surface_curvatures"),
-        ({"body_curvatures": [1.0, 0.0, 0.0]}, r"contacts\.kinds: found none, with curvatures"),
+        ({"body_curvatures": [1.0, 0.0, 0.0]}, r"contacts\.kinds must be .*, got none, with curvatures"),
         (
             {
                 "kinds": [2] * 3,

@@ -96,7 +96,7 @@ def test_zero_is_a_number_and_an_empty_list_is_none(service: Any, field: str, at
 def test_an_inertia_without_mass_is_not_taken_for_none() -> None:
     request = PredictTumbling.Request(body_name="cube")
     request.inertia.ixx = 0.1
-    with pytest.raises(InvalidFieldError, match="mass: found 0"):
+    with pytest.raises(InvalidFieldError, match=r"mass must be .*, got 0"):
         read(request)
 
 
@@ -193,20 +193,20 @@ READ_WITH: dict[str, dict[str, Any]] = {
 @pytest.mark.parametrize(
     ("service", "path", "value", "error", "words"),
     [
-        (PredictTumbling, "state_source", 7, InvalidFieldError, "state_source: found 7"),
-        (PredictTumbling, "body_name", "dog", UnknownBodyError, "found 'dog'"),
-        (PredictTumbling, "body_name", "", InvalidFieldError, "body_name: found nothing"),
-        (PredictTumbling, "body_name", "x" * 300, TooLargeError, "body_name: found 300 characters"),
+        (PredictTumbling, "state_source", 7, InvalidFieldError, "state_source must be .*, got 7"),
+        (PredictTumbling, "body_name", "dog", UnknownBodyError, "got 'dog'"),
+        (PredictTumbling, "body_name", "", InvalidFieldError, "body_name must be .*, got nothing"),
+        (PredictTumbling, "body_name", "x" * 300, TooLargeError, "body_name must be .*, got 300 characters"),
         (
             PredictTumbling,
             "fit_window",
             0.1,
             InvalidFieldError,
-            "fit_window: found 0.1, allowed is the",
+            "fit_window must be left out unless state_source is STATE_NEWEST",
         ),
-        (PredictTumbling, "state.header.frame_id", "map", FrameMismatchError, "found 'map'"),
-        (PredictTumbling, "sampling", 9, InvalidFieldError, r"sampling: found 9, allowed is AT_TIMES \(0\)"),
-        (PredictTumbling, "gravity", 9, InvalidFieldError, "gravity: found 9"),
+        (PredictTumbling, "state.header.frame_id", "map", FrameMismatchError, "got 'map'"),
+        (PredictTumbling, "sampling", 9, InvalidFieldError, r"sampling must be AT_TIMES \(0\).*, got 9"),
+        (PredictTumbling, "gravity", 9, InvalidFieldError, "gravity must be .*, got 9"),
         (
             PredictTumbling,
             "applied_wrench.force.x",
@@ -221,17 +221,29 @@ READ_WITH: dict[str, dict[str, Any]] = {
             InvalidFieldError,
             r"applied_wrench\.torque",
         ),
-        (PredictContactMode, "contact_source", 9, InvalidFieldError, "contact_source: found 9"),
-        (PredictContactMode, "problem", 9, InvalidFieldError, "problem: found 9"),
-        (PredictContactMode, "friction_facets", [2], InvalidFieldError, "friction_facets: found 2"),
-        (PredictImpact, "restitution_law", 9, InvalidFieldError, "restitution_law: found 9"),
-        (PredictImpact, "several_contacts_law", 9, InvalidFieldError, "several_contacts_law: found 9"),
-        (PredictImpact, "other_inertia.m", -1.0, InvalidFieldError, "mass: found -1"),
-        (PredictImpact, "velocity_tolerance", [-1.0], InvalidFieldError, "velocity_tolerance: found -1"),
-        (PredictTumbling, "rate", [0.0], InvalidFieldError, "rate: found 0"),
-        (PredictContactMode, "margin_length", [0.0], InvalidFieldError, "margin_length: found 0"),
-        (PredictImpact, "strike_window", [0.0], InvalidFieldError, "strike_window: found 0"),
-        (PredictImpact, "max_strikes", [0], InvalidFieldError, "max_strikes: found 0"),
+        (PredictContactMode, "contact_source", 9, InvalidFieldError, "contact_source must be .*, got 9"),
+        (PredictContactMode, "problem", 9, InvalidFieldError, "problem must be .*, got 9"),
+        (PredictContactMode, "friction_facets", [2], InvalidFieldError, "friction_facets must be .*, got 2"),
+        (PredictImpact, "restitution_law", 9, InvalidFieldError, "restitution_law must be .*, got 9"),
+        (
+            PredictImpact,
+            "several_contacts_law",
+            9,
+            InvalidFieldError,
+            "several_contacts_law must be .*, got 9",
+        ),
+        (PredictImpact, "other_inertia.m", -1.0, InvalidFieldError, "mass must be .*, got -1"),
+        (
+            PredictImpact,
+            "velocity_tolerance",
+            [-1.0],
+            InvalidFieldError,
+            "velocity_tolerance must be .*, got -1",
+        ),
+        (PredictTumbling, "rate", [0.0], InvalidFieldError, "rate must be .*, got 0"),
+        (PredictContactMode, "margin_length", [0.0], InvalidFieldError, "margin_length must be .*, got 0"),
+        (PredictImpact, "strike_window", [0.0], InvalidFieldError, "strike_window must be .*, got 0"),
+        (PredictImpact, "max_strikes", [0], InvalidFieldError, "max_strikes must be .*, got 0"),
     ],
 )
 def test_an_error_names_the_field_of_the_request(

@@ -122,11 +122,12 @@ def test_a_frame_is_found_up_and_down_the_tree() -> None:
     expected = np.linalg.inv(matrix(*base_world)) @ matrix(*base_tool) @ matrix([0, 0, 1], np.eye(4)[3])
     np.testing.assert_allclose(matrix(found.p, found.q), expected, rtol=0.0, atol=ROUNDING)
     with pytest.raises(
-        FrameMismatchError, match="frame: found 'tool', whose frame 'tool' was last told at 5 ns"
+        FrameMismatchError,
+        match=r"frame must be .*, got 'tool', whose frame 'tool' was last published at 5 ns",
     ):
         tree.pose("tool", in_frame="world", stamp_ns=6, field="frame")
     with pytest.raises(
-        FrameMismatchError, match="frame: found 'cup', allowed is 'world', or a frame with a known"
+        FrameMismatchError, match=r"frame must be 'world', or a frame with a known.*, got 'cup'"
     ):
         tree.pose("cup", in_frame="world", stamp_ns=5, field="frame")
 
@@ -148,7 +149,7 @@ def test_a_tree_that_bites_its_tail_has_an_end() -> None:
     [
         (
             transform("world", "", 0, [0, 0, 0], [0, 0, 0, 1]),
-            r"transforms\[0\]\.child_frame_id: found nothing",
+            r"transforms\[0\]\.child_frame_id must be .*, got nothing",
         ),
         (
             transform("world", "a", 0, [0, 0, math.nan], [0, 0, 0, 1]),
@@ -177,7 +178,7 @@ def test_states_in_a_cameras_frame_are_turned_into_the_world() -> None:
         stamp_ns=STATE.stamp_ns,
     )
     msg = odometry_from_body_state(seen, world_frame="camera", child_frame="brick_link", p_FB_F=CENTER)
-    with pytest.raises(FrameMismatchError, match=r"header\.frame_id: found 'camera', allowed is 'world'"):
+    with pytest.raises(FrameMismatchError, match=r"header\.frame_id must be 'world'.*, got 'camera'"):
         read(msg)
     known.static.add(transforms(transform("world", "camera", 0, *CAMERA)), is_static=True)
     same_state(read(msg), STATE)
@@ -273,7 +274,7 @@ def test_odometry_of_another_frame_than_the_bodys_is_refused() -> None:
     known = {"world_frame": "world", "p_FB_F": CENTER}
     assert read(odometry_from_body_state(STATE, child_frame="brick_link", **known)) is not None
     assert read(odometry_from_body_state(STATE, child_frame="", **known)) is not None
-    allowed = "child_frame_id: found 'base_link', allowed is 'brick_link'"
+    allowed = "child_frame_id must be 'brick_link'.*, got 'base_link'"
     with pytest.raises(FrameMismatchError, match=allowed):
         read(odometry_from_body_state(STATE, child_frame="base_link", **known))
 
@@ -370,7 +371,7 @@ def test_half_a_turn_within_the_window_is_refused() -> None:
     (read,) = POSE.readers(settings(window=0.7))
     for i in range(50):
         read(flying(0.0125 * i)[0])
-    words = r"pose\.orientation: found a turn by 3\.19 rad within 0\.638 s, allowed is less than half a turn"
+    words = r"pose\.orientation must be less than half a turn.*, got a turn by 3\.19 rad within 0\.638 s"
     with pytest.raises(InvalidFieldError, match=words):
         [read(flying(0.0125 * i)[0]) for i in (50, 51, 52)]
 
@@ -380,7 +381,7 @@ def test_half_a_turn_while_poses_are_missing_is_refused() -> None:
     (read,) = POSE.readers(settings(window=0.15))
     for i in range(20):
         read(flying(0.01 * i)[0])
-    words = r"pose\.orientation: found 0\.71 s without a pose, at about 5 rad/s, allowed is less than half"
+    words = r"pose\.orientation must be less than half.*, got 0\.71 s without a pose, at about 5 rad/s"
     with pytest.raises(InvalidFieldError, match=words):
         read(flying(0.9)[0])
 
@@ -406,7 +407,8 @@ def test_a_bodys_frame_in_the_tree_is_its_pose() -> None:
 def test_a_moving_frame_of_another_time_is_refused_by_name() -> None:
     (read,) = TF.readers(settings())
     with pytest.raises(
-        FrameMismatchError, match="child_frame_id: found 'brick_link', whose frame 'gripper' was last"
+        FrameMismatchError,
+        match=r"child_frame_id must be .*, got 'brick_link', whose frame 'gripper' was last",
     ):
         read(
             transforms(

@@ -18,6 +18,7 @@ from rclpy.parameter import Parameter
 from contact_dynamics.recording import BagReader
 from contact_dynamics.replay.verify import verify_log
 from contact_dynamics_interfaces.srv import PredictImpact, PredictTumbling
+from message_words import says
 from running_server import PATIENCE_S, PATIENT, ROOT, SERVICES, Client, environment, process
 
 NODE = "/contact_dynamics"
@@ -96,17 +97,19 @@ def test_a_changed_friction_counts_from_the_next_answer_on_and_replay_reproduces
 
 def test_a_configuration_is_checked_as_a_whole_and_refused_as_a_whole(configured: Configured) -> None:
     refused = configured.set(surface__floor__friction=0.1, surface__floor__restitution=1.5)
-    assert refused == "surface.floor.restitution: found 1.5, allowed is a number in [0, 1]"
+    assert refused == "surface.floor.restitution must be in [0, 1]..., got 1.5"
     assert configured.double("surface.floor.friction") == 0.3
     assert configured.set(body__brick__inertia=[1.0, 0.1, 0.1, 0.0, 0.0, 0.0]).startswith(
         "body.brick.inertia"
     )
     assert "the nearest is surface.floor.friction" in configured.set(surface__floor__fricton=0.1)
-    assert "allowed is 0 to 10000" in configured.set(horizon=-1.0)
+    assert "must be in [0, 10000]" in configured.set(horizon=-1.0)
     refused = configured.set(bodies=["brick", "cup"])
-    assert refused == "body.cup.mass: found None, needed is: Mass, kg."
+    assert refused == "body.cup.mass must be ..., got None"
     refused = configured.set(body__brick__odometry_topic="/other", log=False)
-    assert refused.startswith("log, the topics of body.brick: found a change while the server is configured")
+    assert says(
+        refused, "log, the topics of body.brick must be ..., got a change while the server is configured"
+    )
     assert configured.client.ask(slide()).contacts.frictions[0] == 0.3
     assert_reproduced(configured, questions=1)
 
@@ -171,7 +174,7 @@ def test_fewer_states_are_kept_from_now_on(configured: Configured) -> None:
     for _ in range(3):
         publish()
     client.spin_until(lambda: client.ask(question).status == PredictTumbling.Response.NO_STATE)
-    assert "max_states: found 0" in configured.set(max_states=0)
+    assert says(configured.set(max_states=0), "max_states must be ..., got 0")
     assert_reproduced(configured, questions=2)
 
 
@@ -196,7 +199,7 @@ def test_ros_own_way_to_set_one_parameter_works(configured: Configured) -> None:
     taken, refused = configured.call(SetParameters, "set_parameters", request).results
     assert taken.successful
     assert not refused.successful
-    assert refused.reason == "surface.floor.friction: found -0.9, allowed is a number >= 0"
+    assert refused.reason == "surface.floor.friction must be >= 0..., got -0.9"
 
 
 def test_each_file_of_a_log_says_how_its_part_is_configured(tmp_path: Path) -> None:

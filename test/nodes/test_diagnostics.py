@@ -69,8 +69,8 @@ def test_a_body_of_which_nothing_came(monitor: Monitor) -> None:
 @pytest.mark.parametrize(
     ("wrong", "reason"),
     [
-        ({"frame": "map"}, "header.frame_id: found 'map'"),
-        ({"child": "cat"}, "child_frame_id: found 'cat'"),
+        ({"frame": "map"}, "header.frame_id must be ..., got 'map'"),
+        ({"child": "cat"}, "child_frame_id must be ..., got 'cat'"),
         ({"x": math.nan}, "nan"),
         ({"ahead_ns": HOUR_NS}, "ahead of the clock"),
     ],

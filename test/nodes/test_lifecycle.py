@@ -177,7 +177,7 @@ def test_a_log_whose_disk_is_not_mounted_is_refused_and_written_once_it_is(tmp_p
 def test_a_log_that_nobody_can_write_is_refused_by_name(where: str, tmp_path: Path) -> None:
     (tmp_path / "link").symlink_to(tmp_path / "gone")
     (tmp_path / "file").touch()
-    with pytest.raises(ConfigurationError, match=r"log_directory: found .*, allowed is a folder to write to"):
+    with pytest.raises(ConfigurationError, match=r"log_directory must be a folder to write to.*, got .*"):
         Log(where.format(tmp_path), run={}, limits=UNLIMITED, on_problem=print, on_notice=print)
 
 

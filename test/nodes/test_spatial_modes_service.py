@@ -12,6 +12,7 @@ import pytest
 from nav_msgs.msg import Odometry
 
 from contact_dynamics_interfaces.srv import PredictContactMode
+from message_words import says
 from running_server import Client, server_and_client
 
 G = 9.80665
@@ -187,7 +188,7 @@ def test_a_planar_question_about_it_is_refused_only_where_the_plane_is_left(clie
     answer = client.ask(request)
     assert answer.status == answer.OUT_OF_PLANE
     assert answer.message == (
-        "state: found 0.02 m/s out of the plane with normal [0.0, -1.0, 0.0], allowed is at most 1e-06 m/s"
+        "state must be at most 1e-06 m/s..., got 0.02 m/s out of the plane with normal [0.0, -1.0, 0.0]"
     )
     request.out_of_plane_tolerance = [0.05]
     answer = client.ask(request)
@@ -301,13 +302,13 @@ def test_sets_beyond_reason_are_refused_by_name_and_not_by_silence(client: Clien
     many = explicit([(1.0, 0.1 * i, -1.0) for i in range(1001)], 0.5)
     answer = client.ask(many)
     assert answer.status == answer.TOO_LARGE
-    assert "contacts: found 1001 contacts, allowed is at most 1000" in answer.message
+    assert says(answer.message, "contacts must be at most 1000..., got 1001 contacts")
     ring = [2.0 * math.pi * i / 65 for i in range(65)]
     request = explicit([(math.cos(a), math.sin(a), -1.0) for a in ring], 0.5)
     request.problem = request.SPATIAL
     answer = client.ask(request)
     assert answer.status == answer.TOO_LARGE
-    assert "contacts: found 65" in answer.message
+    assert says(answer.message, "contacts must be ..., got 65")
 
 
 @pytest.mark.parametrize(

@@ -12,6 +12,7 @@ from scipy.spatial.transform import Rotation
 
 from contact_dynamics_interfaces.msg import Poinsot
 from contact_dynamics_interfaces.srv import PredictTumbling
+from message_words import says
 from running_server import Client
 
 G = 9.80665
@@ -210,9 +211,7 @@ def test_what_a_torque_spins_up_beyond_reason_is_refused(client: Client) -> None
     request.times = [60.0]
     answer = client.ask(request)
     assert answer.status == answer.INVALID_FIELD
-    assert (
-        "times: found 60 s, allowed is no further than 6000 steps of the integrator reach" in answer.message
-    )
+    assert "times must be no further than 6000 steps of the integrator reach..., got 60 s" in answer.message
 
 
 def test_an_endless_search_is_refused_rather_than_begun(client: Client) -> None:
@@ -223,7 +222,7 @@ def test_an_endless_search_is_refused_rather_than_begun(client: Client) -> None:
     request.state.pose.position.z = 1.0
     answer = client.ask(request)
     assert answer.status == answer.INVALID_FIELD
-    assert "duration: found 1.59155e+09 turns" in answer.message
+    assert says(answer.message, "duration must be ..., got 1.59155e+09 turns")
 
 
 @pytest.mark.parametrize(
@@ -267,7 +266,7 @@ def test_curves_of_poinsots_picture_on_request(client: Client) -> None:
     request.curve_points = 1_000_000
     answer = client.ask(request)
     assert answer.status == answer.TOO_LARGE
-    assert "curve_points: found 1000000, allowed is at most 10000" in answer.message
+    assert says(answer.message, "curve_points must be at most 10000..., got 1000000")
 
 
 def test_hours_under_drag_are_refused_rather_than_computed(client: Client) -> None:
@@ -275,9 +274,7 @@ def test_hours_under_drag_are_refused_rather_than_computed(client: Client) -> No
     request.linear_drag, request.times = 0.1, [3600.0]
     answer = client.ask(request)
     assert answer.status == answer.INVALID_FIELD
-    assert (
-        "times: found 5729.58 turns of the body ahead, allowed is at most 100 under torque" in answer.message
-    )
+    assert "times must be at most 100 under torque..., got 5729.58 turns of the body ahead" in answer.message
 
 
 def test_flips_near_the_middle_axis_are_told(client: Client) -> None:

@@ -7,6 +7,7 @@ import math
 import pytest
 
 from contact_dynamics_interfaces.srv import PredictContactMode
+from message_words import says
 from running_server import Client
 
 WEIGHT = 9.80665
@@ -82,10 +83,10 @@ def test_margins_in_the_geometry_bracket_where_it_slips(client: Client) -> None:
 @pytest.mark.parametrize(
     ("field", "values", "words"),
     [
-        ("uncertainty_points", [-1e-3], "uncertainty_points: found -0.001"),
-        ("uncertainty_normals", [2.0], "uncertainty_normals: found 2.0"),
-        ("uncertainty_frictions", [0.1, math.nan, 0.1], "uncertainty_frictions[1]: found nan"),
-        ("uncertainty_points", [1e-3, 1e-3], "allowed is one number, or one for each of 3 contacts"),
+        ("uncertainty_points", [-1e-3], "uncertainty_points must be ..., got -0.001"),
+        ("uncertainty_normals", [2.0], "uncertainty_normals must be ..., got 2.0"),
+        ("uncertainty_frictions", [0.1, math.nan, 0.1], "uncertainty_frictions[1] must be ..., got nan"),
+        ("uncertainty_points", [1e-3, 1e-3], "must be one number, or one for each of 3 contacts"),
     ],
 )
 def test_what_is_no_uncertainty_is_refused_by_the_name_of_its_field(
@@ -95,7 +96,7 @@ def test_what_is_no_uncertainty_is_refused_by_the_name_of_its_field(
     setattr(request, field, values)
     answer = client.ask(request)
     assert answer.status == answer.INVALID_FIELD
-    assert words in answer.message
+    assert says(answer.message, words)
 
 
 def test_many_uncertain_contacts_are_too_many(client: Client) -> None:

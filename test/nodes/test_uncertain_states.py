@@ -11,6 +11,7 @@ import pytest
 from nav_msgs.msg import Odometry
 
 from contact_dynamics_interfaces.srv import PredictImpact, PredictTumbling
+from message_words import says
 from running_server import Client, server_and_client
 
 G = 9.80665
@@ -67,7 +68,7 @@ def test_drag_lets_errors_of_velocity_fade(client: Client) -> None:
     request.state.angular_velocity.z, request.times = 10.0, [25.0]
     answer = client.ask(request)
     assert answer.status == answer.INVALID_FIELD
-    assert "times: found 39.7887 turns of the body ahead, allowed is at most 30 with cov" in answer.message
+    assert says(answer.message, "times must be at most 30 with cov..., got 39.7887 turns of the body ahead")
 
 
 def test_an_uncertain_landing_has_probabilities_that_sum_to_one(client: Client) -> None:
@@ -174,4 +175,4 @@ def test_a_window_that_holds_too_little_is_refused(client: Client) -> None:
     answer = client.ask(request)
     assert answer.status in {answer.INVALID_FIELD, answer.STALE_STATE}
     if answer.status == answer.INVALID_FIELD:
-        assert "fit_window: found 1 states, allowed is at least 3" in answer.message
+        assert says(answer.message, "fit_window must be at least 3..., got 1 states")

@@ -34,7 +34,7 @@ from nodes.visualizer_bench import CONFIGURATION, body_state, odometry
     ("values", "words"),
     [
         ({}, "needed is somewhere to draw to"),
-        ({"spawn": True, "serve": True}, "spawn and serve: found 2 ways to a viewer"),
+        ({"spawn": True, "serve": True}, "spawn and serve must be .*, got 2 ways to a viewer"),
         ({"serve": True, "connect": "rerun+http://127.0.0.1:1/proxy"}, "serve and connect"),
         ({"rrd_path": 3}, "rrd_path"),
         ({"rrd_path": "a.rrd", "port": 0}, "port"),
@@ -42,7 +42,7 @@ from nodes.visualizer_bench import CONFIGURATION, body_state, odometry
         ({"rrd_path": "a.rrd", "predictions": 0}, "predictions"),
         ({"rrd_path": "a.rrd", "rrd_file_size": -1}, "rrd_file_size"),
         ({"rrd_path": "a.rrd", "rrd_max_files": -1}, "rrd_max_files"),
-        ({"serve": True, "viewer_memory": "much"}, "viewer_memory: found 'much'"),
+        ({"serve": True, "viewer_memory": "much"}, "viewer_memory must be .*, got 'much'"),
         ({"serve": True, "web_port": 65536}, "web_port"),
     ],
 )

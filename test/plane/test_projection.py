@@ -101,7 +101,8 @@ def test_the_amount_out_of_plane_is_the_speed_left_out(moving: BodyState, amount
     assert out_of_plane_speed(FROM_THE_FRONT, moving, touching) == pytest.approx(amount, abs=1e-16)
     if amount:
         with pytest.raises(
-            OutOfPlaneError, match=rf"state: found {amount:g} m/s out of the plane .*at most 1e-06 m/s"
+            OutOfPlaneError,
+            match=rf"state must be at most 1e-06 m/s, got {amount:g} m/s out of the plane",
         ):
             project_onto_plane(BODY, moving, touching, plane=FROM_THE_FRONT, force_W=WEIGHT, torque_W=NONE)
     project_onto_plane(
@@ -112,9 +113,9 @@ def test_the_amount_out_of_plane_is_the_speed_left_out(moving: BodyState, amount
 def test_what_leans_out_of_the_plane_is_refused_by_name() -> None:
     leaning = np.array([0.0, math.sin(0.02), math.cos(0.02)])
     arguments = {"plane": FROM_THE_FRONT, "force_W": WEIGHT, "torque_W": NONE}
-    with pytest.raises(OutOfPlaneError, match=r"contact normals: found a part of 0\.0199"):
+    with pytest.raises(OutOfPlaneError, match=r"contact normals must be .*, got a part of 0\.0199"):
         project_onto_plane(BODY, state(), contact((0.0, 0.0, 0.0), leaning), **arguments)
-    with pytest.raises(OutOfPlaneError, match=r"applied force: found a part of 0\.0199"):
+    with pytest.raises(OutOfPlaneError, match=r"applied force must be .*, got a part of 0\.0199"):
         project_onto_plane(
             BODY, state(), contact((0.0, 0.0, 0.0)), **{**arguments, "force_W": 20.0 * leaning}
         )

@@ -18,6 +18,7 @@ from contact_dynamics.plots.logged_answers import logged_answers
 from contact_dynamics.plots.run import NO_LOG, NOTHING_DRAWN, main
 from contact_dynamics.questions.impact_answer import ImpactAnswer
 from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact, PredictTumbling
+from message_words import says
 from replay.asked_log import about_many
 from running_server import ROOT, server_and_client
 
@@ -151,4 +152,4 @@ def test_log_and_folder_are_needed(
 def test_a_count_that_is_none_is_refused(most: str, capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit):
         main(["log", "--output", "out", "--most", most])
-    assert f"found {most}, allowed is a whole number >= 1" in capsys.readouterr().err
+    assert says(capsys.readouterr().err, f"must be a whole number >= 1..., got {most}")

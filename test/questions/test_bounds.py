@@ -28,6 +28,7 @@ from contact_dynamics.questions import (
 from contact_dynamics.questions.subject import changed_body
 from contact_dynamics.rigid_body.body import MassProperties
 from contact_dynamics.world import Body
+from message_words import says
 from questions.known_world import CONTEXT, CUBE, SIDE, WORLD, state
 
 FAST_SPIN = (1e9, 1e8, 1e8)  # rad/s, as a broken driver sends
@@ -54,7 +55,7 @@ def ring(count: int) -> ContactSet:
 TOO_LARGE = {
     "a spin that no search keeps up with": (
         ImpactQuestion(body="cube", state=state(1.0, w=FAST_SPIN)),
-        "horizon: found more than 50000 steps of the search",
+        "horizon must be ..., got more than 50000 steps of the search",
     ),
     "steps of a microsecond over contacts that stay": (
         ImpactQuestion(
@@ -62,7 +63,7 @@ TOO_LARGE = {
             state=state(0.5 * SIDE, v=(0.5, 0.0, -0.1), w=(0.0, 0.3, 0.1)),
             several_contacts_law=InTime(hold_step=1e-6),
         ),
-        "strike_window: found more than 50000 steps of the search",
+        "strike_window must be ..., got more than 50000 steps of the search",
     ),
     "a point of the body far away": (
         TumblingQuestion(
@@ -70,7 +71,7 @@ TOO_LARGE = {
             state=state(1.0, w=(0.0, 0.0, 3.0)),
             sampling=UntilPlane(plane_point=[0, 0, 0], plane_normal=[0, 0, 1], body_point=[1e16, 0, 0]),
         ),
-        "duration: found more than 50000 steps",
+        "duration must be ..., got more than 50000 steps",
     ),
     "a thousand contacts at once": (
         ImpactQuestion(
@@ -79,7 +80,7 @@ TOO_LARGE = {
             contacts=ring(1000),
             several_contacts_law=SeveralContactsLaw.SIMULTANEOUS,
         ),
-        "contacts: found 1000 contacts at once",
+        "contacts must be ..., got 1000 contacts at once",
     ),
     "covariances under a drag that stops the body in a millisecond": (
         TumblingQuestion(
@@ -89,7 +90,7 @@ TOO_LARGE = {
             sampling=AtRate(duration=3.0, rate=10.0),
             include_covariance=True,
         ),
-        "times: found 3 s, in which neighbours",
+        "times must be ..., got 3 s, in which neighbours",
     ),
 }
 
@@ -102,27 +103,27 @@ def test_what_takes_too_long_is_refused_by_name(name: str) -> None:
         with pytest.raises(TooLargeError) as refused:
             ask(question, CONTEXT)
         messages.append(str(refused.value))
-    assert messages[0].startswith(words)
+    assert says(messages[0], words)
     assert len(set(messages)) == 1
 
 
 @pytest.mark.parametrize(
     ("question", "words"),
     [
-        (ImpactQuestion(body="cube", state=state(1e300)), "p_WB_W: found 1e+300"),
+        (ImpactQuestion(body="cube", state=state(1e300)), "p_WB_W must be ..., got 1e+300"),
         (
             ImpactQuestion(body="cube", state=state(1e16)),
-            "p_WB_W: found 1e+16, allowed is numbers of at most 1e+15 for contacts",
+            "p_WB_W must be at most 1e+15 for contacts..., got 1e+16",
         ),
         (
             ContactModeQuestion(
                 body="cube", state=state(v=(0.0, 0.0, 1e16)), contacts=ring(3), include_margins=True
             ),
-            "v_WB_W: found 1e+16, allowed is numbers of at most 1e+15 for contacts",
+            "v_WB_W must be at most 1e+15 for contacts..., got 1e+16",
         ),
         (
             ContactModeQuestion(body="cube", state=state(w=(0.0, 0.0, -1e16)), contacts=ring(3)),
-            "w_WB_W: found 1e+16, allowed is numbers of at most 1e+15 for contacts",
+            "w_WB_W must be at most 1e+15 for contacts..., got 1e+16",
         ),
         (
             ContactModeQuestion(
@@ -130,11 +131,11 @@ def test_what_takes_too_long_is_refused_by_name(name: str) -> None:
                 state=state(),
                 contacts=ring(3),
             ),
-            "mass: found 1e-31, allowed is a number from 1e-30 to 1e+30 for contacts",
+            "mass must be in [1e-30, 1e+30] for contacts..., got 1e-31",
         ),
         (
             ContactModeQuestion(body="cube", state=state(), contacts=ring(3), force_W=[-1e100, 0, 0]),
-            "force_W: found 1e+100",
+            "force_W must be ..., got 1e+100",
         ),
         (
             ImpactQuestion(
@@ -144,7 +145,7 @@ def test_what_takes_too_long_is_refused_by_name(name: str) -> None:
                     p_WC_W=[[1.7e308, 0, 0]], normals_W=[[0, 0, 1]], frictions=[0.3], restitutions=[0.0]
                 ),
             ),
-            "contacts.p_WC_W: found 1.7e+308 m",
+            "contacts.p_WC_W must be ..., got 1.7e+308 m",
         ),
         (
             ContactModeQuestion(
@@ -157,20 +158,20 @@ def test_what_takes_too_long_is_refused_by_name(name: str) -> None:
                     restitutions=[0.0, 1.0],
                 ),
             ),
-            "contacts.frictions: found 1e+300, allowed is at most 1e+10",
+            "contacts.frictions must be at most 1e+10..., got 1e+300",
         ),
         (
             ContactModeQuestion(
                 body="cube", state=state(), contacts=ring(3), include_statics=True, margin_length=5e-324
             ),
-            "margin_length: found 4.94066e-324, allowed is a number from 1e-15 to 1e+15",
+            "margin_length must be in [1e-15, 1e+15]..., got 4.94066e-324",
         ),
     ],
 )
 def test_numbers_that_no_contact_has_are_refused_by_name(question: Any, words: str) -> None:
     with pytest.raises(InvalidFieldError) as refused:
         ask(question, CONTEXT)
-    assert str(refused.value).startswith(words)
+    assert says(str(refused.value), words)
 
 
 def test_a_window_of_any_length_takes_what_is_kept() -> None:
@@ -208,6 +209,6 @@ def test_states_that_leave_a_motion_open_are_refused() -> None:
         body=ball, state=PublishedState(fit_window=0.018), drag=Drag(linear_angular=1.0)
     )
     with pytest.raises(
-        InvalidFieldError, match=r"fit_window: found .* numbers that leave a part of the motion open"
+        InvalidFieldError, match=r"fit_window must be .*, got .* numbers that leave a part of the motion open"
     ):
         ask(question, Context(world=WORLD, states=states))

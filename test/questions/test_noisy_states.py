@@ -123,7 +123,7 @@ def test_the_probability_of_rest_is_that_of_chi_squared(deviations_off: float) -
 
 def test_probabilities_need_a_covariance() -> None:
     exact = measured(np.random.default_rng(8), scale=0.0).state
-    with pytest.raises(InvalidFieldError, match=r"state\.covariance: found none"):
+    with pytest.raises(InvalidFieldError, match=r"state\.covariance must be .*, got none"):
         ask(ContactModeQuestion(body="brick", state=exact, include_probabilities=True), CONTEXT)
 
 

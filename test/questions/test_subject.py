@@ -75,10 +75,10 @@ def test_a_stamp_in_the_future_follows_the_free_motion() -> None:
     known = watching(0, 10 * MS, now_ns=20 * MS)
     check_rising(subject_of("cube", PublishedState(stamp_ns=300 * MS), known).state, 300 * MS)
     with pytest.raises(
-        InvalidFieldError, match=r"stamp: found 2\.5 s after the newest state, allowed is at most 2"
+        InvalidFieldError, match=r"stamp must be at most 2.*, got 2\.5 s after the newest state"
     ):
         subject_of("cube", PublishedState(stamp_ns=2510 * MS), known)
-    with pytest.raises(StaleStateError, match=r"0\.600 s old"):
+    with pytest.raises(StaleStateError, match=r"got 0\.600 s"):
         subject_of("cube", PublishedState(stamp_ns=700 * MS), watching(0, now_ns=600 * MS))
 
 
@@ -86,7 +86,7 @@ def test_a_stamp_in_a_gap_is_refused_and_that_of_a_state_is_not() -> None:
     """In half a second without states the body may have struck something."""
     known = watching(0, 600 * MS, now_ns=5000 * MS)
     with pytest.raises(
-        StaleStateError, match=r"the states around it are 0\.600 s apart, allowed is at most 0\.5"
+        StaleStateError, match=r"the states around it must be at most 0\.5 s apart .*, got 0\.600 s"
     ):
         subject_of("cube", PublishedState(stamp_ns=300 * MS), known)
     assert subject_of("cube", PublishedState(stamp_ns=600 * MS), known).state.stamp_ns == 600 * MS
@@ -136,7 +136,7 @@ def test_a_load_is_interpolated_about_its_own_centre_of_mass() -> None:
 
 def test_an_old_state_is_refused_only_by_a_clock() -> None:
     late = 600 * MS
-    with pytest.raises(StaleStateError, match=r"0\.600 s old, allowed is at most 0\.5 s"):
+    with pytest.raises(StaleStateError, match=r"the newest must be at most 0\.5 s old .*, got 0\.600 s"):
         subject_of("cube", PublishedState(), watching(0, now_ns=late))
     assert subject_of("cube", PublishedState(), watching(0, now_ns=late - 200 * MS)).state.stamp_ns == 0
     assert subject_of("cube", PublishedState(), watching(0)).state.stamp_ns == 0
@@ -190,7 +190,7 @@ def test_a_fit_and_a_state_between_two_turn_as_published(rate: float, per_second
 
 def test_a_fit_to_states_that_leave_the_turns_open_is_an_error() -> None:
     known = spinning(400.0, 120.0, published=0.0)
-    words = r"fit_window: found states that do not show how many turns .*\(354.* 400.*allowed is states with"
+    words = r"fit_window must be states with .*, got states that do not show how many turns .*\(354.* 400"
     with pytest.raises(InvalidFieldError, match=words):
         subject_of("cube", PublishedState(fit_window=1.0), known)
 
@@ -210,7 +210,9 @@ def test_a_fit_to_states_of_another_motion_is_an_error() -> None:
         state = rising(10 * k * MS)
         half = 0.5 * (k > 4)
         states.add("cube", replace(state, q_WB=[np.sin(half), 0.0, 0.0, np.cos(half)]))
-    with pytest.raises(InvalidFieldError, match=r"fit_window: found 10 states that the motion found misses"):
+    with pytest.raises(
+        InvalidFieldError, match=r"fit_window must be .*, got 10 states that the motion found misses"
+    ):
         subject_of("cube", PublishedState(fit_window=1.0), Context(world=WORLD, states=states))
 
 
@@ -239,20 +241,20 @@ def test_what_is_not_known_is_named() -> None:
     known = watching()
     with pytest.raises(NoStateError, match="state of 'cube': none was published yet"):
         subject_of("cube", PublishedState(), known)
-    with pytest.raises(UnknownBodyError, match="found 'dog', allowed are the known bodies: 'cube'"):
+    with pytest.raises(UnknownBodyError, match=r"must be one of the known bodies .'cube'., got 'dog'"):
         subject_of("dog", state(), known)
-    with pytest.raises(InvalidFieldError, match="body_name: found nothing"):
+    with pytest.raises(InvalidFieldError, match=r"body_name must be .*, got nothing"):
         subject_of(Body(name="", mass_properties=CUBE.mass_properties), PublishedState(), known)
 
 
 def test_constructors_refuse_what_makes_no_sense() -> None:
-    with pytest.raises(InvalidFieldError, match="fit_window: found -1"):
+    with pytest.raises(InvalidFieldError, match=r"fit_window must be .*, got -1"):
         PublishedState(fit_window=-1.0)
-    with pytest.raises(InvalidFieldError, match=r"state\.covariance: found variances"):
+    with pytest.raises(InvalidFieldError, match=r"state\.covariance must be .*, got variances"):
         UncertainState(state=state(), covariance=-np.eye(12))
-    with pytest.raises(InvalidFieldError, match="horizon: found -1"):
+    with pytest.raises(InvalidFieldError, match=r"horizon must be .*, got -1"):
         Defaults(horizon=-1.0)
-    with pytest.raises(InvalidFieldError, match="rate: found 0"):
+    with pytest.raises(InvalidFieldError, match=r"rate must be .*, got 0"):
         Defaults(rate=0.0)
 
 
@@ -261,9 +263,7 @@ def test_a_state_from_the_future_never_becomes_the_newest() -> None:
     states = StateStore(history=10.0, timeout=0.5, future_tolerance=0.1)
     states.add("cube", rising(0), now_ns=0)
     states.add("cube", rising(100 * MS), now_ns=0)
-    with pytest.raises(
-        InvalidFieldError, match=r"stamp: found 0\.101 s ahead of the clock, allowed is at most"
-    ):
+    with pytest.raises(InvalidFieldError, match=r"stamp must be at most.*, got 0\.101 s ahead of the clock"):
         states.add("cube", rising(101 * MS), now_ns=0)
     assert states.newest("cube", now_ns=0).stamp_ns == 100 * MS
 

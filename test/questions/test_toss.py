@@ -69,24 +69,24 @@ def test_a_distribution_comes_with_samples() -> None:
 @pytest.mark.parametrize(
     ("make", "message"),
     [
-        (lambda: TossQuestion(body="cube", horizon=0.0), "horizon: found 0"),
-        (lambda: TossQuestion(body="cube", rate=float("nan")), "rate: found nan"),
-        (lambda: TossQuestion(body="cube", max_alternatives=-1), "max_alternatives: found -1"),
-        (lambda: TossSampling(count=0), "samples: found 0"),
-        (lambda: TossSampling(count=2001), "samples: found 2001, allowed is at most 2000"),
-        (lambda: TossSampling(count=1, strikes=11), "strikes: found 11"),
-        (lambda: TossSampling(count=1, seed=-1), "seed: found -1"),
-        (lambda: TossUncertainty(velocity=-1.0), "velocity: found -1"),
+        (lambda: TossQuestion(body="cube", horizon=0.0), "horizon must be .*, got 0"),
+        (lambda: TossQuestion(body="cube", rate=float("nan")), "rate must be .*, got nan"),
+        (lambda: TossQuestion(body="cube", max_alternatives=-1), "max_alternatives must be .*, got -1"),
+        (lambda: TossSampling(count=0), "samples must be .*, got 0"),
+        (lambda: TossSampling(count=2001), "samples must be at most 2000.*, got 2001"),
+        (lambda: TossSampling(count=1, strikes=11), "strikes must be .*, got 11"),
+        (lambda: TossSampling(count=1, seed=-1), "seed must be .*, got -1"),
+        (lambda: TossUncertainty(velocity=-1.0), "velocity must be .*, got -1"),
         (
             lambda: TossUncertainty(covariance=np.zeros((101, 101))),
-            "covariance: found 101, allowed is at most 100",
+            "covariance must be at most 100.*, got 101",
         ),
-        (lambda: TossUncertainty(covariance=-np.eye(6)), "covariance: found variances"),
-        (lambda: TossUncertainty(covariance=np.zeros((5, 6))), "covariance: found"),
-        (lambda: TossUncertainty(lasting_factors=[-1.0]), "lasting_factors: found"),
+        (lambda: TossUncertainty(covariance=-np.eye(6)), "covariance must be .*, got variances"),
+        (lambda: TossUncertainty(covariance=np.zeros((5, 6))), "covariance must be .*, got"),
+        (lambda: TossUncertainty(lasting_factors=[-1.0]), "lasting_factors must be .*, got"),
         (
             lambda: TossUncertainty(lasting_factor_stds=[0.1]),
-            "lasting_factor_stds: found 1 numbers, allowed is 0",
+            "lasting_factor_stds must be 0.*, got 1 numbers",
         ),
     ],
 )
@@ -98,14 +98,14 @@ def test_what_is_not_allowed_is_named(make: Callable[[], object], message: str) 
 def test_a_covariance_of_another_world_is_refused() -> None:
     """Six parameters belong to one surface; two surfaces have eight."""
     sampling = TossSampling(count=1, uncertainty=TossUncertainty(covariance=np.eye(8)))
-    with pytest.raises(InvalidFieldError, match="covariance: found 8 rows, allowed is 6 rows"):
+    with pytest.raises(InvalidFieldError, match=r"covariance must be 6 rows.*, got 8 rows"):
         ask(TossQuestion(body="cube", state=THROWN, sampling=sampling), KNOWN)
 
 
 def test_factors_of_friction_for_another_world_are_refused() -> None:
     sampling = TossSampling(count=1, uncertainty=TossUncertainty(lasting_factors=[1.2, 1.2]))
     with pytest.raises(
-        InvalidFieldError, match="lasting_factors: found 2 numbers, allowed is one for each of 1"
+        InvalidFieldError, match=r"lasting_factors must be one for each of 1.*, got 2 numbers"
     ):
         ask(TossQuestion(body="cube", state=THROWN, sampling=sampling), KNOWN)
 
@@ -123,12 +123,12 @@ def test_the_toss_itself_has_the_friction_that_lasts_as_its_samples_have_it() ->
 
 def test_two_lists_of_factors_are_refused() -> None:
     sampling = TossSampling(count=1, uncertainty=TossUncertainty(lasting_factors=[1.5]))
-    with pytest.raises(InvalidFieldError, match=r"lasting_factors: found \[1.2\], allowed is none, or those"):
+    with pytest.raises(InvalidFieldError, match=r"lasting_factors must be none, or those.*, got \[1.2\]"):
         TossQuestion(body="cube", state=THROWN, sampling=sampling, lasting_factors=[1.2])
 
 
 def test_a_trajectory_of_too_many_samples_is_refused() -> None:
-    with pytest.raises(TooLargeError, match=r"rate: found .* samples"):
+    with pytest.raises(TooLargeError, match=r"rate must be .*, got .* samples"):
         ask(TossQuestion(body="cube", state=THROWN, rate=1e6, max_alternatives=0), KNOWN)
 
 
@@ -148,5 +148,5 @@ def test_the_simultaneous_law_takes_no_energetic_restitution() -> None:
         restitution_law=RestitutionLaw.ENERGETIC,
         several_contacts_law=SeveralContactsLaw.SIMULTANEOUS,
     )
-    with pytest.raises(InvalidFieldError, match="restitution_law: found ENERGETIC"):
+    with pytest.raises(InvalidFieldError, match=r"restitution_law must be .*, got ENERGETIC"):
         ask(question, KNOWN)

@@ -71,9 +71,9 @@ def test_the_states_around_a_stamp_are_those_that_can_be_read() -> None:
 
 def test_of_a_body_whose_states_all_cannot_be_read_none_is_known() -> None:
     store = store_of(Reads(), [1, 2], broken=frozenset({1, 2}))
-    with pytest.raises(NoStateError, match="none of 2 that came is kept; they could not be read"):
+    with pytest.raises(NoStateError, match="none of 2 messages was kept: they could not be read"):
         store.newest("ball")
-    with pytest.raises(NoStateError, match="none of 2 that came is kept; they could not be read"):
+    with pytest.raises(NoStateError, match="none of 2 messages was kept: they could not be read"):
         store.around("ball", 5)
 
 
@@ -99,16 +99,16 @@ def test_who_finds_no_state_is_told_how_many_came_and_what_became_of_them() -> N
     assert missing(store) == "none was published yet"
     store.clear("the clock was set back")
     assert missing(store) == "none was published yet"
-    store.refuse("ball", "stamp: found 5 s, allowed is less")
-    store.refuse("ball", "mass: found -1, allowed is a number > 0")
-    refused = "none of 2 that came is kept; the last was refused: mass: found -1, allowed is a number > 0"
+    store.refuse("ball", "stamp must be less, got 5 s")
+    store.refuse("ball", "mass must be > 0, got -1")
+    refused = "none of 2 messages was kept: the last was rejected because mass must be > 0, got -1"
     assert missing(store) == refused
     store.clear("the clock was set back")  # which changes nothing where none is kept
     assert missing(store) == refused
     for stamp_ns in (1, 2, 3):
         store.add("ball", state(stamp_ns))
     store.clear("the clock was set back")
-    assert missing(store) == "none of 5 that came is kept; they were thrown away when the clock was set back"
+    assert missing(store) == "none of 5 messages was kept: they were discarded when the clock was set back"
     store.add("ball", state(9_000_000_000))
     store.add("other", state(1), now_ns=1)
     with pytest.raises(
@@ -130,10 +130,10 @@ def test_a_state_that_is_too_old_says_whether_newer_ones_were_rejected() -> None
     store = StateStore(history=1.0, timeout=1.0)
     store.add("ball", state(1))
     assert "rejected" not in stale(store, now_ns=2_000_000_000)
-    store.refuse("ball", "header.frame_id: found 'map', allowed is 'world'")
+    store.refuse("ball", "header.frame_id must be 'world', got 'map'")
     assert stale(store, now_ns=2_000_000_000).endswith(
-        "allowed is at most 1 s (state_timeout); states that came since were rejected, the last because "
-        "header.frame_id: found 'map', allowed is 'world'"
+        "the newest must be at most 1 s old (state_timeout), got 2.000 s; "
+        "states that came since were rejected, the last because header.frame_id must be 'world', got 'map'"
     )
     store.add("ball", state(2))
     assert "rejected" not in stale(store, now_ns=2_000_000_000)

@@ -15,6 +15,7 @@ from rosbags.highlevel import AnyReader
 from contact_dynamics.command_line import main
 from contact_dynamics.recording import BagReader, DamagedLogWarning, LogExistsError
 from contact_dynamics.recording.recovery import recover
+from message_words import says
 
 
 def messages_in(path: Path) -> list[tuple[str, bytes, int, int]]:
@@ -96,7 +97,7 @@ def test_what_cannot_be_recovered_is_refused_by_name(
     assert "text.mcap is not an MCAP file" in capsys.readouterr().err
     (tmp_path / "bag.db3").write_text("hello")
     assert main(["recover", str(tmp_path / "bag.db3")]) == 2
-    assert "found SQLite, allowed is MCAP" in capsys.readouterr().err
+    assert says(capsys.readouterr().err, "must be MCAP..., got SQLite")
     (tmp_path / "empty").mkdir()
     monkeypatch.chdir(tmp_path / "empty")
     (tmp_path / "text.mcap").unlink()

@@ -16,6 +16,7 @@ from contact_dynamics.contact_modes import ModeVerdict
 from contact_dynamics.recording import BagReader, decode_without_ros, service_calls
 from contact_dynamics.replay.rows import COLUMNS
 from contact_dynamics.replay.run import main
+from message_words import says
 from replay.asked_log import MANY, Asked, without_ros
 from replay.flights import CONFIGURATION, RATE, START_NS, write_flight
 
@@ -148,7 +149,7 @@ def test_a_part_that_the_log_does_not_have_is_an_error(
     for mode in (["table", "--out", str(out)], ["view", "--rrd", str(tmp_path / "drawn.rrd")]):
         assert main([*mode, str(asked.log), *part]) == 2
         told = capsys.readouterr().err
-        assert f"--start and --end: found {range_told}, allowed is a part of {asked.log}" in told
+        assert says(told, f"--start and --end must be a part of {asked.log}..., got {range_told}")
         assert f"lasts {(end - begin) / 1e9:.9g} s (log_time {begin} to {end} ns)" in told
     assert list(tmp_path.iterdir()) == []
 
@@ -178,7 +179,7 @@ def test_a_table_without_rows_is_an_error_and_leaves_no_file(
     told = (
         "no rows: there is no state of ball on the configured topics (/tracker/bell); --topics names others"
     )
-    assert told in capsys.readouterr().err
+    assert says(capsys.readouterr().err, told)
     assert main([*common[:-4], "--ask", "landing", "--out", str(out)]) == 2
     assert "no record of how its run was configured, which --config gives" in capsys.readouterr().err
     assert out.read_text() == "before\n"
@@ -249,15 +250,15 @@ def test_questions_come_as_often_as_they_are_asked_for(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("arguments", "told"),
     [
-        (["--out", "table.xls"], "out: found table.xls, allowed is a file that ends in .csv or .parquet"),
+        (["--out", "table.xls"], "out must be a file that ends in .csv or .parquet..., got table.xls"),
         (["--config", "none.yaml"], "none.yaml"),
-        (["--config", "empty.yaml"], "empty.yaml: found no parameters"),
+        (["--config", "empty.yaml"], "empty.yaml must have parameters of"),
         (["--config", "broken.yaml"], "broken.yaml: no YAML: "),
         (
             ["--config", "server.yaml", "--topics", "ball"],
-            "--topics: found 'ball', allowed are BODY=ODOMETRY",
+            "--topics must be BODY=ODOMETRY..., got 'ball'",
         ),
-        (["--config", "server.yaml", "--body", "cat"], "body: found cat, allowed is one of ['ball']"),
+        (["--config", "server.yaml", "--body", "cat"], "body must be one of ['ball']..., got cat"),
         ([], "not a log of the server: no service of it in the log's types"),
     ],
 )
@@ -274,4 +275,4 @@ def test_what_is_wrong_is_named(
     (tmp_path / "empty.yaml").write_text("")
     (tmp_path / "broken.yaml").write_text("a: [")
     assert main(["table", "bag", *arguments]) == 2
-    assert told in capsys.readouterr().err
+    assert says(capsys.readouterr().err, told)

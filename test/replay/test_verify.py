@@ -23,6 +23,7 @@ from contact_dynamics.recording.errors import DamagedLogWarning
 from contact_dynamics.replay.run import main
 from contact_dynamics.replay.same_definitions import digest
 from contact_dynamics.replay.verify import Verification, verify_log
+from message_words import says
 from replay.asked_log import Asked, configured, without_ros
 from replay.flights import CONFIGURATION, write_flight
 from running_server import ROOT
@@ -180,7 +181,7 @@ def test_what_if_friction_had_been_another(
     [
         ("surface.flor.friction:=0.3", "surface.flor.friction"),
         ("surface.floor.friction:=-1", "surface.floor.friction"),
-        ("surface.floor.friction:=much", "surface.floor.friction: found 'much'"),
+        ("surface.floor.friction:=much", "surface.floor.friction is required (...), got 'much'"),
         ("surface.floor.friction=0.3", "--set must be NAME:=VALUE, got 'surface.floor.friction=0.3'"),
     ],
 )
@@ -189,7 +190,7 @@ def test_another_configuration_that_is_none_is_refused(
 ) -> None:
     assert main(["verify", str(asked.log), "--set", given]) == 2
     printed = capsys.readouterr()
-    assert told in printed.err
+    assert says(printed.err, told)
     assert printed.out == ""
 
 
@@ -335,7 +336,7 @@ def test_a_log_of_other_definitions_is_refused_with_their_names(
     log = with_other_definitions(asked.log, tmp_path / "older.mcap", b"time_to_contact", b"time_of_contact")
     assert main([str(log)]) == 2
     told = capsys.readouterr().err
-    assert "older.mcap: found other fields of PredictImpact than this program knows" in told
+    assert "older.mcap: fields of PredictImpact must be those of this version, got others" in told
     same = with_other_definitions(
         asked.log, tmp_path / "comment.mcap", b"# Where the body", b"# Where a body"
     )

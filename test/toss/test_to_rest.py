@@ -74,5 +74,5 @@ def test_few_samples_start_no_process() -> None:
 
 @pytest.mark.parametrize("processes", [0, -1, 1.5, True, "two", None])
 def test_what_is_no_number_of_processes_is_refused_by_its_name(processes: Executor | float | str) -> None:
-    with pytest.raises(InvalidFieldError, match=r"^processes: found .*, allowed is a whole number >= 1, or"):
+    with pytest.raises(InvalidFieldError, match=r"^processes must be a whole number >= 1, or.*, got .*"):
         told(20, processes=processes)

@@ -92,13 +92,13 @@ def test_numbers_that_cannot_be_squared_are_refused(make: object, field: str, va
         w_WB_W=numbers["w_WB_W"],
     )
     body = MassProperties(mass=1.0, I_B=np.eye(3))
-    with pytest.raises(InvalidFieldError, match=rf"{field}: found 1e\+61, allowed is .*1e\+60"):
+    with pytest.raises(InvalidFieldError, match=rf"{field} must be .*1e\+60.*, got 1e\+61"):
         make(body, state, gravity_W=numbers["gravity_W"])
 
 
 @pytest.mark.parametrize("inertia", [1e-61, 1e61])
 def test_inertias_without_bounds_are_refused(inertia: float) -> None:
-    with pytest.raises(InvalidFieldError, match="I_B: found"):
+    with pytest.raises(InvalidFieldError, match=r"I_B must be .*, got"):
         motion_of(inertia * np.eye(3), np.ones(3))
 
 
@@ -106,7 +106,7 @@ def test_times_beyond_the_last_turn_that_doubles_tell_apart_are_refused() -> Non
     motion = motion_of(np.diag([1.0, 1.4, 1.9]), np.array([0.0, 0.0, 10.0]))
     motion.at([9e14])
     for ask in (motion.state_at, lambda t: motion.at([0.0, t])):
-        with pytest.raises(InvalidFieldError, match=r"seconds: found"):
+        with pytest.raises(InvalidFieldError, match=r"seconds must be .*, got"):
             ask(-1.1e15)
     resting = motion_of(np.diag([1.0, 1.4, 1.9]), np.zeros(3))
     resting.state_at(1e60)

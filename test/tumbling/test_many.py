@@ -167,15 +167,15 @@ def test_one_body_in_many_states() -> None:
 @pytest.mark.parametrize(
     ("field", "spoil"),
     [
-        ("^I_B: ", {"I_B": np.diag([1.0, 1.0, -1.0])}),
-        ("^I_B: ", {"I_B": np.eye(3) + np.eye(3, k=1)}),
-        ("^I_B: ", {"I_B": np.ones((2, 3, 3))}),
-        (r"^q_WB\[1\]: found norm 2", {"q_WB": [[0, 0, 0, 1], [0, 0, 0, 2], [0, 0, 0, 1]]}),
-        ("^p_WB_W: found 2 rows", {"p_WB_W": np.zeros((2, 3))}),
-        (r"^v_WB_W\[2\]: found", {"v_WB_W": np.outer([0.0, 0.0, np.nan], np.ones(3))}),
-        ("^seconds: found 2 rows", {"seconds": np.zeros(2)}),
-        (r"^seconds\[1\]: found nan", {"seconds": [0.0, np.nan, 0.0]}),
-        ("^I_B: found principal moments", {"I_B": np.diag([1.0, 1.0, 3.0])}),
+        ("^I_B ", {"I_B": np.diag([1.0, 1.0, -1.0])}),
+        ("^I_B ", {"I_B": np.eye(3) + np.eye(3, k=1)}),
+        ("^I_B ", {"I_B": np.ones((2, 3, 3))}),
+        (r"^q_WB\[1\] must be .*, got norm 2", {"q_WB": [[0, 0, 0, 1], [0, 0, 0, 2], [0, 0, 0, 1]]}),
+        ("^p_WB_W must be .*, got 2 rows", {"p_WB_W": np.zeros((2, 3))}),
+        (r"^v_WB_W\[2\] must be .*, got", {"v_WB_W": np.outer([0.0, 0.0, np.nan], np.ones(3))}),
+        ("^seconds must be .*, got 2 rows", {"seconds": np.zeros(2)}),
+        (r"^seconds\[1\] must be .*, got nan", {"seconds": [0.0, np.nan, 0.0]}),
+        ("^I_B must be .*, got principal moments", {"I_B": np.diag([1.0, 1.0, 3.0])}),
     ],
 )
 def test_states_that_are_none_are_refused_by_name(field: str, spoil: dict[str, object]) -> None:

@@ -150,5 +150,5 @@ def test_memory_does_not_grow_with_the_answers_that_were_drawn(tmp_path: Path) -
 
 @pytest.mark.parametrize("memory", ["", "much", "1 GB", "-1GB", "1gb", "50 %"])
 def test_a_memory_that_is_no_size_is_refused(memory: str) -> None:
-    with pytest.raises(InvalidFieldError, match=r"viewer_memory: found .*, allowed is a size such as 500MB"):
+    with pytest.raises(InvalidFieldError, match=r"viewer_memory must be a size such as 500MB.*, got .*"):
         Sinks(viewer=ViewerMode.SERVE, memory=memory)

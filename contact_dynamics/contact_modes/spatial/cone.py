@@ -170,6 +170,6 @@ def nearest_sum(spans: FloatArray, target: FloatArray) -> tuple[FloatArray, floa
 
 def _undecided(reason: str) -> UndecidedError:
     return UndecidedError(
-        f"contacts: found wrenches whose balance hangs on rounding ({reason}), allowed are contacts that are "
-        "either the same or clearly apart, with friction that is not far from 1"
+        "contacts must be either the same or clearly apart, with friction that is not far from 1, got "
+        f"wrenches whose balance hangs on rounding ({reason})"
     )

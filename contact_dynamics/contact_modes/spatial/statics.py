@@ -78,8 +78,8 @@ def spatial_statics(problem: SpatialContactProblem, *, margin_length: float | No
     held = _known(held_by_round_cones(search, np.eye(6, 7)))
     if held is None:
         raise UndecidedError(
-            "contacts: found forces whose balance with the wrench hangs on rounding, allowed are contacts "
-            "and wrenches that are clearly balanced or clearly not"
+            "contacts must be clearly balanced with the wrench, or clearly not, got forces whose balance "
+            "hangs on rounding"
         )
     if held:
         answer = modes_of_case(at_rest, case, search, beside_rest=True)

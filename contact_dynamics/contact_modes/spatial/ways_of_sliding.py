@@ -133,6 +133,6 @@ def _check_size(rows: FloatArray) -> None:
 
 def _undecided() -> UndecidedError:
     return UndecidedError(
-        "contacts: found ways of sliding that rounding decides, allowed are contacts and normals that are "
-        "either the same or clearly apart"
+        "contacts and their normals must be either the same or clearly apart, got ways of sliding that "
+        "rounding decides"
     )

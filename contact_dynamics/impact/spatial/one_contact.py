@@ -199,11 +199,11 @@ def check_striking(body: MassProperties, state: BodyState, points_W: FloatArray)
         ("w_WB_W", state.w_WB_W.tolist()),
     ):
         if numbers and (max(numbers) > LARGEST_NUMBER or min(numbers) < -LARGEST_NUMBER):
-            raise InvalidFieldError(field, numbers, f"numbers of at most {LARGEST_NUMBER:g}, by size")
+            raise InvalidFieldError(field, numbers, f"at most {LARGEST_NUMBER:g} in magnitude")
     least = 1.0 / LARGEST_NUMBER
     for field, numbers in (("mass", [body.mass]), ("I_B", body.I_B.diagonal().tolist())):
         if max(numbers) > LARGEST_NUMBER or min(numbers) < least:
-            raise InvalidFieldError(field, numbers, f"numbers from {least:g} to {LARGEST_NUMBER:g}")
+            raise InvalidFieldError(field, numbers, f"in [{least:g}, {LARGEST_NUMBER:g}]")
     arms = points_W - state.p_WB_W
     farthest = math.sqrt(float(np.einsum("...i,...i->...", arms, arms).max(initial=0.0)))
     gyration = math.sqrt(float(body.I_B.diagonal().max()) / body.mass)

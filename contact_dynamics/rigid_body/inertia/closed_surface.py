@@ -114,7 +114,7 @@ def _check_indices(triangles: ArrayLike, vertices: int) -> NDArray[np.int64]:
     except (TypeError, ValueError, OverflowError):
         raise InvalidFieldError("triangles", triangles, "whole numbers of shape (n, 3)") from None
     if given.ndim != 2 or given.shape[1] != 3:
-        raise InvalidFieldError("triangles", f"shape {given.shape}", "shape (n, 3)")
+        raise InvalidFieldError("triangles", f"shape {given.shape}", "of shape (n, 3)")
     if given.dtype.kind not in "iu":
         raise InvalidFieldError(
             "triangles", f"numbers of type {given.dtype}", "whole numbers of an integer type"

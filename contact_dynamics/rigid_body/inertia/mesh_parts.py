@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from contact_dynamics.rigid_body.inertia.closed_surface import ClosedSurface
     from contact_dynamics.validation import FloatArray
 
-_OUTWARDS: Final = "triangles counter-clockwise seen from outside"
+_OUTWARDS: Final = "counter-clockwise seen from outside"
 
 
 def check_facing(p_FV_F: FloatArray, surface: ClosedSurface) -> None:

@@ -215,7 +215,7 @@ LESS_ONE = (BOX[0], BOX[1][1:])
     [
         (
             LESS_ONE,
-            r"edge \d-\d of triangle \d+ has no second triangle: the mesh is open \(and 2 more\), allowed",
+            r"edge \d-\d of triangle \d+ has no second triangle: the mesh is open \(and 2 more\)",
         ),
         (FIN, r"edge 8-0 of triangle 12 has no second triangle"),
         (
@@ -229,7 +229,7 @@ LESS_ONE = (BOX[0], BOX[1][1:])
         (ONE_TURNED, r"edge \d-\d of triangles \d+, 11 is passed in one direction by both \(and 2 more\)"),
         (
             inside_out(BOX),
-            r"an enclosed volume of -8 m\^3: inside out, allowed is triangles counter-clockwise",
+            r"counter-clockwise.*, got .*an enclosed volume of -8 m\^3: inside out",
         ),
         ((BOX[0] * [1, 1, 0], BOX[1]), r"an enclosed volume of 0 m\^3: flat"),
         ((BOX[0][:3], [[0, 1, 2], [0, 2, 1]]), r"an enclosed volume of 0 m\^3: flat"),
@@ -249,10 +249,13 @@ LESS_ONE = (BOX[0], BOX[1][1:])
             together(BOX, inside_out(box_mesh((1.5, 1.5, 1.5))), inside_out(box_mesh((1.0, 1.0, 1.0)))),
             r"part \(that of triangle 24\) of volume -1 m\^3 in no solid",
         ),
-        ((BOX[0], [[0, 1, 8]]), r"\[0, 1, 8\] in triangle 0, allowed is indices in \[0, 7\], of 8 vertices"),
+        (
+            (BOX[0], [[0, 1, 8]]),
+            r"indices in \[0, 7\], of 8 vertices.*, got .*\[0, 1, 8\] in triangle 0",
+        ),
         ((BOX[0], [[0, 1, -1]]), r"\[0, 1, -1\] in triangle 0"),
-        ((BOX[0], [[0.0, 1.0, 2.0]]), "numbers of type float64, allowed is whole numbers"),
-        ((BOX[0], [[0, 1, 2, 3]]), r"shape \(1, 4\), allowed is shape \(n, 3\)"),
+        ((BOX[0], [[0.0, 1.0, 2.0]]), "whole numbers.*, got .*numbers of type float64"),
+        ((BOX[0], [[0, 1, 2, 3]]), r"of shape \(n, 3\).*, got .*shape \(1, 4\)"),
         ((BOX[0], [[0, 1, 2], [0, 1]]), "whole numbers"),
         ((BOX[0], [["a", "b", "c"]]), "whole numbers"),
         ((BOX[0], np.zeros((0, 3), dtype=int)), "none with three different vertices"),
@@ -260,7 +263,7 @@ LESS_ONE = (BOX[0], BOX[1][1:])
     ],
 )
 def test_what_is_no_solid_is_refused_with_the_reason(mesh: tuple[np.ndarray, object], words: str) -> None:
-    with pytest.raises(InvalidFieldError, match=f"triangles: found .*{words}"):
+    with pytest.raises(InvalidFieldError, match=f"triangles must be .*{words}"):
         inertia.mesh(*mesh, density=1.0)
 
 
@@ -277,15 +280,15 @@ def test_a_flat_mesh_in_any_plane_is_flat() -> None:
 
 
 def test_vertices_that_are_none_are_refused() -> None:
-    with pytest.raises(InvalidFieldError, match=r"^p_FV_F\[0\]: .*finite"):
+    with pytest.raises(InvalidFieldError, match=r"^p_FV_F\[0\] must be finite"):
         inertia.mesh(BOX[0] * math.nan, BOX[1], mass=1.0)
-    with pytest.raises(InvalidFieldError, match=r"mass, density: .*exactly one"):
+    with pytest.raises(InvalidFieldError, match=r"mass, density must be exactly one"):
         inertia.mesh(*BOX)
-    with pytest.raises(InvalidFieldError, match=r"p_FV_F: found 0 points"):
+    with pytest.raises(InvalidFieldError, match=r"p_FV_F must be .*, got 0 points"):
         inertia.convex_hull(np.zeros((0, 3)), mass=1.0)
-    with pytest.raises(InvalidFieldError, match=r"p_FV_F: found 8 points, allowed is .*not in one plane"):
+    with pytest.raises(InvalidFieldError, match=r"p_FV_F must be .*not in one plane.*, got 8 points"):
         inertia.convex_hull(BOX[0] * [1, 1, 0], mass=1.0)
-    with pytest.raises(InvalidFieldError, match=r"p_FV_F: found 3 points"):
+    with pytest.raises(InvalidFieldError, match=r"p_FV_F must be .*, got 3 points"):
         inertia.convex_hull(BOX[0][:3], mass=1.0)
 
 
@@ -315,5 +318,5 @@ def test_any_size_that_can_be_cubed(shape: str) -> None:
 
     for size in (1e-60, 1e-9, 1e20, 1e60):
         assert cube(size).I_B[0, 0] == pytest.approx(size**2 / 6.0, rel=1e-14)
-    with pytest.raises(InvalidFieldError, match=r"p_FV_F: found 1e\+61, allowed is"):
+    with pytest.raises(InvalidFieldError, match=r"p_FV_F must be .*, got 1e\+61"):
         cube(2e61)
