@@ -24,26 +24,26 @@ from contact_dynamics.cases.report import published_row, shown  # noqa: E402
 
 PAGE = ROOT / "docs" / "cases.md"
 HEAD = """\
-# Ask before you trust
+# Cases with exact answers, compared with MuJoCo
 
-*Engines answer every question. Which answers are physics, and which are the engine?* Users of the big engines asked the questions on this
-page in public, because the answer that they got was an artefact of time steps and softened contacts. Each has an exact answer in closed
-form. This command asks all of them here, and of MuJoCo in the same run if it is installed:
+Users of physics engines asked the questions on this page in public because the engine's answer was an artefact of time steps and softened
+contacts. Each has an exact answer in closed form. This command solves all of them with this package and, if it is installed, with MuJoCo:
 
 ```sh
 contact-dynamics cases
 ```
 
-`contact-dynamics cases NAME` asks one case, and `--list` prints the names. `--without-mujoco` leaves out the simulations, which take most of
+`contact-dynamics cases NAME` solves one case, and `--list` prints the names. `--without-mujoco` skips the simulations, which take most of
 the time.
 
-**How to read the table.** MuJoCo's numbers are measured in simulations with its default settings and time step, unless the code of the case
-says otherwise. They are no verdict on MuJoCo: it computes the motion of whole robots with contacts that are soft on purpose, and smaller
-steps and other settings come closer. Where a restitution is asked for, its contact is a spring and damper made for it, resolved by ten
-steps. MuJoCo's numbers show how large an artefact can be where nobody looks for it. [When to use what](when-to-use-what.md) says what each is for.
+**How to read the table.** Each row is one setting of a case; its section has the quantity and its unit. MuJoCo's numbers come from
+simulations with its default settings and time step, unless the code of the case says otherwise. For cases with a restitution, its contact is a
+spring and damper made for that value, resolved by ten steps.
 
-The package answers what its rigid bodies and Coulomb's law imply, to rounding. Whether the world obeys them is another question, and the
-coefficients of the real world are yours to know.
+The numbers show how large an artefact can be with default settings; they do not judge MuJoCo, which simulates whole robots with contacts that are soft on
+purpose, and comes closer with smaller steps and other settings. [When to use a simulator](when-to-use-what.md) compares the two approaches. The
+package's answers are exact for rigid bodies with Coulomb friction; how well a real system matches that model, and its coefficients, is up to
+you.
 
 """
 
@@ -73,7 +73,7 @@ def mujoco(name: str, i: int, measured: dict[str, str]) -> str:
 
 def table(measured: dict[str, str]) -> Iterator[str]:
     """Yield the lines of the table of all cases."""
-    yield "| question | asked | exact | ours | MuJoCo |"
+    yield "| case | setting | exact | this package | MuJoCo |"
     yield "| --- | --- | --- | --- | --- |"
     for name, case in CASES.items():
         for i, setting in enumerate(case.settings):
@@ -144,10 +144,10 @@ def section(name: str, case: Case) -> str:
     return f"""\
 ## {case.title}
 
-{case.story} Asked in {threads}.
+{case.story} Discussed in {threads}.
 
-**Exact:** {case.quantity}: {case.formula}. The package's answer is within {case.tolerance:g} of it ({case.why_tolerance}).
-`contact-dynamics cases {name}` asks it.
+**Exact answer** ({case.quantity}): {case.formula}. The package agrees within {case.tolerance:g} ({case.why_tolerance}).
+`contact-dynamics cases {name}` solves it.
 
 ```python
 {source_of(case)}
@@ -176,10 +176,10 @@ def published() -> str:
         if verdict is PublishedVerdict.EXPLAINED
     )
     return f"""\
-## Numbers that others published
+## Published numbers
 
-This command compares the package with printed numbers, and prints for each its source, what was printed, ours, the tolerance and the
-verdict:
+This command compares the package with published numbers, and prints for each the source, the published and the computed number, the tolerance and
+the verdict:
 
 ```sh
 contact-dynamics cases --published
@@ -187,15 +187,15 @@ contact-dynamics cases --published
 
 {listed}
 
-{counts[PublishedVerdict.RIGHT]} are right within half of the last printed digit or, where they were derived, to rounding.
-{counts[PublishedVerdict.WRONG]} are wrong. {counts[PublishedVerdict.EXPLAINED]} differ, because the printed number is off. The command says why:
+{counts[PublishedVerdict.RIGHT]} agree within half of the last published digit or, if they were derived here, to rounding. {counts[PublishedVerdict.WRONG]} disagree
+without explanation. {counts[PublishedVerdict.EXPLAINED]} differ because the published number is inaccurate, for the reason printed below each:
 
 ```text
      published           ours  tolerance
 {rows}
 ```
 
-Each number stands in a data file of `contact_dynamics/cases/published_values/` with the place where it was read, or its derivation.
+The data files in `contact_dynamics/cases/published_values/` contain each number with its exact source or its derivation.
 """
 
 

@@ -46,17 +46,17 @@ def request(restitution: float) -> str:
 
 
 CASE: Final = Case(
-    title="A ball that is asked for a restitution",
-    story="In engines whose contacts are springs and dampers, restitution follows from stiffness, damping and time "
-    "step, and comes out near what was meant. Here e is what you state.",
+    title="A ball with a given restitution",
+    story="In engines with spring-damper contacts, restitution follows from stiffness, damping and time step, "
+    "and only approximates the intended value. In this package, e is the value you state.",
     threads=(
         "https://github.com/google-deepmind/mujoco/issues/2080",
         "https://github.com/NVIDIAGameWorks/PhysX/issues/351",
     ),
     setting="e",
     settings=(0.75, 0.3),
-    quantity="speed after over speed before",
-    formula="e, by its definition",
+    quantity="speed after the impact over speed before",
+    formula="e, by definition",
     exact=exact,
     ours=ours,
     mujoco=mujoco,

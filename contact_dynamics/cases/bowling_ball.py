@@ -51,17 +51,18 @@ def request(speed: float) -> str:
 
 
 CASE: Final = Case(
-    title="A bowling ball: when it rolls, it rolls on",
-    story="Users ask why a ball never stops, and engines add damping so that it does. A rigid ball brakes while it "
-    "slides, and rolls on at 5/7 of its first speed. Rolling resistance is another model, which this package lacks.",
+    title="A bowling ball that slides and then rolls",
+    story="Users ask why a ball never stops, and engines add damping to stop it. A rigid ball decelerates while "
+    "it slides, and then rolls at 5/7 of its initial speed. Rolling resistance is a different model, "
+    "which this package does not have.",
     threads=(
         "https://github.com/schteppe/cannon.js/issues/345",
         "https://github.com/lo-th/Oimo.js/issues/64",
     ),
-    setting="first speed, m/s",
+    setting="initial speed, m/s",
     settings=(7.0,),
-    quantity="speed when it rolls, m/s",
-    formula="5/7 v",
+    quantity="speed once it rolls, m/s",
+    formula="5/7 of the initial speed",
     exact=exact,
     ours=ours,
     mujoco=mujoco,

@@ -87,9 +87,10 @@ REQUEST: Final = Request(
 )
 
 IN_TURN: Final = Case(
-    title="Newton's cradle, pair after pair",
-    story="Rigid-body mechanics does not decide what three balls do that touch. If the pairs strike in turn, the last "
-    "ball takes all, as steel balls nearly do. The law has a name in the question.",
+    title="Newton's cradle, sequential law",
+    story="Rigid-body mechanics does not determine the motion of three balls in contact. If the pairs strike "
+    "one after another, at e = 1 the last ball takes all the momentum, as steel balls nearly do. The "
+    "question names this law.",
     threads=("https://github.com/liabru/matter-js/issues/361", "https://github.com/ekiefl/pooltool/pull/257"),
     setting="e",
     settings=(1.0, 0.8),
@@ -104,9 +105,9 @@ IN_TURN: Final = Case(
 )
 
 AT_ONCE: Final = Case(
-    title="Newton's cradle, all at once",
-    story="If all contacts strike at once and each obeys Newton's law, the balls at rest leave together. Neither law is "
-    "wrong. An engine that prints one number has chosen one for you.",
+    title="Newton's cradle, simultaneous law",
+    story="If all contacts strike at once and each obeys Newton's law of restitution, the balls at rest leave "
+    "together. Neither law is wrong; an engine that returns one number has chosen one.",
     threads=("https://github.com/liabru/matter-js/issues/361",),
     setting="e",
     settings=(1.0, 0.8),
@@ -116,6 +117,6 @@ AT_ONCE: Final = Case(
     ours=at_once,
     mujoco=mujoco,
     tolerance=1e-9,
-    why_tolerance="the projections that solve the complementarity end at 1e-9",
+    why_tolerance="the complementarity problem is solved by projections to 1e-9",
     request=REQUEST,
 )

@@ -55,14 +55,14 @@ def request(margin: float) -> str:
 
 
 CASE: Final = Case(
-    title="A capsule that should stick, and creeps",
-    story="A capsule lies on a slope, and friction could hold many times its load. Engines that regularise friction "
-    "let it creep as long as they run. With Coulomb's law it does not move at all.",
+    title="A capsule that must stick on a slope",
+    story="A capsule rests on a slope, with a friction limit many times its load along the slope. Engines that "
+    "regularize friction let it creep for as long as they run. With Coulomb friction it does not move.",
     threads=(
         "https://github.com/google-deepmind/mujoco/issues/3328",
         "https://github.com/liabru/matter-js/issues/613",
     ),
-    setting="friction could hold this many times the load",
+    setting="friction limit over the load along the slope",
     settings=(20.0, 95.0),
     quantity="distance after 10 s, m",
     formula="0, since tan(slope) = μ / margin is below μ",

@@ -67,9 +67,9 @@ def request(wobble: float) -> str:
 
 
 CASE: Final = Case(
-    title="The tennis racket: when does it turn over?",
-    story="A body that spins about its middle axis turns over periodically. Engines without the gyroscopic term never "
-    "turn it over, and others drift away from the period.",
+    title="The flip period of a tennis racket",
+    story="A body that spins about its middle axis flips periodically. Engines without the gyroscopic term "
+    "never flip it, and others drift away from the period.",
     threads=(
         "https://github.com/google/brax/issues/156",
         "https://github.com/bepu/bepuphysics2/issues/79",
@@ -77,13 +77,13 @@ CASE: Final = Case(
     ),
     setting="spin about the minor axis, rad/s",
     settings=(0.1, 1e-6),
-    quantity="period of the spin in the body, s",
-    formula="4 K(m) / rate, Jacobi's solution of Euler's equations",
+    quantity="period of the angular velocity in the body, s",
+    formula="4 K(m) / rate, from Jacobi's solution of Euler's equations",
     exact=exact,
     ours=ours,
     mujoco=mujoco,
     tolerance=1e-12,
-    why_tolerance="rounding of the distance from the middle axis, whose logarithm is the period",
+    why_tolerance="rounding of the distance from the middle axis, on whose logarithm the period depends",
     request=Request(
         service="predict_tumbling",
         text=request,

@@ -68,17 +68,18 @@ def request(mass: float) -> str:
 
 
 CASE: Final = Case(
-    title="A table on four feet, and the load of one",
-    story="Rigid-body mechanics leaves open how four feet share a weight, and the answer says so (`forces_unique`). An "
-    "engine prints one split, which its softness chooses. Shorten one foot by a hair, and it moves.",
+    title="The load on one of four feet",
+    story="Rigid-body mechanics does not determine how four feet share a weight, and the answer reports this "
+    "(`forces_unique`). An engine returns one distribution, which depends on its contact softness and changes if "
+    "one foot is slightly shorter. MuJoCo's number is that change.",
     threads=(
         "https://github.com/schteppe/cannon.js/issues/274",
         "https://github.com/google-deepmind/mujoco/issues/2630",
     ),
     setting="mass, kg",
     settings=(8.0,),
-    quantity="how far the load of one foot is open, N",
-    formula="m g / 2: two opposite feet can carry all",
+    quantity="width of the range of possible loads on one foot, N",
+    formula="m g / 2, since two opposite feet can carry the whole weight",
     exact=exact,
     ours=ours,
     mujoco=mujoco,

@@ -39,8 +39,8 @@ def request(seconds: float) -> str:
 
 CASE: Final = Case(
     title="Free fall",
-    story="Stepped with the velocity of the step's end, a body falls g t Δt / 2 too far. Flight is a closed form here, "
-    "at any time.",
+    story="An integrator that uses the velocity at the end of the step makes a body fall g t Δt / 2 too far. "
+    "Here flight is a closed form at any time.",
     threads=(
         "https://github.com/dimforge/rapier/issues/525",
         "https://github.com/schteppe/cannon.js/issues/353",

@@ -59,22 +59,22 @@ def request(beyond: float) -> str:
 
 CASE: Final = Case(
     title="A block on a slope at its friction angle",
-    story="The slope is atan μ, a hair less or a hair more. Below that the block rests, and beyond it slides, however "
-    "small the difference. Where friction is regularised, it slides in both cases.",
+    story="The slope differs from atan μ by a billionth of a radian. Below atan μ the block rests, and above it "
+    "slides. With regularized friction it slides in both cases.",
     threads=(
         "https://github.com/schteppe/cannon.js/issues/288",
         "https://github.com/liabru/matter-js/issues/752",
         "https://github.com/raisimTech/raisimLib/issues/55",
     ),
-    setting="slope less atan μ, rad",
+    setting="slope minus atan μ, rad",
     settings=(-1e-9, 1e-9),
     quantity="acceleration, m/s²",
-    formula="0, or g (sin − μ cos) of the slope",
+    formula="0, or g (sin(slope) − μ cos(slope))",
     exact=exact,
     ours=ours,
     mujoco=mujoco,
     tolerance=1e-14,
-    why_tolerance="rounding of numbers of the size of g, whose difference this is",
+    why_tolerance="rounding of numbers of the size of g, of which this is the difference",
     request=Request(
         service="predict_contact_mode",
         text=request,

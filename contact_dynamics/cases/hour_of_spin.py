@@ -53,22 +53,23 @@ def request(seconds: float) -> str:
 
 
 CASE: Final = Case(
-    title="The energy of an asymmetric body after an hour of spin",
-    story="Users report engines that gain or lose energy in free spin, and drift to another axis. The closed form keeps "
-    "energy and angular momentum at any time. (MuJoCo's default integrator is stopped where the energy has doubled; its Runge-Kutta does far better.)",
+    title="Energy after an hour of free spin",
+    story="Users report engines that gain or lose energy in free spin, or drift to another axis. The closed "
+    "form conserves energy and angular momentum at any time. (MuJoCo's default integrator is stopped once "
+    "the energy has doubled; its Runge-Kutta integrator does far better.)",
     threads=(
         "https://github.com/avianphysics/avian/pull/993",
         "https://github.com/jrouwe/JoltPhysics/issues/803",
     ),
     setting="time, s",
     settings=(60.0, 3600.0),
-    quantity="relative change of the energy",
+    quantity="relative change of energy",
     formula="0",
     exact=exact,
     ours=ours,
     mujoco=mujoco,
     tolerance=1e-13,
-    why_tolerance="the closed form keeps energy and angular momentum to 1e-13",
+    why_tolerance="the closed form conserves energy and angular momentum to 1e-13",
     request=Request(
         service="predict_tumbling",
         text=request,

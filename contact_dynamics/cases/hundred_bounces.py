@@ -68,23 +68,23 @@ def request(bounces: float) -> str:
 
 CASE: Final = Case(
     title="A ball at e = 1 that keeps its height",
-    story="Users found that a ball without losses jumps higher with every bounce, or lower, because gravity and "
-    "impact share a time step. Here flight and impact are exact, one after the other.",
+    story="Users found that a lossless ball jumps higher with every bounce, or lower, because gravity and "
+    "impact share a time step. Here flight and impact are computed separately, each exactly.",
     threads=(
         "https://github.com/dimforge/rapier/issues/97",
         "https://github.com/jrouwe/JoltPhysics/issues/1286",
         "https://github.com/erincatto/box2d/issues/167",
         "https://github.com/bulletphysics/bullet3/issues/1530",
     ),
-    setting="bounces",
+    setting="number of bounces",
     settings=(100.0,),
-    quantity="height after them, m",
-    formula="1, the height from which it was dropped",
+    quantity="height after the bounces, m",
+    formula="1, the initial height",
     exact=exact,
     ours=ours,
     mujoco=mujoco,
     tolerance=1e-12,
-    why_tolerance="a hundred landings, each rounded a few times",
+    why_tolerance="rounding over a hundred landings",
     request=Request(
         service="predict_impact",
         text=request,

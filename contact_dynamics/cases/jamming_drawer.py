@@ -54,17 +54,17 @@ def request(friction: float) -> str:
 
 
 CASE: Final = Case(
-    title="A peg that jams",
-    story="A push beside the middle presses a peg, or a drawer, against both walls. Beyond a friction of L / (2 d) it "
-    "jams however hard it is pushed. Users saw pegs pass through walls, or not move at all.",
+    title="A peg or drawer that jams",
+    story="An off-centre push presses a peg, or a drawer, against both walls. Above a friction of L / (2 d) it "
+    "jams, however hard it is pushed. Users saw pegs pass through walls, or not move at all.",
     threads=(
         "https://github.com/bulletphysics/bullet3/issues/2148",
         "https://github.com/google-deepmind/mujoco/issues/1544",
     ),
-    setting="μ, the limit is 1",
+    setting="μ (the limit is 1)",
     settings=(0.9, 1.1),
     quantity="acceleration along the walls, m/s²",
-    formula="F (1 − 2 μ d / L) / m, or 0 where that is negative",
+    formula="F (1 − 2 μ d / L) / m, but not below 0",
     exact=exact,
     ours=ours,
     mujoco=mujoco,

@@ -67,8 +67,8 @@ def request(beyond: float) -> str:
 
 CASE: Final = Case(
     title="A ladder against a smooth wall",
-    story="The foot holds where tan(angle) is at least 1 / (2 μ). Thresholds of friction are where approximate friction "
-    "shows: bodies move before they should.",
+    story="The foot holds if tan(angle) is at least 1 / (2 μ). Errors of approximate friction show at such "
+    "thresholds: bodies move before they should.",
     threads=(
         "https://github.com/raisimTech/raisimLib/issues/55",
         "https://github.com/google-deepmind/mujoco/pull/3349",
@@ -76,7 +76,7 @@ CASE: Final = Case(
     setting="angle below the limit, rad",
     settings=(-0.01, 0.01),
     quantity="angular acceleration, rad/s²",
-    formula="0, or g (cos − 2 μ sin) / (l (4/3 − 2 μ sin cos)) with half length l",
+    formula="0, or g (cos − 2 μ sin) / (l (4/3 − 2 μ sin cos)) of the angle, with half length l",
     exact=exact,
     ours=ours,
     mujoco=mujoco,

@@ -59,9 +59,9 @@ def request(degrees: float) -> str:
 
 
 CASE: Final = Case(
-    title="A box that slides askew to the axes",
-    story="Engines that replace the friction cone by a pyramid brake a body differently along different axes, and turn "
-    "its path. Coulomb's friction is straight against the sliding.",
+    title="A box that slides obliquely to the axes",
+    story="Engines that replace the friction cone by a pyramid decelerate a body differently along different "
+    "directions, and bend its path. Coulomb friction is exactly opposite to the sliding.",
     threads=(
         "https://github.com/dimforge/rapier/issues/137",
         "https://github.com/osrf/gazebo_tutorials/pull/174",

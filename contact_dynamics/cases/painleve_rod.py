@@ -64,9 +64,10 @@ def request(friction: float) -> str:
 
 
 CASE: Final = Case(
-    title="A rod in Painlevé's region",
-    story="Sliding drives the rod's tip into the floor, and no finite force is consistent. Rigid bodies jam: an impact "
-    "without approach stops the tip and throws the rod up, by the same amount for any such μ. A soft contact hides the jam or delays it.",
+    title="A sliding rod in Painlevé's paradox",
+    story="Sliding drives the rod's tip into the floor, and no finite force is consistent. A rigid rod jams: an "
+    "impact without approach stops the tip and throws the rod up, by the same amount for any such μ. Soft "
+    "contacts hide or delay the jam.",
     threads=(
         "https://github.com/RobotLocomotion/drake/pull/4539",
         "https://github.com/RobotLocomotion/drake/pull/5175",
@@ -74,7 +75,8 @@ CASE: Final = Case(
     setting="μ",
     settings=(0.6, 1.0),
     quantity="upward velocity after the jam, m/s",
-    formula="1.5 P, P the impulse where Routh's path, along the cone's edge and then the sticking line, ends compression",
+    formula="1.5 P, where P is the normal impulse at which Routh's path, along the cone's edge and then the "
+    "sticking line, ends compression",
     exact=exact,
     ours=ours,
     mujoco=mujoco,

@@ -49,18 +49,18 @@ def request(friction: float) -> str:
 
 
 CASE: Final = Case(
-    title="A hand that squeezes below and above the limit",
-    story="Objects slip out of simulated hands however large μ is set. With Coulomb's law μ N ≥ m g holds the book, and "
-    "no more is needed.",
+    title="A book pressed against a wall",
+    story="Objects slip out of simulated hands however large μ is. Here a smooth hand presses a book against a "
+    "wall with the force N. With Coulomb friction the book stays if μ N ≥ m g.",
     threads=(
         "https://github.com/gazebosim/gazebo-classic/issues/2703",
         "https://github.com/bulletphysics/bullet3/issues/2607",
         "https://github.com/PickNikRobotics/ros2_robotiq_gripper/pull/15",
     ),
-    setting="μ, the limit is 0.4903",
+    setting="μ (the limit is 0.4903)",
     settings=(0.48, 0.5),
     quantity="downward acceleration, m/s²",
-    formula="g − μ N / m, or 0 where that is negative",
+    formula="g − μ N / m, but not below 0",
     exact=exact,
     ours=ours,
     mujoco=mujoco,

@@ -54,9 +54,9 @@ def request(degrees: float) -> str:
 
 
 CASE: Final = Case(
-    title="A ball on a slope: rolling and sliding",
-    story="Users saw balls roll down at constant speed, or shoot off. A rigid ball rolls with 5/7 g sin up to "
-    "tan(slope) = 7/2 μ, and slides on steeper ground.",
+    title="A ball on a slope, rolling or sliding",
+    story="Users saw balls roll down at constant speed, or shoot off. A rigid ball rolls with 5/7 g sin(slope) "
+    "up to tan(slope) = 7/2 μ, and slides on steeper slopes.",
     threads=(
         "https://github.com/liabru/matter-js/issues/1158",
         "https://github.com/gazebosim/gz-physics/issues/7",
@@ -64,7 +64,7 @@ CASE: Final = Case(
     setting="slope, degrees",
     settings=(30.0, 40.0),
     quantity="acceleration, m/s²",
-    formula="5/7 g sin(slope), or g (sin − μ cos)",
+    formula="5/7 g sin(slope), or g (sin(slope) − μ cos(slope))",
     exact=exact,
     ours=ours,
     mujoco=mujoco,

@@ -46,11 +46,11 @@ def request(spin: float) -> str:
 
 
 CASE: Final = Case(
-    title="A ball with back spin",
-    story="Users found that bounces with friction and spin decay, or do not turn spin into speed. A rigid ball that "
-    "grips leaves rolling, and enough back spin sends it back.",
+    title="A ball with backspin",
+    story="Users found that friction and spin decay over bounces, or that spin does not affect the velocity. A "
+    "rigid ball that grips leaves the floor rolling, and enough backspin sends it back.",
     threads=("https://github.com/avianphysics/avian/issues/200",),
-    setting="spin, rad/s, negative backwards",
+    setting="spin, rad/s (negative: backspin)",
     settings=(-40.0, -80.0),
     quantity="forward velocity after the bounce, m/s",
     formula="5/7 (v + 2/5 r ω)",

@@ -57,13 +57,13 @@ def request(friction: float) -> str:
 
 
 CASE: Final = Case(
-    title="A cube that slides must not tip, or must",
-    story="A cube is pushed off and slides. Its centre of mass is as high above the floor as its front edge is ahead, "
-    "so it stays flat up to μ = 1 and tips beyond. Users saw it tumble at μ = 0.5.",
+    title="A sliding cube that tips only above μ = 1",
+    story="A cube is pushed and slides. Its centre of mass is as far above the floor as its front edge is ahead "
+    "of it, so it stays flat up to μ = 1 and tips beyond. Users saw it tumble at μ = 0.5.",
     threads=("https://github.com/Genesis-Embodied-AI/genesis-world/issues/3115",),
     setting="μ",
     settings=(0.5, 0.99, 1.01),
-    quantity="angular acceleration, rad/s², negative forwards",
+    quantity="angular acceleration, rad/s² (negative: forwards)",
     formula="0 up to μ = 1; then 1.5 (1 − μ) g / (h (1 + 1.5 (1 − μ))) with half side h",
     exact=exact,
     ours=ours,

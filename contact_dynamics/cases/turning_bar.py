@@ -57,11 +57,11 @@ def request(arm: float) -> str:
 
 
 CASE: Final = Case(
-    title="A gripper that turns an object",
-    story="A user wanted an object to swing freely between two fingertips, and could not switch its resistance off. A "
-    "point contact with Coulomb friction transmits no moment: the bar is a pendulum.",
+    title="A bar that swings about a fingertip",
+    story="A user wanted an object to swing freely between two fingertips and could not disable the resistance. "
+    "A point contact with Coulomb friction transmits no moment, so the bar is a pendulum.",
     threads=("https://github.com/Genesis-Embodied-AI/genesis-world/issues/1139",),
-    setting="distance from the fingertip to the middle, m",
+    setting="distance from the fingertip to the centre, m",
     settings=(0.1,),
     quantity="angular acceleration, rad/s²",
     formula="m g d / (I + m d²)",

@@ -49,18 +49,18 @@ def request(mass: float) -> str:
 
 
 CASE: Final = Case(
-    title="Two balls and an elastic strike",
-    story="Users set the bounciness to 1 and saw an inelastic strike, or energy that grows. Momentum and energy leave "
-    "one answer.",
+    title="An elastic collision of two balls",
+    story="Users set the restitution to 1 and saw an inelastic collision, or an increase of energy. "
+    "Conservation of momentum and energy leaves one answer.",
     threads=(
         "https://github.com/DanielChappuis/reactphysics3d/issues/96",
         "https://github.com/erincatto/solver2d/issues/19",
         "https://github.com/keenon/nimblephysics/issues/143",
     ),
-    setting="mass of the first, kg",
+    setting="mass of the first ball, kg",
     settings=(10.0, 1.0),
-    quantity="speed of the second (10 kg) over that of the first",
-    formula="m over the mean of m and M",
+    quantity="speed of the second ball (10 kg) over that of the first",
+    formula="m over the mean of m and M, where m is the first mass and M the second",
     exact=exact,
     ours=ours,
     mujoco=mujoco,
