@@ -45,7 +45,7 @@ NOT_MEASURED: dict[
     "docs/contacts.md": ["0.001 m for motion capture", "at least 92 %"],  # test_contacts_of_shapes
     "docs/faq.md": ["1e-6 m"],
     "docs/limits.md": [
-        "than 1e-6 m, is rejected",
+        "and 1e-6 m is rejected",
         "for dead after 4 s",
         "at least 92 %",
         "1e16 rad",
