@@ -14,13 +14,34 @@ import tempfile
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from PIL import Image
 from rerun.experimental import ViewerClient
 
+from contact_dynamics import Body, BodyState, ContactSet, Surface, World, free_motion, inertia
+from contact_dynamics.constants import ns_after
+from contact_dynamics.measured.read_toss import read_toss
+from contact_dynamics.plane.projection import PlaneOfMotion
+from contact_dynamics.questions import (
+    ContactModeQuestion,
+    Context,
+    Problem,
+    TossQuestion,
+    TossSampling,
+    TumblingQuestion,
+    UncertainState,
+    UntilContact,
+    ask,
+)
+from contact_dynamics.shapes import box
+from contact_dynamics.toss import TossUncertainty
+from contact_dynamics.viewing.picture import Picture
 from contact_dynamics.viewing.ports import LOCAL, local_url
+from contact_dynamics.viewing.sinks import OpenRecording, Sinks
 from contact_dynamics.viewing.viewer_process import viewer_executable
 
 DOCS = Path(__file__).parents[1] / "docs"
@@ -28,10 +49,12 @@ PORT = 9877
 WIDTH, HEIGHT = 1200, 676  # points
 TOP, BOTTOM = 37, 30  # points: the viewer's menu, and the panel of times
 
+START_NS = 1_760_000_000_000_000_000
+ASKED = 20  # the recorded state that the whole toss is predicted from
 TIMELINE = "time since start"
 SLOWER = 4.0  # the moving picture, than the toss
 FRAMES_PER_S = 12.0
-TOSS_S = 1.5  # s of the toss that it shows
+BEGIN_S, END_S = 0.08, 1.5  # the part of the toss that it shows: the first prediction is made before it
 LAST_FRAME_MS = 2000
 MAX_BYTES = 3_000_000
 
@@ -123,8 +146,8 @@ def demo(folder: Path) -> None:
     subprocess.run(command, check=True)
     (recording,) = folder.glob("*/toss.rrd")
     with viewer(recording) as shown:
-        count = round(TOSS_S * SLOWER * FRAMES_PER_S)
-        frames = [shown.picture(TOSS_S * (i + 1) / count) for i in range(count)]
+        count = round((END_S - BEGIN_S) * SLOWER * FRAMES_PER_S)
+        frames = [shown.picture(seconds) for seconds in np.linspace(BEGIN_S, END_S, count)]
         shown.show_page("Impact")
         save(shown.picture(0.47), "viewer_impact.png")
     durations = [round(1000.0 / FRAMES_PER_S)] * (count - 1) + [LAST_FRAME_MS]
@@ -137,12 +160,120 @@ def demo(folder: Path) -> None:
         raise ValueError(message)
 
 
+def contact_modes(folder: Path) -> None:
+    """Draw a block that leans on the rim of a tilted tray, as in launch/tray.launch.py."""
+    size = (0.08, 0.08, 0.06)
+    block = Body(
+        name="block", mass_properties=inertia.box(size=size, mass=1.0).mass_properties, shape=box(size=size)
+    )
+    base = Surface(name="base", p_WS_W=[0, 0, 0], normal_W=[0, 0, 1], friction=0.3, restitution=0.0)
+    rim = Surface(name="rim", p_WS_W=[0.15, 0, 0], normal_W=[-1, 0, 0], friction=0.3, restitution=0.0)
+    leans = BodyState(p_WB_W=[0.11, 0, 0.03], q_WB=[0, 0, 0, 1], v_WB_W=[0, 0, 0], w_WB_W=[0, 0, 0])
+    touching = ContactSet(
+        p_WC_W=[[0.07, 0, 0], [0.15, 0, 0], [0.15, 0, 0], [0.15, 0, 0.06]],
+        normals_W=[[0, 0, 1], [0, 0, 1], [-1, 0, 0], [-1, 0, 0]],
+        frictions=0.3,
+    )
+    tilt = np.radians(25.0)
+    question = ContactModeQuestion(
+        body=block,
+        state=leans,
+        contacts=touching,
+        gravity_W=9.81 * np.array([np.sin(tilt), 0.0, -np.cos(tilt)]),
+        problem=Problem.PLANAR,
+        plane=PlaneOfMotion(normal_W=[0.0, -1.0, 0.0]),
+        include_margins=True,
+        include_wrenches=True,
+    )
+    world = World(bodies=(block,), surfaces=(base, rim))
+
+    def draw(picture: Picture) -> None:
+        picture.add_states("block", [at(leans, k / 100.0) for k in range(10)])
+        picture.show_contact_modes(ask(question, Context(world=world)), now_ns=START_NS)
+
+    with viewer(_recorded(folder, world, draw)) as shown:
+        shown.show_page("Contact modes")
+        save(shown.picture(0.09), "viewer_contact_modes.png")
+
+
+def toss(folder: Path) -> None:
+    """Draw where the demo's brick may come to rest, as predicted while it falls."""
+    recorded = read_toss()
+    world = World(bodies=(recorded.body,), surfaces=(recorded.surface,))
+    deviations = (recorded.position_noise, recorded.orientation_noise)
+    rates = (recorded.velocity_noise, recorded.angular_velocity_noise)
+    known = UncertainState(
+        state=at(recorded.state(ASKED), 0.0), covariance=np.diag(np.repeat([*deviations, *rates], 3) ** 2)
+    )
+    uncertainty = TossUncertainty(velocity=0.02, spin=0.4, height=0.001)
+    question = TossQuestion(
+        body=recorded.body,
+        state=known,
+        sampling=TossSampling(count=80, to_rest=True, uncertainty=uncertainty),
+    )
+
+    def draw(picture: Picture) -> None:
+        states = [at(recorded.state(k), (k - ASKED) / recorded.rate) for k in range(ASKED + 70)]
+        picture.add_states(recorded.body.name, states[: ASKED + 1])
+        picture.show_toss(ask(question, Context(world=world)), now_ns=START_NS)
+        picture.add_states(recorded.body.name, states[ASKED + 1 :])
+
+    with viewer(_recorded(folder, world, draw)) as shown:
+        shown.show_page("Toss")
+        save(shown.picture((ASKED + 69) / recorded.rate), "viewer_toss.png")
+
+
+def twenty(folder: Path) -> None:
+    """Draw the overview with twenty bricks in flight."""
+    size = (0.15, 0.09, 0.05)
+    mass_properties = inertia.box(size=size, mass=0.4).mass_properties
+    bricks = [
+        Body(name=f"brick_{i}", mass_properties=mass_properties, shape=box(size=size)) for i in range(20)
+    ]
+    floor = Surface(name="floor", p_WS_W=[0, 0, 0], normal_W=[0, 0, 1], friction=0.3, restitution=0.45)
+    world = World(bodies=tuple(bricks), surfaces=(floor,))
+
+    def draw(picture: Picture) -> None:
+        noise = np.random.default_rng(0)
+        for i, brick in enumerate(bricks):
+            place = [0.5 * (i % 5), 0.5 * (i // 5), 0.9]
+            thrown = BodyState(p_WB_W=place, q_WB=[0, 0, 0, 1], v_WB_W=[0.2, 0.1, 0], w_WB_W=[3, 8, 0.1 * i])
+            motion = free_motion(mass_properties, thrown)
+            seen = [at(motion.state_at(k / 250.0), k / 250.0) for k in range(60)]
+            seen = [replace(one, p_WB_W=one.p_WB_W + noise.normal(0.0, 3e-4, 3)) for one in seen]
+            picture.add_states(brick.name, seen[:1])
+            question = TumblingQuestion(body=brick, state=seen[0], sampling=UntilContact())
+            picture.show_tumbling(ask(question, Context(world=world)))
+            picture.add_states(brick.name, seen[1:])
+
+    with viewer(_recorded(folder, world, draw, surface_side=4.0)) as shown:
+        save(shown.picture(0.236), "viewer_twenty.png")
+
+
+def _recorded(
+    folder: Path, world: World, draw: Callable[[Picture], None], *, surface_side: float = 2.0
+) -> Path:
+    """Return a recording of what is drawn."""
+    path = folder / "picture.rrd"
+    recording = OpenRecording(Sinks(rrd_path=str(path)), on_problem=print)
+    draw(Picture(recording.stream, world, surface_side=surface_side))
+    recording.close()
+    return path
+
+
+def at(state: BodyState, seconds: float) -> BodyState:
+    """Return a state with a stamp so many s after the start."""
+    return replace(state, stamp_ns=ns_after(START_NS, seconds))
+
+
 def save(picture: Image.Image, name: str) -> None:
     """Save a picture with 256 colours, which is a third of the size."""
     picture.quantize(256, dither=Image.Dither.NONE).save(DOCS / name, optimize=True)
 
 
-PICTURES: dict[str, Callable[[Path], None]] = {"demo": demo}
+PICTURES: dict[str, Callable[[Path], None]] = {
+    each.__name__: each for each in (demo, contact_modes, toss, twenty)
+}
 
 
 def main() -> None:

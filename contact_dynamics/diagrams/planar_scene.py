@@ -30,7 +30,7 @@ ARROW_LENGTH: Final = 0.4
 LABEL_OFFSET: Final = 0.07
 """Distance of a label from its contact, relative to the body's size."""
 
-_COVERED: Final = 0.06  # labels nearer than this would cover each other, relative to the body's size
+_COVERED: Final = 0.13  # labels nearer than this would cover each other, relative to the body's size
 _SHOWN: Final = 1e-6  # arrows shorter than this are left out, relative to the longest
 
 
@@ -115,7 +115,6 @@ def planar_scene_of(
     points = np.array([contact.r for contact in contacts]).reshape(-1, 2)
     normals = np.array([contact.normal for contact in contacts]).reshape(-1, 2)
     letters = mode.mode if mode else "?" * len(contacts)
-    texts = [f"{i} {letter}" if mode else str(i) for i, letter in enumerate(letters, start=1)]
     places = points - LABEL_OFFSET * size * normals
     return PlanarScene(
         outline=outline,
@@ -124,7 +123,7 @@ def planar_scene_of(
         letters=letters,
         cones=[cone_edges(contact, length=CONE_LENGTH * size) for contact in contacts],
         labels=[
-            Label(same, places[same[0]], ", ".join(texts[i] for i in same))
+            Label(same, places[same[0]], _text_of(same, letters if mode else ""))
             for same in _same_places(places, size)
         ],
         forces=_arrows(mode.contact_forces, contacts, "N", size) if mode else None,
@@ -174,6 +173,14 @@ def _arrows(
         sizes=lengths[chosen],
         unit=unit,
     )
+
+
+def _text_of(contacts: list[int], letters: str) -> str:
+    """Return the numbers of contacts from 1, those with the same letter together with it."""
+    by_letter: dict[str, list[str]] = {}
+    for i in contacts:
+        by_letter.setdefault(letters[i] if letters else "", []).append(str(i + 1))
+    return "; ".join(f"{', '.join(numbers)} {letter}".rstrip() for letter, numbers in by_letter.items())
 
 
 def _same_places(places: FloatArray, size: float) -> list[list[int]]:

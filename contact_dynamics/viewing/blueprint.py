@@ -48,7 +48,7 @@ if TYPE_CHECKING:
 
     from contact_dynamics.validation import FloatArray
 
-LOWEST_DISTANCE: Final = 0.5
+LOWEST_DISTANCE: Final = 0.3
 """m. The eye stays at least this far from what it looks at."""
 
 NO_TRAVEL: Final = 1e-3
@@ -140,8 +140,10 @@ def make_blueprint(
         pages.append(_page("Impact", left, spaces, [_speed(), _told()]))
     if CONTACTS in shown:
         scene = _scene("Contacts", body_names, eye, without=_all_but(CONTACTS))
-        diagrams = [_diagram(origin) for origin in (PLANAR_MODES, MODE_MAP, FORCE_DUAL) if origin in shown]
-        pages.append(_page("Contact modes", scene, diagrams, [_told()]))
+        diagrams = [_diagram(PLANAR_MODES)] if PLANAR_MODES in shown else []
+        wrenches = [_diagram(origin) for origin in (MODE_MAP, FORCE_DUAL) if origin in shown]
+        charts = [*diagrams, *([rrb.Tabs(*wrenches, active_tab=0)] if wrenches else [])]
+        pages.append(_page("Contact modes", scene, charts, [_told()]))
     if TOSSES in shown:
         scene = _scene("Toss", body_names, eye, without=_all_but(TOSSES))
         pages.append(_page("Toss", scene, [], [_height(), _speed(), _told()]))
@@ -190,13 +192,13 @@ def _words(shown: Collection[str]) -> rrb.Horizontal:
 def _page(
     name: str,
     scene: rrb.Spatial3DView | rrb.Vertical,
-    diagrams: Sequence[rrb.View],
+    diagrams: Sequence[rrb.View | rrb.Tabs],
     below: Sequence[rrb.View],
     *,
     words: Sequence[rrb.View] = (),
 ) -> rrb.Horizontal:
     """Return a page: the scene on the left, on the right a few words, diagrams and what stands below them."""
-    shares = [1] * len(words) + [3] * len(diagrams) + [2] * len(below)
+    shares = [1] * len(words) + [4] * len(diagrams) + [2] * len(below)
     aside = rrb.Vertical(*words, *diagrams, *below, row_shares=shares)
     return rrb.Horizontal(scene, aside, column_shares=[1 if diagrams else 2, 1], name=name)
 
@@ -229,11 +231,11 @@ def _scene(
 
 
 def _height() -> rrb.TimeSeriesView:
-    return _curves(HEIGHT, "Height of the centre of mass, m (thin: predicted)")
+    return _curves(HEIGHT, "Height, m (thin: predicted)")
 
 
 def _speed() -> rrb.TimeSeriesView:
-    return _curves(SPEED, "Speed of the centre of mass, m/s (thin: predicted)")
+    return _curves(SPEED, "Speed, m/s (thin: predicted)")
 
 
 def _of_one_body() -> list[rrb.View]:

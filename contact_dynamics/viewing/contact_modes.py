@@ -35,7 +35,7 @@ MAX_MODES: Final = 6
 LETTERS: Final = "letters"
 """The labels of the contacts. Only those of the newest answer are in view."""
 
-LABEL_DEPTH: Final = 0.3
+LABEL_DEPTH: Final = 0.6
 """How far below the contacts their label is, relative to the body's size, so that they are seen."""
 
 _ACCELERATION_LENGTH: Final = 0.6  # length of the arrow at the centre of mass, relative to the body's size

@@ -42,7 +42,7 @@ LABEL_REACH: Final = 1.15
 LABEL_DEPTH: Final = 0.35
 """How far below the contact the label of its impulse is, relative to the body's size."""
 
-AFTER_DEPTH: Final = 0.75
+AFTER_DEPTH: Final = 0.95
 """The same for the label of the velocity after it."""
 
 LABELS: Final = ("impulse_label", "velocity_label")

@@ -27,7 +27,7 @@ from contact_dynamics.diagrams.wrench_chart import gap, picture_size
 from contact_dynamics.viewing import palette
 from contact_dynamics.viewing.entities import MODE_MAP
 from contact_dynamics.viewing.strips import strips_2d
-from contact_dynamics.viewing.words import room_2d
+from contact_dynamics.viewing.words import room_2d, words_2d
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -99,7 +99,7 @@ def color_of_modes(consistent: Sequence[str], every: Sequence[str]) -> palette.C
 def bounds(chart: WrenchChart) -> rrb.VisualBounds2D:
     """Return the bounds of a view that shows a whole chart and a note above it."""
     width, height = picture_size(chart)
-    return rrb.VisualBounds2D(x_range=(0.0, width), y_range=(-0.3 * gap(chart.resolution), height))
+    return rrb.VisualBounds2D(x_range=(0.0, width), y_range=(-gap(chart.resolution), height))
 
 
 def draw_frame(recording: rr.RecordingStream, chart: WrenchChart, entity: str, *, note: str = "") -> None:
@@ -109,12 +109,12 @@ def draw_frame(recording: rr.RecordingStream, chart: WrenchChart, entity: str, *
     captions = captions_of(chart)
     places, texts = [caption.place for caption in captions], [caption.text for caption in captions]
     if note:
-        places.append((0.5 * picture_size(chart)[0], -0.3 * gap(chart.resolution)))
+        places.append((0.5 * picture_size(chart)[0], -gap(chart.resolution)))
         texts.append(note)
-    words = rr.Points2D(places, colors=palette.NORMAL, radii=0.0, labels=texts, show_labels=True)
+    words = words_2d(np.array(places), texts, [palette.NORMAL] * len(texts))
     recording.log(f"{entity}/captions", words)
     width, height = picture_size(chart)
-    corners = np.array([(0.0, -0.6 * gap(chart.resolution)), (width, height + _BELOW * chart.resolution)])
+    corners = np.array([(0.0, -1.6 * gap(chart.resolution)), (width, height + _BELOW * chart.resolution)])
     recording.log(f"{entity}/room", room_2d(corners))
 
 

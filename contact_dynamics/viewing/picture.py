@@ -29,11 +29,12 @@ from contact_dynamics.diagrams.words import (
     many_in_words,
     tumbling_in_words,
 )
+from contact_dynamics.numerics.vectors import tangents_near_x
 from contact_dynamics.questions.many import ManyImpactsAnswer
 from contact_dynamics.tumbling.regime import Regime
 from contact_dynamics.viewing.after_impact import draw_after_impact
 from contact_dynamics.viewing.answers_in_words import AnswersInWords, sentence
-from contact_dynamics.viewing.blueprint import LOWEST_DISTANCE, WINDOW_S, make_blueprint
+from contact_dynamics.viewing.blueprint import NO_TRAVEL, WINDOW_S, make_blueprint
 from contact_dynamics.viewing.contact_modes import draw_contact_modes
 from contact_dynamics.viewing.diagrams_in_view import DiagramsInView
 from contact_dynamics.viewing.entities import (
@@ -232,7 +233,7 @@ class Picture:
         self._letters.come(name, stamp_ns)
         draw_contact_modes(self._recording, shape, answer, body=self._bodies.mass_properties(name))
         if self._eye is None:
-            self._look_at(answer.state.p_WB_W[None])
+            self._look_at(self._across_from(answer))
         if plane is not None:
             outline = silhouette(shape, plane.axes_W @ answer.state.R_WB)
             body = self._bodies.mass_properties(name)
@@ -363,6 +364,15 @@ class Picture:
             self._sees_path = True
             self._look_at(trajectory.p_WB_W)
 
+    def _across_from(self, answer: ContactModeAnswer) -> FloatArray:
+        """Return a short path, (2, 3), m, world, across which one sees a body and the walls behind it."""
+        up_W = self._world.up_W
+        side_W = answer.contacts.normals_W.mean(axis=0) - tangents_near_x(up_W)[1]
+        along_W = np.cross(up_W, side_W)
+        ends = np.array([[-1.0], [1.0]]) * NO_TRAVEL
+        path_W: FloatArray = answer.state.p_WB_W + ends * along_W / np.linalg.norm(along_W)
+        return path_W
+
     def _look_at(self, points_W: FloatArray) -> None:
         """Turn the view towards a path and the bodies about it."""
         self._look(self._framing.turn_to(points_W, margin=self._bodies.largest_size))
@@ -372,7 +382,7 @@ class Picture:
         if eye is None:
             return
         self._eye = eye
-        self._world.center_at(self._framing.center_W, extent=max(self._framing.extent, LOWEST_DISTANCE))
+        self._world.center_at(self._framing.center_W, extent=self._framing.extent)
         self._arrange()
 
     def _bring_up(self, *shown: str) -> None:

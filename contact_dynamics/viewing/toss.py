@@ -38,7 +38,7 @@ _PATH: Final = -2.0  # a negative size is in points of the screen
 _OTHER: Final = -1.2
 _THIN: Final = -0.6
 _POINT: Final = -4.0
-_LABELS_APART: Final = 0.35  # relative to the body's size, so that labels do not hide each other
+_LABELS_APART: Final = 0.55  # relative to the body's size, so that labels do not hide each other
 
 
 def draw_toss(recording: rr.RecordingStream, shape: Shape, answer: TossAnswer, *, up_W: FloatArray) -> None:

@@ -110,7 +110,7 @@ class WorldInView:
             surface_path(surface.name): surface_parts(
                 surface,
                 center_W=surface.p_WS_W if self._center_W is None else self._center_W,
-                side=min(self._surface_side, GROUND * self._extent),
+                side=min(self._surface_side, GROUND * self._extent or self._surface_side),
                 among=flats,
             )
             if isinstance(surface, Surface)

@@ -69,8 +69,8 @@ def test_the_eye_is_where_the_path_bulges_to() -> None:
         assert nearest == 1
 
 
-HEIGHT = "Height of the centre of mass, m (thin: predicted)"
-SPEED = "Speed of the centre of mass, m/s (thin: predicted)"
+HEIGHT = "Height, m (thin: predicted)"
+SPEED = "Speed, m/s (thin: predicted)"
 APART = "Error of the predicted position, m"
 OF_ONE_BODY = [
     "Whose curves",

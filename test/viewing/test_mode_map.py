@@ -175,7 +175,7 @@ def test_the_map_is_drawn_with_the_wrench_and_its_way_out(
     drawn = read()
     labels = drawn.last("/mode_map/names", "Points2D:labels")
     assert {"ffff", "ssss", "lsss"} <= set(labels)
-    captions = drawn.last("/mode_map/captions", "Points2D:labels")
+    captions = drawn.last("/mode_map/captions", "LineStrips2D:labels")
     assert captions == ["torque anticlockwise", "torque clockwise", "white: several modes are consistent"]
     way = drawn.array("/mode_map/applied/way_out", "LineStrips2D:strips")[0]
     ends = np.array([[1.0, -3.0, 0.1], [-2.0, -2.5, 0.3]])

@@ -86,7 +86,7 @@ def test_the_inconsistent_rod_says_so(recording: rr.RecordingStream, read: Calla
     drawn = read()
     assert drawn.last("/planar_modes/mode_1/title", "LineStrips2D:labels") == ["no consistent mode"]
     assert drawn.last("/planar_modes/mode_2", "Clear:is_recursive") == [True]
-    assert "black: none is" in drawn.last("/mode_map/captions", "Points2D:labels")[-1]
+    assert "black: none is" in drawn.last("/mode_map/captions", "LineStrips2D:labels")[-1]
 
 
 def test_a_map_that_looks_as_before_is_not_drawn_again(
