@@ -200,7 +200,10 @@ def contact_mode_answer(problem: int = SPATIAL, **fields: Any) -> PredictContact
 def test_contact_modes_are_drawn_with_every_mode_in_words(bench: Bench) -> None:
     bench.answer("predict_contact_mode", contact_mode_answer(equilibrium=2, jammed=1, wedged=1))
     drawn = bench.drawn()
-    assert drawn.last("/world/contacts/brick/letters", "Points3D:labels") == ["f", "l|f"]
+    assert drawn.last("/world/contacts/brick/letters", "Points3D:labels") == [
+        "stays fixed",
+        "slides left or stays fixed",
+    ]
     assert drawn.last("/world/contacts/brick/mode_2/forces", "Arrows3D:labels") == ["2 N", "2 N"]
     text = drawn.last("/answers/newest", "TextDocument:text")[0]
     assert "does not choose: fl (0.25 N from ff), ff (0.25 N from ff); the contact" in text
@@ -229,7 +232,9 @@ def test_a_planar_answer_is_drawn_in_its_plane_with_the_map(bench: Bench) -> Non
         answer.wrench_sets.append(ModeWrenches(mode=mode, vertices=[0.0] * 6, half_spaces=a))
     bench.answer("predict_contact_mode", answer)
     drawn = bench.drawn()
-    assert drawn.last("/planar_modes/mode_1/title", "LineStrips2D:labels") == ["fl (0.25 N from ff)"]
+    assert drawn.last("/planar_modes/mode_1/title", "LineStrips2D:labels") == [
+        "fl: 1 contact slides left, 1 stays fixed (0.25 N from ff)"
+    ]
     center = center_of_mass([0.5, 0.0, 1.0], TURNED)
     first = drawn.array("/planar_modes/mode_1/contacts", "Points2D:positions")[0]
     np.testing.assert_allclose(first, [0.1 - center[0], center[2]], atol=1e-6)  # the second axis down
