@@ -37,6 +37,10 @@ class WrongTypeError(InvalidFieldError, TypeError):
     """An argument or a field has another type than its annotation says: a `Body` for a `MassProperties`."""
 
 
+class UnknownArgumentError(ContactDynamicsError, TypeError):
+    """A call has no argument of that name. The message names the one that was probably meant."""
+
+
 class TooLargeError(InvalidFieldError):
     """A list is longer than the stated limit."""
 

@@ -10,11 +10,13 @@ import math
 from collections.abc import Iterable, Mapping
 from decimal import Decimal
 from fractions import Fraction
-from typing import Any, Final
+from typing import Any, Final, TypeVar
 
 import numpy as np
 
-from contact_dynamics.validation_types import checks_fields
+from contact_dynamics.validation_types import check_names, checks_fields
+
+Made = TypeVar("Made", bound="Record")
 
 _DIGITS: Final = 6
 """Significant digits of a number that is shown. `to_dict` keeps all of them."""
@@ -52,6 +54,12 @@ class Record:
     """
 
     __slots__ = ()
+
+    def __new__(cls: type[Made], *_: object, **fields: object) -> Made:  # noqa: PYI019  Python 3.10 has no Self
+        """Refuse fields of names that there are not. The error names the one that was probably meant."""
+        if fields:
+            check_names(cls, fields)
+        return object.__new__(cls)
 
     def __init_subclass__(cls) -> None:
         """Have the types of fields checked, once, although `dataclass` makes a class with slots anew."""

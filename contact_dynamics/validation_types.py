@@ -11,6 +11,7 @@ import ast
 import builtins
 import collections.abc
 import dataclasses
+import difflib
 import functools
 import inspect
 import re
@@ -23,13 +24,34 @@ from typing import Any, Final, NamedTuple, NoReturn, ParamSpec, TypeGuard, TypeV
 
 import numpy as np
 
-from contact_dynamics.errors import WrongTypeError
+from contact_dynamics.errors import UnknownArgumentError, WrongTypeError
 
 P = ParamSpec("P")
 R = TypeVar("R")
 
 _NUMBERS: Final = {"int", "float", "complex", "ArrayLike", "FloatArray", "IntArray", "NDArray", "Vector2"}
 _UNCHECKED: Final = {*_NUMBERS, "Any", "object"}
+_MEANT: Final[dict[str, tuple[str, ...]]] = {
+    **dict.fromkeys(("position", "point", "location", "pos", "p"), ("p_WB_W", "p_WC_W", "p_WS_W", "r")),
+    **dict.fromkeys(("velocity", "linear_velocity", "vel"), ("v_WB_W", "v")),
+    **dict.fromkeys(("angular_velocity", "omega", "spin"), ("w_WB_W", "w")),
+    **dict.fromkeys(("orientation", "quaternion", "attitude", "rotation", "q"), ("q_WB",)),
+    **dict.fromkeys(("mu", "friction_coefficient"), ("friction", "frictions")),
+    **dict.fromkeys(("e", "coefficient_of_restitution", "bounce"), ("restitution", "restitutions")),
+    **dict.fromkeys(("mass", "inertia", "density"), ("mass_properties", "I_B")),
+    **dict.fromkeys(("vertices", "corners", "size"), ("vertices_B", "vertices_W", "shape")),
+    **dict.fromkeys(("duration", "until", "timeout", "time", "seconds", "max_time"), ("horizon", "stamp_ns")),
+    **dict.fromkeys(("samples", "n"), ("count",)),
+    **dict.fromkeys(("floor", "surface", "ground"), ("surfaces",)),
+    "normal": ("normal_W", "normals_W"),
+    "law": ("restitution_law",),
+    "force": ("force_W", "f"),
+}
+"""Names that newcomers guess, with what they may mean. Arguments that begin with the guess are found too."""
+
+_NAMES: Final[dict[type, Mapping[str, inspect.Parameter]]] = {}
+"""What each class is made with, once that was asked for."""
+
 _FUNCTION: Final[type] = Callable  # type: ignore[assignment]  # a class in all that it is used for here
 _SEQUENCES: Final = (collections.abc.Sequence, Collection, tuple, list)
 
@@ -70,13 +92,17 @@ def checks_types(function: Callable[P, R]) -> Callable[P, R]:
     if _is_numeric(annotations.values()):
         return function
     by_name: dict[str, Expected] = {}
+    names: dict[str, inspect.Parameter] = {}
     by_place: list[tuple[str, Expected | None]] = []
 
     @functools.wraps(function)
     def checked(*args: P.args, **kwargs: P.kwargs) -> R:
         if not by_place:
             by_name.update(_expected(annotations, vars(sys.modules[function.__module__])))
-            by_place.extend((name, by_name.get(name)) for name in inspect.signature(function).parameters)
+            names.update(inspect.signature(function).parameters)
+            by_place.extend((name, by_name.get(name)) for name in names)
+        if not kwargs.keys() <= names.keys():
+            refuse_unknown(function, next(name for name in kwargs if name not in names), names)
         for value, (name, expected) in zip(args, by_place, strict=False):
             if expected is not None and not isinstance(value, expected.types):
                 check_type(name, value, expected)
@@ -118,6 +144,31 @@ def checks_fields(post_init: Callable[[Any], None], annotations: Mapping[str, st
         post_init(self)
 
     return checked
+
+
+def check_names(made: type, arguments: Mapping[str, object]) -> None:
+    """Raise `UnknownArgumentError` if a class is made with an argument of a name that it does not have."""
+    names = _NAMES.get(made)
+    if names is None:
+        names = _NAMES[made] = inspect.signature(made.__init__).parameters  # type: ignore[misc]  # not called
+    if not arguments.keys() <= names.keys():
+        refuse_unknown(made, next(name for name in arguments if name not in names), names)
+
+
+def refuse_unknown(called: Callable[..., object], name: str, allowed: Collection[str]) -> NoReturn:
+    """Raise the error that a call has no argument of a name, with the one that was meant and what it is."""
+    known = [one for one in allowed if one not in {"self", "cls"}]
+    guesses = [one for one in _MEANT.get(name, ()) if one in known]
+    guesses += [one for one in known if one.startswith(f"{name}_")]
+    guesses += difflib.get_close_matches(name, known, n=1)
+    words = f"{called.__qualname__} has no argument {name!r}"
+    if guesses:
+        meaning = re.search(rf"^\s*{guesses[0]}: (.+?)\.?$", inspect.getdoc(called) or "", re.MULTILINE)
+        words += f", did you mean {guesses[0]}{f' ({meaning[1]})' if meaning else ''}?"
+    else:
+        words += "."
+    hint = getattr(called, "HINT_IF_UNKNOWN", "")
+    raise UnknownArgumentError(f"{words} It has {', '.join(known)}{'; ' if hint else ''}{hint}")
 
 
 def check_type(field: str, value: object, expected: Expected) -> None:

@@ -6,7 +6,7 @@ Surfaces are flats without end (`Surface`), and convex solids and plates (`Obsta
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, ClassVar, Final
 
 import numpy as np
 
@@ -14,6 +14,9 @@ from contact_dynamics.constants import STANDARD_GRAVITY_W
 from contact_dynamics.errors import InvalidFieldError, UnknownBodyError
 from contact_dynamics.records import Record
 from contact_dynamics.rigid_body.body import HasMassProperties, MassProperties
+from contact_dynamics.rigid_body.inertia import solids
+from contact_dynamics.rigid_body.inertia.triangle_mesh import mesh
+from contact_dynamics.shapes import convex
 from contact_dynamics.shapes.concavity import warn_if_concave
 from contact_dynamics.shapes.convex import MAX_VERTICES, NO_SHAPE, ConvexShape, box_vertices, polyhedron
 from contact_dynamics.shapes.obstacle import Obstacle
@@ -40,7 +43,11 @@ LONGEST_NAME: Final = 256
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class Body(HasMassProperties):
-    """A rigid body that questions name.
+    """A rigid body with a name and a shape.
+
+    `Body.box`, `Body.sphere`, `Body.cylinder`, `Body.capsule` and `Body.from_mesh` make a uniform one, whose
+    mass properties and shape agree. `Body.of` takes any distribution of mass, such as measured values or
+    several parts of `inertia`.
 
     Attributes:
         name: The name by which questions refer to it.
@@ -61,6 +68,10 @@ class Body(HasMassProperties):
     p_FB_F: FloatArray = field(default_factory=lambda: np.zeros(3))
     vertices_B: FloatArray = field(default_factory=lambda: np.zeros((0, 3)))
     shape: ConvexShape = NO_SHAPE
+
+    HINT_IF_UNKNOWN: ClassVar[str] = (
+        "Body.box, Body.sphere, Body.cylinder, Body.capsule and Body.from_mesh take sizes and a mass"
+    )
 
     if TYPE_CHECKING:
 
@@ -86,6 +97,87 @@ class Body(HasMassProperties):
         elif self.vertices_B is not self.shape.vertices and np.size(self.vertices_B) > 0:
             raise InvalidFieldError("vertices_B", "vertices and a shape", "one of them")
         object.__setattr__(self, "vertices_B", self.shape.vertices)
+
+    @classmethod
+    @checks_types
+    def box(
+        cls, size: ArrayLike, mass: float | None = None, *, density: float | None = None, name: str = "box"
+    ) -> Body:
+        """Return a uniform box of full side lengths (3,), m, with its frame at the centre.
+
+        As for the other bodies, give either ``mass``, kg, or ``density``, kg/m^3.
+        """
+        return cls.of(name, solids.box(size, mass=mass, density=density), shape_F=convex.box(size))
+
+    @classmethod
+    @checks_types
+    def sphere(
+        cls, radius: float, mass: float | None = None, *, density: float | None = None, name: str = "sphere"
+    ) -> Body:
+        """Return a uniform ball of a radius, m, with its frame at the centre."""
+        return cls.of(name, solids.sphere(radius, mass=mass, density=density), shape_F=convex.sphere(radius))
+
+    @classmethod
+    @checks_types
+    def cylinder(
+        cls,
+        radius: float,
+        length: float,
+        mass: float | None = None,
+        *,
+        density: float | None = None,
+        name: str = "cylinder",
+    ) -> Body:
+        """Return a uniform cylinder about z, lengths in m, with its frame at the centre."""
+        solid = solids.cylinder(radius, length, mass=mass, density=density)
+        return cls.of(name, solid, shape_F=convex.cylinder(radius, length))
+
+    @classmethod
+    @checks_types
+    def capsule(
+        cls,
+        radius: float,
+        length: float,
+        mass: float | None = None,
+        *,
+        density: float | None = None,
+        name: str = "capsule",
+    ) -> Body:
+        """Return a uniform rod with round ends about z, with its frame at the centre.
+
+        ``length``, m, is between the centres of the two ends.
+        """
+        solid = solids.capsule(radius, length, mass=mass, density=density)
+        return cls.of(name, solid, shape_F=convex.capsule(radius, length))
+
+    @classmethod
+    @checks_types
+    def from_mesh(
+        cls,
+        vertices_F: ArrayLike,
+        triangles: ArrayLike,
+        mass: float | None = None,
+        *,
+        density: float | None = None,
+        name: str = "mesh",
+    ) -> Body:
+        """Return the uniform solid inside a closed mesh, in whose frame F it is published.
+
+        Its mass properties are those of the mesh. Its shape is the mesh's convex hull, with a
+        `ConcaveShapeWarning` where that differs.
+
+        Args:
+            vertices_F: (n, 3), m.
+            triangles: (m, 3), three indices of vertices each, counter-clockwise seen from outside.
+            mass: kg, or None if a density is given.
+            density: kg/m^3, or None if a mass is given.
+            name: The name by which questions refer to it.
+
+        Raises:
+            InvalidFieldError: as `inertia.mesh`.
+            TooLargeError: there are more vertices than `MAX_VERTICES`.
+        """
+        return cls.of(name, mesh(vertices_F, triangles, mass=mass, density=density), vertices_F=vertices_F)
 
     @classmethod
     @checks_types

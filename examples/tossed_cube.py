@@ -8,17 +8,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from contact_dynamics import Body, BodyState, Surface, World, inertia
+from contact_dynamics import Body, BodyState, Surface, World
 from contact_dynamics.diagrams.toss_words import branch_in_words, face_in_words
 from contact_dynamics.questions import Context, TossQuestion, TossSampling, UncertainState, ask
-from contact_dynamics.shapes import box
 from contact_dynamics.toss import TossUncertainty
 from contact_dynamics.toss.distribution import Branch
 
 SIZE = (0.1, 0.1, 0.1)
-CUBE = Body(
-    name="cube", mass_properties=inertia.box(size=SIZE, mass=0.37).mass_properties, shape=box(size=SIZE)
-)
+CUBE = Body.box(SIZE, mass=0.37, name="cube")
 FLOOR = Surface(name="floor", p_WS_W=[0, 0, 0], normal_W=[0, 0, 1], friction=0.2, restitution=0.15)
 
 thrown = BodyState(

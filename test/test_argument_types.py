@@ -14,6 +14,7 @@ import pytest
 from architecture.test_doors import CHAPTERS
 from contact_dynamics import (
     Body,
+    BodyState,
     ContactSet,
     PlanarBody,
     PlanarContact,
@@ -103,6 +104,55 @@ def test_an_argument_is_checked_by_place_and_by_name() -> None:
         free_motion(BALL, BALL)
     with pytest.raises(WrongTypeError, match=r"^state must be a BodyState, got a MassProperties$"):
         free_motion(BALL, state=BALL)
+
+
+GUESSES: list[tuple[Any, dict[str, Any], str]] = [
+    (
+        Body,
+        {"name": "cup", "mass": 1.0},
+        "Body has no argument 'mass', did you mean mass_properties (Ma",
+    ),
+    (
+        BodyState,
+        {"position": (0, 0, 1)},
+        "BodyState has no argument 'position', did you mean p_WB_W (",
+    ),
+    (BodyState, {"velocity": (0, 0, 1)}, "BodyState has no argument 'velocity', did you mean v_WB_W ("),
+    (
+        Surface,
+        {"name": "floor", "normal": (0, 0, 1)},
+        "Surface has no argument 'normal', did you mean normal_W (",
+    ),
+    (
+        ContactSet,
+        {"normal": (0, 0, 1)},
+        "ContactSet has no argument 'normal', did you mean normals_W (",
+    ),
+    (World, {"gravity": 9.81}, "World has no argument 'gravity', did you mean gravity_W ((3,), m/s^2"),
+    (
+        free_motion,
+        {"body": BOX, "gravty_W": 0},
+        "free_motion has no argument 'gravty_W', did you mean gravity_W?",
+    ),
+    (World, {"colour": "red"}, "World has no argument 'colour'. It has bodies, surfaces, gravity_W"),
+    (Body.box, {"size": (1, 1, 1), "weight": 1}, "Body.box has no argument 'weight'. It has size, mass, "),
+]
+"""Calls with a guessed name, and how the error begins that names the right one."""
+
+
+@pytest.mark.parametrize(("call", "arguments", "text"), GUESSES)
+def test_a_guessed_name_is_an_error_that_names_the_right_one(
+    call: Any, arguments: dict[str, Any], text: str
+) -> None:
+    with pytest.raises(TypeError) as raised:
+        call(**arguments)
+    assert str(raised.value).startswith(text)
+    assert isinstance(raised.value, ContactDynamicsError)
+
+
+def test_the_error_of_a_mass_names_what_takes_one() -> None:
+    with pytest.raises(TypeError, match=r"Body\.box, Body\.sphere"):
+        Body(name="cup", mass=1.0)  # type: ignore[call-arg]
 
 
 def test_the_field_that_was_meant_is_named() -> None:

@@ -68,6 +68,8 @@ def typed_constructors() -> list[tuple[str, str, list[str]]]:
         for owner in (node for node in ast.walk(tree) if isinstance(node, ast.ClassDef)):
             for block in (node for node in owner.body if isinstance(node, ast.If)):
                 (init,) = (node for node in block.body if isinstance(node, ast.FunctionDef))
+                if init.name != "__init__":
+                    continue
                 pairs = zip(init.args.kwonlyargs, init.args.kw_defaults, strict=True)
                 arguments = [f"{one.arg}{'' if default is None else '?'}" for one, default in pairs]
                 module = ".".join(path.relative_to(ROOT).with_suffix("").parts)

@@ -14,8 +14,9 @@ from scipy.spatial.transform import Rotation
 from contact_dynamics.contact.contact import MAX_CONTACTS, ContactSet
 from contact_dynamics.contact.found import find_contacts
 from contact_dynamics.errors import InvalidFieldError, TooLargeError, UnknownBodyError
+from contact_dynamics.rigid_body import inertia
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
-from contact_dynamics.shapes import box, cylinder, sphere
+from contact_dynamics.shapes import box, capsule, cylinder, sphere
 from contact_dynamics.shapes.convex import ConvexShape
 from contact_dynamics.shapes.obstacle import Obstacle
 from contact_dynamics.tolerances import DISTANCE_TOLERANCE
@@ -23,6 +24,34 @@ from contact_dynamics.world import MAX_VERTICES, Body, Surface, World, box_verti
 
 STUFF = MassProperties(mass=1.0, I_B=np.eye(3))
 BOX = Body(name="box", mass_properties=STUFF, vertices_B=box_vertices((2.0, 4.0, 6.0)))
+
+
+def test_a_uniform_body_has_the_mass_properties_of_its_shape() -> None:
+    size = (0.15, 0.09, 0.05)
+    for made, mass, shape in (
+        (Body.box(size, mass=0.4), inertia.box(size, mass=0.4), box(size)),
+        (Body.sphere(0.1, 0.4), inertia.sphere(0.1, mass=0.4), sphere(0.1)),
+        (Body.cylinder(0.1, 0.3, 0.4), inertia.cylinder(0.1, 0.3, mass=0.4), cylinder(0.1, 0.3)),
+        (Body.capsule(0.1, 0.3, 0.4), inertia.capsule(0.1, 0.3, mass=0.4), capsule(0.1, 0.3)),
+    ):
+        assert made.mass_properties.to_dict() == mass.mass_properties.to_dict()
+        assert made.shape.to_dict() == shape.to_dict()
+        assert not made.p_FB_F.any()
+    assert Body.box(size, density=1000.0).mass_properties.mass == pytest.approx(0.675)
+    with pytest.raises(InvalidFieldError, match="exactly one of the two"):
+        Body.box(size)
+
+
+def test_a_mesh_is_a_body_with_its_frame_where_the_mesh_has_it() -> None:
+    """A box whose frame is at a corner, as meshes often are."""
+    size = np.array([0.2, 0.1, 0.4])
+    corners = box_vertices(size) + size / 2.0
+    triangles = [[0, 1, 3], [0, 3, 2], [4, 6, 7], [4, 7, 5], [0, 4, 5], [0, 5, 1]]
+    triangles += [[2, 3, 7], [2, 7, 6], [0, 2, 6], [0, 6, 4], [1, 5, 7], [1, 7, 3]]
+    made = Body.from_mesh(corners, triangles, mass=3.0, name="crate")
+    np.testing.assert_allclose(made.p_FB_F, size / 2.0)
+    np.testing.assert_allclose(made.mass_properties.I_B, Body.box(size, 3.0).mass_properties.I_B, atol=1e-15)
+    np.testing.assert_allclose(sorted(made.vertices_B.tolist()), sorted(box_vertices(size).tolist()))
 
 
 def surface(name: str, point: tuple[float, float, float], normal: tuple[float, float, float]) -> Surface:
