@@ -41,8 +41,19 @@ class NamedInt(enum.IntEnum):
 
 
 _LINE: Final = 100
-"""Up to this number of letters, a value in a list is shown in one line. A longer one has a line for each
-field."""
+"""Letters of a line that is shown."""
+
+_LONGEST_ARRAY: Final = 75
+"""Letters of an array whose numbers are shown. A longer one is shown as its shape."""
+
+_LINES: Final = 20
+"""Lines of a value that is printed."""
+
+_FEW: Final = 4
+"""Lines that are worth a list of records of which more follow."""
+
+_ROUNDING: Final = 1e-12
+"""Numbers of an array that are smaller than its largest one by this factor are shown as zero."""
 
 
 class Record:
@@ -68,13 +79,16 @@ class Record:
             type.__setattr__(cls, "__post_init__", checks_fields(post_init, inspect.get_annotations(cls)))
 
     def __repr__(self) -> str:
-        """Return the fields in one line: short numbers, names of enumerations, shapes of long arrays."""
-        shown = ", ".join(f"{name}={_short(value)}" for name, value in _fields(self))
-        return f"{type(self).__name__}({shown})"
+        """Return the fields, as many as fit into one line."""
+        return _in_a_line(self, _LINE)
 
     def __str__(self) -> str:
-        """Return the fields, one on each line."""
-        return "\n".join([type(self).__name__, *_lines(self, "  ")])
+        """Return what it is in short, and below it the fields, in at most 20 lines."""
+        return "\n".join([_cut(self.in_short()), *_lines(self)])
+
+    def in_short(self) -> str:
+        """Return what it is in a few words. Results whose gist is not a field of theirs have more to say."""
+        return type(self).__name__
 
     def _repr_html_(self) -> str:
         """Return the fields as a table, which notebooks show. Fields of fields open with a click."""
@@ -130,44 +144,94 @@ def _plain(value: Any) -> Any:
 
 
 def _short(value: Any) -> str:
-    """Return a value in a few words."""
+    """Return a value in a few words: short numbers, names of enumerations, shapes of long arrays."""
     if isinstance(value, enum.Enum):
         shown = value.name
     elif isinstance(value, _NUMBERS):
-        shown = f"{float(value):.{_DIGITS}g}"
+        shown = f"{float(value) + 0.0:.{_DIGITS}g}"
     elif isinstance(value, np.ndarray):
-        shown = _short(value.tolist()) if value.size <= _MAX_SHOWN else f"array of shape {value.shape}"
-    elif _has_fields(value) and not isinstance(value, Record):
+        shown = _short(_without_rounding(value).tolist()) if value.size <= _MAX_SHOWN else ""
+        if not shown or len(shown) > _LONGEST_ARRAY:
+            shown = f"array of shape {value.shape}"
+    elif isinstance(value, Record):
+        shown = _in_a_line(value, _LINE // 2)
+    elif _has_fields(value):
         shown = f"{type(value).__name__}(...)"
-    elif isinstance(value, list | tuple | frozenset | set | Mapping) and len(value) > _MAX_SHOWN:
-        shown = f"{len(value)} entries"
-    elif isinstance(value, tuple):
-        shown = "(" + ", ".join(map(_short, value)) + ")"
-    elif isinstance(value, list):
-        shown = "[" + ", ".join(map(_short, value)) + "]"
+    elif isinstance(value, list | tuple | frozenset | set | Mapping):
+        shown = _in_words(value)
     else:
         shown = repr(value)
     return shown
 
 
-def _lines(record: object, indent: str) -> list[str]:
-    """Return a line for each field. Fields of fields are indented."""
+def _in_words(values: Any) -> str:
+    """Return the entries of a list, or how many there are where they are records, or many."""
+    records = {type(each).__name__ for each in values if isinstance(each, Record)}
+    if records:
+        return f"{len(values)} {' or '.join(sorted(records))}"
+    if len(values) > _MAX_SHOWN or isinstance(values, frozenset | set | Mapping):
+        return f"{len(values)} entries"
+    inside = ", ".join(map(_short, values))
+    if isinstance(values, list):
+        return f"[{inside}]"
+    return f"({inside},)" if len(values) == 1 else f"({inside})"
+
+
+def _without_rounding(array: Any) -> Any:
+    """Return an array whose numbers that are nothing but the rounding of the others are zero."""
+    if array.dtype.kind != "f" or not np.isfinite(array).all():
+        return array
+    return np.where(abs(array) < _ROUNDING * abs(array).max(initial=0.0), 0.0, array)
+
+
+def _in_a_line(record: Record, longest: int) -> str:
+    """Return the fields of a record in one line, as many as fit."""
+    name = type(record).__name__
+    shown: list[str] = []
+    left = longest - len(name) - len("(, ...)")
+    for field, value in _fields(record):
+        text = f"{field}={_short(value)}"
+        left -= len(text) + 2
+        if left < 0:
+            return f"{name}({', '.join([*shown, '...'])})"
+        shown.append(text)
+    return f"{name}({', '.join(shown)})"
+
+
+def _lines(record: Record) -> list[str]:
+    """Return a line for each field. Where there is room, lines for what is in a field follow."""
     named = _fields(record)
     width = max((len(name) for name, _ in named), default=0)
+    hidden = named[_LINES - 2 :] if len(named) > _LINES - 1 else []
+    named = named[: len(named) - len(hidden)]
+    room = _LINES - 1 - len(named)
     lines = []
     for name, value in named:
-        if isinstance(value, Record):
-            lines += [f"{indent}{name}: {type(value).__name__}", *_lines(value, indent + "  ")]
-        elif isinstance(value, tuple | list) and value and all(isinstance(each, Record) for each in value):
-            lines.append(f"{indent}{name}:")
-            for i, each in enumerate(value):
-                if len(repr(each)) <= _LINE:
-                    lines.append(f"{indent}  [{i}] {each!r}")
-                else:
-                    lines += [f"{indent}  [{i}] {type(each).__name__}", *_lines(each, indent + "    ")]
+        below: list[str] = []
+        if isinstance(value, Record) and len(_in_a_line(value, 10 * _LINE)) > _LINE // 2:
+            below = [f"{field}={_short(inner)}" for field, inner in _fields(value)]
+        elif isinstance(value, tuple | list) and not any(type(each) is type(record) for each in value):
+            below = [
+                f"[{k}] {_in_a_line(each, _LINE - 8)}"
+                for k, each in enumerate(value)
+                if isinstance(each, Record)
+            ]
+        if len(below) > room and isinstance(value, tuple | list) and room >= _FEW:
+            below = [*below[: room - 1], f"... and {len(below) - room + 1} more"]
+        if len(below) <= room:
+            room -= len(below)
         else:
-            lines.append(f"{indent}{name:{width}}  {_short(value)}")
+            below = []
+        text = type(value).__name__ if below and isinstance(value, Record) else _short(value)
+        lines.append(_cut(f"  {name:{width}}  {text}"))
+        lines += [_cut(f"    {each}") for each in below]
+    if hidden:
+        lines.append(_cut(f"  and {', '.join(name for name, _ in hidden)}"))
     return lines
+
+
+def _cut(line: str) -> str:
+    return line if len(line) <= _LINE else line[: _LINE - 3] + "..."
 
 
 def _table(record: object) -> str:

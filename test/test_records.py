@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import json
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, make_dataclass
 from decimal import Decimal
 from enum import Enum
 from typing import NamedTuple
@@ -10,7 +10,9 @@ from xml.etree import ElementTree as ET
 
 import numpy as np
 
+from contact_dynamics import Body, BodyState, Surface, World
 from contact_dynamics.records import NamedInt, Record
+from contact_dynamics.toss import toss
 from contact_dynamics.validation import FloatArray
 
 
@@ -52,14 +54,13 @@ def test_json_takes_the_dict_and_gives_the_numbers_back() -> None:
     assert again["missing"] is None
 
 
-def test_a_repr_is_one_short_line() -> None:
+def test_a_repr_fits_a_line() -> None:
     shown = repr(Outer())
     assert "\n" not in shown
-    assert len(shown) < 400
-    assert "colour=RED" in shown
-    assert "0.333333" in shown
-    assert "0.33333333" not in shown
-    assert "array of shape (100, 3)" in shown
+    assert len(shown) <= 100
+    assert shown.startswith("Outer(name='brick', vector=[1, 0.333333, nan], table=array of shape (100, 3), ")
+    assert shown.endswith(", ...)")
+    assert repr(Inner()) == "Inner(colour=RED, long=0.333333)"
 
 
 def test_a_print_has_a_line_a_field() -> None:
@@ -69,13 +70,56 @@ def test_a_print_has_a_line_a_field() -> None:
     assert "    [1] Inner(colour=RED, long=0.333333)" in lines
 
 
-def test_a_long_value_in_a_list_has_a_line_a_field() -> None:
-    @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-    class Sets(Record):
-        all_of_them: tuple[Outer, ...] = (Outer(),)
+def test_a_print_fits_a_screen_and_counts_what_has_no_room() -> None:
+    lines = str(Outer(several=(Inner(),) * 1000)).splitlines()
+    assert len(lines) <= 20
+    assert any(line.split() == ["several", "1000", "Inner"] for line in lines)
+    assert lines[-1].strip() != ""
+    assert "... and 989 more" in str(Outer(several=(Inner(),) * 1000))
+    assert max(map(len, lines)) <= 100
 
-    assert "  [0] Outer" in str(Sets())
-    assert "      name     'brick'" in str(Sets())
+
+def test_values_of_its_own_kind_are_counted_and_not_nested() -> None:
+    @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+    class Way(Record):
+        others: tuple[Way, ...] = ()
+
+    assert str(Way(others=(Way(), Way()))) == "Way\n  others  2 Way"
+
+
+def test_more_fields_than_lines_are_named() -> None:
+    many = make_dataclass(
+        "Many", [(f"f{i}", int, 0) for i in range(40)], bases=(Record,), frozen=True, eq=False, repr=False
+    )
+    lines = str(many()).splitlines()
+    assert len(lines) == 20
+    assert lines[-1].startswith("  and f18, f19, ")
+
+
+def test_rounding_is_shown_as_zero() -> None:
+    assert "vector=[1, 0, 0]" in repr(Outer(vector=np.array([1.0, -2e-17, -0.0])))
+
+
+def test_every_result_of_a_toss_fits() -> None:
+    """A cube that is dropped flat has many branch points: at each landing four corners strike at once."""
+    cube = Body.box((0.1, 0.1, 0.1), 0.37)
+    floor = Surface(name="floor", p_WS_W=[0, 0, 0], normal_W=[0, 0, 1], friction=0.3, restitution=0.45)
+    state = BodyState(p_WB_W=[0, 0, 0.5], q_WB=[0, 0, 0, 1], v_WB_W=[0.3, 0, 0], w_WB_W=[0, 0, 0])
+    world = World(bodies=(cube,), surfaces=(floor,))
+    went = toss(cube, state, world)
+    assert went.alternatives == ()
+    assert not went.all_followed
+    head = str(went).splitlines()[0]
+    assert head.startswith("Toss: RESTS at ")
+    assert f"{len(went.undecided)} branch points not followed (at {went.undecided[0].seconds:.3g}, " in head
+    followed = toss(cube, state, world, max_alternatives=2)
+    assert "followed to 2 other ways" in str(followed).splitlines()[0]
+    assert any(line.split() == ["alternatives", "2", "Toss"] for line in str(followed).splitlines())
+    for shown in (went, followed, *went.events, went.state, went.energy, cube, world):
+        lines = str(shown).splitlines()
+        assert len(lines) <= 20
+        assert max(map(len, lines)) <= 100
+        assert len(repr(shown)) <= 100
 
 
 def test_functions_and_private_fields_are_not_shown() -> None:

@@ -51,7 +51,6 @@ NOT_REFUSED = {
     "questions.state_store.MAX_STATES",
     "toss.cone_forces.MAX_SWEEPS",
     "toss.laid_flat.MAX_CORNERS",
-    "toss.one_toss.MAX_ALTERNATIVES",
     "toss.phase.LARGEST_STEP",
     "toss.phase.MAX_PHASE_STEPS",
     "toss.sampled.MAX_GHOSTS",

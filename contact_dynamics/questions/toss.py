@@ -26,7 +26,7 @@ from contact_dynamics.toss import (
     sampled_toss,
     toss,
 )
-from contact_dynamics.toss.one_toss import HORIZON, MAX_ALTERNATIVES
+from contact_dynamics.toss.one_toss import HORIZON
 from contact_dynamics.toss.sampled import MAX_SAMPLES, MAX_STRIKES
 from contact_dynamics.toss.uncertainty import EXACT, check_factors
 from contact_dynamics.tumbling import Trajectory
@@ -80,8 +80,7 @@ class TossQuestion(Record):
         several_contacts_law: The law for several contacts that strike at one instant.
         horizon: s, > 0. How far the motion is followed. None means `toss.one_toss.HORIZON`.
         rate: Hz, > 0. Samples of the trajectory a second. None means the default.
-        max_alternatives: How many other ways are followed where mechanics does not decide. None means
-            `toss.one_toss.MAX_ALTERNATIVES`.
+        max_alternatives: How many other ways are followed where mechanics does not decide. None means 0.
         sampling: What to sample for a distribution, or None for none.
         lasting_factors: (s,), >= 0, the friction of each known surface where contact lasts, relative to that
             of its strikes. Without any, those of the sampling's uncertainty hold, and without these those of
@@ -189,7 +188,6 @@ def answer(question: TossQuestion, context: Context | None = None) -> TossAnswer
     check_extent(body.mass_properties, state)
     horizon = or_default(question.horizon, HORIZON)
     rate = or_default(question.rate, known.defaults.rate)
-    most = question.max_alternatives
     sampling, distribution = question.sampling, None
     if sampling is not None:
         distribution = sampled_toss(
@@ -215,7 +213,7 @@ def answer(question: TossQuestion, context: Context | None = None) -> TossAnswer
         restitution_law=question.restitution_law,
         several_contacts_law=question.several_contacts_law,
         horizon=horizon,
-        max_alternatives=MAX_ALTERNATIVES if most is None else most,
+        max_alternatives=or_default(question.max_alternatives, 0),
         lasting_factors=question.lasting_factors,
         distance_tolerance=known.defaults.distance_tolerance,
     )

@@ -6,7 +6,7 @@ until it ends (`phase`). The toss is over where the kinetic energy has fallen so
 or slide by `SETTLING_HEIGHT` at most, and friction and contacts hold it there.
 
 Where mechanics does not decide (several modes, contacts that strike at one instant), one way is taken and the
-point is told. The other ways are followed as tosses of their own, up to a bound.
+point is told. The other ways are followed as tosses of their own, as many as are asked for.
 """
 
 from __future__ import annotations
@@ -40,9 +40,6 @@ MAX_EVENTS: Final = 10_000
 """Events after which a toss ends unfinished. A toss of a box takes ten to fifty, and one of a smooth body
 among four flats takes thousands."""
 
-MAX_ALTERNATIVES: Final = 8
-"""Other ways that are followed, if no other number is asked for."""
-
 
 def toss(
     body: Body,
@@ -53,7 +50,7 @@ def toss(
     several_contacts_law: SeveralContactsLaw = SeveralContactsLaw.SEQUENTIAL,
     horizon: float = HORIZON,
     max_events: int = MAX_EVENTS,
-    max_alternatives: int = MAX_ALTERNATIVES,
+    max_alternatives: int = 0,
     error: float = PHASE_ERROR,
     lasting_factors: ArrayLike = (),
     distance_tolerance: float = DISTANCE_TOLERANCE,
@@ -68,7 +65,8 @@ def toss(
         several_contacts_law: The law for several contacts that strike at one instant.
         horizon: s, > 0. How far the motion is followed.
         max_events: How many events to follow at most, >= 1.
-        max_alternatives: How many other ways to follow at most, >= 0, where mechanics does not decide.
+        max_alternatives: How many other ways to follow at most, >= 0, where mechanics does not decide. Each
+            costs about as much as the toss itself. The toss lists these points in any case (`undecided`).
         error: m, m/s, at least `LEAST_PHASE_ERROR`. The error that one step of a contact phase may have.
             Angles count with the body's reach.
         lasting_factors: (s,), >= 0, the friction of each surface where contact lasts, relative to that of

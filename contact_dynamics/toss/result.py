@@ -21,6 +21,10 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
 
+_TIMES = 3
+"""Times of branch points that a toss shows in short."""
+
+
 class TossEventKind(NamedInt):
     """What happens at an event of a toss."""
 
@@ -155,8 +159,9 @@ class Toss(Record):
         resting_normal_B: (3,), unit, the normal of the surface on which it rests, body axes, or zero. So a
             box rests on the face whose outward normal is opposite.
         energy: Where the energy goes.
-        undecided: The points at which mechanics does not decide, and which way was taken there.
-        alternatives: Tosses that took other ways there, up to the bound that was asked for.
+        undecided: The branch points: where mechanics does not decide, with time and the way taken. They are
+            all of this toss, whether other ways are followed or not.
+        alternatives: Tosses that took other ways there, up to ``max_alternatives``, which is 0 by default.
         all_followed: Whether ``alternatives`` has all other ways.
         pieces: The flights and the steps of contact phases, in the order of time.
         starts: (n,), s, when each of them begins.
@@ -177,6 +182,19 @@ class Toss(Record):
     pieces: tuple[Piece, ...] = field(repr=False)
     starts: FloatArray = field(repr=False)
     began_ns: int = field(repr=False)
+
+    def in_short(self) -> str:
+        """Return how it ends and when, and at which times mechanics does not decide how it goes on."""
+        words = [f"Toss: {self.end} at {self.seconds:.4g} s", f"{len(self.events)} events"]
+        if self.undecided:
+            times = [f"{point.seconds:.3g}" for point in self.undecided]
+            count = f"{len(times)} branch point{'' if len(times) == 1 else 's'}"
+            shown = [*times[:_TIMES], *["..."] * (len(times) > _TIMES)]
+            followed = "all followed" if self.all_followed else "not followed"
+            if self.alternatives and not self.all_followed:
+                followed = f"followed to {len(self.alternatives)} other ways"
+            words.append(f"{count} {followed} (at {', '.join(shown)} s)")
+        return ", ".join(words)
 
     @property
     def strikes(self) -> tuple[TossEvent, ...]:

@@ -52,7 +52,7 @@ def test_a_rod_that_slides_in_painleves_region_may_slide_on_or_lift_off() -> Non
     a, b = 1.0 + x * (x - mu * z), -G - spin**2 * z
     assert a < 0.0 < b
     world = World(surfaces=(floor(mu),), gravity_W=[0, 0, -G])
-    went = toss(rod(), sliding(spin), world, horizon=0.02)
+    went = toss(rod(), sliding(spin), world, horizon=0.02, max_alternatives=8)
     assert [(point.reason, point.options, point.taken) for point in went.undecided[:1]] == [
         (UndecidedReason.SEVERAL_MODES, 2, 0)
     ]

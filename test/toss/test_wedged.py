@@ -45,7 +45,7 @@ def test_a_rod_between_walls_is_wedged_or_falls() -> None:
     Without any force it falls along the walls, which needs none. Nothing says which of them happens.
     """
     rod, world, still = between_walls(0.8)
-    went = toss(rod, still, world, horizon=0.1)
+    went = toss(rod, still, world, horizon=0.1, max_alternatives=8)
     assert (went.end, went.seconds) == (TossEnd.RESTS, 0.0)
     (point,) = went.undecided
     assert (point.reason, point.taken) == (UndecidedReason.SEVERAL_MODES, 0)
