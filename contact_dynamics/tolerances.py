@@ -642,9 +642,9 @@ TABLE_SMALL_PIVOT: Final = 1e-3
 TABLE_ROUNDING: Final = 1e-16
 """Relative. Doubles lose so much in a step or two."""
 
-SLOWEST_SHARED: Final = (1e-3, 1e-5)
-"""Relative to the largest acceleration. Contacts that share a load are made to slide at least so fast, first
-the one and then the other, since forces at rest would also do at zero."""
+SLOWEST_SHARED: Final = (1e-3, 1e-5, 1e-7)
+"""Relative to the largest acceleration. Contacts that share a load are made to slide at least so fast, one
+after another, since forces at rest would also do at zero."""
 
 ALONE_WITHIN: Final = (0.3, 0.1, 0.03, 0.01, 0.003)
 """rad. These ranges of directions around a solution are tried, and the first is taken that has no other one.

@@ -66,6 +66,7 @@ def sliding_together(search: Search, letters: str, motions: Sequence[FloatArray]
 def _one_way(search: Search, letters: str, problem: _Problem, sign: float) -> Held:
     """Return forces that move a body forward or backward, where it can move in one direction only."""
     axes, frictions = np.zeros((len(letters), 3)), np.zeros(len(letters))
+    slowest = 1.0
     motion = np.append(sign * problem.motions[0], 0.0)
     for i, (letter, contact, pyramid) in enumerate(
         zip(letters, search.touching, search.pyramids, strict=True)
@@ -80,8 +81,15 @@ def _one_way(search: Search, letters: str, problem: _Problem, sign: float) -> He
                 if speed <= ROW_TOLERANCE:  # it turns about this foot too
                     return Held(None, certain=False)
                 across = way / speed
+                slowest = min(slowest, speed)
             axes[i] = contact.normal - contact.friction * across
-    return moved_by_round_cones(search, axes, frictions, STRICT * motion[:-1])
+    held = moved_by_round_cones(search, axes, frictions, STRICT / slowest * motion[:-1])
+    if held.forces is not None:
+        for size in SLOWEST_SHARED:  # faster sliding is farther from the border of the mode
+            faster = moved_by_round_cones(search, axes, frictions, size / slowest * motion[:-1])
+            if faster.forces is not None:
+                return faster
+    return held
 
 
 class _Problem(NamedTuple):
