@@ -43,7 +43,7 @@ test-matrix: ## the physics with the oldest and newest NumPy and SciPy, on every
 	@setup/matrix.sh $(VENV)-matrix
 
 SWEEP ?= test
-CERTAINTY := test/contact_modes/spatial/test_no_mode_missed.py test/contact_modes/spatial/test_nearly_the_same.py test/toss/test_among_flats.py
+CERTAINTY := test/contact_modes/spatial/test_no_mode_missed.py test/contact_modes/spatial/test_nearly_the_same.py test/contact_modes/spatial/test_boxes_nearly_flush.py test/toss/test_among_flats.py
 test-slow: $(MADE)/test ## the sweeps that are too slow for `make test`; SWEEP=path runs those of one file or folder
 	@HYPOTHESIS_PROFILE=explore $(BIN)/python -m pytest -m slow $(SWEEP)
 

@@ -282,6 +282,18 @@ ACCELERATION_TOLERANCE: Final = 1e-9
 change of the wrench by this share can change its sign. It is far more than rounding of the input, and far
 less than the accuracy to which wrenches are known."""
 
+FLUSH: Final = 1e-8
+"""rad, or a share of the reach, in space. Normals and coordinates of contacts that agree within it are taken
+as the same where modes are sought. It is `STRICT`: what this changes counts as no motion."""
+
+FLUSH_ROUGHLY: Final = 1e-4
+"""The same, where a verdict would otherwise be undecided. The answer then says so. Poses and meshes in single
+precision are off by 1e-7, and faces of machined parts by 1e-4 and more."""
+
+FLUSH_ROUNDING: Final = 1e-14
+"""The same. Contacts that are flush to within it are left as they are, since rounding may move them by
+1e-16."""
+
 SAME_ROWS: Final = 1e-11
 """Dimensionless, in the plane. Contact planes, and wrenches, that meet at a smaller sine are one where modes
 are enumerated. Contacts are one if their unit normals agree within it, and their places within this share of

@@ -56,6 +56,7 @@ from contact_dynamics.questions.subject import covariance_of, subject_of
 from contact_dynamics.questions.touching import in_contact, outside_shape
 from contact_dynamics.records import Record
 from contact_dynamics.rigid_body.body import BodyState
+from contact_dynamics.tolerances import FLUSH, FLUSH_ROUGHLY
 from contact_dynamics.validation import FloatArray
 
 if TYPE_CHECKING:
@@ -74,6 +75,11 @@ IMPACT: Final = ""
 
 _UNCERTAIN: Final = (
     "contacts must be exact to be in a plane, got uncertain points or normals, whose errors may leave it"
+)
+
+_TAKEN_AS_FLUSH: Final = (
+    f"contacts are taken as flush to within {FLUSH_ROUGHLY:g} (rad, or parts of the reach): "
+    "for the stated contacts the verdict is undecided"
 )
 
 
@@ -121,7 +127,8 @@ class ContactModeAnswer(Record):
             plane.
         wrench_facets: Number of edges of each friction pyramid in the wrench sets in space, or zero if they
             were not asked for.
-        warnings: What makes the answer doubtful, in words: a contact outside of the body's shape.
+        warnings: What makes the answer doubtful, in words: a contact outside of the body's shape, or
+            contacts that were taken as flush because the verdict is undecided otherwise.
     """
 
     body_name: str
@@ -169,7 +176,7 @@ def answer(question: ContactModeQuestion, context: Context | None = None) -> Con
     if question.contacts is not None:
         tolerance = case.distance_tolerance
         outside = outside_shape(case.contacts, case.subject, distance_tolerance=tolerance)
-        found = replace(found, warnings=outside)
+        found = replace(found, warnings=(*found.warnings, *outside))
     if not question.include_probabilities:
         return found
     if noisy is None:
@@ -362,6 +369,7 @@ def _spatial_answer(question: ContactModeQuestion, case: ModeCase, reason: str) 
         verdict=found.verdict,
         undecided=found.undecided,
         undecided_modes=found.undecided_modes,
+        warnings=(_TAKEN_AS_FLUSH,) if found.flush_within > FLUSH else (),
         within=found.within,
         geometry_margins=geometry_margins(asked, found) if question.include_geometry_margins else None,
         modes=found.modes,

@@ -20,6 +20,8 @@ from contact_dynamics.questions.problem import Problem
 from contact_dynamics.shapes import box, capsule, cylinder, sphere
 from contact_dynamics.shapes.convex import ConvexShape
 from msg_adapters.impact import impact_answer_to_msg
+from oracles.boxes_nearly_flush import MASS as BOX_MASS
+from oracles.boxes_nearly_flush import flush
 
 MASS = MassProperties(mass=0.37, I_B=8.1e-4 * np.eye(3))
 CUBE = Body(name="cube", mass_properties=MASS, shape=box(size=(0.1, 0.1, 0.1)))
@@ -117,3 +119,22 @@ def test_a_body_without_a_shape_has_no_outside() -> None:
     assert (
         modes_questions.answer(ContactModeQuestion(body=body, state=rest, contacts=contacts)).warnings == ()
     )
+
+
+def test_contacts_that_are_taken_as_flush_warn_where_the_verdict_is_undecided_otherwise() -> None:
+    for noise, count in ((0.0, 0), (1e-9, 0), (2e-7, 1)):
+        box = flush(11, noise)
+        body = Body(name="peg", mass_properties=MassProperties(mass=BOX_MASS, I_B=np.diag(box.inertia)))
+        answer = modes_questions.answer(
+            ContactModeQuestion(
+                body="peg",
+                state=BodyState(p_WB_W=[0, 0, 0], q_WB=[0, 0, 0, 1], v_WB_W=[0, 0, 0], w_WB_W=[0, 0, 0]),
+                contacts=ContactSet(p_WC_W=box.points, normals_W=box.normals, frictions=box.frictions),
+                force_W=box.wrench[:3],
+                torque_W=box.wrench[3:],
+            ),
+            Context(world=World(bodies=(body,), surfaces=())),
+        )
+        assert answer.undecided == ""
+        assert len(answer.warnings) == count
+        assert all(one.startswith("contacts are taken as flush to within 0.0001") for one in answer.warnings)

@@ -20,7 +20,8 @@ A contact without friction has the letter c, whether it slides or not.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final, NamedTuple
+from dataclasses import replace
+from typing import TYPE_CHECKING, Final, NamedTuple, cast
 
 import numpy as np
 
@@ -42,7 +43,7 @@ from contact_dynamics.contact_modes.spatial.problem import (
     search_of,
     spatial_case,
 )
-from contact_dynamics.contact_modes.spatial.realised import realised
+from contact_dynamics.contact_modes.spatial.realised import as_given, realised
 from contact_dynamics.contact_modes.spatial.result import SpatialMode, SpatialModeAnswer
 from contact_dynamics.contact_modes.spatial.round_cones import (
     held_by_round_cones,
@@ -50,12 +51,12 @@ from contact_dynamics.contact_modes.spatial.round_cones import (
     rests_in_one_way,
     sticking,
 )
-from contact_dynamics.tolerances import (
-    MODE_STRAIGHT,
-    NARROWLY,
-)
+from contact_dynamics.errors import TooLargeError
+from contact_dynamics.tolerances import FEASIBLE, FLUSH, FLUSH_ROUGHLY, MODE_STRAIGHT, NARROWLY, STRICT
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from contact_dynamics.contact_modes.spatial.problem import SpatialContactProblem
     from contact_dynamics.contact_modes.spatial.search import Found, Search
 
@@ -82,6 +83,12 @@ _NARROW: Final = "rounding decides whether modes hold that hold under nearly the
 _NOT_REFUTED: Final = "no mode was found, and it could not be shown that there is none"
 
 
+_GIVEN_UP: Final = "rounding decides about too many combinations of letters: contacts are nearly flush"
+
+_FEW_TRIALS: Final = 150
+"""The search is given up after so many trials where there is another way to a verdict."""
+
+
 class Evidence(NamedTuple):
     """The modes of a case, and what could not be decided about them.
 
@@ -104,11 +111,70 @@ def spatial_contact_modes(problem: SpatialContactProblem) -> SpatialModeAnswer:
             more trials than `pyramid_programs.MAX_EXAMINED`, which happens where hundreds of sectors are
             consistent and ``sharpen`` is false.
     """
-    case = spatial_case(problem)
-    if not isinstance(case, SpatialCase):
-        return _answer(problem, Evidence([], ""), approaching=case)
+    found = considered(problem)
+    if not isinstance(found, Considered):
+        return _answer(problem, Evidence([], ""), approaching=found)
+    return _answered(problem, found)
+
+
+class Considered(NamedTuple):
+    """What is known of a problem none of whose contacts approaches.
+
+    Attributes:
+        case: The case whose modes are sought.
+        search: Its search.
+        found: Its modes.
+        within: How far its contacts may differ from the given ones, as `SpatialModeAnswer` has it.
+    """
+
+    case: SpatialCase
+    search: Search
+    found: Evidence
+    within: float
+
+
+def considered(problem: SpatialContactProblem) -> Considered | tuple[int, ...]:
+    """Return the modes of a problem, or the contacts that approach.
+
+    Contacts that are flush but for noise are taken as flush: to within `FLUSH` always, and to within
+    `FLUSH_ROUGHLY` if it is undecided otherwise.
+    """
+    rough = spatial_case(problem, within=FLUSH_ROUGHLY)
+    if not isinstance(rough, SpatialCase):
+        return rough
     facets = FRICTION_FACETS if problem.sharpen else problem.friction_facets
-    return modes_of_case(problem, case, search_of(case, facets))
+    tried: list[Considered] = []
+    for case, within, hurried in _cases(problem, rough):
+        search = search_of(case, facets)
+        if hurried:
+            search.most_examined = _FEW_TRIALS
+        try:
+            found = _evidence(problem, case, search, hurried=hurried)
+        except TooLargeError:
+            if not hurried:
+                raise
+            found = Evidence([], _GIVEN_UP)
+        tried.append(Considered(case, search, found, within))
+        if not found.undecided:
+            return tried[-1]
+    return tried[-1]
+
+
+def _cases(problem: SpatialContactProblem, rough: SpatialCase) -> Iterator[tuple[SpatialCase, float, bool]]:
+    """Yield the cases to consider, how far they may be from the given one, and whether to give up soon."""
+    if rough.given is None:
+        yield rough, 0.0, False
+        return
+    near = cast("SpatialCase", spatial_case(problem, within=FLUSH))
+    alike = np.array_equal(near.contacts.normals_W, rough.contacts.normals_W) and np.array_equal(
+        near.contacts.p_WC_W, rough.contacts.p_WC_W
+    )
+    if near.given is not None:
+        yield near, FLUSH, not alike
+    yield rough.given, 0.0, True
+    if not alike:
+        yield rough, FLUSH_ROUGHLY, False
+    yield rough.given, 0.0, False
 
 
 def modes_of_case(
@@ -127,16 +193,35 @@ def modes_of_case(
     Raises:
         TooLargeError: the search takes more trials than `pyramid_programs.MAX_EXAMINED`.
     """
+    found = _evidence(problem, case, search, beside_rest=beside_rest)
+    return _answered(problem, Considered(case, search, found, 0.0))
+
+
+def _evidence(
+    problem: SpatialContactProblem,
+    case: SpatialCase,
+    search: Search,
+    *,
+    beside_rest: bool = False,
+    hurried: bool = False,
+) -> Evidence:
+    """Return the modes of a case, of Coulomb's cones or of friction pyramids as the problem asks."""
     if problem.sharpen:
-        found = evidenced(case, search, beside_rest=beside_rest)
+        found = evidenced(case, search, beside_rest=beside_rest, hurried=hurried)
     else:
         found = Evidence(found_by(case, search, sharpen=False), _DOUBT if search.doubtful else "")
         if not (found.modes or found.undecided or search.at_rest or has_none(search)):
             found = found._replace(undecided=_NOT_REFUTED)
     if not found.modes and not found.undecided and search.at_rest:
         found = found._replace(undecided=SOME_MODE)
-    found = found._replace(modes=[(with_least_forces(case, mode), one) for mode, one in found.modes])
-    return _answer(problem, found, examined=search.examined)
+    return found
+
+
+def _answered(problem: SpatialContactProblem, one: Considered) -> SpatialModeAnswer:
+    case, search, found, within = one
+    modes = [(as_given(case, with_least_forces(case, mode)), pair) for mode, pair in found.modes]
+    answer = _answer(problem, found._replace(modes=modes), examined=search.examined)
+    return answer if within == 0.0 else replace(answer, flush_within=within)
 
 
 def _answer(
@@ -155,15 +240,23 @@ def _answer(
     )
 
 
-def evidenced(case: SpatialCase, search: Search, *, beside_rest: bool = False) -> Evidence:
+def evidenced(
+    case: SpatialCase, search: Search, *, beside_rest: bool = False, hurried: bool = False
+) -> Evidence:
     """Return all modes of a case, with Coulomb's round cones.
 
     Args:
         case: The body with its contacts.
         search: The search of that case.
         beside_rest: As `modes_of_case` has it.
+        hurried: Whether to give up soon.
     """
-    found = _sought(case, search, beside_rest=beside_rest)
+    found = _sought(case, search, beside_rest=beside_rest, hurried=hurried)
+    rounded = [mode.mode for mode, _ in found.modes if _penetrates(case, mode)]
+    if rounded:
+        kept = [pair for pair in found.modes if not _penetrates(case, pair[0])]
+        names = tuple(dict.fromkeys((*rounded, *found.undecided_modes)))
+        found = Evidence(kept, found.undecided or _DOUBT, names)
     exact = [pair for pair in found.modes if is_exact(pair[0])]
     others = tuple(dict.fromkeys(mode.mode for mode, _ in found.modes if not is_exact(mode)))
     turned = _TURNED.format(", ".join(others)) if others else ""
@@ -171,6 +264,16 @@ def evidenced(case: SpatialCase, search: Search, *, beside_rest: bool = False) -
     if not exact and not others:
         return _narrow(case, search, found)
     return Evidence(exact, found.undecided or turned, letters)
+
+
+def _penetrates(case: SpatialCase, mode: SpatialMode) -> bool:
+    """Return whether contacts penetrate by more than rounding, as rounding may let modes seem consistent."""
+    motion, touching = case.motion, case.touching
+    rising = np.sum(mode.contact_accelerations_W * case.contacts.normals_W, axis=1)[touching]
+    if rising.min(initial=0.0) >= -STRICT * motion.scale:
+        return False
+    caused = np.abs(motion.points) @ (np.abs(motion.of_forces) @ np.abs(mode.contact_forces_W).ravel())
+    return bool(rising.min() < -STRICT * motion.scale - FEASIBLE * float(caused.max()))
 
 
 def _narrow(case: SpatialCase, search: Search, found: Evidence) -> Evidence:
@@ -209,7 +312,7 @@ def _of_all(case: SpatialCase, letters: str) -> str:
     return "".join(every)
 
 
-def _sought(case: SpatialCase, search: Search, *, beside_rest: bool) -> Evidence:
+def _sought(case: SpatialCase, search: Search, *, beside_rest: bool, hurried: bool) -> Evidence:
     """Return the modes of a case, also those whose friction could not be turned."""
     slides = bool(np.any(case.sliding[case.touching]))
     if rests_alone(search):
@@ -231,7 +334,7 @@ def _sought(case: SpatialCase, search: Search, *, beside_rest: bool) -> Evidence
         known = _with_rest(case, search, known)
     if _is_alone(case, search, known):
         return Evidence([pair for pair in known.modes if is_exact(pair[0])], "")
-    found = _completed(case, search, known.modes)
+    found = _completed(case, search, known.modes, hurried=hurried)
     return found._replace(undecided=found.undecided or known.undecided)
 
 
@@ -243,7 +346,9 @@ def _is_alone(case: SpatialCase, search: Search, found: Evidence) -> bool:
     return is_only_motion(search, exact[0].contact_forces_W[case.touching] / case.motion.scale)
 
 
-def _completed(case: SpatialCase, search: Search, found: list[tuple[SpatialMode, Found | None]]) -> Evidence:
+def _completed(
+    case: SpatialCase, search: Search, found: list[tuple[SpatialMode, Found | None]], *, hurried: bool
+) -> Evidence:
     """Return the modes that were found and are exact, and those that the pyramids missed."""
     exact = [pair for pair in found if is_exact(pair[0])]
     known = [
@@ -254,7 +359,7 @@ def _completed(case: SpatialCase, search: Search, found: list[tuple[SpatialMode,
         )
         for mode, _ in exact
     ]
-    missed = completed(search, known)
+    missed = completed(search, known, hurried=hurried)
     for one in missed.further:
         mode = mode_with_forces(
             case, one.letters, one.forces, forces_unique=one.forces_unique, motion_unique=one.alone

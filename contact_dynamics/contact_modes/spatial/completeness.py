@@ -52,6 +52,9 @@ if TYPE_CHECKING:
 _MAX_PROGRAMS: Final = 3000
 """The search for missed modes is given up after this many linear programs of 0.3 ms."""
 
+_FEW_PROGRAMS: Final = 200
+"""As many where there is another way to a verdict."""
+
 _CARE: Final = 3
 """A program that is solved with care counts as so many more."""
 
@@ -154,7 +157,7 @@ class _Set(NamedTuple):
     ranges: Ranges
 
 
-def completed(search: Search, known: Sequence[Known]) -> Completed:
+def completed(search: Search, known: Sequence[Known], *, hurried: bool = False) -> Completed:
     """Return the modes that are not known yet, and the letters that may have more.
 
     Whether all contacts can stick together is not asked here.
@@ -162,8 +165,9 @@ def completed(search: Search, known: Sequence[Known]) -> Completed:
     Args:
         search: The case.
         known: The modes that were found, all exact.
+        hurried: Whether to give up soon.
     """
-    work = _Work(search, known)
+    work = _Work(search, known, most=_FEW_PROGRAMS if hurried else _MAX_PROGRAMS)
     unended = ""
     try:
         work.run()
@@ -186,7 +190,13 @@ class _Work(PyramidPrograms):
     """The search for missed modes, with pyramids around the round cones."""
 
     def __init__(
-        self, search: Search, known: Sequence[Known], *, least: float = STRICT, refutes: bool = False
+        self,
+        search: Search,
+        known: Sequence[Known],
+        *,
+        least: float = STRICT,
+        refutes: bool = False,
+        most: int = _MAX_PROGRAMS,
     ) -> None:
         wider = 1.0 / math.cos(math.pi / COARSE)
         super().__init__(
@@ -203,6 +213,7 @@ class _Work(PyramidPrograms):
         )
         self._search = search
         self._refutes = refutes
+        self._most = most
         self._open = [i for i, one in enumerate(search.pyramids) if one.frame is not None]
         self._all_stick = "".join(STAYS if one.frame is None else STICKS for one in search.pyramids)
         self._programs = HoldingPrograms(search, least)
@@ -234,7 +245,7 @@ class _Work(PyramidPrograms):
 
     def _count(self) -> None:
         self.examined += 1
-        if self.examined > _MAX_PROGRAMS:
+        if self.examined > self._most:
             raise _TooManyError
 
     def _forces(

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from contact_dynamics.contact_modes.result import ModeVerdict, verdict_on
-from contact_dynamics.contact_modes.spatial.answer import evidenced, found_by
+from contact_dynamics.contact_modes.spatial.answer import Considered, considered, found_by
 from contact_dynamics.contact_modes.spatial.margins_of_sliding import union_margin
 from contact_dynamics.contact_modes.spatial.mode_with_forces import are_the_same
 from contact_dynamics.contact_modes.spatial.problem import (
@@ -52,6 +52,7 @@ class SpatialModeMargin(Record):
         length: m, the length in that metric.
         change_W: (6,), N and N m, the least change itself, world axes; zero where there is none.
         verdict_beyond: The verdict just behind the boundary, or the present one where there is no boundary.
+            It is that of friction pyramids, and may depend on the number of facets.
         modes_beyond: The letters of the consistent modes there, each once.
     """
 
@@ -86,15 +87,15 @@ def spatial_mode_margins(
     body, wrench, friction_facets = problem.body, problem.wrench_W, problem.friction_facets
     own = body.mean_radius_of_gyration
     length = own if margin_length is None else check_size("margin_length", margin_length)
-    case = spatial_case(problem)
-    if not isinstance(case, SpatialCase):
+    one = considered(problem)
+    if not isinstance(one, Considered):
         return ()
-
+    case, within = one.case, one.within
     search = search_of_few_edges(case, friction_facets)
     metric = np.array([1.0, 1.0, 1.0, length, length, length])
     present = None if answer is None or not problem.sharpen else tuple(one.mode for one in answer.modes)
     margins = []
-    for mode, found in _with_found(case, search, friction_facets):
+    for mode, found in _with_found(one, search, friction_facets):
         beyond = None
         if found is None:
             margin, way = math.nan, np.zeros(6)
@@ -103,9 +104,9 @@ def spatial_mode_margins(
         else:
             margin, way = _nearest(case, search, found, metric)
         if beyond is None and math.isfinite(margin):
-            beyond = _beyond(problem, mode.mode, margin, way, metric)
+            beyond = _beyond(problem, mode.mode, margin, way, metric, within=within)
         if beyond is None:
-            beyond = _modes_under(problem, wrench) if present is None else present
+            beyond = _modes_under(problem, within, wrench) if present is None else present
         margins.append(
             SpatialModeMargin(
                 mode=mode.mode,
@@ -120,12 +121,12 @@ def spatial_mode_margins(
 
 
 def _with_found(
-    case: SpatialCase, search: Search, friction_facets: int
+    one: Considered, search: Search, friction_facets: int
 ) -> list[tuple[SpatialMode, Found | None]]:
     """Return the modes of a case, each with what the search of pyramids with some facets found."""
+    case, modes = one.case, one.found.modes
     if friction_facets == FRICTION_FACETS:
-        return evidenced(case, search).modes
-    modes = evidenced(case, search_of(case, FRICTION_FACETS)).modes
+        return modes
     found = found_by(case, search, sharpen=True)
     return [
         (mode, next((one for other, one in found if are_the_same(mode, other)), None)) for mode, _ in modes
@@ -133,7 +134,13 @@ def _with_found(
 
 
 def _beyond(
-    problem: SpatialContactProblem, mode: str, margin: float, way: FloatArray, metric: FloatArray
+    problem: SpatialContactProblem,
+    mode: str,
+    margin: float,
+    way: FloatArray,
+    metric: FloatArray,
+    *,
+    within: float,
 ) -> tuple[str, ...]:
     """Return the modes just behind the boundary that lies ``margin``, N, away, ``way`` in the metric."""
     size = float(np.linalg.norm(problem.wrench_W / metric))
@@ -142,15 +149,16 @@ def _beyond(
     found: tuple[str, ...] = ()
     for further in (0.0, rest):
         step = margin + further + BEYOND_MARGIN * max(margin, size)
-        found = _modes_under(problem, problem.wrench_W + step * way * metric)
+        found = _modes_under(problem, within, problem.wrench_W + step * way * metric)
         if mode not in found:
             break
     return found
 
 
-def _modes_under(problem: SpatialContactProblem, wrench_W: FloatArray) -> tuple[str, ...]:
+def _modes_under(problem: SpatialContactProblem, within: float, wrench_W: FloatArray) -> tuple[str, ...]:
     """Return the modes that another wrench brings about with friction pyramids, which the margin uses too."""
-    case = spatial_case(replace(problem, force_W=wrench_W[:3], torque_W=wrench_W[3:]))
+    other = replace(problem, force_W=wrench_W[:3], torque_W=wrench_W[3:])
+    case = spatial_case(other, within=within)
     if not isinstance(case, SpatialCase):
         return ()
     found = found_by(case, search_of(case, problem.friction_facets), sharpen=True)

@@ -36,7 +36,7 @@ def mode_with_forces(
         motion_unique: Whether the accelerations are the only ones with this mode.
         slowest: What begins to slide more slowly sticks, relative to the largest acceleration.
     """
-    motion, contacts, sliding, touching = case
+    motion, contacts, sliding, touching, _ = case
     forces = np.zeros((len(contacts), 3))
     forces[touching] = own * motion.scale
     body = motion.free + motion.of_forces @ forces.ravel()

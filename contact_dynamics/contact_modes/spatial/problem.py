@@ -15,6 +15,7 @@ import numpy as np
 from contact_dynamics.contact.friction import check_facets
 from contact_dynamics.contact.kinds import velocity_accelerations
 from contact_dynamics.contact.uncertainty import EXACT_CONTACTS, ContactUncertainty
+from contact_dynamics.contact_modes.spatial.flush import made_flush
 from contact_dynamics.contact_modes.spatial.pyramid_programs import Touching
 from contact_dynamics.contact_modes.spatial.search import Search
 from contact_dynamics.errors import TooLargeError
@@ -169,23 +170,27 @@ class SpatialCase(NamedTuple):
         contacts: The contacts.
         sliding: (n, 3), m/s, tangential velocities; zero for a contact at rest.
         touching: The numbers of the contacts that neither approach nor leave.
+        given: The case of the contacts as they were given, or None if these are flush.
     """
 
     motion: AccelerationMap
     contacts: ContactSet
     sliding: FloatArray
     touching: NDArray[np.intp]
+    given: SpatialCase | None = None
 
 
-def spatial_case(problem: SpatialContactProblem) -> SpatialCase | tuple[int, ...]:
+def spatial_case(problem: SpatialContactProblem, *, within: float = 0.0) -> SpatialCase | tuple[int, ...]:
     """Return the case, or the contacts that approach.
+
+    Args:
+        problem: The problem.
+        within: How far contacts may be moved to be flush (`flush.made_flush`); 0 if they stay as they are.
 
     Raises:
         TooLargeError: more contacts touch than `MAX_DYNAMIC_CONTACTS`.
     """
-    body, state, contacts = problem.body, problem.state, problem.contacts
-    tolerance = problem.velocity_tolerance
-    r_W = contacts.p_WC_W - state.p_WB_W
+    state, contacts, tolerance = problem.state, problem.contacts, problem.velocity_tolerance
     velocities = state.velocity_of_point(contacts.p_WC_W)
     v_n = np.sum(contacts.normals_W * velocities, axis=1)
     if np.any(v_n < -tolerance):
@@ -193,6 +198,18 @@ def spatial_case(problem: SpatialContactProblem) -> SpatialCase | tuple[int, ...
     touching = np.flatnonzero(v_n <= tolerance)
     if len(touching) > MAX_DYNAMIC_CONTACTS:
         raise TooLargeError("contacts", f"{len(touching)} contacts", f"at most {MAX_DYNAMIC_CONTACTS}")
+    flush = contacts if within == 0.0 else made_flush(contacts, state.p_WB_W, within)
+    given = None if flush is contacts else _case_of(problem, contacts, velocities, touching)
+    return _case_of(problem, flush, velocities, touching)._replace(given=given)
+
+
+def _case_of(
+    problem: SpatialContactProblem, contacts: ContactSet, velocities: FloatArray, touching: NDArray[np.intp]
+) -> SpatialCase:
+    """Return the case of contacts whose points have given velocities, (n, 3)."""
+    body, state, tolerance = problem.body, problem.state, problem.velocity_tolerance
+    r_W = contacts.p_WC_W - state.p_WB_W
+    v_n = np.sum(contacts.normals_W * velocities, axis=1)
     sliding = velocities - v_n[:, None] * contacts.normals_W
     sliding[np.linalg.norm(sliding, axis=1) <= tolerance] = 0.0
     w = state.w_WB_W
@@ -224,7 +241,7 @@ def search_of_few_edges(case: SpatialCase, facets: int) -> Search:
 
 def search_of(case: SpatialCase, facets: int) -> Search:
     """Return the search for the modes of a case, in the motion's units."""
-    motion, contacts, sliding, touching = case
+    motion, contacts, sliding, touching, _ = case
     stated = []
     for i in touching.tolist():
         point = np.column_stack(

@@ -106,6 +106,7 @@ class PyramidPrograms:
         self._sizes = sizes
         self.motion = np.column_stack([motion / sizes, free])
         self.examined = 0  # the number of programs solved so far
+        self.most_examined = MAX_EXAMINED
         self._first_normal = first  # the name of contact 0's normal acceleration
         self._normals = np.array([c.normal @ c.point for c in touching]).reshape(-1, 7)
         named = self._normals
@@ -159,10 +160,10 @@ class PyramidPrograms:
 
     def _count(self) -> None:
         self.examined += 1
-        if self.examined > MAX_EXAMINED:
+        if self.examined > self.most_examined:
             raise TooLargeError(
                 "contacts",
-                f"{len(self.touching)} whose modes take more than {MAX_EXAMINED} trials",
+                f"{len(self.touching)} whose modes take more than {self.most_examined} trials",
                 "fewer contacts, or other friction_facets",
             )
 

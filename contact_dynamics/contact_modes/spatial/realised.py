@@ -12,6 +12,7 @@ import numpy as np
 from contact_dynamics.contact_modes.letters import STICKS
 from contact_dynamics.contact_modes.spatial.exact_friction import Sliding, sharpened
 from contact_dynamics.contact_modes.spatial.mode_with_forces import mode_with_forces
+from contact_dynamics.contact_modes.spatial.problem import FRICTION_FACETS, search_of
 from contact_dynamics.contact_modes.spatial.round_cones import held_by_round_cones, polished, sticking
 from contact_dynamics.tolerances import MODE_BETTER, MODE_RESTS, ROUND_CONE_APART, ROW_TOLERANCE, STRICT
 
@@ -39,6 +40,25 @@ def realised(case: SpatialCase, search: Search, found: Found, *, sharpen: bool) 
         own = _rested(search, own)
     unique = motion_unique or forces_unique
     return mode_with_forces(case, letters, own, forces_unique=forces_unique, motion_unique=unique)
+
+
+def as_given(case: SpatialCase, mode: SpatialMode) -> SpatialMode:
+    """Return a mode of flush contacts, with forces under which the given ones rest if all of them stick.
+
+    Any other mode stays that of the flush contacts.
+    """
+    given = case.given
+    letters = "".join(mode.mode[i] for i in case.touching.tolist())
+    if given is None or set(letters) != {STICKS}:
+        return mode
+    own = mode.contact_forces_W[case.touching] / given.motion.scale
+    normals = given.contacts.normals_W[case.touching]
+    pressing = np.sum(own * case.contacts.normals_W[case.touching], axis=1)
+    own += (pressing - np.sum(own * normals, axis=1))[:, None] * normals
+    own = _rested(search_of(given, FRICTION_FACETS), own)
+    return mode_with_forces(
+        given, letters, own, forces_unique=mode.forces_unique, motion_unique=mode.motion_unique
+    )
 
 
 def _rested(search: Search, forces: FloatArray) -> FloatArray:

@@ -57,6 +57,9 @@ class SpatialModeAnswer(Record):
         examined: The number of cases, of one letter or of a group of letters, that were tried.
         undecided: What could not be decided, and why. It is empty unless the verdict is UNDECIDED.
         undecided_modes: The letters of modes that could be neither found nor refuted.
+        flush_within: rad, or a share of the reach. The modes are those of contacts whose normals and places
+            differ by no more than this from the given ones, in which flush ones are exactly flush
+            (`spatial.flush`). It is 0 where the modes are those of the given contacts.
         within: The verdicts that occur within the problem's uncertainty, or None if it has none.
     """
 
@@ -68,4 +71,5 @@ class SpatialModeAnswer(Record):
     examined: int
     undecided: str = ""
     undecided_modes: tuple[str, ...] = ()
+    flush_within: float = 0.0
     within: VerdictsWithin | None = None

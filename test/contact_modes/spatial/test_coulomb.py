@@ -27,8 +27,12 @@ STRAIGHT = 1e-8  # rad, of friction to the way against sliding
 SMALL = 1e-8  # relative to the forces, and to the accelerations that they would cause alone
 
 
-def check_laws(problem: SpatialContactProblem, mode: SpatialMode) -> None:
-    """Check a mode of a body in world axes against the equations, from scratch."""
+def check_laws(problem: SpatialContactProblem, mode: SpatialMode, flush_within: float) -> None:
+    """Check a mode of a body in world axes against the equations, from scratch.
+
+    Modes of contacts that are taken as flush miss those of the given contacts by as much as these differ.
+    """
+    small = max(SMALL, flush_within)
     body, contacts, state = problem.body, problem.contacts, problem.state
     forces, arms, w = mode.contact_forces_W, contacts.p_WC_W - state.p_WB_W, state.w_WB_W
     size = float(np.abs(forces).max(initial=0.0)) + float(np.abs(problem.wrench_W).max())
@@ -36,8 +40,8 @@ def check_laws(problem: SpatialContactProblem, mode: SpatialMode) -> None:
     fast = size * (1.0 / body.mass + (reach + reach**2) / float(np.diag(body.I_B).min()))
     force = problem.force_W + forces.sum(axis=0)
     torque = problem.torque_W + np.cross(arms, forces).sum(axis=0) - np.cross(w, body.I_B @ w)
-    assert np.abs(body.mass * mode.acceleration_W - force).max() <= SMALL * size
-    assert np.abs(body.I_B @ mode.angular_acceleration_W - torque).max() <= SMALL * size * (1.0 + reach)
+    assert np.abs(body.mass * mode.acceleration_W - force).max() <= small * size
+    assert np.abs(body.I_B @ mode.angular_acceleration_W - torque).max() <= small * size * (1.0 + reach)
     accelerations = mode.acceleration_W + np.cross(mode.angular_acceleration_W, arms)
     accelerations += np.cross(w, np.cross(w, arms))
     velocities = state.velocity_of_point(contacts.p_WC_W)
@@ -51,14 +55,14 @@ def check_laws(problem: SpatialContactProblem, mode: SpatialMode) -> None:
             assert np.abs(forces[i]).max() == 0.0
             assert rising > 0.0 or velocities[i] @ normal > 0.0
             continue
-        assert pressing >= -SMALL * size
-        assert abs(rising) <= SMALL * fast
-        assert np.linalg.norm(across) <= friction * pressing + SMALL * size
+        assert pressing >= -small * size
+        assert abs(rising) <= small * fast
+        assert np.linalg.norm(across) <= friction * pressing + small * size
         if letter == "f":
-            assert np.linalg.norm(way) <= SMALL * fast
+            assert np.linalg.norm(way) <= small * fast
         else:
             straight = -friction * pressing * way / np.linalg.norm(way)
-            assert np.abs(across - straight).max() <= SMALL * size * max(1.0, friction)
+            assert np.abs(across - straight).max() <= small * size * max(1.0, friction)
 
 
 def check(problem: SpatialContactProblem) -> SpatialModeAnswer:
@@ -66,7 +70,7 @@ def check(problem: SpatialContactProblem) -> SpatialModeAnswer:
     answer = contact_modes(problem)
     for mode in answer.modes:
         assert mode.misdirection <= STRAIGHT
-        check_laws(problem, mode)
+        check_laws(problem, mode, answer.flush_within)
     assert (answer.verdict == ModeVerdict.UNDECIDED) == bool(answer.undecided)
     assert answer.undecided or not answer.undecided_modes
     return answer

@@ -1,0 +1,141 @@
+"""Boxes on feet, in slots, in stacks and as pegs are decided, and soon, whatever the noise of their contacts.
+
+Each mode is checked by mechanics alone, with the contacts that were given.
+"""
+
+from __future__ import annotations
+
+import time
+from collections import Counter
+
+import numpy as np
+import pytest
+
+from contact_dynamics import BodyState, ContactSet, MassProperties
+from contact_dynamics.contact_modes import (
+    ModeVerdict,
+    SpatialContactProblem,
+    SpatialMode,
+    contact_modes,
+    mode_margins,
+)
+from contact_dynamics.tolerances import FLUSH, FLUSH_ROUGHLY, STRICT
+from oracles.boxes_nearly_flush import MASS, Flush, flush
+
+EXACT = 1e-9  # relative: what modes may miss mechanics by, beside what flush contacts differ by
+LEANS = 2.0  # times the tolerance: friction leans with the normal, and so does the sliding that it opposes
+TOUCHES = 1e-6  # m/s
+MOST_UNDECIDED = 0.02
+SOON = 0.2  # s of processor time
+MOST_LATE = 0.15  # share of boxes: those with eight contacts that can move in many ways
+BLOCK = 100
+DECADES = range(-14, -2)
+
+
+def problem_of(box: Flush) -> SpatialContactProblem:
+    return SpatialContactProblem(
+        body=MassProperties(mass=MASS, I_B=np.diag(box.inertia)),
+        state=BodyState(p_WB_W=[0, 0, 0], q_WB=[0, 0, 0, 1], v_WB_W=box.velocity, w_WB_W=[0, 0, 0]),
+        contacts=ContactSet(p_WC_W=box.points, normals_W=box.normals, frictions=box.frictions),
+        force_W=box.wrench[:3],
+        torque_W=box.wrench[3:],
+        velocity_tolerance=TOUCHES,
+    )
+
+
+def noise_of(seed: int, decade: int) -> float:
+    return float(10.0 ** (decade + np.random.default_rng(seed).random()))
+
+
+def worst_miss(box: Flush, mode: SpatialMode) -> float:
+    """Return by how much a mode misses Newton's, Euler's and Coulomb's laws, or its letters."""
+    forces, points, normals = mode.contact_forces_W, mode.contact_accelerations_W, box.normals
+    size = max(float(np.abs(forces).max()), float(np.abs(box.wrench[:3]).max()))
+    fast = max(float(np.abs(points).max()), size / MASS)
+    force = forces.sum(axis=0) + box.wrench[:3] - MASS * mode.acceleration_W
+    torque = np.cross(box.points, forces).sum(axis=0) + box.wrench[3:]
+    torque -= box.inertia * mode.angular_acceleration_W
+    missed = [float(np.abs(force).max()) / size, float(np.abs(torque).max()) / size]
+    pressing, rising = np.sum(forces * normals, axis=1), np.sum(points * normals, axis=1)
+    across = forces - pressing[:, None] * normals
+    sliding = points - rising[:, None] * normals
+    for i, letter in enumerate(mode.mode):
+        if letter == "s":
+            missed.append(float(np.abs(forces[i]).max()) / size)
+            if abs(normals[i] @ box.velocity) <= TOUCHES:
+                missed.append(-float(rising[i]) / fast)
+            continue
+        most = box.frictions[i] * pressing[i]
+        missed += [abs(float(rising[i])) / fast, -float(pressing[i]) / size]
+        missed.append((float(np.linalg.norm(across[i])) - most) / size)
+        if letter == "f":
+            missed.append(float(np.linalg.norm(sliding[i])) / fast)
+        elif most > 0.0:
+            way = box.velocity - (normals[i] @ box.velocity) * normals[i]
+            way = way if np.linalg.norm(way) > TOUCHES else sliding[i]
+            speed = float(np.linalg.norm(way))
+            if speed > STRICT * fast:
+                missed.append(float(np.linalg.norm(across[i] + most * way / speed)) / size)
+    return max(missed)
+
+
+def check(seed: int, noise: float) -> tuple[ModeVerdict, float]:
+    """Check each mode of a box, and return the verdict and the processor time that it took, s."""
+    box = flush(seed, noise)
+    problem = problem_of(box)
+    start = time.process_time()
+    answer = contact_modes(problem)
+    took = time.process_time() - start
+    assert answer.flush_within in {0.0, FLUSH, FLUSH_ROUGHLY}
+    for mode in answer.modes:
+        assert worst_miss(box, mode) <= EXACT + LEANS * answer.flush_within, (seed, mode.mode)
+    return answer.verdict, took
+
+
+@pytest.mark.parametrize("decade", DECADES)
+def test_some_boxes_are_decided(decade: int) -> None:
+    verdicts = Counter(check(seed, noise_of(seed, decade))[0] for seed in range(200, 208))
+    assert ModeVerdict.UNDECIDED not in verdicts
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("block", range(20))
+@pytest.mark.parametrize("decade", DECADES)
+def test_two_thousand_boxes_of_each_decade_are_decided_and_soon(decade: int, block: int) -> None:
+    found = [check(seed, noise_of(seed, decade)) for seed in range(BLOCK * block, BLOCK * (block + 1))]
+    undecided = sum(verdict == ModeVerdict.UNDECIDED for verdict, _ in found)
+    assert undecided <= MOST_UNDECIDED * BLOCK
+    assert sum(took > SOON for _, took in found) <= MOST_LATE * BLOCK
+
+
+@pytest.mark.parametrize("seed", range(200, 216))
+def test_noise_that_counts_as_none_changes_no_verdict_and_no_letter(seed: int) -> None:
+    exact = contact_modes(problem_of(flush(seed, 0.0)))
+    for noise in (1e-13, 1e-11, 3e-10):
+        noisy = contact_modes(problem_of(flush(seed, noise)))
+        assert noisy.verdict == exact.verdict
+        assert {mode.mode for mode in noisy.modes} == {mode.mode for mode in exact.modes}
+        assert noisy.flush_within in {0.0, FLUSH}
+
+
+def test_contacts_that_are_flush_are_left_as_they_are() -> None:
+    for seed in range(200, 216):
+        assert contact_modes(problem_of(flush(seed, 0.0))).flush_within == 0.0
+
+
+def test_margins_are_those_of_the_modes_that_are_listed() -> None:
+    for seed in (200, 204, 208):
+        problem = problem_of(flush(seed, 1e-10))
+        answer = contact_modes(problem)
+        assert [one.mode for one in mode_margins(problem, answer)] == [mode.mode for mode in answer.modes]
+
+
+def test_no_mode_that_is_listed_penetrates() -> None:
+    """A leaving contact went into its wall at 3e-6 m/s^2."""
+    check(1025, noise_of(1025, -5))
+
+
+def test_a_box_in_a_slot_whose_walls_are_off_by_single_precision_may_rest() -> None:
+    """The search took 0.6 s for it and ended in UNDECIDED."""
+    verdict, _ = check(21, noise_of(21 + 12345, -7))
+    assert verdict == ModeVerdict.UNIQUE
