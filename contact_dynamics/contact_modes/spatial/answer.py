@@ -20,6 +20,7 @@ A contact without friction has the letter c, whether it slides or not.
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from typing import TYPE_CHECKING, Final, NamedTuple, cast
 
@@ -378,7 +379,9 @@ def found_by(case: SpatialCase, search: Search, *, sharpen: bool) -> list[tuple[
     """Return the modes of a case with friction pyramids.
 
     If friction is sharpened, each mode is returned once. Two modes are the same if their letters and their
-    motions are. Where the motion with some letters is not unique, all modes with these letters are the same.
+    motions are. Where the motion with some letters is not unique, all modes with these letters are the same,
+    and the one represents them whose slowest contact that begins to slide is fastest: rounding limits the
+    direction of very slow sliding.
     """
     every = search.run(grouped=sharpen)
     found: list[tuple[SpatialMode, Found | None]] = [
@@ -386,7 +389,17 @@ def found_by(case: SpatialCase, search: Search, *, sharpen: bool) -> list[tuple[
     ]
     if not sharpen:
         return found
-    return each_once(sorted(found, key=lambda pair: pair[0].motion_unique))
+    return each_once(sorted(found, key=lambda pair: _unique_and_slow(case, pair[0])))
+
+
+def _unique_and_slow(case: SpatialCase, mode: SpatialMode) -> tuple[bool, float]:
+    """Return whether a mode's motion is unique, and if not, how slow the slowest beginning of sliding is."""
+    if mode.motion_unique:
+        return True, 0.0
+    slides = [i for i, letter in enumerate(mode.mode) if letter == STAYS and not case.sliding[i].any()]
+    points, normals = mode.contact_accelerations_W[slides], case.contacts.normals_W[slides]
+    across = points - np.sum(points * normals, axis=1)[:, None] * normals
+    return False, -float(np.linalg.norm(across, axis=1).min(initial=math.inf))
 
 
 def _of_one_contact(
