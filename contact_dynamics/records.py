@@ -14,6 +14,7 @@ from typing import Any, Final, TypeVar
 
 import numpy as np
 
+from contact_dynamics.tolerances import SHOWN_AS_ZERO
 from contact_dynamics.validation_types import check_names, checks_fields
 
 Made = TypeVar("Made", bound="Record")
@@ -51,9 +52,6 @@ _LINES: Final = 20
 
 _FEW: Final = 4
 """Lines that are worth a list of records of which more follow."""
-
-_ROUNDING: Final = 1e-12
-"""Numbers of an array that are smaller than its largest one by this factor are shown as zero."""
 
 
 class Record:
@@ -181,7 +179,7 @@ def _without_rounding(array: Any) -> Any:
     """Return an array whose numbers that are nothing but the rounding of the others are zero."""
     if array.dtype.kind != "f" or not np.isfinite(array).all():
         return array
-    return np.where(abs(array) < _ROUNDING * abs(array).max(initial=0.0), 0.0, array)
+    return np.where(abs(array) < SHOWN_AS_ZERO * abs(array).max(initial=0.0), 0.0, array)
 
 
 def _in_a_line(record: Record, longest: int) -> str:

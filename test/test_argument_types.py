@@ -215,7 +215,7 @@ def test_functions_of_numbers_have_no_check(count: int) -> None:
 
 
 def test_what_is_wrong_in_another_way_is_still_told_as_before() -> None:
-    with pytest.raises(InvalidFieldError, match=r"^normal_W: found"):
+    with pytest.raises(InvalidFieldError, match=r"^normal_W must be a unit vector"):
         Surface(**{**FLOOR, "normal_W": [0, 0, 2]})
     with pytest.raises(TypeError, match="missing 1 required positional argument: 'contact'"):
         spatial_impact(BALL, STATE)

@@ -34,7 +34,7 @@ def outside(
     for surface in surfaces:
         if not isinstance(surface, Surface) or count == 0:
             continue
-        lowest = -0.5 * shape.size  # a body without corners is drawn as a ball
+        lowest = np.array(-0.5 * shape.size)  # a body without corners is drawn as a ball
         if len(corners_B) > 0:
             lowest = (surface.normal_W @ R_WB @ corners_B.T).min(axis=1)
         gaps = surface.gaps(trajectory.p_WB_W) + lowest

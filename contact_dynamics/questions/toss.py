@@ -213,7 +213,7 @@ def answer(question: TossQuestion, context: Context | None = None) -> TossAnswer
         restitution_law=question.restitution_law,
         several_contacts_law=question.several_contacts_law,
         horizon=horizon,
-        max_alternatives=or_default(question.max_alternatives, 0),
+        max_alternatives=question.max_alternatives or 0,
         lasting_factors=question.lasting_factors,
         distance_tolerance=known.defaults.distance_tolerance,
     )

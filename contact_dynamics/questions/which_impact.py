@@ -100,16 +100,16 @@ def _check_supported(question: ImpactQuestion, *, contact_count: int) -> None:
         )
         raise NotSupportedError(message)
     if in_time and is_planar:
-        message = "problem must be SPATIAL for SEQUENTIAL_IN_TIME, got PLANAR: space contains the plane"
+        message = "problem must be SPATIAL for strikes in time, got PLANAR: space contains the plane"
         raise NotSupportedError(message)
     if in_time and question.include_orders:
-        message = "include_orders must be false for SEQUENTIAL_IN_TIME, got true: time is the order"
+        message = "include_orders must be false for strikes in time, got true: time is the order"
         raise NotSupportedError(message)
     one_contact = contact_count == 1 and not is_planar and not in_time
     if question.include_covariance and (has_other or not one_contact):
         message = (
             "include_covariance must be false except at one contact with the world in space, and without "
-            "SEQUENTIAL_IN_TIME, got true"
+            "strikes in time, got true"
         )
         raise NotSupportedError(message)
 
