@@ -53,8 +53,9 @@ def core() -> list[Extension]:
             ".".join(source.with_suffix("").parts),
             [str(source)],
             define_macros=[("SOURCE_CRC", str(checksum(HERE / source)))],
-            # A fused multiply-add would round once where Python rounds twice.
-            extra_compile_args=["-O2", "-ffp-contract=off"],
+            # A fused multiply-add would round once where Python rounds twice. GCC 12 makes some of
+            # pairs of operations all the same, unless it leaves these alone.
+            extra_compile_args=["-O2", "-ffp-contract=off", "-fno-tree-slp-vectorize"],
             optional=True,
         )
         for source in sources
