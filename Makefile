@@ -20,7 +20,7 @@ export PIP_USER := 0
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help demo test test-matrix test-slow sweeps fuzz coverage lint types bench docs pictures setup venv clean FORCE
+.PHONY: help demo test test-matrix wheels test-slow sweeps fuzz coverage lint types bench docs pictures setup venv clean FORCE
 
 help: ## print this
 	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(MAKEFILE_LIST) | while IFS='	' read -r name text; do \
@@ -41,6 +41,9 @@ test: lint types $(MADE)/test ## lint, types and the tests; JOBS=1 runs them in 
 
 test-matrix: ## the physics with the oldest and newest NumPy and SciPy, on every Python and several kinds of processors
 	@setup/matrix.sh $(VENV)-matrix
+
+wheels: ## wheels for every Python of this machine, in dist/, checked by auditwheel
+	@setup/wheels.sh $(VENV)-wheels
 
 SWEEP ?= test
 CERTAINTY := test/contact_modes/spatial/test_no_mode_missed.py test/contact_modes/spatial/test_nearly_the_same.py test/contact_modes/spatial/test_boxes_nearly_flush.py test/toss/test_among_flats.py
