@@ -148,6 +148,16 @@ class BodyState(Record):
         object.__setattr__(self, "w_WB_W", check_array("w_WB_W", w_WB_W, (3,)))
         object.__setattr__(self, "stamp_ns", check_stamp("stamp_ns", stamp_ns))
 
+    def with_velocities(self, v_WB_W: ArrayLike, w_WB_W: ArrayLike) -> BodyState:
+        """Return the state of this pose and time with other velocities. Only these are checked again."""
+        state = object.__new__(BodyState)
+        object.__setattr__(state, "p_WB_W", self.p_WB_W)
+        object.__setattr__(state, "q_WB", self.q_WB)
+        object.__setattr__(state, "v_WB_W", check_array("v_WB_W", v_WB_W, (3,)))
+        object.__setattr__(state, "w_WB_W", check_array("w_WB_W", w_WB_W, (3,)))
+        object.__setattr__(state, "stamp_ns", self.stamp_ns)
+        return state
+
     @property
     def R_WB(self) -> FloatArray:
         """Rotation matrix, (3, 3), body coordinates into world coordinates."""

@@ -145,3 +145,14 @@ def test_the_radius_of_gyration_of_a_thin_ring() -> None:
     ring = MassProperties(mass=2.0, I_B=np.diag([4.0, 4.0, 8.0]))  # radius 2 m: m r^2 about its axis
     assert ring.radius_of_gyration(np.array([0.0, 0.0, 1.0])) == pytest.approx(2.0, abs=1e-15)
     assert ring.angular_inertia_about(np.array([1.0, 0.0, 0.0])) == 4.0
+
+
+def test_a_state_with_other_velocities_keeps_pose_and_time_and_refuses_what_a_state_refuses() -> None:
+    state = BodyState(**{**REST, "p_WB_W": [1.0, 2.0, 3.0]}, stamp_ns=7)
+    moving = state.with_velocities((1.0, 0.0, 0.0), (0.0, 2.0, 0.0))
+    other = replace(state, v_WB_W=[1.0, 0.0, 0.0], w_WB_W=[0.0, 2.0, 0.0])
+    assert moving.to_dict() == other.to_dict()
+    assert not moving.v_WB_W.flags.writeable
+    for velocities in (((math.nan, 0.0, 0.0), (0.0, 0.0, 0.0)), ((0.0, 0.0, 0.0), (0.0, 0.0))):
+        with pytest.raises(InvalidFieldError, match="_WB_W"):
+            state.with_velocities(*velocities)

@@ -19,7 +19,6 @@ differ, and strike by themselves.
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -79,7 +78,7 @@ def pushed(response: Response, states: Sequence[BodyState], impulses_W: FloatArr
     """Return the states after impulses, (n, 3), N s, world axes, at the contacts of a response."""
     twist = response.twist + response.inverse_mass @ np.einsum("ijk,ij->k", response.jacobian, impulses_W)
     return [
-        replace(state, v_WB_W=twist[6 * i : 6 * i + 3], w_WB_W=twist[6 * i + 3 : 6 * i + 6])
+        state.with_velocities(twist[6 * i : 6 * i + 3], twist[6 * i + 3 : 6 * i + 6])
         for i, state in enumerate(states)
     ]
 

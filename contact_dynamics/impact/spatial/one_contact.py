@@ -14,7 +14,6 @@ The contact transmits a force and no moment, so torsional friction and rolling r
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -142,18 +141,17 @@ def _impact(
     path = trace(sliding, (u1, u2), v_n, restitution=restitution, law=law)
 
     impulse = axes.in_world(path.impulse)
-    v, w = pushed(first, impulse)
     other_after = None
     if second is not None and other_state is not None:
-        other_v, other_w = pushed(second, (-impulse[0], -impulse[1], -impulse[2]))
-        other_after = replace(other_state, v_WB_W=np.array(other_v), w_WB_W=np.array(other_w))
+        opposite = (-impulse[0], -impulse[1], -impulse[2])
+        other_after = other_state.with_velocities(*pushed(second, opposite))
     columns = np.array([axes.t1, axes.t2, axes.n]).T
     matrix = np.array([[axes.l1, 0.0, axes.k1], [0.0, axes.l2, axes.k2], [axes.k1, axes.k2, axes.kn]])
     return SpatialImpact(
         restitution_law=law,
         outcome=path.outcome,
         jams=path.jams,
-        state=replace(state, v_WB_W=np.array(v), w_WB_W=np.array(w)),
+        state=state.with_velocities(*pushed(first, impulse)),
         impulse_W=np.array(impulse),
         compression_W=np.array(axes.in_world(path.compression)),
         path_W=np.array([vertex for _, vertex in path.vertices]) @ columns.T,
@@ -193,20 +191,23 @@ def check_striking(body: MassProperties, state: BodyState, points_W: FloatArray)
             `LARGEST_NUMBER`; the mass or a moment of inertia is, or is below its inverse; or a contact is
             farther than `LARGEST_ARM` radii of gyration from the centre of mass.
     """
+    arms = (points_W - state.p_WB_W).ravel().tolist()
     for field, numbers in (
-        ("p_WC_W", (points_W - state.p_WB_W).ravel().tolist()),
+        ("p_WC_W", arms),
         ("v_WB_W", state.v_WB_W.tolist()),
         ("w_WB_W", state.w_WB_W.tolist()),
     ):
         if numbers and (max(numbers) > LARGEST_NUMBER or min(numbers) < -LARGEST_NUMBER):
             raise InvalidFieldError(field, numbers, f"at most {LARGEST_NUMBER:g} in magnitude")
     least = 1.0 / LARGEST_NUMBER
-    for field, numbers in (("mass", [body.mass]), ("I_B", body.I_B.diagonal().tolist())):
+    moments = body.I_B.diagonal().tolist()
+    for field, numbers in (("mass", [body.mass]), ("I_B", moments)):
         if max(numbers) > LARGEST_NUMBER or min(numbers) < least:
             raise InvalidFieldError(field, numbers, f"in [{least:g}, {LARGEST_NUMBER:g}]")
-    arms = points_W - state.p_WB_W
-    farthest = math.sqrt(float(np.einsum("...i,...i->...", arms, arms).max(initial=0.0)))
-    gyration = math.sqrt(float(body.I_B.diagonal().max()) / body.mass)
+    components = iter(arms)
+    squares = [x * x + y * y + z * z for x, y, z in zip(components, components, components, strict=True)]
+    farthest = math.sqrt(max(squares, default=0.0))
+    gyration = math.sqrt(max(moments) / body.mass)
     if farthest > LARGEST_ARM * gyration:
         found = f"{farthest:g} m from the centre of mass"
         raise InvalidFieldError("p_WC_W", found, f"{LARGEST_ARM:g} radii of gyration at most")

@@ -92,6 +92,10 @@ _REVERSES_IN_COMPRESSION: Final = ImpactOutcome.REVERSES_IN_COMPRESSION
 _STICKS_IN_RESTITUTION: Final = ImpactOutcome.STICKS_IN_RESTITUTION
 _REVERSES_IN_RESTITUTION: Final = ImpactOutcome.REVERSES_IN_RESTITUTION
 
+# An enumeration takes longer to find a member.
+_OUTCOMES: Final = tuple(ImpactOutcome)
+_EVENTS: Final = tuple(PathEvent)
+
 Impulse = tuple[float, float, float]  # N s: two tangential components and the normal one
 
 
@@ -146,9 +150,11 @@ def trace(
     vertices: list[tuple[PathEvent, Impulse]] = []
     progress = Progress(RULES[law], vertices)
     tracer = _Tracer(sliding, progress)
-    outcome = ImpactOutcome(tracer.trace(u[0], u[1], v_n, restitution))
+    outcome = tracer.trace(u[0], u[1], v_n, restitution)
+    if outcome == _NOT_ENDED:
+        raise AssertionError  # each stretch turns or slows the sliding by a fixed part
     return SpatialPath(
-        outcome,
+        _OUTCOMES[outcome],
         tracer.jams,
         vertices,
         (progress.c1, progress.c2, progress.c),
@@ -652,7 +658,7 @@ class Progress:
 
     def _add_vertex(self, event: int) -> None:
         if self.vertices is not None:
-            self.vertices.append((PathEvent(event), (self.i1, self.i2, self.p)))
+            self.vertices.append((_EVENTS[event], (self.i1, self.i2, self.p)))
 
     def _straight_step(self, step: float, rate1: float, rate2: float, lifting: float) -> None:
         work = step * (self.v_n + 0.5 * lifting * step)
