@@ -176,7 +176,7 @@ class PlanarStrike:
 
     def __init__(self, law: RestitutionLaw) -> None:
         if law not in _LAWS:
-            message = f"restitution_law: found {law}, which is not written down here"
+            message = f"restitution_law must be POISSON, NEWTON or ENERGETIC, got {law}"
             raise NotImplementedError(message)
         self.law = int(law)
         self.outcome: int = _NO_IMPULSE
