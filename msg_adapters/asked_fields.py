@@ -23,8 +23,6 @@ from msg_adapters.field_names import WRENCH_FIELDS, renamed
 from msg_adapters.geometry import vector_from_msg
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from geometry_msgs.msg import Vector3
 
     from contact_dynamics.contact.contact import ContactSet
@@ -32,6 +30,9 @@ if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
     from contact_dynamics_interfaces.msg import ContactSet as ContactSetMsg
     from contact_dynamics_interfaces.srv import PredictImpact, PredictTumbling
+
+LEFT_OUT: Final = -1
+"""The default of a number that a request may leave out. No such number may be negative, and zero is zero."""
 
 NOTHING: Final = np.zeros(3)
 """No force, no torque or no gravity."""
@@ -57,11 +58,9 @@ class GravityRequest(Protocol):
     gravity: int
 
 
-def optional(field: str, numbers: Sequence[Number]) -> Number | None:
-    """Return the number of a field that may be left out, or None if it is."""
-    if len(numbers) > 1:
-        raise InvalidFieldError(field, f"{len(numbers)} numbers", "one, or none")
-    return numbers[0] if numbers else None
+def optional(number: Number) -> Number | None:
+    """Return the number of a field that may be left out, or None if it is: its default is then `LEFT_OUT`."""
+    return None if number == LEFT_OUT else number
 
 
 def asked_contacts(request: ContactRequest) -> ContactSet | None:
@@ -117,10 +116,12 @@ def asked_drag(request: PredictTumbling.Request) -> Drag:
 def asked_sampling(request: PredictTumbling.Request) -> Sampling:
     """Return the times that a request asks about, or raise `InvalidFieldError`."""
     if request.sampling == request.AT_TIMES:
+        if len(request.times) == 0:
+            raise InvalidFieldError("times", "none", "at least one time, unless sampling is AT_RATE (2)")
         return AtTimes(times=request.times)
     if request.sampling == request.AT_STAMPS:
         return AtStamps(stamps_ns=request.stamps_ns)
-    rate, duration = optional("rate", request.rate), optional("duration", request.duration)
+    rate, duration = optional(request.rate), optional(request.duration)
     if request.sampling == request.AT_RATE:
         return AtRate(rate=rate, duration=duration)
     if request.sampling == request.UNTIL_CONTACT:
@@ -177,8 +178,8 @@ def asked_several_contacts_law(request: PredictImpact.Request) -> SeveralContact
     """Return the law for several contacts that a request asks for, or raise `InvalidFieldError`."""
     value = request.several_contacts_law
     if value == request.SEQUENTIAL_IN_TIME:
-        window = optional("strike_window", request.strike_window)
-        most = optional("max_strikes", request.max_strikes)
+        window = optional(request.strike_window)
+        most = optional(request.max_strikes)
         return InTime(
             strike_window=STRIKE_WINDOW if window is None else window,
             max_strikes=MAX_STRIKES if most is None else most,

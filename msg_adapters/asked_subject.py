@@ -14,6 +14,7 @@ from contact_dynamics.errors import InvalidFieldError, TooLargeError
 from contact_dynamics.questions.subject import NEWEST, PublishedState, changed_body
 from contact_dynamics.world import LONGEST_NAME, Body
 from msg_adapters.body_state import known_state_from_msg
+from msg_adapters.field_names import renamed
 from msg_adapters.geometry import mass_properties_from_msg
 from msg_adapters.stamps import stamp_ns_from_msg
 
@@ -76,7 +77,7 @@ def asked_other(
 def _explicit(field: str, msg: BodyStateMsg, body: Body, world_frame: str) -> KnownState:
     """Return a state that a request has. If it names a body, that is the body of the request."""
     if body.name and msg.body_name not in {"", body.name}:
-        raise InvalidFieldError(f"{field}.body_name", msg.body_name, f"{body.name!r}, or none")
+        raise InvalidFieldError(f"{field}.body_name", msg.body_name, f"{body.name!r}, or left out")
     return known_state_from_msg(msg, world_frame=world_frame, p_FB_F=body.p_FB_F)
 
 
@@ -89,13 +90,17 @@ def asked_body(name: str, inertia: Inertia, world: World, *, field: str = "body_
     if len(name) > LONGEST_NAME:
         raise TooLargeError(field, f"{len(name)} characters", f"at most {LONGEST_NAME}")
     is_described = _is_described(inertia)
+    described = field.replace("body_name", "inertia")
     if not name and not is_described:
-        raise InvalidFieldError(field, name, "the name of a configured body, or an inertia of mass > 0")
+        raise InvalidFieldError(field, name, f"the name of a configured body, unless {described}.m is > 0")
     # The body is looked up here, because an explicit state is that of the body's published frame.
     known = world.body(name) if name else None
     if known is not None and not is_described:
         return known
-    mass_properties, p_FB_F = mass_properties_from_msg(inertia)
+    try:
+        mass_properties, p_FB_F = mass_properties_from_msg(inertia)
+    except InvalidFieldError as error:
+        raise renamed(error, {"mass": f"{described}.m", "I_B": described}) from None
     return _described_body(mass_properties, tuple(p_FB_F.tolist()), known)
 
 

@@ -27,7 +27,7 @@ from msg_adapters.asked_subject import asked_body
 from msg_adapters.body_state import center_of_mass
 from msg_adapters.contacts import flat
 from msg_adapters.field_names import renamed
-from msg_adapters.requests import asked_inertia, asked_optional, write_gravity
+from msg_adapters.requests import asked_inertia, write_given, write_gravity
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -147,7 +147,7 @@ def impacts_question_from_msg(
             frictions=np.array(request.frictions),
             restitutions=np.array(request.restitutions),
             restitution_law=asked_restitution_law(request.restitution_law),
-            velocity_tolerance=optional("velocity_tolerance", request.velocity_tolerance),
+            velocity_tolerance=optional(request.velocity_tolerance),
         )
     except InvalidFieldError as error:
         raise renamed(error, {"p_WC_W": "contact_positions", "normals_W": "contact_normals"}) from None
@@ -166,7 +166,7 @@ def impacts_question_to_msg(
     msg.contact_positions, msg.contact_normals = flat(question.p_WC_W), flat(question.normals_W)
     msg.frictions, msg.restitutions = flat(question.frictions), flat(question.restitutions)
     msg.restitution_law = int(question.restitution_law)
-    msg.velocity_tolerance = asked_optional(question.velocity_tolerance)
+    write_given(msg, velocity_tolerance=question.velocity_tolerance)
     return msg
 
 

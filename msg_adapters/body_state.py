@@ -37,6 +37,8 @@ def body_state_from_msg(msg: BodyStateMsg, *, world_frame: str, p_FB_F: FloatArr
     """
     check_frame("state.header.frame_id", msg.header.frame_id or world_frame, world_frame)
     p_WB_W, q_WB = vector_from_msg(msg.pose.position), quaternion_from_msg(msg.pose.orientation)
+    if not q_WB.any():  # left out by a client whose messages begin with zeros
+        raise InvalidFieldError("state.pose.orientation", "zeros", "a unit quaternion (w: 1 is no rotation)")
     if p_FB_F.any():
         q_WB = check_unit("state.pose.orientation", q_WB, 4)
         p_WB_W = p_WB_W + turned(q_WB, p_FB_F)

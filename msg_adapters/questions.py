@@ -3,8 +3,8 @@
 Its neighbours `batches`, `contact_mode_batch` and `toss` read the requests of the other services. All of them
 read shared fields with `asked_fields`.
 
-A number that a question leaves out is an empty list in a request. A value in a field that the request leaves
-unread, such as a horizon if the contacts are given, is refused (`unread_fields`).
+A number with its field's default (`LEFT_OUT`) is left out. A value in a field that has no effect, such as a
+horizon if the contacts are given, is an error (`unread_fields`).
 """
 
 from __future__ import annotations
@@ -102,16 +102,16 @@ def impact_question_from_msg(
         other=other,
         other_state=other_state,
         contacts=contacts,
-        horizon=optional("horizon", request.horizon),
+        horizon=optional(request.horizon),
         restitution_law=asked_restitution_law(request.restitution_law),
         several_contacts_law=law,
         include_orders=request.include_orders,
         include_covariance=request.include_covariance,
         problem=problem,
         plane=asked_plane(request.plane_normal),
-        out_of_plane_tolerance=optional("out_of_plane_tolerance", request.out_of_plane_tolerance),
-        velocity_tolerance=optional("velocity_tolerance", request.velocity_tolerance),
-        distance_tolerance=optional("distance_tolerance", request.distance_tolerance),
+        out_of_plane_tolerance=optional(request.out_of_plane_tolerance),
+        velocity_tolerance=optional(request.velocity_tolerance),
+        distance_tolerance=optional(request.distance_tolerance),
     )
 
 
@@ -195,11 +195,11 @@ def asked_contact_modes(
         gravity_W=gravity_W,
         problem=problem,
         plane=asked_plane(request.plane_normal),
-        out_of_plane_tolerance=optional("out_of_plane_tolerance", request.out_of_plane_tolerance),
-        velocity_tolerance=optional("velocity_tolerance", request.velocity_tolerance),
-        distance_tolerance=optional("distance_tolerance", request.distance_tolerance),
-        friction_facets=optional("friction_facets", request.friction_facets),
-        margin_length=optional("margin_length", request.margin_length),
+        out_of_plane_tolerance=optional(request.out_of_plane_tolerance),
+        velocity_tolerance=optional(request.velocity_tolerance),
+        distance_tolerance=optional(request.distance_tolerance),
+        friction_facets=optional(request.friction_facets),
+        margin_length=optional(request.margin_length),
         force_W=force_W,
         torque_W=torque_W,
         include_margins=request.include_margins,

@@ -1,12 +1,12 @@
 """Converts questions to requests of the three services. `questions` converts them back.
 
-A number that a question leaves out is an empty list in a request. A question with a gravity of its own has no
-request, and raises `NotSupportedError`.
+A number that a question leaves out has its field's default in a request. A question with a gravity of its
+own has no request, and raises `NotSupportedError`.
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING
 
 from contact_dynamics.errors import NotSupportedError
 from contact_dynamics.motion.forces import WrenchAxes
@@ -19,8 +19,6 @@ from msg_adapters.contacts import contacts_to_msg
 from msg_adapters.geometry import mass_properties_to_msg, point_to_msg, vector_to_msg, wrench_to_msg
 from msg_adapters.geometry_margins import write_uncertainty
 from msg_adapters.stamps import stamp_ns_from_msg, stamp_to_msg
-
-Number = TypeVar("Number", int, float)
 
 if TYPE_CHECKING:
     from typing import TypeAlias
@@ -91,12 +89,12 @@ def impact_question_to_msg(
     if question.other is not None:
         _write_other(msg, question.other, question.other_state, world, world_frame)
     _write_contacts(msg, question.contacts)
-    msg.horizon = asked_optional(question.horizon)
+    write_given(msg, horizon=question.horizon)
     msg.restitution_law = int(question.restitution_law)
     law = question.several_contacts_law
     if isinstance(law, InTime):
         msg.several_contacts_law = msg.SEQUENTIAL_IN_TIME
-        msg.strike_window, msg.max_strikes = [law.strike_window], [law.max_strikes]
+        msg.strike_window, msg.max_strikes = law.strike_window, law.max_strikes
         msg.hold_step = law.hold_step or 0.0
     else:
         msg.several_contacts_law = int(law)
@@ -136,8 +134,7 @@ def write_contact_modes(
     _write_contacts(msg, question.contacts)
     write_gravity(msg, question.gravity_W)
     _write_problem(msg, question)
-    msg.friction_facets = asked_optional(question.friction_facets)
-    msg.margin_length = asked_optional(question.margin_length)
+    write_given(msg, friction_facets=question.friction_facets, margin_length=question.margin_length)
     msg.include_margins = question.include_margins
 
 
@@ -238,7 +235,7 @@ def _write_sampling(msg: PredictTumbling.Request, sampling: Sampling) -> None:
         msg.plane_point = point_to_msg(sampling.plane_point)
         msg.plane_normal = vector_to_msg(sampling.plane_normal)
         msg.body_point = point_to_msg(sampling.body_point)
-    msg.rate, msg.duration = asked_optional(sampling.rate), asked_optional(sampling.duration)
+    write_given(msg, rate=sampling.rate, duration=sampling.duration)
 
 
 def _write_problem(msg: ContactRequest, question: ContactModeQuestion | ImpactQuestion) -> None:
@@ -246,11 +243,16 @@ def _write_problem(msg: ContactRequest, question: ContactModeQuestion | ImpactQu
     msg.problem = int(question.problem)
     if question.plane is not None:
         msg.plane_normal = vector_to_msg(question.plane.normal_W)
-    msg.out_of_plane_tolerance = asked_optional(question.out_of_plane_tolerance)
-    msg.velocity_tolerance = asked_optional(question.velocity_tolerance)
-    msg.distance_tolerance = asked_optional(question.distance_tolerance)
+    write_given(
+        msg,
+        out_of_plane_tolerance=question.out_of_plane_tolerance,
+        velocity_tolerance=question.velocity_tolerance,
+        distance_tolerance=question.distance_tolerance,
+    )
 
 
-def asked_optional(value: Number | None) -> list[Number]:
-    """Return a number as a request has it, which may be left out."""
-    return [] if value is None else [value]
+def write_given(msg: object, **numbers: float | None) -> None:
+    """Write the numbers that a question has. The others keep their fields' defaults, which leave them out."""
+    for field, number in numbers.items():
+        if number is not None:
+            setattr(msg, field, number)

@@ -29,7 +29,7 @@ from msg_adapters.body_state import body_state_from_msg, body_state_to_msg, cent
 from msg_adapters.contacts import flat, rows
 from msg_adapters.field_names import renamed
 from msg_adapters.geometry import vector_from_msg, vector_to_msg
-from msg_adapters.requests import asked_optional, write_fitted_subject
+from msg_adapters.requests import write_fitted_subject, write_given
 from msg_adapters.toss_distribution import distribution_from_msg, distribution_to_msg
 from msg_adapters.tumbling import read_fit, trajectory_from_msg, trajectory_to_msg, write_fit
 from msg_adapters.unread_fields import TOSS, check_unread
@@ -57,9 +57,9 @@ def toss_question_from_msg(request: PredictToss.Request, *, world: World, world_
         state=state,
         restitution_law=asked_restitution_law(request.restitution_law),
         several_contacts_law=asked_instant_law(request.several_contacts_law),
-        horizon=optional("horizon", request.horizon),
-        rate=optional("rate", request.rate),
-        max_alternatives=optional("max_alternatives", request.max_alternatives),
+        horizon=optional(request.horizon),
+        rate=optional(request.rate),
+        max_alternatives=optional(request.max_alternatives),
         sampling=_sampling(request) if request.samples else None,
         lasting_factors=np.array(request.lasting_factors),
     )
@@ -68,7 +68,7 @@ def toss_question_from_msg(request: PredictToss.Request, *, world: World, world_
 def _sampling(request: PredictToss.Request) -> TossSampling:
     return TossSampling(
         count=request.samples,
-        strikes=optional("strikes", request.strikes),
+        strikes=optional(request.strikes),
         to_rest=request.to_rest,
         seed=request.seed,
         uncertainty=_uncertainty(request),
@@ -115,13 +115,12 @@ def toss_question_to_msg(question: TossQuestion, *, world: World, world_frame: s
     write_fitted_subject(msg, question.body, question.state, world, world_frame)
     msg.restitution_law = int(question.restitution_law)
     msg.several_contacts_law = int(question.several_contacts_law)
-    msg.horizon, msg.rate = asked_optional(question.horizon), asked_optional(question.rate)
-    msg.max_alternatives = asked_optional(question.max_alternatives)
+    write_given(msg, horizon=question.horizon, rate=question.rate, max_alternatives=question.max_alternatives)
     msg.lasting_factors = flat(question.lasting_factors)
     sampling = question.sampling
     if sampling is not None:
         msg.samples, msg.seed, msg.to_rest = sampling.count, sampling.seed, sampling.to_rest
-        msg.strikes = asked_optional(sampling.strikes)
+        write_given(msg, strikes=sampling.strikes)
         msg.parameter_covariance = flat(sampling.uncertainty.covariance)
         msg.velocity_spread, msg.spin_spread = sampling.uncertainty.velocity, sampling.uncertainty.spin
         msg.height_spread = sampling.uncertainty.height

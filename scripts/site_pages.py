@@ -62,7 +62,7 @@ def interface_files() -> str:
     package = ROOT / "contact_dynamics_interfaces"
     head = "# Every field of the interfaces\n\nROS 2 builds the interfaces from these definitions. "
     head += (
-        "Each field has its unit, its frame and what an empty value means. [Interfaces](interfaces.md) has "
+        "Each field has its unit, its frame and what leaving it out means. [Interfaces](interfaces.md) has "
     )
     wrapped = "<style>.md-typeset pre > code { white-space: pre-wrap; }</style>\n"  # the lines are long
     parts = [head + "examples to paste.\n", wrapped]

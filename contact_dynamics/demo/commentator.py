@@ -117,7 +117,7 @@ class Commentator(Node):
         if answer is None or answer.status != answer.OK or answer.time_to_contact < SOON_S:
             request = PredictContactMode.Request(body_name=self._body.name)
             # The recorded states were measured, with this noise.
-            request.velocity_tolerance, request.distance_tolerance = [0.05], [0.003]
+            request.velocity_tolerance, request.distance_tolerance = 0.05, 0.003
             return self._words_of_modes(request, "it touches")
         v = answer.impact.state_after.linear_velocity
         where, outcome = answer.contacts.surface_names[0], OUTCOMES[ImpactOutcome(answer.impact.outcome)]

@@ -166,7 +166,7 @@ class Questioner(Node):
 
     def _ask_landing(self) -> float | None:
         request = PredictTumbling.Request(
-            body_name=self._toss.body.name, rate=[self._toss.rate], fit_window=self._flight_seen()
+            body_name=self._toss.body.name, rate=self._toss.rate, fit_window=self._flight_seen()
         )
         request.sampling = request.UNTIL_CONTACT
         request.curve_points = CURVE_POINTS

@@ -24,13 +24,14 @@ _WHOLE: Final = re.compile(r"[-+]?(0[xX][0-9a-fA-F]+|[0-9]+)")
 _NUMBER: Final = re.compile(
     r"[-+]?(([0-9]+\.?[0-9]*|\.[0-9]+)([eE][-+]?[0-9]+)?|\.?(nan|NaN|NAN|inf|Inf|INF))"
 )
-_IN_WORDS: Final = {
+IN_WORDS: Final = {
     bool: "true or false",
     int: "a whole number",
     float: "a number with a point, such as 1.0",
     str: "a text",
     list: "a list with an entry, such as [1.0]",
 }
+"""The types of parameters, in the words of an error."""
 
 
 def values_given(arguments: Sequence[str], full_name: str) -> dict[str, str]:
@@ -45,7 +46,7 @@ def values_given(arguments: Sequence[str], full_name: str) -> dict[str, str]:
 
 def what_is_wrong(text: str, wanted: type[Any]) -> str:
     """Return what a parameter's text would have to be, or nothing where it is of the type that is wanted."""
-    return "" if text == "" or _type_of(text) is wanted else _IN_WORDS[wanted]
+    return "" if text == "" or _type_of(text) is wanted else IN_WORDS[wanted]
 
 
 def _type_of(text: str) -> type[Any] | None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from contact_dynamics.nodes.argument_values import IN_WORDS
 from contact_dynamics.nodes.parameter_reader import ConfigurationError
 from contact_dynamics.nodes.run_record import NODE_NAME
 from contact_dynamics.nodes.unknown_parameters import likely_misspelling, qos_overrides_of, refuse_unknown
@@ -67,7 +68,8 @@ class GivenParameters:
         wanted = default if isinstance(default, type) else type(default)
         if not isinstance(found, wanted) or (isinstance(found, bool) and wanted is not bool):
             meant = likely_misspelling(name, self.values) if found is None else ""
-            message = f"{self._before}{name} is required ({description}), got {found!r}{meant}"
+            problem = "is required" if found is None else f"must be {IN_WORDS[wanted]}, got {found!r}"
+            message = f"{self._before}{name} {problem} ({description}){meant}"
             raise ConfigurationError(message)
         number: Any = found  # it has the default's type, which is a number where there are bounds
         if bounds is not None and not bounds[0] <= number <= bounds[1]:

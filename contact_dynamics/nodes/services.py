@@ -174,7 +174,7 @@ SERVICES: Final = (
     Service(
         type_name="PredictContactMode",
         kind=CONTACT_MODES,
-        digest="0b8a6fbaa0edfb9f",
+        digest="c01e2bc54d5ecf14",
         question_from_msg=ImportedOnUse("msg_adapters.questions:contact_mode_question_from_msg"),
         answer=ImportedOnUse("contact_dynamics.questions.contact_modes:answer"),
         answer_to_msg=ImportedOnUse("msg_adapters.contact_mode:contact_mode_answer_to_msg"),
@@ -186,7 +186,7 @@ SERVICES: Final = (
     Service(
         type_name="PredictImpact",
         kind=IMPACT,
-        digest="33e34ceb992b069b",
+        digest="6fec62f9a6020c11",
         question_from_msg=ImportedOnUse("msg_adapters.questions:impact_question_from_msg"),
         answer=ImportedOnUse("contact_dynamics.questions.impact:answer"),
         answer_to_msg=ImportedOnUse("msg_adapters.impact:impact_answer_to_msg"),
@@ -198,7 +198,7 @@ SERVICES: Final = (
     Service(
         type_name="PredictTumbling",
         kind=TUMBLING,
-        digest="a06a9784436647e8",
+        digest="faff7ceb375e4674",
         question_from_msg=ImportedOnUse("msg_adapters.questions:tumbling_question_from_msg"),
         answer=ImportedOnUse("contact_dynamics.questions.tumbling:answer"),
         answer_to_msg=ImportedOnUse("msg_adapters.tumbling:tumbling_answer_to_msg"),
@@ -210,7 +210,7 @@ SERVICES: Final = (
     Service(
         type_name="PredictToss",
         kind=TOSS,
-        digest="c6f9de7132ae313e",
+        digest="e134e6cfc8c53f8d",
         question_from_msg=ImportedOnUse("msg_adapters.toss:toss_question_from_msg"),
         answer=ImportedOnUse("contact_dynamics.questions.toss:answer"),
         answer_to_msg=ImportedOnUse("msg_adapters.toss:toss_answer_to_msg"),
@@ -222,7 +222,7 @@ SERVICES: Final = (
     Service(
         type_name="PredictImpactBatch",
         kind=MANY_IMPACTS,
-        digest="55370ec29df49426",
+        digest="9638ca21106dfd4a",
         question_from_msg=ImportedOnUse("msg_adapters.batches:impacts_question_from_msg"),
         answer=ImportedOnUse("contact_dynamics.questions.many:answer_impacts"),
         answer_to_msg=ImportedOnUse("msg_adapters.batches:impacts_answer_to_msg"),
@@ -246,7 +246,7 @@ SERVICES: Final = (
     Service(
         type_name="PredictContactModeBatch",
         kind=MANY_CONTACT_MODES,
-        digest="f38d0678a11caa2b",
+        digest="4e9a384d6b1f41dd",
         question_from_msg=ImportedOnUse("msg_adapters.contact_mode_batch:contact_modes_question_from_msg"),
         answer=ImportedOnUse("contact_dynamics.questions.many_contact_modes:answer"),
         answer_to_msg=ImportedOnUse("msg_adapters.contact_mode_batch:contact_modes_answer_to_msg"),

@@ -438,7 +438,7 @@ def test_the_usage_shows_what_must_be_given(
     [
         (["--toss", "nowhere.csv"], "TOSS must be ..., got no file 'nowhere.csv'"),
         (["--toss", f"{ROOT / 'README.md'}"], "must be a toss recording..., got ...README.md"),
-        (["--toss", f"{DEFAULT_RECORDING}#1"], "must be no index: a .csv holds one toss"),
+        (["--toss", f"{DEFAULT_RECORDING}#1"], "must be a path without an index"),
         (["--output", f"{ROOT / 'README.md'}"], f"must be a folder..., got ...{str(ROOT / 'README.md')!r}"),
     ],
 )

@@ -40,5 +40,5 @@ def test_a_domain_in_which_somebody_listens_is_left_out() -> None:
 
 def test_it_says_when_none_is_free(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(ros_domain, "_domains_in_use", lambda: set(range(1, 101)))
-    with pytest.raises(RuntimeError, match="found all in use"):
+    with pytest.raises(RuntimeError, match="got all in use"):
         claim_domain()

@@ -149,7 +149,7 @@ def impact_questions(draw: st.DrawFn) -> ImpactQuestion:
     other = draw(some(bodies()))
     other_state = draw(known_states()) if other is not None else NEWEST
     in_time = st.builds(
-        InTime, strike_window=positive, max_strikes=st.integers(1, 2**32 - 1), hold_step=some(positive)
+        InTime, strike_window=positive, max_strikes=st.integers(1, 2**31 - 1), hold_step=some(positive)
     )
     law = draw(st.one_of(st.sampled_from(SeveralContactsLaw), in_time))
     finds_or_mirrors = contacts is None or is_planar or isinstance(law, InTime)

@@ -83,20 +83,20 @@ def test_published_states_are_named_by_stamp_and_window() -> None:
         (PredictContactMode, "distance_tolerance", "distance_tolerance"),
     ],
 )
-def test_zero_is_a_number_and_an_empty_list_is_none(service: Any, field: str, attribute: str) -> None:
+def test_zero_is_a_number_and_a_field_left_out_is_none(service: Any, field: str, attribute: str) -> None:
     request = service.Request(body_name="cube")
     if service is PredictTumbling:
         request.sampling = request.AT_RATE
     found = operator.attrgetter(attribute)
     assert found(read(request)) is None
-    setattr(request, field, [0.0])
+    setattr(request, field, 0.0)
     assert found(read(request)) == 0.0
 
 
 def test_an_inertia_without_mass_is_not_taken_for_none() -> None:
     request = PredictTumbling.Request(body_name="cube")
     request.inertia.ixx = 0.1
-    with pytest.raises(InvalidFieldError, match=r"mass must be .*, got 0"):
+    with pytest.raises(InvalidFieldError, match=r"^inertia\.m must be > 0, got 0"):
         read(request)
 
 
@@ -139,7 +139,7 @@ def test_samplings(sampling: int, kind: type) -> None:
     elif kind is AtStamps:
         request.stamps_ns = [5]
     else:
-        request.duration = [1.5]
+        request.duration = 1.5
     if kind is UntilPlane:
         request.plane_normal.z = 1.0
     question = read(request)
@@ -223,7 +223,7 @@ READ_WITH: dict[str, dict[str, Any]] = {
         ),
         (PredictContactMode, "contact_source", 9, InvalidFieldError, "contact_source must be .*, got 9"),
         (PredictContactMode, "problem", 9, InvalidFieldError, "problem must be .*, got 9"),
-        (PredictContactMode, "friction_facets", [2], InvalidFieldError, "friction_facets must be .*, got 2"),
+        (PredictContactMode, "friction_facets", 2, InvalidFieldError, "friction_facets must be .*, got 2"),
         (PredictImpact, "restitution_law", 9, InvalidFieldError, "restitution_law must be .*, got 9"),
         (
             PredictImpact,
@@ -232,18 +232,18 @@ READ_WITH: dict[str, dict[str, Any]] = {
             InvalidFieldError,
             "several_contacts_law must be .*, got 9",
         ),
-        (PredictImpact, "other_inertia.m", -1.0, InvalidFieldError, "mass must be .*, got -1"),
+        (PredictImpact, "other_inertia.m", -1.0, InvalidFieldError, "other_inertia.m must be > 0, got -1"),
         (
             PredictImpact,
             "velocity_tolerance",
-            [-1.0],
+            -0.5,
             InvalidFieldError,
-            "velocity_tolerance must be .*, got -1",
+            "velocity_tolerance must be >= 0, got -0.5",
         ),
-        (PredictTumbling, "rate", [0.0], InvalidFieldError, "rate must be .*, got 0"),
-        (PredictContactMode, "margin_length", [0.0], InvalidFieldError, "margin_length must be .*, got 0"),
-        (PredictImpact, "strike_window", [0.0], InvalidFieldError, "strike_window must be .*, got 0"),
-        (PredictImpact, "max_strikes", [0], InvalidFieldError, "max_strikes must be .*, got 0"),
+        (PredictTumbling, "rate", 0.0, InvalidFieldError, "rate must be .*, got 0"),
+        (PredictContactMode, "margin_length", 0.0, InvalidFieldError, "margin_length must be .*, got 0"),
+        (PredictImpact, "strike_window", 0.0, InvalidFieldError, "strike_window must be .*, got 0"),
+        (PredictImpact, "max_strikes", 0, InvalidFieldError, "max_strikes must be .*, got 0"),
     ],
 )
 def test_an_error_names_the_field_of_the_request(

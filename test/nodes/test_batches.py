@@ -167,6 +167,4 @@ def test_a_row_that_is_not_allowed_is_named(client: Client) -> None:
     assert says(answer.message, "frictions must be 30, or one for all..., got 2 rows")
     request = impacts()
     request.states.linear_velocities = [0.0] * 4
-    assert client.ask(request).message.startswith(
-        "states.linear_velocities must be rows of 3..., got 4 numbers"
-    )
+    assert client.ask(request).message.startswith("states.linear_velocities must be rows of 3, got 4 numbers")

@@ -54,7 +54,7 @@ def carried_under_strong_drag() -> Any:
     request.state.covariance = (1e-6 * np.eye(12)).ravel().tolist()
     request.linear_drag, request.include_covariance = 1000.0, True
     request.times = []
-    request.sampling, request.duration, request.rate = request.AT_RATE, [10.0], [10.0]
+    request.sampling, request.duration, request.rate = request.AT_RATE, 10.0, 10.0
     return request
 
 

@@ -90,7 +90,7 @@ def test_states_that_are_rejected_now_and_then(monitor: Monitor, states: Any) ->
         states.publish(odometry(frame="map"))
         states.publish(odometry())
 
-    monitor.wait(Situation.SOME_REJECTED, "'brick'", "found 'map'", work=publish)
+    monitor.wait(Situation.SOME_REJECTED, "'brick'", "got 'map'", work=publish)
     monitor.wait_until_over(Situation.SOME_REJECTED, "rejected", work=lambda: states.publish(odometry()))
 
 

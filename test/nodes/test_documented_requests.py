@@ -54,6 +54,55 @@ def fill(msg: Any, fields: dict[str, Any]) -> Any:
     return msg
 
 
+@pytest.mark.parametrize(
+    ("service", "typed", "words"),
+    [
+        (
+            PredictTumbling,
+            "{body_name: brick}",
+            "times must be at least one time, unless sampling is AT_RATE (2)",
+        ),
+        (
+            PredictImpact,
+            "{body_name: brick, state: {pose: {position: {z: 0.5}}}}",
+            "state.pose.position.z must be left out unless state_source is STATE_EXPLICIT (1), got 0.5",
+        ),
+        (
+            PredictImpact,
+            "{body_name: brick, state_source: 1, state: {pose: {orientation: {w: 0.0}}}}",
+            "state.pose.orientation must be a unit quaternion (w: 1 is no rotation)",
+        ),
+        (
+            PredictImpact,
+            "{state_source: 1, state: {body_name: brick}}",
+            "body_name must be the name of a configured body",
+        ),
+        (
+            PredictImpact,
+            "{body_name: brick, state_source: 1, state: {body_name: cup}}",
+            "state.body_name must be 'brick', or left out, got cup",
+        ),
+        (PredictImpact, "{body_name: brick, state_source: 1, horizon: -5.0}", "horizon must be >= 0, got -5"),
+    ],
+)
+def test_what_newcomers_type_gets_the_field_that_they_meant(
+    client: Client, service: Any, typed: str, words: str
+) -> None:
+    answer = client.ask(fill(service.Request(), yaml.safe_load(typed)))
+    assert answer.status == answer.INVALID_FIELD
+    assert words in answer.message
+
+
+@pytest.mark.parametrize(
+    ("given", "status"), [("", "OK"), ("horizon: 2.0", "OK"), ("horizon: 0.0", "NO_CONTACT")]
+)
+def test_a_number_may_be_left_out_and_zero_is_zero(client: Client, given: str, status: str) -> None:
+    """The server's own horizon is 10 s; the brick lands after 0.3 s."""
+    typed = f"{{body_name: brick, state_source: 1, state: {{pose: {{position: {{z: 0.5}}}}}}, {given}}}"
+    answer = client.ask(fill(PredictImpact.Request(), yaml.safe_load(typed)))
+    assert answer.status == getattr(answer, status), answer.message
+
+
 def numbers(values: Any) -> str:
     return "(" + ", ".join(f"{round(x, 3) + 0.0:.3f}" for x in values) + ")"
 

@@ -160,7 +160,7 @@ def test_a_log_whose_disk_is_not_mounted_is_refused_and_written_once_it_is(tmp_p
             clock = manager.client.publisher(Clock, "/clock")
             for _ in range(20):
                 assert not manager.change(Transition.TRANSITION_CONFIGURE)
-            assert "log_directory: found" in wait_for(server, "cannot be configured")
+            assert "log_directory must be" in wait_for(server, "cannot be configured")
             assert manager.state() == State.PRIMARY_STATE_UNCONFIGURED
             for seconds in range(200, 100, -1):
                 clock.publish(Clock(clock=Time(sec=seconds)))

@@ -93,7 +93,7 @@ def state(client: Client, draw: random.Random) -> Odometry:
 def questions(number: int) -> list[Any]:
     """A good and a bad request to each service."""
     tumbling = PredictTumbling.Request(body_name="brick", sampling=PredictTumbling.Request.UNTIL_CONTACT)
-    tumbling.rate = [100.0 * (number + 1)]
+    tumbling.rate = 100.0 * (number + 1)
     mode = PredictContactMode.Request(
         state_source=PredictContactMode.Request.STATE_EXPLICIT, body_name="brick"
     )
@@ -113,7 +113,7 @@ def questions(number: int) -> list[Any]:
     )
     modes = PredictContactModeBatch.Request(state_source=mode.STATE_EXPLICIT, body_name="brick")
     modes.state, modes.forces = mode.state, [0.1 * number, 0.0, 0.0, 0.0, 0.0, 9.0]
-    toss = PredictToss.Request(body_name="brick", max_alternatives=[0], samples=5, seed=number)
+    toss = PredictToss.Request(body_name="brick", max_alternatives=0, samples=5, seed=number)
     toss.state_source, toss.state.pose.position.z = toss.STATE_EXPLICIT, 0.2
     return [
         modes,
@@ -123,13 +123,13 @@ def questions(number: int) -> list[Any]:
         strikes,
         PredictTumblingBatch.Request(body_name="brick", states=falling, times=[0.25]),
         PredictTumbling.Request(body_name=f"cat {number}"),
-        PredictImpact.Request(body_name="brick", horizon=[float("nan")]),
+        PredictImpact.Request(body_name="brick", horizon=float("nan")),
         PredictContactMode.Request(body_name="brick"),  # in the air: no contact
         PredictImpactBatch.Request(body_name="brick", states=falling),  # no contact is given
         PredictTumblingBatch.Request(body_name="brick", states=falling, times=[float("inf")]),
         PredictContactModeBatch.Request(body_name="brick"),  # in the air
         toss,
-        PredictToss.Request(body_name="brick", rate=[0.0]),
+        PredictToss.Request(body_name="brick", rate=0.0),
     ]
 
 

@@ -211,18 +211,18 @@ def two_bodies_by_one_source(values: dict[str, Any]) -> None:
 NAN, INF = float("nan"), float("inf")
 BRICK = [3.5e-4, 8.4e-4, 1.0e-3]
 WRONG = [
-    (drop("body.brick.mass"), "body.brick.mass must be ..., got nothing"),
+    (drop("body.brick.mass"), "body.brick.mass is required (Mass, kg.)"),
     (misspell("body.brick.mass", "body.brick.maas"), "Given is body.brick.maas, which may be misspelled."),
     (put(body__brick__mass="heavy"), "body.brick.mass"),
     (put(body__brick__mass=1), "body.brick.mass"),
     (put(body__brick__mass=NAN), "body.brick.mass must be ..., got nan"),
     (put(body__brick__mass=0.0), "body.brick.mass must be > 0..., got 0.0"),
     (put(body__brick__inertia=[*BRICK, 0.0, 0.0]), "body.brick.inertia must be 6..., got 5 numbers"),
-    (put(body__brick__inertia=[1.0, 1.0, 3.0, 0.0, 0.0, 0.0]), "body.brick.inertia: found"),
-    (put(body__brick__inertia=[*BRICK, NAN, 0.0, 0.0]), "body.brick.inertia: found"),
+    (put(body__brick__inertia=[1.0, 1.0, 3.0, 0.0, 0.0, 0.0]), "body.brick.inertia must be "),
+    (put(body__brick__inertia=[*BRICK, NAN, 0.0, 0.0]), "body.brick.inertia must be "),
     (put(body__brick__inertia=0.001), "body.brick.inertia"),
-    (put(body__brick__center_of_mass=[0.0, 0.1]), "body.brick.center_of_mass: found"),
-    (put(body__brick__center_of_mass=[0.0, NAN, 0.0]), "body.brick.center_of_mass: found"),
+    (put(body__brick__center_of_mass=[0.0, 0.1]), "body.brick.center_of_mass must be "),
+    (put(body__brick__center_of_mass=[0.0, NAN, 0.0]), "body.brick.center_of_mass must be "),
     (put(body__brick__box=[0.1, 0.2]), "body.brick.box must be ..., got 2 numbers"),
     (put(body__brick__box=[0.1, INF, 0.1]), "body.brick.box[1] must be ..., got inf"),
     (put(body__brick__box=[0.1, -0.1, 0.1]), "body.brick.box[1] must be > 0..., got -0.1"),
@@ -242,7 +242,7 @@ WRONG = [
     ),
     (put(body__brick__box=[0.0], body__brick__cone=[0.1, 0.0]), "body.brick.cone[1] must be ..., got 0.0"),
     (put(body__brick__rounding=-0.1), "body.brick.rounding"),
-    (put(body__brick__shape_orientation=[0.0] * 4), "body.brick.shape_orientation: found"),
+    (put(body__brick__shape_orientation=[0.0] * 4), "body.brick.shape_orientation must be "),
     (
         put(body__brick__inertia=[0.0], body__brick__box=[0.0]),
         "body.brick.inertia must be ..., got [0.0], with no",
@@ -296,7 +296,7 @@ WRONG = [
     ),
     (two_bodies_by_one_source, "body.plate.source_topics[0] must be another topic than..., got '/poses'"),
     (two_bodies_on_one_topic, "body.plate.odometry_topic must be ..., got '/brick/odometry'"),
-    (drop("surface.floor.friction"), "surface.floor.friction must be ..., got nothing"),
+    (drop("surface.floor.friction"), "surface.floor.friction is required ("),
     (put(surface__floor__friction=-0.1), "surface.floor.friction must be >= 0..., got -0.1"),
     (put(surface__floor__restitution=1.5), "surface.floor.restitution must be ..., got 1.5"),
     (put(surface__floor__lasting_factor=-1.0), "surface.floor.lasting_factor must be ..., got -1.0"),
@@ -310,10 +310,10 @@ WRONG = [
     (put(surface__floor__vertices=[0.0] * 9), "surface.floor.vertices must be ..., got 1 different corner"),
     (
         put(surface__floor__box=[1.0] * 3, surface__floor__orientation=[0.0, 0.0, 0.0, 2.0]),
-        "surface.floor.orientation: found",
+        "surface.floor.orientation must be ",
     ),
     (put(surfaces=["floor", "floor"]), "surfaces must be different names..., got ['floor', 'floor']"),
-    (put(gravity=[0.0, 0.0, NAN]), "gravity: found"),
+    (put(gravity=[0.0, 0.0, NAN]), "gravity must be "),
     (put(gravity=[0.0, -9.81]), "gravity must be ..., got shape (2,)"),
     (put(state_timeout=-1.0), "state_timeout"),
     (put(state_timeout=NAN), "state_timeout must be in [0.001, 1e+06] (How old..., got nan"),
@@ -322,7 +322,7 @@ WRONG = [
     (put(horizon=INF), "horizon"),
     (put(rate=0.0), "rate"),
     (put(log="perhaps"), "log"),
-    (put(log_directory=str(Path(__file__))), "log_directory: "),
+    (put(log_directory=str(Path(__file__))), "log_directory must be a folder"),
     (put(log_file_size=1e-7), "log_file_size must be 0 or in [0.065536, 1e+08] MB..., got 1e-07 MB"),
     (put(log_file_duration=0.5), "log_file_duration must be 0 or in [1, 1e+08] s..., got 0.5 s"),
     (put(log_size_limit=1500.0), "log_size_limit must be 0 or in [2000, 1e+08] MB..., got 1500 MB"),
@@ -381,8 +381,11 @@ def test_a_wrong_value_ends_the_server_and_is_named(
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        ([], "rrd_path, spawn, serve, connect must be ..., got none"),
-        (["-p", "spawn:=true", "-p", "serve:=true"], "spawn and serve must be ..., got 2 ways to a viewer"),
+        ([], "one of rrd_path, spawn, serve and connect is required"),
+        (
+            ["-p", "spawn:=true", "-p", "serve:=true"],
+            "only one of spawn, serve and connect must be set, got spawn and serve",
+        ),
         (["-p", "serve:=true", "-p", "port:=0"], "port"),
         (["-p", "serve:=true", "-p", "port:=70000"], "port"),
         (["-p", "serve:=maybe"], "serve"),
@@ -412,8 +415,11 @@ def test_a_file_that_cannot_be_read_is_named(capfd: pytest.CaptureFixture[str], 
         ("body.brick.odometry_topc", "the nearest is body.brick.odometry_topic"),
         ("body.brick.mesh", "body.brick.mesh: there is no such parameter"),
         ("surface.floor.fricton", "the nearest is surface.floor.friction"),
-        ("body.cube.mass", "must be one that bodies lists: ['brick']..., got body 'cube'"),
-        ("surface.table.friction", "must be one that surfaces lists: ['floor']..., got surface 'table'"),
+        ("body.cube.mass", "must be about one of the names in bodies ['brick'], got body 'cube'"),
+        (
+            "surface.table.friction",
+            "must be about one of the names in surfaces ['floor'], got surface 'table'",
+        ),
     ],
 )
 @pytest.mark.parametrize("verb", VERBS)
@@ -438,8 +444,10 @@ def test_a_node_refuses_a_file_whose_node_is_misspelled(
     path.write_text(yaml.safe_dump(sections), encoding="utf-8")
     assert verb(["--params-file", str(path)]) == 2
     printed = capfd.readouterr().err
-    assert says(printed, f"{path} must be ..., got parameters of /contact_dynamcis and of /controller alone")
-    assert "/contact_dynamcis is the nearest" in printed
+    assert says(
+        printed, f"{path} must have parameters of ..., got only those of /contact_dynamcis and of /controller"
+    )
+    assert "/contact_dynamcis is the nearest name" in printed
 
 
 def test_a_section_that_misses_the_server_by_a_letter_is_warned_of(tmp_path: Path) -> None:

@@ -106,7 +106,7 @@ def test_a_server_joins_anew_without_surfaces_and_without_a_disk(tmp_path: Path)
         link.symlink_to(tmp_path / "gone")
         assert remove_ports(server.pid) == 1
         printed = wait_for(server, "joins the domain anew") + wait_for(server, "ready: bodies brick; log off")
-        assert "no log is written: log_directory: found" in printed
+        assert "no log is written: log_directory must be" in printed
         reports: list[DiagnosticArray] = []
         client = Client()
         try:
@@ -116,7 +116,7 @@ def test_a_server_joins_anew_without_surfaces_and_without_a_disk(tmp_path: Path)
         finally:
             client.close()
     (log,) = (each for each in reports[0].status if each.name.endswith("log"))
-    assert log.message.startswith("no log is written: log_directory: found")
+    assert log.message.startswith("no log is written: log_directory must be")
     assert int({pair.key: pair.value for pair in log.values}["lost"]) > 0
 
 

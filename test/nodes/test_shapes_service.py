@@ -84,7 +84,7 @@ def test_a_can_falls_on_its_side(client: Client) -> None:
     request = PredictTumbling.Request(body_name="can", state_source=1)
     request.state.pose.orientation.x = request.state.pose.orientation.w = math.sqrt(0.5)
     request.state.pose.position.z = -0.9 + 0.5 * G * 0.4**2
-    request.sampling, request.rate = request.UNTIL_CONTACT, [100.0]
+    request.sampling, request.rate = request.UNTIL_CONTACT, 100.0
     answer = client.ask(request)
     assert answer.status == answer.OK, answer.message
     assert (answer.event, answer.event_surface) == (answer.CONTACT, "floor")

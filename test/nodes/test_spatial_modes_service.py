@@ -188,14 +188,14 @@ def test_a_planar_question_about_it_is_refused_only_where_the_plane_is_left(clie
     answer = client.ask(request)
     assert answer.status == answer.OUT_OF_PLANE
     assert answer.message == (
-        "state must be at most 1e-06 m/s..., got 0.02 m/s out of the plane with normal [0.0, -1.0, 0.0]"
+        "state must be at most 1e-06 m/s, got 0.02 m/s out of the plane with normal [0.0, -1.0, 0.0]"
     )
-    request.out_of_plane_tolerance = [0.05]
+    request.out_of_plane_tolerance = 0.05
     answer = client.ask(request)
     assert answer.status == answer.OK
     assert answer.out_of_plane == pytest.approx(0.02)
     request.problem = request.AUTOMATIC
-    request.out_of_plane_tolerance = [0.0]
+    request.out_of_plane_tolerance = 0.0
     assert client.ask(request).problem == request.SPATIAL
 
 
@@ -235,7 +235,7 @@ def test_space_has_the_lectures_indeterminacy_too(client: Client) -> None:
 @pytest.mark.parametrize("facets", [3, 16])
 def test_facets_are_those_that_were_asked_for(client: Client, facets: int) -> None:
     request = explicit([(0.0, 0.0, -1.0)], 0.5)
-    request.problem, request.friction_facets = request.SPATIAL, [facets]
+    request.problem, request.friction_facets = request.SPATIAL, facets
     answer = client.ask(request)
     assert answer.friction_facets == facets
     assert [mode.mode for mode in answer.modes] == ["f"]
@@ -246,7 +246,7 @@ def test_statics_of_a_brick_that_is_pushed_askew(client: Client) -> None:
     way = np.array([math.cos(0.5), math.sin(0.5), 0.0])
     for share, holds in ((0.9, True), (1.001, False)):
         request = brick_on_floor()
-        request.include_statics, request.margin_length = True, [1e-3]
+        request.include_statics, request.margin_length = True, 1e-3
         force = request.applied_wrench.force
         force.x, force.y, force.z = (share * MU * MASS * G * way).tolist()
         answer = client.ask(request)
@@ -265,8 +265,8 @@ def test_statics_of_a_brick_that_is_pushed_askew(client: Client) -> None:
 def test_margins_of_a_brick_in_space(client: Client) -> None:
     """At rest on four feet, the margin is the distance to the side of the friction cone or pyramid."""
     request = brick_on_floor()
-    request.problem, request.include_margins, request.margin_length = request.SPATIAL, True, [1e-4]
-    request.friction_facets = [16]
+    request.problem, request.include_margins, request.margin_length = request.SPATIAL, True, 1e-4
+    request.friction_facets = 16
     answer = client.ask(request)
     (mode,) = answer.modes
     slope = MU * math.cos(math.pi / 16.0)
@@ -286,7 +286,7 @@ def test_margins_of_a_brick_in_space(client: Client) -> None:
 def test_margin_of_a_brick_that_begins_to_slide_askew(client: Client) -> None:
     """Back to the edge of its friction cones, which lean against the push, torques costing nearly all."""
     request = brick_on_floor()
-    request.include_margins, request.margin_length = True, [1e-4]
+    request.include_margins, request.margin_length = True, 1e-4
     request.applied_wrench.force.x = request.applied_wrench.force.y = 1.0
     answer = client.ask(request)
     assert (answer.status, answer.problem) == (answer.OK, request.SPATIAL)

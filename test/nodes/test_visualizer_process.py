@@ -34,7 +34,7 @@ from nodes.visualizer_bench import CONFIGURATION, body_state, odometry
     ("values", "words"),
     [
         ({}, "needed is somewhere to draw to"),
-        ({"spawn": True, "serve": True}, "spawn and serve must be .*, got 2 ways to a viewer"),
+        ({"spawn": True, "serve": True}, "only one of .* must be set, got spawn and serve"),
         ({"serve": True, "connect": "rerun+http://127.0.0.1:1/proxy"}, "serve and connect"),
         ({"rrd_path": 3}, "rrd_path"),
         ({"rrd_path": "a.rrd", "port": 0}, "port"),
@@ -75,7 +75,7 @@ def test_answers_of_a_server_are_drawn_by_a_process_beside_it(tmp_path: Path) ->
     asked = PredictTumbling.Request(
         body_name="brick", state_source=PredictTumbling.Request.STATE_EXPLICIT, state=state
     )
-    asked.sampling, asked.rate, asked.duration = PredictTumbling.Request.AT_RATE, [100.0], [0.25]
+    asked.sampling, asked.rate, asked.duration = PredictTumbling.Request.AT_RATE, 100.0, 0.25
     with (
         server_and_client(tmp_path / "log") as client,
         process("visualizer", *visualizer_with(rrd_path=path), ready="ready") as started,

@@ -68,7 +68,7 @@ def test_margins_of_a_block_to_tipping_and_sliding(
     client: Client, length: float, margin: float, beyond: set[str]
 ) -> None:
     request = block()
-    request.include_margins, request.margin_length = True, [length]
+    request.include_margins, request.margin_length = True, length
     (mode,) = client.ask(request).modes
     assert mode.mode == "ff"
     assert mode.margin == pytest.approx(margin, rel=1e-4)  # the other way out costs a little, not nothing
@@ -180,10 +180,10 @@ def test_a_brick_pushed_askew_has_a_map_in_space(client: Client) -> None:
 
 def test_facets_of_a_map_in_space_are_those_asked_for_and_too_many_are_refused(client: Client) -> None:
     request = brick_in_space()
-    request.friction_facets = [3]
+    request.friction_facets = 3
     answer = client.ask(request)
     assert (answer.status, answer.friction_facets, answer.wrench_facets) == (answer.OK, 3, 3)
-    request.friction_facets = [16]
+    request.friction_facets = 16
     answer = client.ask(request)
     assert answer.status == answer.TOO_LARGE
     assert "fewer friction_facets" in answer.message
@@ -203,7 +203,7 @@ def test_a_block_is_stable_against_disturbances_up_to_a_size(client: Client) -> 
     """Pushed at its centre by F: distances to tipping over the far foot and to sliding, in closed form."""
     length, push = 0.4, 3.0
     request = apply(block(), np.array([push, 0.0, 0.0, 0.0, 0.0, 0.0]))
-    request.margin_length = [length]
+    request.margin_length = length
     answer = statics(client, request)
     assert (answer.equilibrium, answer.jammed, answer.wedged) == (
         answer.CERTAIN,

@@ -99,7 +99,7 @@ def questions(number: int, now: Time) -> list[Any]:
         standing,
         PredictImpact.Request(body_name=f"cat {number}"),
         *about_tosses(number),
-        PredictTumbling.Request(body_name="ball", duration=[math.nan if number % 2 else 0.1]),
+        PredictTumbling.Request(body_name="ball", duration=math.nan if number % 2 else 0.1),
         *about_many(number),
     ]
 
@@ -108,14 +108,14 @@ def about_tosses(number: int) -> list[Any]:
     """Tosses of the brick from where it is or is said to be, sampled too, and one that is refused."""
     if number % 4:  # they take a hundred times as long as the others
         return []
-    sampled = PredictToss.Request(body_name="brick", samples=20, strikes=[3], seed=number)
+    sampled = PredictToss.Request(body_name="brick", samples=20, strikes=3, seed=number)
     sampled.state_source, sampled.state.pose.position.z = sampled.STATE_EXPLICIT, 0.3
     sampled.state.angular_velocity.x = 4.0
     sampled.state.covariance = (1e-4 * np.eye(12)).ravel().tolist()
     sampled.velocity_spread, sampled.spin_spread, sampled.height_spread = 0.02, 0.3, 0.001
     sampled.lasting_factors, sampled.lasting_factor_stds = [1.3], [0.1]
     return [
-        PredictToss.Request(body_name="brick", max_alternatives=[0], rate=[10.0]),
+        PredictToss.Request(body_name="brick", max_alternatives=0, rate=10.0),
         sampled,
         PredictToss.Request(body_name="brick", samples=10_000),
     ]
