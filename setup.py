@@ -117,7 +117,10 @@ setup(
     zip_safe=False,
     install_requires=requirements("core"),
     extras_require={
-        **{kind: requirements(kind) for kind in ("jazzy", "view", "plot", "test", "bench", "docs")},
+        **{
+            kind: requirements(kind)
+            for kind in ("jazzy", "view", "plot", "completion", "test", "bench", "docs")
+        },
         "evaluate": [*requirements("evaluate"), *requirements("plot")],
     },
     entry_points={"console_scripts": ["contact-dynamics = contact_dynamics.command_line:main"]},

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import difflib
 import gc
 import os
 import sys
@@ -23,12 +24,20 @@ class Verb(NamedTuple):
     Attributes:
         parser: The parser, as module:function. It needs no ROS, so that `--help` works everywhere.
         needs: Modules that `pip install .` does not bring.
+        is_listed: Whether `--help` lists it. The nodes of the examples are not.
     """
 
     module: str
     parser: str
     needs: tuple[str, ...]
     help: str
+    is_listed: bool = True
+
+    def make_parser(self) -> argparse.ArgumentParser:
+        """Return its parser."""
+        module, _, function = self.parser.partition(":")
+        parser: argparse.ArgumentParser = getattr(import_module(module), function)()
+        return parser
 
 
 INTERRUPTED: Final = 130
@@ -45,7 +54,7 @@ VERBS: Final = {
         "contact_dynamics.demo.run",
         "contact_dynamics.demo.arguments:demo_parser",
         (*_ROS, "rerun"),
-        "play a recorded toss, ask the server about it, compare with what was measured",
+        "play a recorded toss, ask the server about it, and compare predictions with measurements",
     ),
     "server": Verb(
         "contact_dynamics.nodes.server",
@@ -63,67 +72,74 @@ VERBS: Final = {
         "contact_dynamics.replay.run",
         "contact_dynamics.replay.arguments:replay_parser",
         (),
-        "ask the questions of a log again and compare the answers",
+        "answer the questions of a log again and compare the answers",
     ),
     "evaluate": Verb(
         "contact_dynamics.evaluation.run",
         "contact_dynamics.evaluation.arguments:evaluate_parser",
         (),
-        "compare predictions with what came, in logs and recorded tosses",
+        "compare predictions with what happened, in logs and recorded tosses",
     ),
     "calibrate": Verb(
         "contact_dynamics.calibration.run",
         "contact_dynamics.calibration.arguments:calibrate_parser",
         (),
-        "find friction, restitution, mass centre and more from recorded tosses",
+        "estimate friction, restitution, centre of mass and more from recorded tosses",
     ),
     "recover": Verb(
         "contact_dynamics.replay.recover",
         "contact_dynamics.replay.arguments:recover_parser",
         (),
-        "rewrite a damaged log, so that every reader takes it",
+        "repair a damaged log",
     ),
     "plot": Verb(
         "contact_dynamics.plots.run",
         "contact_dynamics.plots.arguments:plot_parser",
         ("matplotlib",),
-        "draw the answers of a log as diagrams into files",
+        "draw the answers of a log as diagrams",
     ),
     "cases": Verb(
         "contact_dynamics.cases.run",
         "contact_dynamics.cases.arguments:cases_parser",
         (),
-        "ask questions whose exact answers are known, here and of MuJoCo",
+        "solve cases with known exact answers, here and with MuJoCo",
     ),
     "toss_publisher": Verb(
         "contact_dynamics.demo.toss_publisher",
         "contact_dynamics.demo.arguments:toss_publisher_parser",
         _ROS,
         "publish a recorded toss as a body's states",
+        is_listed=False,
     ),
     "block_publisher": Verb(
         "contact_dynamics.demo.block_publisher",
         "contact_dynamics.demo.arguments:block_publisher_parser",
         _ROS,
         "publish a block that a finger pushes, or whose tray tilts",
+        is_listed=False,
     ),
     "commentator": Verb(
         "contact_dynamics.demo.commentator",
         "contact_dynamics.demo.arguments:commentator_parser",
         _ROS,
         "ask a running server about a body, and print the answers in words",
+        is_listed=False,
     ),
 }
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the verb that the arguments name, and return the exit code."""
+    if "_ARGCOMPLETE" in os.environ:
+        _complete()
     given = list(sys.argv[1:] if arguments is None else arguments)
     parser = _parser()
     if not given:
         parser.print_help(sys.stderr)
         return 2
     if given[0] not in VERBS:
+        if not given[0].startswith("-"):
+            parser.error(_unknown(given[0]))
         parser.parse_args(given)  # `--help` and `--version` end here, and anything else is an error
     try:
         return _run(given[0], given[1:])
@@ -134,8 +150,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def _run(name: str, arguments: list[str]) -> int:
     verb = VERBS[name]
-    module, _, function = verb.parser.partition(":")
-    check_arguments(getattr(import_module(module), function)(), arguments)
+    check_arguments(verb.make_parser(), arguments)
     missing = [needed.partition(".")[0] for needed in verb.needs if not _is_installed(needed)]
     if missing:
         print(_remedy(name, missing), file=sys.stderr)
@@ -185,12 +200,30 @@ def _remedy(verb: str, missing: list[str]) -> str:
     return "\n".join(lines)
 
 
+def _unknown(name: str) -> str:
+    """Return an error with the verb that is probably meant, or with all of them."""
+    near = difflib.get_close_matches(name.replace("-", "_"), VERBS, n=1)
+    listed = ", ".join(verb for verb in VERBS if VERBS[verb].is_listed)
+    return f"there is no verb {name!r}; {f'did you mean {near[0]!r}?' if near else f'the verbs are {listed}'}"
+
+
+def _complete() -> None:
+    """Print what a shell may complete a command line to, and end the process."""
+    import argcomplete  # the extra [completion] brings it, and only the shell's hook gets here
+
+    parser = argparse.ArgumentParser(prog="contact-dynamics")
+    verbs = parser.add_subparsers()
+    for name, verb in VERBS.items():
+        verbs.add_parser(name, parents=[verb.make_parser()], add_help=False)
+    argcomplete.autocomplete(parser)
+
+
 def _parser() -> argparse.ArgumentParser:
-    verbs = "\n".join(f"  {name:15} {verb.help}" for name, verb in VERBS.items())
+    verbs = "\n".join(f"  {name:15} {verb.help}" for name, verb in VERBS.items() if verb.is_listed)
     parser = argparse.ArgumentParser(
         prog="contact-dynamics",
         description="Contact modes, impacts, free tumbling and whole tosses of rigid bodies.",
-        epilog=f"verbs:\n{verbs}\n\n`contact-dynamics <verb> --help` explains each.",
+        epilog=f"verbs:\n{verbs}\n\n`contact-dynamics <verb> --help` explains each verb.",
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("verb", help="what to do, see below", choices=sorted(VERBS), metavar="verb")

@@ -19,17 +19,18 @@ def demo_parser() -> argparse.ArgumentParser:
     """Return the parser of `contact-dynamics demo`."""
     parser = argparse.ArgumentParser(
         prog="contact-dynamics demo",
-        description="Play a recorded toss, ask the server about it, compare with what was measured.",
+        description="Play a recorded toss, ask the server about it, and compare with measurements.",
+        epilog="The nodes of the examples have --help too: toss_publisher, block_publisher, commentator.",
     )
     parser.add_argument("--toss", default=str(DEFAULT_RECORDING), metavar="PATH", help=_RECORDING)
     parser.add_argument("--view", action="store_true", help="open rerun's viewer and watch live")
     parser.add_argument(
         "--output",
         default="demo_output",
-        metavar="FOLDER",
-        help="where the run's folder goes (default: %(default)s)",
+        metavar="DIR",
+        help="folder for the folder of this run (default: %(default)s)",
     )
-    parser.add_argument("--quiet", action="store_true", help="no table")
+    parser.add_argument("--quiet", action="store_true", help="print no table")
     return parser
 
 
@@ -44,7 +45,7 @@ def toss_publisher_parser() -> argparse.ArgumentParser:
         type=int,
         default=1,
         metavar="N",
-        help="wait for so many subscriptions (default: %(default)s)",
+        help="number of subscriptions to wait for (default: %(default)s)",
     )
     return parser
 

@@ -50,13 +50,17 @@ def _evaluate(given: argparse.Namespace) -> int:
     sources, refused = find_sources(given.recordings)
     nameless = [SourceResult(source=name, problem=reason) for name, reason in refused]
     evaluation = _all(given, settings, sources, nameless)
+    bad = sum(bool(result.problem) for result in evaluation.results)
+    if bad == len(evaluation.results):  # an empty report would hide the reasons
+        for result in evaluation.results:
+            print(f"contact-dynamics evaluate: {result.source}: {result.problem}", file=sys.stderr)
+        return NOTHING
     print(report(evaluation), flush=True)
     _write(given, evaluation)
     if given.against is not None:
         other = against or _all(given, settings, sources, [], asked_with=given.against)
         print(report_changes(changes(evaluation, other), names=(_name(given), str(given.against))))
-    bad = sum(bool(result.problem) for result in evaluation.results)
-    return 0 if bad == 0 else NOTHING if bad == len(evaluation.results) else SOME_BAD
+    return SOME_BAD if bad else 0
 
 
 def _name(given: argparse.Namespace) -> str:

@@ -87,7 +87,7 @@ def ros_arguments(parser: argparse.ArgumentParser, arguments: list[str]) -> list
         arguments: all that follows the verb. What comes after `--ros-args` belongs to ROS.
     """
     split = _end_of_ours(arguments)
-    mine = parser.parse_args(arguments[:split])
+    mine = _parsed(parser, arguments[:split])
     of_ros = arguments[split:]
     if mine.params_file:
         of_ros = ["--ros-args", "--params-file", mine.params_file, *of_ros[1:]]
@@ -96,7 +96,25 @@ def ros_arguments(parser: argparse.ArgumentParser, arguments: list[str]) -> list
 
 def check_arguments(parser: argparse.ArgumentParser, arguments: list[str]) -> None:
     """Let `--help` and mistakes end the process. ROS checks what follows `--ros-args`."""
-    parser.parse_args(arguments[: _end_of_ours(arguments)])
+    _parsed(parser, arguments[: _end_of_ours(arguments)])
+
+
+def _parsed(parser: argparse.ArgumentParser, arguments: list[str]) -> argparse.Namespace:
+    """Return the arguments. An error ends the process, with a hint where an option should be a parameter."""
+    given, unknown = parser.parse_known_args(arguments)
+    if unknown:
+        name, _, value = unknown[0].partition("=")
+        name = name.lstrip("-").replace("-", "_")
+        if unknown[0] in {"-p", "-r", "--param", "--remap"}:
+            parser.error(f"{unknown[0]} must follow --ros-args: --ros-args {' '.join(unknown)}")
+        is_known = name in {*SERVER_PARAMETERS, *VISUALIZER_PARAMETERS} or name.startswith(
+            ("body.", "surface.")
+        )
+        if is_known and parser.prog.endswith(("server", "visualizer")):
+            value = value or next(iter(unknown[1:]), "VALUE")
+            parser.error(f"{name} is a parameter of ROS, which is set by --ros-args -p {name}:={value}")
+        parser.error(f"unrecognized arguments: {' '.join(unknown)}")
+    return given
 
 
 def _end_of_ours(arguments: list[str]) -> int:

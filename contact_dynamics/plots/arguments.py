@@ -25,12 +25,12 @@ def plot_parser() -> argparse.ArgumentParser:
     parser.add_argument(
         "log", nargs="?", metavar="LOG", help="folder of a log of the server, or its .mcap file"
     )
-    parser.add_argument("--output", type=Path, metavar="DIR", help="folder for the files, which is made")
+    parser.add_argument("--output", type=Path, metavar="DIR", help="folder for the files, created if needed")
     parser.add_argument(
         "--format", choices=("svg", "png"), default="svg", help="format of the files (default: svg)"
     )
     parser.add_argument(
-        "--most",
+        "--max-questions",
         type=_count,
         default=MAX_QUESTIONS,
         metavar="N",

@@ -36,7 +36,7 @@ def main(arguments: list[str]) -> int:
     answered = drawn = 0
     try:
         given.output.mkdir(parents=True, exist_ok=True)
-        for logged in islice(logged_answers(Path(given.log)), given.most):
+        for logged in islice(logged_answers(Path(given.log)), given.max_questions):
             answered += 1
             for path in _write(logged, given.output, given.format):
                 drawn += 1

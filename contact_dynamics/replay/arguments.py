@@ -15,10 +15,10 @@ VIEW: Final = "view"
 PUBLISH: Final = "publish"
 
 MODES: Final = {
-    VERIFY: "ask every logged question again and compare the answers (what a LOG without a mode does)",
-    TABLE: "write a row for each question: what was asked, answered, and then measured",
+    VERIFY: "answer every logged question again and compare the answers (the default mode)",
+    TABLE: "write a row for each question: request, answer and later measurement",
     VIEW: "draw states and answers in rerun, live or to a file",
-    PUBLISH: "publish states, and ask questions again, over ROS",
+    PUBLISH: "publish states and repeat questions over ROS",
 }
 """What `replay` can do with a log."""
 
@@ -33,7 +33,7 @@ def replay_parser() -> argparse.ArgumentParser:
     parser = _WithDefaultMode(
         prog="contact-dynamics replay",
         description="Replay a log. Only the mode publish needs ROS.",
-        epilog="`contact-dynamics replay LOG` verifies. `contact-dynamics replay MODE --help` says more.",
+        epilog="`contact-dynamics replay LOG` verifies. `contact-dynamics replay MODE --help` has options.",
     )
     modes = parser.add_subparsers(dest="mode", metavar="MODE", parser_class=argparse.ArgumentParser)
     usage = "%(prog)s [-h] [--tolerance T] [--config FILE] [--set NAME:=VALUE] LOG [LOG ...]"
@@ -50,15 +50,15 @@ def recover_parser() -> argparse.ArgumentParser:
     """Return the parser of `contact-dynamics recover`."""
     parser = argparse.ArgumentParser(
         prog="contact-dynamics recover",
-        usage="%(prog)s [-h] [--out FOLDER] LOG",
-        description="Rewrite a damaged or unfinished log into a new folder, so that every reader takes it. "
-        "The damaged log stays as it is. This needs no ROS.",
+        usage="%(prog)s [-h] [--output DIR] LOG",
+        description="Rewrite a damaged or unfinished log into a new folder that every reader can open. "
+        "The damaged log is not changed. This needs no ROS.",
         epilog="The exit code is 0 if the new log was written, whatever is lost, and 2 if it was not.",
     )
     parser.add_argument(
         "log", nargs="?", metavar="LOG", help="folder of a log or of another bag in MCAP, or one file of it"
     )
-    parser.add_argument("--out", metavar="FOLDER", help="the new folder (default: LOG_recovered, beside it)")
+    parser.add_argument("--output", metavar="DIR", help="the new folder (default: LOG_recovered, beside it)")
     return parser
 
 
@@ -80,7 +80,7 @@ class _WithDefaultMode(argparse.ArgumentParser):
 def _add_verify(parser: argparse.ArgumentParser) -> None:
     parser.epilog = (
         "exit code: 0 all answers are as logged; 1 an answer differs, or a call cannot be read; "
-        "2 a log is none of the server. The time that an answer took does not count."
+        "2 a log is not one of the server. Computation times are not compared."
     )
     parser.add_argument(
         "logs",
@@ -91,17 +91,17 @@ def _add_verify(parser: argparse.ArgumentParser) -> None:
     _add_tolerance(parser)
 
     group = parser.add_argument_group(
-        "another configuration", "What would the answers have been? The report tells the largest differences."
+        "another configuration", "Answers under other parameters. The report lists the largest differences."
     )
     group.add_argument(
-        "--config", metavar="FILE", help="parameters of the server that count instead of the logged ones"
+        "--config", metavar="FILE", help="parameters of the server that replace the logged ones"
     )
     group.add_argument(
         "--set",
         action="append",
         default=[],
         metavar="NAME:=VALUE",
-        help="one parameter that does, such as surface.floor.friction:=0.31; can be given several times",
+        help="one parameter, such as surface.floor.friction:=0.31; may be repeated",
     )
 
 
@@ -111,7 +111,7 @@ def _add_table(parser: argparse.ArgumentParser) -> None:
         "logs", nargs="+", metavar="LOG", help="a log of the server, or a recording with --config"
     )
     parser.add_argument(
-        "--out",
+        "--output",
         metavar="FILE",
         help=".csv or .parquet file, which is replaced (default: CSV to the terminal)",
     )
@@ -124,7 +124,7 @@ def _add_view(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--rrd", metavar="FILE", default="", help="file to draw into, which is replaced")
     viewer = parser.add_mutually_exclusive_group()
     viewer.add_argument(
-        "--spawn", action="store_true", help="open rerun's viewer (what happens without --rrd)"
+        "--spawn", action="store_true", help="open rerun's viewer (the default without --rrd)"
     )
     viewer.add_argument(
         "--serve", action="store_true", help="serve the picture at the port, for viewers, until Ctrl-C"
@@ -156,17 +156,15 @@ def _add_publish(parser: argparse.ArgumentParser) -> None:
         type=_positive,
         default=1.0,
         metavar="R",
-        help="how many times as fast as it was (default: 1). Others need --clock, or --stamps logged: "
-        "velocities do not fit stamps that are stretched",
+        help="playback speed relative to the recording (default: 1). Others need --clock or --stamps logged, "
+        "since velocities do not fit stretched stamps",
     )
-    parser.add_argument(
-        "--loop", action="store_true", help="begin again at the end, until it is told to stop"
-    )
-    parser.add_argument("--paused", action="store_true", help="begin paused")
+    parser.add_argument("--loop", action="store_true", help="start again at the end, until Ctrl-C")
+    parser.add_argument("--paused", action="store_true", help="start paused")
     parser.add_argument(
         "--requests",
         action="store_true",
-        help="ask the logged questions again, each at its time, and compare the answers with the logged ones",
+        help="repeat the logged questions, each at its time, and compare the answers with the logged ones",
     )
     _add_tolerance(parser)
     parser.add_argument(
@@ -187,7 +185,7 @@ def _add_publish(parser: argparse.ArgumentParser) -> None:
         type=_not_negative,
         default=3.0,
         metavar="S",
-        help="wait this long for listeners, s (default: 3)",
+        help="longest wait for subscribers, s (default: 3)",
     )
     _add_span(parser)
 
@@ -198,8 +196,8 @@ def _add_tolerance(parser: argparse.ArgumentParser) -> None:
         type=_not_negative,
         default=0.0,
         metavar="T",
-        help="how much a number may differ, relative to the larger of the two, or to 1 if both are smaller "
-        "(default: 0, so that every bit counts)",
+        help="largest difference of a number, relative to the larger of the two, or to 1 if both are smaller "
+        "(default: 0, bit for bit)",
     )
 
 
@@ -209,51 +207,47 @@ def _add_span(parser: argparse.ArgumentParser) -> None:
         type=_not_negative,
         default=0.0,
         metavar="S",
-        help="begin this long after the log's beginning, s",
+        help="start time, s after the beginning of the log",
     )
     parser.add_argument(
-        "--end", type=_positive, default=None, metavar="S", help="end this long after the log's beginning, s"
+        "--end", type=_positive, default=None, metavar="S", help="end time, s after the beginning of the log"
     )
 
 
 def _add_foreign(parser: argparse.ArgumentParser) -> None:
-    group = parser.add_argument_group(
-        "recordings of others", "Any bag of rosbag2 with states of bodies will do."
-    )
-    group.add_argument(
-        "--config", metavar="FILE", help="how a server would be configured, as config/server.yaml"
-    )
+    group = parser.add_argument_group("foreign recordings", "Any bag of rosbag2 with states of bodies.")
+    group.add_argument("--config", metavar="FILE", help="parameters of a server, such as config/server.yaml")
     group.add_argument(
         "--topics",
         action="append",
         default=[],
         metavar="BODY=TOPIC",
-        help="where its states are, if not where --config says: BODY=ODOMETRY or BODY=POSE,TWIST",
+        help="topics of the states of a body, if not those of --config: BODY=ODOMETRY or BODY=POSE,TWIST",
     )
     group.add_argument(
         "--ask",
         action="append",
         default=[],
         choices=QUESTIONS,
-        help="a question to ask all along: landing (where will it be?), impact (which velocities then?), "
-        "modes (which contact mode?); can be given several times",
+        help="a question to ask throughout: landing (where will it be?), impact (which velocities then?), "
+        "modes (which contact mode?); may be repeated",
     )
     group.add_argument(
-        "--body", action="append", default=[], metavar="NAME", help="ask about this body (default: all)"
+        "--body", action="append", default=[], metavar="NAME", help="body to ask about (default: all)"
     )
     group.add_argument(
         "--every",
         type=_not_negative,
         default=0.1,
         metavar="S",
-        help="ask this often, s (default: 0.1; 0: at each state)",
+        help="time between questions, s (default: 0.1; 0: at each state)",
     )
     group.add_argument(
         "--fit-window",
         type=_not_negative,
         default=0.0,
         metavar="S",
-        help="fit to the states of this time, s (default: 0)",
+        help="length of the window of states for the fit, s (default: 0, no fit)",
     )
 
 

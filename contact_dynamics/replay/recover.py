@@ -23,7 +23,9 @@ def main(arguments: list[str]) -> int:
         parser.error("a LOG is required")
     path = Path(given.log)
     named = path.resolve() if path.name in {"", ".."} else path  # . and .. are no names
-    folder = Path(given.out) if given.out else named.with_name(f"{named.name.partition('.')[0]}_recovered")
+    folder = (
+        Path(given.output) if given.output else named.with_name(f"{named.name.partition('.')[0]}_recovered")
+    )
     progress = Progress(str(path))
     try:
         recovered = recover(path, folder, on_progress=lambda count: progress.tell(count, f"{count} messages"))

@@ -108,7 +108,7 @@ def _verify(given: argparse.Namespace) -> int:
 
 def _table(given: argparse.Namespace) -> int:
     worst = 0
-    with open_table(None if given.out is None else Path(given.out)) as write:
+    with open_table(None if given.output is None else Path(given.output)) as write:
         for name in given.logs:
             progress = _progress(Path(name))
             count = 0

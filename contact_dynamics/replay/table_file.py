@@ -62,7 +62,7 @@ def open_table(path: Path | None) -> Iterator[Write]:
         yield _csv(sys.stdout)
         return
     if path.suffix not in {CSV, PARQUET}:
-        raise InvalidFieldError("out", str(path), f"a file that ends in {CSV} or {PARQUET}")
+        raise InvalidFieldError("--output", str(path), f"a file that ends in {CSV} or {PARQUET}")
     part, count = path.with_name(f"{path.name}.part"), 0
     try:
         with _csv_file(part) if path.suffix == CSV else _parquet(part) as write:

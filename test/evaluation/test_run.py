@@ -103,6 +103,9 @@ def test_a_folder_is_searched_and_what_is_bad_in_it_is_named(
     assert f"{tmp_path / 'bad.mcap'}: NotALogError" in printed
     assert says(printed, f"{tmp_path / 'nowhere'} must be ..., got no such file or folder")
     assert main([str(tmp_path / "bad.mcap"), *QUICK]) == 2
+    printed, told = capsys.readouterr()
+    assert printed == ""
+    assert f"{tmp_path / 'bad.mcap'}: NotALogError" in told
 
 
 def test_another_configuration_is_compared_on_the_same_events(

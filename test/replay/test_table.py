@@ -30,7 +30,7 @@ def rows_of(path: Path) -> list[dict[str, str]]:
 
 
 def test_a_row_for_each_question_of_a_log(asked: Asked, tmp_path: Path) -> None:
-    assert main(["table", str(asked.log), "--out", str(tmp_path / "table.csv")]) == 0
+    assert main(["table", str(asked.log), "--output", str(tmp_path / "table.csv")]) == 0
     rows = rows_of(tmp_path / "table.csv")
     assert list(rows[0]) == list(COLUMNS)
     counts = {service: sum(row["service"] == service for row in rows) for service in ("predict_impact",)}
@@ -55,7 +55,7 @@ def test_a_row_for_each_question_of_a_log(asked: Asked, tmp_path: Path) -> None:
 
 
 def test_a_question_about_many_states_has_a_row_for_each(asked: Asked, tmp_path: Path) -> None:
-    assert main(["table", str(asked.log), "--out", str(tmp_path / "table.csv")]) == 0
+    assert main(["table", str(asked.log), "--output", str(tmp_path / "table.csv")]) == 0
     rows = rows_of(tmp_path / "table.csv")
     impacts = [row for row in rows if row["service"] == "predict_impact_batch"]
     flights = [row for row in rows if row["service"] == "predict_tumbling_batch"]
@@ -84,7 +84,7 @@ def test_a_question_about_many_states_has_a_row_for_each(asked: Asked, tmp_path:
 
 
 def test_a_question_about_many_candidates_has_a_row_for_each(asked: Asked, tmp_path: Path) -> None:
-    assert main(["table", str(asked.log), "--out", str(tmp_path / "table.csv")]) == 0
+    assert main(["table", str(asked.log), "--output", str(tmp_path / "table.csv")]) == 0
     rows = [row for row in rows_of(tmp_path / "table.csv") if row["service"] == "predict_contact_mode_batch"]
     responses = [
         decode_without_ros(call.response_event).response[0]
@@ -115,8 +115,8 @@ def test_a_question_about_many_candidates_has_a_row_for_each(asked: Asked, tmp_p
 
 
 def test_parquet_has_the_cells_of_csv_and_needs_no_ros(asked: Asked, tmp_path: Path) -> None:
-    assert main(["table", str(asked.log), "--out", str(tmp_path / "table.csv")]) == 0
-    done = without_ros("table", asked.log, "--out", tmp_path / "table.parquet")
+    assert main(["table", str(asked.log), "--output", str(tmp_path / "table.csv")]) == 0
+    done = without_ros("table", asked.log, "--output", tmp_path / "table.parquet")
     assert done.returncode == 0, done.stderr
     table = pq.read_table(tmp_path / "table.parquet")
     assert table.column_names == list(COLUMNS)
@@ -131,9 +131,9 @@ def test_a_part_of_a_log(asked: Asked, tmp_path: Path) -> None:
     begin, end = BagReader(asked.log).extent()
     seconds = (end - begin) / 1e9
     out = tmp_path / "table.csv"
-    assert main(["table", str(asked.log), "--start", str(seconds - 1.0), "--out", str(out)]) == 0
+    assert main(["table", str(asked.log), "--start", str(seconds - 1.0), "--output", str(out)]) == 0
     assert len(rows_of(out)) == 1
-    assert main(["table", str(asked.log), "--end", str(seconds - 1.0), "--out", str(out)]) == 0
+    assert main(["table", str(asked.log), "--end", str(seconds - 1.0), "--output", str(out)]) == 0
     assert len(rows_of(out)) == asked.rows - 1
 
 
@@ -146,7 +146,7 @@ def test_a_part_that_the_log_does_not_have_is_an_error(
 ) -> None:
     out = tmp_path / "table.csv"
     begin, end = BagReader(asked.log).extent()
-    for mode in (["table", "--out", str(out)], ["view", "--rrd", str(tmp_path / "drawn.rrd")]):
+    for mode in (["table", "--output", str(out)], ["view", "--rrd", str(tmp_path / "drawn.rrd")]):
         assert main([*mode, str(asked.log), *part]) == 2
         told = capsys.readouterr().err
         assert says(told, f"--start and --end must be a part of {asked.log}..., got {range_told}")
@@ -161,7 +161,7 @@ def test_a_log_that_was_cut_short_has_the_part_up_to_its_end(asked: Asked, tmp_p
     cut.write_bytes(whole.read_bytes()[: whole.stat().st_size * 6 // 10])
     assert BagReader(cut).extent()[0] == BagReader(cut).extent()[1]
     out = tmp_path / "table.csv"
-    assert main(["table", str(cut), "--start", "0.05", "--out", str(out)]) == 0
+    assert main(["table", str(cut), "--start", "0.05", "--output", str(out)]) == 0
     assert len(rows_of(out)) > 0
 
 
@@ -172,7 +172,7 @@ def test_a_table_without_rows_is_an_error_and_leaves_no_file(
     (tmp_path / "server.yaml").write_text(CONFIGURATION)
     out = tmp_path / "table.csv"
     out.write_text("before\n")
-    common = ["table", str(tmp_path / "bag"), "--config", str(tmp_path / "server.yaml"), "--out", str(out)]
+    common = ["table", str(tmp_path / "bag"), "--config", str(tmp_path / "server.yaml"), "--output", str(out)]
     assert main([*common, "--topics", "ball=/tracker/ball"]) == 1
     assert "no rows: nothing is asked; --ask must be one of landing, impact, modes" in capsys.readouterr().err
     assert main([*common, "--ask", "landing", "--topics", "ball=/tracker/bell"]) == 1
@@ -180,7 +180,7 @@ def test_a_table_without_rows_is_an_error_and_leaves_no_file(
         "no rows: there is no state of ball on the configured topics (/tracker/bell); --topics names others"
     )
     assert says(capsys.readouterr().err, told)
-    assert main([*common[:-4], "--ask", "landing", "--out", str(out)]) == 2
+    assert main([*common[:-4], "--ask", "landing", "--output", str(out)]) == 2
     assert "no record of how its run was configured, which --config gives" in capsys.readouterr().err
     assert out.read_text() == "before\n"
     assert sorted(path.name for path in tmp_path.iterdir()) == ["bag", "server.yaml", "table.csv"]
@@ -189,8 +189,8 @@ def test_a_table_without_rows_is_an_error_and_leaves_no_file(
 def test_times_keep_their_nanoseconds_beside_empty_cells(asked: Asked, tmp_path: Path) -> None:
     """Read as the page says, or with the types of Parquet. pandas makes floats of integers else."""
     out = tmp_path / "table.csv"
-    assert main(["table", str(asked.log), "--out", str(out)]) == 0
-    assert main(["table", str(asked.log), "--out", str(tmp_path / "table.parquet")]) == 0
+    assert main(["table", str(asked.log), "--output", str(out)]) == 0
+    assert main(["table", str(asked.log), "--output", str(tmp_path / "table.parquet")]) == 0
     rows, table = rows_of(out), pq.read_table(tmp_path / "table.parquet")
     for name in ("state_stamp_ns", "predicted_ns", "states_fitted"):
         cells = [row[name] for row in rows]
@@ -217,7 +217,7 @@ def test_what_would_it_have_said(tmp_path: Path, storage: StoragePlugin, mode: C
     (tmp_path / "server.yaml").write_text(CONFIGURATION)
     asking = ["--ask", "landing", "--ask", "impact", "--ask", "modes", "--every", "0.1"]
     configured = ["--config", tmp_path / "server.yaml", "--topics", "ball=/tracker/ball"]
-    done = without_ros("table", tmp_path / "bag", *configured, *asking, "--out", tmp_path / "table.csv")
+    done = without_ros("table", tmp_path / "bag", *configured, *asking, "--output", tmp_path / "table.csv")
     assert done.returncode == 0, done.stderr
     assert "/tracker/ball: 2 messages are no states; the first: header.frame_id" in done.stderr
     rows = rows_of(tmp_path / "table.csv")
@@ -237,7 +237,7 @@ def test_questions_come_as_often_as_they_are_asked_for(tmp_path: Path) -> None:
     write_flight(tmp_path / "bag")
     (tmp_path / "server.yaml").write_text(CONFIGURATION)
     out = tmp_path / "table.csv"
-    common = [str(tmp_path / "bag"), "--config", str(tmp_path / "server.yaml"), "--out", str(out)]
+    common = [str(tmp_path / "bag"), "--config", str(tmp_path / "server.yaml"), "--output", str(out)]
     common += ["--topics", "ball=/tracker/ball", "--ask", "modes"]
     assert main(["table", *common, "--every", "0"]) == 0
     assert len(rows_of(out)) == int(0.95 * RATE) - 2
@@ -250,7 +250,10 @@ def test_questions_come_as_often_as_they_are_asked_for(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("arguments", "told"),
     [
-        (["--out", "table.xls"], "out must be a file that ends in .csv or .parquet..., got table.xls"),
+        (
+            ["--output", "table.xls"],
+            "--output must be a file that ends in .csv or .parquet..., got table.xls",
+        ),
         (["--config", "none.yaml"], "none.yaml"),
         (["--config", "empty.yaml"], "empty.yaml must have parameters of"),
         (["--config", "broken.yaml"], "broken.yaml: no YAML: "),

@@ -22,8 +22,8 @@ OPTIONS = {
     "demo": ["--toss", "--view", "--output", "--quiet"],
     "calibrate": ["--free", "--no-trajectories", "--yaml", "RECORDING"],
     "evaluate": ["--against", "--dask", "--results", "--rerun", "RECORDING"],
-    "plot": ["--output", "--format", "--most", "LOG"],
-    "recover": ["--out", "LOG"],
+    "plot": ["--output", "--format", "--max-questions", "LOG"],
+    "recover": ["--output", "LOG"],
     "replay": ["verify", "table", "view", "publish", "LOG"],
     "server": ["--params-file", "--ros-args", *SERVER_PARAMETERS],
     "toss_publisher": ["--toss", "--listeners"],
@@ -85,6 +85,65 @@ def test_help_names_the_options(without_ros: WithoutRos, verb: str) -> None:
     answer = without_ros(verb, "--help")
     assert answer.returncode == 0, answer.stderr
     assert [option for option in OPTIONS[verb] if option not in answer.stdout] == []
+
+
+@pytest.mark.parametrize(
+    ("typed", "words"),
+    [
+        (["relpay", "log"], "there is no verb 'relpay'; did you mean 'replay'?"),
+        (["toss-publisher"], "there is no verb 'toss-publisher'; did you mean 'toss_publisher'?"),
+        (["xyz"], "there is no verb 'xyz'; the verbs are demo, server, visualizer, replay"),
+        (
+            ["server", "--horizon", "2.0"],
+            "horizon is a parameter of ROS, which is set by --ros-args -p horizon:=2.0",
+        ),
+        (
+            ["server", "--world-frame=map"],
+            "world_frame is a parameter of ROS, which is set by --ros-args -p world_frame:=map",
+        ),
+        (["server", "-p", "horizon:=2.0"], "-p must follow --ros-args: --ros-args -p horizon:=2.0"),
+        (
+            ["visualizer", "--spawn"],
+            "spawn is a parameter of ROS, which is set by --ros-args -p spawn:=VALUE",
+        ),
+        (["plot", "--rate", "5"], "unrecognized arguments: --rate"),
+    ],
+)
+def test_what_is_mistyped_gets_what_is_meant(
+    capsys: pytest.CaptureFixture[str], typed: list[str], words: str
+) -> None:
+    with pytest.raises(SystemExit) as ended:
+        main(typed)
+    assert ended.value.code == 2
+    assert words in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("line", "offered"),
+    [
+        ("contact-dynamics rep", ["replay"]),
+        ("contact-dynamics plot --m", ["--max-questions"]),
+        ("contact-dynamics replay ta", ["table"]),
+        ("contact-dynamics replay table --ou", ["--output"]),
+    ],
+)
+def test_a_shell_can_complete_verbs_and_options(tmp_path: Path, line: str, offered: list[str]) -> None:
+    told = tmp_path / "told"
+    asked = {
+        "_ARGCOMPLETE": "1",
+        "_ARGCOMPLETE_STDOUT_FILENAME": str(told),
+        "_ARGCOMPLETE_IFS": "\n",
+        "COMP_LINE": line,
+        "COMP_POINT": str(len(line)),
+    }
+    subprocess.run(
+        [sys.executable, "-m", "contact_dynamics"],
+        cwd=ROOT,
+        env={**os.environ, **asked},
+        timeout=300,
+        check=True,
+    )
+    assert [word.strip() for word in told.read_text().split("\n")] == offered
 
 
 def test_a_mistyped_option_is_named_first(without_ros: WithoutRos) -> None:

@@ -57,6 +57,7 @@ KEYS = {
     "pytest": "python3-pytest",
     "rerun": None,
     "rerun_bindings": None,  # comes with rerun
+    "argcomplete": "python3-argcomplete",
     "rosbags": "python3-rosbags-pip",
     "scipy": "python3-scipy",
     "typing_extensions": "python3-typing-extensions",
