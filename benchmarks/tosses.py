@@ -185,7 +185,7 @@ def _predicted(
         uncertainty=uncertainty,
         count=count,
         to_rest=to_rest,
-        law=RestitutionLaw.POISSON,
+        restitution_law=RestitutionLaw.POISSON,
         horizon=HORIZON,
         processes=processes,
     )

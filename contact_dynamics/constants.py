@@ -18,6 +18,10 @@ if TYPE_CHECKING:
 STANDARD_GRAVITY_W: Final = (0.0, 0.0, -9.80665)
 """Standard gravity, m/s^2, world axes, z up (REP 103): the conventional value of the third CGPM, 1901."""
 
+HORIZON: Final = 10.0
+"""s, how far a motion is followed if no other time is asked for. A body that is tossed by hand rests within
+two."""
+
 NS_PER_S: Final = 1_000_000_000
 """Nanoseconds in a second."""
 

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import ast
 import dataclasses
 import enum
+import functools
 import html
 import inspect
+import itertools
 import math
+import textwrap
 from collections.abc import Iterable, Mapping
 from decimal import Decimal
 from fractions import Fraction
@@ -29,7 +33,34 @@ _MAX_SHOWN: Final = 9
 _NUMBERS: Final = (float, Decimal, Fraction, np.floating)
 
 
-class NamedInt(enum.IntEnum):
+class MembersInHelp(enum.EnumMeta):
+    """The kind of an enumeration whose help lists its members with what the source says of each."""
+
+    @property
+    def __doc__(cls) -> str:  # type: ignore[override]  # made where it is asked for, since it reads the source
+        """The enumeration's own text, and its members."""
+        own = inspect.cleandoc(vars(cls).get("__doc__") or "")
+        texts = _texts_of_members(cls)
+        members = [f"    {name}: {texts.get(name, repr(one))}" for name, one in vars(cls)["_member_map_"].items()]
+        return "\n".join([own, "", "Members:", *members]) if members else own
+
+
+@functools.cache
+def _texts_of_members(cls: type) -> dict[str, str]:
+    """Return the text that follows each member in the source, where there is a source."""
+    try:
+        (kind,) = ast.parse(textwrap.dedent(inspect.getsource(cls))).body
+    except (OSError, TypeError, SyntaxError):
+        return {}
+    found = {}
+    for member, after in itertools.pairwise(getattr(kind, "body", ())):
+        match member, after:
+            case ast.Assign(targets=[ast.Name(id=name)]), ast.Expr(value=ast.Constant(value=str(text))):
+                found[name] = " ".join(text.split())
+    return found
+
+
+class NamedInt(enum.IntEnum, metaclass=MembersInHelp):
     """An enumeration of whole numbers, as messages have them, that prints as its name on every Python."""
 
     def __str__(self) -> str:

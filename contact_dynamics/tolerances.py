@@ -36,6 +36,11 @@ moments of inertia are below the inverse, because fourth powers and products of 
 of doubles. Rates below the inverse count as rest, because such a body does not turn in the age of the
 universe."""
 
+# What is shown
+
+SHOWN_AS_ZERO: Final = 1e-12
+"""Relative to the largest number of an array. Where an array is printed, a smaller one is rounding and 0."""
+
 # numerics
 
 SMALL_SHARE: Final = 1e-10

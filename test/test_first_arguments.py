@@ -14,6 +14,7 @@ from architecture.test_doors import CHAPTERS
 from contact_dynamics import (
     Body,
     BodyState,
+    RestitutionLaw,
     SpatialContactProblem,
     Surface,
     World,
@@ -26,10 +27,12 @@ from contact_dynamics import (
     next_landing,
     plane,
     rigid_body,
+    sampled_toss,
     several_impact,
     shapes,
     spatial_impact,
 )
+from contact_dynamics.constants import HORIZON
 from contact_dynamics.records import Record
 
 SIZE = (0.15, 0.09, 0.05)
@@ -123,6 +126,35 @@ def test_a_flight_leads_to_its_impact_without_unpacking() -> None:
     assert landing is not None
     after = spatial_impact(BRICK, landing.state, landing.contacts[0])
     assert after.state.v_WB_W[2] > landing.state.v_WB_W[2]
+
+
+def test_the_horizon_and_the_law_have_one_name_and_one_default() -> None:
+    found = set()
+    for chapter in CHAPTERS:
+        for name, call in vars(importlib.import_module(f"contact_dynamics.{chapter}")).items():
+            if inspect.isfunction(call):
+                parameters = inspect.signature(call).parameters
+                assert not {"law", "until", "duration"} & parameters.keys(), name
+                if "horizon" in parameters:
+                    assert parameters["horizon"].default == HORIZON, name
+                    found.add(name)
+                if "restitution_law" in parameters:
+                    assert parameters["restitution_law"].default is RestitutionLaw.POISSON, name
+    assert found == {"first_contact", "next_landing", "sampled_toss", "toss"}
+
+
+def test_a_sampled_toss_says_which_face_is_on_top_and_how_sure_that_is() -> None:
+    die = Body.box((0.016, 0.016, 0.016), 0.005, name="die")
+    low = BodyState(p_WB_W=[0, 0, 0.01], q_WB=[0, 1, 0, 0], v_WB_W=[0, 0, 0], w_WB_W=[0, 0, 0])
+    told = sampled_toss(die, low, WORLD, count=50, to_rest=True, covariance=1e-8 * np.eye(12))
+    assert told.faces_on_top == ("-z",)  # turned by half a turn about y
+    assert told.standard_error(0.5) == pytest.approx(0.5 / np.sqrt(50))
+    assert told.standard_error(told.face_probabilities[0]) == 0.0
+    spread = impact.spatial_impact_distribution(
+        BRICK, LANDED, CONTACTS[0], covariance=np.eye(12), samples=100
+    )
+    shares = spread.probabilities
+    np.testing.assert_allclose(spread.standard_errors, np.sqrt(shares * (1 - shares) / 100))
 
 
 def test_lengths_go_by_place() -> None:

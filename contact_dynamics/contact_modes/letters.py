@@ -31,6 +31,32 @@ PLANAR_LETTERS: Final = (SEPARATES, SLIDES_LEFT, SLIDES_RIGHT, STICKS)
 SPATIAL_LETTERS: Final = (SEPARATES, STICKS, STAYS)
 
 
+LETTERS: Final[dict[str, tuple[str, str]]] = {
+    SEPARATES: ("separates", "separate"),
+    SLIDES_LEFT: ("slides left", "slide left"),
+    SLIDES_RIGHT: ("slides right", "slide right"),
+    STICKS: ("stays fixed", "stay fixed"),
+    STAYS: ("slides", "slide"),
+}
+"""The words for what one contact does in a mode with forces, and for several."""
+
+
+def words_of(mode: str) -> tuple[str, ...]:
+    """Return what each contact does in a mode with forces, in words."""
+    return tuple(LETTERS[letter][0] for letter in mode)
+
+
+def in_a_sentence(mode: str) -> str:
+    """Return what the contacts do in a mode with forces: "tips: contacts 0, 1 separate, 2, 3 stay fixed"."""
+    if not mode:
+        return "no contact"
+    each = {letter: [str(k) for k, one in enumerate(mode) if one == letter] for letter in dict.fromkeys(mode)}
+    if len(each) == 1:
+        return f"every contact {LETTERS[mode[0]][0]}"
+    parts = [f"{', '.join(which)} {LETTERS[letter][len(which) > 1]}" for letter, which in each.items()]
+    return f"{'tips: ' if each.keys() == {SEPARATES, STICKS} else ''}contacts {', '.join(parts)}"
+
+
 def check_modes(modes: Collection[str], count: int, letters: tuple[Letter, ...]) -> None:
     """Raise `InvalidFieldError` for the first mode that is not a string of ``count`` of these ``letters``."""
     for mode in modes:

@@ -6,11 +6,15 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 from contact_dynamics.contact.uncertainty import ContactUncertainty
+from contact_dynamics.contact_modes.letters import in_a_sentence
 from contact_dynamics.records import NamedInt, Record
 from contact_dynamics.validation import check_not_negative
 
 if TYPE_CHECKING:
-    from collections.abc import Sized
+    from collections.abc import Sequence, Sized
+
+_SHOWN: Final = 2
+"""Modes that a verdict is shown with in short."""
 
 
 class ModeVerdict(NamedInt):
@@ -134,13 +138,22 @@ def verdict_on(modes: Sized) -> ModeVerdict:
     return ModeVerdict.INDETERMINATE if len(modes) > 0 else ModeVerdict.INCONSISTENT
 
 
+def verdict_in_short(kind: str, verdict: ModeVerdict, modes: Sequence[str]) -> str:
+    """Return a verdict with the first modes and what the contacts do in them."""
+    shown = [f"{mode} ({in_a_sentence(mode)})" for mode in modes[:_SHOWN]]
+    more = [f"{len(modes) - _SHOWN} more"] if len(modes) > _SHOWN else []
+    return f"{kind}: {verdict}{': ' if shown else ''}{', '.join([*shown, *more])}"
+
+
 class Certainty(NamedInt):
     """How surely rigid-body mechanics says yes."""
 
     NO = 1
+    """It is not consistent."""
     POSSIBLE = 2
     """It is consistent, and something else is consistent too."""
     CERTAIN = 3
+    """It is consistent, and nothing else is."""
     UNKNOWN = 4
     """Rounding decides. In space it may stand for an answer beside the equilibrium."""
 
@@ -156,7 +169,9 @@ class BodyStatics(Record):
             rounding decides.
         stable_disturbance: N. Equilibrium stays possible under every change of the wrench up to this size. It
             is infinite if equilibrium is possible under every wrench (force closure), and NaN if there is no
-            equilibrium.
+            equilibrium. Infinite together with an ``equilibrium`` that is POSSIBLE means: contact forces that
+            hold the body exist whatever pushes it, but they depend on how hard the contacts are pressed
+            together (a wedged body). Rigid-body mechanics does not say that, so that the body may also move.
         margin_length: m. The size of a change is measured in |f|^2 + (moment / length)^2 with this length.
     """
 

@@ -4,10 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
-import numpy as np
-
 from contact_dynamics.toss import TossEnd, TossEventKind, UndecidedReason
-from contact_dynamics.toss.distribution import BranchKind
+from contact_dynamics.toss.distribution import BranchKind, axis_in_words
 
 if TYPE_CHECKING:
     from contact_dynamics.questions.toss import TossAnswer
@@ -37,9 +35,6 @@ UNDECIDED: Final = {
     UndecidedReason.SEVERAL_MODES: "several modes are consistent",
 }
 """The words for why mechanics does not decide."""
-
-_ALONG_AXIS: Final = 0.98
-"""Cosine from which a face's normal counts as one of the body's axes. Samples have slightly other corners."""
 
 BRANCHES: Final = {
     BranchKind.STRIKES: "strikes",
@@ -93,8 +88,4 @@ def branch_in_words(kind: BranchKind, corner: int) -> str:
 
 def face_in_words(normal_B: FloatArray) -> str:
     """Return which face lies on a surface with a normal, (3,), body axes: "-z", or its outward normal."""
-    outward = 0.0 - normal_B
-    axis = int(np.abs(outward).argmax())
-    if abs(outward[axis]) >= _ALONG_AXIS:
-        return f"{'-' if outward[axis] < 0.0 else '+'}{'xyz'[axis]}"
-    return f"({' '.join(f'{x:.2g}' for x in (np.round(outward, 2) + 0.0).tolist())})"
+    return axis_in_words(0.0 - normal_B)

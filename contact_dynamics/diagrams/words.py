@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from contact_dynamics.contact_modes import Certainty, ModeVerdict
-from contact_dynamics.contact_modes.letters import SEPARATES, SLIDES_LEFT, SLIDES_RIGHT, STAYS, STICKS
+from contact_dynamics.contact_modes.letters import LETTERS, SEPARATES, STICKS
 from contact_dynamics.impact import ImpactOutcome, SequenceEnd
 from contact_dynamics.questions.many import ManyImpactsAnswer, ManyTumblingsAnswer
 from contact_dynamics.tumbling.regime import Regime
@@ -73,15 +73,6 @@ VERDICTS: Final = {
     ModeVerdict.UNDECIDED: "has modes that could not all be made out",
 }
 """The words for each verdict on a contact set."""
-
-LETTERS: Final = {
-    SEPARATES: ("separates", "separate"),
-    SLIDES_LEFT: ("slides left", "slide left"),
-    SLIDES_RIGHT: ("slides right", "slide right"),
-    STICKS: ("stays fixed", "stay fixed"),
-    STAYS: ("slides", "slide"),
-}
-"""The words for what one contact does, and for several."""
 
 CERTAINTIES: Final = {
     Certainty.NO: "no",

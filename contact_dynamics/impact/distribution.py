@@ -66,6 +66,12 @@ class ImpactDistribution(Record):
     missed: float
     samples: int
 
+    @property
+    def standard_errors(self) -> FloatArray:
+        """The standard errors of ``probabilities``, (7,), by the number of samples."""
+        errors: FloatArray = np.sqrt(self.probabilities * (1.0 - self.probabilities) / self.samples)
+        return errors
+
 
 def planar_impact_distribution(
     body: PlanarBody,

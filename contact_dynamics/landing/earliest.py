@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from contact_dynamics.constants import HORIZON
 from contact_dynamics.contact.found import check_not_inside, contacts_within
 from contact_dynamics.landing.obstacle_arrival import first_touch
 from contact_dynamics.landing.plane_arrival import first_contact
@@ -49,7 +50,7 @@ def next_landing(
     state: BodyState,
     world: World,
     *,
-    horizon: float,
+    horizon: float = HORIZON,
     distance_tolerance: float = DISTANCE_TOLERANCE,
     velocity_tolerance: float = VELOCITY_TOLERANCE,
     motion: Motion | None = None,

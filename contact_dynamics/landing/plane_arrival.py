@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
+from contact_dynamics.constants import HORIZON
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.landing.acceleration_bounds import Bound, all_free_for, bounds_of, free_for
 from contact_dynamics.landing.rim_descent import RimAbove
@@ -72,7 +73,7 @@ def first_contact(
     p_WS_W: ArrayLike,
     normal_W: ArrayLike,
     *,
-    horizon: float,
+    horizon: float = HORIZON,
     work: SearchWork | None = None,
 ) -> FirstContact | None:
     """Return the first time in [0, horizon] at which a body is on or below a plane and not rising, or None.

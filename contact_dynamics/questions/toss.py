@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from contact_dynamics.constants import HORIZON
 from contact_dynamics.errors import InvalidFieldError, TooLargeError
 from contact_dynamics.impact import RestitutionLaw, SeveralContactsLaw
 from contact_dynamics.questions.context import Context, or_default
@@ -26,7 +27,6 @@ from contact_dynamics.toss import (
     sampled_toss,
     toss,
 )
-from contact_dynamics.toss.one_toss import HORIZON
 from contact_dynamics.toss.sampled import MAX_SAMPLES, MAX_STRIKES
 from contact_dynamics.toss.uncertainty import EXACT, check_factors
 from contact_dynamics.tumbling import Trajectory
@@ -78,7 +78,7 @@ class TossQuestion(Record):
         state: Its state, with or without a covariance, or a reference to a published one.
         restitution_law: What the coefficients of restitution mean.
         several_contacts_law: The law for several contacts that strike at one instant.
-        horizon: s, > 0. How far the motion is followed. None means `toss.one_toss.HORIZON`.
+        horizon: s, > 0. How far the motion is followed. None means `constants.HORIZON`.
         rate: Hz, > 0. Samples of the trajectory a second. None means the default.
         max_alternatives: How many other ways are followed where mechanics does not decide. None means 0.
         sampling: What to sample for a distribution, or None for none.
@@ -201,7 +201,7 @@ def answer(question: TossQuestion, context: Context | None = None) -> TossAnswer
             strikes=STRIKES if sampling.strikes is None else sampling.strikes,
             to_rest=sampling.to_rest,
             seed=sampling.seed,
-            law=question.restitution_law,
+            restitution_law=question.restitution_law,
             several_contacts_law=question.several_contacts_law,
             horizon=horizon,
             distance_tolerance=known.defaults.distance_tolerance,

@@ -6,6 +6,7 @@ are within it. These sizes are counted among the samples, so that they hold for 
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
@@ -14,7 +15,7 @@ import numpy as np
 from contact_dynamics.records import NamedInt, Record
 from contact_dynamics.rotations.many import rotation_vectors, turned
 from contact_dynamics.tolerances import EXACT_SHARE
-from contact_dynamics.validation import FloatArray
+from contact_dynamics.validation import FloatArray, check_within
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -29,6 +30,8 @@ FEWEST: Final = 20
 """Samples of a branch that has regions. Of fewer, nine tenths are no more than two from all."""
 
 _MEAN_ROUNDS: Final = 4
+
+_ALONG_AXIS: Final = 0.98
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -174,6 +177,27 @@ class TossDistribution(Record):
     face_probabilities: FloatArray
     rest: RestSpread | None
     ghosts: Ghosts
+
+    def standard_error(self, probability: float) -> float:
+        """Return the standard error of a probability, such as a branch's, by the number of samples."""
+        share = check_within("probability", probability, 0.0, 1.0)
+        return math.sqrt(share * (1.0 - share) / self.samples)
+
+    @property
+    def faces_on_top(self) -> tuple[str, ...]:
+        """Which body axis points away from the surface in each kind of rest: "+z", or its numbers.
+
+        They are in the order of ``face_probabilities``. On a die it is the face on top.
+        """
+        return tuple(axis_in_words(normal) for normal in self.face_normals_B)
+
+
+def axis_in_words(direction_B: FloatArray) -> str:
+    """Return the body axis that a unit direction, (3,), is nearly along, "+x" to "-z", or its numbers."""
+    axis = int(np.abs(direction_B).argmax())
+    if abs(direction_B[axis]) >= _ALONG_AXIS:
+        return f"{'-' if direction_B[axis] < 0.0 else '+'}{'xyz'[axis]}"
+    return f"({' '.join(f'{x:.2g}' for x in (np.round(direction_B, 2) + 0.0).tolist())})"
 
 
 def region_of(values: FloatArray) -> Region:

@@ -15,6 +15,7 @@ from collections import deque
 from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
+from contact_dynamics.constants import HORIZON
 from contact_dynamics.contact.found import check_not_inside
 from contact_dynamics.impact.law import RestitutionLaw
 from contact_dynamics.impact.several.result import SeveralContactsLaw
@@ -32,9 +33,6 @@ if TYPE_CHECKING:
     from contact_dynamics.rigid_body.body import BodyState
     from contact_dynamics.toss.result import Toss
     from contact_dynamics.world import Body, World
-
-HORIZON: Final = 10.0
-"""s. A body that is tossed by hand rests within two."""
 
 MAX_EVENTS: Final = 10_000
 """Events after which a toss ends unfinished. A toss of a box takes ten to fifty, and one of a smooth body

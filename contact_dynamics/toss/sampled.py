@@ -15,8 +15,10 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from contact_dynamics.constants import HORIZON
 from contact_dynamics.contact.found import check_not_inside
 from contact_dynamics.errors import TooLargeError
+from contact_dynamics.impact.law import RestitutionLaw
 from contact_dynamics.impact.several.result import SeveralContactsLaw
 from contact_dynamics.numerics.vectors import dot
 from contact_dynamics.rigid_body.body import BodyState
@@ -47,7 +49,6 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
-    from contact_dynamics.impact.law import RestitutionLaw
     from contact_dynamics.numerics.vectors import Vector3
     from contact_dynamics.toss.solid import Solid
     from contact_dynamics.toss.to_rest import Followed
@@ -78,9 +79,9 @@ def sampled_toss(
     strikes: int = 2,
     to_rest: bool = False,
     seed: int = 0,
-    law: RestitutionLaw,
+    restitution_law: RestitutionLaw = RestitutionLaw.POISSON,
     several_contacts_law: SeveralContactsLaw = SeveralContactsLaw.SEQUENTIAL,
-    horizon: float,
+    horizon: float = HORIZON,
     processes: int | Executor = 1,
     distance_tolerance: float = DISTANCE_TOLERANCE,
 ) -> TossDistribution:
@@ -90,8 +91,9 @@ def sampled_toss(
         body: The body with its best parameters. Its shape has corners, which may be rounded.
         state: The best state.
         world: Surfaces, which are flats, and gravity.
-        covariance: (12, 12), of the state, in the order of `questions.UncertainState`, or None if the state
-            is exact.
+        covariance: (12, 12), of the state, or None if the state is exact. Rows and columns are position (m),
+            rotation vector (rad, applied after the attitude), velocity of the centre of mass (m/s) and
+            angular velocity (rad/s), each as x, y, z in world axes.
         by_gravity: s^2 and s, by how much the best position and velocity change with gravity, as
             `FitResult.by_gravity`. A state that does not depend on gravity has zeros.
         uncertainty: How uncertain parameters and law are.
@@ -99,7 +101,7 @@ def sampled_toss(
         strikes: How many next strikes the tree has, from 1 to `MAX_STRIKES`.
         to_rest: Whether samples are followed to rest.
         seed: Samples are drawn from it, >= 0. The same seed draws the same ones.
-        law: What the coefficients of restitution mean. ENERGETIC only goes with SEQUENTIAL.
+        restitution_law: What the coefficients of restitution mean. ENERGETIC only goes with SEQUENTIAL.
         several_contacts_law: The law for several contacts that strike at one instant, in samples that go on
             to rest.
         horizon: s, > 0, how far samples are followed.
@@ -131,7 +133,7 @@ def sampled_toss(
         covariance = check_covariance("covariance", covariance)
     check_extent(body.mass_properties, state, world.gravity_W)
     check_not_inside(body, state, world.surfaces, distance_tolerance=distance_tolerance)
-    check_laws(law, several_contacts_law)
+    check_laws(restitution_law, several_contacts_law)
     body, indices = with_distinct_corners(body)
     solid = solid_of(body, world, indices=indices, settling=SAMPLED_SETTLING_HEIGHT)
     chance = np.random.default_rng(check_whole("seed", seed, 0))
@@ -147,7 +149,7 @@ def sampled_toss(
     )
     spread = LawSpread(uncertainty, count, chance)
     told = strikes_of_many(
-        solid, samples, law=law, spread=spread, depth=strikes, horizon=horizon, further=to_rest
+        solid, samples, law=restitution_law, spread=spread, depth=strikes, horizon=horizon, further=to_rest
     )
     rests: dict[int, Followed] = {}
     if to_rest:
@@ -156,7 +158,7 @@ def sampled_toss(
             samples,
             told,
             spread,
-            law=law,
+            law=restitution_law,
             several_contacts_law=several_contacts_law,
             horizon=horizon,
             processes=shared_by,

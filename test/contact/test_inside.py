@@ -56,7 +56,13 @@ FINDERS: dict[str, Callable[[float, float], object]] = {
     "in time": lambda d, t: impact_sequence(CUBE, sunk(d), WORLD, distance_tolerance=t),
     "toss": lambda d, t: toss(CUBE, sunk(d), WORLD, distance_tolerance=t),
     "samples": lambda d, t: sampled_toss(
-        CUBE, sunk(d), WORLD, count=2, law=RestitutionLaw.POISSON, horizon=1.0, distance_tolerance=t
+        CUBE,
+        sunk(d),
+        WORLD,
+        count=2,
+        restitution_law=RestitutionLaw.POISSON,
+        horizon=1.0,
+        distance_tolerance=t,
     ),
     "modes' question": lambda d, t: modes_questions.answer(
         ContactModeQuestion(body="cube", state=sunk(d), distance_tolerance=t), known(1e-6)

@@ -44,7 +44,7 @@ def told() -> TossDistribution:
         covariance=covariance,
         count=200,
         to_rest=True,
-        law=RestitutionLaw.POISSON,
+        restitution_law=RestitutionLaw.POISSON,
         horizon=3.0,
     )
 

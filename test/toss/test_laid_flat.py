@@ -104,7 +104,9 @@ def test_a_sample_rests_where_the_toss_does(seed: int) -> None:
     )
     world = World(bodies=(body,), surfaces=(FLOOR,))
     alone = toss(body, state, world, max_alternatives=0)
-    told = sampled_toss(body, state, world, count=1, to_rest=True, law=RestitutionLaw.POISSON, horizon=5.0)
+    told = sampled_toss(
+        body, state, world, count=1, to_rest=True, restitution_law=RestitutionLaw.POISSON, horizon=5.0
+    )
     assert alone.end == TossEnd.RESTS
     assert told.rest is not None
     assert told.face_normals_B[0] @ alone.resting_normal_B > 0.999

@@ -43,7 +43,7 @@ def ask(uncertainty: TossUncertainty, covariance: np.ndarray = EXACT_STATE) -> N
         covariance=covariance,
         uncertainty=uncertainty,
         count=5,
-        law=RestitutionLaw.POISSON,
+        restitution_law=RestitutionLaw.POISSON,
         horizon=2.0,
     )
     assert told.samples == 5

@@ -39,7 +39,7 @@ def changes_of_many() -> np.ndarray:
         uncertainty=UNCERTAINTY,
         count=60,
         strikes=1,
-        law=RestitutionLaw.POISSON,
+        restitution_law=RestitutionLaw.POISSON,
         horizon=5.0,
     ).ghosts
     strike = toss(BRICK, STATE, WORLD, max_events=1, max_alternatives=0).events[0].state

@@ -64,7 +64,7 @@ def test_samples_tell_the_corners_of_the_list_that_was_given() -> None:
             world(each),
             covariance=1e-6 * np.eye(12),
             count=8,
-            law=RestitutionLaw.POISSON,
+            restitution_law=RestitutionLaw.POISSON,
             horizon=2.0,
         )
         for each in (brick(CORNERS), body)

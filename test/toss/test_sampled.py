@@ -42,7 +42,9 @@ def thrown(seed: int) -> BodyState:
 
 
 def told(state: BodyState, count: int = 200, **given: object) -> TossDistribution:
-    return sampled_toss(BRICK, state, WORLD, count=count, law=RestitutionLaw.POISSON, horizon=5.0, **given)  # type: ignore[arg-type]
+    return sampled_toss(
+        BRICK, state, WORLD, count=count, restitution_law=RestitutionLaw.POISSON, horizon=5.0, **given
+    )  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize("seed", range(6))
@@ -270,7 +272,7 @@ def test_a_surface_has_a_factor_of_its_own_that_a_list_replaces() -> None:
             uncertainty=TossUncertainty(lasting_factors=factors),
             count=2,
             to_rest=True,
-            law=RestitutionLaw.POISSON,
+            restitution_law=RestitutionLaw.POISSON,
             horizon=3.0,
         )
         assert found.rest is not None

@@ -75,7 +75,7 @@ def test_second_strikes_of_made_tosses_are_in_their_regions() -> None:
             covariance=np.diag(STATE_STDS**2),
             uncertainty=TossUncertainty(covariance=np.diag(PARAMETER_STDS**2)),
             count=100,
-            law=RestitutionLaw.POISSON,
+            restitution_law=RestitutionLaw.POISSON,
             horizon=2.0,
         )
         if len(strikes) < 2 or len(told.strikes) < 2 or told.strikes[1].probability < 1.0:
@@ -124,7 +124,7 @@ def test_regions_hold_where_the_law_is_off_by_impulses_at_the_contact() -> None:
             WORLD,
             uncertainty=TossUncertainty(velocity=velocity, spin=spin),
             count=100,
-            law=RestitutionLaw.POISSON,
+            restitution_law=RestitutionLaw.POISSON,
             horizon=2.0,
         )
         rebound = after.velocity_of_point(first.p_WC_W[0])[2]

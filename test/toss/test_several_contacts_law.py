@@ -109,7 +109,7 @@ def test_samples_take_the_law_too() -> None:
         WORLD,
         count=3,
         to_rest=True,
-        law=RestitutionLaw.POISSON,
+        restitution_law=RestitutionLaw.POISSON,
         several_contacts_law=SeveralContactsLaw.SIMULTANEOUS,
         horizon=3.0,
     )
@@ -120,7 +120,7 @@ def test_samples_take_the_law_too() -> None:
             state,
             WORLD,
             count=3,
-            law=RestitutionLaw.ENERGETIC,
+            restitution_law=RestitutionLaw.ENERGETIC,
             several_contacts_law=SeveralContactsLaw.SIMULTANEOUS,
             horizon=3.0,
         )

@@ -40,7 +40,7 @@ def told(count: int, **given: Any) -> TossDistribution:
         uncertainty=TossUncertainty(velocity=0.02, spin=0.4, height=5e-4),
         count=count,
         to_rest=True,
-        law=RestitutionLaw.POISSON,
+        restitution_law=RestitutionLaw.POISSON,
         horizon=2.0,
         **given,
     )

@@ -40,7 +40,7 @@ def test_places_spread_as_gravity_takes_samples_aside(by_gravity: tuple[float, f
         uncertainty=SCATTERS,
         count=2000,
         strikes=1,
-        law=RestitutionLaw.POISSON,
+        restitution_law=RestitutionLaw.POISSON,
         horizon=2.0,
     ).strikes[0]
     t = float(first.seconds.mean[0])
@@ -61,7 +61,7 @@ def test_a_sample_that_goes_on_to_rest_has_the_gravity_of_the_world() -> None:
         uncertainty=SCATTERS,
         count=5,
         to_rest=True,
-        law=RestitutionLaw.POISSON,
+        restitution_law=RestitutionLaw.POISSON,
         horizon=3.0,
     ).rest
     assert found is not None
@@ -111,7 +111,7 @@ def test_made_tosses_are_in_the_regions_that_fits_to_their_flights_lead_to() -> 
                     uncertainty=SCATTERS,
                     count=120,
                     strikes=1,
-                    law=RestitutionLaw.POISSON,
+                    restitution_law=RestitutionLaw.POISSON,
                     horizon=2.0,
                 )
                 .strikes[0]

@@ -9,7 +9,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from contact_dynamics.contact_modes.result import ModeVerdict, RefusedMode, VerdictsWithin
+from contact_dynamics.contact_modes.letters import in_a_sentence, words_of
+from contact_dynamics.contact_modes.result import ModeVerdict, RefusedMode, VerdictsWithin, verdict_in_short
 from contact_dynamics.plane.types import Vector2
 from contact_dynamics.records import Record
 
@@ -35,6 +36,15 @@ class PlanarMode(Record):
     contact_accelerations: tuple[Vector2, ...]
     forces_unique: bool
     motion_unique: bool
+
+    @property
+    def words(self) -> tuple[str, ...]:
+        """What each contact does: "separates", "slides left", "slides right" or "stays fixed"."""
+        return words_of(self.mode)
+
+    def in_short(self) -> str:
+        """Return the letters, and what the contacts do."""
+        return f"PlanarMode {self.mode}: {in_a_sentence(self.mode)}"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
@@ -66,6 +76,10 @@ class PlanarModeAnswer(Record):
     undecided: str = ""
     undecided_modes: tuple[str, ...] = ()
     within: VerdictsWithin | None = None
+
+    def in_short(self) -> str:
+        """Return the verdict, and what the contacts do in the first modes."""
+        return verdict_in_short(type(self).__name__, self.verdict, [mode.mode for mode in self.modes])
 
     @property
     def kinematic_modes(self) -> tuple[str, ...]:

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from contact_dynamics.contact_modes.letters import in_a_sentence, words_of
+from contact_dynamics.contact_modes.result import verdict_in_short
 from contact_dynamics.records import Record
 
 if TYPE_CHECKING:
@@ -40,6 +42,15 @@ class SpatialMode(Record):
     forces_unique: bool
     motion_unique: bool
 
+    @property
+    def words(self) -> tuple[str, ...]:
+        """What each contact does: "separates", "slides" or "stays fixed"."""
+        return words_of(self.mode)
+
+    def in_short(self) -> str:
+        """Return the letters, and what the contacts do."""
+        return f"SpatialMode {self.mode}: {in_a_sentence(self.mode)}"
+
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class SpatialModeAnswer(Record):
@@ -73,3 +84,7 @@ class SpatialModeAnswer(Record):
     undecided_modes: tuple[str, ...] = ()
     flush_within: float = 0.0
     within: VerdictsWithin | None = None
+
+    def in_short(self) -> str:
+        """Return the verdict, and what the contacts do in the first modes."""
+        return verdict_in_short(type(self).__name__, self.verdict, [mode.mode for mode in self.modes])

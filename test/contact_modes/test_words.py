@@ -1,0 +1,73 @@
+"""Mode letters come with words, verdicts with their modes, and enumerations with help for each member."""
+
+from __future__ import annotations
+
+import inspect
+import pydoc
+
+import pytest
+
+import contact_dynamics as cd
+from contact_dynamics.contact_modes import Certainty
+from contact_dynamics.contact_modes.letters import in_a_sentence
+
+CRATE = cd.Body.box((0.4, 0.3, 0.3), mass=5.0)
+RESTING = cd.BodyState(p_WB_W=[0, 0, 0.15], q_WB=[0, 0, 0, 1], v_WB_W=[0, 0, 0], w_WB_W=[0, 0, 0])
+
+
+def answer(push: float, height: float, friction: float) -> cd.contact_modes.SpatialModeAnswer:
+    floor = cd.Surface(name="floor", p_WS_W=[0, 0, 0], normal_W=[0, 0, 1], friction=friction, restitution=0)
+    feet = cd.find_contacts(CRATE, RESTING, cd.World(surfaces=(floor,)))
+    return cd.contact_modes(
+        cd.SpatialContactProblem(
+            body=CRATE, state=RESTING, contacts=feet, force_W=[push, 0, -49.0], torque_W=[0, push * height, 0]
+        )
+    )
+
+
+@pytest.mark.parametrize(
+    ("push", "height", "friction", "words", "short"),
+    [
+        (1.0, 0.0, 0.4, {"stays fixed"}, "UNIQUE: ffff (every contact stays fixed)"),
+        (40.0, 0.0, 0.1, {"slides"}, "UNIQUE: cccc (every contact slides)"),
+        (
+            45.0,
+            0.15,
+            5.0,
+            {"separates", "stays fixed"},
+            "UNIQUE: ssff (tips: contacts 0, 1 separate, 2, 3 stay fixed)",
+        ),
+    ],
+)
+def test_a_spatial_mode_says_what_each_contact_does(
+    push: float, height: float, friction: float, words: set[str], short: str
+) -> None:
+    found = answer(push, height, friction)
+    assert {*found.modes[0].words} == words
+    assert len(found.modes[0].words) == 4
+    assert str(found).splitlines()[0] == f"SpatialModeAnswer: {short}"
+
+
+def test_a_planar_mode_says_to_which_side_it_slides() -> None:
+    block, foot = (
+        cd.PlanarBody(mass=1.0, inertia=0.1),
+        cd.PlanarContact(r=(0.0, -0.1), normal=(0.0, 1.0), friction=0.1),
+    )
+    for push, words in ((-5.0, "slides left"), (5.0, "slides right"), (0.5, "stays fixed")):
+        push_at_foot = cd.PlanarWrench(f=(push, -9.8), moment=0.1 * push)
+        found = cd.contact_modes(cd.PlanarContactProblem(body=block, contacts=(foot,), wrench=push_at_foot))
+        assert found.modes[0].words == (words,)
+        assert words in str(found.modes[0]).splitlines()[0]
+
+
+def test_sentences() -> None:
+    assert in_a_sentence("") == "no contact"
+    assert in_a_sentence("scc") == "contacts 0 separates, 1, 2 slide"
+
+
+@pytest.mark.parametrize("kind", [cd.ModeVerdict, cd.RestitutionLaw, Certainty])
+def test_help_lists_every_member_with_its_text(kind: type) -> None:
+    for text in (inspect.getdoc(kind) or "", pydoc.plain(pydoc.render_doc(kind))):
+        for member in kind:  # type: ignore[attr-defined]
+            assert f"{member.name}: " in text
+    assert "UNIQUE: One mode is consistent." in (inspect.getdoc(cd.ModeVerdict) or "")
