@@ -41,7 +41,8 @@ class MembersInHelp(enum.EnumMeta):
         """The enumeration's own text, and its members."""
         own = inspect.cleandoc(vars(cls).get("__doc__") or "")
         texts = _texts_of_members(cls)
-        members = [f"    {name}: {texts.get(name, repr(one))}" for name, one in vars(cls)["_member_map_"].items()]
+        found = vars(cls)["_member_map_"].items()
+        members = [f"    {name}: {texts.get(name, repr(one))}" for name, one in found]
         return "\n".join([own, "", "Members:", *members]) if members else own
 
 

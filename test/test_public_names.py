@@ -1,0 +1,71 @@
+"""The page of public names is what the chapters offer, in both directions."""
+
+from __future__ import annotations
+
+import enum
+import importlib
+import inspect
+import re
+from dataclasses import fields, is_dataclass
+from types import ModuleType
+
+import pytest
+
+from architecture.test_doors import CHAPTERS
+from running_server import ROOT
+
+PAGE = (ROOT / "docs" / "api.md").read_text(encoding="utf-8")
+SECTIONS = dict(
+    re.findall(r"^## `contact_dynamics\.([\w.]+)`\n(.*?)(?=^## |\Z)", PAGE, re.DOTALL | re.MULTILINE)
+)
+ROW = re.compile(r"^\| `(\w+)(\([^`]*\))?` \| (.*) \|$", re.MULTILINE)
+OFFERED = ("world", *CHAPTERS)
+
+
+def offered(chapter: str) -> dict[str, object]:
+    module = importlib.import_module(f"contact_dynamics.{chapter}")
+    found = {name: getattr(module, name) for name in module.__all__}
+    return {name: value for name, value in found.items() if not isinstance(value, ModuleType)}
+
+
+def needed(call: object) -> str:
+    """The arguments without a default, those that go by name with an equals sign."""
+    assert callable(call)
+    parameters = [one for one in inspect.signature(call).parameters.values() if one.default is one.empty]
+    return ", ".join(f"{one.name}=" if one.kind is one.KEYWORD_ONLY else one.name for one in parameters)
+
+
+def test_the_page_has_a_section_for_each_chapter() -> None:
+    assert set(SECTIONS) == set(OFFERED)
+
+
+@pytest.mark.parametrize("chapter", OFFERED)
+def test_the_page_has_every_name_and_no_other(chapter: str) -> None:
+    names = [name for name, _, _ in ROW.findall(SECTIONS[chapter])]
+    assert sorted(names) == sorted(offered(chapter))
+
+
+@pytest.mark.parametrize("chapter", OFFERED)
+def test_calls_fields_and_members_are_those_of_the_code(chapter: str) -> None:
+    rows = {name: (arguments, text) for name, arguments, text in ROW.findall(SECTIONS[chapter])}
+    for name, value in offered(chapter).items():
+        arguments, text = rows[name]
+        listed = re.findall(r"`(\w+)`", text)
+        if inspect.isfunction(value):
+            assert arguments == f"({needed(value)})", name
+        elif isinstance(value, enum.EnumMeta):
+            assert listed == [one.name for one in value], name  # type: ignore[attr-defined]
+        elif inspect.isclass(value) and is_dataclass(value):
+            assert listed == [one.name for one in fields(value) if one.repr and one.name[0] != "_"], name
+        elif inspect.isclass(value) and issubclass(value, tuple):
+            assert listed == list(value._fields), name  # type: ignore[attr-defined]
+
+
+def test_the_quick_start_has_the_table_of_questions() -> None:
+    table = re.findall(r"^\| question \| call \|\n.*?(?=^\n)", PAGE, re.DOTALL | re.MULTILINE)
+    assert len(table) == 1
+    assert table[0] in (ROOT / "docs" / "quick-start-python.md").read_text(encoding="utf-8")
+    for word in ("wall", "truck", "domino", "coin", "billiard", "die", "fingers", "tray"):
+        assert word in table[0]
+    for name in re.findall(r"`(?:\w+ = )?(\w+)\(", table[0]):
+        assert re.search(rf"^\| `{name}\(", PAGE, re.MULTILINE), name
