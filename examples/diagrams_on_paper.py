@@ -31,7 +31,7 @@ falling = BodyState(p_WB_W=[0, 0, 0], q_WB=[0, 0, 0, 1], v_WB_W=[-1, 0.4, -1], w
 ground = ContactSet(p_WC_W=[[0.3, 0.2, -0.9]], normals_W=[[0, 0, 1]], frictions=0.6, restitutions=0.5)
 impact = ask(ImpactQuestion(body=rod, state=falling, contacts=ground))
 figure = Figure(figsize=(8, 4.6), layout="constrained")
-draw_impulse_space(figure.add_subplot(), rod.mass_properties, impact)
+draw_impulse_space(figure.add_subplot(), rod, impact)
 save_figure(figure, folder / "impulse_space.svg")
 
 # Lecture 26: a block in the corner of a tray, pushed into it.

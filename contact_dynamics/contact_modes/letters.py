@@ -41,20 +41,25 @@ LETTERS: Final[dict[str, tuple[str, str]]] = {
 """The words for what one contact does in a mode with forces, and for several."""
 
 
+_ALTOGETHER: Final = {SEPARATES: "leaves"}
+"""The words for a body that is not said to do what its contacts do."""
+
+
 def words_of(mode: str) -> tuple[str, ...]:
     """Return what each contact does in a mode with forces, in words."""
     return tuple(LETTERS[letter][0] for letter in mode)
 
 
-def in_a_sentence(mode: str) -> str:
-    """Return what the contacts do in a mode with forces: "tips: contacts 0, 1 separate, 2, 3 stay fixed"."""
-    if not mode:
-        return "no contact"
-    each = {letter: [str(k) for k, one in enumerate(mode) if one == letter] for letter in dict.fromkeys(mode)}
-    if len(each) == 1:
-        return f"every contact {LETTERS[mode[0]][0]}"
-    parts = [f"{', '.join(which)} {LETTERS[letter][len(which) > 1]}" for letter, which in each.items()]
-    return f"{'tips: ' if each.keys() == {SEPARATES, STICKS} else ''}contacts {', '.join(parts)}"
+def mode_in_words(mode: str) -> str:
+    """Return words for a mode with forces, one letter for each contact: what the body does, or each kind."""
+    kinds = {letter: mode.count(letter) for letter in LETTERS if letter in mode}
+    if len(kinds) <= 1:
+        return next((f"it {_ALTOGETHER.get(kind, LETTERS[kind][0])}" for kind in kinds), "nothing touches it")
+    (first, most), *others = kinds.items()
+    words = f"{most} contact{'s' * (most > 1)} {LETTERS[first][most > 1]}"
+    words += "".join(f", {count} {LETTERS[kind][count > 1]}" for kind, count in others)
+    # A rigid body of which one contact stays fixed can only turn about it.
+    return f"it tips ({words})" if set(kinds) == {SEPARATES, STICKS} else words
 
 
 def check_modes(modes: Collection[str], count: int, letters: tuple[Letter, ...]) -> None:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 from contact_dynamics.contact.uncertainty import ContactUncertainty
-from contact_dynamics.contact_modes.letters import in_a_sentence
+from contact_dynamics.contact_modes.letters import mode_in_words
 from contact_dynamics.records import NamedInt, Record
 from contact_dynamics.validation import check_not_negative
 
@@ -139,10 +139,10 @@ def verdict_on(modes: Sized) -> ModeVerdict:
 
 
 def verdict_in_short(kind: str, verdict: ModeVerdict, modes: Sequence[str]) -> str:
-    """Return a verdict with the first modes and what the contacts do in them."""
-    shown = [f"{mode} ({in_a_sentence(mode)})" for mode in modes[:_SHOWN]]
+    """Return a verdict with the first modes, each with its words."""
+    shown = [f"{mode}: {mode_in_words(mode)}" for mode in modes[:_SHOWN]]
     more = [f"{len(modes) - _SHOWN} more"] if len(modes) > _SHOWN else []
-    return f"{kind}: {verdict}{': ' if shown else ''}{', '.join([*shown, *more])}"
+    return f"{kind}: {verdict}{', ' if shown else ''}{'; '.join([*shown, *more])}"
 
 
 class Certainty(NamedInt):

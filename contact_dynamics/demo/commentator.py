@@ -17,10 +17,11 @@ from rclpy.qos import QoSProfile
 from rclpy.utilities import remove_ros_args
 
 from contact_dynamics.contact_modes import ModeVerdict
+from contact_dynamics.contact_modes.letters import mode_in_words
 from contact_dynamics.demo.arguments import PUSHED_BLOCK, THROWN_BOX, TRAY, commentator_parser
 from contact_dynamics.demo.patience import Patience
 from contact_dynamics.demo.until_stopped import run_until_stopped
-from contact_dynamics.diagrams.words import OUTCOMES, VERDICTS, mode_in_words
+from contact_dynamics.diagrams.words import OUTCOMES, VERDICTS
 from contact_dynamics.errors import NotSupportedError
 from contact_dynamics.impact import ImpactOutcome
 from contact_dynamics.nodes.node_parameters import NodeParameters

@@ -11,11 +11,12 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from contact_dynamics.contact_modes.letters import mode_in_words
 from contact_dynamics.contact_modes.planar.wrench_sets import length_of
 from contact_dynamics.contact_modes.spatial.applied_wrench import applied_wrench
 from contact_dynamics.diagrams.mode_map import LIVE_RESOLUTION, chart_for
 from contact_dynamics.diagrams.planar_scene import planar_scene_of
-from contact_dynamics.diagrams.words import margin_in_words, mode_in_words
+from contact_dynamics.diagrams.words import margin_in_words
 from contact_dynamics.diagrams.wrench_chart import DirectionChart, ForceDualChart
 from contact_dynamics.questions.planar_view import seen_contacts, seen_modes, seen_wrench, seen_wrench_set
 
@@ -96,18 +97,34 @@ def modes_side_by_side(
         plane: The plane of motion.
         outline: Outline of the body, a closed strip, (k, 2), m from the centre of mass. It may be empty.
     """
-    contacts, modes = seen_contacts(answer, plane), seen_modes(answer, plane)
-    reach = [contact.r for contact in contacts]
-    everything = np.vstack([outline, np.reshape(reach, (-1, 2)), np.zeros((1, 2))])
-    low, high = everything.min(axis=0), everything.max(axis=0)
-    size = float(np.linalg.norm(high - low)) or NO_SIZE
+    modes = seen_modes(answer, plane)
     margins = [margin_in_words(margin) for margin in answer.margins or ()] or [""] * len(modes)
     titles = [
         f"{mode.mode}: {mode_in_words(mode.mode)} {margin}".rstrip()
         for mode, margin in zip(modes, margins, strict=True)
     ]
+    return side_by_side(
+        seen_contacts(answer, plane),
+        modes,
+        titles or ["approaches" if answer.approaching else "no consistent mode"],
+        outline=outline,
+    )
+
+
+def side_by_side(
+    contacts: tuple[PlanarContact, ...],
+    modes: tuple[PlanarMode, ...],
+    titles: list[str],
+    *,
+    outline: FloatArray,
+) -> ModesSideBySide:
+    """Return modes of a planar body with titles, of which there is one where there is no mode."""
+    reach = [contact.r for contact in contacts]
+    everything = np.vstack([outline, np.reshape(reach, (-1, 2)), np.zeros((1, 2))])
+    low, high = everything.min(axis=0), everything.max(axis=0)
+    size = float(np.linalg.norm(high - low)) or NO_SIZE
     return ModesSideBySide(
-        titles=titles or ["approaches" if answer.approaching else "no consistent mode"],
+        titles=titles,
         modes=modes,
         contacts=contacts,
         walls=[_flat_of(contact, size) for contact in contacts],

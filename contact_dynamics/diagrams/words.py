@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from contact_dynamics.contact_modes import Certainty, ModeVerdict
-from contact_dynamics.contact_modes.letters import LETTERS, SEPARATES, STICKS
+from contact_dynamics.contact_modes.letters import LETTERS
 from contact_dynamics.impact import ImpactOutcome, SequenceEnd
 from contact_dynamics.questions.many import ManyImpactsAnswer, ManyTumblingsAnswer
 from contact_dynamics.tumbling.regime import Regime
@@ -151,18 +151,6 @@ def contact_modes_in_words(answer: ContactModeAnswer) -> list[str]:
     return [*words, *_statics_in_words(answer.statics), *_settled_in_words(answer.settled)]
 
 
-def mode_in_words(mode: str) -> str:
-    """Return words for a mode with forces, one letter for each contact: what the body does, or each kind."""
-    kinds = {letter: mode.count(letter) for letter in LETTERS if letter in mode}
-    if len(kinds) <= 1:
-        return next((f"it {_ALTOGETHER.get(kind, LETTERS[kind][0])}" for kind in kinds), "nothing touches it")
-    (first, most), *others = kinds.items()
-    words = f"{most} contact{'s' * (most > 1)} {LETTERS[first][most > 1]}"
-    words += "".join(f", {count} {LETTERS[kind][count > 1]}" for kind, count in others)
-    # A rigid body of which one contact stays fixed can only turn about it.
-    return f"it tips ({words})" if set(kinds) == {SEPARATES, STICKS} else words
-
-
 def contacts_in_words(letters: str, count: int) -> str:
     """Return words such as "2 contacts slide left". The letters of several modes are joined by `|`."""
     if letters == "?":
@@ -209,9 +197,6 @@ def margin_in_words(margin: SpatialModeMargin) -> str:
         return "(under every wrench)"
     beyond = " or ".join(margin.modes_beyond) or "no mode"
     return f"({margin.margin:.3g} N from {beyond})"
-
-
-_ALTOGETHER: Final = {SEPARATES: "leaves"}  # where a body is not said to do what its contacts do
 
 
 def _verdict_in_words(verdict: ModeVerdict, modes: list[str]) -> str:

@@ -1,14 +1,16 @@
 """Draws results with Matplotlib: the viewer's diagrams, for papers, notebooks and terminals without a viewer.
 
-Each function draws one diagram into the `Axes` that it is given. What it draws are the arrays of
+`toss` and `modes` return a figure of what the physics returns, and `save_figure` writes it. Each of the other
+functions draws one diagram into the `Axes` that it is given. What it draws are the arrays of
 `contact_dynamics.diagrams`, which the viewer draws too. `contact_dynamics.plots` can be imported without
 Matplotlib, which the extra ``[plot]`` brings.
 
 In reading order: the colours (`colors`) and what all diagrams share (`style`), lecture 25's curves
 (`trajectory`) and rolling ellipsoid (`poinsot`), lecture 26's body with its contacts (`planar_scene`),
 contact forces in their cones (`contact_forces`) and charts of wrenches (`wrenches`), lecture 27's impulse
-space (`impulse_space`, `impulse_space_in_3d`), whole tosses (`toss`), all diagrams of an answer as figures
-(`figures`), and the command `contact-dynamics plot` (`arguments`, `logged_answers`, `run`).
+space (`impulse_space`, `impulse_space_in_3d`), whole tosses (`tosses`), all diagrams of an answer as figures
+(`figures`), what the physics returns as figures (`results`), and the command `contact-dynamics plot`
+(`arguments`, `logged_answers`, `run`).
 """
 
 from contact_dynamics.plots.contact_forces import draw_contact_forces
@@ -18,8 +20,9 @@ from contact_dynamics.plots.impulse_space_in_3d import draw_impulse_space_in_3d
 from contact_dynamics.plots.many_states import draw_many_states
 from contact_dynamics.plots.planar_scene import draw_planar_scene
 from contact_dynamics.plots.poinsot import draw_poinsot
+from contact_dynamics.plots.results import modes, toss
 from contact_dynamics.plots.style import save_figure
-from contact_dynamics.plots.toss import draw_event_tree, draw_toss
+from contact_dynamics.plots.tosses import draw_event_tree, draw_toss
 from contact_dynamics.plots.trajectory import (
     draw_angular_momentum,
     draw_angular_velocity,
@@ -50,5 +53,7 @@ __all__ = [
     "draw_toss",
     "draw_velocity",
     "figures_of",
+    "modes",
     "save_figure",
+    "toss",
 ]

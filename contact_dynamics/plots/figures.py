@@ -13,7 +13,7 @@ from contact_dynamics.plots.impulse_space_in_3d import draw_impulse_space_in_3d
 from contact_dynamics.plots.many_states import draw_many_states
 from contact_dynamics.plots.planar_scene import draw_planar_scene
 from contact_dynamics.plots.poinsot import draw_poinsot
-from contact_dynamics.plots.toss import draw_event_tree, draw_toss
+from contact_dynamics.plots.tosses import draw_event_tree, draw_toss
 from contact_dynamics.plots.trajectory import (
     draw_angular_momentum,
     draw_angular_velocity,
@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from contact_dynamics.questions.many_contact_modes import ManyContactModesAnswer
-    from contact_dynamics.rigid_body.body import MassProperties
+    from contact_dynamics.rigid_body.body import HasMassProperties
     from contact_dynamics.shapes.convex import ConvexShape
     from contact_dynamics.validation import FloatArray
 
@@ -66,8 +66,8 @@ def figures_of(
     | ManyContactModesAnswer,
     *,
     gravity_W: FloatArray,
-    body: MassProperties | None = None,
-    other: MassProperties | None = None,
+    body: HasMassProperties | None = None,
+    other: HasMassProperties | None = None,
     shape: ConvexShape = NO_SHAPE,
 ) -> Iterator[NamedFigure]:
     """Yield the figures of an answer. There are none for an answer without a diagram.
@@ -75,9 +75,9 @@ def figures_of(
     Args:
         answer: The answer to any of the questions, or to one about many states.
         gravity_W: (3,), m/s^2, world axes, for the potential energy.
-        body: Mass properties of the body. Without them there are no lines in impulse space, no energies and
-            no momenta.
-        other: Mass properties of a second body that is struck.
+        body: The body, or its mass properties. Without it there are no lines in impulse space, no energies
+            and no momenta.
+        other: A second body that is struck, or its mass properties.
         shape: The body's shape, for its outline.
     """
     if isinstance(answer, ImpactAnswer):
@@ -95,7 +95,7 @@ def figures_of(
 def _of_many(answer: ManyTumblingsAnswer | ManyImpactsAnswer) -> Iterator[NamedFigure]:
     if len(answer.states) == 0:
         return
-    figure = _figure(8.0, 8.0)
+    figure = blank_figure(8.0, 8.0)
     side, top = figure.subplots(2, 1)
     draw_many_states(side, answer, across="x", up="z")
     draw_many_states(top, answer, across="x", up="y")
@@ -104,37 +104,37 @@ def _of_many(answer: ManyTumblingsAnswer | ManyImpactsAnswer) -> Iterator[NamedF
 
 def _of_toss(answer: TossAnswer, shape: ConvexShape) -> Iterator[NamedFigure]:
     outline = drawn_shape(shape)
-    figure = _figure(8.0, 8.0)
+    figure = blank_figure(8.0, 8.0)
     side, top = figure.subplots(2, 1)
     draw_toss(side, answer, outline, across="x", up="z")
     draw_toss(top, answer, outline, across="x", up="y")
     yield NamedFigure("toss", figure)
     if answer.distribution is not None and answer.distribution.branches:
-        figure = _figure(9.0, 5.0)
+        figure = blank_figure(9.0, 5.0)
         draw_event_tree(figure.add_subplot(), answer.distribution)
         yield NamedFigure("toss-tree", figure)
 
 
 def _of_impact(
-    answer: ImpactAnswer, body: MassProperties | None, other: MassProperties | None
+    answer: ImpactAnswer, body: HasMassProperties | None, other: HasMassProperties | None
 ) -> Iterator[NamedFigure]:
     if len(answer.impact.path_W) == 0:
         return
-    figure = _figure(8.0, 4.6)
+    figure = blank_figure(8.0, 4.6)
     draw_impulse_space(figure.add_subplot(), body, answer, other=other)
     yield NamedFigure("impulse-space", figure)
     if answer.plane is None:
-        figure = _figure(9.0, 6.0)
+        figure = blank_figure(9.0, 6.0)
         draw_impulse_space_in_3d(figure.add_subplot(projection="3d"), body, answer, other=other)
         yield NamedFigure("impulse-space-in-3d", figure)
 
 
 def _of_tumbling(
-    answer: TumblingAnswer, body: MassProperties | None, gravity_W: FloatArray
+    answer: TumblingAnswer, body: HasMassProperties | None, gravity_W: FloatArray
 ) -> Iterator[NamedFigure]:
     trajectory = answer.trajectory
     if len(trajectory) > 0:
-        figure = _figure(13.0, 11.0)
+        figure = blank_figure(13.0, 11.0)
         figure.suptitle(f"{answer.body_name or 'a body'}: predicted motion")
         places = iter(range(1, 8))
 
@@ -152,16 +152,16 @@ def _of_tumbling(
         yield NamedFigure("motion", figure)
     rotation, curves = answer.poinsot, answer.curves
     if rotation is not None and curves is not None and rotation.regime is not Regime.AT_REST:
-        figure = _figure(8.0, 6.0)
+        figure = blank_figure(8.0, 6.0)
         draw_poinsot(figure.add_subplot(projection="3d"), rotation, curves, answer.state)
         yield NamedFigure("poinsot", figure)
 
 
 def _of_modes(
-    answer: ContactModeAnswer, body: MassProperties | None, shape: ConvexShape
+    answer: ContactModeAnswer, body: HasMassProperties | None, shape: ConvexShape
 ) -> Iterator[NamedFigure]:
     for i, mode in enumerate(answer.modes[:MAX_MODES], start=1):
-        figure = _figure(7.0, 4.6)
+        figure = blank_figure(7.0, 4.6)
         draw_contact_forces(
             figure.add_subplot(), answer.contacts, mode, title=f"contact forces in {mode.mode}"
         )
@@ -172,13 +172,14 @@ def _of_modes(
     outline = silhouette(drawn_shape(shape), plane.axes_W @ answer.state.R_WB)
     view = modes_side_by_side(answer, plane, outline=outline)
     for i, title in enumerate(view.titles[:MAX_MODES]):
-        figure = _figure(8.0, 4.6)
+        figure = blank_figure(8.0, 4.6)
         draw_planar_scene(figure.add_subplot(), view.scene(i), title=title)
         yield NamedFigure(f"planar-scene-{i + 1}", figure)
-    shown = map_of_answer(answer, plane, body=body, resolution=_RESOLUTION)
+    masses = None if body is None else body.mass_properties
+    shown = map_of_answer(answer, plane, body=masses, resolution=_RESOLUTION)
     if shown is None:
         return
-    figure = _figure(11.0, 5.0)
+    figure = blank_figure(11.0, 5.0)
     draw_mode_map(figure.add_subplot(), shown.sets, shown.chart, applied=shown.applied, change=shown.change)
     yield NamedFigure("mode-map", figure)
     chart = dual_chart_of(view, shown, resolution=_RESOLUTION)
@@ -186,12 +187,13 @@ def _of_modes(
         return
     for i, seen in enumerate(view.modes[:MAX_MODES], start=1):
         one = next(one for one in shown.sets if one.mode == seen.mode)
-        figure = _figure(11.0, 5.0)
+        figure = blank_figure(11.0, 5.0)
         draw_force_dual(figure.add_subplot(), one, view.contacts, chart, outlines=[outline])
         yield NamedFigure(f"force-dual-{i}", figure)
 
 
-def _figure(width: float, height: float) -> Figure:
+def blank_figure(width: float, height: float) -> Figure:
+    """Return a figure of a size in inches."""
     from matplotlib.figure import Figure
 
     return Figure(figsize=(width, height), layout="compressed")  # it knows of equal scales

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from contact_dynamics.questions.impact_answer import ImpactAnswer
-    from contact_dynamics.rigid_body.body import MassProperties
+    from contact_dynamics.rigid_body.body import HasMassProperties
 
 MARKERS: Final = {
     PathEvent.SLIDING_STOPS: "s",
@@ -26,10 +26,10 @@ MARKERS: Final = {
 
 def draw_impulse_space(
     axes: Axes,
-    mass_properties: MassProperties | None,
+    body: HasMassProperties | None,
     answer: ImpactAnswer,
     *,
-    other: MassProperties | None = None,
+    other: HasMassProperties | None = None,
 ) -> None:
     """Draw the impulse path of an impact's main contact, N s, with what bounds and bends it.
 
@@ -38,11 +38,12 @@ def draw_impulse_space(
 
     Args:
         axes: The axes to draw into.
-        mass_properties: Those of the body. If they are None, there are no sticking and compression lines.
+        body: The body, or its mass properties. If it is None, there are no sticking and compression lines.
         answer: The impact.
-        other: Mass properties of the body that is struck. Without them there are no lines for two bodies.
+        other: The body that is struck, or its mass properties. Without it there are no lines for two bodies.
     """
-    space = impulse_space_of(mass_properties, answer, other=other)
+    masses, other_masses = (one.mass_properties if one is not None else None for one in (body, other))
+    space = impulse_space_of(masses, answer, other=other_masses)
     projected, cut = (", projected", ", cut") if space.in_space else ("", "")
     lines_through_zero(axes)
     friction = float(answer.contacts.frictions[main_contact(answer.impact)])

@@ -13,7 +13,7 @@ from contact_dynamics.plots.impulse_space import MARKERS
 
 if TYPE_CHECKING:
     from contact_dynamics.questions.impact_answer import ImpactAnswer
-    from contact_dynamics.rigid_body.body import MassProperties
+    from contact_dynamics.rigid_body.body import HasMassProperties
 
 _ROOM: Final = 8.0  # points between the numbers of an axis and its name
 _DECIMALS: Final = 12  # of the picture's extent
@@ -22,20 +22,22 @@ _TICKS: Final = 4  # numbers on each axis, few enough not to cover each other
 
 def draw_impulse_space_in_3d(
     axes: Any,
-    mass_properties: MassProperties | None,
+    body: HasMassProperties | None,
     answer: ImpactAnswer,
     *,
-    other: MassProperties | None = None,
+    other: HasMassProperties | None = None,
 ) -> None:
     """Draw the impulse path of an impact's main contact in all three dimensions, N s.
 
     Args:
         axes: Axes in 3D, as ``figure.add_subplot(projection="3d")`` makes them. They have no type.
-        mass_properties: Those of the body. If they are None, sticking line and compression plane are missing.
+        body: The body, or its mass properties. If it is None, sticking line and compression plane are not
+            drawn.
         answer: The impact.
-        other: Mass properties of the body that is struck. Without them both are missing for two bodies.
+        other: The body that is struck, or its mass properties. Without it both are missing for two bodies.
     """
-    space = impulse_space_in_3d_of(mass_properties, answer, other=other)
+    masses, other_masses = (one.mass_properties if one is not None else None for one in (body, other))
+    space = impulse_space_in_3d_of(masses, answer, other=other_masses)
     friction = float(answer.contacts.frictions[main_contact(answer.impact)])
     for i, strip in enumerate(space.cone):
         label = f"friction cone, μ = {friction:.3g}" if i == 0 else None

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from contact_dynamics.plots.colors import AXIS
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
@@ -39,7 +38,7 @@ def lines_through_zero(axes: Axes, *, vertical: bool = True) -> None:
         axes.axvline(0.0, color=AXIS, linewidth=1.0, zorder=0.5)
 
 
-def save_figure(figure: Figure, path: Path) -> None:
+def save_figure(figure: Figure, path: Path | str) -> None:
     """Write a figure into a file, in the format that its name ends with.
 
     Words stay words in SVG, so that they can be searched and read aloud, and the same figure gives the same
@@ -47,6 +46,7 @@ def save_figure(figure: Figure, path: Path) -> None:
     """
     from matplotlib import rc_context
 
+    path = Path(path)
     options = {"metadata": {"Date": None}} if path.suffix == ".svg" else {"dpi": DOTS_PER_INCH}
     with rc_context({"svg.fonttype": "none", "svg.hashsalt": path.name}):
         figure.savefig(path, **options)

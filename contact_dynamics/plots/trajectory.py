@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from contact_dynamics.motion.covariance import CarriedCovariance
-    from contact_dynamics.rigid_body.body import MassProperties
+    from contact_dynamics.rigid_body.body import HasMassProperties
     from contact_dynamics.tumbling import Trajectory
     from contact_dynamics.validation import FloatArray
 
@@ -61,23 +61,25 @@ def draw_angular_velocity(axes: Axes, trajectory: Trajectory) -> None:
     _draw_curves(axes, trajectory, trajectory.w_WB_W, _XYZ, "angular velocity, rad/s")
 
 
-def draw_momentum(axes: Axes, trajectory: Trajectory, body: MassProperties) -> None:
+def draw_momentum(axes: Axes, trajectory: Trajectory, body: HasMassProperties) -> None:
     """Draw the momentum, kg m/s."""
-    _draw_curves(axes, trajectory, momenta_of(body, trajectory), _XYZ, "momentum, kg m/s")
+    _draw_curves(axes, trajectory, momenta_of(body.mass_properties, trajectory), _XYZ, "momentum, kg m/s")
 
 
-def draw_angular_momentum(axes: Axes, trajectory: Trajectory, body: MassProperties) -> None:
+def draw_angular_momentum(axes: Axes, trajectory: Trajectory, body: HasMassProperties) -> None:
     """Draw the angular momentum about the centre of mass, kg m²/s."""
-    rows = angular_momenta_of(body, trajectory)
+    rows = angular_momenta_of(body.mass_properties, trajectory)
     _draw_curves(axes, trajectory, rows, _XYZ, "angular momentum, kg m²/s")
 
 
-def draw_energy(axes: Axes, trajectory: Trajectory, body: MassProperties, *, gravity_W: FloatArray) -> None:
+def draw_energy(
+    axes: Axes, trajectory: Trajectory, body: HasMassProperties, *, gravity_W: FloatArray
+) -> None:
     """Draw the kinetic energies, the potential energy and their sum, J.
 
     ``gravity_W`` is (3,), m/s^2. The potential energy is zero at the origin of the world.
     """
-    energies = energies_of(body, trajectory, gravity_W=gravity_W)
+    energies = energies_of(body.mass_properties, trajectory, gravity_W=gravity_W)
     rows = np.column_stack([energies.translational, energies.rotational, energies.potential, energies.total])
     _draw_curves(axes, trajectory, rows, ("translation", "rotation", "potential", "sum"), "energy, J")
 

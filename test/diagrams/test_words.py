@@ -10,6 +10,7 @@ import pytest
 
 from contact_dynamics.contact import ContactSet, ContactUncertainty
 from contact_dynamics.contact_modes import Certainty, ModeVerdict, SpatialModeMargin
+from contact_dynamics.contact_modes.letters import mode_in_words
 from contact_dynamics.diagrams.words import (
     CERTAINTIES,
     OUTCOMES,
@@ -18,7 +19,6 @@ from contact_dynamics.diagrams.words import (
     VERDICTS,
     contact_modes_in_words,
     margin_in_words,
-    mode_in_words,
 )
 from contact_dynamics.impact import ImpactOutcome, SequenceEnd
 from contact_dynamics.questions import ContactModeQuestion, ask

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from contact_dynamics.contact_modes.letters import in_a_sentence, words_of
+from contact_dynamics.contact_modes.letters import mode_in_words, words_of
 from contact_dynamics.contact_modes.result import verdict_in_short
 from contact_dynamics.records import Record
 
@@ -48,8 +48,8 @@ class SpatialMode(Record):
         return words_of(self.mode)
 
     def in_short(self) -> str:
-        """Return the letters, and what the contacts do."""
-        return f"SpatialMode {self.mode}: {in_a_sentence(self.mode)}"
+        """Return the letters, and what the body does, or each kind of contact."""
+        return f"SpatialMode {self.mode}: {mode_in_words(self.mode)}"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -86,5 +86,5 @@ class SpatialModeAnswer(Record):
     within: VerdictsWithin | None = None
 
     def in_short(self) -> str:
-        """Return the verdict, and what the contacts do in the first modes."""
+        """Return the verdict, and what the first modes are in words."""
         return verdict_in_short(type(self).__name__, self.verdict, [mode.mode for mode in self.modes])

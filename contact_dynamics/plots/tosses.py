@@ -10,7 +10,7 @@ from contact_dynamics.diagrams.toss_tree import fan_of, rest_in_words, tree_of
 from contact_dynamics.plots import colors
 from contact_dynamics.plots.style import legend_beside
 from contact_dynamics.rotations.one import rotation_matrix
-from contact_dynamics.toss import TossEventKind
+from contact_dynamics.toss import Toss, TossEventKind
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -24,18 +24,27 @@ if TYPE_CHECKING:
 _XYZ: Final = "xyz"
 
 
-def draw_toss(axes: Axes, answer: TossAnswer, shape: Shape, *, across: str = "x", up: str = "z") -> None:
+MAX_POINTS: Final = 2000
+"""Points of the line that a toss is drawn as."""
+
+
+def draw_toss(axes: Axes, toss: Toss | TossAnswer, shape: Shape, *, across: str = "x", up: str = "z") -> None:
     """Draw a toss seen along one of the world's axes: path, strikes, pose at the end, other ways, samples.
 
     Args:
         axes: where to draw.
-        answer: the answer.
+        toss: the toss, or the answer to a question about one.
         shape: the body's shape, for its outline.
         across: the world's axis, "x", "y" or "z", to the right.
         up: the one upwards.
     """
     columns = [_XYZ.index(across), _XYZ.index(up)]
-    told = answer.distribution
+    if isinstance(toss, Toss):
+        events, told = toss.events, None
+        paths = [each.at(np.linspace(0.0, each.seconds, MAX_POINTS)) for each in (toss, *toss.alternatives)]
+    else:
+        events, told = toss.toss.events, toss.distribution
+        paths = [path.trajectory for path in toss.paths]
     if told is not None:
         for k, line in enumerate(fan_of(told)):
             axes.plot(
@@ -50,8 +59,7 @@ def draw_toss(axes: Axes, answer: TossAnswer, shape: Shape, *, across: str = "x"
         ghosts = told.ghosts
         for i in np.flatnonzero(ghosts.strikes == 0).tolist():
             _draw_outline(axes, shape, (ghosts.p_WB_W[i], ghosts.q_WB[i]), columns, color=colors.SKY)
-    for k, path in enumerate(answer.paths):
-        trajectory = path.trajectory
+    for k, trajectory in enumerate(paths):
         color, width = (colors.BLACK, 1.4) if k == 0 else (colors.ORANGE, 0.9)
         axes.plot(
             *trajectory.p_WB_W[:, columns].T,
@@ -62,7 +70,7 @@ def draw_toss(axes: Axes, answer: TossAnswer, shape: Shape, *, across: str = "x"
             gid=f"path_{k}",
         )
         _draw_outline(axes, shape, (trajectory.p_WB_W[-1], trajectory.q_WB[-1]), columns, color=color)
-    strikes = [event for event in answer.toss.events if event.kind == TossEventKind.STRIKES]
+    strikes = [event for event in events if event.kind == TossEventKind.STRIKES]
     points = np.array([point for event in strikes for point in event.p_WC_W]).reshape(-1, 3)
     right, above = points[:, columns].T
     axes.scatter(right, above, s=14.0, color=colors.RED, zorder=3, label="strikes", gid="strikes")
