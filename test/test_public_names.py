@@ -19,7 +19,7 @@ SECTIONS = dict(
     re.findall(r"^## `contact_dynamics\.([\w.]+)`\n(.*?)(?=^## |\Z)", PAGE, re.DOTALL | re.MULTILINE)
 )
 ROW = re.compile(r"^\| `(\w+)(\([^`]*\))?` \| (.*) \|$", re.MULTILINE)
-OFFERED = ("world", *CHAPTERS)
+OFFERED = ("world", *CHAPTERS, "plots")
 
 
 def offered(chapter: str) -> dict[str, object]:
