@@ -70,7 +70,7 @@ def modes(
     each = figure.subplots(rows, 1, squeeze=False)[:, 0]
     if isinstance(answer, PlanarModeAnswer) and isinstance(problem, PlanarContactProblem):
         view = side_by_side(
-            problem.contacts,
+            tuple(problem.contacts),
             answer.modes[:MAX_MODES],
             titles or [str(answer.verdict)],
             outline=np.zeros((0, 2)),
