@@ -776,6 +776,3 @@ LONGEST_SHORT_STEP: Final = 2e-4
 
 SHORTEST_SHORT_STEP: Final = 1e-7
 """s. A short step may be this short, where a corner comes down."""
-
-SHOWN_AS_ZERO: Final = 1e-12
-"""Numbers of an array that are smaller than its largest one by this factor are printed as zero."""
