@@ -8,6 +8,7 @@ from hostile_values.shared import BOX, STATE, WORLD, Calls
 
 TOSSED = {"body": BOX, "state": STATE, "world": WORLD}
 FOLLOWED = toss.toss(**TOSSED, horizon=0.1)
+SAMPLED = toss.sampled_toss(**TOSSED, count=2, horizon=0.1)
 
 TOSSES: Calls = {
     "toss": (
@@ -23,6 +24,7 @@ TOSSES: Calls = {
     ),
     "Toss.at": (FOLLOWED.at, {"seconds": [0.01, 0.05]}),
     "Toss.state_at": (FOLLOWED.state_at, {"seconds": 0.05}),
+    "TossDistribution.standard_error": (SAMPLED.standard_error, {"probability": 0.5}),
     "TossUncertainty": (
         toss.TossUncertainty,
         {
@@ -44,7 +46,7 @@ TOSSES: Calls = {
             "strikes": 1,
             "to_rest": False,
             "seed": 0,
-            "law": RestitutionLaw.POISSON,
+            "restitution_law": RestitutionLaw.POISSON,
             "horizon": 0.2,
         },
     ),
