@@ -105,38 +105,33 @@ def read_server_parameters(source: ParameterSource) -> ServerParameters:
         sources=tuple(sources for _, sources in bodies),
         static_topic=reader.topic(
             "tf_static_topic",
-            "Topic of tf2_msgs/TFMessage with the transforms between frames that stand still. Not used if "
-            "empty.",
+            "Topic of tf2_msgs/TFMessage with static transforms. Not used if empty.",
         ),
-        world_frame=reader.name(
-            "world_frame", "world", "Frame that states are published in and answers are given in."
-        ),
+        world_frame=reader.name("world_frame", "world", "Frame of states and answers."),
         state_timeout=reader.read(
             "state_timeout",
             0.5,
-            "How old the newest state may be, s, for a question about now.",
+            "Largest age of the newest state, s.",
             (1e-3, 1e6),
         ),
-        state_history=reader.read(
-            "state_history", 5.0, "How long states are kept for questions about the past, s.", (0.0, 1e4)
-        ),
+        state_history=reader.read("state_history", 5.0, "Length of the history of states, s.", (0.0, 1e4)),
         future_tolerance=reader.read(
             "future_tolerance",
             FUTURE_TOLERANCE,
-            "How far a state's stamp may be ahead of the node's clock, s. A state farther ahead is refused.",
+            "Largest lead of a state's stamp over the node's clock, s. Other states are rejected.",
             (0.0, 1e6),
         ),
         max_states=reader.read(
             "max_states",
             MAX_STATES,
-            "States of a body that are kept, however fast they come.",
+            "Largest number of states kept for a body.",
             (1, 10_000_000),
         ),
         fault_limits=_read_fault_limits(reader),
         client_gone_for=reader.read(
             "client_gone_for",
             1.0,
-            "How long a client that seemed gone gets no answers to what it asked before, s.",
+            "How long to drop old requests of a lost client, s.",
             (0.0, 3600.0),
         ),
         defaults=_read_defaults(reader),
@@ -144,18 +139,18 @@ def read_server_parameters(source: ParameterSource) -> ServerParameters:
         autostart=reader.read(
             "autostart",
             default=True,
-            description="Whether the node configures and activates itself at its start.",
+            description="Whether the node configures and activates itself when it starts.",
         ),
         log=is_logged,
         log_directory=reader.read(
-            "log_directory", "", "Folder for the log's folder. If empty, this is where the server starts."
+            "log_directory", "", "Parent folder of the log's folder. If empty, the working directory."
         ),
         log_before_answer=_read_log_before_answer(reader, is_logged=is_logged),
         log_limits=_read_log_limits(reader),
         self_check_period=reader.zero_or(
             "self_check_period",
             60.0,
-            "Time after which the server checks again whether messages reach it, s. 0: it does not.",
+            "Period of the check that messages reach the server, s. 0: never.",
             (0.5, 1e6),
             unit="s",
         ),
@@ -168,7 +163,7 @@ def _read_log_before_answer(reader: ParameterReader, *, is_logged: bool) -> bool
     is_before: bool = reader.read(
         "log_before_answer",
         default=False,
-        description="Whether an answer leaves only once it is on the disk, with all that it depends on.",
+        description="Whether an answer is sent only after it is on the disk, with all that it depends on.",
     )
     if is_before and not is_logged:
         message = "log_before_answer must be false where log is false, got true"
@@ -179,7 +174,9 @@ def _read_log_before_answer(reader: ParameterReader, *, is_logged: bool) -> bool
 def _read_log_limits(reader: ParameterReader) -> LogLimits:
     names = [each.value for each in Compression]
     allowed = ", ".join(names)
-    compression = reader.read("log_compression", Compression.ZSTD.value, f"How the log is packed: {allowed}.")
+    compression = reader.read(
+        "log_compression", Compression.ZSTD.value, f"Compression of the log: {allowed}."
+    )
     if compression not in names:
         message = f"log_compression must be one of {allowed}, got {compression!r}"
         raise ConfigurationError(message)
@@ -187,21 +184,21 @@ def _read_log_limits(reader: ParameterReader) -> LogLimits:
     file_size = reader.zero_or(
         "log_file_size",
         1000.0,
-        "Size at which a file of the log is finished, MB. 0: no limit.",
+        "Size limit of a file of the log, MB. 0: no limit.",
         (least, 1e8),
         unit="MB",
     )
     file_duration = reader.zero_or(
         "log_file_duration",
         1800.0,
-        "Time after which a file of the log is finished, s. 0: no limit.",
+        "Duration of a file of the log, s. 0: no limit.",
         (LEAST_FILE_SECONDS, 1e8),
         unit="s",
     )
     size_limit = reader.zero_or(
         "log_size_limit",
         0.0,
-        "Size of all files of the log above which the oldest are deleted, MB. 0: none is deleted.",
+        "Size limit of the log, above which its oldest files are deleted, MB. 0: no limit.",
         (FILES_KEPT * (file_size or least), 1e8),
         unit="MB",
     )
@@ -226,22 +223,22 @@ def _read_worker_limits(reader: ParameterReader) -> WorkerLimits:
         count=reader.read(
             "workers",
             default.count,
-            "Processes that answer questions that take long. With 0, the server answers them itself.",
+            "Number of processes for long questions. With 0, the server answers them itself.",
             (0, 64),
         ),
         deadline=reader.read(
-            "answer_deadline", default.deadline, "How long an answer of a worker may take, s.", (0.01, 3600.0)
+            "answer_deadline", default.deadline, "Time limit for an answer of a worker, s.", (0.01, 3600.0)
         ),
         memory=reader.read(
             "worker_memory",
             default.memory,
-            "Memory that a worker may take for an answer, MB.",
+            "Memory limit of a worker, MB.",
             (100, 1_000_000),
         ),
         max_waiting=reader.read(
             "max_waiting",
             default.max_waiting,
-            "Questions that may wait while all workers are busy.",
+            "Largest number of queued questions.",
             (0, 1000),
         ),
     )
@@ -253,7 +250,7 @@ def _read_fault_limits(reader: ParameterReader) -> FaultLimits:
         warn_every=reader.read(
             "warn_every",
             default.warn_every,
-            "Time between two warnings of one kind about a topic, s.",
+            "Shortest time between two warnings of one kind about a topic, s.",
             (0.0, 1e6),
         ),
         silent_after=reader.read(
@@ -287,7 +284,7 @@ def _read_defaults(reader: ParameterReader) -> Defaults:
             (0.0, 1e3),
         ),
         horizon=reader.read(
-            "horizon", default.horizon, "How far ahead a first contact is looked for, s.", (0.0, 1e4)
+            "horizon", default.horizon, "Look-ahead time for a first contact, s.", (0.0, 1e4)
         ),
         rate=reader.read("rate", default.rate, "Samples a second of trajectories, Hz.", (1e-6, 1e6)),
     )
