@@ -5,7 +5,6 @@ import numpy as np
 from contact_dynamics import (
     Body,
     BodyState,
-    MassProperties,
     Surface,
     World,
     find_contacts,
@@ -14,13 +13,8 @@ from contact_dynamics import (
     several_impact,
 )
 from contact_dynamics.impact import SeveralContactsLaw, outcomes_over_orders
-from contact_dynamics.shapes import box_vertices
 
-brick = Body(
-    name="brick",
-    mass_properties=MassProperties(mass=0.4, I_B=np.diag([3.53e-4, 8.33e-4, 1.02e-3])),
-    vertices_B=box_vertices((0.15, 0.09, 0.05)),
-)
+brick = Body.box((0.15, 0.09, 0.05), mass=0.4, name="brick")
 floor = Surface(
     name="floor", p_WS_W=np.zeros(3), normal_W=np.array([0.0, 0.0, 1.0]), friction=0.3, restitution=0.3
 )

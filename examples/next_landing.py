@@ -2,14 +2,9 @@
 
 import numpy as np
 
-from contact_dynamics import Body, BodyState, MassProperties, Surface, World, next_landing, spatial_impact
-from contact_dynamics.shapes import box_vertices
+from contact_dynamics import Body, BodyState, Surface, World, next_landing, spatial_impact
 
-box = Body(
-    name="box",
-    mass_properties=MassProperties(mass=0.4, I_B=np.diag([3.53e-4, 8.33e-4, 1.02e-3])),
-    vertices_B=box_vertices((0.15, 0.09, 0.05)),
-)
+box = Body.box((0.15, 0.09, 0.05), mass=0.4, name="box")
 floor = Surface(
     name="floor", p_WS_W=np.zeros(3), normal_W=np.array([0.0, 0.0, 1.0]), friction=0.3, restitution=0.45
 )

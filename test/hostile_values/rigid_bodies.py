@@ -9,7 +9,7 @@ from contact_dynamics import (
     shapes,
 )
 from contact_dynamics.rigid_body import inertia
-from hostile_values.shared import BALL, FALLING, OUTWARD, TETRAHEDRON, WHERE, Calls
+from hostile_values.shared import BALL, FALLING, OUTWARD, STATE, TETRAHEDRON, WHERE, Calls
 
 HAMMER = inertia.box(size=[0.1, 0.2, 0.3], mass=1.0).placed(p_GF_G=[0.0, 0.0, 0.2])
 RIM = shapes.Rim((0.0, 0.0, 0.1), (0.0, 0.0, 1.0), 0.1)
@@ -17,6 +17,10 @@ RIM = shapes.Rim((0.0, 0.0, 0.1), (0.0, 0.0, 1.0), 0.1)
 RIGID_BODIES: Calls = {
     "MassProperties": (MassProperties, {"mass": 1.0, "I_B": np.diag([0.1, 0.2, 0.25])}),
     "BodyState": (BodyState, FALLING),
+    "BodyState.with_velocities": (
+        STATE.with_velocities,
+        {"v_WB_W": [0.3, 0.1, -1.0], "w_WB_W": [1.0, 2.0, 0.5]},
+    ),
     "MassProperties.angular_inertia_about": (BALL.angular_inertia_about, {"axis_B": [0.0, 0.6, 0.8]}),
     "MassProperties.radius_of_gyration": (BALL.radius_of_gyration, {"axis_B": [0.0, 0.6, 0.8]}),
     "angular_momentum": (rigid_body.angular_momentum, WHERE),
