@@ -176,7 +176,7 @@ def test_members_are_taken_and_all_else_is_refused_by_name(
         assert text.startswith(f"{argument} must be ")
         assert f", got {shown}" in text
         assert all(member.name in text for member in kind)
-    with pytest.raises(InvalidFieldError, match=rf"^{argument}(\[0\]: found| must be .* got) 7"):
+    with pytest.raises(InvalidFieldError, match=rf"^{argument}(\[0\])? must be .* got 7"):
         CALLS[name](**{argument: 7})
 
 

@@ -103,11 +103,13 @@ ALIASES = {
     "count": ("samples",),
     "force_W": ("applied force",),
     "torque_W": ("applied torque",),
+    "w": ("contact normal velocity",),
+    "r": ("contact normal velocity",),
 }
 """Arguments that an error may name instead of the hostile one.
 
 A flat mesh is one of its triangles as much as of its vertices. Lists of unequal lengths are told of either.
-The count of a `TossSampling` has the name of its request's field.
+The count of a `TossSampling` has the name of its request's field. A contact of a large spin or arm separates.
 """
 
 FUNCTIONS = {"wrench_of", "is_settled", "now_ns"}
