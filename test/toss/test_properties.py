@@ -142,7 +142,7 @@ def test_bad_input_is_refused_by_name() -> None:
     round_one = Body(name="can", mass_properties=body.mass_properties, shape=cylinder(radius=0.1, length=0.2))
     with pytest.raises(NotSupportedError, match=r"'can'.*rims"):
         toss(round_one, state, world)
-    with pytest.raises(ContactDynamicsError, match="no shape"):
+    with pytest.raises(ContactDynamicsError, match="must have `vertices_B` or a `shape`, got neither"):
         toss(Body(name="point", mass_properties=body.mass_properties), state, world)
     went = toss(body, state, world, horizon=0.05)
     assert went.end == TossEnd.HORIZON
