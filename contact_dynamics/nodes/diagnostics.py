@@ -69,8 +69,8 @@ class AnswerTimes:
         slow = times[-max(1, len(times) // 100)] if times else 0.0
         return {
             "answers": str(self.answers),
-            "of them refused": str(self.refusals),
-            "of them faults of the server": str(self.faults),
+            "of them rejected": str(self.refusals),
+            "of them internal errors": str(self.faults),
             "time of an answer, median, ms": f"{1e3 * statistics.median(times):.3f}" if times else "",
             "time of an answer, slowest of 100, ms": f"{1e3 * slow:.3f}" if times else "",
         }
@@ -135,9 +135,9 @@ def values_of_topics(topics: Iterable[TopicTraffic], faults: Mapping[tuple[str, 
 def values_of_self_check(check: SelfCheck, successions: int) -> dict[str, str]:
     """Return what is reported of the self-check."""
     return {
-        "checks heard": str(check.heard),
-        "checks in turn not heard": str(check.unheard),
-        "times that the server joined anew": str(successions),
+        "checks received": str(check.heard),
+        "consecutive checks not received": str(check.unheard),
+        "times that the server rejoined": str(successions),
     }
 
 

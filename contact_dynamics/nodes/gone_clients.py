@@ -1,4 +1,4 @@
-"""Remembers which clients seemed gone, for a short time by a clock that nobody sets."""
+"""Remembers which clients seemed gone, for a short time, on the monotonic clock."""
 
 from __future__ import annotations
 

@@ -58,7 +58,7 @@ class Situation(Enum):
     NO_STATE_YET = _Row(
         Part.STATES,
         Level.WARN,
-        "no state of {body!r} has come on {topics}, where {publishers} publish",
+        "no state of {body!r} received on {topics} ({publishers} publishers)",
         "test_diagnostics.py::test_a_body_of_which_nothing_came",
     )
     NO_MATCH = _Row(
@@ -82,7 +82,7 @@ class Situation(Enum):
     OLD = _Row(
         Part.STATES,
         Level.ERROR,
-        "the states of {body!r} are too old when they come, the last by {age:.3f} s (state_timeout): "
+        "the states of {body!r} are too old on arrival, the last by {age:.3f} s (state_timeout): "
         "do the clocks agree?",
         "test_diagnostics.py::test_states_that_are_old_when_they_come",
     )
@@ -95,43 +95,43 @@ class Situation(Enum):
     BODY_SILENT = _Row(
         Part.STATES,
         Level.WARN,
-        "no state of {body!r} comes any more on {topics}",
+        "no state of {body!r} is received any more on {topics}",
         "test_diagnostics.py::test_a_body_that_is_gone_from_a_shared_topic",
     )
     LOST = _Row(
         Part.STATES,
         Level.WARN,
-        "{topic}: messages were lost before they could be taken, {count} so far",
+        "{topic}: messages were lost before they were received, {count} so far",
         "test_distrusted_states.py::test_what_got_lost_fell_silent_and_has_two_publishers_is_told",
     )
     SEVERAL_PUBLISHERS = _Row(
         Part.STATES,
         Level.WARN,
-        "{topic}: {publishers} publishers tell the states of one body",
+        "{topic}: {publishers} publishers send states of one body",
         "test_diagnostics.py::test_a_second_publisher_of_a_body",
     )
     NO_CLOCK = _Row(
         Part.STATES,
         Level.WARN,
-        "use_sim_time is true and no time has come on /clock",
+        "use_sim_time is true and no time was received on /clock",
         "test_diagnostics.py::test_a_simulated_clock_that_does_not_come",
     )
     SAME_NAME = _Row(
         Part.ANSWERS,
         Level.ERROR,
-        "another node has this name: both answer the same questions",
+        "another node has this name, and both answer the same requests",
         "test_diagnostics.py::test_a_second_server_of_the_same_name",
     )
     FAULT = _Row(
         Part.ANSWERS,
         Level.ERROR,
-        "answers met faults of the server, {count} so far",
+        "internal errors of the server, {count} so far",
         "test_diagnostics.py::test_a_fault_of_the_server",
     )
     OVERLOADED = _Row(
         Part.ANSWERS,
         Level.WARN,
-        "questions were refused as BUSY or TIMEOUT, {count} so far",
+        "requests were rejected as BUSY or TIMEOUT, {count} so far",
         "test_diagnostics.py::test_questions_that_take_too_long",
     )
     WORKERS = _Row(
@@ -167,7 +167,7 @@ class Situation(Enum):
     LOG_NOT_AWAITED = _Row(
         Part.LOG,
         Level.WARN,
-        "the disk took too long, and answers leave before they are on it",
+        "the disk took too long, and answers are sent before they are on it",
         "test_log_before_answer.py::test_a_disk_that_hangs_is_told_of_and_not_waited_for_again",
     )
     UNHEARD = _Row(

@@ -127,7 +127,7 @@ class TopicTraffic:
             missing = number - before - 1
             self.lost += missing
             self._lost_at = self._newest
-            self.faults.add(self.topic, "lost", missing, "messages were lost before they could be taken")
+            self.faults.add(self.topic, "lost", missing, "messages were lost before they were received")
 
     def look(self, publishers: int, *, awake_for: float) -> list[Present]:
         """Look, once a second, at who publishes and for how long nothing came; return what is wrong.
@@ -139,9 +139,7 @@ class TopicTraffic:
         present: list[Present] = []
         self._is_steady = publishers <= 1
         if self.one_publisher and publishers > 1:
-            self.faults.add(
-                self.topic, "publishers", 1, f"{publishers} publishers tell the states of one body"
-            )
+            self.faults.add(self.topic, "publishers", 1, f"{publishers} publishers send states of one body")
             present.append(Situation.SEVERAL_PUBLISHERS.present(topic=self.topic, publishers=publishers))
         if not self.received:
             return present

@@ -192,7 +192,7 @@ class Visualizer(InboxNode):
         deadline = time.monotonic() + patience
         while not all(subscription.get_publisher_count() for subscription in events):
             if time.monotonic() > deadline:
-                self.get_logger().info(f"no {server} yet: its answers are drawn from when it comes")
+                self.get_logger().info(f"waiting for {server}: its answers are drawn once it runs")
                 return
             time.sleep(_POLL_S)
 
@@ -222,7 +222,7 @@ class Visualizer(InboxNode):
         response = event.response[0]
         now_ns = waiting.now_ns or self._picture.newest_stamp_ns() or stamp_ns_from_msg(event.info.stamp)
         if response.status != response.OK:
-            refused = f"refused ({response.status}): {response.message}"
+            refused = f"rejected ({response.status}): {response.message}"
             self._picture.tell(shown.kind, refused, stamp_ns=now_ns, is_error=True)
             return
         answer = shown.answer_from_msg(response, world=self._configuration.world)
@@ -267,7 +267,7 @@ class Visualizer(InboxNode):
                 raise
             if kind not in self._told:
                 self._told.add(kind)
-                self.get_logger().warning(f"cannot draw {kind}; not told again:\n{traceback.format_exc()}")
+                self.get_logger().warning(f"cannot draw {kind} (reported once):\n{traceback.format_exc()}")
 
 
 class _HandedOn(StateStore):

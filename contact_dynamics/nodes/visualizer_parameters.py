@@ -43,7 +43,7 @@ def read_visualizer_parameters(source: NodeParameters) -> VisualizerParameters:
         (1e-3, 1e4),
     )
     predictions = read(
-        "predictions", DEFAULT_PREDICTIONS, "Newest predictions of a body whose paths are in view.", (1, 100)
+        "predictions", DEFAULT_PREDICTIONS, "Number of newest predictions of a body to show.", (1, 100)
     )
     rrd_path = read("rrd_path", "", "File to draw into, which is replaced. Empty: none.")
     rrd_file_size = read("rrd_file_size", 0, "MB, after which the next file begins. 0: one file.", (0, MOST))
@@ -67,9 +67,7 @@ def read_visualizer_parameters(source: NodeParameters) -> VisualizerParameters:
         "Port of this machine at which a browser finds what is served. 0: none.",
         (NO_WEB_PORT, 65535),
     )
-    memory = read(
-        "viewer_memory", DEFAULT_MEMORY, "Most memory of the viewer that is started, or of what is served."
-    )
+    memory = read("viewer_memory", DEFAULT_MEMORY, "Memory limit of the viewer or of the served picture.")
     chosen = [name for name, on in (("spawn", spawn), ("serve", serve), ("connect", bool(url))) if on]
     if len(chosen) > 1:
         message = f"only one of spawn, serve and connect must be set, got {' and '.join(chosen)}"

@@ -58,7 +58,7 @@ def states(monitor: Monitor) -> Iterator[Any]:
 
 
 def test_a_body_of_which_nothing_came(monitor: Monitor) -> None:
-    monitor.wait(Situation.NO_STATE_YET, "'late' has come on /late/odometry, where 0 publish")
+    monitor.wait(Situation.NO_STATE_YET, "'late' received on /late/odometry (0 publishers)")
     states = monitor.client.publisher(Odometry, "/late/odometry")
     monitor.wait_until_over(
         Situation.NO_STATE_YET, "'late'", work=lambda: states.publish(odometry(child="late"))
@@ -69,8 +69,8 @@ def test_a_body_of_which_nothing_came(monitor: Monitor) -> None:
 @pytest.mark.parametrize(
     ("wrong", "reason"),
     [
-        ({"frame": "map"}, "header.frame_id must be ..., got 'map'"),
-        ({"child": "cat"}, "child_frame_id must be ..., got 'cat'"),
+        ({"frame": "map"}, "got 'map'"),
+        ({"child": "cat"}, "got 'cat'"),
         ({"x": math.nan}, "nan"),
         ({"ahead_ns": HOUR_NS}, "ahead of the clock"),
     ],
@@ -121,7 +121,7 @@ def test_a_second_publisher_of_a_body(monitor: Monitor, states: Any) -> None:
     second = monitor.client.node.create_publisher(Odometry, "/brick/odometry", 10)
     monitor.wait(Situation.SEVERAL_PUBLISHERS, "/brick/odometry: 2 publishers")
     monitor.client.node.destroy_publisher(second)
-    monitor.wait_until_over(Situation.SEVERAL_PUBLISHERS, "publishers tell")
+    monitor.wait_until_over(Situation.SEVERAL_PUBLISHERS, "publishers send")
     assert states.topic_name == "/brick/odometry"
 
 
@@ -130,7 +130,7 @@ def test_a_body_with_two_sources_that_both_publish(monitor: Monitor) -> None:
     poses = monitor.client.publisher(PoseStamped, "/twice/pose")
     monitor.wait(Situation.SEVERAL_PUBLISHERS, "/twice/odometry", " and ", "/twice/pose", ": 2 publishers")
     monitor.client.node.destroy_publisher(poses)
-    monitor.wait_until_over(Situation.SEVERAL_PUBLISHERS, "publishers tell")
+    monitor.wait_until_over(Situation.SEVERAL_PUBLISHERS, "publishers send")
     monitor.client.node.destroy_publisher(states)
 
 

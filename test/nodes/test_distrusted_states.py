@@ -92,7 +92,7 @@ def test_before_the_first_clock_nothing_is_from_the_future_and_after_it_is(tmp_p
             states.publish(odometry("brick", 5 * HOUR_NS))
             states.publish(odometry("brick", HOUR_NS))
             client.spin_until(lambda: newest_ns(client, "brick") == HOUR_NS)
-            wait_for(server, "stamp must be ..., got 14400.000 s ahead of the clock")
+            wait_for(server, "got 14400.000 s ahead of the clock")
         finally:
             client.close()
 
@@ -109,7 +109,7 @@ def test_a_clock_before_zero_is_ignored_and_told(tmp_path: Path) -> None:
                 tick = Clock()
                 tick.clock.sec = seconds
                 clock.publish(tick)
-            wait_for(server, "/clock: message ignored: clock.sec must be >= 0..., got -5")
+            wait_for(server, "/clock: message ignored: clock.sec must be >= 0, got -5")
             states.publish(odometry("brick", HOUR_NS))
             client.spin_until(lambda: newest_ns(client, "brick") == HOUR_NS)
         finally:
@@ -225,7 +225,7 @@ def test_what_got_lost_fell_silent_and_has_two_publishers_is_told(tmp_path: Path
                 states.publish(odometry("brick", time.time_ns()))
             time.sleep(max(0.0, stopped + STOOD_STILL_S - time.monotonic()))
             server.send_signal(signal.SIGCONT)
-            told = wait_for(server, "/brick/odometry: messages were lost before they could be taken")
+            told = wait_for(server, "/brick/odometry: messages were lost before they were received")
             client.spin_until(lambda: bool(reports) and counted(reports[-1], "lost") > 0)
             assert "/brick/odometry: messages were lost" in reports[-1].status[0].message
             received = counted(reports[-1], "messages")
@@ -233,7 +233,7 @@ def test_what_got_lost_fell_silent_and_has_two_publishers_is_told(tmp_path: Path
             if "/brick/odometry: nothing came for " not in told:  # while DDS repeated what was not taken
                 wait_for(server, "/brick/odometry: nothing came for ")
             client.publisher(Odometry, "/brick/odometry", SHALLOW)
-            wait_for(server, "/brick/odometry: 2 publishers tell the states of one body")
+            wait_for(server, "/brick/odometry: 2 publishers send states of one body")
             client.spin_until(lambda: "/brick/odometry is silent" in reports[-1].status[0].message)
         finally:
             client.close()

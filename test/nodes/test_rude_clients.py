@@ -92,7 +92,7 @@ def test_who_comes_late_and_who_leaves_with_requests_pending_are_nothing_special
 
 def test_two_servers_of_one_name_both_tell() -> None:
     domain_id = claim_domain()
-    told = "another node has this name: both answer the same questions"
+    told = "another node has this name, and both answer the same requests"
     with process("server", *ARGUMENTS, ready="ready", domain_id=domain_id) as first:
         with process("server", *ARGUMENTS, ready="ready", domain_id=domain_id) as second:
             assert f"/contact_dynamics: {told}" in wait_for(first, told)

@@ -247,12 +247,13 @@ def test_a_planar_answer_is_drawn_in_its_plane_with_the_map(bench: Bench) -> Non
 
 def test_a_refusal_is_told(bench: Bench) -> None:
     response = PredictImpact.Response(
-        status=PredictImpact.Response.UNKNOWN_BODY, message="body_name must be ..., got 'x'"
+        status=PredictImpact.Response.UNKNOWN_BODY,
+        message="body_name must be one of the known bodies ('brick'), got 'x'",
     )
     bench.answer("predict_impact", response)
     drawn = bench.drawn()
     assert drawn.last("/answers/log", "TextLog:text") == [
-        "Impact: refused (2): body_name must be ..., got 'x'"
+        "Impact: rejected (2): body_name must be one of the known bodies ('brick'), got 'x'"
     ]
     assert drawn.last("/answers/log", "TextLog:level") == ["WARN"]
     assert drawn.stamps("/answers/log", "TextLog:text") == [STAMP_NS + 7]  # no state: the event's own time
