@@ -70,7 +70,7 @@ def test_margins_in_the_geometry_bracket_where_it_slips(client: Client) -> None:
     request.include_geometry_margins = True
     answer = client.ask(request)
     assert answer.status == answer.OK, answer.message
-    assert "points or normals that may be off" in answer.out_of_plane_reason
+    assert "got uncertain points or normals" in answer.out_of_plane_reason
     points, normals, frictions = answer.geometry_margins
     assert [one.kind for one in (points, normals, frictions)] == ["points", "normals", "frictions"]
     assert 0.0 < normals.holds_within <= normals.changes_at < math.pi / 2.0
