@@ -62,7 +62,7 @@ def test_under_another_clock_a_state_is_known_at_its_stamp(tmp_path: Path) -> No
 
 def test_a_configuration_beside_the_log_is_used_instead_of_its_own(tmp_path: Path) -> None:
     log = write_log(tmp_path / "log", with_run=False)
-    with pytest.raises(NotALogError, match="needed is --config"):
+    with pytest.raises(NotALogError, match="--config is required"):
         recording_of_log(log)
     parameters = parameters_of_toss(tmp_path / "other", read_toss())
     surface = parameters["surfaces"][0]

@@ -33,7 +33,7 @@ from nodes.visualizer_bench import CONFIGURATION, body_state, odometry
 @pytest.mark.parametrize(
     ("values", "words"),
     [
-        ({}, "needed is somewhere to draw to"),
+        ({}, "one of rrd_path, spawn, serve and connect is required"),
         ({"spawn": True, "serve": True}, "only one of .* must be set, got spawn and serve"),
         ({"serve": True, "connect": "rerun+http://127.0.0.1:1/proxy"}, "serve and connect"),
         ({"rrd_path": 3}, "rrd_path"),
