@@ -22,6 +22,7 @@ from rclpy.parameter import Parameter
 from rclpy.publisher import Publisher
 
 from contact_dynamics.nodes import self_check
+from contact_dynamics.nodes.dds_profile import VARIABLE
 from contact_dynamics.nodes.inbox import InboxNode
 from contact_dynamics.nodes.self_check import SelfCheck
 from contact_dynamics.nodes.situations import Situation
@@ -29,8 +30,23 @@ from contact_dynamics.recording import BagReader
 from contact_dynamics_interfaces.srv import PredictImpact, PredictTumbling
 from running_server import DOMAIN_ID, PATIENCE_S, PATIENT, ROOT, Client, process, wait_for
 
+IN_SHARED_MEMORY = """<?xml version="1.0" encoding="UTF-8"?>
+<profiles xmlns="http://www.eprosima.com/XMLSchemas/fastRTPS_Profiles">
+  <participant profile_name="shared" is_default_profile="true"><rtps><name>any</name></rtps></participant>
+</profiles>
+"""
+"""A user's profile takes the place of ours, by which the server has no port in shared memory."""
+
 LEAST_PORT = 7400 + 250 * DOMAIN_ID
 """The least port of DDS in the domain of this test run."""
+
+
+@pytest.fixture
+def in_shared_memory(monkeypatch: pytest.MonkeyPatch, tmp_path_factory: pytest.TempPathFactory) -> None:
+    """Start processes with a profile by which they receive in shared memory."""
+    profile = tmp_path_factory.mktemp("profile") / "in_shared_memory.xml"
+    profile.write_text(IN_SHARED_MEMORY, encoding="utf-8")
+    monkeypatch.setenv(VARIABLE, str(profile))
 
 
 def remove_ports(pid: int) -> int:
@@ -60,6 +76,7 @@ def set_parameter(client: Client, parameter: Parameter) -> None:
     assert future.result().result.successful
 
 
+@pytest.mark.usefixtures("in_shared_memory")
 def test_a_server_whose_ports_are_removed_joins_anew_with_its_parameters(tmp_path: Path) -> None:
     arguments = ["--params-file", str(ROOT / "config" / "server.yaml"), "--ros-args"]
     arguments += ["-p", f"log_directory:={tmp_path}", "-p", "self_check_period:=1.0"]
@@ -88,6 +105,7 @@ def test_a_server_whose_ports_are_removed_joins_anew_with_its_parameters(tmp_pat
     assert json.loads(run["parameters"])["surface.floor.friction"] == 0.125
 
 
+@pytest.mark.usefixtures("in_shared_memory")
 def test_a_server_joins_anew_without_surfaces_and_without_a_disk(tmp_path: Path) -> None:
     """It answered before without any surface, and after its disk was gone; so it does afterwards.
 
