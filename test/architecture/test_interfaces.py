@@ -43,7 +43,7 @@ from contact_dynamics_interfaces.srv import (
 
 INTERFACES = Path(__file__).parents[2] / "contact_dynamics_interfaces"
 FILES = sorted([*INTERFACES.glob("msg/*.msg"), *INTERFACES.glob("srv/*.srv")])
-FIELD = re.compile(r"^[a-zA-Z_][\w/]*(\[[<=\d]*\])? +[a-z]\w*\s*(#.*)?$")
+FIELD = re.compile(r"^[a-zA-Z_][\w/]*(\[[<=\d]*\])? +[a-z]\w*( +-?[\d.]+)?\s*(#.*)?$")
 CONSTANT = re.compile(r"^[a-z]\w* +[A-Z]\w* *= *\S+")
 
 

@@ -108,5 +108,5 @@ def test_too_many_planar_contacts_are_refused() -> None:
 def test_modes_that_are_no_strings_of_letters_are_refused(
     problem: PlanarContactProblem | SpatialContactProblem, mode: str
 ) -> None:
-    with pytest.raises(InvalidFieldError, match="modes: found"):
+    with pytest.raises(InvalidFieldError, match="modes must"):
         wrench_sets(problem, modes=[mode])

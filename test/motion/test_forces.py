@@ -66,12 +66,12 @@ def test_wrenches_are_copies_that_nobody_changes() -> None:
 @pytest.mark.parametrize("name", ["linear", "quadratic", "linear_angular", "quadratic_angular"])
 @pytest.mark.parametrize("value", [-1e-9, math.nan, math.inf, "much", None])
 def test_drag_that_drives_is_refused(name: str, value: object) -> None:
-    with pytest.raises(InvalidFieldError, match=f"{name}_drag: found"):
+    with pytest.raises(InvalidFieldError, match=f"{name}_drag must be"):
         Drag(**{name: value})
 
 
 @pytest.mark.parametrize("name", ["force", "torque"])
 @pytest.mark.parametrize("value", [(1.0, 2.0), (1.0, 2.0, math.nan), (1.0, 2.0, math.inf), 3.0, "up"])
 def test_wrenches_that_are_none_are_refused(name: str, value: object) -> None:
-    with pytest.raises(InvalidFieldError, match=f"{name}: found"):
+    with pytest.raises(InvalidFieldError, match=f"{name} must be"):
         ConstantWrench(**{name: value})

@@ -85,7 +85,7 @@ def test_a_published_covariance_tells_noise_from_motion(configured: Client) -> N
         share_at_rest(configured, has_covariance=True, include_margins=True, include_probabilities=True)
         >= (DRAWS - 1) / DRAWS
     )
-    tolerances = {"velocity_tolerance": [0.02], "distance_tolerance": [0.001]}
+    tolerances = {"velocity_tolerance": 0.02, "distance_tolerance": 0.001}
     assert share_at_rest(configured, has_covariance=False, **tolerances) < 0.2
 
 

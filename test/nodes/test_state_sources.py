@@ -148,7 +148,7 @@ def test_bodies_share_the_topic_of_an_installed_adapter(client: Client) -> None:
 @pytest.mark.parametrize(
     ("name", "words"),
     [
-        ("odometri", "body.cup.source must be odometry, pose_twist, .*, pose_array.*, got 'odometri'"),
+        ("odometri", "body.cup.source must be one of odometry, pose_twist, .*, pose_array.*, got 'odometri'"),
         ("broken", "body.cup.source must be .*, got 'broken', which is a function"),
     ],
 )

@@ -142,7 +142,7 @@ def test_numbers_whose_products_leave_the_range_of_doubles_are_refused() -> None
         lambda: PlanarWrench(f=(0.0, 0.0), moment=-1e61),
         lambda: PlanarContact(r=(1e61, 0.0), normal=(0.0, 1.0), friction=0.5),
     ):
-        with pytest.raises(InvalidFieldError, match=r"must be in .*1e\+60., got 1e[+-]?61.*"):
+        with pytest.raises(InvalidFieldError, match=r"must be .*1e[+-]60.*, got .*1e[+-]61"):
             make()
 
 
