@@ -94,7 +94,7 @@ class TookTooLongError(ContactDynamicsError):
 
 
 class ConcaveShapeWarning(UserWarning):
-    """Corners of a concave body are given where shapes are convex, so that its hull is taken."""
+    """The corners are those of a concave body. Shapes are convex, and the convex hull is used."""
 
 
 _LONGEST_SHOWN: Final = 120

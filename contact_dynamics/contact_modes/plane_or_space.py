@@ -48,7 +48,6 @@ def contact_modes(
     """Return the verdict on a contact set and all consistent modes, with accelerations and forces.
 
     Raises:
-        InvalidFieldError: ``problem`` is not a problem.
         TooLargeError: the problem is in space, and more contacts touch than are answered, or the search takes
             too many trials.
 
@@ -59,12 +58,10 @@ def contact_modes(
         if problem.uncertainty.is_exact:
             return answer
         return replace(answer, within=planar_verdicts_within(problem, answer))
-    if isinstance(problem, SpatialContactProblem):
-        in_space = spatial_contact_modes(problem)
-        if problem.uncertainty.is_exact:
-            return in_space
-        return replace(in_space, within=spatial_verdicts_within(problem, in_space))
-    raise _not_a_problem(problem)
+    in_space = spatial_contact_modes(problem)
+    if problem.uncertainty.is_exact:
+        return in_space
+    return replace(in_space, within=spatial_verdicts_within(problem, in_space))
 
 
 @overload
@@ -101,14 +98,14 @@ def mode_margins(
             gyration, and in space the root mean square of the radii about the axes.
 
     Raises:
-        InvalidFieldError: ``problem`` is not a problem with its answer, or the length is not > 0.
+        InvalidFieldError: ``answer`` is of another kind of problem, or the length is not > 0.
         TooLargeError: as for `contact_modes`, or the friction pyramids in space have more than 128 edges.
     """
     if isinstance(problem, PlanarContactProblem) and not isinstance(answer, SpatialModeAnswer):
         return planar_mode_margins(problem, answer, margin_length=margin_length)
     if isinstance(problem, SpatialContactProblem) and not isinstance(answer, PlanarModeAnswer):
         return spatial_mode_margins(problem, answer, margin_length=margin_length)
-    raise _not_a_problem(problem, answer)
+    raise _other_answer(problem, answer)
 
 
 @overload
@@ -135,7 +132,7 @@ def refused_modes(
             is None, it is the root mean square of the radii of gyration about the axes. Only in space.
 
     Raises:
-        InvalidFieldError: ``problem`` is not a problem with its answer, the length is not > 0, or a length is
+        InvalidFieldError: ``answer`` is of another kind of problem, the length is not > 0, or a length is
             given in the plane.
         TooLargeError: as for `contact_modes`.
     """
@@ -145,7 +142,7 @@ def refused_modes(
         return answer.refused
     if isinstance(problem, SpatialContactProblem) and isinstance(answer, SpatialModeAnswer):
         return spatial_refused_modes(problem, answer, margin_length=margin_length)
-    raise _not_a_problem(problem, answer)
+    raise _other_answer(problem, answer)
 
 
 @overload
@@ -172,7 +169,7 @@ def wrench_sets(
         modes: The modes that are wanted, with one letter for each contact. If it is None, all are returned.
 
     Raises:
-        InvalidFieldError: ``problem`` is not a problem, or a mode is not a string of its letters.
+        InvalidFieldError: a mode is not a string of its letters.
         UndecidedError: contacts in space are so nearly the same that rounding decides the sets.
         TooLargeError: A problem in space has too many contacts, edges of friction pyramids, ways of sliding
             or sets.
@@ -181,9 +178,7 @@ def wrench_sets(
     """
     if isinstance(problem, PlanarContactProblem):
         return planar_wrench_sets(problem, modes=modes)
-    if isinstance(problem, SpatialContactProblem):
-        return spatial_wrench_sets(problem, modes=modes)
-    raise _not_a_problem(problem)
+    return spatial_wrench_sets(problem, modes=modes)
 
 
 @overload
@@ -210,14 +205,14 @@ def geometry_margins(
         answer: The answer to that question, if it is known. It saves a search.
 
     Raises:
-        InvalidFieldError: ``problem`` is not a problem with its answer.
+        InvalidFieldError: ``answer`` is of another kind of problem.
         TooLargeError: as for `contact_modes`.
     """
     if isinstance(problem, PlanarContactProblem) and not isinstance(answer, SpatialModeAnswer):
         return planar_geometry_margins(problem, answer)
     if isinstance(problem, SpatialContactProblem) and not isinstance(answer, PlanarModeAnswer):
         return spatial_geometry_margins(problem, answer)
-    raise _not_a_problem(problem, answer)
+    raise _other_answer(problem, answer)
 
 
 def statics(
@@ -230,21 +225,14 @@ def statics(
         margin_length: As for `mode_margins`.
 
     Raises:
-        InvalidFieldError: ``problem`` is not a problem, or the length is not > 0.
+        InvalidFieldError: the length is not > 0.
         UndecidedError: contacts are so nearly the same that rounding decides the answer.
         TooLargeError: as for `contact_modes`, or the friction pyramids in space have more than 128 edges.
     """
     if isinstance(problem, PlanarContactProblem):
         return planar_statics(problem, margin_length=margin_length)
-    if isinstance(problem, SpatialContactProblem):
-        return spatial_statics(problem, margin_length=margin_length)
-    raise _not_a_problem(problem)
+    return spatial_statics(problem, margin_length=margin_length)
 
 
-def _not_a_problem(problem: object, answer: object = None) -> InvalidFieldError:
-    found = (
-        type(problem).__name__ if answer is None else f"{type(problem).__name__} with {type(answer).__name__}"
-    )
-    return InvalidFieldError(
-        "problem", found, "PlanarContactProblem or SpatialContactProblem, with the answer to it"
-    )
+def _other_answer(problem: object, answer: object) -> InvalidFieldError:
+    return InvalidFieldError("answer", type(answer).__name__, f"the answer to the {type(problem).__name__}")

@@ -16,7 +16,6 @@ TOSS_ENDS: Final = {
     TossEnd.RESTS: "rests",
     TossEnd.HORIZON: "still moves at the horizon",
     TossEnd.MAX_EVENTS: "has more events or takes more steps than are followed",
-    TossEnd.UNDECIDED: "has no consistent contact mode, and no impact settles that,",
 }
 """What the body does at the end of a toss."""
 

@@ -97,9 +97,9 @@ def planar_impact_distribution(
         seed: Seed of the draw. The same question with the same seed has the same answer.
 
     Raises:
-        InvalidFieldError: the covariance is not symmetric and positive semidefinite, or the number of samples
-            is odd or outside [2, 1 000 000]. A covariance beyond
-            `MAX_VARIANCE` and a seed that is no whole number >= 0 are refused too.
+        InvalidFieldError: the covariance is not symmetric and positive semidefinite, the number of samples
+            is odd or outside [2, 1 000 000], a variance exceeds `MAX_VARIANCE`, or the seed is not an integer
+            >= 0.
     """
     tolerance = check_not_negative("velocity_tolerance", velocity_tolerance)
     draws = np.array([*velocity.v, velocity.w]) + _draw(covariance, 3, samples, seed)
@@ -160,8 +160,8 @@ def spatial_impact_distribution(
 
     Raises:
         InvalidFieldError: `spatial_impact` refuses a number, the covariance is not symmetric and positive
-            semidefinite, or the number of samples is odd or outside [2, 1 000 000]. A covariance beyond
-            `MAX_VARIANCE` and a seed that is no whole number >= 0 are refused too.
+            semidefinite, the number of samples is odd or outside [2, 1 000 000], a variance exceeds
+            `MAX_VARIANCE`, or the seed is not an integer >= 0.
     """
     body = body.mass_properties
     tolerance = check_not_negative("velocity_tolerance", velocity_tolerance)

@@ -52,9 +52,6 @@ class TossEnd(NamedInt):
     """The time that was asked for is over, and the body still moves."""
     MAX_EVENTS = 2
     """The bound on the number of events, or of steps in contact, was reached."""
-    UNDECIDED = 3
-    """No contact mode was found to be consistent, and no impact settled that. Short steps pass over such
-    states now, so that only answers of earlier versions have this end."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)

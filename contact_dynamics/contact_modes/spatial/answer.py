@@ -87,7 +87,7 @@ _NOT_REFUTED: Final = "no mode was found, and it could not be shown that there i
 _GIVEN_UP: Final = "rounding decides about too many combinations of letters: contacts are nearly flush"
 
 _FEW_TRIALS: Final = 150
-"""The search is given up after so many trials where there is another way to a verdict."""
+"""Maximum number of trials of a search after which another way to a verdict is left."""
 
 
 class Evidence(NamedTuple):

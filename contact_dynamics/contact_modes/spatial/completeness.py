@@ -53,10 +53,10 @@ _MAX_PROGRAMS: Final = 3000
 """The search for missed modes is given up after this many linear programs of 0.3 ms."""
 
 _FEW_PROGRAMS: Final = 200
-"""As many where there is another way to a verdict."""
+"""Maximum number of programs where another way to a verdict is left."""
 
 _CARE: Final = 3
-"""A program that is solved with care counts as so many more."""
+"""Number of additional programs that a `CarefulProgram` counts as."""
 
 _QUARTER: Final = 0.5 * math.pi
 

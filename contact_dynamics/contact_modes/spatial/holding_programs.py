@@ -7,7 +7,7 @@ mode.
 
 In a region of common motions (`regions`), the power of the applied wrench must reach what friction takes
 there. Friction takes at least what the same normal forces would along any fixed direction. What that leaves
-is linear in the motion, so that it is negative in all of the region where it is negative on each of its rays.
+is linear in the motion: if it is negative on each ray of a region, it is negative in all of it.
 """
 
 from __future__ import annotations

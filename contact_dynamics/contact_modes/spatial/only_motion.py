@@ -185,8 +185,8 @@ def _excludes_others(
 def _most_pressing(search: Search, contacts: _Contacts) -> float:
     """Return a bound on the sum of the normal forces of any mode, which is infinite if none is known.
 
-    Friction takes power from a body at rest, so that its motion A has A M A <= A w with the applied wrench w.
-    So A is in a ball, and the forces that press in one direction are bounded.
+    Friction dissipates: a body at rest accelerates by A with A M A <= A w, where w is the applied wrench.
+    This confines A to a ball and bounds the forces that press in one direction.
     """
     way = contacts.normals.sum(axis=0)
     size = float(np.linalg.norm(way))

@@ -219,8 +219,8 @@ class Search(PyramidPrograms):
         """Return whether friction may take no more power than the applied wrench has.
 
         Friction takes the most that it can, so at least what the same normal forces would with any fixed
-        share of friction. What that leaves is linear in the motion, so that it is negative in all of the
-        region where it is negative on each of its rays.
+        share of friction. The remaining power is linear in the motion: if it is negative on each ray of the
+        region, it is negative in all of it.
         """
         if common.gains is None:
             return True

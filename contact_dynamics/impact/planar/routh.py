@@ -42,7 +42,7 @@ LARGEST_FRICTION: Final = 1e100
 overflow."""
 
 _INFINITE: Final = math.inf
-_MOST_FRICTION: Final = LARGEST_FRICTION
+_MAX_FRICTION: Final = LARGEST_FRICTION
 
 # What the enumerations mean, as numbers that compiled code has at hand.
 _POISSON: Final = RestitutionLaw.POISSON
@@ -317,7 +317,7 @@ class PlanarStrike:
     ) -> None:
         """Follow the path of a contact that starts at (``v_t``, ``v_n``), as `impulse_path` says."""
         a, b, c = self.a, self.b, self.c
-        mu = min(friction, _MOST_FRICTION)
+        mu = min(friction, _MAX_FRICTION)
         holds = abs(b) <= mu * a
         s, p_stop = 0.0, 0.0
         if v_t != 0.0 or not holds:

@@ -88,7 +88,7 @@ def simultaneous_impulses(
             order.
 
     Raises:
-        TooLargeError: there are so many contacts that `MAX_PROJECTIONS` do not settle their impulses.
+        TooLargeError: the impulses have not converged after `MAX_PROJECTIONS` projections.
         InvalidFieldError: the law is another one.
     """
     if law not in {RestitutionLaw.POISSON, RestitutionLaw.NEWTON}:
