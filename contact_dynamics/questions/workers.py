@@ -39,6 +39,7 @@ _NEEDED: Final = ("contact_dynamics.questions.asking", "scipy.linalg", "scipy.op
 
 _NICER: Final = 5
 _LOOKS_EVERY_S: Final = 0.05  # whether a worker is ready, and whether there is a question for it
+_TRIES_EVERY_S: Final = 1.0  # to start a worker that ended before it was ready
 _SPARE_S: Final = 1.0  # that a worker has to send its answer before it ends by itself
 _MEGABYTE: Final = 1_000_000
 
@@ -172,8 +173,11 @@ class Workers:
         worker.start()
         asked: list[_Job | None] = []
         while not asked and not worker.has_begun():
-            with contextlib.suppress(queue.Empty):
-                asked.append(self._jobs.get(timeout=_LOOKS_EVERY_S))
+            try:
+                asked.append(self._jobs.get(timeout=_TRIES_EVERY_S if worker.is_killed else _LOOKS_EVERY_S))
+            except queue.Empty:  # noqa: PERF203  it waits anyway
+                if worker.is_killed:  # it ended before it was ready, or could not be started
+                    worker.restart_if_dead()
         while not self._closing and (job := asked.pop() if asked else self._jobs.get()) is not None:
             worker.restart_if_dead()
             outcome = worker.outcome(job)
@@ -197,6 +201,7 @@ class _Worker:
 
     Attributes:
         is_ready: Whether it has been ready to be asked.
+        is_killed: Whether its process was killed, or has ended or failed to start before it was ready.
     """
 
     def __init__(self, memory: int) -> None:
@@ -205,7 +210,7 @@ class _Worker:
         self._context = multiprocessing.get_context("forkserver")
         self._context.set_forkserver_preload(list(_NEEDED))
         self._process: BaseProcess | None = None
-        self._is_killed = False
+        self.is_killed = False
         self._is_closed = False
         self._pipe, self._its_end = self._context.Pipe()
 
@@ -216,7 +221,7 @@ class _Worker:
         try:
             process.start()
         except (EOFError, OSError):  # the machine has no room for it, or what starts it was killed
-            self._process, self._is_killed = None, True
+            self._process, self.is_killed = None, True
             return
         finally:
             self._its_end.close()
@@ -234,12 +239,12 @@ class _Worker:
             self._process.kill()
 
     def has_begun(self) -> bool:
-        """Return whether it is ready to be asked, or will not be without being started again."""
+        """Return whether it is ready to be asked."""
         try:
             if self._pipe.poll():
                 self._received()
         except (EOFError, OSError):
-            return True
+            self.is_killed = True
         return self.is_ready
 
     def _received(self) -> object:
@@ -262,18 +267,18 @@ class _Worker:
         except Exception:  # noqa: BLE001  a question that cannot be sent, an answer that cannot be received
             outcome = WorkerFault(traceback.format_exc())
         self._kill()
-        self._is_killed = True
+        self.is_killed = True
         return outcome
 
     def restart_if_dead(self) -> None:
         """Have another process started if this one was killed, here or by a machine short of memory."""
-        if not self._is_killed and self._process is not None and self._process.is_alive():
+        if not self.is_killed and self._process is not None and self._process.is_alive():
             return
-        self._is_killed = True
+        self.is_killed = True
         self._pipe.close()
         with contextlib.suppress(OSError):  # the machine has no room for it; the next question tries again
             self._pipe, self._its_end = self._context.Pipe()
-            self._is_killed = False
+            self.is_killed = False
             self.start()
 
 

@@ -142,6 +142,24 @@ def test_a_worker_that_was_killed_while_it_waited_costs_no_question() -> None:
         workers.close()
 
 
+def test_a_worker_that_ends_before_it_is_ready_is_started_again_without_a_question() -> None:
+    others = active_children()
+    workers = Workers(WorkerLimits(count=1, deadline=PATIENCE_S, memory=300, max_waiting=1))
+    try:
+        give_up = time.monotonic() + PATIENCE_S
+        while not (begun := set(active_children()) - set(others)) and time.monotonic() < give_up:
+            pass
+        for process in begun:
+            process.kill()
+        assert workers.ready == 0
+        while workers.ready == 0 and time.monotonic() < give_up:
+            time.sleep(0.05)
+        assert workers.ready == 1
+        assert outcome(workers, pow, 2, 5) == 32
+    finally:
+        workers.close()
+
+
 def test_a_worker_for_whom_there_was_no_room_is_started_when_there_is() -> None:
     workers = Workers(WorkerLimits(count=1, deadline=PATIENCE_S, memory=300, max_waiting=1))
     before = resource.getrlimit(resource.RLIMIT_NOFILE)
