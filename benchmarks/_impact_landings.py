@@ -223,7 +223,9 @@ def _held(shape: Body, landing: MeasuredLanding, friction: float, restitution: f
 
 
 def _in_time(shape: Body, landing: MeasuredLanding, world: World, hold_step: float | None) -> FloatArray:
-    sequence = impact_sequence(shape, landing.before, world, window=landing.seconds, hold_step=hold_step)
+    sequence = impact_sequence(
+        shape, _outside(shape, landing.before), world, window=landing.seconds, hold_step=hold_step
+    )
     states = [strike.impact.state for strike in sequence.strikes if strike.seconds < landing.seconds]
     return _flown(shape, landing, states[-1] if states else landing.before)
 
@@ -231,7 +233,8 @@ def _in_time(shape: Body, landing: MeasuredLanding, world: World, hold_step: flo
 def _stays(shape: Body, landing: MeasuredLanding, friction: float, restitution: float) -> bool:
     """Return whether the sequence in time ends before the second flight, since a corner stays."""
     world = _world(shape, friction, restitution)
-    limit = impact_sequence(shape, landing.before, world, window=landing.seconds).limit_seconds
+    before = _outside(shape, landing.before)
+    limit = impact_sequence(shape, before, world, window=landing.seconds).limit_seconds
     return limit is not None and limit < landing.seconds
 
 
@@ -258,9 +261,18 @@ def _world(shape: Body, friction: float, restitution: float) -> World:
     return World(bodies=(shape,), surfaces=(board,), gravity_W=GRAVITY_W)
 
 
+def _outside(shape: Body, state: BodyState) -> BodyState:
+    """Return a state whose corners are not below the board.
+
+    Fitted states are up to some millimetres deep, by the errors of the published size and tracked frame.
+    """
+    depth = -float(BOARD.gaps(state.p_WB_W + shape.vertices_B @ state.R_WB.T).min())
+    return state if depth <= 0.0 else replace(state, p_WB_W=state.p_WB_W + depth * BOARD.normal_W)
+
+
 def _at_once(shape: Body, landing: MeasuredLanding, world: World, within: float) -> BodyState:
     """Return the state after the corners within ``within``, m, of the floor at the first strike."""
-    found = next_landing(shape, landing.before, world, horizon=landing.seconds)
+    found = next_landing(shape, _outside(shape, landing.before), world, horizon=landing.seconds)
     if found is None or not found.strikes:
         return landing.before
     contacts = find_contacts(shape, found.state, world, distance_tolerance=within)
