@@ -28,6 +28,7 @@ from msg_adapters.body_state import center_of_mass
 from msg_adapters.contacts import flat
 from msg_adapters.field_names import renamed
 from msg_adapters.requests import asked_inertia, write_given, write_gravity
+from msg_adapters.status import with_warnings, without_warnings
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -182,6 +183,7 @@ def impacts_answer_to_msg(
     msg.outcomes = np.where(answer.separates, msg.SEPARATES, answer.outcomes).astype(np.uint8).tolist()
     body_states_to_msg(answer.states, p_FB_F=answer.p_FB_F, into=msg.states_after)
     msg.impulses = flat(answer.impulses_W)
+    msg.message = with_warnings("", answer.warnings)
     return msg
 
 
@@ -197,6 +199,7 @@ def impacts_answer_from_msg(msg: PredictImpactBatch.Response, *, world: World) -
         separates=separates,
         states=body_states_from_msg(msg.states_after, p_FB_F=p_FB_F),
         impulses_W=flat_rows("impulses", msg.impulses, 3),
+        warnings=without_warnings(msg.message)[1],
     )
 
 

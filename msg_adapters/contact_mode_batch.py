@@ -15,6 +15,7 @@ from msg_adapters.contacts import contacts_from_msg, contacts_to_msg, flat
 from msg_adapters.field_names import renamed
 from msg_adapters.questions import asked_contact_modes
 from msg_adapters.requests import write_contact_modes
+from msg_adapters.status import with_warnings, without_warnings
 from msg_adapters.unread_fields import CONTACT_MODE_BATCH
 
 if TYPE_CHECKING:
@@ -76,6 +77,7 @@ def contact_modes_answer_to_msg(
     )
     contacts_to_msg(answer.contacts, into=msg.contacts)
     msg.contact_counts = list(answer.contact_counts)
+    msg.message = with_warnings("", answer.warnings)
     return msg
 
 
@@ -100,4 +102,5 @@ def contact_modes_answer_from_msg(
         accelerations_W=flat_rows("linear_accelerations", msg.linear_accelerations, 3),
         angular_accelerations_W=flat_rows("angular_accelerations", msg.angular_accelerations, 3),
         margins=np.array(msg.margins, dtype=np.float64) if len(msg.margins) > 0 else None,
+        warnings=without_warnings(msg.message)[1],
     )

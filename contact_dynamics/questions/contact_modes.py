@@ -174,8 +174,13 @@ def answer(question: ContactModeQuestion, context: Context | None = None) -> Con
     view, reason = _in_plane(question, case, known)
     found = _spatial_answer(question, case, reason) if view is None else _planar_answer(question, case, *view)
     if question.contacts is not None:
-        tolerance = case.distance_tolerance
-        outside = outside_shape(case.contacts, case.subject, distance_tolerance=tolerance)
+        outside = outside_shape(
+            case.subject.body,
+            points_W=case.contacts.p_WC_W,
+            p_WB_W=case.subject.state.p_WB_W,
+            R_WB=case.subject.state.R_WB,
+            distance_tolerance=case.distance_tolerance,
+        )
         found = replace(found, warnings=(*found.warnings, *outside))
     if not question.include_probabilities:
         return found

@@ -120,7 +120,13 @@ def _outside(question: ImpactQuestion, strike: Strike) -> tuple[str, ...]:
     """Return warnings of stated contacts that are outside of the body's shape."""
     if question.contacts is None:
         return ()
-    return outside_shape(strike.contacts, strike.subject, distance_tolerance=strike.distance_tolerance)
+    return outside_shape(
+        strike.subject.body,
+        points_W=strike.contacts.p_WC_W,
+        p_WB_W=strike.subject.state.p_WB_W,
+        R_WB=strike.subject.state.R_WB,
+        distance_tolerance=strike.distance_tolerance,
+    )
 
 
 def _order_warning(

@@ -16,7 +16,9 @@ from contact_dynamics.contact.contact import MAX_CONTACTS
 from contact_dynamics.errors import InvalidFieldError, TooLargeError
 from contact_dynamics.impact import ImpactOutcome, RestitutionLaw, StrikingBodies, spatial_impacts
 from contact_dynamics.questions.context import Context, check_optional, or_default
+from contact_dynamics.questions.touching import outside_shape
 from contact_dynamics.records import Record
+from contact_dynamics.rotations.many import matrices_of
 from contact_dynamics.tumbling import states_of_many
 from contact_dynamics.validation import FloatArray, check_array
 from contact_dynamics.validation_batches import (
@@ -168,6 +170,7 @@ class ManyImpactsAnswer(Record):
         separates: (n,), whether the contact leaves, so that nothing strikes.
         states: The states just after, with the poses from before.
         impulses_W: (n, 3), N s, on the body.
+        warnings: What makes the answer doubtful, in words: a contact outside of the body's shape.
     """
 
     body_name: str
@@ -176,6 +179,7 @@ class ManyImpactsAnswer(Record):
     separates: NDArray[np.bool_]
     states: ManyStates
     impulses_W: FloatArray
+    warnings: tuple[str, ...] = ()
 
     def __len__(self) -> int:
         """Return how many there are."""
@@ -248,6 +252,9 @@ def answer_impacts(question: ManyImpactsQuestion, context: Context | None = None
         separates=~strikes,
         states=states,
         impulses_W=impulses,
+        warnings=outside_shape(
+            body, points_W=question.p_WC_W, p_WB_W=before.p_WB_W, R_WB=matrices_of(before.q_WB)
+        ),
     )
 
 

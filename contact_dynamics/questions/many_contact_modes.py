@@ -127,6 +127,7 @@ class ManyContactModesAnswer(Record):
         accelerations_W: (m, 3), m/s^2, of the centre of mass.
         angular_accelerations_W: (m, 3), rad/s^2.
         margins: (m,), N, how far each mode's wrench is from another mode, or None if not asked for.
+        warnings: What makes an answer doubtful, in words, and for which candidates.
     """
 
     body_name: str
@@ -141,6 +142,7 @@ class ManyContactModesAnswer(Record):
     accelerations_W: FloatArray
     angular_accelerations_W: FloatArray
     margins: FloatArray | None
+    warnings: tuple[str, ...] = ()
 
     def __len__(self) -> int:
         """Return how many candidates there are."""
@@ -205,7 +207,25 @@ def answer(question: ManyContactModesQuestion, context: Context | None = None) -
         accelerations_W=np.array([mode.acceleration_W for mode in modes]).reshape(-1, 3),
         angular_accelerations_W=np.array([mode.angular_acceleration_W for mode in modes]).reshape(-1, 3),
         margins=np.array(margins, dtype=np.float64) if asked.include_margins else None,
+        warnings=_warnings([each.warnings for each in found]),
     )
+
+
+def _warnings(by_candidate: Sequence[tuple[str, ...]]) -> tuple[str, ...]:
+    """Return each different warning once, with the candidates that have it."""
+    rows: dict[str, list[int]] = {}
+    for i, warnings in enumerate(by_candidate):
+        for warning in warnings:
+            rows.setdefault(warning, []).append(i)
+    return tuple(f"{_candidates(found, len(by_candidate))}: {warning}" for warning, found in rows.items())
+
+
+def _candidates(rows: Sequence[int], count: int) -> str:
+    if len(rows) == count:
+        return "all candidates"
+    if len(rows) == 1:
+        return f"candidate {rows[0]}"
+    return f"{len(rows)} of {count} candidates, of which candidate {rows[0]} is the first"
 
 
 def _candidate(

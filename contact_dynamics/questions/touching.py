@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
@@ -19,7 +19,14 @@ from contact_dynamics.tolerances import DISTANCE_TOLERANCE
 if TYPE_CHECKING:
     from contact_dynamics.contact.contact import ContactSet
     from contact_dynamics.questions.subject import Subject
+    from contact_dynamics.validation import FloatArray
     from contact_dynamics.world import Body, World
+
+_PAIRS_AT_ONCE: Final = 100_000
+"""Points times triangles whose distances are worked out together, in some 50 MB."""
+
+_MOST_TOLD: Final = 4
+"""Contacts outside of the shape that have a warning each. More are counted in one."""
 
 
 def contacts_of(
@@ -79,28 +86,47 @@ def in_contact(
     return replace(subject, state=found.state, covariance=found.root @ found.root.T), contacts, noisy
 
 
-def outside_shape(contacts: ContactSet, subject: Subject, *, distance_tolerance: float) -> tuple[str, ...]:
-    """Return a warning for each stated contact that is farther outside of the body's known shape, m.
+def outside_shape(
+    body: Body,
+    *,
+    points_W: FloatArray,
+    p_WB_W: FloatArray,
+    R_WB: FloatArray,
+    distance_tolerance: float = DISTANCE_TOLERANCE,
+) -> tuple[str, ...]:
+    """Return warnings of stated contact points that are outside of the body's known shape.
 
     A rim counts as the hull of some of its points, widened by what these leave out.
+
+    Args:
+        body: The body. Without a shape it has no outside.
+        points_W: (n, 3), m, world axes.
+        p_WB_W: (n, 3), or (3,) for all: m, positions of the centre of mass.
+        R_WB: (n, 3, 3), or (3, 3) for all: rotations, body to world.
+        distance_tolerance: m, >= 0.
     """
-    shape, state = subject.body.shape, subject.state
+    shape = body.shape
     if shape.is_empty:
         return ()
     features = features_of(shape)
-    points_B = (contacts.p_WC_W - state.p_WB_W) @ state.R_WB
-    gaps = np.linalg.norm(points_B - closest_points(features, points_B), axis=1) - shape.rounding
+    points_B = np.einsum("...j,...jk->...k", points_W - p_WB_W, R_WB)
+    away = np.arange(len(points_B))
     if len(features.triangles) > 0:
         levels = (features.normals @ features.corners.T).max(axis=1)
-        inside = (points_B @ features.normals.T <= levels).all(axis=1)
-        gaps[inside] = 0.0
+        away = away[(points_B @ features.normals.T > levels).any(axis=1)]
+    gaps = np.zeros(len(points_B))
+    step = max(1, _PAIRS_AT_ONCE // max(1, len(features.triangles)))
+    for rows in (away[start : start + step] for start in range(0, len(away), step)):
+        gaps[rows] = np.linalg.norm(points_B[rows] - closest_points(features, points_B[rows]), axis=1)
     largest = max((rim.radius for rim in shape.rims), default=0.0)
     left_out = largest * (1.0 - math.cos(math.pi / RIM_CORNERS))
-    return tuple(
-        f"contact {i} is {gap:.6g} m outside of the shape of {subject.body.name!r}"
-        for i, gap in enumerate(gaps.tolist())
-        if gap > max(distance_tolerance, DISTANCE_TOLERANCE) + left_out
-    )
+    gaps -= shape.rounding
+    outside = np.flatnonzero(gaps > max(distance_tolerance, DISTANCE_TOLERANCE) + left_out).tolist()
+    if len(outside) > _MOST_TOLD:
+        farthest = int(gaps.argmax())
+        most = f"the farthest by {gaps[farthest]:.6g} m: contact {farthest}"
+        return (f"{len(outside)} of {len(gaps)} contacts are outside of the shape of {body.name!r}, {most}",)
+    return tuple(f"contact {i} is {gaps[i]:.6g} m outside of the shape of {body.name!r}" for i in outside)
 
 
 def check_has_shape(body: Body) -> None:

@@ -35,6 +35,7 @@ from message_values.shared import (
     texts,
     tuples_of,
     unit_vectors,
+    warnings,
 )
 
 
@@ -85,6 +86,7 @@ def many_impacts_answers(draw: st.DrawFn) -> ManyImpactsAnswer:
         separates=separates,
         states=draw(many_states(n)),
         impulses_W=draw(arrays(n, 3)),
+        warnings=draw(warnings),
     )
 
 
@@ -131,4 +133,5 @@ def many_contact_modes_answers(draw: st.DrawFn) -> ManyContactModesAnswer:
         accelerations_W=draw(arrays(m, 3)),
         angular_accelerations_W=draw(arrays(m, 3)),
         margins=draw(some(arrays(m))) if m > 0 else None,
+        warnings=draw(warnings),
     )

@@ -13,12 +13,17 @@ from contact_dynamics.impact import RestitutionLaw, SeveralContactsLaw, outcomes
 from contact_dynamics.plane.projection import PlaneOfMotion
 from contact_dynamics.questions import contact_modes as modes_questions
 from contact_dynamics.questions import impact as impact_questions
+from contact_dynamics.questions import many, many_contact_modes
 from contact_dynamics.questions.contact_mode_question import ContactModeQuestion
 from contact_dynamics.questions.context import Context
 from contact_dynamics.questions.impact_question import ImpactQuestion, InTime
+from contact_dynamics.questions.many import ManyImpactsQuestion, ManyStates
+from contact_dynamics.questions.many_contact_modes import ManyContactModesQuestion
 from contact_dynamics.questions.problem import Problem
 from contact_dynamics.shapes import box, capsule, cylinder, sphere
 from contact_dynamics.shapes.convex import ConvexShape
+from msg_adapters.batches import impacts_answer_to_msg
+from msg_adapters.contact_mode_batch import contact_modes_answer_to_msg
 from msg_adapters.impact import impact_answer_to_msg
 from oracles.boxes_nearly_flush import MASS as BOX_MASS
 from oracles.boxes_nearly_flush import flush
@@ -138,3 +143,55 @@ def test_contacts_that_are_taken_as_flush_warn_where_the_verdict_is_undecided_ot
         assert answer.undecided == ""
         assert len(answer.warnings) == count
         assert all(one.startswith("contacts are taken as flush to within 0.0001") for one in answer.warnings)
+
+
+def test_a_batch_of_impacts_warns_of_contacts_outside_of_the_shape() -> None:
+    """Few are named one by one. Many are counted, and the farthest is named."""
+    for count, expected in (
+        (1, ["contact 1 is 0.01 m outside of the shape of 'cube'"]),
+        (6, ["6 of 8 contacts are outside of the shape of 'cube', the farthest by 0.06 m: contact 6"]),
+    ):
+        depths = np.zeros(8)
+        depths[1 : 1 + count] = 0.01 * np.arange(1, 1 + count)
+        down = np.column_stack([np.full(8, 0.05), np.zeros(8), -0.05 - depths])
+        question = ManyImpactsQuestion(
+            body="cube",
+            states=ManyStates(
+                p_WB_W=np.zeros((8, 3)),
+                q_WB=np.tile([0.0, 0.0, 0.0, 1.0], (8, 1)),
+                v_WB_W=np.tile([0.0, 0.0, -1.0], (8, 1)),
+                w_WB_W=np.zeros((8, 3)),
+            ),
+            p_WC_W=down,
+            normals_W=[[0, 0, 1]],
+            frictions=[0.3],
+            restitutions=[0.5],
+        )
+        answer = many.answer_impacts(question, KNOWN)
+        assert list(answer.warnings) == expected
+        msg = impacts_answer_to_msg(answer, world_frame="world")
+        assert msg.message == "\n".join(f"warning: {each}" for each in expected)
+
+
+def test_a_batch_of_contact_modes_says_which_candidates_have_a_warning() -> None:
+    rest = BodyState(p_WB_W=[0, 0, 0], q_WB=[0, 0, 0, 1], v_WB_W=[0, 0, 0], w_WB_W=[0, 0, 0])
+    on, off = [0.05, 0.0, -0.05], [0.05, 0.0, -0.07]
+    outside = "contact 0 is 0.02 m outside of the shape of 'cube'"
+    for points, expected in (
+        ([on, on, on], []),
+        ([off, off, off], [f"all candidates: {outside}"]),
+        ([on, off, on], [f"candidate 1: {outside}"]),
+        ([on, off, off], [f"2 of 3 candidates, of which candidate 1 is the first: {outside}"]),
+    ):
+        asked = ContactModeQuestion(
+            body="cube",
+            state=rest,
+            contacts=ContactSet(p_WC_W=points, normals_W=[0, 0, 1], frictions=0.3),
+        )
+        question = ManyContactModesQuestion(
+            asked=asked, forces_W=np.zeros((3, 3)), torques_W=np.zeros((3, 3)), contact_counts=(1, 1, 1)
+        )
+        answer = many_contact_modes.answer(question, KNOWN)
+        assert list(answer.warnings) == expected
+        msg = contact_modes_answer_to_msg(answer, world_frame="world")
+        assert msg.message == "\n".join(f"warning: {each}" for each in expected)
