@@ -176,3 +176,36 @@ def test_a_window_that_holds_too_little_is_refused(client: Client) -> None:
     assert answer.status in {answer.INVALID_FIELD, answer.STALE_STATE}
     if answer.status == answer.INVALID_FIELD:
         assert says(answer.message, "fit_window must be at least 3..., got 1 states")
+
+
+def test_a_fit_keeps_the_direction_of_a_spin_of_more_than_half_a_turn_between_states(
+    client: Client,
+) -> None:
+    """400 rad/s at 120 Hz is 0.53 turns from state to state: poses alone look like 354 rad/s backwards."""
+    publisher = client.publisher(Odometry, "/brick/odometry")
+    begin_ns = client.node.get_clock().now().nanoseconds + 350_000_000  # after what was published before
+    count, rate, spin = 12, 120.0, 400.0
+    noise = np.random.default_rng(7).normal(scale=1.0, size=count)  # rad/s, of a gyroscope
+    for i in range(count):
+        t = i / rate
+        msg = Odometry()
+        msg.header.stamp.sec, msg.header.stamp.nanosec = divmod(begin_ns + round(1e9 * t), 1_000_000_000)
+        msg.header.frame_id = "world"
+        msg.pose.pose.position.z = 1.0 + 2.0 * t - 0.5 * G * t * t
+        msg.pose.pose.orientation.z = math.sin(0.5 * spin * t)
+        msg.pose.pose.orientation.w = math.cos(0.5 * spin * t)
+        msg.twist.twist.linear.z = 2.0 - G * t
+        msg.twist.twist.angular.z = spin + noise[i]
+        publisher.publish(msg)
+    request = PredictTumbling.Request(body_name="brick", fit_window=0.095, times=[0.0])
+    request.state_source, request.stamp = request.STATE_AT_STAMP, msg.header.stamp
+    answers = []
+
+    def all_arrived() -> bool:
+        answers.append(client.ask(request))
+        return answers[-1].fit_count == count
+
+    client.spin_until(all_arrived)
+    assert answers[-1].status == answers[-1].OK, answers[-1].message
+    # Half a nanosecond of each stamp, over 0.09 s, turns by some 1e-6 of the rate.
+    assert answers[-1].state.angular_velocity.z == pytest.approx(spin, rel=1e-5)
