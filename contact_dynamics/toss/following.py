@@ -419,9 +419,12 @@ class Run(Course):
         modes = choose_mode(self.solid, still, touching, thorough=self.runs.thorough).modes
         if not modes:
             return False
-        rates = pushed_by_contacts(self.solid, still, modes[0]).rates[7:]
+        pushed = pushed_by_contacts(self.solid, still, modes[0])
+        rates = pushed.rates[7:]
         fastest = max(map(abs, rates[:3])) + self.solid.reach * max(map(abs, rates[3:]))
-        if fastest > RESTING_ACCELERATION * norm(self.solid.gravity):
+        # A mode of nearly flush contacts may be still by forces that pull, because they are not quite flush.
+        is_held = least_left(self.solid, modes[0], pushed.forces) >= 0.0
+        if not is_held or fastest > RESTING_ACCELERATION * norm(self.solid.gravity):
             self.slow = _SLOWER * energy
             return False
         if len(modes) > 1:

@@ -191,3 +191,8 @@ def check_moves(went: Toss) -> None:
 def test_a_block_of_tosses_ends(block: int) -> None:
     for seed in range(BLOCK * block, BLOCK * (block + 1)):
         check_ends_well(*drawn(seed))
+
+
+def test_a_body_that_only_forces_that_pull_would_hold_does_not_rest() -> None:
+    """A prism in a groove, with an edge on one side and its base, some 1e-7 m off flush, on the other."""
+    check_ends_well(*drawn(2054))
