@@ -10,6 +10,7 @@ A part is named by a block, as in `test/toss/test_among_flats.py::test_a_block_o
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -19,7 +20,7 @@ from scipy.spatial.transform import Rotation
 
 from contact_dynamics import Body, BodyState, Contact, ContactSet, Surface, World, inertia
 from contact_dynamics.contact_modes import SpatialContactProblem, contact_modes
-from contact_dynamics.shapes import polyhedron
+from contact_dynamics.shapes import capsule, polyhedron, rounded, sphere
 from contact_dynamics.toss import Toss, TossEnd, toss
 from sweeps import sweep
 
@@ -29,6 +30,7 @@ if TYPE_CHECKING:
 G = 9.81
 BLOCK = 10
 HORIZON = 30.0
+ROUND_HORIZON = 3.0  # s, since a ball in a groove rolls on
 DEEPEST = 1e-9  # m
 UP = [0.0, 0.0, 1.0]
 CORNERS = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], dtype=float)
@@ -123,14 +125,40 @@ def drawn(seed: int) -> tuple[Body, BodyState, World]:
     return body, state, World(surfaces=tuple(surfaces), gravity_W=[0, 0, -G])
 
 
+def drawn_round(seed: int) -> tuple[Body, BodyState, World]:
+    """Balls, unbalanced ones, capsules, cubes and hulls with round corners, thrown as the others are."""
+    _, state, world = drawn(seed)
+    rng = np.random.default_rng([seed, 1])
+    radius = rng.uniform(0.01, 0.05)
+    length = radius * rng.uniform(0.2, 6.0)
+    shape, mass = [
+        (sphere(radius), inertia.sphere(radius, density=500.0)),
+        (sphere(radius), inertia.ellipsoid([radius, 0.9 * radius, 0.7 * radius], density=500.0)),
+        (capsule(radius, length), inertia.capsule(radius, length, density=500.0)),
+        (rounded(polyhedron(0.04 * CORNERS), 0.2 * radius), inertia.box([0.1, 0.1, 0.1], density=500.0)),
+        (
+            rounded(polyhedron(0.05 * rng.normal(size=(6, 3))), 0.2 * radius),
+            inertia.sphere(0.05, density=500.0),
+        ),
+    ][int(rng.integers(5))]
+    body = Body.of("body", mass, shape_F=shape)
+    reach = float(np.linalg.norm(body.shape.vertices, axis=1).max()) + body.shape.rounding
+    surfaces = [
+        replace(flat, p_WS_W=-(reach + 1e-3 + rng.choice([0.0, 0.2]) * rng.random()) * flat.normal_W)
+        for flat in world.surfaces
+        if isinstance(flat, Surface)
+    ]
+    return body, state, replace(world, surfaces=tuple(surfaces))
+
+
 def corners_at(body: Body, p: NDArray[np.float64], q: NDArray[np.float64]) -> NDArray[np.float64]:
-    corners: NDArray[np.float64] = p + body.vertices_B @ Rotation.from_quat(q).as_matrix().T
+    corners: NDArray[np.float64] = p + body.shape.vertices @ Rotation.from_quat(q).as_matrix().T
     return corners
 
 
-def check_ends_well(body: Body, state: BodyState, world: World) -> Toss:
+def check_ends_well(body: Body, state: BodyState, world: World, horizon: float = HORIZON) -> Toss:
     """Check all that has to hold of a toss, by the motion that it returns."""
-    went = toss(body, state, world, horizon=HORIZON, max_alternatives=0)
+    went = toss(body, state, world, horizon=horizon, max_alternatives=0)
     assert went.end in {TossEnd.RESTS, TossEnd.HORIZON}
     mass = body.mass_properties
     begun = [*went.starts, *(event.seconds for event in went.events)]
@@ -143,27 +171,33 @@ def check_ends_well(body: Body, state: BodyState, world: World) -> Toss:
         corners = corners_at(body, p, q)
         for flat in world.surfaces:
             assert isinstance(flat, Surface)
-            assert flat.gaps(corners).min() >= -DEEPEST
+            assert flat.gaps(corners).min() - body.shape.rounding >= -DEEPEST
     # Steps may be off by 1e-7 m/s, and within them some 1e-6 m/s.
     size = float(np.ptp(energies)) + mass.mass * G * 0.1
     assert float(np.diff(energies).max(initial=0.0)) <= 1e-5 * size
     if went.end == TossEnd.RESTS:
         check_rests(body, went.state, world)
     else:
-        check_moves(went)
+        check_moves(went, horizon)
     return went
 
 
 def check_rests(body: Body, state: BodyState, world: World) -> None:
     """`contact_modes` finds that the body may stay where it is, with contacts found from the shape alone."""
     corners = corners_at(body, state.p_WB_W, state.q_WB)
-    reach = float(np.linalg.norm(body.vertices_B, axis=1).max())
+    rounding = body.shape.rounding
+    reach = float(np.linalg.norm(body.shape.vertices, axis=1).max()) + rounding
     contacts = [
-        Contact(p_WC_W=corner, normal_W=flat.normal_W, friction=flat.friction, restitution=0.0)
+        Contact(
+            p_WC_W=corner - rounding * flat.normal_W,
+            normal_W=flat.normal_W,
+            friction=flat.friction,
+            restitution=0.0,
+        )
         for flat in world.surfaces
         if isinstance(flat, Surface)
         for corner, gap in zip(corners, flat.gaps(corners), strict=True)
-        if gap <= 1e-6
+        if gap - rounding <= 1e-6
     ]
     answer = contact_modes(
         SpatialContactProblem(
@@ -180,17 +214,23 @@ def check_rests(body: Body, state: BodyState, world: World) -> None:
     assert least <= 1e-5 * G
 
 
-def check_moves(went: Toss) -> None:
+def check_moves(went: Toss, horizon: float) -> None:
     """A body that does not rest is in motion, by far more than rounding."""
     speed = np.linalg.norm(went.state.v_WB_W) + 0.1 * np.linalg.norm(went.state.w_WB_W)
     assert speed > 1e-4
-    assert went.seconds == HORIZON
+    assert went.seconds == horizon
 
 
 @pytest.mark.parametrize("block", sweep(1, whole=1000))
 def test_a_block_of_tosses_ends(block: int) -> None:
     for seed in range(BLOCK * block, BLOCK * (block + 1)):
         check_ends_well(*drawn(seed))
+
+
+@pytest.mark.parametrize("block", sweep(1, whole=100))
+def test_a_block_of_tosses_of_round_bodies_ends(block: int) -> None:
+    for seed in range(BLOCK * block, BLOCK * (block + 1)):
+        check_ends_well(*drawn_round(seed), horizon=ROUND_HORIZON)
 
 
 def test_a_body_that_only_forces_that_pull_would_hold_does_not_rest() -> None:

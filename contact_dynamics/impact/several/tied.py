@@ -23,6 +23,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from contact_dynamics.impact.law import RestitutionLaw
 from contact_dynamics.impact.spatial.path import SlidingLaw, trace
 from contact_dynamics.impact.spatial.result import SpatialImpact
 from contact_dynamics.numerics.vectors import point_jacobians, tangents_by_sign
@@ -33,7 +34,6 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from contact_dynamics.contact.contact import ContactSet
-    from contact_dynamics.impact.law import RestitutionLaw
     from contact_dynamics.rigid_body.body import BodyState, MassProperties
     from contact_dynamics.validation import FloatArray
 
@@ -140,8 +140,14 @@ def strike_as_one(
         l2, k2, u2 = kn, 0.0, 0.0
     if float(np.hypot(u1, u2)) <= tolerance:
         u1 = u2 = 0.0
-    sliding = SlidingLaw(l1, l2, k1, k2, kn, float(contacts.frictions[0]))
-    path = trace(sliding, (u1, u2), v_n, restitution=float(contacts.impact_restitutions[0]), law=law)
+    friction, ends_by = float(contacts.frictions[0]), law
+    sticking = kn - k1 * k1 / l1 - k2 * k2 / l2
+    if sticking <= NO_SHARED_RESPONSE * kn:  # in a groove, equal impulses at contacts that stick move nothing
+        kn += NO_SHARED_RESPONSE * kn - sticking
+        if float(np.hypot(k1 / l1, k2 / l2)) <= friction * (1.0 + NO_SHARED_RESPONSE):
+            ends_by = RestitutionLaw.POISSON  # no impulse ends restitution by a velocity or by work
+    sliding = SlidingLaw(l1, l2, k1, k2, kn, friction)
+    path = trace(sliding, (u1, u2), v_n, restitution=float(contacts.impact_restitutions[0]), law=ends_by)
     impulses = np.einsum("a,kaj->kj", np.array(path.impulse), axes) / k
     after = pushed(response, states, impulses)
     velocities_after = velocities + response.jacobian @ response.inverse_mass @ np.einsum(

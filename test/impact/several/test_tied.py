@@ -200,3 +200,41 @@ def test_a_ball_struck_from_both_sides_stays(law: RestitutionLaw) -> None:
     answer = bodies_impact([ball] * 3, states, contacts, [(0, 1), (1, 2)], restitution_law=law)
     after = np.array([state.v_WB_W[0] for state in answer.states])
     assert after == pytest.approx([-e, 0.0, e], abs=1e-13)
+
+
+@pytest.mark.parametrize("law", RestitutionLaw)
+@pytest.mark.parametrize("restitution", [0.0, 0.5, 1.0])
+@pytest.mark.parametrize("friction", [0.0, 0.1, 0.5, 1.0, 2.0])
+@pytest.mark.parametrize("degrees", [5.0, 30.0, 45.0, 60.0, 85.0])
+def test_a_ball_dropped_into_a_groove_bounces_by_hand_calculation(
+    degrees: float, friction: float, restitution: float, law: RestitutionLaw
+) -> None:
+    """Both sides take the same impulse, and the ball moves up and down only.
+
+    While it falls, friction helps the sides, dv/dp = 2 (cos + mu sin) / m for the normal impulse p of a side.
+    While it rises, friction holds it back, dv/dp = 2 (cos - mu sin) / m, or for good if that is not positive.
+    """
+    angle, radius = math.radians(degrees), 0.05
+    c, s = math.cos(angle), math.sin(angle)
+    normals = np.array([[s, 0.0, c], [-s, 0.0, c]])
+    body = MassProperties(mass=1.0, I_B=0.4 * radius**2 * np.eye(3))
+    state = BodyState(p_WB_W=[0, 0, 0], q_WB=LEVEL, v_WB_W=[0, 0, -1], w_WB_W=[0, 0, 0])
+    contacts = ContactSet(
+        p_WC_W=-radius * normals, normals_W=normals, frictions=friction, restitutions=restitution
+    )
+    impact = several_impact(body, state, contacts, restitution_law=law)
+    down, up = 2.0 * (c + friction * s), 2.0 * (c - friction * s)
+    compression, expected = 1.0 / down, 0.0
+    if up > 1e-9:
+        expected = {
+            RestitutionLaw.POISSON: restitution * compression * up,
+            RestitutionLaw.NEWTON: restitution,
+            RestitutionLaw.ENERGETIC: restitution * math.sqrt(up / down),
+        }[law]
+    # What is left of the response of contacts that stick counts as 1e-12, so v is off by some 1e-12.
+    np.testing.assert_allclose(impact.state.v_WB_W, [0.0, 0.0, expected], atol=1e-10)
+    np.testing.assert_allclose(impact.state.w_WB_W, 0.0, atol=1e-10)
+    pressing = (impact.impulses_W * normals).sum(axis=1)
+    across = np.linalg.norm(impact.impulses_W - pressing[:, None] * normals, axis=1)
+    assert (pressing >= compression * (1.0 - 1e-10)).all()
+    assert (across <= friction * pressing * (1.0 + 1e-10) + 1e-10).all()
