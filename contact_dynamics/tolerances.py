@@ -529,10 +529,6 @@ exact in some direction has distances. It is far above the rounding of variances
 SAMPLED_ARRIVAL: Final = 1e-7
 """m. A corner of a sample that is nearer to a flat has arrived. At 1 m/s this is 1e-7 s."""
 
-ARRIVAL_POLISHED: Final = 1e-5
-"""s. From `SAMPLED_ARRIVAL`, Newton's steps to the flat are no longer. A corner that is farther off in time
-comes down at less than 1 cm/s, and counts as there."""
-
 SAMPLED_PHASE_ERROR: Final = 1e-3
 """m, or m/s. The error that a step of a contact phase of a sample may have. Velocities after strikes of
 recorded cubes are twenty times as uncertain."""

@@ -1,9 +1,8 @@
 """Whole tosses: the motion of a body from a state in flight to rest, in one call.
 
 `one_toss` is the call, and follows other ways where mechanics does not decide. `following` goes from event to
-event: each `flight` in closed form, strikes (`strike`), contact phases (`phase`), and rest. `course` keeps
-what happens, and `result` has what is returned. Flights, impacts (`one_impact`) and steps are work that is
-`asked` for.
+event: each `flight` in closed form, strikes (`strike`, `one_impact`), contact phases (`phase`), and rest. `course` keeps
+what happens, and `result` has what is returned.
 
 - `solid` has the body and the flats in plain floats, and the points that touch. Corners that are very near to
   each other are one (`distinct_corners`).
@@ -19,10 +18,8 @@ what happens, and `result` has what is returned. Flights, impacts (`one_impact`)
 
 What is not known exactly (`uncertainty`) is sampled: `sampled` is the call, and `distribution` has what it
 returns. `strikes_of_many` has the next strikes of all samples at once (`arrivals_of_many`), and `law_spread`
-what the law of impact leaves open. `to_rest` has samples on their way to rest, in blocks that several
-processes can share. `laid_flat` ends their rattling on a face. Those of a block go on `together`:
-`flights_of_many`, `impacts_of_many` and `steps_of_many` do in arrays what they ask for, by the arithmetic of
-one, with `solids_of_many`.
+what the law of impact leaves open. `to_rest` has samples on their way to rest, each as a toss of its own,
+which several processes can share. `laid_flat` ends their rattling on a face.
 """
 
 from contact_dynamics.toss.distribution import TossDistribution

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import numpy as np
 
 from contact_dynamics.rotations.many import matrices_of
-from contact_dynamics.tolerances import ARRIVAL_POLISHED, SAMPLED_ARRIVAL
+from contact_dynamics.tolerances import SAMPLED_ARRIVAL
 from contact_dynamics.tumbling.many import motions_of_many
 
 if TYPE_CHECKING:
@@ -42,8 +42,6 @@ def arrivals_of_many(
     state: list[FloatArray],
     *,
     longest: FloatArray,
-    pauses: FloatArray | None = None,
-    polished: int = 0,
 ) -> Arrivals:
     """Return where flights of n samples end.
 
@@ -54,8 +52,6 @@ def arrivals_of_many(
         gravities: (n, 3), m/s^2.
         state: Positions, quaternions, velocities and angular velocities, a row a sample.
         longest: (n,), s, after which flights end anyway.
-        pauses: (n,), s, after which arrivals are looked for, if not at once.
-        polished: How many of Newton's steps go from `SAMPLED_ARRIVAL` to the flat itself.
     """
     n = len(inertias)
     normals = np.array([flat.normal for flat in solid.flats])
@@ -66,7 +62,7 @@ def arrivals_of_many(
         + _turning(inertias, state[1], state[3])[:, None, None] * reaches[:, None, :],
         0.0,
     )
-    t = np.zeros(n) if pauses is None else pauses.copy()
+    t = np.zeros(n)
     surface, corner = np.full(n, -1, dtype=np.int64), np.full(n, -1, dtype=np.int64)
     then = [each.copy() for each in state]
 
@@ -84,8 +80,6 @@ def arrivals_of_many(
         for each, rows in zip(then, (moved.p_WB_W, moved.q_WB, moved.v_WB_W, moved.w_WB_W), strict=True):
             each[some] = rows
 
-    if pauses is not None:
-        move(np.arange(n))
     active = np.arange(n)
     for _ in range(_MAX_STEPS):
         heights, rates = _heights(normals, levels, corners[active], [each[active] for each in then])
@@ -101,15 +95,6 @@ def arrivals_of_many(
             break
         t[active] = np.minimum(t[active] + steps, longest[active])
         move(active)
-    for _ in range(polished):
-        which = np.flatnonzero(corner >= 0)
-        rows = [each[which] for each in then]
-        heights, rates = _heights(normals, levels, corners[which, corner[which]][:, None, :], rows)
-        at = np.arange(len(which)), surface[which], 0
-        near = heights[at] / -rates[at]
-        sure = np.abs(near) <= ARRIVAL_POLISHED
-        t[which[sure]] = np.clip(t[which[sure]] + near[sure], 0.0, longest[which[sure]])
-        move(which[sure])
     return Arrivals(t, surface, corner, then)
 
 

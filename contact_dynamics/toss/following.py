@@ -11,8 +11,8 @@ import numpy as np
 from contact_dynamics.impact.law import ImpactOutcome, RestitutionLaw
 from contact_dynamics.impact.several.result import SeveralContactsLaw, SeveralVerdict
 from contact_dynamics.impact.several.settling import settling_impact
-from contact_dynamics.landing.search_work import SearchWork
 from contact_dynamics.numerics.vectors import norm
+from contact_dynamics.shapes.convex import ConvexShape
 from contact_dynamics.tolerances import (
     LIFT_OFF_PAUSE,
     LONGEST_SHORT_STEP,
@@ -24,11 +24,11 @@ from contact_dynamics.tolerances import (
     STRIKES,
 )
 from contact_dynamics.toss.course import Course
-from contact_dynamics.toss.flight import AskedFlight
+from contact_dynamics.toss.flight import flight
 from contact_dynamics.toss.forces import least_left, pushed_by_contacts
 from contact_dynamics.toss.holding import held_in_place, out_of_flats
 from contact_dynamics.toss.laid_flat import laid_flat
-from contact_dynamics.toss.mode_choice import choose_mode, contacts_of, state_of
+from contact_dynamics.toss.mode_choice import choose_mode, contacts_of, properties_of, state_of
 from contact_dynamics.toss.one_impact import routh
 from contact_dynamics.toss.phase import phase
 from contact_dynamics.toss.phase_ends import PhaseEnd
@@ -39,11 +39,9 @@ from contact_dynamics.toss.strike import approaches, low_rebounds_ended, strike
 from contact_dynamics.toss.wedged import may_be_wedged
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable
 
-    from contact_dynamics.rigid_body.body import BodyState, MassProperties
-    from contact_dynamics.shapes.convex import ConvexShape
-    from contact_dynamics.toss.asked import Asked, Asking
+    from contact_dynamics.rigid_body.body import BodyState
     from contact_dynamics.toss.held import Held
     from contact_dynamics.toss.laid_flat import Faces
     from contact_dynamics.toss.mode_choice import Choice, Mode
@@ -84,8 +82,8 @@ class Following:
 
     Attributes:
         solid: The body and the flats.
-        properties: Mass and inertia, as flights take them.
-        shape: The shape, as flights take it.
+        properties: Mass and inertia of the solid, as flights take them.
+        shape: Its shape, as flights take it.
         law: What the coefficients of restitution mean.
         several_contacts_law: The law for several contacts that strike at one instant.
         horizon: s, how far a toss is followed.
@@ -102,8 +100,6 @@ class Following:
     def __init__(
         self,
         solid: Solid,
-        properties: MassProperties,
-        shape: ConvexShape,
         law: RestitutionLaw,
         *,
         several_contacts_law: SeveralContactsLaw = SeveralContactsLaw.SEQUENTIAL,
@@ -115,7 +111,8 @@ class Following:
         thorough: bool = True,
         has_pieces: bool = True,
     ) -> None:
-        self.solid, self.properties, self.shape = solid, properties, shape
+        self.solid, self.properties = solid, properties_of(solid)
+        self.shape = ConvexShape(vertices=np.array(solid.corners), rounding=solid.rounding)
         self.law, self.several_contacts_law, self.horizon = law, several_contacts_law, horizon
         self.max_events, self.error = max_events, error
         self.kick, self.flat_after, self.thorough = kick, flat_after, thorough
@@ -124,19 +121,11 @@ class Following:
     def run(self, state: BodyState, ways: tuple[int, ...]) -> Toss:
         """Return the toss that takes the given ways at its first undecided points, and way 0 after that."""
         run = Run(self, state, ways)
-        for asked in run.go():
-            asked.work()
-        return run.told(run.end, self.law)
+        return run.told(run.to_end(), self.law)
 
 
 class Run(Course):
-    """One toss, as far as it has come, and how it goes on.
-
-    Attributes:
-        end: Why it ends, once it has ended.
-    """
-
-    end: TossEnd
+    """One toss, as far as it has come, and how it goes on."""
 
     def __init__(self, runs: Following, state: BodyState, ways: tuple[int, ...]) -> None:
         super().__init__(runs.solid, state, ways)
@@ -150,11 +139,8 @@ class Run(Course):
         self.faces: Faces = {}  # that it could be laid on
         self.way_on: Mode | None = None  # how it goes on where it could rest as well
 
-    def go(self) -> Iterator[Asked]:
-        """Follow the motion to its end, and ask for the work that it takes."""
-        self.end = yield from self._to_end()
-
-    def _to_end(self) -> Asking[TossEnd]:
+    def to_end(self) -> TossEnd:
+        """Follow the motion to its end, and return why it ends."""
         touching = self.touching_now(STRIKES)
         for _ in range(_ROUNDS * self.runs.max_events):
             if len(self.events) >= self.runs.max_events or self.steps >= MAX_STEPS:
@@ -166,39 +152,39 @@ class Run(Course):
                 touching = self._pass_over()
             rates = approaches(self.solid, self.y, touching)
             if min(rates, default=0.0) < -STRIKES:
-                touching = yield from self._strike(touching, rates)
+                touching = self._strike(touching, rates)
                 continue
             touching = [touch for touch, rate in zip(touching, rates, strict=True) if rate <= STILL_TOUCHING]
             if touching and self._rests(touching):
                 return TossEnd.RESTS
-            touching = yield from self._go_on(touching)
+            touching = self._go_on(touching)
         return TossEnd.MAX_EVENTS
 
-    def _go_on(self, touching: list[Touch]) -> Asking[list[Touch]]:
+    def _go_on(self, touching: list[Touch]) -> list[Touch]:
         """Go on from contacts that neither approach nor leave, and return what touches then."""
         if not touching:
-            return (yield from self._fly(0.0))
+            return self._fly(0.0)
         modes = self._modes(touching)
         if not modes:
             return self._jam(touching)
         mode = modes[0]
         if not mode:
             self.note(TossEventKind.LIFTS_OFF, touching)
-            return (yield from self._fly(LIFT_OFF_PAUSE))
+            return self._fly(LIFT_OFF_PAUSE)
         if least_left(self.solid, mode, pushed_by_contacts(self.solid, self.y, mode).forces) < 0.0:
             return self._pass_over()
-        return (yield from self._follow(mode))
+        return self._follow(mode)
 
     # Flights
 
-    def _fly(self, pause: float) -> Asking[list[Touch]]:
+    def _fly(self, pause: float) -> list[Touch]:
         """Fly on to the next contact or the horizon, and return what touches then.
 
         A body whose contacts have just left without speed flies for a pause before arrivals are looked for.
         """
         left = self.runs.horizon - self.now
         self.y = out_of_flats(self.solid, self.y)
-        flown = AskedFlight(
+        flown = flight(
             self.solid,
             self.runs.properties,
             self.runs.shape,
@@ -206,10 +192,7 @@ class Run(Course):
             stamp_ns=self.stamp_ns(),
             longest=left,
             pause=pause,
-            search=SearchWork(),
-            is_told=self.runs.has_pieces,
         )
-        yield flown
         if self.runs.has_pieces:
             self.pieces.append(FlightPiece(self.now, flown.motion))
             self._forget_instant()
@@ -224,7 +207,7 @@ class Run(Course):
 
     # Strikes
 
-    def _strike(self, touching: list[Touch], rates: list[float]) -> Asking[list[Touch]]:
+    def _strike(self, touching: list[Touch], rates: list[float]) -> list[Touch]:
         striking = [
             touch for rate, touch in sorted(zip(rates, touching, strict=True)) if rate < -self._fast()
         ]
@@ -233,7 +216,7 @@ class Run(Course):
             way = self.way(UndecidedReason.STRIKE_TOGETHER, len(striking))
             first = striking[way] if way > 0 else None
         y, before = self.y, energy_of(self.solid, self.y)
-        strikes = yield from strike(
+        strikes = strike(
             self.solid, self.y, touching, self.runs.law, rates=rates, together=together, first=first
         )
         self.settled = strikes
@@ -326,7 +309,7 @@ class Run(Course):
             return None
         return None if thorough and may_be_wedged(self.solid, touching) else last.choice
 
-    def _follow(self, mode: Mode) -> Asking[list[Touch]]:
+    def _follow(self, mode: Mode) -> list[Touch]:
         """Go on in a mode to its end, and return what touches then."""
         self.note(
             TossEventKind.NEW_MODE,
@@ -334,7 +317,7 @@ class Run(Course):
             mode="".join("c" if one.slides else "f" for one in mode),
         )
         before = energy_of(self.solid, self.y)
-        went = yield from phase(
+        went = phase(
             self.solid,
             self.y,
             mode,

@@ -1,4 +1,4 @@
-"""Routh's impact at one contact of a toss (`impact.spatial`), and the same as a piece of work."""
+"""Routh's impact at one contact of a toss (`impact.spatial`)."""
 
 from __future__ import annotations
 
@@ -49,38 +49,3 @@ def routh(
     impulse = axes.in_world(path.impulse)
     v, w = pushed(body, impulse)
     return [*y[:7], *v, *w], Struck(touch, impulse, path.outcome)
-
-
-class AskedImpact:
-    """The impact at one contact, as a piece of work.
-
-    Attributes:
-        solid: The body and the flats.
-        y: The state before.
-        touch: The contact.
-        law: What the coefficient of restitution means.
-        after: The state after the impact, once the work is done.
-        struck: The strike, then.
-    """
-
-    __slots__ = ("after", "law", "solid", "struck", "touch", "y")
-
-    after: Numbers
-    struck: Struck
-
-    def __init__(self, solid: Solid, y: Numbers, touch: Touch, law: RestitutionLaw) -> None:
-        self.solid, self.y, self.touch, self.law = solid, y, touch, law
-
-    @property
-    def kind(self) -> tuple[str, int]:
-        """Impacts of one law can be done together."""
-        return ("impact", self.law)
-
-    @property
-    def friction(self) -> float:
-        """Return Coulomb's mu in this strike."""
-        return self.solid.flats[self.touch[0]].strike_friction
-
-    def work(self) -> None:
-        """Do this impact alone."""
-        self.after, self.struck = routh(self.solid, self.y, self.touch, self.law, friction=self.friction)

@@ -85,8 +85,6 @@ def toss(
     solid = solid_of(body, world, indices=indices, lasting_factors=factors)
     runs = Following(
         solid,
-        body.mass_properties,
-        body.shape,
         restitution_law,
         several_contacts_law=several_contacts_law,
         horizon=check_positive("horizon", horizon),

@@ -29,7 +29,7 @@ from contact_dynamics.toss.held import Held, sliding_direction
 from contact_dynamics.toss.holding import heights_held, held_in_place, out_of_flats
 from contact_dynamics.toss.mode_choice import corrected
 from contact_dynamics.toss.phase_ends import PhaseEnd, first_end, low_corners, watched_corners
-from contact_dynamics.toss.phase_step import INTERPOLANT, AskedStep, PhaseStep, scales_of, within
+from contact_dynamics.toss.phase_step import INTERPOLANT, PhaseStep, scales_of, tried, within
 from contact_dynamics.toss.solid import (
     arm_of,
     heights_and_rates,
@@ -39,7 +39,6 @@ from contact_dynamics.toss.solid import (
 )
 
 if TYPE_CHECKING:
-    from contact_dynamics.toss.asked import Asking
     from contact_dynamics.toss.solid import Numbers, Pose, Solid, Touch
 
 MAX_PHASE_STEPS: Final = 20_000
@@ -86,7 +85,7 @@ def phase(
     until: float,
     slow: float = 0.0,
     error: float = PHASE_ERROR,
-) -> Asking[Phase]:
+) -> Phase:
     """Return the motion in a mode, from a state to the end of the mode.
 
     Args:
@@ -113,16 +112,14 @@ def phase(
     for _ in range(MAX_PHASE_STEPS):
         longest = _before_arrival(solid, y, held)
         step = min(step, longest, until - now, before_stop)
-        asked = AskedStep(solid, y, pushed, mode, span=step, scales=scales, error=error)
-        yield asked
-        trial, size, after = asked.trial, asked.size, asked.after
+        trial, size, stages, after = tried(solid, y, pushed, mode, span=step, scales=scales, error=error)
         short += step < CREEPING_STEP
         if short > _MAX_SHORT_STEPS:
             return Phase(PhaseEnd.CREEPS, now, y, steps)
         if size > 1.0 and step > PHASE_LEAST_STEP:
             step *= max(0.2, 0.9 * size**-0.2)
             continue
-        done = PhaseStep(solid, now, step, np.array(y), asked.stages.T @ INTERPOLANT, step)
+        done = PhaseStep(solid, now, step, np.array(y), stages.T @ INTERPOLANT, step)
         found = first_end(solid, done, mode, after=after, trial=trial, watched=watched)
         if found is not None:
             reason, x = found

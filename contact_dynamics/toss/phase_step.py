@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
-from contact_dynamics.toss.flush import is_flush
 from contact_dynamics.toss.forces import Pushed, pushed_by_contacts
 from contact_dynamics.toss.holding import out_of_flats
 
@@ -82,71 +81,49 @@ def scales_of(solid: Solid) -> FloatArray:
     return np.array([1.0] * 3 + [2.0 * reach] * 4 + [1.0] * 3 + [reach] * 3)
 
 
-class AskedStep:
-    """One step, as a piece of work.
+class Trial(NamedTuple):
+    """A step that is tried.
 
     Attributes:
+        y: The state at its end.
+        size: Its error, by the allowed one.
+        stages: (7, 13), the rates at the stages.
+        pushed: The rates and forces at its end.
+    """
+
+    y: Numbers
+    size: float
+    stages: FloatArray
+    pushed: Pushed
+
+
+def tried(
+    solid: Solid,
+    y: Numbers,
+    pushed: Pushed,
+    mode: tuple[Held, ...],
+    *,
+    span: float,
+    scales: FloatArray,
+    error: float,
+) -> Trial:
+    """Return a step from a state.
+
+    Args:
         solid: The body and the flats.
-        y: The state at its beginning.
+        y: The state.
         pushed: The rates and forces there.
         mode: The contacts that are held.
         span: s, its length.
         scales: What the 13 numbers are multiplied with (`scales_of`).
         error: m, m/s. The error that it may have.
-        trial: The state at its end, once the work is done.
-        size: Its error, by the allowed one.
-        stages: (7, 13), the rates at the stages.
-        after: The rates and forces at its end.
     """
-
-    __slots__ = (
-        "after",
-        "error",
-        "mode",
-        "pushed",
-        "scales",
-        "size",
-        "solid",
-        "span",
-        "stages",
-        "trial",
-        "y",
-    )
-
-    trial: Numbers
-    size: float
-    stages: FloatArray
-    after: Pushed
-
-    def __init__(
-        self,
-        solid: Solid,
-        y: Numbers,
-        pushed: Pushed,
-        mode: tuple[Held, ...],
-        *,
-        span: float,
-        scales: FloatArray,
-        error: float,
-    ) -> None:
-        self.solid, self.y, self.pushed, self.mode = solid, y, pushed, mode
-        self.span, self.scales, self.error = span, scales, error
-
-    @property
-    def kind(self) -> tuple[str, int] | None:
-        """Steps of so many contacts can be done together if all of them slide."""
-        mode = self.mode
-        if not all(one.slides and not one.begins for one in mode) or (len(mode) > 2 and not is_flush(mode)):
-            return None
-        return ("step", len(mode))
-
-    def work(self) -> None:
-        """Do this step alone."""
-        begin = np.array(self.y)
-        self.stages = stages = np.empty((7, 13))
-        stages[0] = self.pushed.rates
-        for k, row in enumerate(STAGES, start=1):
-            self.trial = (begin + self.span * (row @ stages[:k])).tolist()
-            self.after = pushed_by_contacts(self.solid, self.trial, self.mode)
-            stages[k] = self.after.rates
-        self.size = float(np.abs((ERRORS @ stages) * self.scales).max()) * self.span / self.error
+    begin, trial, after = np.array(y), y, pushed
+    stages = np.empty((7, 13))
+    stages[0] = pushed.rates
+    for k, row in enumerate(STAGES, start=1):
+        trial = (begin + span * (row @ stages[:k])).tolist()
+        after = pushed_by_contacts(solid, trial, mode)
+        stages[k] = after.rates
+    size = float(np.abs((ERRORS @ stages) * scales).max()) * span / error
+    return Trial(trial, size, stages, after)

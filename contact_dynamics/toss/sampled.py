@@ -107,8 +107,8 @@ def sampled_toss(
         horizon: s, > 0, how far samples are followed.
         processes: How many processes share the samples that go on to rest, or an executor of
             `concurrent.futures`, which keeps its processes from toss to toss. The answer is the same bit for
-            bit. Each process takes some 250 samples at a time (`to_rest.BLOCK`), so that more processes than
-            such parts are of no use. A number of processes is started anew by each call, which takes about
+            bit. Each process takes 100 samples at a time (`to_rest.PART`), so that more processes than such
+            parts are of no use. A number of processes is started anew by each call, which takes about
             half a second. They import the main module, so a program does its work under
             ``if __name__ == "__main__":``, as with `multiprocessing`.
         distance_tolerance: m, >= 0. The best state may be in a surface by this much, or by 1e-6 m. Samples

@@ -24,13 +24,12 @@ from contact_dynamics.toss.held import Held
 from contact_dynamics.toss.holding import heights_held, held_in_place, without_rebounds
 from contact_dynamics.toss.inelastic import inelastic_impact, sure_impact
 from contact_dynamics.toss.mode_choice import choose_mode
-from contact_dynamics.toss.one_impact import AskedImpact, Struck
+from contact_dynamics.toss.one_impact import Struck, routh
 from contact_dynamics.toss.solid import arm_of, pose_of, times, velocity_of
 
 if TYPE_CHECKING:
     from contact_dynamics.impact.law import RestitutionLaw
     from contact_dynamics.numerics.vectors import Vector3
-    from contact_dynamics.toss.asked import Asking
     from contact_dynamics.toss.inelastic import Inelastic
     from contact_dynamics.toss.mode_choice import Choice
     from contact_dynamics.toss.solid import Numbers, Solid, Touch
@@ -78,7 +77,7 @@ def strike(
     rates: list[float],
     together: SeveralContactsLaw = SeveralContactsLaw.SEQUENTIAL,
     first: Touch | None = None,
-) -> Asking[Strikes]:
+) -> Strikes:
     """Return the state after all strikes of contacts that touch at one instant.
 
     Args:
@@ -107,10 +106,10 @@ def strike(
         elif len(group) > 1:
             at_once = tied_strike(solid, y, group, law)
         if at_once is None:
-            impact = AskedImpact(solid, y, group[0], law)
-            yield impact
-            at_once = impact.after, [impact.struck]
-        y, new = at_once
+            y, one = routh(solid, y, group[0], law, friction=solid.flats[group[0][0]].strike_friction)
+            new = [one]
+        else:
+            y, new = at_once
         struck += new
         rates = approaches(solid, y, touching)
     if min(rates) < -STRIKES:

@@ -11,7 +11,7 @@ from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.shapes import box
 from contact_dynamics.toss import TossUncertainty, sampled_toss, toss
 from contact_dynamics.toss.law_spread import LawSpread
-from contact_dynamics.toss.solid import solid_of
+from contact_dynamics.toss.solid import numbers_of, solid_of
 from contact_dynamics.world import Body, Surface, World
 
 SIZE = (0.1, 0.12, 0.07)
@@ -80,3 +80,15 @@ def test_both_spreads_are_kept_where_a_body_cannot_be_turned_at_its_contact() ->
     changes = spread.changes(np.arange(4000), np.ones(4000), np.zeros((4000, 3, 3)))
     medians = [np.median(np.linalg.norm(part, axis=1)) for part in (changes[:, :3], changes[:, 3:])]
     np.testing.assert_allclose(medians, 1.538 * np.array([0.0068, 0.3]), rtol=0.06)  # as of normal numbers
+
+
+def test_what_the_spread_does_to_a_sample_does_not_depend_on_which_goes_first() -> None:
+    solid, y = solid_of(BRICK, WORLD), numbers_of(STATE)
+    after = [*y[:7], *(x + 0.5 for x in y[7:])]
+    changed = []
+    for order in ((0, 1, 2), (2, 0, 1)):
+        spread = LawSpread(UNCERTAINTY, 3, np.random.default_rng(1))
+        kicks = {i: spread.of_one(i)(solid, y, after, (0, 0)) for i in order}
+        changed.append([kicks[i] for i in range(3)])
+    assert changed[0] == changed[1]
+    assert changed[0][0] != changed[0][1]

@@ -16,7 +16,7 @@ from contact_dynamics.rigid_body import inertia
 from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.shapes import box
 from contact_dynamics.toss import TossDistribution, TossUncertainty, sampled_toss
-from contact_dynamics.toss.to_rest import BLOCK
+from contact_dynamics.toss.to_rest import PART
 from contact_dynamics.world import Body, Surface, World
 
 if TYPE_CHECKING:
@@ -27,17 +27,18 @@ BRICK = Body(
     name="brick", mass_properties=inertia.box(size=SIZE, mass=0.4).mass_properties, shape=box(size=SIZE)
 )
 FLOOR = Surface(name="floor", p_WS_W=[0, 0, 0], normal_W=[0, 0, 1], friction=0.2, restitution=0.3)
-COUNT = int(1.6 * BLOCK)  # two parts
+COUNT = int(1.6 * PART)  # two parts
 
 
-def told(count: int, **given: Any) -> TossDistribution:
+def told(count: int, *, exact: bool = False, **given: Any) -> TossDistribution:
     """Return what can happen to a brick that is dropped nearly flat, and slides on."""
+    if not exact:
+        given["covariance"] = np.diag([1e-3] * 3 + [0.02] * 3 + [0.02] * 3 + [0.3] * 3) ** 2
+        given["uncertainty"] = TossUncertainty(velocity=0.02, spin=0.4, height=5e-4)
     return sampled_toss(
         BRICK,
         BodyState(p_WB_W=[0, 0, 0.07], q_WB=[0.08, 0.06, 0.0, 0.995], v_WB_W=[0.4, 0, 0], w_WB_W=[0, 0, 1]),
         World(bodies=(BRICK,), surfaces=(FLOOR,)),
-        covariance=np.diag([1e-3] * 3 + [0.02] * 3 + [0.02] * 3 + [0.3] * 3) ** 2,
-        uncertainty=TossUncertainty(velocity=0.02, spin=0.4, height=5e-4),
         count=count,
         to_rest=True,
         restitution_law=RestitutionLaw.POISSON,
@@ -63,6 +64,16 @@ def test_the_processes_of_an_executor_give_the_numbers_of_one(alone: TossDistrib
     """They start as Python 3.14 does it by itself."""
     with ProcessPoolExecutor(2, mp_context=get_context("forkserver")) as executor:
         assert pickle.dumps(told(COUNT, processes=executor)) == pickle.dumps(alone)
+
+
+def test_a_sample_among_others_is_the_sample_alone_bit_for_bit() -> None:
+    """Exact samples are alike, strike by strike up to rest."""
+    alone, among = (told(count, exact=True).ghosts for count in (1, 25))
+    assert set(alone.strikes.tolist()) == {0, 1, 2}
+    for i in range(25):
+        which = among.samples == i
+        for name in ("strikes", "p_WB_W", "q_WB", "v_WB_W", "w_WB_W"):
+            np.testing.assert_array_equal(getattr(among, name)[which], getattr(alone, name))
 
 
 def test_few_samples_start_no_process() -> None:
