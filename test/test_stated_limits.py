@@ -55,7 +55,7 @@ NOT_REFUSED = {
     "toss.phase.MAX_PHASE_STEPS",
     "toss.sampled.MAX_GHOSTS",
     "toss.strike.MAX_STRIKES_AT_ONCE",
-    "toss.strikes_of_many.MAX_FURTHER",
+    "toss.next_strikes.MAX_FURTHER",
     "tumbling.attitude_form.MAX_TERMS",
 }
 

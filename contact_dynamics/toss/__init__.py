@@ -1,25 +1,24 @@
 """Whole tosses: the motion of a body from a state in flight to rest, in one call.
 
-`one_toss` is the call, and follows other ways where mechanics does not decide. `following` goes from event to
-event: each `flight` in closed form, strikes (`strike`, `one_impact`), contact phases (`phase`), and rest. `course` keeps
-what happens, and `result` has what is returned.
+`one_toss` is the call, and follows other ways where mechanics does not decide. `simulation` goes from event
+to event: each `flight` in closed form, strikes (`strike`), contact phases (`phase`), and rest. `history`
+keeps what happens, and `result` has what is returned.
 
 - `solid` has the body and the flats in plain floats, and the points that touch. Corners that are very near to
   each other are one (`distinct_corners`).
-- `mode_choice` says which contact mode follows. It tries the one that goes on, corrects it, with the
-  directions of sliding that is `beginning`, seeks pushes in friction cones (`cone_forces`), and asks
-  `contact_modes` where there may be several modes, as where a body may be `wedged`.
-- `forces` has the accelerations in a mode of `held` contacts, `flush` those of a body that slides on a face,
-  and `phase` integrates them (`phase_step`) until the mode ends (`phase_ends`). `holding` keeps contacts
-  where they are, and the body out of the flats.
-- Contacts that strike at one instant and have no order do so `at_once`.
-- Contacts that jam have an impact without restitution together (`inelastic`). Where strikes and modes lead to
-  one another at one instant, a `short_step` passes over that.
+- `strike` has the strikes of one instant, of the `impacts` at one contact, at contacts that have no order,
+  and without restitution, as where contacts jam.
+- `mode_choice` says which contact mode follows. It tries the one that goes on, corrects it, seeks pushes in
+  friction cones (`cone_forces`), and asks `contact_modes` where there may be several modes.
+- `forces` has the accelerations in a mode, `flush` those of a body that slides on a face, and `phase`
+  integrates them (`phase_step`) until the mode ends. `holding` keeps contacts where they are, and the body
+  out of the flats.
+- Where strikes and modes lead to one another at one instant, a `short_step` passes over that.
 
 What is not known exactly (`uncertainty`) is sampled: `sampled` is the call, and `distribution` has what it
-returns. `strikes_of_many` has the next strikes of all samples at once (`arrivals_of_many`), and `law_spread`
-what the law of impact leaves open. `to_rest` has samples on their way to rest, each as a toss of its own,
-which several processes can share. `laid_flat` ends their rattling on a face.
+returns. `next_strikes` has the next strikes of all samples at once, and `law_spread` what the law of impact
+leaves open. `to_rest` has samples on their way to rest, each as a toss of its own, which several processes
+can share. `laid_flat` ends their rattling on a face.
 """
 
 from contact_dynamics.toss.distribution import TossDistribution

@@ -8,7 +8,7 @@ import numpy as np
 
 from contact_dynamics.landing.plane_arrival import Descent
 from contact_dynamics.landing.search_work import SearchWork
-from contact_dynamics.toss.mode_choice import state_of
+from contact_dynamics.toss.solid import state_of
 from contact_dynamics.tumbling import FreeMotion, Precision, free_motion
 
 if TYPE_CHECKING:

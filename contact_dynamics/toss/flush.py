@@ -21,10 +21,9 @@ from contact_dynamics.tolerances import SAME_FORCES, SLIDING_DIRECTION_SPEED
 from contact_dynamics.toss.solid import times, transposed_times
 
 if TYPE_CHECKING:
-    from contact_dynamics.toss.held import Held
-    from contact_dynamics.toss.solid import Numbers, Solid
+    from contact_dynamics.toss.solid import Held, Numbers, Solid
 
-DIRECTION_SURE: Final = 1e6 * SLIDING_DIRECTION_SPEED
+_DIRECTION_SURE: Final = 1e6 * SLIDING_DIRECTION_SPEED
 """m/s. A contact that slides faster has a direction of its own, to 1e-6."""
 
 
@@ -55,7 +54,7 @@ def flush_sliding(
         u, v = v1 - spin * t, v2 + spin * s
         if begins:
             u, v = dot(towards, t1), dot(towards, t2)
-        elif abs(u) + abs(v) < DIRECTION_SURE:
+        elif abs(u) + abs(v) < _DIRECTION_SURE:
             u, v = u + e * dot(towards, t1), v + e * dot(towards, t2)
         speed = math.sqrt(u * u + v * v)
         if speed > 0.0:

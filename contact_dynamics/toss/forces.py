@@ -27,12 +27,18 @@ from contact_dynamics.numerics.vectors import (
 )
 from contact_dynamics.tolerances import FORCE_ROUNDING, SAME_FORCES
 from contact_dynamics.toss.flush import flush_sliding, is_flush
-from contact_dynamics.toss.held import sliding_direction
-from contact_dynamics.toss.solid import arm_of, pose_of, responses, times, transposed_times, velocity_of
+from contact_dynamics.toss.solid import (
+    arm_of,
+    pose_of,
+    responses,
+    sliding_direction,
+    times,
+    transposed_times,
+    velocity_of,
+)
 
 if TYPE_CHECKING:
-    from contact_dynamics.toss.held import Held
-    from contact_dynamics.toss.solid import Numbers, Pose, Solid, Touch
+    from contact_dynamics.toss.solid import Held, Numbers, Pose, Solid, Touch
 
 
 class Pushed(NamedTuple):

@@ -24,8 +24,7 @@ from contact_dynamics.toss.solid import (
 )
 
 if TYPE_CHECKING:
-    from contact_dynamics.toss.held import Held
-    from contact_dynamics.toss.solid import Matrix3, Numbers, Solid, Touch
+    from contact_dynamics.toss.solid import Held, Matrix3, Numbers, Solid, Touch
 
 _MAX_SWEEPS: Final = 200
 """Sweeps over corners that are below a flat. Some ten are usual."""

@@ -20,9 +20,9 @@ from contact_dynamics.contact.found import check_not_inside
 from contact_dynamics.impact.law import RestitutionLaw
 from contact_dynamics.impact.several.result import SeveralContactsLaw
 from contact_dynamics.tolerances import DISTANCE_TOLERANCE, LARGEST_NUMBER, LEAST_PHASE_ERROR, PHASE_ERROR
-from contact_dynamics.toss.at_once import check_laws
 from contact_dynamics.toss.distinct_corners import with_distinct_corners
-from contact_dynamics.toss.following import Following
+from contact_dynamics.toss.impacts import check_laws
+from contact_dynamics.toss.simulation import Simulation, TossSettings
 from contact_dynamics.toss.solid import solid_of
 from contact_dynamics.toss.uncertainty import check_factors
 from contact_dynamics.validation import check_positive, check_whole, check_within
@@ -83,7 +83,7 @@ def toss(
     check_not_inside(body, state, world.surfaces, distance_tolerance=distance_tolerance)
     body, indices = with_distinct_corners(body)
     solid = solid_of(body, world, indices=indices, lasting_factors=factors)
-    runs = Following(
+    settings = TossSettings(
         solid,
         restitution_law,
         several_contacts_law=several_contacts_law,
@@ -92,12 +92,12 @@ def toss(
         error=check_within("error", error, LEAST_PHASE_ERROR, LARGEST_NUMBER),
     )
     most = check_whole("max_alternatives", max_alternatives, 0)
-    main = runs.run(state, ())
+    main = Simulation(settings, state, ()).toss()
     waiting = deque(_other_ways(main, 0))
     others: list[Toss] = []
     while waiting and len(others) < most:
         ways = waiting.popleft()
-        other = runs.run(state, ways)
+        other = Simulation(settings, state, ways).toss()
         others.append(other)
         waiting.extend(_other_ways(other, len(ways)))
     return replace(main, alternatives=tuple(others), all_followed=not waiting)

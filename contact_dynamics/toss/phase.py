@@ -1,45 +1,61 @@
 """The motion of a body in one contact mode, integrated until the mode ends.
 
 The mode says which contacts stick and which slide, and so what the accelerations are (`forces`). They are
-integrated in adaptive steps (`phase_step`). The mode ends where a force leaves its cone or another corner
-comes down (`phase_ends`), or where sliding stops. Steps towards the end of sliding end before it, because
-friction jumps there, and each of them leaves a tenth of the speed at least.
+integrated in adaptive steps (`phase_step`). The mode ends where a held contact no longer presses, where
+friction no longer holds one that sticks, or where another corner comes down. These times are found on the
+interpolant. The mode ends where sliding stops, too. Steps towards that end before it, because friction jumps
+there, and each of them leaves a tenth of the speed at least.
 """
 
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import TYPE_CHECKING, Final, NamedTuple, TypeAlias
 
 import numpy as np
 
 from contact_dynamics.numerics.vectors import dot, norm, without
+from contact_dynamics.records import NamedInt
 from contact_dynamics.tolerances import (
     BEGUN_TO_SLIDE,
     COARSE_SLIDING_STOPPED,
+    COMES_DOWN_FOUND,
     CREEPING_STEP,
+    FORCE_END_FOUND,
+    GRAZING_DEPTH,
     PHASE_ERROR,
     PHASE_LEAST_STEP,
     RESOLVED_SLIDING,
     SAMPLED_PHASE_ERROR,
     SLIDING_STOPPED,
 )
-from contact_dynamics.toss.forces import Free, Pushed, free_accelerations, pushed_by_contacts
-from contact_dynamics.toss.held import Held, sliding_direction
+from contact_dynamics.toss.forces import (
+    Free,
+    Pushed,
+    force_rounding,
+    free_accelerations,
+    least_left,
+    pushed_by_contacts,
+)
 from contact_dynamics.toss.holding import heights_held, held_in_place, out_of_flats
 from contact_dynamics.toss.mode_choice import corrected
-from contact_dynamics.toss.phase_ends import PhaseEnd, first_end, low_corners, watched_corners
 from contact_dynamics.toss.phase_step import INTERPOLANT, PhaseStep, scales_of, tried, within
 from contact_dynamics.toss.solid import (
+    Held,
     arm_of,
     heights_and_rates,
     kinetic_energy_of,
     pose_of,
+    rows_at,
+    sliding_direction,
     velocity_of,
 )
 
 if TYPE_CHECKING:
-    from contact_dynamics.toss.solid import Numbers, Pose, Solid, Touch
+    from collections.abc import Callable
+
+    from contact_dynamics.numerics.vectors import Vector3
+    from contact_dynamics.toss.solid import Flat, Numbers, Pose, Solid, Touch
 
 MAX_PHASE_STEPS: Final = 20_000
 """Steps after which a phase ends unfinished. A tenth of a second of sliding or tipping takes some twenty."""
@@ -58,6 +74,31 @@ FIRST_STEP: Final = 0.03
 """s. The first step at `SAMPLED_PHASE_ERROR`, shorter for smaller errors as the order of the steps says."""
 
 _TOWARDS_STOP: Final = 0.9
+
+
+_MAX_ROOT_STEPS: Final = 60
+
+Watched: TypeAlias = "list[tuple[Flat, list[tuple[Vector3, float]]]]"
+"""The corners that could come down on each flat, m, body axes, with the depths, m, that they may have."""
+
+
+class PhaseEnd(NamedInt):
+    """Why a phase in one contact mode ends."""
+
+    FORCES = 0
+    """A held contact no longer presses, or friction no longer holds a contact that sticks."""
+    SLIDING_STOPS = 1
+    """A contact stops sliding."""
+    COMES_DOWN = 2
+    """Another corner comes down."""
+    SLOW = 3
+    """The kinetic energy has fallen to the bound that was asked for."""
+    TIME = 4
+    """The time that was asked for is over."""
+    STEPS = 5
+    """The bound on the number of steps was reached."""
+    CREEPS = 6
+    """Steps have become too short to go on in the mode, since its forces jump."""
 
 
 class Phase(NamedTuple):
@@ -104,8 +145,8 @@ def phase(
     y = held_in_place(solid, y, mode, heights)
     now, step, steps = start, FIRST_STEP * (error / SAMPLED_PHASE_ERROR) ** 0.2, list[PhaseStep]()
     pushed = pushed_by_contacts(solid, y, mode)
-    low = low_corners(solid, y, held)
-    watched = watched_corners(solid, held, low)
+    low = _low_corners(solid, y, held)
+    watched = _watched_corners(solid, held, low)
     resolved = max(SLIDING_STOPPED, min(RESOLVED_SLIDING * error, COARSE_SLIDING_STOPPED))
     before_stop, _ = _sliding(solid, y, pushed, mode, resolved=resolved)
     fast, short = kinetic_energy_of(solid, y) > slow, 0
@@ -120,7 +161,7 @@ def phase(
             step *= max(0.2, 0.9 * size**-0.2)
             continue
         done = PhaseStep(solid, now, step, np.array(y), stages.T @ INTERPOLANT, step)
-        found = first_end(solid, done, mode, after=after, trial=trial, watched=watched)
+        found = _first_end(solid, done, mode, after=after, trial=trial, watched=watched)
         if found is not None:
             reason, x = found
             span = x * step
@@ -145,9 +186,9 @@ def phase(
             return Phase(PhaseEnd.SLOW, now, y, steps)
         fast = fast or energy > slow
         if low:
-            still_low = low_corners(solid, y, held)
+            still_low = _low_corners(solid, y, held)
             low = {touch: height for touch, height in low.items() if touch in still_low}
-            watched = watched_corners(solid, held, low)
+            watched = _watched_corners(solid, held, low)
         step *= min(5.0, 0.9 * size**-0.2) if size > 0.0 else 5.0
         # Towards a stop the motion is alike at all speeds, and so are steps relative to what is left.
         step *= min(1.0, before_stop / left) if left < math.inf else 1.0
@@ -219,3 +260,103 @@ def _speed_and_rate(solid: Solid, pose: Pose, pushed: Pushed, one: Held) -> tupl
     rates = pushed.rates
     moved = Free(pose, (rates[7], rates[8], rates[9]), (rates[10], rates[11], rates[12]))
     return dot(velocity, d), dot(moved.at(solid, one.touch, arm), d)
+
+
+def _low_corners(solid: Solid, y: Numbers, held: set[Touch]) -> dict[Touch, float]:
+    """Return the corners that are on a flat or below and not held, with the depths, m, that they may have."""
+    listed = heights_and_rates(solid, y)
+    return {
+        touch: 0.5 * GRAZING_DEPTH - min(height, 0.0)
+        for height, _, touch in listed
+        if height <= 0.5 * GRAZING_DEPTH and touch not in held
+    }
+
+
+def _watched_corners(solid: Solid, held: set[Touch], low: dict[Touch, float]) -> Watched:
+    """Return the corners that could come down: those that are not held."""
+    return [
+        (
+            flat,
+            [(corner, low.get((s, k), 0.0)) for k, corner in enumerate(solid.corners) if (s, k) not in held],
+        )
+        for s, flat in enumerate(solid.flats)
+    ]
+
+
+def _least_height(solid: Solid, y: Numbers, watched: Watched) -> float:
+    """Return the least height, m, of a watched corner above a flat, plus the depth that it may have."""
+    (a, b, c), (d, e, f), (g, h, i) = rows_at(y)
+    least = math.inf
+    for flat, corners in watched:
+        n_x, n_y, n_z = flat.normal
+        u, v, w = a * n_x + d * n_y + g * n_z, b * n_x + e * n_y + h * n_z, c * n_x + f * n_y + i * n_z
+        height = y[0] * n_x + y[1] * n_y + y[2] * n_z - flat.level - solid.rounding
+        for (j, k, m), depth in corners:
+            least = min(least, height + u * j + v * k + w * m + depth)
+    return least
+
+
+def _first_end(
+    solid: Solid,
+    step: PhaseStep,
+    mode: tuple[Held, ...],
+    *,
+    after: Pushed,
+    trial: Numbers,
+    watched: Watched,
+) -> tuple[PhaseEnd, float] | None:
+    """Return why and where, as a share of the step, the mode ends within a step, or None."""
+
+    def height_at(x: float) -> float:
+        return _least_height(solid, within(step, x).tolist(), watched)
+
+    def force_at(x: float) -> float:
+        pushed = pushed_by_contacts(solid, within(step, x).tolist(), mode)
+        return least_left(solid, mode, pushed.forces)
+
+    first: tuple[PhaseEnd, float] | None = None
+    if _least_height(solid, trial, watched) < 0.0:
+        first = PhaseEnd.COMES_DOWN, _crossing(height_at, 1.0, step.whole, COMES_DOWN_FOUND)
+    if least_left(solid, mode, after.forces) < 0.0:
+        x = 1.0 if first is None else first[1]
+        if first is None or force_at(x) < 0.0:
+            first = (
+                PhaseEnd.FORCES,
+                _crossing(force_at, x, step.whole, FORCE_END_FOUND * force_rounding(solid)),
+            )
+    return first
+
+
+def _crossing(value: Callable[[float], float], bad: float, span: float, enough: float) -> float:
+    """Return where in [0, ``bad``], as a share of a step, a value becomes negative: just after that.
+
+    Just after is where the value is between -``enough`` and 0, or a time of `PHASE_LEAST_STEP` later at most.
+    The root is that of the value plus half of ``enough``. It is found by inverse quadratic interpolation
+    where that is safe, and by halves otherwise (Chandrupatla 1997).
+    """
+    half = 0.5 * enough
+    a, f_a = bad, value(bad) + half
+    if f_a > -half:  # it is there already, or the interpolant is off by rounding
+        return bad
+    b, f_b = 0.0, max(value(0.0), 0.0) + half
+    share = 0.5
+    for _ in range(_MAX_ROOT_STEPS):
+        x = a + share * (b - a)
+        f_x = value(x) + half
+        if abs(f_x) < half:
+            return x
+        if (f_x > 0.0) == (f_a > 0.0):
+            c, f_c = a, f_a
+        else:
+            c, f_c, b, f_b = b, f_b, a, f_a
+        a, f_a = x, f_x
+        least = PHASE_LEAST_STEP / (abs(b - a) * span)
+        if least >= 1.0:
+            break
+        place, height = (a - b) / (c - b), (f_a - f_b) / (f_c - f_b)
+        share = 0.5
+        if height * height < place and (1.0 - height) ** 2 < 1.0 - place:
+            share = f_a / (f_b - f_a) * f_c / (f_b - f_c)
+            share += (c - a) / (b - a) * f_a / (f_c - f_a) * f_b / (f_c - f_b)
+        share = min(max(share, 0.5 * least), 1.0 - 0.5 * least)
+    return a if f_a < 0.0 else b

@@ -14,11 +14,10 @@ from contact_dynamics.toss.forces import Pushed, pushed_by_contacts
 from contact_dynamics.toss.holding import out_of_flats
 
 if TYPE_CHECKING:
-    from contact_dynamics.toss.held import Held
-    from contact_dynamics.toss.solid import Numbers, Solid
+    from contact_dynamics.toss.solid import Held, Numbers, Solid
     from contact_dynamics.validation import FloatArray
 
-STAGES: Final = tuple(
+_STAGES: Final = tuple(
     np.array(row)
     for row in (
         [1 / 5],
@@ -29,7 +28,7 @@ STAGES: Final = tuple(
         [35 / 384, 0, 500 / 1113, 125 / 192, -2187 / 6784, 11 / 84],
     )
 )
-ERRORS: Final = np.array([-71 / 57600, 0, 71 / 16695, -71 / 1920, 17253 / 339200, -22 / 525, 1 / 40])
+_ERRORS: Final = np.array([-71 / 57600, 0, 71 / 16695, -71 / 1920, 17253 / 339200, -22 / 525, 1 / 40])
 INTERPOLANT: Final = np.array(
     [
         [1, -8048581381 / 2820520608, 8663915743 / 2820520608, -12715105075 / 11282082432],
@@ -121,9 +120,9 @@ def tried(
     begin, trial, after = np.array(y), y, pushed
     stages = np.empty((7, 13))
     stages[0] = pushed.rates
-    for k, row in enumerate(STAGES, start=1):
+    for k, row in enumerate(_STAGES, start=1):
         trial = (begin + span * (row @ stages[:k])).tolist()
         after = pushed_by_contacts(solid, trial, mode)
         stages[k] = after.rates
-    size = float(np.abs((ERRORS @ stages) * scales).max()) * span / error
+    size = float(np.abs((_ERRORS @ stages) * scales).max()) * span / error
     return Trial(trial, size, stages, after)

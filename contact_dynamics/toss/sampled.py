@@ -1,6 +1,6 @@
 """Samples of a toss that is not known exactly, followed through the next strikes or to rest.
 
-The next strikes of all samples are found together (`strikes_of_many`), in a tenth of a millisecond each. If
+The next strikes of all samples are found together (`next_strikes`), in a tenth of a millisecond each. If
 rest is asked for, each sample goes on from there as a toss does (`to_rest`). That takes far longer, and
 several processes can share it. It is done less exactly than a single toss: rebounds below
 `SAMPLED_SETTLING_HEIGHT` are not followed, and neither is a body that only rattles on a face until it rests
@@ -23,7 +23,6 @@ from contact_dynamics.impact.several.result import SeveralContactsLaw
 from contact_dynamics.numerics.vectors import dot
 from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.tolerances import DISTANCE_TOLERANCE, SAMPLED_SETTLING_HEIGHT
-from contact_dynamics.toss.at_once import check_laws
 from contact_dynamics.toss.distinct_corners import with_distinct_corners
 from contact_dynamics.toss.distribution import (
     FEWEST,
@@ -35,9 +34,10 @@ from contact_dynamics.toss.distribution import (
     regions_of,
     rest_of,
 )
+from contact_dynamics.toss.impacts import check_laws
 from contact_dynamics.toss.law_spread import LawSpread
+from contact_dynamics.toss.next_strikes import ManyStrikes, SampleEnd, next_strikes
 from contact_dynamics.toss.solid import solid_of
-from contact_dynamics.toss.strikes_of_many import ManyStrikes, SampleEnd, strikes_of_many
 from contact_dynamics.toss.to_rest import check_processes, followed_to_rest
 from contact_dynamics.toss.uncertainty import EXACT, MAX_SPREAD, TossUncertainty, draw
 from contact_dynamics.tumbling.motion import check_extent
@@ -148,7 +148,7 @@ def sampled_toss(
         chance=chance,
     )
     spread = LawSpread(uncertainty, count, chance)
-    told = strikes_of_many(
+    told = next_strikes(
         solid, samples, law=restitution_law, spread=spread, depth=strikes, horizon=horizon, further=to_rest
     )
     rests: dict[int, Followed] = {}

@@ -17,11 +17,10 @@ from contact_dynamics.numerics.vectors import norm
 from contact_dynamics.rotations.one import normalised
 from contact_dynamics.tolerances import DISTANCE_TOLERANCE, SHORTEST_SHORT_STEP, SLIDING_STOPPED
 from contact_dynamics.toss.forces import free_accelerations, rates_of
-from contact_dynamics.toss.held import Held
 from contact_dynamics.toss.holding import out_of_flats
-from contact_dynamics.toss.inelastic import sure_impact
+from contact_dynamics.toss.impacts import sure_impact
 from contact_dynamics.toss.phase_step import PhaseStep
-from contact_dynamics.toss.solid import energy_of, heights_and_rates, kinetic_energy_of
+from contact_dynamics.toss.solid import Held, energy_of, heights_and_rates, kinetic_energy_of
 
 if TYPE_CHECKING:
     from contact_dynamics.toss.solid import Numbers, Solid

@@ -8,20 +8,23 @@ acceleration is a + alpha x arm + w x (w x R c).
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 import numpy as np
 
+from contact_dynamics.contact.contact import ContactSet
+from contact_dynamics.contact.curvature import alike
 from contact_dynamics.contact.found import check_has_shape
 from contact_dynamics.errors import InvalidFieldError, NotSupportedError
 from contact_dynamics.numerics.vectors import Vector3, cross, dot, norm, tangents
-from contact_dynamics.tolerances import SETTLING_HEIGHT
+from contact_dynamics.rigid_body.body import BodyState, MassProperties
+from contact_dynamics.tolerances import SETTLING_HEIGHT, SLIDING_DIRECTION_SPEED
 from contact_dynamics.world import Surface
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from contact_dynamics.rigid_body.body import BodyState
     from contact_dynamics.validation import FloatArray
     from contact_dynamics.world import Body, World
 
@@ -82,6 +85,23 @@ class Solid(NamedTuple):
     gravity: Vector3
     flats: tuple[Flat, ...]
     settling: float
+
+
+class Held(NamedTuple):
+    """A contact that stays.
+
+    Attributes:
+        touch: The corner and the flat.
+        slides: Whether it slides. If it does not, it sticks, or it rolls if it is rounded.
+        towards: Unit, world axes, the direction in which sliding begins, or zero if the contact sticks.
+        begins: Whether it has just begun to slide, so that friction is against ``towards``. The velocity has
+            no sure direction yet, and friction against it would turn in no time.
+    """
+
+    touch: Touch
+    slides: bool = False
+    towards: Vector3 = (0.0, 0.0, 0.0)
+    begins: bool = False
 
 
 class Pose(NamedTuple):
@@ -288,6 +308,17 @@ def velocity_of(pose: Pose, arm: Vector3) -> Vector3:
     return (v_x + x, v_y + y, v_z + z)
 
 
+def sliding_direction(velocity: Vector3, normal: Vector3, towards: Vector3) -> Vector3:
+    """Return the unit direction in which a contact slides, from its velocity, m/s."""
+    v_n = dot(velocity, normal)
+    e = SLIDING_DIRECTION_SPEED
+    x = velocity[0] - v_n * normal[0] + e * towards[0]
+    y = velocity[1] - v_n * normal[1] + e * towards[1]
+    z = velocity[2] - v_n * normal[2] + e * towards[2]
+    size = math.sqrt(x * x + y * y + z * z)
+    return (x / size, y / size, z / size) if size > 0.0 else towards
+
+
 def height_of(solid: Solid, pose: Pose, touch: Touch) -> float:
     """Return the height, m, of a corner above a flat, of its ball's lowest point if it is rounded."""
     flat, arm = solid.flats[touch[0]], arm_of(solid, pose, touch)
@@ -324,3 +355,37 @@ def kinetic_energy_of(solid: Solid, y: Numbers) -> float:
     v_x, v_y, v_z = y[7], y[8], y[9]
     w_B = transposed_times(rows_at(y), (y[10], y[11], y[12]))
     return 0.5 * (solid.mass * (v_x * v_x + v_y * v_y + v_z * v_z) + dot(w_B, times(solid.inertia, w_B)))
+
+
+def properties_of(solid: Solid) -> MassProperties:
+    """Return mass and inertia as questions take them."""
+    return MassProperties(mass=solid.mass, I_B=solid.inertia)
+
+
+def state_of(y: Numbers, stamp_ns: int = 0) -> BodyState:
+    """Return 13 numbers, whose quaternion is nearly unit, as a state."""
+    numbers = np.array(y)
+    q = numbers[3:7].copy()
+    q /= math.sqrt(float(q @ q))
+    return BodyState(p_WB_W=numbers[:3], q_WB=q, v_WB_W=numbers[7:10], w_WB_W=numbers[10:], stamp_ns=stamp_ns)
+
+
+def points_of(solid: Solid, y: Numbers, touching: list[Touch]) -> FloatArray:
+    """Return where contacts are, (n, 3), m, world."""
+    pose = pose_of(solid, y)
+    arms = [arm_of(solid, pose, touch) for touch in touching]
+    points: FloatArray = np.array(arms) + np.array(pose.position)
+    return points
+
+
+def contacts_of(solid: Solid, y: Numbers, touching: list[Touch]) -> ContactSet:
+    """Return touching contacts as questions take them."""
+    flats = [solid.flats[touch[0]] for touch in touching]
+    return ContactSet(
+        p_WC_W=points_of(solid, y, touching),
+        normals_W=np.array([flat.normal for flat in flats]),
+        frictions=np.array([flat.friction for flat in flats]),
+        restitutions=np.array([flat.restitution for flat in flats]),
+        surfaces=[flat.name for flat in flats],
+        body_curvatures=alike(len(touching), 1.0 / solid.rounding) if solid.rounding > 0.0 else None,
+    )

@@ -3,7 +3,7 @@
 The contact that approaches fastest is struck first, by Routh's impact at one contact (`impact.spatial`), and
 so on until none approaches, which is the sequential law (`impact.several`). Contacts that approach equally
 fast strike as one. The order is a choice, and another contact may be asked to come first. Under the
-simultaneous law all contacts strike `at_once`.
+simultaneous law all contacts strike at once.
 
 Rebounds shrink by a ratio, and infinitely many of them end in finite time (Zeno). A contact whose rebound
 would not be higher than the solid's `settling` stays from then on. The impulses that it would have had in all
@@ -18,19 +18,24 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 from contact_dynamics.impact.several.result import SeveralContactsLaw
 from contact_dynamics.numerics.vectors import cross, dot, norm
 from contact_dynamics.tolerances import STILL_TOUCHING, STRIKES
-from contact_dynamics.toss.at_once import next_in_turn, simultaneous_strike, tied_strike
 from contact_dynamics.toss.forces import pushed_by_contacts
-from contact_dynamics.toss.held import Held
 from contact_dynamics.toss.holding import heights_held, held_in_place, without_rebounds
-from contact_dynamics.toss.inelastic import inelastic_impact, sure_impact
+from contact_dynamics.toss.impacts import (
+    Struck,
+    inelastic_impact,
+    next_in_turn,
+    routh,
+    simultaneous_strike,
+    sure_impact,
+    tied_strike,
+)
 from contact_dynamics.toss.mode_choice import choose_mode
-from contact_dynamics.toss.one_impact import Struck, routh
-from contact_dynamics.toss.solid import arm_of, pose_of, times, velocity_of
+from contact_dynamics.toss.solid import Held, arm_of, pose_of, times, velocity_of
 
 if TYPE_CHECKING:
     from contact_dynamics.impact.law import RestitutionLaw
     from contact_dynamics.numerics.vectors import Vector3
-    from contact_dynamics.toss.inelastic import Inelastic
+    from contact_dynamics.toss.impacts import Inelastic
     from contact_dynamics.toss.mode_choice import Choice
     from contact_dynamics.toss.solid import Numbers, Solid, Touch
 

@@ -9,10 +9,9 @@ import numpy as np
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.numerics.vectors import norm
 from contact_dynamics.tolerances import SAMPLED_PHASE_ERROR
-from contact_dynamics.toss.following import Following, Run
-from contact_dynamics.toss.mode_choice import state_of
 from contact_dynamics.toss.result import TossEnd, TossEventKind
-from contact_dynamics.toss.solid import as_rows
+from contact_dynamics.toss.simulation import Simulation, TossSettings
+from contact_dynamics.toss.solid import as_rows, state_of
 from contact_dynamics.validation import check_whole
 
 if TYPE_CHECKING:
@@ -23,8 +22,8 @@ if TYPE_CHECKING:
     from contact_dynamics.impact.several.result import SeveralContactsLaw
     from contact_dynamics.numerics.vectors import Vector3
     from contact_dynamics.toss.law_spread import LawSpread
+    from contact_dynamics.toss.next_strikes import ManyStrikes
     from contact_dynamics.toss.solid import Numbers, Solid, Touch
-    from contact_dynamics.toss.strikes_of_many import ManyStrikes
     from contact_dynamics.toss.uncertainty import Samples
 
 PART: Final = 100
@@ -61,7 +60,7 @@ class _Going(NamedTuple):
         lacking: How many strikes the tree lacks.
     """
 
-    run: Run
+    run: Simulation
     began: float
     lacking: int
 
@@ -107,7 +106,7 @@ def followed_to_rest(
     lacking = (told.corners < 0).sum(axis=0).tolist()
     tosses = []
     for i in going:
-        runs = Following(
+        settings = TossSettings(
             _solid_of(solid, samples, i),
             law,
             several_contacts_law=several_contacts_law,
@@ -119,7 +118,7 @@ def followed_to_rest(
             thorough=False,
             has_pieces=False,
         )
-        tosses.append(_Going(Run(runs, state_of(states[i]), ()), began[i], lacking[i]))
+        tosses.append(_Going(Simulation(settings, state_of(states[i]), ()), began[i], lacking[i]))
     return dict(zip(going, _done(tosses, processes), strict=True))
 
 

@@ -15,9 +15,8 @@ from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.shapes import box
 from contact_dynamics.tolerances import BEGINNING_ROUNDING
 from contact_dynamics.toss.forces import free_accelerations, pushed_by_contacts
-from contact_dynamics.toss.held import Held
 from contact_dynamics.toss.mode_choice import Mode, corrected
-from contact_dynamics.toss.solid import Touch, numbers_of, solid_of
+from contact_dynamics.toss.solid import Held, Touch, numbers_of, solid_of
 from contact_dynamics.world import Body, Surface, World
 
 SIZE = (0.1, 0.12, 0.07)

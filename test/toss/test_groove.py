@@ -13,8 +13,7 @@ from contact_dynamics import Body, BodyState, MassProperties, Surface, World, in
 from contact_dynamics.shapes import polyhedron
 from contact_dynamics.toss import TossEnd, TossEventKind, toss
 from contact_dynamics.toss.forces import pushed_by_contacts
-from contact_dynamics.toss.held import Held
-from contact_dynamics.toss.solid import numbers_of, solid_of
+from contact_dynamics.toss.solid import Held, numbers_of, solid_of
 from sweeps import sweep
 
 G = 9.81

@@ -12,10 +12,17 @@ from contact_dynamics import Body, BodyState, MassProperties, Surface, World, in
 from contact_dynamics.shapes import box
 from contact_dynamics.toss import TossEnd, toss
 from contact_dynamics.toss.forces import pushed_by_contacts
-from contact_dynamics.toss.held import Held
-from contact_dynamics.toss.inelastic import inelastic_impact
+from contact_dynamics.toss.impacts import inelastic_impact
 from contact_dynamics.toss.short_step import short_step
-from contact_dynamics.toss.solid import Numbers, Solid, energy_of, heights_and_rates, numbers_of, solid_of
+from contact_dynamics.toss.solid import (
+    Held,
+    Numbers,
+    Solid,
+    energy_of,
+    heights_and_rates,
+    numbers_of,
+    solid_of,
+)
 from sweeps import sweep
 
 G = 9.81

@@ -153,7 +153,7 @@ def test_bad_input_is_refused_by_name() -> None:
 
 def test_a_ball_that_rolls_on_for_years_ends_at_the_bound_on_steps(monkeypatch: pytest.MonkeyPatch) -> None:
     """Each step is short beside a turn, so a horizon without end would take as long."""
-    monkeypatch.setattr("contact_dynamics.toss.following.MAX_STEPS", 200)
+    monkeypatch.setattr("contact_dynamics.toss.simulation.MAX_STEPS", 200)
     ball = Body(
         name="ball",
         mass_properties=inertia.sphere(radius=0.05, mass=0.3).mass_properties,

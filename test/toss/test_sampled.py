@@ -16,8 +16,8 @@ from contact_dynamics.shapes import box
 from contact_dynamics.toss import TossDistribution, TossEventKind, TossUncertainty, sampled_toss, toss
 from contact_dynamics.toss.distribution import BranchKind, region_of
 from contact_dynamics.toss.law_spread import LawSpread
+from contact_dynamics.toss.next_strikes import FEWEST_AT_ONCE, SampleEnd, next_strikes
 from contact_dynamics.toss.solid import solid_of
-from contact_dynamics.toss.strikes_of_many import FEWEST_AT_ONCE, SampleEnd, strikes_of_many
 from contact_dynamics.toss.uncertainty import EXACT, draw
 from contact_dynamics.world import Body, Surface, World
 
@@ -57,7 +57,7 @@ def test_exact_samples_strike_as_the_toss_does(seed: int) -> None:
     solid = solid_of(BRICK, WORLD)
     chance = np.random.default_rng(0)
     samples = draw(BRICK, state, WORLD, covariance=None, uncertainty=EXACT, count=2, chance=chance)
-    many = strikes_of_many(
+    many = next_strikes(
         solid,
         samples,
         law=RestitutionLaw.POISSON,
@@ -86,7 +86,7 @@ def test_samples_that_go_on_together_are_where_the_strikes_would_have_them() -> 
     samples = draw(BRICK, state, WORLD, covariance=covariance, uncertainty=EXACT, count=60, chance=chance)
     spread = LawSpread(EXACT, 60, chance)
     one, all_told = (
-        strikes_of_many(
+        next_strikes(
             solid,
             samples._replace(restitutions=np.full_like(samples.restitutions, 0.9)),
             law=RestitutionLaw.POISSON,
@@ -151,7 +151,7 @@ def test_no_sample_goes_on_into_the_floor() -> None:
     many = TossUncertainty(velocity=1.0, spin=10.0)
     state, solid, chance = thrown(2), solid_of(BRICK, WORLD), np.random.default_rng(3)
     samples = draw(BRICK, state, WORLD, covariance=None, uncertainty=EXACT, count=200, chance=chance)
-    found = strikes_of_many(
+    found = next_strikes(
         solid,
         samples,
         law=RestitutionLaw.POISSON,

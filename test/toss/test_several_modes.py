@@ -12,8 +12,8 @@ from contact_dynamics.contact_modes.spatial.answer import spatial_contact_modes
 from contact_dynamics.contact_modes.spatial.problem import SpatialContactProblem
 from contact_dynamics.tolerances import SLIDING_STOPPED
 from contact_dynamics.toss import TossEventKind, UndecidedReason, toss
-from contact_dynamics.toss.mode_choice import choose_mode, contacts_of
-from contact_dynamics.toss.solid import numbers_of, solid_of
+from contact_dynamics.toss.mode_choice import choose_mode
+from contact_dynamics.toss.solid import contacts_of, numbers_of, solid_of
 
 G = 9.81
 LEAN = math.radians(75.0)

@@ -14,9 +14,8 @@ from contact_dynamics.contact_modes.spatial.problem import SpatialContactProblem
 from contact_dynamics.tolerances import SLIDING_STOPPED
 from contact_dynamics.toss import TossEnd, TossEventKind, UndecidedReason, toss
 from contact_dynamics.toss.forces import pushed_by_contacts
-from contact_dynamics.toss.held import Held
-from contact_dynamics.toss.mode_choice import choose_mode, contacts_of
-from contact_dynamics.toss.solid import numbers_of, solid_of
+from contact_dynamics.toss.mode_choice import choose_mode
+from contact_dynamics.toss.solid import Held, contacts_of, numbers_of, solid_of
 from sweeps import sweep
 
 G = 9.81

@@ -9,7 +9,6 @@ import numpy as np
 
 from contact_dynamics.constants import ns_after
 from contact_dynamics.tolerances import DISTANCE_TOLERANCE
-from contact_dynamics.toss.mode_choice import points_of, state_of
 from contact_dynamics.toss.result import (
     Piece,
     Toss,
@@ -25,7 +24,9 @@ from contact_dynamics.toss.solid import (
     heights_and_rates,
     kinetic_energy_of,
     numbers_of,
+    points_of,
     rows_at,
+    state_of,
     transposed_times,
 )
 
@@ -55,7 +56,7 @@ class Noted(NamedTuple):
     y: Numbers
 
 
-class Course:
+class History:
     """A toss as far as it has come.
 
     Attributes:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import TYPE_CHECKING, Final, TypeAlias
+from typing import TYPE_CHECKING, Final, NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -23,29 +23,33 @@ from contact_dynamics.tolerances import (
     STILL_TOUCHING,
     STRIKES,
 )
-from contact_dynamics.toss.course import Course
 from contact_dynamics.toss.flight import flight
 from contact_dynamics.toss.forces import least_left, pushed_by_contacts
+from contact_dynamics.toss.history import History
 from contact_dynamics.toss.holding import held_in_place, out_of_flats
+from contact_dynamics.toss.impacts import routh
 from contact_dynamics.toss.laid_flat import laid_flat
-from contact_dynamics.toss.mode_choice import choose_mode, contacts_of, properties_of, state_of
-from contact_dynamics.toss.one_impact import routh
-from contact_dynamics.toss.phase import phase
-from contact_dynamics.toss.phase_ends import PhaseEnd
+from contact_dynamics.toss.mode_choice import choose_mode, may_be_wedged
+from contact_dynamics.toss.phase import PhaseEnd, phase
 from contact_dynamics.toss.result import FlightPiece, Toss, TossEnd, TossEventKind, UndecidedReason
 from contact_dynamics.toss.short_step import short_step
-from contact_dynamics.toss.solid import energy_of, kinetic_energy_of, numbers_of
+from contact_dynamics.toss.solid import (
+    contacts_of,
+    energy_of,
+    kinetic_energy_of,
+    numbers_of,
+    properties_of,
+    state_of,
+)
 from contact_dynamics.toss.strike import approaches, low_rebounds_ended, strike
-from contact_dynamics.toss.wedged import may_be_wedged
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from contact_dynamics.rigid_body.body import BodyState
-    from contact_dynamics.toss.held import Held
     from contact_dynamics.toss.laid_flat import Faces
     from contact_dynamics.toss.mode_choice import Choice, Mode
-    from contact_dynamics.toss.solid import Numbers, Solid, Touch
+    from contact_dynamics.toss.solid import Held, Numbers, Solid, Touch
     from contact_dynamics.toss.strike import Strikes
 
 Kick: TypeAlias = "Callable[[Solid, Numbers, Numbers, Touch], Numbers]"
@@ -77,13 +81,11 @@ _SLOWER: Final = 0.25
 """The kinetic energy at which rest is tried again, relative to that at which the body did not rest."""
 
 
-class Following:
+class TossSettings(NamedTuple):
     """What all tosses of one question share.
 
     Attributes:
         solid: The body and the flats.
-        properties: Mass and inertia of the solid, as flights take them.
-        shape: Its shape, as flights take it.
         law: What the coefficients of restitution mean.
         several_contacts_law: The law for several contacts that strike at one instant.
         horizon: s, how far a toss is followed.
@@ -92,44 +94,34 @@ class Following:
         kick: What changes velocities after the strike of a single contact, or None.
         flat_after: After so many strikes, a body that only rattles on a face is laid flat (`laid_flat`). If
             this is None, it never is.
-        thorough: Whether all modes are looked for where friction may wedge the body (`wedged`). Samples do
-            without, and take the mode that is found first, as a toss does that goes its first way.
+        thorough: Whether all modes are looked for where friction may wedge the body. Samples do without, and
+            take the mode that is found first, as a toss does that goes its first way.
         has_pieces: Whether flights and steps are kept, which give the state at any time. Samples do without.
     """
 
-    def __init__(
-        self,
-        solid: Solid,
-        law: RestitutionLaw,
-        *,
-        several_contacts_law: SeveralContactsLaw = SeveralContactsLaw.SEQUENTIAL,
-        horizon: float,
-        max_events: int,
-        error: float,
-        kick: Kick | None = None,
-        flat_after: int | None = None,
-        thorough: bool = True,
-        has_pieces: bool = True,
-    ) -> None:
-        self.solid, self.properties = solid, properties_of(solid)
-        self.shape = ConvexShape(vertices=np.array(solid.corners), rounding=solid.rounding)
-        self.law, self.several_contacts_law, self.horizon = law, several_contacts_law, horizon
-        self.max_events, self.error = max_events, error
-        self.kick, self.flat_after, self.thorough = kick, flat_after, thorough
-        self.has_pieces = has_pieces
-
-    def run(self, state: BodyState, ways: tuple[int, ...]) -> Toss:
-        """Return the toss that takes the given ways at its first undecided points, and way 0 after that."""
-        run = Run(self, state, ways)
-        return run.told(run.to_end(), self.law)
+    solid: Solid
+    law: RestitutionLaw
+    several_contacts_law: SeveralContactsLaw
+    horizon: float
+    max_events: int
+    error: float
+    kick: Kick | None = None
+    flat_after: int | None = None
+    thorough: bool = True
+    has_pieces: bool = True
 
 
-class Run(Course):
-    """One toss, as far as it has come, and how it goes on."""
+class Simulation(History):
+    """One toss, as far as it has come, and how it goes on.
 
-    def __init__(self, runs: Following, state: BodyState, ways: tuple[int, ...]) -> None:
-        super().__init__(runs.solid, state, ways)
-        self.runs = runs
+    It takes the given ways at its first undecided points, and way 0 after that.
+    """
+
+    def __init__(self, settings: TossSettings, state: BodyState, ways: tuple[int, ...]) -> None:
+        super().__init__(settings.solid, state, ways)
+        self.settings = settings
+        self.properties = properties_of(self.solid)
+        self.shape = ConvexShape(vertices=np.array(self.solid.corners), rounding=self.solid.rounding)
         self.slow = math.inf  # J, rest is tried where the kinetic energy is below this
         self.struck = self.laid = self.steps = 0  # strikes, how often it was laid flat, steps in contact
         self.mark, self.rounds = 0.0, 0  # a time, s, and the rounds since then
@@ -139,13 +131,17 @@ class Run(Course):
         self.faces: Faces = {}  # that it could be laid on
         self.way_on: Mode | None = None  # how it goes on where it could rest as well
 
+    def toss(self) -> Toss:
+        """Follow the motion to its end, and return what there is to tell of it."""
+        return self.told(self.to_end(), self.settings.law)
+
     def to_end(self) -> TossEnd:
         """Follow the motion to its end, and return why it ends."""
         touching = self.touching_now(STRIKES)
-        for _ in range(_ROUNDS * self.runs.max_events):
-            if len(self.events) >= self.runs.max_events or self.steps >= MAX_STEPS:
+        for _ in range(_ROUNDS * self.settings.max_events):
+            if len(self.events) >= self.settings.max_events or self.steps >= MAX_STEPS:
                 return TossEnd.MAX_EVENTS
-            if self.now >= self.runs.horizon:
+            if self.now >= self.settings.horizon:
                 return TossEnd.HORIZON
             touching = self._laid_flat(touching)
             if self._lingers():
@@ -182,18 +178,18 @@ class Run(Course):
 
         A body whose contacts have just left without speed flies for a pause before arrivals are looked for.
         """
-        left = self.runs.horizon - self.now
+        left = self.settings.horizon - self.now
         self.y = out_of_flats(self.solid, self.y)
         flown = flight(
             self.solid,
-            self.runs.properties,
-            self.runs.shape,
+            self.properties,
+            self.shape,
             self.y,
             stamp_ns=self.stamp_ns(),
             longest=left,
             pause=pause,
         )
-        if self.runs.has_pieces:
+        if self.settings.has_pieces:
             self.pieces.append(FlightPiece(self.now, flown.motion))
             self._forget_instant()
         self.y = flown.after
@@ -211,17 +207,17 @@ class Run(Course):
         striking = [
             touch for rate, touch in sorted(zip(rates, touching, strict=True)) if rate < -self._fast()
         ]
-        first, together = None, self.runs.several_contacts_law
+        first, together = None, self.settings.several_contacts_law
         if len(striking) > 1 and together == SeveralContactsLaw.SEQUENTIAL:
             way = self.way(UndecidedReason.STRIKE_TOGETHER, len(striking))
             first = striking[way] if way > 0 else None
         y, before = self.y, energy_of(self.solid, self.y)
         strikes = strike(
-            self.solid, self.y, touching, self.runs.law, rates=rates, together=together, first=first
+            self.solid, self.y, touching, self.settings.law, rates=rates, together=together, first=first
         )
         self.settled = strikes
         self.y, staying = strikes.y, strikes.staying
-        kick = self.runs.kick
+        kick = self.settings.kick
         if kick is not None and len(touching) == 1 and not strikes.settled:
             self.y = kick(self.solid, y, self.y, touching[0])
             staying = self.touching_now(STILL_TOUCHING)
@@ -264,7 +260,7 @@ class Run(Course):
         before = energy_of(solid, self.y)
         if len(touching) == 1:
             friction = solid.flats[touching[0][0]].friction
-            self.y, one = routh(solid, self.y, touching[0], self.runs.law, friction=friction)
+            self.y, one = routh(solid, self.y, touching[0], self.settings.law, friction=friction)
             if one.outcome == ImpactOutcome.NO_IMPULSE:
                 return self._pass_over()
             self.lost_in_strikes += before - energy_of(solid, self.y)
@@ -272,7 +268,7 @@ class Run(Course):
             return self.touching_now(STILL_TOUCHING)
         contacts = contacts_of(solid, self.y, touching)
         impact = settling_impact(
-            self.runs.properties,
+            self.properties,
             state_of(self.y),
             replace(contacts, body_curvatures=None),
             is_settled=lambda state: bool(choose_mode(solid, numbers_of(state), touching).modes),
@@ -293,7 +289,7 @@ class Run(Course):
         if self.way_on is not None:
             mode, self.way_on = self.way_on, None
             return [mode]
-        thorough = self.runs.thorough and touching != self.looked_at
+        thorough = self.settings.thorough and touching != self.looked_at
         self.looked_at = touching
         known = self._known_since_strikes(touching, thorough=thorough)
         modes = (known or choose_mode(self.solid, self.y, touching, thorough=thorough)).modes
@@ -322,11 +318,11 @@ class Run(Course):
             self.y,
             mode,
             start=self.now,
-            until=self.runs.horizon,
+            until=self.settings.horizon,
             slow=min(self.slow, self._slow([one.touch for one in mode])),
-            error=self.runs.error,
+            error=self.settings.error,
         )
-        if self.runs.has_pieces:
+        if self.settings.has_pieces:
             self.pieces += went.steps
         self.steps += len(went.steps)
         self.now, self.y = went.seconds, went.y
@@ -353,13 +349,13 @@ class Run(Course):
 
         If they do so again, it goes on so for longer.
         """
-        until = min(self.now + self.linger, self.runs.horizon)
+        until = min(self.now + self.linger, self.settings.horizon)
         mode: tuple[Held, ...] = ()
         before = energy_of(self.solid, self.y)
         while self.now < until:
             span = min(until - self.now, max(_SHARE * self.linger, SHORTEST_SHORT_STEP), LONGEST_SHORT_STEP)
             went = short_step(self.solid, self.y, start=self.now, span=span)
-            if self.runs.has_pieces:
+            if self.settings.has_pieces:
                 self.pieces.append(went.step)
             mode = mode or went.mode
             self.y, self.now = went.y, self.now + went.step.span
@@ -382,7 +378,7 @@ class Run(Course):
 
     def _laid_flat(self, touching: list[Touch]) -> list[Touch]:
         """Lay a body that only rattles on a face flat on it, if it may be, and return what touches then."""
-        after = self.runs.flat_after
+        after = self.settings.flat_after
         if after is None or self.struck < after or self.laid >= _MAX_LAID:
             return touching
         flat = laid_flat(self.solid, self.y, self.faces)
@@ -399,7 +395,7 @@ class Run(Course):
             return False
         touching = self.touching_now(math.inf)
         still = [*self.y[:7], *[0.0] * 6]
-        modes = choose_mode(self.solid, still, touching, thorough=self.runs.thorough).modes
+        modes = choose_mode(self.solid, still, touching, thorough=self.settings.thorough).modes
         if not modes:
             return False
         pushed = pushed_by_contacts(self.solid, still, modes[0])

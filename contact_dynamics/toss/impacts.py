@@ -1,0 +1,223 @@
+"""The impacts that `strike` puts together: at one contact, and at several contacts of one instant.
+
+- At one contact: Routh's (`impact.spatial`).
+- At contacts that have no order, which are those of a tie and those of SIMULTANEOUS: by the laws of
+  `impact.several`. Contacts that approach equally fast strike as one under SEQUENTIAL, so that a face that
+  lands flat bounces level.
+- Without restitution, at all contacts that touch (Moreau 1988). The impulses are in their friction cones, no
+  contact approaches afterwards, and one that leaves has none. Friction acts against the sliding afterwards.
+  So the impulses do no work, and kinetic energy never grows.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from contact_dynamics.errors import InvalidFieldError
+from contact_dynamics.impact.law import RestitutionLaw
+from contact_dynamics.impact.several.orders import several_impact
+from contact_dynamics.impact.several.result import SeveralContactsLaw, SeveralVerdict
+from contact_dynamics.impact.several.tied import next_to_strike, strike_as_one
+from contact_dynamics.impact.spatial.path import SlidingLaw, trace
+from contact_dynamics.impact.spatial.response import contact_axes, pushed, responding
+from contact_dynamics.numerics.vectors import cross, dot, norm
+from contact_dynamics.tolerances import CONE_CREEPS, STRIKES, TIED_APPROACH
+from contact_dynamics.toss.cone_forces import Site, cone_forces
+from contact_dynamics.toss.solid import (
+    arm_of,
+    contacts_of,
+    pose_of,
+    properties_of,
+    state_of,
+    times,
+    velocity_of,
+)
+
+if TYPE_CHECKING:
+    from contact_dynamics.contact.contact import ContactSet
+    from contact_dynamics.impact.law import ImpactOutcome
+    from contact_dynamics.numerics.vectors import Vector3
+    from contact_dynamics.rigid_body.body import BodyState
+    from contact_dynamics.toss.solid import Numbers, Solid, Touch
+
+
+class Struck(NamedTuple):
+    """One strike.
+
+    Attributes:
+        touch: The contact.
+        impulse: N s, on the body, world axes.
+        outcome: What the contact did, or None if all contacts struck at once or settled.
+        settles: Whether it was settled without restitution, together with others.
+    """
+
+    touch: Touch
+    impulse: Vector3
+    outcome: ImpactOutcome | None
+    settles: bool = False
+
+
+def routh(
+    solid: Solid, y: Numbers, touch: Touch, law: RestitutionLaw, *, friction: float
+) -> tuple[Numbers, Struck]:
+    """Return the state after the impact at one contact, which approaches or jams (lecture 27)."""
+    pose, flat = pose_of(solid, y), solid.flats[touch[0]]
+    body = responding(solid.mass, solid.inertia, y[3:7], arm_of(solid, pose, touch), pose.v, pose.w)
+    axes = contact_axes(body, None, flat.normal)
+    u1, u2, v_n = axes.components(velocity_of(pose, body.r))
+    if math.hypot(u1, u2) <= STRIKES:
+        u1 = u2 = 0.0
+    if v_n >= -STRIKES:  # it jams, without approach
+        v_n = 0.0
+    sliding = SlidingLaw(axes.l1, axes.l2, axes.k1, axes.k2, axes.kn, friction)
+    path = trace(sliding, (u1, u2), v_n, restitution=flat.restitution, law=law)
+    impulse = axes.in_world(path.impulse)
+    v, w = pushed(body, impulse)
+    return [*y[:7], *v, *w], Struck(touch, impulse, path.outcome)
+
+
+def check_laws(restitution_law: RestitutionLaw, several_contacts_law: SeveralContactsLaw) -> None:
+    """Raise an error if the two laws do not go together."""
+    at_once = several_contacts_law == SeveralContactsLaw.SIMULTANEOUS
+    if at_once and restitution_law == RestitutionLaw.ENERGETIC:
+        raise InvalidFieldError("restitution_law", restitution_law.name, "POISSON or NEWTON for SIMULTANEOUS")
+
+
+def next_in_turn(solid: Solid, y: Numbers, touching: list[Touch], rates: list[float]) -> list[Touch]:
+    """Return the contact that approaches fastest, with those that tie with it and strike as one with it.
+
+    ``rates`` are the normal velocities, m/s, and some contact approaches.
+    """
+    fastest = min(rates)
+    tie = TIED_APPROACH * (norm((y[7], y[8], y[9])) + solid.reach * norm((y[10], y[11], y[12])))
+    if sum(rate <= fastest + tie for rate in rates) < 2:
+        return [touching[rates.index(fastest)]]
+    contacts = _striking(solid, y, touching)
+    group = next_to_strike(np.array(rates), contacts, tolerance=STRIKES, tie=tie)
+    return [touching[k] for k in group]
+
+
+def tied_strike(
+    solid: Solid, y: Numbers, group: list[Touch], law: RestitutionLaw
+) -> tuple[Numbers, list[Struck]]:
+    """Return the state after the impact of contacts that strike as one, and the share of each."""
+    shares, (after,) = strike_as_one(
+        [properties_of(solid)],
+        [state_of(y)],
+        _striking(solid, y, group),
+        [(0, None)] * len(group),
+        law=law,
+        tolerance=STRIKES,
+    )
+    struck = [
+        Struck(touch, _vector(share.impulse_W.tolist()), share.outcome)
+        for touch, share in zip(group, shares, strict=True)
+    ]
+    return _after(y, after), struck
+
+
+def simultaneous_strike(
+    solid: Solid, y: Numbers, touching: list[Touch], law: RestitutionLaw
+) -> tuple[Numbers, list[Struck]] | None:
+    """Return the state after the impact at all contacts at once, and each impulse, or None if not found."""
+    impact = several_impact(
+        properties_of(solid),
+        state_of(y),
+        _striking(solid, y, touching),
+        several_contacts_law=SeveralContactsLaw.SIMULTANEOUS,
+        restitution_law=law,
+        velocity_tolerance=STRIKES,
+    )
+    if impact.verdict != SeveralVerdict.RESOLVED:
+        return None
+    struck = [
+        Struck(touch, _vector(impulse), None)
+        for touch, impulse in zip(touching, impact.impulses_W.tolist(), strict=True)
+        if any(impulse)
+    ]
+    return _after(y, impact.state), struck
+
+
+def _striking(solid: Solid, y: Numbers, touching: list[Touch]) -> ContactSet:
+    """Return touching contacts with the friction of strikes."""
+    contacts = contacts_of(solid, y, touching)
+    frictions = [solid.flats[surface].strike_friction for surface, _ in touching]
+    return replace(contacts, frictions=np.array(frictions), body_curvatures=None)
+
+
+def _after(y: Numbers, state: BodyState) -> Numbers:
+    return [*y[:7], *state.v_WB_W.tolist(), *state.w_WB_W.tolist()]
+
+
+def _vector(numbers: list[float]) -> tuple[float, float, float]:
+    x, y, z = numbers
+    return (x, y, z)
+
+
+class Inelastic(NamedTuple):
+    """An impact without restitution.
+
+    Attributes:
+        y: The state after it.
+        impulses: N s, on the body, world axes, at each contact.
+        motions: m/s, the velocity of each contact afterwards, by its two tangents and its normal.
+    """
+
+    y: Numbers
+    impulses: list[Vector3]
+    motions: list[Vector3]
+
+
+def inelastic_impact(
+    solid: Solid, y: Numbers, touching: list[Touch], *, room: list[float] | None = None
+) -> Inelastic | None:
+    """Return the impact without restitution at contacts, or None if none was found.
+
+    ``room`` has the speeds, m/s, with which contacts may approach, as those do that are not down yet. Motions
+    are relative to that.
+    """
+    pose = pose_of(solid, y)
+    sites = []
+    for k, touch in enumerate(touching):
+        flat, arm = solid.flats[touch[0]], arm_of(solid, pose, touch)
+        velocity, axes = velocity_of(pose, arm), (*flat.tangents, flat.normal)
+        normal = dot(velocity, axes[2]) + (0.0 if room is None else room[k])
+        sites.append(
+            Site(arm, axes, flat.friction, (dot(velocity, axes[0]), dot(velocity, axes[1]), normal), None)
+        )
+    found = cone_forces(1.0 / solid.mass, pose.inverse, sites, enough=CONE_CREEPS)
+    if found is None:
+        return None
+    pushes, motions = found
+    after, impulses = list(y), []
+    for site, (p, q, r) in zip(sites, pushes, strict=True):
+        t1, t2, n = site.axes
+        impulse = (
+            p * t1[0] + q * t2[0] + r * n[0],
+            p * t1[1] + q * t2[1] + r * n[1],
+            p * t1[2] + q * t2[2] + r * n[2],
+        )
+        turning = times(pose.inverse, cross(site.arm, impulse))
+        for k in range(3):
+            after[7 + k] += impulse[k] / solid.mass
+            after[10 + k] += turning[k]
+        impulses.append(impulse)
+    return Inelastic(after, impulses, motions)
+
+
+def sure_impact(
+    solid: Solid, y: Numbers, touching: list[Touch], *, room: list[float] | None = None
+) -> Inelastic:
+    """Return the impact without restitution. Where none is found, friction is left out, or the body stops."""
+    impact = inelastic_impact(solid, y, touching, room=room)
+    if impact is None:
+        smooth = solid._replace(flats=tuple(flat._replace(friction=0.0) for flat in solid.flats))
+        impact = inelastic_impact(smooth, y, touching, room=room)
+    if impact is None:
+        none = [(0.0, 0.0, 0.0)] * len(touching)
+        impact = Inelastic([*y[:7], *[0.0] * 6], none, none)
+    return impact
