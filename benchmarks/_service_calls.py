@@ -11,24 +11,13 @@ from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.qos import QoSProfile
 
-from contact_dynamics_interfaces.srv import (
-    PredictContactMode,
-    PredictImpact,
-    PredictImpactBatch,
-    PredictTumbling,
-    PredictTumblingBatch,
-)
+from contact_dynamics.questions import services
+from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact, PredictTumbling
 
 QOS = QoSProfile(depth=1000)
 PATIENCE_S = 20.0
 ROOT = Path(__file__).parents[1]
-SERVICES = {
-    "predict_contact_mode": PredictContactMode,
-    "predict_impact": PredictImpact,
-    "predict_tumbling": PredictTumbling,
-    "predict_impact_batch": PredictImpactBatch,
-    "predict_tumbling_batch": PredictTumblingBatch,
-}
+SERVICES = {each.name: each.service_type for each in services.SERVICES}
 
 
 class Asker:

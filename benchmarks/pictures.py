@@ -25,7 +25,7 @@ import tempfile
 import time
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -48,7 +48,9 @@ from contact_dynamics.viewing.states_in_turn import StatesInTurn
 from contact_dynamics.viewing.viewer_process import viewer_executable
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Iterator
+
+    from contact_dynamics.questions.services import Answer
 
 BODIES = 20
 RATE = 250
@@ -170,9 +172,9 @@ class _Drawing:
         self._asked += 1
         if kind == 0:
             question = TumblingQuestion(body=name, state=state, sampling=UntilContact(), curve_points=100)
-            self._show(Picture.show_tumbling, ask(question, KNOWN))
+            self._show(ask(question, KNOWN))
         elif kind == 1:
-            self._show(Picture.show_impact, ask(ImpactQuestion(body=name, state=state), KNOWN))
+            self._show(ask(ImpactQuestion(body=name, state=state), KNOWN))
         else:
             resting = BodyState(
                 p_WB_W=[*state.p_WB_W[:2], 0.5 * SIZE[2]],
@@ -182,12 +184,12 @@ class _Drawing:
                 stamp_ns=stamp_ns,
             )
             modes = ask(ContactModeQuestion(body=name, state=resting), KNOWN)
-            self._show(Picture.show_contact_modes, modes)
+            self._show(modes)
 
-    def _show(self, show: Callable[..., None], answer: Any) -> None:
+    def _show(self, answer: Answer) -> None:
         began = time.thread_time()
         self._states.draw_before(answer)
-        show(self._picture, answer)
+        self._picture.show(answer)
         self.for_answers += time.thread_time() - began
 
 

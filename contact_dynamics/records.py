@@ -107,6 +107,7 @@ class Record:
         post_init = vars(cls).get("__post_init__")
         if post_init is not None and not hasattr(post_init, "__wrapped__"):
             type.__setattr__(cls, "__post_init__", checks_fields(post_init, inspect.get_annotations(cls)))
+        super().__init_subclass__()
 
     def __repr__(self) -> str:
         """Return the fields, as many as fit into one line."""

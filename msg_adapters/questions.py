@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from contact_dynamics.contact.uncertainty import EXACT_CONTACTS, ContactUncertainty
 from contact_dynamics.errors import InvalidFieldError
-from contact_dynamics.questions.contact_mode_question import ContactModeQuestion
+from contact_dynamics.questions.contact_modes import ContactModeQuestion
 from contact_dynamics.questions.impact_question import ImpactQuestion
 from contact_dynamics.questions.tumbling import TumblingQuestion
 from msg_adapters.asked_fields import (

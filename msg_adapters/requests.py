@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from geometry_msgs.msg import Inertia
 
     from contact_dynamics.contact.contact import ContactSet
-    from contact_dynamics.questions.contact_mode_question import ContactModeQuestion
+    from contact_dynamics.questions.contact_modes import ContactModeQuestion
     from contact_dynamics.questions.impact_question import ImpactQuestion
     from contact_dynamics.questions.sample_times import Sampling
     from contact_dynamics.questions.subject import StateSource

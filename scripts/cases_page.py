@@ -21,6 +21,7 @@ from benchmarks import _quotes as quotes  # noqa: E402 # after the path
 from contact_dynamics.cases import CASES, Case  # noqa: E402
 from contact_dynamics.cases.published import PublishedVerdict, published_values  # noqa: E402
 from contact_dynamics.cases.report import published_row, shown  # noqa: E402
+from contact_dynamics.questions.services import SERVICES  # noqa: E402
 
 PAGE = ROOT / "docs" / "cases.md"
 HEAD = """\
@@ -129,11 +130,7 @@ def import_lines(node: ast.stmt, needed: set[str]) -> list[str]:
     return [f"{of}import {names}"]
 
 
-SERVICES = {
-    "predict_contact_mode": "PredictContactMode",
-    "predict_impact": "PredictImpact",
-    "predict_tumbling": "PredictTumbling",
-}
+TYPES = {each.name: each.type_name for each in SERVICES}
 
 
 def section(name: str, case: Case) -> str:
@@ -154,7 +151,7 @@ def section(name: str, case: Case) -> str:
 ```
 
 ```sh
-ros2 service call /contact_dynamics/{request.service} contact_dynamics_interfaces/srv/{SERVICES[request.service]} \\
+ros2 service call /contact_dynamics/{request.service} contact_dynamics_interfaces/srv/{TYPES[request.service]} \\
   "{request.text(case.settings[0])}"
 ```
 

@@ -189,7 +189,7 @@ def contact_modes(folder: Path) -> None:
 
     def draw(picture: Picture) -> None:
         picture.add_states("block", [at(leans, k / 100.0) for k in range(10)])
-        picture.show_contact_modes(ask(question, Context(world=world)), now_ns=START_NS)
+        picture.show(ask(question, Context(world=world)), now_ns=START_NS)
 
     with viewer(_recorded(folder, world, draw)) as shown:
         shown.show_page("Contact modes")
@@ -215,7 +215,7 @@ def toss(folder: Path) -> None:
     def draw(picture: Picture) -> None:
         states = [at(recorded.state(k), (k - ASKED) / recorded.rate) for k in range(ASKED + 70)]
         picture.add_states(recorded.body.name, states[: ASKED + 1])
-        picture.show_toss(ask(question, Context(world=world)), now_ns=START_NS)
+        picture.show(ask(question, Context(world=world)), now_ns=START_NS)
         picture.add_states(recorded.body.name, states[ASKED + 1 :])
 
     with viewer(_recorded(folder, world, draw)) as shown:
@@ -243,7 +243,7 @@ def twenty(folder: Path) -> None:
             seen = [replace(one, p_WB_W=one.p_WB_W + noise.normal(0.0, 3e-4, 3)) for one in seen]
             picture.add_states(brick.name, seen[:1])
             question = TumblingQuestion(body=brick, state=seen[0], sampling=UntilContact())
-            picture.show_tumbling(ask(question, Context(world=world)))
+            picture.show(ask(question, Context(world=world)))
             picture.add_states(brick.name, seen[1:])
 
     with viewer(_recorded(folder, world, draw, surface_side=4.0)) as shown:

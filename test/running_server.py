@@ -23,15 +23,7 @@ from rclpy.node import Node
 from rclpy.qos import QoSProfile
 
 from contact_dynamics.demo.ros_domain import claim_domain
-from contact_dynamics_interfaces.srv import (
-    PredictContactMode,
-    PredictContactModeBatch,
-    PredictImpact,
-    PredictImpactBatch,
-    PredictToss,
-    PredictTumbling,
-    PredictTumblingBatch,
-)
+from contact_dynamics.questions import services
 
 ROOT = Path(__file__).parents[1]
 DOMAIN_ID = claim_domain()  # of this test run alone
@@ -39,15 +31,7 @@ PATIENCE_S = 90.0
 PATIENT = "state_timeout:=1000.0"  # no stall of a busy machine makes a state too old to ask about
 DEEP = QoSProfile(depth=1000)
 BYTECODE = Path(tempfile.gettempdir()) / f"contact_dynamics_bytecode_{os.getuid()}"
-SERVICES = {
-    PredictContactMode: "/contact_dynamics/predict_contact_mode",
-    PredictImpact: "/contact_dynamics/predict_impact",
-    PredictTumbling: "/contact_dynamics/predict_tumbling",
-    PredictToss: "/contact_dynamics/predict_toss",
-    PredictImpactBatch: "/contact_dynamics/predict_impact_batch",
-    PredictTumblingBatch: "/contact_dynamics/predict_tumbling_batch",
-    PredictContactModeBatch: "/contact_dynamics/predict_contact_mode_batch",
-}
+SERVICES = {each.service_type: f"/contact_dynamics/{each.name}" for each in services.SERVICES}
 
 
 def environment(domain_id: int = DOMAIN_ID) -> dict[str, str]:
@@ -142,7 +126,7 @@ class Client:
             self.wait_until_found()
 
     def ready(self) -> int:
-        """Return how many of the three services there are now."""
+        """Return how many of the services there are now."""
         return sum(client.service_is_ready() for client in self._clients.values())
 
     def publisher(self, msg_type: Any, topic: str, qos: QoSProfile = DEEP) -> Any:

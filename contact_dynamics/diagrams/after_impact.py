@@ -79,20 +79,19 @@ class AwaitedImpacts:
         self._awaited: dict[str, list[tuple[int, ImpactAnswer]]] = {}
         self._seen: dict[str, list[BodyState]] = {}  # since the first awaited impact, and the newest
 
-    def expect(self, answer: ImpactAnswer, *, now_ns: int) -> list[AfterImpact]:
-        """Wait for an impact, and return the impacts that are now compared, because it has been seen already.
+    def expect(self, answer: ImpactAnswer, *, now_ns: int) -> None:
+        """Wait for an impact. If it has been seen already, `see` returns it the next time.
 
         It takes the place of those that had not come by ``now_ns``, ns, either. Without a stamp there is no
         knowing when it comes.
         """
         strike_ns = answer.impact.state.stamp_ns or answer.state.stamp_ns
         if not strike_ns:
-            return []
+            return
         oldest_ns = now_ns - to_ns(KEPT_S)  # one before that is of a body whose states do not come
         awaited = self._awaited.get(answer.body_name, [])
         begun = [each for each in awaited if oldest_ns <= each[0] < now_ns]
         self._awaited[answer.body_name] = [*begun, (strike_ns, answer)]
-        return self._compared(answer.body_name)
 
     def see(self, body_name: str, states: Sequence[BodyState]) -> list[AfterImpact]:
         """Take measured states in the order of their stamps, and return the impacts that are now compared.

@@ -11,7 +11,6 @@ import numpy as np
 from contact_dynamics.contact_modes import Certainty, ModeVerdict
 from contact_dynamics.contact_modes.letters import LETTERS
 from contact_dynamics.impact import ImpactOutcome, SequenceEnd
-from contact_dynamics.questions.many import ManyImpactsAnswer, ManyTumblingsAnswer
 from contact_dynamics.tumbling.regime import Regime
 
 if TYPE_CHECKING:
@@ -19,21 +18,13 @@ if TYPE_CHECKING:
     from contact_dynamics.diagrams.after_impact import AfterImpact
     from contact_dynamics.questions.contact_modes import ContactModeAnswer
     from contact_dynamics.questions.impact_answer import ImpactAnswer
+    from contact_dynamics.questions.many import ManyImpactsAnswer, ManyTumblingsAnswer
     from contact_dynamics.questions.many_contact_modes import ManyContactModesAnswer
     from contact_dynamics.questions.resolved_impact import ResolvedImpact
     from contact_dynamics.questions.settled_impact import SettledImpact
     from contact_dynamics.questions.tumbling import TumblingAnswer
     from contact_dynamics.tumbling.flips import Flips
     from contact_dynamics.validation import FloatArray
-
-TUMBLING: Final = "Tumbling"
-IMPACT: Final = "Impact"
-CONTACT_MODES: Final = "Contact modes"
-TOSS: Final = "Toss"
-MANY_TUMBLINGS: Final = "Tumbling of many"
-MANY_IMPACTS: Final = "Impacts of many"
-MANY_CONTACT_MODES: Final = "Contact modes of many"
-"""The kinds of answers."""
 
 AFTER_IMPACT: Final = "After the impact"
 """The kind of words about what was measured after an answer."""
@@ -160,16 +151,18 @@ def contacts_in_words(letters: str, count: int) -> str:
     return f"{count} contacts {words}" if several else words
 
 
-def many_in_words(answer: ManyTumblingsAnswer | ManyImpactsAnswer) -> list[str]:
+def many_tumblings_in_words(answer: ManyTumblingsAnswer) -> list[str]:
+    """Return words for how many states there are."""
+    return [f"has {len(answer)} states"]
+
+
+def many_impacts_in_words(answer: ManyImpactsAnswer) -> list[str]:
     """Return words for how many states there are, and what the impacts do."""
-    count = f"has {len(answer.states)} states"
-    if isinstance(answer, ManyTumblingsAnswer):
-        return [count]
     words = [
         "separates" if separates else OUTCOMES[ImpactOutcome(int(outcome))]
         for outcome, separates in zip(answer.outcomes, answer.separates, strict=True)
     ]
-    return [count, *(f"{number} {word}" for word, number in Counter(words).most_common())]
+    return [f"has {len(answer)} states", *(f"{n} {word}" for word, n in Counter(words).most_common())]
 
 
 def many_contact_modes_in_words(answer: ManyContactModesAnswer) -> list[str]:

@@ -19,11 +19,11 @@ from contact_dynamics.evaluation.differences import (
 )
 from contact_dynamics.evaluation.found_event import EventKind
 from contact_dynamics.evaluation.settings import Method
-from contact_dynamics.questions.asking import ask
-from contact_dynamics.questions.contact_mode_question import ContactModeQuestion
+from contact_dynamics.questions.contact_modes import ContactModeQuestion
 from contact_dynamics.questions.context import Context
 from contact_dynamics.questions.impact_question import ImpactQuestion
 from contact_dynamics.questions.sample_times import AtStamps, UntilContact
+from contact_dynamics.questions.services import ask
 from contact_dynamics.questions.state_store import StateStore
 from contact_dynamics.questions.subject import PublishedState
 from contact_dynamics.questions.tumbling import TumblingQuestion

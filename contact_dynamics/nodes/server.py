@@ -1,8 +1,7 @@
 """The server: one process with the services, one store of states, and the log.
 
-It watches published states and answers `~/predict_contact_mode`, `~/predict_impact` and `~/predict_tumbling`.
-Drawing happens in another process (`visualizer`), which listens to the service events that this node
-publishes.
+It watches published states and answers the services of `questions.services`. Drawing happens in another
+process (`visualizer`), which listens to the service events that this node publishes.
 
 It is a managed node, as those of Nav2 are. `autostart` configures and activates it at its start. Otherwise it
 waits for a lifecycle manager. Configured, it receives states and writes the log; active, it answers.

@@ -19,7 +19,7 @@ from rclpy.service_introspection import ServiceIntrospectionState
 from contact_dynamics.errors import BusyError, ContactDynamicsError
 from contact_dynamics.nodes.call_times import CallTimes
 from contact_dynamics.nodes.event_bytes import EventBytes
-from contact_dynamics.questions.effort import excerpt, is_quick
+from contact_dynamics.questions.effort import excerpt
 from msg_adapters.status import report_error
 
 if TYPE_CHECKING:
@@ -30,8 +30,8 @@ if TYPE_CHECKING:
     from contact_dynamics.nodes.call_times import Call
     from contact_dynamics.nodes.gone_clients import GoneClients
     from contact_dynamics.nodes.inbox import InboxNode, Taken
-    from contact_dynamics.nodes.services import Answer, Question, Request, Service
     from contact_dynamics.questions.context import Context
+    from contact_dynamics.questions.services import Answer, Service
     from contact_dynamics.questions.workers import Workers
     from msg_adapters.status import Response
 
@@ -151,7 +151,7 @@ class ServiceFront:
         """Take the events of requests and responses that wait, for the log."""
         self._node.empty(self._events)
 
-    def _take(self, request: Request, response: Response) -> _Answering:
+    def _take(self, request: object, response: Response) -> _Answering:
         self._node.take_messages()  # the question sees all states that came before it
         call = self._times.begin()
         self._begin(call.node_clock_ns)
@@ -161,43 +161,37 @@ class ServiceFront:
             self._serve(request, answering)
         return answering
 
-    def _serve(self, request: Request, answering: _Answering) -> None:
-        def elsewhere(
-            answer: Callable[[Question, Context], Answer],
-            question: Question,
-            context: Context,
-            fill: Callable[[Answer], object],
-        ) -> bool:
-            if self._workers is None or is_quick(question, context):
-                return False
+    def _serve(self, request: object, answering: _Answering) -> None:
+        served, context, world_frame = self._served, self.context, self._world_frame
 
-            def done(outcome: Answer | Exception) -> None:
-                executor = self._node.executor
-                if executor is not None:  # otherwise the node has stopped serving, and ends
-                    executor.create_task(finish, partial(_fill, fill, outcome))
+        def fill(outcome: Answer | Exception) -> None:
+            if isinstance(outcome, Exception):
+                raise outcome
+            served.answer_to_msg(outcome, world_frame=world_frame, into=answering.response)
 
-            self._workers.ask(answer, question, excerpt(question, context), done)
-            self._under_way.add(answering)
-            return True
+        def done(outcome: Answer | Exception) -> None:
+            executor = self._node.executor
+            if executor is not None:  # otherwise the node has stopped serving, and ends
+                executor.create_task(finish, outcome)
 
-        def finish(fill: Callable[[], None]) -> None:
+        def finish(outcome: Answer | Exception) -> None:
             if answering not in self._under_way:  # the node has ended, or was cleaned up, and has refused it
                 return
             self._under_way.remove(answering)
-            self._finish(answering, fill)
+            self._finish(answering, partial(fill, outcome))
             self._send(answering)
 
         def serve() -> None:
             if not self.is_active:
                 message = "the server is not active, which its lifecycle manager decides"
                 raise BusyError(message)
-            answering.is_done = self._served.serve(
-                request,
-                answering.response,
-                self.context,
-                world_frame=self._world_frame,
-                elsewhere=elsewhere,
-            )
+            question = served.question_from_msg(request, world=context.world, world_frame=world_frame)
+            if self._workers is None or served.is_answered_at_once(question, context):
+                fill(served.answer(question, context))
+                return
+            self._workers.ask(served.answer.function, question, excerpt(question, context), done)
+            self._under_way.add(answering)
+            answering.is_done = False
 
         self._finish(answering, serve)
 
@@ -291,9 +285,3 @@ class ServiceFront:
         if happened.is_logged:
             return
         self._record(self.topic, event.data, happened.log_time_ns, happened.publish_time_ns)
-
-
-def _fill(fill: Callable[[Answer], object], outcome: Answer | Exception) -> None:
-    if isinstance(outcome, Exception):
-        raise outcome
-    fill(outcome)

@@ -26,15 +26,14 @@ from contact_dynamics.nodes.offered_qos import OfferedQosWatch
 from contact_dynamics.nodes.reconfiguring import CONFIGURED_ANEW, bodies_read_otherwise
 from contact_dynamics.nodes.self_check import SelfCheck
 from contact_dynamics.nodes.service_front import ServiceFront
-from contact_dynamics.nodes.services import SERVICES
 from contact_dynamics.nodes.situations import Part, Present, Situation
 from contact_dynamics.nodes.state_sources import state_sources
 from contact_dynamics.nodes.state_subscriptions import present_ns, subscribe_to_states
 from contact_dynamics.nodes.topic_faults import TopicFaults
 from contact_dynamics.questions.context import Context
+from contact_dynamics.questions.services import SERVICES
 from contact_dynamics.questions.state_store import CLOCK_SET_BACK, StateStore
 from contact_dynamics.questions.workers import Workers
-from contact_dynamics_interfaces.srv import PredictTumbling
 from msg_adapters.path import path_from_trajectory
 from msg_adapters.transforms import TransformTree
 
@@ -43,7 +42,7 @@ if TYPE_CHECKING:
 
     from contact_dynamics.nodes.inbox import InboxNode, Taken
     from contact_dynamics.nodes.parameters import ServerParameters
-    from contact_dynamics.nodes.services import Service
+    from contact_dynamics.questions.services import Service
     from msg_adapters.status import Response
 
 SERVICE_QOS = QoSProfile(depth=1000)
@@ -362,6 +361,7 @@ class Serving:
 
     def _publish_path(self, response: Response) -> None:
         """Publish the newest trajectory for RViz, if somebody listens."""
-        is_path = isinstance(response, PredictTumbling.Response) and response.status == response.OK
+        trajectory = getattr(response, "trajectory", None)
+        is_path = trajectory is not None and response.status == response.OK
         if is_path and self._path.get_subscription_count() > 0:
-            self._path.publish(path_from_trajectory(response.trajectory))  # type: ignore[attr-defined]
+            self._path.publish(path_from_trajectory(trajectory))

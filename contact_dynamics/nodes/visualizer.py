@@ -34,11 +34,11 @@ from contact_dynamics.nodes.parameters import read_server_parameters
 from contact_dynamics.nodes.reconfiguring import bodies_read_otherwise, check_change
 from contact_dynamics.nodes.run_record import plain
 from contact_dynamics.nodes.running import run_node
-from contact_dynamics.nodes.services import SERVICES
 from contact_dynamics.nodes.state_sources import state_sources
 from contact_dynamics.nodes.state_subscriptions import subscribe_to_states
 from contact_dynamics.nodes.topic_faults import TopicFaults
 from contact_dynamics.nodes.visualizer_parameters import read_visualizer_parameters
+from contact_dynamics.questions.services import SERVICES
 from contact_dynamics.questions.state_store import StateStore
 from contact_dynamics.questions.uncertain_state import state_of
 from contact_dynamics.recording.cdr_stamp import EventType, event_type_of
@@ -55,7 +55,7 @@ if TYPE_CHECKING:
     from rclpy.subscription import Subscription
 
     from contact_dynamics.nodes.inbox import Taken
-    from contact_dynamics.nodes.services import Service
+    from contact_dynamics.questions.services import Service
     from contact_dynamics.questions.uncertain_state import KnownState
 
 NODE_NAME: Final = "contact_dynamics_visualizer"
@@ -227,12 +227,8 @@ class Visualizer(InboxNode):
             return
         answer = shown.answer_from_msg(response, world=self._configuration.world)
         self._states.draw_before(answer, came_ns=waiting.came_ns)
-        shown.draw(
-            self._picture,
-            answer,
-            now_ns=now_ns,
-            remark=response.message,
-            computation_time=response.computation_time,
+        self._picture.show(
+            answer, now_ns=now_ns, remark=response.message, computation_time=response.computation_time
         )
 
     def _follow(self, event: ParameterEvent) -> None:

@@ -10,7 +10,7 @@ In reading order: the colours (`colors`) and what all diagrams share (`style`), 
 contact forces in their cones (`contact_forces`) and charts of wrenches (`wrenches`), lecture 27's impulse
 space (`impulse_space`, `impulse_space_in_3d`), whole tosses (`tosses`), all diagrams of an answer as figures
 (`figures`), what the physics returns as figures (`results`), and the command `contact-dynamics plot`
-(`arguments`, `logged_answers`, `run`).
+(`arguments`, `run`).
 """
 
 from contact_dynamics.plots.contact_forces import draw_contact_forces

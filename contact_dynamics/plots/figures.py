@@ -24,11 +24,7 @@ from contact_dynamics.plots.trajectory import (
     draw_velocity,
 )
 from contact_dynamics.plots.wrenches import draw_force_dual, draw_mode_map
-from contact_dynamics.questions.contact_modes import ContactModeAnswer
-from contact_dynamics.questions.impact_answer import ImpactAnswer
-from contact_dynamics.questions.many import ManyImpactsAnswer, ManyTumblingsAnswer
-from contact_dynamics.questions.toss import TossAnswer
-from contact_dynamics.questions.tumbling import TumblingAnswer
+from contact_dynamics.questions.services import service_of
 from contact_dynamics.shapes.convex import NO_SHAPE
 from contact_dynamics.tumbling.regime import Regime
 
@@ -38,7 +34,12 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from contact_dynamics.questions.many_contact_modes import ManyContactModesAnswer
+    from contact_dynamics.questions.contact_modes import ContactModeAnswer
+    from contact_dynamics.questions.impact_answer import ImpactAnswer
+    from contact_dynamics.questions.many import ManyImpactsAnswer, ManyTumblingsAnswer
+    from contact_dynamics.questions.services import Answer
+    from contact_dynamics.questions.toss import TossAnswer
+    from contact_dynamics.questions.tumbling import TumblingAnswer
     from contact_dynamics.rigid_body.body import HasMassProperties
     from contact_dynamics.shapes.convex import ConvexShape
     from contact_dynamics.validation import FloatArray
@@ -57,13 +58,7 @@ class NamedFigure(NamedTuple):
 
 
 def figures_of(
-    answer: TumblingAnswer
-    | ImpactAnswer
-    | ContactModeAnswer
-    | TossAnswer
-    | ManyTumblingsAnswer
-    | ManyImpactsAnswer
-    | ManyContactModesAnswer,
+    answer: Answer,
     *,
     gravity_W: FloatArray,
     body: HasMassProperties | None = None,
@@ -73,26 +68,21 @@ def figures_of(
     """Yield the figures of an answer. There are none for an answer without a diagram.
 
     Args:
-        answer: The answer to any of the questions, or to one about many states.
+        answer: The answer.
         gravity_W: (3,), m/s^2, world axes, for the potential energy.
         body: The body, or its mass properties. Without it there are no lines in impulse space, no energies
             and no momenta.
         other: A second body that is struck, or its mass properties.
         shape: The body's shape, for its outline.
     """
-    if isinstance(answer, ImpactAnswer):
-        yield from _of_impact(answer, body, other)
-    elif isinstance(answer, ContactModeAnswer):
-        yield from _of_modes(answer, body, shape)
-    elif isinstance(answer, TossAnswer):
-        yield from _of_toss(answer, shape)
-    elif isinstance(answer, (ManyTumblingsAnswer, ManyImpactsAnswer)):
-        yield from _of_many(answer)
-    elif isinstance(answer, TumblingAnswer):
-        yield from _of_tumbling(answer, body, gravity_W)
+    drawn = service_of(answer).figures
+    if drawn is not None:
+        for name, figure in drawn(answer, gravity_W=gravity_W, body=body, other=other, shape=shape):
+            yield NamedFigure(name, figure)  # type: ignore[arg-type]  # it is one, as the record says
 
 
-def _of_many(answer: ManyTumblingsAnswer | ManyImpactsAnswer) -> Iterator[NamedFigure]:
+def figures_of_many(answer: ManyTumblingsAnswer | ManyImpactsAnswer, **_: object) -> Iterator[NamedFigure]:
+    """Yield the states from the side and from above."""
     if len(answer.states) == 0:
         return
     figure = blank_figure(8.0, 8.0)
@@ -102,7 +92,8 @@ def _of_many(answer: ManyTumblingsAnswer | ManyImpactsAnswer) -> Iterator[NamedF
     yield NamedFigure("states", figure)
 
 
-def _of_toss(answer: TossAnswer, shape: ConvexShape) -> Iterator[NamedFigure]:
+def figures_of_toss(answer: TossAnswer, *, shape: ConvexShape, **_: object) -> Iterator[NamedFigure]:
+    """Yield the toss from the side and from above, and the tree of its next strikes if it is sampled."""
     outline = drawn_shape(shape)
     figure = blank_figure(8.0, 8.0)
     side, top = figure.subplots(2, 1)
@@ -115,9 +106,10 @@ def _of_toss(answer: TossAnswer, shape: ConvexShape) -> Iterator[NamedFigure]:
         yield NamedFigure("toss-tree", figure)
 
 
-def _of_impact(
-    answer: ImpactAnswer, body: HasMassProperties | None, other: HasMassProperties | None
+def figures_of_impact(
+    answer: ImpactAnswer, *, body: HasMassProperties | None, other: HasMassProperties | None, **_: object
 ) -> Iterator[NamedFigure]:
+    """Yield the main contact in impulse space, in 3D too for an impact in space."""
     if len(answer.impact.path_W) == 0:
         return
     figure = blank_figure(8.0, 4.6)
@@ -129,9 +121,10 @@ def _of_impact(
         yield NamedFigure("impulse-space-in-3d", figure)
 
 
-def _of_tumbling(
-    answer: TumblingAnswer, body: HasMassProperties | None, gravity_W: FloatArray
+def figures_of_tumbling(
+    answer: TumblingAnswer, *, body: HasMassProperties | None, gravity_W: FloatArray, **_: object
 ) -> Iterator[NamedFigure]:
+    """Yield the motion over time, and Poinsot's construction if the answer has its curves."""
     trajectory = answer.trajectory
     if len(trajectory) > 0:
         figure = blank_figure(13.0, 11.0)
@@ -157,9 +150,10 @@ def _of_tumbling(
         yield NamedFigure("poinsot", figure)
 
 
-def _of_modes(
-    answer: ContactModeAnswer, body: HasMassProperties | None, shape: ConvexShape
+def figures_of_modes(
+    answer: ContactModeAnswer, *, body: HasMassProperties | None, shape: ConvexShape, **_: object
 ) -> Iterator[NamedFigure]:
+    """Yield the contact forces of each mode and, in the plane, the body, the map of modes and force duals."""
     for i, mode in enumerate(answer.modes[:MAX_MODES], start=1):
         figure = blank_figure(7.0, 4.6)
         draw_contact_forces(

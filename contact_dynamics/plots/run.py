@@ -11,12 +11,17 @@ from typing import TYPE_CHECKING, Final
 from contact_dynamics.errors import ContactDynamicsError
 from contact_dynamics.plots.arguments import plot_parser
 from contact_dynamics.plots.figures import figures_of
-from contact_dynamics.plots.logged_answers import logged_answers
 from contact_dynamics.plots.style import save_figure
+from contact_dynamics.replay.events import OK, UNREADABLE, StateCame, WorldChanged
+from contact_dynamics.replay.logged import LoggedEvents
 from contact_dynamics.shapes.convex import NO_SHAPE
+from contact_dynamics.world import Body
 
 if TYPE_CHECKING:
-    from contact_dynamics.plots.logged_answers import LoggedAnswer
+    from collections.abc import Iterator
+
+    from contact_dynamics.replay.events import Answered
+    from contact_dynamics.world import World
 
 NOTHING_DRAWN: Final = 1
 """This exit code says that the log has no answer with a diagram."""
@@ -36,9 +41,9 @@ def main(arguments: list[str]) -> int:
     answered = drawn = 0
     try:
         given.output.mkdir(parents=True, exist_ok=True)
-        for logged in islice(logged_answers(Path(given.log)), given.max_questions):
+        for number, logged, world in islice(_answers(Path(given.log)), given.max_questions):
             answered += 1
-            for path in _write(logged, given.output, given.format):
+            for path in _write(number, logged, world, given.output, given.format):
                 drawn += 1
                 print(path)
     except (ContactDynamicsError, OSError) as error:
@@ -48,21 +53,47 @@ def main(arguments: list[str]) -> int:
     return 0 if drawn else NOTHING_DRAWN
 
 
-def _write(logged: LoggedAnswer, folder: Path, suffix: str) -> list[Path]:
+def _answers(path: Path) -> Iterator[tuple[int, Answered, World]]:
+    """Yield the answers of a log, each with the number of its question and the world at that time."""
+    events = LoggedEvents(path, states=False)
+    world, number = events.world, 0
+    for event in events:
+        if isinstance(event, WorldChanged):
+            world = event.world
+        elif not isinstance(event, StateCame):
+            number += 1
+            if event.status == OK:
+                yield number, event, world
+            elif event.status == UNREADABLE:
+                print(f"contact-dynamics plot: question {number}: {event.message}", file=sys.stderr)
+
+
+def _write(number: int, logged: Answered, world: World, folder: Path, suffix: str) -> list[Path]:
     """Write the diagrams of one answer, and return their files."""
-    body = logged.body
+    if logged.asked is None or logged.answer is None:
+        return []
+    about = logged.asked.about
+    body, other = _body(about.body, world), _body(getattr(about, "other", None), world)
+    gravity_W = getattr(about, "gravity_W", None)  # an impact needs none
     figures = figures_of(
         logged.answer,
-        gravity_W=logged.gravity_W,
+        gravity_W=world.gravity_W if gravity_W is None else gravity_W,
         body=None if body is None else body.mass_properties,
-        other=None if logged.other is None else logged.other.mass_properties,
+        other=None if other is None else other.mass_properties,
         shape=NO_SHAPE if body is None else body.shape,
     )
     written = []
-    kind = logged.kind.lower().replace(" ", "-")
+    kind = logged.service.kind.lower().replace(" ", "-")
     for name, figure in figures:
-        words = filter(None, (f"{logged.number:03d}", kind, logged.answer.body_name, name))
+        words = filter(None, (f"{number:03d}", kind, logged.answer.body_name, name))
         path = folder / f"{_UNUSUAL.sub('_', '-'.join(words))}.{suffix}"
         save_figure(figure, path)
         written.append(path)
     return written
+
+
+def _body(body: Body | str | None, world: World) -> Body | None:
+    """Return a body that a question describes or names, or None if the world does not have it."""
+    if body is None or isinstance(body, Body):
+        return body
+    return next((each for each in world.bodies if each.name == body), None)

@@ -1,14 +1,14 @@
 """Questions as Python objects: what is asked, what is known when it is asked, and what the answer says.
 
-State a `TumblingQuestion`, an `ImpactQuestion`, a `ContactModeQuestion` or a `TossQuestion`, and `ask` it
-(`asking`). A service's request becomes one of these, and its answer becomes the response. A notebook, a test
-or a log asks the same question without ROS.
+State a `TumblingQuestion`, an `ImpactQuestion`, a `ContactModeQuestion` or a `TossQuestion`, and `ask` it.
+`services` has `ask`, and a record for each kind, from which all programs derive what they do with it. A
+service's request becomes a question, and its answer becomes the response. A notebook, a test or a log asks
+the same question without ROS.
 
 Each kind has a file with its question, its answer and a function ``answer``. `tumbling` says where a free
 body will be (lectures 24, 25). `impact` says which velocities follow (lecture 27). Its question is in
 `impact_question` and its answer in `impact_answer`, and `which_impact` finds the contacts that it means.
-`contact_modes` says which contacts separate, slide or stay (lecture 26), and its question is in
-`contact_mode_question`. `toss` says where all that ends.
+`contact_modes` says which contacts separate, slide or stay (lecture 26). `toss` says where all that ends.
 
 The kinds share these files: `context` (the world, defaults, and in a `state_store` what was published, with
 its `arrivals`),
@@ -20,13 +20,11 @@ world axes
 `settled_impact` has the impact that follows an inconsistency. `many` asks about many states at once, and
 `many_contact_modes` about many wrenches or sets of contacts.
 
-`effort` tells whether a question is quick, and `workers` are processes that answer those that are not. They
-and the server leave out `numpy_warnings`. `kept_fits` has the fits of the last few questions.
+`effort` determines whether a question is quick, and `workers` are processes that answer those that are not.
+They and the server leave out `numpy_warnings`. `kept_fits` has the fits of the last few questions.
 """
 
-from contact_dynamics.questions.asking import ask
-from contact_dynamics.questions.contact_mode_question import ContactModeQuestion
-from contact_dynamics.questions.contact_modes import ContactModeAnswer
+from contact_dynamics.questions.contact_modes import ContactModeAnswer, ContactModeQuestion
 from contact_dynamics.questions.context import Context, Defaults
 from contact_dynamics.questions.impact_answer import ImpactAnswer, StruckBody
 from contact_dynamics.questions.impact_question import ImpactQuestion, InTime
@@ -41,6 +39,7 @@ from contact_dynamics.questions.sample_times import (
     UntilContact,
     UntilPlane,
 )
+from contact_dynamics.questions.services import ask
 from contact_dynamics.questions.settled_impact import SettledImpact
 from contact_dynamics.questions.state_store import StateStore
 from contact_dynamics.questions.subject import FitQuality, PublishedState

@@ -1,8 +1,8 @@
 """How much work a question is: whether its answer is sure to come within some 30 ms.
 
 A server answers such a question at once, and others go to workers (`questions.workers`). What counts here are
-lists and options, since one would have to do the work to know it exactly. A question of an unknown kind goes
-to a worker, too.
+lists and options, since one would have to do the work to know it exactly. The records of services name these
+functions.
 """
 
 from __future__ import annotations
@@ -12,22 +12,22 @@ from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Final
 
-from contact_dynamics.errors import ContactDynamicsError
 from contact_dynamics.impact.several.result import SeveralContactsLaw
 from contact_dynamics.motion.forces import NO_DRAG, NO_WRENCH
-from contact_dynamics.questions.contact_mode_question import ContactModeQuestion
-from contact_dynamics.questions.impact_question import ImpactQuestion
-from contact_dynamics.questions.many import ManyImpactsQuestion, ManyTumblingsQuestion
-from contact_dynamics.questions.many_contact_modes import ManyContactModesQuestion
 from contact_dynamics.questions.problem import Problem
 from contact_dynamics.questions.sample_times import UntilContact, UntilPlane
 from contact_dynamics.questions.subject import PublishedState, subject_of
-from contact_dynamics.questions.tumbling import TumblingQuestion
 
 if TYPE_CHECKING:
     from contact_dynamics.contact.contact import ContactSet
+    from contact_dynamics.questions.contact_modes import ContactModeQuestion
     from contact_dynamics.questions.context import Context
+    from contact_dynamics.questions.impact_question import ImpactQuestion
+    from contact_dynamics.questions.many import ManyImpactsQuestion, ManyTumblingsQuestion
+    from contact_dynamics.questions.many_contact_modes import ManyContactModesQuestion
+    from contact_dynamics.questions.services import Answer, Question
     from contact_dynamics.questions.subject import StateSource
+    from contact_dynamics.questions.tumbling import TumblingQuestion
     from contact_dynamics.world import Body
 
 MAX_QUICK_CONTACTS: Final = 4
@@ -52,29 +52,11 @@ but this process must do that for a worker, too."""
 _CORNERS_OF_A_RIM: Final = 8  # in which the base of a cylinder touches
 
 
-def is_quick(question: object, context: Context) -> bool:
-    """Tell whether the answer is sure to come soon; what will be refused counts as quick."""
-    try:
-        if isinstance(question, TumblingQuestion):
-            return _is_quick_flight(question, context)
-        if isinstance(question, ImpactQuestion):
-            return _is_quick_impact(question, context)
-        if isinstance(question, ContactModeQuestion):
-            return _are_quick_modes(question, context)
-    except ContactDynamicsError:
-        return True
-    if isinstance(question, ManyContactModesQuestion):
-        return len(question) <= MAX_QUICK_CANDIDATES and is_quick(question.asked, context)
-    few = isinstance(question, ManyImpactsQuestion) and len(question.states) <= MAX_QUICK_IMPACTS
-    return few or isinstance(question, ManyTumblingsQuestion)  # 10 000 of them take 30 ms
-
-
-def excerpt(question: object, context: Context) -> Context:
+def excerpt(question: Question[Answer], context: Context) -> Context:
     """Return what another process must know to answer a question as this one would now."""
     wanted = []
-    question = question.asked if isinstance(question, ManyContactModesQuestion) else question
-    for about, source_name in (("body", "state"), ("other", "other_state")):
-        body, source = getattr(question, about, None), getattr(question, source_name, None)
+    for role, source_name in (("body", "state"), ("other", "other_state")):
+        body, source = getattr(question.about, role, None), getattr(question.about, source_name, None)
         name = body if isinstance(body, str) else getattr(body, "name", "")
         if name and isinstance(source, PublishedState):
             wanted.append((name, source.stamp_ns, source.fit_window))
@@ -87,7 +69,8 @@ def _same(now_ns: int | None) -> int | None:
     return now_ns
 
 
-def _is_quick_flight(question: TumblingQuestion, context: Context) -> bool:
+def is_quick_flight(question: TumblingQuestion, context: Context) -> bool:
+    """Tell whether a motion is free, and any search for its end short."""
     sampling = question.sampling
     if question.wrench is not NO_WRENCH or question.drag is not NO_DRAG:
         return False
@@ -99,7 +82,8 @@ def _is_quick_flight(question: TumblingQuestion, context: Context) -> bool:
     return _is_quick_search(question.body, question.state, horizon, context)
 
 
-def _is_quick_impact(question: ImpactQuestion, context: Context) -> bool:
+def is_quick_impact(question: ImpactQuestion, context: Context) -> bool:
+    """Tell whether an impact is one at few contacts, which need no long search."""
     if question.include_orders or question.include_covariance:
         return False
     if not _is_quick_fit(question.body, question.state, context):
@@ -114,7 +98,8 @@ def _is_quick_impact(question: ImpactQuestion, context: Context) -> bool:
     return _is_quick_search(question.body, question.state, horizon, context)
 
 
-def _are_quick_modes(question: ContactModeQuestion, context: Context) -> bool:
+def are_quick_modes(question: ContactModeQuestion, context: Context) -> bool:
+    """Tell whether the modes are those of few contacts, without what takes long."""
     if (
         question.include_geometry_margins
         or question.include_probabilities
@@ -133,6 +118,21 @@ def _are_quick_modes(question: ContactModeQuestion, context: Context) -> bool:
         and not (extra and question.problem is not Problem.PLANAR)
         and _is_quick_fit(question.body, question.state, context)
     )
+
+
+def are_quick_candidates(question: ManyContactModesQuestion, context: Context) -> bool:
+    """Tell whether candidates are few, and each is quick."""
+    return len(question) <= MAX_QUICK_CANDIDATES and are_quick_modes(question.asked, context)
+
+
+def are_quick_impacts(question: ManyImpactsQuestion, context: Context) -> bool:  # noqa: ARG001  as all
+    """Tell whether impacts are few."""
+    return len(question.states) <= MAX_QUICK_IMPACTS
+
+
+def are_quick_flights(question: ManyTumblingsQuestion, context: Context) -> bool:  # noqa: ARG001  as all
+    """Tell that free flights are quick: 10 000 of them take 30 ms."""
+    return True
 
 
 def _are_few(contacts: ContactSet | None, body: Body | str, context: Context) -> bool:

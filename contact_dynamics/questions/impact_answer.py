@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from contact_dynamics.constants import ns_after
 from contact_dynamics.contact.contact import ContactSet
 from contact_dynamics.plane.projection import PlaneOfMotion
 from contact_dynamics.questions.problem import Problem
 from contact_dynamics.questions.resolved_impact import ResolvedImpact
+from contact_dynamics.questions.services import Answer
 from contact_dynamics.questions.subject import FitQuality
 from contact_dynamics.records import Record
 from contact_dynamics.rigid_body.body import BodyState
@@ -30,7 +32,7 @@ class StruckBody(Record):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class ImpactAnswer(Record):
+class ImpactAnswer(Answer):
     """The impact, and the state and contacts just before it.
 
     Attributes:
@@ -68,3 +70,14 @@ class ImpactAnswer(Record):
     velocity_tolerance: float
     distance_tolerance: float
     warnings: tuple[str, ...] = ()
+
+    @property
+    def stamp_ns(self) -> int:
+        """The stamp, ns, of the state that the question was about, or 0 without one."""
+        stamp_ns = self.state.stamp_ns
+        return stamp_ns and ns_after(stamp_ns, -self.seconds_to_contact)
+
+    @property
+    def predicted_state(self) -> BodyState:
+        """The state just after the impact."""
+        return self.impact.state

@@ -9,7 +9,9 @@ from contact_dynamics.impact import RestitutionLaw, SeveralContactsLaw
 from contact_dynamics.impact.in_time.sequence import MAX_STRIKES, STRIKE_WINDOW
 from contact_dynamics.plane.projection import PlaneOfMotion
 from contact_dynamics.questions.context import check_optional
+from contact_dynamics.questions.impact_answer import ImpactAnswer
 from contact_dynamics.questions.problem import Problem
+from contact_dynamics.questions.services import Question
 from contact_dynamics.questions.subject import NEWEST, StateSource
 from contact_dynamics.records import Record
 from contact_dynamics.validation import check_positive, check_whole
@@ -43,7 +45,7 @@ class InTime(Record):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class ImpactQuestion(Record):
+class ImpactQuestion(Question[ImpactAnswer]):
     """Which velocities does a body have just after an impact?
 
     Attributes:

@@ -16,6 +16,7 @@ from contact_dynamics.contact.contact import MAX_CONTACTS
 from contact_dynamics.errors import InvalidFieldError, TooLargeError
 from contact_dynamics.impact import ImpactOutcome, RestitutionLaw, StrikingBodies, spatial_impacts
 from contact_dynamics.questions.context import Context, check_optional, or_default
+from contact_dynamics.questions.services import Answer, Question
 from contact_dynamics.questions.touching import outside_shape
 from contact_dynamics.records import Record
 from contact_dynamics.rotations.many import matrices_of
@@ -79,7 +80,7 @@ class ManyStates(Record):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class ManyTumblingsQuestion(Record):
+class ManyTumblingsQuestion(Question["ManyTumblingsAnswer"]):
     """Where will a body be that nothing touches, from each of many states?
 
     Attributes:
@@ -102,7 +103,7 @@ class ManyTumblingsQuestion(Record):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class ManyTumblingsAnswer(Record):
+class ManyTumblingsAnswer(Answer):
     """Where the body is then.
 
     Attributes:
@@ -121,7 +122,7 @@ class ManyTumblingsAnswer(Record):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class ManyImpactsQuestion(Record):
+class ManyImpactsQuestion(Question["ManyImpactsAnswer"]):
     """Which velocities does a body have after an impact in each of many states, with one contact each?
 
     Attributes:
@@ -160,7 +161,7 @@ class ManyImpactsQuestion(Record):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class ManyImpactsAnswer(Record):
+class ManyImpactsAnswer(Answer):
     """What the impacts do. Row i belongs to state i.
 
     Attributes:

@@ -15,12 +15,12 @@ from numpy.typing import NDArray
 from contact_dynamics.contact.uncertainty import EXACT_CONTACTS
 from contact_dynamics.errors import ContactDynamicsError, InvalidFieldError, TooLargeError
 from contact_dynamics.questions import contact_modes
-from contact_dynamics.questions.contact_mode_question import ContactModeQuestion
+from contact_dynamics.questions.contact_modes import ContactModeQuestion
 from contact_dynamics.questions.context import Context, or_default
+from contact_dynamics.questions.services import Answer, Question
 from contact_dynamics.questions.subject import subject_of
 from contact_dynamics.questions.touching import in_contact
 from contact_dynamics.questions.uncertain_state import UncertainState
-from contact_dynamics.records import Record
 from contact_dynamics.validation import FloatArray, check_array
 from contact_dynamics.validation_batches import check_rows
 
@@ -39,7 +39,7 @@ MAX_CANDIDATES: Final = 1000
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class ManyContactModesQuestion(Record):
+class ManyContactModesQuestion(Question["ManyContactModesAnswer"]):
     """Which contact modes follow for each of many candidates?
 
     There are as many sets of contacts as wrenches, or one of either for all of the other.
@@ -99,6 +99,11 @@ class ManyContactModesQuestion(Record):
         """Return how many candidates there are."""
         return len(self.forces_W)
 
+    @property
+    def about(self) -> ContactModeQuestion:
+        """What is the same for all candidates: the body, its state, gravity."""
+        return self.asked
+
 
 def _counts(value: Sequence[int]) -> tuple[int, ...]:
     try:
@@ -111,7 +116,7 @@ def _counts(value: Sequence[int]) -> tuple[int, ...]:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class ManyContactModesAnswer(Record):
+class ManyContactModesAnswer(Answer):
     """The consistent modes of each candidate. Those of all candidates follow one after the other.
 
     Attributes:

@@ -13,6 +13,7 @@ from contact_dynamics.impact import RestitutionLaw, SeveralContactsLaw
 from contact_dynamics.questions.context import Context, or_default
 from contact_dynamics.questions.extent import check_extent
 from contact_dynamics.questions.sample_times import MAX_SAMPLES as MAX_TIMES
+from contact_dynamics.questions.services import Answer, Question
 from contact_dynamics.questions.subject import NEWEST, FitQuality, StateSource, subject_of
 from contact_dynamics.records import Record
 from contact_dynamics.rigid_body.body import BodyState
@@ -70,7 +71,7 @@ class TossSampling(Record):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class TossQuestion(Record):
+class TossQuestion(Question["TossAnswer"]):
     """Where does a tossed body come to rest, and what happens on the way?
 
     Attributes:
@@ -144,7 +145,7 @@ class TossPath(Record):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class TossAnswer(Record):
+class TossAnswer(Answer):
     """Where the body comes to rest, and what happens on the way.
 
     Attributes:
@@ -173,6 +174,11 @@ class TossAnswer(Record):
     def paths(self) -> tuple[TossPath, ...]:
         """Return the toss and its alternatives."""
         return (self.toss, *self.alternatives)
+
+    @property
+    def predicted_motion(self) -> Trajectory:
+        """The motion up to rest."""
+        return self.toss.trajectory
 
 
 def answer(question: TossQuestion, context: Context | None = None) -> TossAnswer:

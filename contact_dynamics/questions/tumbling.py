@@ -20,6 +20,7 @@ from contact_dynamics.questions.sample_times import (
     check_turns,
     times_of,
 )
+from contact_dynamics.questions.services import Answer, Question
 from contact_dynamics.questions.subject import (
     NEWEST,
     FitQuality,
@@ -28,7 +29,6 @@ from contact_dynamics.questions.subject import (
     covariance_of,
     subject_of,
 )
-from contact_dynamics.records import Record
 from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.tumbling import FreeMotion, Trajectory, free_motion
 from contact_dynamics.tumbling.flips import Flips, next_flips
@@ -59,7 +59,7 @@ MAX_CURVE_POINTS: Final = 10_000
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class TumblingQuestion(Record):
+class TumblingQuestion(Question["TumblingAnswer"]):
     """Where will a body be that nothing touches?
 
     Attributes:
@@ -113,7 +113,7 @@ class TumblingQuestion(Record):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class TumblingAnswer(Record):
+class TumblingAnswer(Answer):
     """Where the body will be, and what is known of its rotation.
 
     Attributes:
@@ -142,6 +142,11 @@ class TumblingAnswer(Record):
     poinsot: Poinsot | None
     flips: Flips | None
     curves: RollingCurves | None
+
+    @property
+    def predicted_motion(self) -> Trajectory:
+        """The motion at the times asked for."""
+        return self.trajectory
 
 
 def answer(question: TumblingQuestion, context: Context | None = None) -> TumblingAnswer:

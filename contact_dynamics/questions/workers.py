@@ -23,6 +23,7 @@ from typing import TYPE_CHECKING, Final, TypeVar
 
 from contact_dynamics.errors import BusyError, ContactDynamicsError, TookTooLongError, TooLargeError
 from contact_dynamics.questions.numpy_warnings import leave_out_numpy_warnings
+from contact_dynamics.questions.services import SERVICES
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -34,7 +35,12 @@ if TYPE_CHECKING:
 Question = TypeVar("Question")
 Answer = TypeVar("Answer")
 
-_NEEDED: Final = ("contact_dynamics.questions.asking", "scipy.linalg", "scipy.optimize", "scipy.spatial")
+_NEEDED: Final = (
+    *sorted({service.answer.module for service in SERVICES}),
+    "scipy.linalg",
+    "scipy.optimize",
+    "scipy.spatial",
+)
 """What a worker has imported before it is asked: an import of SciPy takes longer than most answers."""
 
 _NICER: Final = 5

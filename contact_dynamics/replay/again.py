@@ -15,10 +15,10 @@ from contact_dynamics.nodes.parameter_event import changed_values
 from contact_dynamics.nodes.parameters import read_server_parameters
 from contact_dynamics.nodes.reconfiguring import CONFIGURED_ANEW, bodies_read_otherwise
 from contact_dynamics.nodes.run_record import LoggedParameters
-from contact_dynamics.nodes.services import service_of_type
 from contact_dynamics.nodes.state_sources import no_message, state_sources
 from contact_dynamics.questions.context import Context
 from contact_dynamics.questions.extent import check_believable
+from contact_dynamics.questions.services import service_of_type
 from contact_dynamics.questions.state_store import CLOCK_SET_BACK, StateStore
 from contact_dynamics.questions.uncertain_state import state_of
 from contact_dynamics.recording.cdr import decode_without_ros
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from contact_dynamics.nodes.parameter_reader import ParameterSource
-    from contact_dynamics.nodes.services import Answer, Question
+    from contact_dynamics.questions.services import Answer, Question
     from contact_dynamics.recording.bag_reader import LoggedMessage
     from contact_dynamics.rigid_body.body import BodyState
     from contact_dynamics.world import World
@@ -154,7 +154,7 @@ class ServerAgain:
         self._asked_ns = asked_ns
         return self._context
 
-    def question_from(self, service_type: str, request: Any) -> Question:
+    def question_from(self, service_type: str, request: Any) -> Question[Answer]:
         """Return the question that a request asks.
 
         Raises:
@@ -186,7 +186,9 @@ class ServerAgain:
         service = service_of_type(service_type)
         response = make_response()
         try:
-            service.serve(request, response, self._context, world_frame=self._parameters.world_frame)
+            question = self.question_from(service_type, request)
+            answer = service.answer(question, self._context)
+            service.answer_to_msg(answer, world_frame=self.world_frame, into=response)
         except Exception as error:  # noqa: BLE001  the server reports a fault of its own too, and goes on
             response = make_response()
             report_error(response, error)

@@ -1,7 +1,7 @@
-"""What the answers of each service say in a table, and which state they predict.
+"""What the answers of each service say in a table.
 
-The functions ``row_of_...`` and ``rows_of_...`` yield cells by the names of their columns: once, or once for
-each of many states or candidates. `rows` adds what holds for all rows of a question.
+The records of services name these functions, which yield cells by the names of their columns: once, or once
+for each of many states or candidates. `rows` adds what holds for all rows of a question.
 """
 
 from __future__ import annotations
@@ -11,10 +11,8 @@ from typing import TYPE_CHECKING, Final, TypeAlias
 
 import numpy as np
 
-from contact_dynamics.constants import ns_after
 from contact_dynamics.contact_modes.result import ModeVerdict
 from contact_dynamics.impact import ImpactOutcome
-from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.rigid_body.published_frame import origins_of_published_frame
 
 if TYPE_CHECKING:
@@ -24,10 +22,8 @@ if TYPE_CHECKING:
     from contact_dynamics.questions.impact_answer import ImpactAnswer
     from contact_dynamics.questions.many import ManyImpactsAnswer, ManyTumblingsAnswer
     from contact_dynamics.questions.many_contact_modes import ManyContactModesAnswer
-    from contact_dynamics.questions.subject import FitQuality
     from contact_dynamics.questions.toss import TossAnswer
     from contact_dynamics.questions.tumbling import TumblingAnswer
-    from contact_dynamics.tumbling import Trajectory
 
 Cell: TypeAlias = str | int | float | None
 Cells: TypeAlias = dict[str, Cell]
@@ -69,42 +65,38 @@ _OF_A_SET: Final = {
 """How many numbers of a set of contacts belong to one of them, by the name of the field."""
 
 
-def row_of_tumbling(answer: TumblingAnswer, asked: Asked) -> Iterator[Cells]:  # noqa: ARG001  as all
+def cells_of_tumbling(answer: TumblingAnswer, asked: Asked) -> Iterator[Cells]:  # noqa: ARG001  as all
     """Yield what ends the flight."""
     event = answer.event
     says, surface = ("flight", "") if event is None else (event.kind.name.lower(), event.surface)
-    yield _row(says, [surface], stamp_ns=answer.state.stamp_ns, fit=answer.fit)
+    yield _cells(says, [surface])
 
 
-def row_of_impact(answer: ImpactAnswer, asked: Asked) -> Iterator[Cells]:  # noqa: ARG001  as all
+def cells_of_impact(answer: ImpactAnswer, asked: Asked) -> Iterator[Cells]:  # noqa: ARG001  as all
     """Yield the outcome of the impact."""
     outcome = answer.impact.outcome
-    says = "several at once" if outcome is None else outcome.name.lower()
-    stamp_ns = answer.state.stamp_ns and ns_after(answer.state.stamp_ns, -answer.seconds_to_contact)
-    yield _row(says, answer.contacts.surfaces, stamp_ns=stamp_ns, fit=answer.fit)
+    yield _cells("several at once" if outcome is None else outcome.name.lower(), answer.contacts.surfaces)
 
 
-def row_of_toss(answer: TossAnswer, asked: Asked) -> Iterator[Cells]:  # noqa: ARG001  as all
+def cells_of_toss(answer: TossAnswer, asked: Asked) -> Iterator[Cells]:  # noqa: ARG001  as all
     """Yield the end of the toss, and the corners on which the body rests."""
     corners = " ".join(map(str, answer.toss.resting_corners))
     end = answer.toss.end.name.lower()
     surfaces = [name for event in answer.toss.events[-1:] for name in event.surfaces]
-    says = f"{end} on {corners}" if corners else end
-    yield _row(says, surfaces, stamp_ns=answer.state.stamp_ns, fit=answer.fit)
+    yield _cells(f"{end} on {corners}" if corners else end, surfaces)
 
 
-def row_of_contact_modes(answer: ContactModeAnswer, asked: Asked) -> Iterator[Cells]:  # noqa: ARG001  as all
+def cells_of_contact_modes(answer: ContactModeAnswer, asked: Asked) -> Iterator[Cells]:  # noqa: ARG001  as all
     """Yield the verdict with its modes."""
-    says = _verdict(answer.verdict, [mode.mode for mode in answer.modes])
-    yield _row(says, answer.contacts.surfaces, stamp_ns=answer.state.stamp_ns)
+    yield _cells(_verdict(answer.verdict, [mode.mode for mode in answer.modes]), answer.contacts.surfaces)
 
 
-def rows_of_tumblings(answer: ManyTumblingsAnswer, asked: Asked) -> Iterator[Cells]:
+def cells_of_tumblings(answer: ManyTumblingsAnswer, asked: Asked) -> Iterator[Cells]:
     """Yield each state at the end of its flight."""
     return _of_states(answer, asked, lambda _: "flight")
 
 
-def rows_of_impacts(answer: ManyImpactsAnswer, asked: Asked) -> Iterator[Cells]:
+def cells_of_impacts(answer: ManyImpactsAnswer, asked: Asked) -> Iterator[Cells]:
     """Yield the outcome of each impact, and the state after it."""
 
     def says(i: int) -> str:
@@ -113,7 +105,7 @@ def rows_of_impacts(answer: ManyImpactsAnswer, asked: Asked) -> Iterator[Cells]:
     return _of_states(answer, asked, says)
 
 
-def rows_of_contact_modes(answer: ManyContactModesAnswer, asked: Asked) -> Iterator[Cells]:
+def cells_of_many_contact_modes(answer: ManyContactModesAnswer, asked: Asked) -> Iterator[Cells]:
     """Yield the verdict on each candidate with its modes."""
     mode_ends, set_ends = np.cumsum(answer.mode_counts).tolist(), np.cumsum(answer.contact_counts).tolist()
     for i, verdict in enumerate(answer.verdicts.tolist()):
@@ -128,55 +120,19 @@ def rows_of_contact_modes(answer: ManyContactModesAnswer, asked: Asked) -> Itera
                 "contact_counts": [end - begin],
             }
         yield {
-            **_row(
-                _verdict(ModeVerdict(verdict), modes),
-                answer.contacts.surfaces[begin:end],
-                stamp_ns=answer.state.stamp_ns,
-            ),
+            **_cells(_verdict(ModeVerdict(verdict), modes), answer.contacts.surfaces[begin:end]),
             "state": i,
             "question": json.dumps(question),
         }
 
 
-def predicted_by_tumbling(answer: TumblingAnswer) -> BodyState | None:
-    """Return the state at the end of the flight."""
-    return _last(answer.trajectory, answer.state.stamp_ns)
-
-
-def predicted_by_toss(answer: TossAnswer) -> BodyState | None:
-    """Return the state at the end of the toss."""
-    return _last(answer.toss.trajectory, answer.state.stamp_ns)
-
-
-def predicted_by_impact(answer: ImpactAnswer) -> BodyState:
-    """Return the state just after the impact."""
-    return answer.impact.state
-
-
-def _row(says: str, surfaces: Iterable[str], *, stamp_ns: int, fit: FitQuality | None = None) -> Cells:
-    return {
-        "state_stamp_ns": stamp_ns or None,
-        "states_fitted": 0 if fit is None else fit.count,
-        "says": says,
-        "surface": ", ".join(dict.fromkeys(surfaces)),
-    }
+def _cells(says: str, surfaces: Iterable[str]) -> Cells:
+    return {"says": says, "surface": ", ".join(dict.fromkeys(surfaces))}
 
 
 def _verdict(verdict: ModeVerdict, modes: Sequence[str]) -> str:
     name = verdict.name.lower()
     return f"{name}: {', '.join(modes)}" if modes else name
-
-
-def _last(path: Trajectory, stamp_ns: int) -> BodyState | None:
-    if len(path) == 0:
-        return None
-    return BodyState(
-        p_WB_W=path.p_WB_W[-1],
-        q_WB=path.q_WB[-1],
-        v_WB_W=path.v_WB_W[-1],
-        w_WB_W=path.w_WB_W[-1],
-        stamp_ns=stamp_ns and ns_after(stamp_ns, float(path.seconds[-1])),
-    )
 
 
 def _of_states(

@@ -7,15 +7,15 @@ from __future__ import annotations
 
 import warnings
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING, Final
 
 from contact_dynamics.constants import ns_after
 from contact_dynamics.errors import ContactDynamicsError, InvalidFieldError
-from contact_dynamics.nodes.services import service_of_type
-from contact_dynamics.questions.asking import ask
-from contact_dynamics.questions.contact_mode_question import ContactModeQuestion
+from contact_dynamics.questions.contact_modes import ContactModeQuestion
 from contact_dynamics.questions.impact_question import ImpactQuestion
 from contact_dynamics.questions.sample_times import UntilContact
+from contact_dynamics.questions.services import ask, service_of
 from contact_dynamics.questions.subject import PublishedState
 from contact_dynamics.questions.tumbling import TumblingQuestion
 from contact_dynamics.recording.bag_reader import BagReader
@@ -27,12 +27,11 @@ from contact_dynamics.validation import check_not_negative
 from msg_adapters.status import code_name
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Callable, Iterator, Mapping
     from pathlib import Path
 
     from contact_dynamics.nodes.parameter_reader import ParameterSource
-    from contact_dynamics.nodes.services import Answer
-    from contact_dynamics.questions.context import Context
+    from contact_dynamics.questions.services import Answer, Question
     from contact_dynamics.recording.file_messages import Span
     from contact_dynamics.replay.again import Refused, ServerAgain
     from contact_dynamics.replay.events import Event
@@ -40,8 +39,12 @@ if TYPE_CHECKING:
 LANDING: Final = "landing"
 IMPACT: Final = "impact"
 MODES: Final = "modes"
-QUESTIONS: Final = {LANDING: "PredictTumbling", IMPACT: "PredictImpact", MODES: "PredictContactMode"}
-"""What can be asked, and the type of the service that would have been asked."""
+QUESTIONS: Final[Mapping[str, Callable[..., Question[Answer]]]] = {
+    LANDING: partial(TumblingQuestion, sampling=UntilContact()),
+    IMPACT: ImpactQuestion,
+    MODES: ContactModeQuestion,
+}
+"""What can be asked about a body and a state."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -149,12 +152,12 @@ class AskedEvents:
     def _asked(self, name: str, body_name: str, stamp_ns: int, log_time_ns: int) -> Answered:
         self._numbers[name] += 1
         answer, status, message = None, OK, ""
+        question = QUESTIONS[name](body=body_name, state=PublishedState(fit_window=self._asking.fit_window))
         try:
-            state = PublishedState(fit_window=self._asking.fit_window)
-            answer = _ask(name, body_name, state, self._server.context_at(stamp_ns))
+            answer = ask(question, self._server.context_at(stamp_ns))
         except ContactDynamicsError as error:
             status, message = code_name(error), str(error)
-        service = service_of_type(QUESTIONS[name])
+        service = service_of(question)
         window = {"fit_window": self._asking.fit_window} if self._asking.fit_window > 0.0 else {}
         return Answered(
             service_name=service.name,
@@ -163,16 +166,9 @@ class AskedEvents:
             log_time_ns=log_time_ns,
             asked_ns=stamp_ns,
             question={"body_name": body_name, "ask": name, **window},
+            asked=question,
             answer=answer,
             status=status,
             message=message,
             computation_time=0.0,
         )
-
-
-def _ask(name: str, body: str, state: PublishedState, context: Context) -> Answer:
-    if name == LANDING:
-        return ask(TumblingQuestion(body=body, state=state, sampling=UntilContact()), context)
-    if name == IMPACT:
-        return ask(ImpactQuestion(body=body, state=state), context)
-    return ask(ContactModeQuestion(body=body, state=state), context)

@@ -12,12 +12,15 @@ from typing import TYPE_CHECKING, Protocol, TypeAlias
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
-    from contact_dynamics.nodes.services import Answer, Service
+    from contact_dynamics.questions.services import Answer, Question, Service
     from contact_dynamics.rigid_body.body import BodyState
     from contact_dynamics.world import World
 
 OK = "OK"
 """The status of a question that was answered."""
+
+UNREADABLE = "UNREADABLE"
+"""The status of a question or an answer that this version cannot read."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -58,6 +61,7 @@ class Answered:
             then.
         asked_ns: When it came, ns by the clock of the states' stamps.
         question: What was asked, by the names of the request's fields, as far as it is not the default.
+        asked: The question, if it was answered.
         answer: The answer. It is None if the question was refused, or if the answer cannot be read.
         status: "OK", or the name of the code with which it was refused.
         message: What was said of it.
@@ -70,6 +74,7 @@ class Answered:
     log_time_ns: int | None
     asked_ns: int
     question: Mapping[str, object]
+    asked: Question[Answer] | None
     answer: Answer | None
     status: str
     message: str

@@ -8,22 +8,22 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from contact_dynamics.errors import ContactDynamicsError
-from contact_dynamics.nodes.services import service_of_type
+from contact_dynamics.questions.services import service_of_type
 from contact_dynamics.recording.bag_reader import BagReader
 from contact_dynamics.recording.errors import DamagedLogWarning
 from contact_dynamics.recording.message_types import Message
 from contact_dynamics.recording.service_calls import ServiceCall
 from contact_dynamics.replay.compare import differences
 from contact_dynamics.replay.event_parts import part_of
-from contact_dynamics.replay.events import OK, Answered, StateCame, WorldChanged
+from contact_dynamics.replay.events import OK, UNREADABLE, Answered, StateCame, WorldChanged
 from contact_dynamics.replay.of_log import server_of_log
-from contact_dynamics.replay.timeline import in_order
+from contact_dynamics.replay.timeline import EVERYTHING, in_order
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
     from pathlib import Path
 
-    from contact_dynamics.nodes.services import Answer
+    from contact_dynamics.questions.services import Answer, Question
     from contact_dynamics.recording.file_messages import Span
     from contact_dynamics.replay.again import Refused
     from contact_dynamics.replay.events import Event
@@ -32,12 +32,13 @@ if TYPE_CHECKING:
 class LoggedEvents:
     """A log of the server as a source of events."""
 
-    def __init__(self, path: Path, *, span: Span) -> None:
+    def __init__(self, path: Path, *, span: Span = EVERYTHING, states: bool = True) -> None:
         """Read how the run was configured.
 
         Args:
             path: the log: its folder, or one of its files.
             span: which part of it is read.
+            states: whether states are read.
 
         Raises:
             NotALogError: it is no log, or none of the server.
@@ -45,6 +46,7 @@ class LoggedEvents:
         """
         _, self._server = server_of_log(path)
         self.world = self._server.world
+        self._topics = self._server.topics if states else self._server.topics_of_changes
         self._span = span
         self._numbers: dict[str, int] = {}
         self._reader = BagReader(path)
@@ -70,7 +72,7 @@ class LoggedEvents:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", DamagedLogWarning)  # told by `damage`
             again = BagReader(self._path)
-            for each in in_order(self._reader, again, self._server.topics, span=self._span):
+            for each in in_order(self._reader, again, self._topics, span=self._span):
                 if isinstance(each, ServiceCall):
                     answered = self._answered(each)
                     if answered is not None:
@@ -87,6 +89,7 @@ class LoggedEvents:
             return None
         number = self._numbers[call.service] = self._numbers.get(call.service, 0) + 1
         question: dict[str, object] = {}
+        asked: Question[Answer] | None = None
         answer: Answer | None = None
         try:
             request = part_of(call.request_event, "request")
@@ -95,9 +98,10 @@ class LoggedEvents:
             status, message = _status(response), str(response.message)
             seconds = float(response.computation_time)
             if status == OK:
+                asked = self._server.question_from(call.service_type, request)
                 answer = self._server.answer_from(call.service_type, response)
         except (ContactDynamicsError, AttributeError) as error:  # the latter of a log with other fields
-            status, message, seconds = "UNREADABLE", f"this version cannot read it: {error}", 0.0
+            status, message, seconds = UNREADABLE, f"this version cannot read it: {error}", 0.0
         return Answered(
             service_name=call.service.rpartition("/")[2],
             service=service_of_type(call.service_type),
@@ -105,6 +109,7 @@ class LoggedEvents:
             log_time_ns=call.request_event.log_time_ns,
             asked_ns=call.request_event.publish_time_ns,
             question=question,
+            asked=asked,
             answer=answer,
             status=status,
             message=message,

@@ -17,7 +17,6 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from contact_dynamics.questions.impact_answer import ImpactAnswer
 from contact_dynamics.replay.answer_rows import STATE
 from contact_dynamics.replay.events import StateCame, WorldChanged
 from contact_dynamics.replay.then_measured import Measuring
@@ -126,7 +125,11 @@ class Rows:
         if answered.answer is None:
             yield row
             return
-        for cells in answered.service.rows(answered.answer, answered.question):
+        cells_of = answered.service.cells
+        if cells_of is None:
+            yield row | {"says": answered.service.in_words(answered.answer)[0]}
+            return
+        for cells in cells_of(answered.answer, answered.question):
             yield row | cells
 
     def _row(self, answered: Answered) -> _Waiting:
@@ -144,11 +147,17 @@ class Rows:
             "message": answered.message,
             "computation_time": answered.computation_time,
         }
-        answer, predicted_by = answered.answer, answered.service.predicted
+        answer = answered.answer
         if answer is None:
             return _Waiting(row=row, answered=answered)
         row["body"] = name = answer.body_name
-        predicted = None if predicted_by is None else predicted_by(answer)
+        if hasattr(answer, "state"):
+            fit = getattr(answer, "fit", None)
+            row |= {
+                "state_stamp_ns": answer.stamp_ns or None,
+                "states_fitted": 0 if fit is None else fit.count,
+            }
+        predicted = answer.predicted_state
         if predicted is None:
             return _Waiting(row=row, answered=answered)
         row["predicted_ns"] = predicted.stamp_ns
@@ -164,7 +173,7 @@ class Rows:
                 predicted=predicted,
                 newest=newest,
                 gravity_W=self._world.gravity_W,
-                is_impact=isinstance(answer, ImpactAnswer),
+                is_impact=answer.predicted_motion is None,
             ),
         )
 

@@ -11,7 +11,7 @@ import hashlib
 from typing import TYPE_CHECKING, Final
 
 from contact_dynamics.errors import NotSupportedError
-from contact_dynamics.nodes.services import SERVICES
+from contact_dynamics.questions.services import SERVICES
 from contact_dynamics.recording.definitions import EVENT_SUFFIX
 from contact_dynamics.recording.message_types import message_types
 from contact_dynamics.replay.timeline import INTERFACES

@@ -133,15 +133,12 @@ class _Drawing:
     def _show_answer(self, answered: Answered) -> None:
         answer, now_ns = answered.answer, self._waiting.newest_stamp_ns() or answered.asked_ns
         remark, seconds = answered.message, answered.computation_time
-        if answer is not None:
-            self._waiting.draw_before(answer)
         if answer is None:
             refused = f"refused ({answered.status}): {remark}"
             self._picture.tell(answered.service.kind, refused, stamp_ns=now_ns, is_error=True)
         else:
-            answered.service.draw(
-                self._picture, answer, now_ns=now_ns, remark=remark, computation_time=seconds
-            )
+            self._waiting.draw_before(answer)
+            self._picture.show(answer, now_ns=now_ns, remark=remark, computation_time=seconds)
 
     def _guarded(self, kind: str, show: Callable[[], object]) -> None:
         try:

@@ -12,25 +12,12 @@ from contact_dynamics.constants import ns_after, to_ns
 from contact_dynamics.diagrams.after_impact import AwaitedImpacts
 from contact_dynamics.diagrams.outside import outside
 from contact_dynamics.diagrams.planar_scene import silhouette
-from contact_dynamics.diagrams.toss_words import toss_in_words
 from contact_dynamics.diagrams.words import (
     AFTER_IMPACT,
-    CONTACT_MODES,
-    IMPACT,
-    MANY_CONTACT_MODES,
-    MANY_IMPACTS,
-    MANY_TUMBLINGS,
-    TOSS,
-    TUMBLING,
     after_impact_in_words,
-    contact_modes_in_words,
-    impact_in_words,
-    many_contact_modes_in_words,
-    many_in_words,
-    tumbling_in_words,
 )
 from contact_dynamics.numerics.vectors import tangents_near_x
-from contact_dynamics.questions.many import ManyImpactsAnswer
+from contact_dynamics.questions.services import service_of
 from contact_dynamics.tumbling.regime import Regime
 from contact_dynamics.viewing.after_impact import draw_after_impact
 from contact_dynamics.viewing.answers_in_words import AnswersInWords, sentence
@@ -67,8 +54,8 @@ if TYPE_CHECKING:
     from contact_dynamics.diagrams.after_impact import AfterImpact
     from contact_dynamics.questions.contact_modes import ContactModeAnswer
     from contact_dynamics.questions.impact_answer import ImpactAnswer
-    from contact_dynamics.questions.many import ManyTumblingsAnswer
-    from contact_dynamics.questions.many_contact_modes import ManyContactModesAnswer
+    from contact_dynamics.questions.many import ManyImpactsAnswer, ManyTumblingsAnswer
+    from contact_dynamics.questions.services import Answer
     from contact_dynamics.questions.toss import TossAnswer
     from contact_dynamics.questions.tumbling import TumblingAnswer
     from contact_dynamics.rigid_body.body import BodyState
@@ -82,6 +69,9 @@ class Picture:
     """Draws states and answers into a recording. An unknown body is drawn without shape.
 
     Answers may come from a live server, from its log, or from a question asked in Python.
+
+    Attributes:
+        recording: The recording that it is drawn into.
     """
 
     def __init__(
@@ -97,7 +87,7 @@ class Picture:
         The paths of this many newest ``predictions`` of a body are in view, at least one.
         """
         self._earlier = predictions - 1
-        self._recording = recording
+        self.recording = recording
         self._world = WorldInView(recording, world, surface_side=surface_side)
         self._bodies = self._world.bodies
         self._newest: dict[str, BodyState] = {}
@@ -147,15 +137,12 @@ class Picture:
         while abs(self._recent[-1][0] - self._recent[0][0]) > to_ns(WINDOW_S):
             self._recent.popleft()
 
-    def show_tumbling(
-        self,
-        answer: TumblingAnswer,
-        *,
-        now_ns: int = 0,
-        remark: str = "",
-        computation_time: float | None = None,
+    def show(
+        self, answer: Answer, *, now_ns: int = 0, remark: str = "", computation_time: float | None = None
     ) -> None:
-        """Draw where a body was predicted to be, with what certainty, and Poinsot's picture if it has curves.
+        """Draw an answer, and put it into words.
+
+        It is drawn at the stamp of the state that it was predicted from.
 
         Args:
             answer: The answer.
@@ -163,145 +150,85 @@ class Picture:
             remark: A remark that is added to the answer's words.
             computation_time: s, how long the answer took, or None if that is not known.
         """
-        stamp_ns = answer.state.stamp_ns or now_ns
+        service, stamp_ns = service_of(answer), answer.stamp_ns or now_ns
+        set_time(self.recording, stamp_ns)
+        remarks: list[str] = []
+        if service.draw is not None:
+            shown, remarks = service.draw(self, answer, stamp_ns)
+            self._bring_up(ANSWERS, *shown)
+        words = [*service.in_words(answer), *remarks]
+        self._tell_answer(service.kind, answer.body_name, words, remark, computation_time, stamp_ns=stamp_ns)
+        for found in self._awaited.see(answer.body_name, ()):  # an impact may have been seen already
+            self._show_after_impact(found)
+
+    def draw_tumbling(self, answer: TumblingAnswer, stamp_ns: int) -> tuple[list[str], list[str]]:
+        """Draw where a body will be, with what certainty, and Poinsot's picture if the answer has curves.
+
+        Returns:
+            What is in view by then, and remarks for the words, as from all that draw an answer.
+        """
         name, rotation = answer.body_name, answer.poinsot
-        set_time(self._recording, stamp_ns)
         shape = self._bodies.shape(name)
         trajectory, in_the_way = outside(answer.trajectory, shape, self._world.surfaces)
-        draw_trajectory(self._recording, name, shape, trajectory, covariance=answer.covariance)
+        draw_trajectory(self.recording, name, shape, trajectory, covariance=answer.covariance)
         earlier = self._predictions.newest(name)
         if earlier is not None and len(earlier.trajectory) > 0 and self._earlier > 0:
             place = earlier.number % self._earlier
-            draw_earlier_path(self._recording, name, earlier.trajectory, place=place)
-        curves = self._predict(name, trajectory, begin_ns=stamp_ns)
+            draw_earlier_path(self.recording, name, earlier.trajectory, place=place)
+        shown = [PREDICTED, *self._predict(name, trajectory, begin_ns=stamp_ns)]
         self._look_along(trajectory)
         if rotation is not None and answer.curves is not None and rotation.regime is not Regime.AT_REST:
             self._poinsot.come(name, rotation, answer.curves, answer.state, stamp_ns=stamp_ns)
-            self._bring_up(PREDICTED, POINSOT, ANSWERS, *curves)
-        self._bring_up(PREDICTED, ANSWERS, *curves)
-        words = tumbling_in_words(answer)
-        if in_the_way:
-            words.append(f"drawn until {in_the_way} is in its way")
-        self._tell_answer(TUMBLING, name, words, remark, computation_time, stamp_ns=stamp_ns)
+            shown.append(POINSOT)
+        return shown, [f"drawn until {in_the_way} is in its way"] if in_the_way else []
 
-    def show_impact(
-        self,
-        answer: ImpactAnswer,
-        *,
-        now_ns: int = 0,
-        remark: str = "",
-        computation_time: float | None = None,
-    ) -> None:
-        """Draw an impact in the scene and in impulse space, at the time of the state it was predicted from.
-
-        Arguments are those of `show_tumbling`.
-        """
-        stamp_ns, name, other = answer.state.stamp_ns, answer.body_name, answer.other
-        stamp_ns = ns_after(stamp_ns, -answer.seconds_to_contact) if stamp_ns else now_ns
-        set_time(self._recording, stamp_ns)
+    def draw_impact(self, answer: ImpactAnswer, stamp_ns: int) -> tuple[list[str], list[str]]:
+        """Draw an impact in the scene and in impulse space."""
+        name, other = answer.body_name, answer.other
         other_shape = self._bodies.shape(other.name) if other is not None and other.name else None
         strike_ns = ns_after(stamp_ns, answer.seconds_to_contact)
         self._impacts.come(name, stamp_ns=stamp_ns, strike_ns=strike_ns)
-        draw_impact(self._recording, self._bodies.shape(name), answer, other_shape=other_shape)
-        seen_already = self._awaited.expect(answer, now_ns=stamp_ns)
+        draw_impact(self.recording, self._bodies.shape(name), answer, other_shape=other_shape)
+        self._awaited.expect(answer, now_ns=stamp_ns)
         drawn = self._diagrams.draw_impact(
             answer,
             body=self._bodies.mass_properties(name),
             other=self._bodies.mass_properties(other.name) if other is not None else None,
         )
-        self._bring_up(IMPACTS, ANSWERS, *drawn)
-        words = impact_in_words(answer)
-        self._tell_answer(IMPACT, name, words, remark, computation_time, stamp_ns=stamp_ns)
-        for found in seen_already:
-            self._show_after_impact(found)
+        return [IMPACTS, *drawn], []
 
-    def show_contact_modes(
-        self,
-        answer: ContactModeAnswer,
-        *,
-        now_ns: int = 0,
-        remark: str = "",
-        computation_time: float | None = None,
-    ) -> None:
-        """Draw an answer about contact modes in the scene, and in 2D if it has a plane of motion.
-
-        Arguments are those of `show_tumbling`.
-        """
-        stamp_ns, name, plane = answer.state.stamp_ns or now_ns, answer.body_name, answer.plane
-        set_time(self._recording, stamp_ns)
-        shape = self._bodies.shape(name)
+    def draw_contact_modes(self, answer: ContactModeAnswer, stamp_ns: int) -> tuple[list[str], list[str]]:
+        """Draw contact modes in the scene, and in 2D if they have a plane of motion."""
+        name, plane = answer.body_name, answer.plane
+        shape, body = self._bodies.shape(name), self._bodies.mass_properties(name)
         self._letters.come(name, stamp_ns)
-        draw_contact_modes(self._recording, shape, answer, body=self._bodies.mass_properties(name))
+        draw_contact_modes(self.recording, shape, answer, body=body)
         if self._eye is None:
             self._look_at(self._across_from(answer))
-        if plane is not None:
-            outline = silhouette(shape, plane.axes_W @ answer.state.R_WB)
-            body = self._bodies.mass_properties(name)
-            drawn = self._diagrams.draw_planar_modes(answer, plane, outline=outline, body=body)
-            self._bring_up(CONTACTS, ANSWERS, *drawn)
-        self._bring_up(CONTACTS, ANSWERS)
-        words = contact_modes_in_words(answer)
-        self._tell_answer(CONTACT_MODES, name, words, remark, computation_time, stamp_ns=stamp_ns)
+        if plane is None:
+            return [CONTACTS], []
+        outline = silhouette(shape, plane.axes_W @ answer.state.R_WB)
+        return [CONTACTS, *self._diagrams.draw_planar_modes(answer, plane, outline=outline, body=body)], []
 
-    def show_toss(
-        self,
-        answer: TossAnswer,
-        *,
-        now_ns: int = 0,
-        remark: str = "",
-        computation_time: float | None = None,
-    ) -> None:
-        """Draw a whole toss with its other ways, and the fan of samples with the tree of their next strikes.
-
-        Arguments are those of `show_tumbling`.
-        """
-        stamp_ns, name = answer.state.stamp_ns or now_ns, answer.body_name
-        set_time(self._recording, stamp_ns)
-        draw_toss(self._recording, self._bodies.shape(name), answer, up_W=self._world.up_W)
-        curves = self._predict(name, answer.toss.trajectory, begin_ns=stamp_ns)
+    def draw_toss(self, answer: TossAnswer, stamp_ns: int) -> tuple[list[str], list[str]]:
+        """Draw a whole toss with its other ways, and the fan of samples with the tree of their strikes."""
+        draw_toss(self.recording, self._bodies.shape(answer.body_name), answer, up_W=self._world.up_W)
+        curves = self._predict(answer.body_name, answer.toss.trajectory, begin_ns=stamp_ns)
         self._look_along(answer.toss.trajectory)
-        self._bring_up(TOSSES, ANSWERS, *curves)
-        self._tell_answer(TOSS, name, toss_in_words(answer), remark, computation_time, stamp_ns=stamp_ns)
+        return [TOSSES, *curves], []
 
-    def show_many(
+    def draw_many(
         self,
         answer: ManyTumblingsAnswer | ManyImpactsAnswer,
-        *,
-        now_ns: int = 0,
-        remark: str = "",
-        computation_time: float | None = None,
-    ) -> None:
-        """Draw an answer about many states, at the present time, since such a question names no other.
-
-        Arguments are those of `show_tumbling`.
-        """
-        name = answer.body_name
-        set_time(self._recording, now_ns)
-        draw_many_states(self._recording, self._bodies.shape(name), answer)
-        self._bring_up(MANY, ANSWERS)
-        kind = MANY_IMPACTS if isinstance(answer, ManyImpactsAnswer) else MANY_TUMBLINGS
-        self._tell_answer(kind, name, many_in_words(answer), remark, computation_time, stamp_ns=now_ns)
-
-    def show_many_contact_modes(
-        self,
-        answer: ManyContactModesAnswer,
-        *,
-        now_ns: int = 0,
-        remark: str = "",
-        computation_time: float | None = None,
-    ) -> None:
-        """Tell the verdicts on many candidates.
-
-        Arguments are those of `show_tumbling`.
-        """
-        words, stamp_ns = many_contact_modes_in_words(answer), answer.state.stamp_ns or now_ns
-        self._tell_answer(
-            MANY_CONTACT_MODES, answer.body_name, words, remark, computation_time, stamp_ns=stamp_ns
-        )
+        stamp_ns: int,  # noqa: ARG002  as all
+    ) -> tuple[list[str], list[str]]:
+        """Draw many states."""
+        draw_many_states(self.recording, self._bodies.shape(answer.body_name), answer)
+        return [MANY], []
 
     def tell(self, kind: str, text: str, *, stamp_ns: int, is_error: bool = False) -> None:
         """Write an answer in words, both into the list of all answers and as the newest of its kind."""
-        set_time(self._recording, stamp_ns)
+        set_time(self.recording, stamp_ns)
         self._told_ns = stamp_ns
         self._bring_up(ANSWERS)
         self._answers.tell(kind, text, is_error=is_error)
@@ -332,7 +259,7 @@ class Picture:
 
     def _show_after_impact(self, found: AfterImpact) -> None:
         name, end_ns = found.answer.body_name, found.stamps_ns[-1]
-        draw_after_impact(self._recording, self._bodies.shape(name), found, color=self._bodies.color(name))
+        draw_after_impact(self.recording, self._bodies.shape(name), found, color=self._bodies.color(name))
         words = after_impact_in_words(found)
         self._tell_answer(AFTER_IMPACT, name, words, "", None, stamp_ns=end_ns)
 
@@ -393,4 +320,4 @@ class Picture:
 
     def _arrange(self) -> None:
         blueprint = make_blueprint(self._bodies.names, eye=self._eye, shown=self._shown)
-        self._recording.send_blueprint(blueprint)
+        self.recording.send_blueprint(blueprint)

@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from contact_dynamics.constants import to_ns
-from contact_dynamics.questions.toss import TossAnswer
-from contact_dynamics.questions.tumbling import TumblingAnswer
 from contact_dynamics.viewing.measured import SET_BACK_S
 from contact_dynamics.viewing.pace import Pace
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
+    from contact_dynamics.questions.services import Answer
     from contact_dynamics.rigid_body.body import BodyState
     from contact_dynamics.viewing.picture import Picture
 
@@ -52,14 +51,13 @@ class StatesInTurn:
             for body_name in list(self._waiting):
                 self._draw_of(body_name)
 
-    def draw_before(self, answer: Any, *, came_ns: int | None = None) -> None:
+    def draw_before(self, answer: Answer, *, came_ns: int | None = None) -> None:
         """Draw the states of a body before an answer about it, and those of bodies whose curves it may end.
 
         If each answer had those of all bodies drawn, there would be no pace where many questions are asked.
         If the answer itself waited, only those are drawn that came before it, which was at ``came_ns``.
         """
-        predicts_motion = isinstance(answer, TumblingAnswer | TossAnswer)
-        others = self._picture.bodies_with_curves if predicts_motion else set()
+        others = set() if answer.predicted_motion is None else self._picture.bodies_with_curves
         for each in {answer.body_name, *others}:
             self._draw_of(each, came_ns=came_ns)
 

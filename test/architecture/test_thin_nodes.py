@@ -13,7 +13,6 @@ NODES = sorted((PACKAGE / "nodes").glob("*.py"))
 WAY = [
     *sorted((ROOT / "msg_adapters").glob("*.py")),
     *sorted((PACKAGE / "questions").glob("*.py")),
-    PACKAGE / "nodes" / "services.py",
 ]
 """Where a request goes, and where its answer comes back."""
 

@@ -24,7 +24,7 @@ from contact_dynamics.questions import contact_modes as modes_questions
 from contact_dynamics.questions import impact as impact_questions
 from contact_dynamics.questions import toss as toss_questions
 from contact_dynamics.questions import tumbling as tumbling_questions
-from contact_dynamics.questions.contact_mode_question import ContactModeQuestion
+from contact_dynamics.questions.contact_modes import ContactModeQuestion
 from contact_dynamics.questions.context import Context, Defaults
 from contact_dynamics.questions.impact_question import ImpactQuestion, InTime
 from contact_dynamics.questions.sample_times import UntilContact

@@ -37,7 +37,7 @@ from contact_dynamics.impact import (
 )
 from contact_dynamics.questions import contact_modes as modes_questions
 from contact_dynamics.questions import impact as impact_questions
-from contact_dynamics.questions.contact_mode_question import ContactModeQuestion
+from contact_dynamics.questions.contact_modes import ContactModeQuestion
 from contact_dynamics.questions.impact_question import ImpactQuestion
 
 BODY = MassProperties(mass=1.0, I_B=np.diag([0.1, 0.1, 0.1]))

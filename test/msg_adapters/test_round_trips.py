@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -18,6 +19,7 @@ from contact_dynamics.questions import (
     ImpactQuestion,
     PublishedState,
 )
+from contact_dynamics.questions.services import SERVICES, Service, service_of_type
 from contact_dynamics.questions.subject import NEWEST
 from contact_dynamics.questions.toss import TossQuestion, TossSampling
 from contact_dynamics.toss import TossUncertainty
@@ -64,52 +66,29 @@ from message_values.tumbling import carried, rotations, tumbling_answers, tumbli
 from msg_adapters.batches import (
     body_states_from_msg,
     body_states_to_msg,
-    impacts_answer_from_msg,
-    impacts_answer_to_msg,
-    impacts_question_from_msg,
-    impacts_question_to_msg,
-    tumblings_answer_from_msg,
-    tumblings_answer_to_msg,
-    tumblings_question_from_msg,
-    tumblings_question_to_msg,
 )
 from msg_adapters.body_state import known_state_from_msg, known_state_to_msg
 from msg_adapters.contact_mode import (
-    contact_mode_answer_from_msg,
-    contact_mode_answer_to_msg,
     margin_from_msg,
     mode_from_msg,
     mode_to_msg,
     wrench_set_from_msg,
     wrench_set_to_msg,
 )
-from msg_adapters.contact_mode_batch import (
-    contact_modes_answer_from_msg,
-    contact_modes_answer_to_msg,
-    contact_modes_question_from_msg,
-    contact_modes_question_to_msg,
-)
 from msg_adapters.contacts import contacts_from_msg, contacts_to_msg
 from msg_adapters.geometry_margins import geometry_margin_from_msg, geometry_margin_to_msg
 from msg_adapters.impact import (
-    impact_answer_from_msg,
-    impact_answer_to_msg,
     resolved_impact_from_msg,
     resolved_impact_to_msg,
 )
 from msg_adapters.questions import (
-    contact_mode_question_from_msg,
     impact_question_from_msg,
-    tumbling_question_from_msg,
 )
 from msg_adapters.requests import (
     contact_mode_question_to_msg,
     impact_question_to_msg,
-    tumbling_question_to_msg,
 )
 from msg_adapters.toss import (
-    toss_answer_from_msg,
-    toss_answer_to_msg,
     toss_event_from_msg,
     toss_event_to_msg,
     toss_path_from_msg,
@@ -135,8 +114,6 @@ from msg_adapters.tumbling import (
     read_covariances,
     trajectory_from_msg,
     trajectory_to_msg,
-    tumbling_answer_from_msg,
-    tumbling_answer_to_msg,
     write_covariances,
 )
 
@@ -173,7 +150,7 @@ def _poinsot_from_msg(msg: PoinsotMsg) -> Any:
     return poinsot_from_msg(msg), flips_from_msg(msg), curves_from_msg(msg)
 
 
-PAIRS = {
+PAIRS: dict[str, Pair] = {
     "BodyState": Pair(
         known_states(),
         lambda value: known_state_to_msg(value, body_name="brick", **BODY),
@@ -221,77 +198,38 @@ PAIRS = {
         lambda value: toss_path_to_msg(value, stamp_ns=7, body_name="brick", **BODY),
         lambda msg: toss_path_from_msg(msg, p_FB_F=NO_OFFSET),
     ),
-    "PredictToss.Request": Pair(
-        toss_questions(),
-        lambda value: toss_question_to_msg(value, world=WORLD, **FRAME),
-        lambda msg: toss_question_from_msg(msg, world=WORLD, **FRAME),
-    ),
-    "PredictToss.Response": Pair(
-        toss_answers(),
-        lambda value: toss_answer_to_msg(value, **FRAME),
-        lambda msg: toss_answer_from_msg(msg, world=NOWHERE),
-    ),
-    "PredictImpactBatch.Request": Pair(
-        many_impacts_questions(),
-        lambda value: impacts_question_to_msg(value, world=WORLD, **FRAME),
-        lambda msg: impacts_question_from_msg(msg, world=WORLD, **FRAME),
-    ),
-    "PredictImpactBatch.Response": Pair(
-        many_impacts_answers(),
-        lambda value: impacts_answer_to_msg(value, **FRAME),
-        lambda msg: impacts_answer_from_msg(msg, world=NOWHERE),
-    ),
-    "PredictTumblingBatch.Request": Pair(
-        many_tumblings_questions(),
-        lambda value: tumblings_question_to_msg(value, world=WORLD, **FRAME),
-        lambda msg: tumblings_question_from_msg(msg, world=WORLD, **FRAME),
-    ),
-    "PredictTumblingBatch.Response": Pair(
-        many_tumblings_answers(),
-        lambda value: tumblings_answer_to_msg(value, **FRAME),
-        lambda msg: tumblings_answer_from_msg(msg, world=NOWHERE),
-    ),
-    "PredictContactModeBatch.Request": Pair(
-        many_contact_modes_questions(),
-        lambda value: contact_modes_question_to_msg(value, world=WORLD, **FRAME),
-        lambda msg: contact_modes_question_from_msg(msg, world=WORLD, **FRAME),
-    ),
-    "PredictContactModeBatch.Response": Pair(
-        many_contact_modes_answers(),
-        lambda value: contact_modes_answer_to_msg(value, **FRAME),
-        lambda msg: contact_modes_answer_from_msg(msg, world=NOWHERE),
-    ),
-    "PredictContactMode.Request": Pair(
-        contact_mode_questions(),
-        lambda value: contact_mode_question_to_msg(value, world=WORLD, **FRAME),
-        lambda msg: contact_mode_question_from_msg(msg, world=WORLD, **FRAME),
-    ),
-    "PredictImpact.Request": Pair(
-        impact_questions(),
-        lambda value: impact_question_to_msg(value, world=WORLD, **FRAME),
-        lambda msg: impact_question_from_msg(msg, world=WORLD, **FRAME),
-    ),
-    "PredictTumbling.Request": Pair(
-        tumbling_questions(),
-        lambda value: tumbling_question_to_msg(value, world=WORLD, **FRAME),
-        lambda msg: tumbling_question_from_msg(msg, world=WORLD, **FRAME),
-    ),
-    "PredictContactMode.Response": Pair(
-        contact_mode_answers(),
-        lambda value: contact_mode_answer_to_msg(value, **FRAME),
-        lambda msg: contact_mode_answer_from_msg(msg, world=NOWHERE),
-    ),
-    "PredictImpact.Response": Pair(
-        impact_answers(),
-        lambda value: impact_answer_to_msg(value, **FRAME),
-        lambda msg: impact_answer_from_msg(msg, world=NOWHERE),
-    ),
-    "PredictTumbling.Response": Pair(
-        tumbling_answers(),
-        lambda value: tumbling_answer_to_msg(value, **FRAME),
-        lambda msg: tumbling_answer_from_msg(msg, world=NOWHERE),
-    ),
 }
+
+VALUES = {
+    "PredictContactMode": (contact_mode_questions, contact_mode_answers),
+    "PredictImpact": (impact_questions, impact_answers),
+    "PredictTumbling": (tumbling_questions, tumbling_answers),
+    "PredictToss": (toss_questions, toss_answers),
+    "PredictImpactBatch": (many_impacts_questions, many_impacts_answers),
+    "PredictTumblingBatch": (many_tumblings_questions, many_tumblings_answers),
+    "PredictContactModeBatch": (many_contact_modes_questions, many_contact_modes_answers),
+}
+"""Questions to each service, and answers from it."""
+
+
+def _pairs_of(service: Service) -> dict[str, Pair]:
+    questions, answers = VALUES[service.type_name]
+    return {
+        f"{service.type_name}.Request": Pair(
+            questions(),
+            partial(service.question_to_msg, world=WORLD, **FRAME),
+            partial(service.question_from_msg, world=WORLD, **FRAME),
+        ),
+        f"{service.type_name}.Response": Pair(
+            answers(),
+            partial(service.answer_to_msg, **FRAME),
+            partial(service.answer_from_msg, world=NOWHERE),
+        ),
+    }
+
+
+for each in SERVICES:
+    PAIRS |= _pairs_of(each)
 
 
 def test_each_interface_has_a_pair() -> None:
@@ -317,25 +255,16 @@ def test_a_value_comes_back_and_goes_again_as_it_was(name: str, data: st.DataObj
     assert same(pair.to_msg(back), msg)
 
 
-@pytest.mark.parametrize(
-    "name", ["PredictContactMode.Response", "PredictImpact.Response", "PredictTumbling.Response"]
-)
+@pytest.mark.parametrize("name", ["PredictContactMode", "PredictImpact", "PredictTumbling"])
 @settings(suppress_health_check=[HealthCheck.too_slow], deadline=None, max_examples=15)
 @given(data=st.data())
 def test_answers_find_the_centre_of_mass_in_the_world(name: str, data: st.DataObject) -> None:
     """The message has the published frame: positions come back to rounding, all else as it was."""
-    values, answer_to_msg, answer_from_msg = {
-        "PredictContactMode.Response": (
-            contact_mode_answers,
-            contact_mode_answer_to_msg,
-            contact_mode_answer_from_msg,
-        ),
-        "PredictImpact.Response": (impact_answers, impact_answer_to_msg, impact_answer_from_msg),
-        "PredictTumbling.Response": (tumbling_answers, tumbling_answer_to_msg, tumbling_answer_from_msg),
-    }[name]
+    service = service_of_type(name)
     world = World(bodies=(Body(name="brick", mass_properties=BRICK.mass_properties, p_FB_F=CENTER),))
-    answer = data.draw(values(CENTER))
-    back = answer_from_msg(answer_to_msg(answer, **FRAME), world=world)
+    answers: Any = VALUES[name][1]
+    answer = data.draw(answers(CENTER))
+    back = service.answer_from_msg(service.answer_to_msg(answer, **FRAME), world=world)
     assert same(back, answer, rounding=ROUNDING)
 
 

@@ -22,6 +22,7 @@ with warnings.catch_warnings():
     from contact_dynamics.nodes.visualizer import Visualizer
     from viewing.drawn import STAMP_NS, Drawn, read_drawn
 
+from contact_dynamics.questions import services
 from contact_dynamics_interfaces.msg import (
     BodyState,
     ContactSet,
@@ -50,11 +51,7 @@ CONFIGURATION = {
     "surface.floor.restitution": 0.5,
 }
 TURNED = [0.1, -0.5, 0.7, 0.5]  # x, y, z, w
-SERVICES = {
-    "predict_tumbling": PredictTumbling,
-    "predict_impact": PredictImpact,
-    "predict_contact_mode": PredictContactMode,
-}
+SERVICES = {each.name: each.service_type for each in services.SERVICES}
 SPATIAL = PredictContactMode.Request.SPATIAL
 PATIENCE = 300  # spins of up to 0.1 s
 

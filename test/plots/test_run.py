@@ -14,9 +14,10 @@ pytest.importorskip("matplotlib", reason="matplotlib of requirements/test.txt is
 
 from contact_dynamics.diagrams.impulse_space import main_contact
 from contact_dynamics.impact.law import PathEvent
-from contact_dynamics.plots.logged_answers import logged_answers
 from contact_dynamics.plots.run import NO_LOG, NOTHING_DRAWN, main
 from contact_dynamics.questions.impact_answer import ImpactAnswer
+from contact_dynamics.replay.events import Answered
+from contact_dynamics.replay.logged import LoggedEvents
 from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact, PredictTumbling
 from message_words import says
 from replay.asked_log import about_many
@@ -91,7 +92,8 @@ def test_each_answer_has_its_diagrams_without_ros(log: Path, tmp_path: Path) -> 
         "006-tumbling-of-many-brick-states.svg",
     } <= files
     assert set(run.stdout.split()) == {str(tmp_path / "out" / name) for name in files}
-    impact = next(each.answer for each in logged_answers(log) if isinstance(each.answer, ImpactAnswer))
+    answers = [event.answer for event in LoggedEvents(log) if isinstance(event, Answered)]
+    impact = next(each for each in answers if isinstance(each, ImpactAnswer))
     words = "".join(ET.parse(tmp_path / "out" / "003-impact-brick-impulse-space.svg").getroot().itertext())
     contact = main_contact(impact.impact)
     vertices = zip(impact.impact.path_W, impact.impact.path_contacts, impact.impact.path_events, strict=True)

@@ -14,7 +14,7 @@ from contact_dynamics.plane.projection import PlaneOfMotion
 from contact_dynamics.questions import contact_modes as modes_questions
 from contact_dynamics.questions import impact as impact_questions
 from contact_dynamics.questions import many, many_contact_modes
-from contact_dynamics.questions.contact_mode_question import ContactModeQuestion
+from contact_dynamics.questions.contact_modes import ContactModeQuestion
 from contact_dynamics.questions.context import Context
 from contact_dynamics.questions.impact_question import ImpactQuestion, InTime
 from contact_dynamics.questions.many import ManyImpactsQuestion, ManyStates

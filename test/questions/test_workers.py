@@ -22,12 +22,14 @@ from contact_dynamics.questions import (
     Context,
     PublishedState,
     StateStore,
+    TossQuestion,
     TumblingQuestion,
     UntilContact,
     ask,
     tumbling,
 )
-from contact_dynamics.questions.effort import MAX_QUICK_FITTED, excerpt, is_quick
+from contact_dynamics.questions.effort import MAX_QUICK_FITTED, excerpt
+from contact_dynamics.questions.services import Answer, Question, service_of
 from contact_dynamics.questions.workers import WorkerFault, WorkerLimits, Workers
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.shapes.convex import box
@@ -200,6 +202,10 @@ def at_rest(stamp_ns: int) -> BodyState:
     )
 
 
+def is_quick(question: Question[Answer], known: Context) -> bool:
+    return service_of(question).is_answered_at_once(question, known)
+
+
 def test_what_counts_as_quick() -> None:
     known = brick_world()
     falling = TumblingQuestion(body="brick", sampling=UntilContact())
@@ -217,4 +223,4 @@ def test_what_counts_as_quick() -> None:
         known.states.add("brick", at_rest(stamp_ns=1_000_000 * number))
     assert not is_quick(fit, known)
     assert is_quick(TumblingQuestion(body="brick", state=PublishedState(fit_window=0.1)), known)
-    assert not is_quick("a question of another kind", known)
+    assert not is_quick(TossQuestion(body="nobody"), known)  # no toss is

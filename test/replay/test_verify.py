@@ -16,7 +16,7 @@ from mcap.writer import Writer
 from rcl_interfaces.msg import ParameterEvent
 from rclpy.serialization import serialize_message
 
-from contact_dynamics.nodes.services import SERVICES
+from contact_dynamics.questions.services import SERVICES
 from contact_dynamics.recording import BagReader, BagWriter, LoggedMessage, NotALogError, service_calls
 from contact_dynamics.recording.definitions import find_definition
 from contact_dynamics.recording.errors import DamagedLogWarning
@@ -347,7 +347,7 @@ def test_a_log_of_other_definitions_is_refused_with_their_names(
 
 
 def test_the_known_digests_are_those_of_the_interface_files() -> None:
-    """After a change of an interface, put what this test finds into `nodes/services.py`."""
+    """After a change of an interface, put what this test finds into `questions/services.py`."""
     found = {
         service.type_name: digest(event, find_definition(event).text)
         for service in SERVICES

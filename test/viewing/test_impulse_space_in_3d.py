@@ -114,8 +114,8 @@ def test_a_planar_impact_takes_away_the_picture_in_3d(
     ground = ContactSet(p_WC_W=[[0.3, 0, -0.9]], normals_W=[0, 0, 1], frictions=0.6, restitutions=0.5)
     planar = ImpactQuestion(body=ROD, state=flat, contacts=ground, problem=Problem.PLANAR, plane=side)
     if first_in_space:
-        picture.show_impact(an_impact(), now_ns=1)
-    picture.show_impact(ask(planar), now_ns=2)
+        picture.show(an_impact(), now_ns=1)
+    picture.show(ask(planar), now_ns=2)
     drawn = read()
     if first_in_space:
         assert drawn.last(ORIGIN, "Clear:is_recursive") == [True]

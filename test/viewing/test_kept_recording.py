@@ -64,9 +64,9 @@ def test_a_late_place_has_the_whole_picture(
     for i in range(3):
         at_ns = STAMP_NS + 1000 * i
         picture.add_states("brick", [moved(state, at_ns), moved(state, at_ns + 1)])
-        picture.show_tumbling(tumbling_answer(moved(state, at_ns + 2), trajectory))
-        picture.show_impact(an_impact(state, two_contacts, stamp_ns=at_ns + 3))
-        picture.show_contact_modes(contact_mode_answer(moved(state, at_ns + 4), two_contacts))
+        picture.show(tumbling_answer(moved(state, at_ns + 2), trajectory))
+        picture.show(an_impact(state, two_contacts, stamp_ns=at_ns + 3))
+        picture.show(contact_mode_answer(moved(state, at_ns + 4), two_contacts))
     late = places.open()
     picture.add_states("brick", [moved(state, STAMP_NS + 5000)])
     first, second = places.read(early, late)

@@ -62,9 +62,9 @@ def test_each_answer_appears_at_its_stamp(
 ) -> None:
     picture = Picture(recording, world, surface_side=2.0)
     picture.add_states("brick", [state])
-    picture.show_tumbling(tumbling_answer(state, trajectory))
-    picture.show_impact(an_impact(state, two_contacts, stamp_ns=STAMP_NS + 1))
-    picture.show_contact_modes(contact_mode_answer(moved(state, STAMP_NS + 2), two_contacts))
+    picture.show(tumbling_answer(state, trajectory))
+    picture.show(an_impact(state, two_contacts, stamp_ns=STAMP_NS + 1))
+    picture.show(contact_mode_answer(moved(state, STAMP_NS + 2), two_contacts))
     drawn = read()
     assert drawn.stamps("/world/predicted/brick/path", "LineStrips3D:strips") == [STAMP_NS]
     assert drawn.stamps("/world/impact/brick/impulse", "Arrows3D:vectors") == [STAMP_NS + 1]
@@ -81,7 +81,7 @@ def test_measured_states_after_a_prediction_stand_beside_it(
 ) -> None:
     picture = Picture(recording, world, surface_side=2.0)
     picture.add_states("brick", [state])
-    picture.show_tumbling(tumbling_answer(state, trajectory))
+    picture.show(tumbling_answer(state, trajectory))
     picture.add_states("brick", [moved(state, LATER_NS)])
     drawn = read()
     assert drawn.stamps("/height/brick/measured", "Scalars:scalars") == [STAMP_NS, LATER_NS]
@@ -106,8 +106,8 @@ def test_an_answer_that_comes_late_stands_beside_the_states_before_it_once(
     picture = Picture(recording, world, surface_side=2.0)
     stamps = [STAMP_NS + i * 100_000_000 for i in range(6)]  # the trajectory has 0.4 s
     picture.add_states("brick", [moved(state, stamp_ns) for stamp_ns in stamps])
-    picture.show_tumbling(tumbling_answer(state, trajectory))
-    picture.show_tumbling(tumbling_answer(state, trajectory))
+    picture.show(tumbling_answer(state, trajectory))
+    picture.show(tumbling_answer(state, trajectory))
     drawn = read()
     assert drawn.stamps("/height/brick/predicted", "Scalars:scalars") == stamps[1:5]
     assert drawn.stamps("/error/brick", "Scalars:scalars") == stamps[1:5]
@@ -120,11 +120,11 @@ def test_a_prediction_without_states_beside_it_has_no_panel_of_its_error(
     recording: rr.RecordingStream, world: World, state: BodyState, trajectory: Trajectory
 ) -> None:
     picture = Picture(recording, world, surface_side=2.0)
-    picture.show_tumbling(tumbling_answer(state, trajectory))
+    picture.show(tumbling_answer(state, trajectory))
     picture.add_states("brick", [moved(state, STAMP_NS + 10_000_000_000)])
     assert ERROR not in picture.shown
     picture.add_states("brick", [moved(state, STAMP_NS + 10_100_000_000)])
-    picture.show_tumbling(tumbling_answer(moved(state, STAMP_NS + 10_000_000_000), trajectory))
+    picture.show(tumbling_answer(moved(state, STAMP_NS + 10_000_000_000), trajectory))
     assert ERROR in picture.shown
 
 
@@ -140,7 +140,7 @@ def test_energy_and_momenta_are_drawn_beside_a_prediction(
     (brick,) = world.bodies
     picture = Picture(recording, world, surface_side=2.0)
     picture.add_states("brick", [state])
-    picture.show_tumbling(tumbling_answer(state, trajectory))
+    picture.show(tumbling_answer(state, trajectory))
     flight = free_motion(brick.mass_properties, state)
     picture.add_states("brick", [flight.state_at(0.001 * i) for i in range(1, 20)])
     drawn = read()
@@ -163,7 +163,7 @@ def test_the_first_trajectory_is_looked_at_with_the_ground_below_it_and_later_on
 ) -> None:
     picture = Picture(recording, world, surface_side=0.5)
     for offset in (0, 1, 2):
-        picture.show_tumbling(tumbling_answer(moved(state, STAMP_NS + offset), trajectory))
+        picture.show(tumbling_answer(moved(state, STAMP_NS + offset), trajectory))
     drawn = read()
     assert drawn.blueprints == 3  # without, with the trajectory, with its page and the answer in words
     patch = drawn.array("/world/surfaces/floor/patch", "Mesh3D:vertex_positions")
@@ -181,7 +181,7 @@ def test_a_diagram_gets_its_tab_when_it_is_first_drawn(
 ) -> None:
     picture = Picture(recording, world, surface_side=0.5)
     for _ in range(3):
-        picture.show_impact(an_impact(state, two_contacts))
+        picture.show(an_impact(state, two_contacts))
     assert read().blueprints == 2  # without, with impact, impulse space and words
 
 
@@ -255,8 +255,8 @@ def test_a_body_that_is_not_of_the_world_is_drawn_too(
 ) -> None:
     picture = Picture(recording, world, surface_side=2.0)
     picture.add_states(name, [state])
-    picture.show_tumbling(tumbling_answer(state, trajectory, body_name=name))
-    picture.show_impact(an_impact(state, two_contacts, name=name))
+    picture.show(tumbling_answer(state, trajectory, body_name=name))
+    picture.show(an_impact(state, two_contacts, name=name))
     escaped = {"": "unnamed", "somebody": "somebody", "arm/tool 1": r"arm\/tool\ 1"}[name]
     drawn = read()
     assert f"/world/bodies/{escaped}" in drawn.entities
@@ -286,7 +286,7 @@ def test_the_newest_predictions_are_in_view_and_no_more(
 ) -> None:
     picture = Picture(recording, world, surface_side=0.5, predictions=predictions)
     for offset in range(6):
-        picture.show_tumbling(tumbling_answer(moved(state, STAMP_NS + offset), trajectory))
+        picture.show(tumbling_answer(moved(state, STAMP_NS + offset), trajectory))
     drawn = read()
     earlier = sorted(path for path in drawn.entities if "/earlier/" in path)
     found = [drawn.stamps(path, "LineStrips3D:strips") for path in earlier]
@@ -303,9 +303,9 @@ def test_only_the_newest_impact_has_labels_until_it_is_past(
 ) -> None:
     """The labels of another body's impact go at once, and its own when it has been measured for a while."""
     picture = Picture(recording, world, surface_side=0.5)
-    picture.show_impact(an_impact(state, two_contacts))
+    picture.show(an_impact(state, two_contacts))
     other = an_impact(state, two_contacts, stamp_ns=STAMP_NS + 1, name="ball")
-    picture.show_impact(other)
+    picture.show(other)
     over_ns = STAMP_NS + 1 + to_ns(other.seconds_to_contact + LABELS_S)
     picture.add_states("ball", [moved(state, over_ns - 1_000_000)])
     picture.add_states("ball", [moved(state, over_ns + 1_000_000)])

@@ -161,7 +161,7 @@ def test_the_force_dual_shows_the_wrench_in_question_and_the_acceleration_centre
     assert [mode.mode for mode in found.modes] == ["sf"]
     picture = Picture(recording, world, surface_side=1.0)
     for stamp_ns in (1, 2):
-        picture.show_contact_modes(found, now_ns=stamp_ns)
+        picture.show(found, now_ns=stamp_ns)
     drawn = read()
     assert len(drawn.values["/force_dual/wrenches", "Image:buffer"]) == 1  # the second is the same
     labels = drawn.last("/force_dual/answer", "Points2D:labels")

@@ -54,12 +54,12 @@ def draw_tumbling(picture: Picture, world: World, read_back: Callable[[Any], Any
         body="brick", state=FALLING, sampling=AtRate(rate=50.0, duration=0.5), curve_points=40
     )
     answer = tumbling.answer(question, Context(world=world))
-    picture.show_tumbling(read_back(answer))
+    picture.show(read_back(answer))
 
 
 def draw_impact(picture: Picture, world: World, read_back: Callable[[Any], Any]) -> None:
     answer = impact.answer(ImpactQuestion(body="brick", state=FALLING), Context(world=world))
-    picture.show_impact(read_back(answer))
+    picture.show(read_back(answer))
 
 
 def draw_modes(picture: Picture, world: World, read_back: Callable[[Any], Any]) -> None:
@@ -82,7 +82,7 @@ def draw_modes(picture: Picture, world: World, read_back: Callable[[Any], Any]) 
         include_wrenches=True,
         include_statics=True,
     )
-    picture.show_contact_modes(read_back(contact_modes.answer(question, Context(world=world))))
+    picture.show(read_back(contact_modes.answer(question, Context(world=world))))
 
 
 def draw_toss(picture: Picture, world: World, read_back: Callable[[Any], Any]) -> None:
@@ -92,7 +92,7 @@ def draw_toss(picture: Picture, world: World, read_back: Callable[[Any], Any]) -
         max_alternatives=1,
         sampling=TossSampling(count=25),
     )
-    picture.show_toss(read_back(toss.answer(question, Context(world=world))))
+    picture.show(read_back(toss.answer(question, Context(world=world))))
 
 
 PAIRS = {

@@ -96,11 +96,11 @@ def test_curves_of_one_body_reach_to_those_of_the_next(
 ) -> None:
     """The energy of a body is drawn up to the last state before the answer about another body."""
     short = free_motion(body.mass_properties, state).at([0.0, 1e-9])
-    picture.show_tumbling(tumbling_answer(state, short, body_name="brick"))
+    picture.show(tumbling_answer(state, short, body_name="brick"))
     add(states, state, 10, 20)
     answer = tumbling_answer(replace(state, stamp_ns=STAMP_NS + 30), short, body_name="ball")
     states.draw_before(answer)
-    picture.show_tumbling(answer)
+    picture.show(answer)
     add(states, state, 40)
     states.draw()
     drawn = read()

@@ -1,0 +1,354 @@
+"""Questions, answers, and one record for each service, with its types, its adapters and what answers it.
+
+The server, the visualizer, replay, tables, plots and `ask` all read these records. To add a service, add its
+record here, beside its ``.srv``, its question and answer, and their adapters.
+
+A record gives each function by its import path, and the function is imported when it is used: the server
+imports no viewer, a table no server, and this file none of them.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from importlib import import_module
+from typing import TYPE_CHECKING, Final, Generic, Protocol, TypeVar
+
+from contact_dynamics.constants import ns_after
+from contact_dynamics.errors import ContactDynamicsError, NotSupportedError
+from contact_dynamics.records import Record
+from contact_dynamics.rigid_body.body import BodyState
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from contact_dynamics.questions.context import Context
+    from contact_dynamics.tumbling import Trajectory
+    from contact_dynamics.world import Body
+
+Result = TypeVar("Result")
+
+
+class Answer(Record):
+    """The base of all answers.
+
+    Attributes:
+        body_name: The name of the body that the question was about, which may be empty.
+    """
+
+    __slots__ = ()
+
+    body_name: str
+
+    @property
+    def stamp_ns(self) -> int:
+        """The stamp, ns, of the state that the question was about, or 0 without one."""
+        state = getattr(self, "state", None)
+        return state.stamp_ns if isinstance(state, BodyState) else 0
+
+    @property
+    def predicted_motion(self) -> Trajectory | None:
+        """The motion that is predicted from that state on, or None if none is."""
+        return None
+
+    @property
+    def predicted_state(self) -> BodyState | None:
+        """The state that is predicted and that may be measured later, or None if none is."""
+        motion, stamp_ns = self.predicted_motion, self.stamp_ns
+        if motion is None or len(motion) == 0:
+            return None
+        return BodyState(
+            p_WB_W=motion.p_WB_W[-1],
+            q_WB=motion.q_WB[-1],
+            v_WB_W=motion.v_WB_W[-1],
+            w_WB_W=motion.w_WB_W[-1],
+            stamp_ns=stamp_ns and ns_after(stamp_ns, float(motion.seconds[-1])),
+        )
+
+
+Answer_co = TypeVar("Answer_co", bound=Answer, covariant=True)
+
+
+class Question(Record, Generic[Answer_co]):
+    """The base of all questions, with the type of their answers.
+
+    Attributes:
+        body: The body, or the name of one of the known world. `about` has it.
+    """
+
+    __slots__ = ()
+
+    body: Body | str
+
+    ALLOWED = "a TumblingQuestion or an ImpactQuestion or a question of another kind"
+
+    @property
+    def about(self) -> Question[Answer]:
+        """The question that names the body and its state, which may be part of this one."""
+        return self
+
+
+class ServiceType(Protocol):
+    """What rosidl makes of a service's file."""
+
+    Request: type
+    Response: type
+    Event: type
+
+
+class ImportedOnUse(Generic[Result]):
+    """A function that is imported when it is used first."""
+
+    def __init__(self, place: str) -> None:
+        """Name it, as "package.module:function" or "package.module:Class.function"."""
+        self.place = place
+        self.module, _, self._name = place.partition(":")
+
+    @cached_property
+    def function(self) -> Callable[..., Result]:
+        """The function itself."""
+        found = import_module(self.module)
+        for part in self._name.split("."):
+            found = getattr(found, part)
+        return found  # type: ignore[return-value]
+
+    def __call__(self, *args: object, **options: object) -> Result:
+        """Call the function."""
+        return self.function(*args, **options)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Service:
+    """A service of the server, and all that the package knows about it.
+
+    Only what makes it a service is required. Without the rest, an answer shows as words, in one row.
+
+    Attributes:
+        name: Its name below the node's, "predict_impact".
+        type_name: The name of its type, "PredictImpact".
+        kind: The kind of its answers, in words.
+        digest: The digest of its fields (`replay.same_definitions`). A test compares it with the interface.
+        question_type: The place of the class of its questions, "package.module:Class".
+        answer_type: The place of the class of its answers.
+        question_from_msg: Makes a question of a request.
+        question_to_msg: Makes a request of a question.
+        answer: Answers a question; a function of a module, which a worker imports.
+        answer_to_msg: Makes a response of an answer.
+        answer_from_msg: Makes an answer of a response.
+        is_quick: Whether a question is sure to be answered within some 30 ms. Without it, none is.
+        words: Puts an answer into words, a list with the most important first.
+        draw: Draws an answer into a `viewing.picture.Picture`, at the stamp in its last argument, and returns
+            what of `viewing.entities` is in view by then, and remarks for the words.
+        figures: Yields the figures of an answer (`plots.figures`).
+        cells: Yields the cells of each row of an answer in a table (`replay.answer_rows`).
+    """
+
+    name: str
+    type_name: str
+    kind: str
+    digest: str
+    question_type: str
+    answer_type: str
+    question_from_msg: ImportedOnUse[Question[Answer]]
+    question_to_msg: ImportedOnUse[object]
+    answer: ImportedOnUse[Answer]
+    answer_to_msg: ImportedOnUse[object]
+    answer_from_msg: ImportedOnUse[Answer]
+    is_quick: ImportedOnUse[bool] | None = None
+    words: ImportedOnUse[list[str]] | None = None
+    draw: ImportedOnUse[tuple[list[str], list[str]]] | None = None
+    figures: ImportedOnUse[Iterator[tuple[str, object]]] | None = None
+    cells: ImportedOnUse[Iterator[dict[str, str | int | float | None]]] | None = None
+
+    @property
+    def service_type(self) -> ServiceType:
+        """The class that rosidl makes of its file."""
+        found: ServiceType = getattr(import_module("contact_dynamics_interfaces.srv"), self.type_name)
+        return found
+
+    def prepare(self) -> None:
+        """Import what answers a request, so that the first one does not wait for it."""
+        for each in (self.question_from_msg, self.answer, self.answer_to_msg, self.is_quick):
+            if each is not None:
+                each.function  # noqa: B018  it is imported by that
+
+    def is_answered_at_once(self, question: Question[Answer], context: Context) -> bool:
+        """Tell whether the answer is sure to come soon; what will be rejected counts as quick."""
+        try:
+            return self.is_quick is not None and self.is_quick(question, context)
+        except ContactDynamicsError:
+            return True
+
+    def in_words(self, answer: Answer) -> list[str]:
+        """Return an answer in words, with the most important first."""
+        return [answer.in_short()] if self.words is None else self.words(answer)
+
+
+SERVICES: Final = (
+    Service(
+        name="predict_contact_mode",
+        type_name="PredictContactMode",
+        kind="Contact modes",
+        digest="c01e2bc54d5ecf14",
+        question_type="contact_dynamics.questions.contact_modes:ContactModeQuestion",
+        answer_type="contact_dynamics.questions.contact_modes:ContactModeAnswer",
+        question_from_msg=ImportedOnUse("msg_adapters.questions:contact_mode_question_from_msg"),
+        question_to_msg=ImportedOnUse("msg_adapters.requests:contact_mode_question_to_msg"),
+        answer=ImportedOnUse("contact_dynamics.questions.contact_modes:answer"),
+        answer_to_msg=ImportedOnUse("msg_adapters.contact_mode:contact_mode_answer_to_msg"),
+        answer_from_msg=ImportedOnUse("msg_adapters.contact_mode:contact_mode_answer_from_msg"),
+        is_quick=ImportedOnUse("contact_dynamics.questions.effort:are_quick_modes"),
+        words=ImportedOnUse("contact_dynamics.diagrams.words:contact_modes_in_words"),
+        draw=ImportedOnUse("contact_dynamics.viewing.picture:Picture.draw_contact_modes"),
+        figures=ImportedOnUse("contact_dynamics.plots.figures:figures_of_modes"),
+        cells=ImportedOnUse("contact_dynamics.replay.answer_rows:cells_of_contact_modes"),
+    ),
+    Service(
+        name="predict_impact",
+        type_name="PredictImpact",
+        kind="Impact",
+        digest="6fec62f9a6020c11",
+        question_type="contact_dynamics.questions.impact_question:ImpactQuestion",
+        answer_type="contact_dynamics.questions.impact_answer:ImpactAnswer",
+        question_from_msg=ImportedOnUse("msg_adapters.questions:impact_question_from_msg"),
+        question_to_msg=ImportedOnUse("msg_adapters.requests:impact_question_to_msg"),
+        answer=ImportedOnUse("contact_dynamics.questions.impact:answer"),
+        answer_to_msg=ImportedOnUse("msg_adapters.impact:impact_answer_to_msg"),
+        answer_from_msg=ImportedOnUse("msg_adapters.impact:impact_answer_from_msg"),
+        is_quick=ImportedOnUse("contact_dynamics.questions.effort:is_quick_impact"),
+        words=ImportedOnUse("contact_dynamics.diagrams.words:impact_in_words"),
+        draw=ImportedOnUse("contact_dynamics.viewing.picture:Picture.draw_impact"),
+        figures=ImportedOnUse("contact_dynamics.plots.figures:figures_of_impact"),
+        cells=ImportedOnUse("contact_dynamics.replay.answer_rows:cells_of_impact"),
+    ),
+    Service(
+        name="predict_tumbling",
+        type_name="PredictTumbling",
+        kind="Tumbling",
+        digest="faff7ceb375e4674",
+        question_type="contact_dynamics.questions.tumbling:TumblingQuestion",
+        answer_type="contact_dynamics.questions.tumbling:TumblingAnswer",
+        question_from_msg=ImportedOnUse("msg_adapters.questions:tumbling_question_from_msg"),
+        question_to_msg=ImportedOnUse("msg_adapters.requests:tumbling_question_to_msg"),
+        answer=ImportedOnUse("contact_dynamics.questions.tumbling:answer"),
+        answer_to_msg=ImportedOnUse("msg_adapters.tumbling:tumbling_answer_to_msg"),
+        answer_from_msg=ImportedOnUse("msg_adapters.tumbling:tumbling_answer_from_msg"),
+        is_quick=ImportedOnUse("contact_dynamics.questions.effort:is_quick_flight"),
+        words=ImportedOnUse("contact_dynamics.diagrams.words:tumbling_in_words"),
+        draw=ImportedOnUse("contact_dynamics.viewing.picture:Picture.draw_tumbling"),
+        figures=ImportedOnUse("contact_dynamics.plots.figures:figures_of_tumbling"),
+        cells=ImportedOnUse("contact_dynamics.replay.answer_rows:cells_of_tumbling"),
+    ),
+    Service(
+        name="predict_toss",
+        type_name="PredictToss",
+        kind="Toss",
+        digest="e134e6cfc8c53f8d",
+        question_type="contact_dynamics.questions.toss:TossQuestion",
+        answer_type="contact_dynamics.questions.toss:TossAnswer",
+        question_from_msg=ImportedOnUse("msg_adapters.toss:toss_question_from_msg"),
+        question_to_msg=ImportedOnUse("msg_adapters.toss:toss_question_to_msg"),
+        answer=ImportedOnUse("contact_dynamics.questions.toss:answer"),
+        answer_to_msg=ImportedOnUse("msg_adapters.toss:toss_answer_to_msg"),
+        answer_from_msg=ImportedOnUse("msg_adapters.toss:toss_answer_from_msg"),
+        words=ImportedOnUse("contact_dynamics.diagrams.toss_words:toss_in_words"),
+        draw=ImportedOnUse("contact_dynamics.viewing.picture:Picture.draw_toss"),
+        figures=ImportedOnUse("contact_dynamics.plots.figures:figures_of_toss"),
+        cells=ImportedOnUse("contact_dynamics.replay.answer_rows:cells_of_toss"),
+    ),
+    Service(
+        name="predict_impact_batch",
+        type_name="PredictImpactBatch",
+        kind="Impacts of many",
+        digest="9638ca21106dfd4a",
+        question_type="contact_dynamics.questions.many:ManyImpactsQuestion",
+        answer_type="contact_dynamics.questions.many:ManyImpactsAnswer",
+        question_from_msg=ImportedOnUse("msg_adapters.batches:impacts_question_from_msg"),
+        question_to_msg=ImportedOnUse("msg_adapters.batches:impacts_question_to_msg"),
+        answer=ImportedOnUse("contact_dynamics.questions.many:answer_impacts"),
+        answer_to_msg=ImportedOnUse("msg_adapters.batches:impacts_answer_to_msg"),
+        answer_from_msg=ImportedOnUse("msg_adapters.batches:impacts_answer_from_msg"),
+        is_quick=ImportedOnUse("contact_dynamics.questions.effort:are_quick_impacts"),
+        words=ImportedOnUse("contact_dynamics.diagrams.words:many_impacts_in_words"),
+        draw=ImportedOnUse("contact_dynamics.viewing.picture:Picture.draw_many"),
+        figures=ImportedOnUse("contact_dynamics.plots.figures:figures_of_many"),
+        cells=ImportedOnUse("contact_dynamics.replay.answer_rows:cells_of_impacts"),
+    ),
+    Service(
+        name="predict_tumbling_batch",
+        type_name="PredictTumblingBatch",
+        kind="Tumbling of many",
+        digest="f198a921773488f5",
+        question_type="contact_dynamics.questions.many:ManyTumblingsQuestion",
+        answer_type="contact_dynamics.questions.many:ManyTumblingsAnswer",
+        question_from_msg=ImportedOnUse("msg_adapters.batches:tumblings_question_from_msg"),
+        question_to_msg=ImportedOnUse("msg_adapters.batches:tumblings_question_to_msg"),
+        answer=ImportedOnUse("contact_dynamics.questions.many:answer_tumblings"),
+        answer_to_msg=ImportedOnUse("msg_adapters.batches:tumblings_answer_to_msg"),
+        answer_from_msg=ImportedOnUse("msg_adapters.batches:tumblings_answer_from_msg"),
+        is_quick=ImportedOnUse("contact_dynamics.questions.effort:are_quick_flights"),
+        words=ImportedOnUse("contact_dynamics.diagrams.words:many_tumblings_in_words"),
+        draw=ImportedOnUse("contact_dynamics.viewing.picture:Picture.draw_many"),
+        figures=ImportedOnUse("contact_dynamics.plots.figures:figures_of_many"),
+        cells=ImportedOnUse("contact_dynamics.replay.answer_rows:cells_of_tumblings"),
+    ),
+    Service(
+        name="predict_contact_mode_batch",
+        type_name="PredictContactModeBatch",
+        kind="Contact modes of many",
+        digest="4e9a384d6b1f41dd",
+        question_type="contact_dynamics.questions.many_contact_modes:ManyContactModesQuestion",
+        answer_type="contact_dynamics.questions.many_contact_modes:ManyContactModesAnswer",
+        question_from_msg=ImportedOnUse("msg_adapters.contact_mode_batch:contact_modes_question_from_msg"),
+        question_to_msg=ImportedOnUse("msg_adapters.contact_mode_batch:contact_modes_question_to_msg"),
+        answer=ImportedOnUse("contact_dynamics.questions.many_contact_modes:answer"),
+        answer_to_msg=ImportedOnUse("msg_adapters.contact_mode_batch:contact_modes_answer_to_msg"),
+        answer_from_msg=ImportedOnUse("msg_adapters.contact_mode_batch:contact_modes_answer_from_msg"),
+        is_quick=ImportedOnUse("contact_dynamics.questions.effort:are_quick_candidates"),
+        words=ImportedOnUse("contact_dynamics.diagrams.words:many_contact_modes_in_words"),
+        cells=ImportedOnUse("contact_dynamics.replay.answer_rows:cells_of_many_contact_modes"),
+    ),
+)
+"""All services."""
+
+
+def service_of_type(service_type: str) -> Service:
+    """Return the service of a type, which is given as "package/srv/Name".
+
+    Raises:
+        NotSupportedError: there is none.
+    """
+    for service in SERVICES:
+        if service.type_name == service_type.rpartition("/")[2]:
+            return service
+    message = f"type must be one of {', '.join(each.type_name for each in SERVICES)}, got {service_type}"
+    raise NotSupportedError(message)
+
+
+def service_of(what: Question[Answer] | Answer) -> Service:
+    """Return the service that a question is for, or that an answer is from.
+
+    Raises:
+        NotSupportedError: there is none.
+    """
+    place = f"{type(what).__module__}:{type(what).__qualname__}"
+    for service in SERVICES:
+        if place in {service.question_type, service.answer_type}:
+            return service
+    known = ", ".join(each.kind for each in SERVICES)
+    raise NotSupportedError(f"a question or an answer must be of one of these kinds: {known}, got {place}")
+
+
+def ask(question: Question[Answer_co], context: Context | None = None) -> Answer_co:
+    """Answer a question, as the service of its kind does.
+
+    Args:
+        question: What is asked.
+        context: What is known: bodies by name, surfaces, published states, defaults. If it is None, nothing
+            is known but what the question says.
+
+    Raises:
+        ContactDynamicsError: something is asked for that is not known, not allowed or not supported. The
+            message names it.
+    """
+    return service_of(question).answer(question, context)  # type: ignore[return-value]  # of this question
