@@ -10,9 +10,10 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 import rclpy
@@ -51,21 +52,28 @@ def environment(domain_id: int = DOMAIN_ID) -> dict[str, str]:
 
 @contextmanager
 def process(
-    verb: str, *arguments: str, ready: str = "", domain_id: int = DOMAIN_ID, group: bool = False
+    verb: str,
+    *arguments: str,
+    ready: str = "",
+    domain_id: int = DOMAIN_ID,
+    group: bool = False,
+    program: Sequence[str] = ("-m", "contact_dynamics"),
+    settings: Mapping[str, str] = MappingProxyType({}),
 ) -> Iterator[subprocess.Popen[str]]:
     """Start a verb of the command line; wait until it prints ``ready``; stop it with SIGINT, as it must.
 
-    With ``group`` it leads a group of processes, as one that was started in a terminal does. A server may
-    take as long for an answer as tests wait, unless the arguments say how long: on a busy machine the
-    configured deadline of 5 s passes for questions that take milliseconds elsewhere.
+    ``program`` is what Python runs, with ``settings`` in its environment. With ``group`` it leads a group of
+    processes, as one that was started in a terminal does. A server may take as long for an answer as tests
+    wait, unless the arguments say how long: on a busy machine the configured deadline of 5 s passes for
+    questions that take milliseconds elsewhere.
     """
-    command = [sys.executable, "-m", "contact_dynamics", verb, *arguments]
+    command = [sys.executable, *program, verb, *arguments]
     if verb == "server" and not any(argument.startswith("answer_deadline") for argument in arguments):
         command += ["--ros-args", "-p", f"answer_deadline:={PATIENCE_S}"]
     started = subprocess.Popen(
         command,
         cwd=ROOT,
-        env=environment(domain_id),
+        env={**environment(domain_id), **settings},
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
         text=True,

@@ -81,3 +81,8 @@ class ImpactAnswer(Answer):
     def predicted_state(self) -> BodyState:
         """The state just after the impact."""
         return self.impact.state
+
+    @property
+    def is_after_impact(self) -> bool:
+        """Whether the predicted state is just after an impact, which it is."""
+        return True

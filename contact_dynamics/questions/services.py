@@ -65,6 +65,11 @@ class Answer(Record):
             stamp_ns=stamp_ns and ns_after(stamp_ns, float(motion.seconds[-1])),
         )
 
+    @property
+    def is_after_impact(self) -> bool:
+        """Whether that state is just after an impact. Otherwise it ends a motion without one."""
+        return False
+
 
 Answer_co = TypeVar("Answer_co", bound=Answer, covariant=True)
 

@@ -173,7 +173,7 @@ class Rows:
                 predicted=predicted,
                 newest=newest,
                 gravity_W=self._world.gravity_W,
-                is_impact=answer.predicted_motion is None,
+                is_impact=answer.is_after_impact,
             ),
         )
 

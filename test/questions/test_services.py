@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import inspect
-import subprocess
-import sys
 from collections.abc import Callable
 from dataclasses import fields
 from pathlib import Path
@@ -81,17 +79,3 @@ def test_another_type_is_rejected_by_name() -> None:
 def test_a_question_of_no_service_is_rejected_by_name() -> None:
     with pytest.raises(NotSupportedError, match=r"kinds: .*Toss.*, got .*services:Question"):
         service_of(Question())
-
-
-def test_what_answers_imports_neither_a_viewer_nor_plots() -> None:
-    """The server is ready to answer, and has imported nothing that draws."""
-    code = (
-        "import sys\nimport contact_dynamics.nodes.server\n"
-        "from contact_dynamics.questions.services import SERVICES\n"
-        "for service in SERVICES: service.prepare()\n"
-        "drawing = ('rerun', 'matplotlib', 'contact_dynamics.viewing', 'contact_dynamics.plots')\n"
-        "assert 'contact_dynamics.questions.toss' in sys.modules\n"
-        "print([name for name in sys.modules if name.startswith(drawing)])"
-    )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
-    assert (done.stdout.strip(), done.returncode) == ("[]", 0), done.stderr
