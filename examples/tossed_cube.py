@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from contact_dynamics import Body, BodyState, Surface, World
-from contact_dynamics.diagrams.toss_words import branch_in_words, face_in_words
+from contact_dynamics.diagrams.words import branch_in_words, face_in_words
 from contact_dynamics.questions import Context, TossQuestion, TossSampling, UncertainState, ask
 from contact_dynamics.toss import TossUncertainty
 from contact_dynamics.toss.distribution import Branch

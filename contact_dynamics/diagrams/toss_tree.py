@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
-from contact_dynamics.diagrams.toss_words import branch_in_words, face_in_words
+from contact_dynamics.diagrams.words import branch_in_words, face_in_words
 
 if TYPE_CHECKING:
     from contact_dynamics.toss import TossDistribution

@@ -11,6 +11,8 @@ import numpy as np
 from contact_dynamics.contact_modes import Certainty, ModeVerdict
 from contact_dynamics.contact_modes.letters import LETTERS
 from contact_dynamics.impact import ImpactOutcome, SequenceEnd
+from contact_dynamics.toss import TossEnd, TossEventKind, UndecidedReason
+from contact_dynamics.toss.distribution import BranchKind, axis_in_words
 from contact_dynamics.tumbling.regime import Regime
 
 if TYPE_CHECKING:
@@ -22,7 +24,9 @@ if TYPE_CHECKING:
     from contact_dynamics.questions.many_contact_modes import ManyContactModesAnswer
     from contact_dynamics.questions.resolved_impact import ResolvedImpact
     from contact_dynamics.questions.settled_impact import SettledImpact
+    from contact_dynamics.questions.toss import TossAnswer
     from contact_dynamics.questions.tumbling import TumblingAnswer
+    from contact_dynamics.toss import TossDistribution
     from contact_dynamics.tumbling.flips import Flips
     from contact_dynamics.validation import FloatArray
 
@@ -72,6 +76,38 @@ CERTAINTIES: Final = {
     Certainty.UNKNOWN: "unknown",
 }
 """The words for answers to static questions."""
+
+
+TOSS_ENDS: Final = {
+    TossEnd.RESTS: "rests",
+    TossEnd.HORIZON: "still moves at the horizon",
+    TossEnd.MAX_EVENTS: "has more events or takes more steps than are followed",
+}
+"""What the body does at the end of a toss."""
+
+EVENTS: Final = {
+    TossEventKind.STRIKES: "strikes",
+    TossEventKind.SETTLES: "settles",
+    TossEventKind.NEW_MODE: "goes on in a mode",
+    TossEventKind.LIFTS_OFF: "lifts off",
+    TossEventKind.JAMS: "jams",
+    TossEventKind.RESTS: "rests",
+}
+"""The words for what happens at an event."""
+
+UNDECIDED: Final = {
+    UndecidedReason.STRIKE_TOGETHER: "contacts strike together",
+    UndecidedReason.SEVERAL_MODES: "several modes are consistent",
+}
+"""The words for why mechanics does not decide."""
+
+BRANCHES: Final = {
+    BranchKind.STRIKES: "strikes",
+    BranchKind.STAYS: "stays in contact",
+    BranchKind.FLIES: "meets nothing",
+    BranchKind.ENDS: "no further strike",
+}
+"""The words for what happens on a branch of the tree."""
 
 
 def tumbling_in_words(answer: TumblingAnswer) -> list[str]:
@@ -151,6 +187,27 @@ def contacts_in_words(letters: str, count: int) -> str:
     return f"{count} contacts {words}" if several else words
 
 
+def toss_in_words(answer: TossAnswer) -> list[str]:
+    """Return words for the end of a toss, the way there, what is undecided, and what else can happen."""
+    path = answer.toss
+    where = ", ".join(f"{x:.3g}" for x in (path.trajectory.p_WB_W[-1] + 0.0).tolist())
+    strikes = sum(event.kind == TossEventKind.STRIKES for event in path.events)
+    corners = ""
+    if path.resting_corners:
+        corners = f" on corners {' '.join(map(str, path.resting_corners))}"
+    words = [f"{TOSS_ENDS[path.end]} after {path.seconds:.3g} s{corners} at ({where}) m, {strikes} strikes"]
+    if path.undecided:
+        reasons = dict.fromkeys(UNDECIDED[point.reason] for point in path.undecided)
+        followed = "all" if answer.all_followed else "not all"
+        words.append(
+            f"undecided {len(path.undecided)} times ({', '.join(reasons)}); "
+            f"{len(answer.alternatives)} other ways are followed, which are {followed}"
+        )
+    if answer.distribution is not None:
+        words += _distribution_in_words(answer.distribution)
+    return words
+
+
 def many_tumblings_in_words(answer: ManyTumblingsAnswer) -> list[str]:
     """Return words for how many states there are."""
     return [f"has {len(answer)} states"]
@@ -180,6 +237,16 @@ def many_contact_modes_in_words(answer: ManyContactModesAnswer) -> list[str]:
 def outcome_in_words(outcome: ImpactOutcome | None) -> str:
     """Return words for what a contact does in an impact. The outcome is None if the law does not say."""
     return "several at once" if outcome is None else OUTCOMES[outcome]
+
+
+def branch_in_words(kind: BranchKind, corner: int) -> str:
+    """Return words for what happens on a branch of the tree."""
+    return f"corner {corner} {BRANCHES[kind]}" if kind == BranchKind.STRIKES else BRANCHES[kind]
+
+
+def face_in_words(normal_B: FloatArray) -> str:
+    """Return which face lies on a surface with a normal, (3,), body axes: "-z", or its outward normal."""
+    return axis_in_words(0.0 - normal_B)
 
 
 def margin_in_words(margin: SpatialModeMargin) -> str:
@@ -255,6 +322,21 @@ def _probabilities_in_words(impact: ResolvedImpact) -> list[str]:
         named.append((impact.miss_probability, "separates"))
     named.sort(reverse=True)
     return [f"outcomes: {', '.join(f'{words} {100.0 * share:.2g} %' for share, words in named)}"]
+
+
+def _distribution_in_words(told: TossDistribution) -> list[str]:
+    words = []
+    first = [branch for branch in told.branches if branch.strike == 1]
+    if first:
+        kinds = [f"{branch_in_words(each.kind, each.corner)} {each.probability:.0%}" for each in first]
+        words.append(f"what {told.samples} samples do first: {', '.join(kinds)}")
+    if len(told.face_probabilities):
+        faces = [
+            f"{face_in_words(normal)} {share:.0%}"
+            for normal, share in zip(told.face_normals_B, told.face_probabilities.tolist(), strict=True)
+        ]
+        words.append(f"samples rest on the face towards {', '.join(faces)}")
+    return words
 
 
 def _statics_in_words(statics: BodyStatics | None) -> list[str]:

@@ -145,7 +145,7 @@ class Service:
         draw: Draws an answer into a `viewing.picture.Picture`, at the stamp in its last argument, and returns
             what of `viewing.entities` is in view by then, and remarks for the words.
         figures: Yields the figures of an answer (`plots.figures`).
-        cells: Yields the cells of each row of an answer in a table (`replay.answer_rows`).
+        cells: Yields the cells of each row of an answer in a table (`replay.rows`).
     """
 
     name: str
@@ -206,7 +206,7 @@ SERVICES: Final = (
         words=ImportedOnUse("contact_dynamics.diagrams.words:contact_modes_in_words"),
         draw=ImportedOnUse("contact_dynamics.viewing.picture:Picture.draw_contact_modes"),
         figures=ImportedOnUse("contact_dynamics.plots.figures:figures_of_modes"),
-        cells=ImportedOnUse("contact_dynamics.replay.answer_rows:cells_of_contact_modes"),
+        cells=ImportedOnUse("contact_dynamics.replay.rows:cells_of_contact_modes"),
     ),
     Service(
         name="predict_impact",
@@ -224,7 +224,7 @@ SERVICES: Final = (
         words=ImportedOnUse("contact_dynamics.diagrams.words:impact_in_words"),
         draw=ImportedOnUse("contact_dynamics.viewing.picture:Picture.draw_impact"),
         figures=ImportedOnUse("contact_dynamics.plots.figures:figures_of_impact"),
-        cells=ImportedOnUse("contact_dynamics.replay.answer_rows:cells_of_impact"),
+        cells=ImportedOnUse("contact_dynamics.replay.rows:cells_of_impact"),
     ),
     Service(
         name="predict_tumbling",
@@ -242,7 +242,7 @@ SERVICES: Final = (
         words=ImportedOnUse("contact_dynamics.diagrams.words:tumbling_in_words"),
         draw=ImportedOnUse("contact_dynamics.viewing.picture:Picture.draw_tumbling"),
         figures=ImportedOnUse("contact_dynamics.plots.figures:figures_of_tumbling"),
-        cells=ImportedOnUse("contact_dynamics.replay.answer_rows:cells_of_tumbling"),
+        cells=ImportedOnUse("contact_dynamics.replay.rows:cells_of_tumbling"),
     ),
     Service(
         name="predict_toss",
@@ -256,10 +256,10 @@ SERVICES: Final = (
         answer=ImportedOnUse("contact_dynamics.questions.toss:answer"),
         answer_to_msg=ImportedOnUse("msg_adapters.toss:toss_answer_to_msg"),
         answer_from_msg=ImportedOnUse("msg_adapters.toss:toss_answer_from_msg"),
-        words=ImportedOnUse("contact_dynamics.diagrams.toss_words:toss_in_words"),
+        words=ImportedOnUse("contact_dynamics.diagrams.words:toss_in_words"),
         draw=ImportedOnUse("contact_dynamics.viewing.picture:Picture.draw_toss"),
         figures=ImportedOnUse("contact_dynamics.plots.figures:figures_of_toss"),
-        cells=ImportedOnUse("contact_dynamics.replay.answer_rows:cells_of_toss"),
+        cells=ImportedOnUse("contact_dynamics.replay.rows:cells_of_toss"),
     ),
     Service(
         name="predict_impact_batch",
@@ -277,7 +277,7 @@ SERVICES: Final = (
         words=ImportedOnUse("contact_dynamics.diagrams.words:many_impacts_in_words"),
         draw=ImportedOnUse("contact_dynamics.viewing.picture:Picture.draw_many"),
         figures=ImportedOnUse("contact_dynamics.plots.figures:figures_of_many"),
-        cells=ImportedOnUse("contact_dynamics.replay.answer_rows:cells_of_impacts"),
+        cells=ImportedOnUse("contact_dynamics.replay.rows:cells_of_impacts"),
     ),
     Service(
         name="predict_tumbling_batch",
@@ -295,7 +295,7 @@ SERVICES: Final = (
         words=ImportedOnUse("contact_dynamics.diagrams.words:many_tumblings_in_words"),
         draw=ImportedOnUse("contact_dynamics.viewing.picture:Picture.draw_many"),
         figures=ImportedOnUse("contact_dynamics.plots.figures:figures_of_many"),
-        cells=ImportedOnUse("contact_dynamics.replay.answer_rows:cells_of_tumblings"),
+        cells=ImportedOnUse("contact_dynamics.replay.rows:cells_of_tumblings"),
     ),
     Service(
         name="predict_contact_mode_batch",
@@ -311,7 +311,7 @@ SERVICES: Final = (
         answer_from_msg=ImportedOnUse("msg_adapters.contact_mode_batch:contact_modes_answer_from_msg"),
         is_quick=ImportedOnUse("contact_dynamics.questions.effort:are_quick_candidates"),
         words=ImportedOnUse("contact_dynamics.diagrams.words:many_contact_modes_in_words"),
-        cells=ImportedOnUse("contact_dynamics.replay.answer_rows:cells_of_many_contact_modes"),
+        cells=ImportedOnUse("contact_dynamics.replay.rows:cells_of_many_contact_modes"),
     ),
 )
 """All services."""

@@ -14,10 +14,9 @@ from contact_dynamics.recording.errors import DamagedLogWarning
 from contact_dynamics.recording.message_types import Message
 from contact_dynamics.recording.service_calls import ServiceCall
 from contact_dynamics.replay.compare import differences
-from contact_dynamics.replay.event_parts import part_of
 from contact_dynamics.replay.events import OK, UNREADABLE, Answered, StateCame, WorldChanged
 from contact_dynamics.replay.of_log import server_of_log
-from contact_dynamics.replay.timeline import EVERYTHING, in_order
+from contact_dynamics.replay.timeline import EVERYTHING, in_order, part_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping

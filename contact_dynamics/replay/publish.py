@@ -37,12 +37,11 @@ from contact_dynamics.recording.qos import FOREVER_NS, OfferedQos, offered_qos
 from contact_dynamics.recording.service_calls import EVENT_TOPIC_SUFFIX, ServiceCall
 from contact_dynamics.replay.arguments import stamps_as_logged
 from contact_dynamics.replay.compare import differences
-from contact_dynamics.replay.event_parts import part_of
 from contact_dynamics.replay.of_log import server_of_log
 from contact_dynamics.replay.pacing import Pacing, single_keys
 from contact_dynamics.replay.progress import Progress
 from contact_dynamics.replay.report import report
-from contact_dynamics.replay.timeline import CLOCK, in_order
+from contact_dynamics.replay.timeline import CLOCK, in_order, part_of
 from contact_dynamics.replay.verify import ServiceTally, Verification, note_difference
 from msg_adapters.stamps import stamp_ns_from_msg, stamp_to_msg
 

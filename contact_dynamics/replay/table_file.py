@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
     from pathlib import Path
 
-    from contact_dynamics.replay.answer_rows import Cell
+    from contact_dynamics.replay.rows import Cell
 
     Write: TypeAlias = Callable[[dict[str, Cell]], None]
 

@@ -10,12 +10,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
+from contact_dynamics.errors import InvalidFieldError
+from contact_dynamics.recording.cdr import decode_without_ros
 from contact_dynamics.recording.definitions import EVENT_SUFFIX
 from contact_dynamics.recording.file_messages import Span
 from contact_dynamics.recording.service_calls import EVENT_TOPIC_SUFFIX, ServiceCall, service_calls
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator
+    from typing import Any
 
     from contact_dynamics.recording.bag_reader import BagReader, LoggedMessage
 
@@ -47,6 +50,22 @@ def in_order(
     while state is not None:  # what was measured after the last question
         yield state
         state = next(states, None)
+
+
+def part_of(event: LoggedMessage, part: str) -> Any:
+    """Return the request or the response that an event carries.
+
+    Args:
+        event: The event.
+        part: "request" or "response".
+
+    Raises:
+        InvalidFieldError: the event carries none, since its service was introspected without contents.
+    """
+    contents: list[Any] = getattr(decode_without_ros(event), part)
+    if not contents:
+        raise InvalidFieldError(event.topic, f"an event without its {part}", "introspection with contents")
+    return contents[0]
 
 
 def is_event_of_ours(message: LoggedMessage) -> bool:

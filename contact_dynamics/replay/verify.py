@@ -12,9 +12,8 @@ from contact_dynamics.recording.bag_reader import BagReader
 from contact_dynamics.recording.errors import DamagedLogWarning
 from contact_dynamics.recording.service_calls import ServiceCall
 from contact_dynamics.replay.compare import Difference, differences
-from contact_dynamics.replay.event_parts import part_of
 from contact_dynamics.replay.of_log import server_of_log
-from contact_dynamics.replay.timeline import in_order
+from contact_dynamics.replay.timeline import in_order, part_of
 from contact_dynamics.validation import check_not_negative
 
 if TYPE_CHECKING:
