@@ -1,6 +1,8 @@
-"""Reads the fields that requests of several services share: numbers that may be left out, contacts, laws.
+"""Reads and writes fields that requests of several services share: optional numbers, contacts, laws.
 
-`questions` and its neighbours make questions of them.
+A number with its field's default (`LEFT_OUT`) is left out. A value in a field that has no effect, such as a
+horizon if the contacts are given, is an error (`unread_fields`). A question with a gravity of its own has no
+request, and raises `NotSupportedError`.
 """
 
 from __future__ import annotations
@@ -9,27 +11,23 @@ from typing import TYPE_CHECKING, Final, Protocol, TypeVar
 
 import numpy as np
 
-from contact_dynamics.errors import InvalidFieldError
-from contact_dynamics.impact.in_time.sequence import MAX_STRIKES, STRIKE_WINDOW
+from contact_dynamics.errors import InvalidFieldError, NotSupportedError
 from contact_dynamics.impact.law import RestitutionLaw
 from contact_dynamics.impact.several.result import SeveralContactsLaw
-from contact_dynamics.motion.forces import NO_DRAG, NO_WRENCH, ConstantWrench, Drag, WrenchAxes
 from contact_dynamics.plane.projection import PlaneOfMotion
-from contact_dynamics.questions.impact_question import InTime
 from contact_dynamics.questions.problem import Problem
-from contact_dynamics.questions.sample_times import AtRate, AtStamps, AtTimes, UntilContact, UntilPlane
-from msg_adapters.contacts import contacts_from_msg
-from msg_adapters.field_names import WRENCH_FIELDS, renamed
-from msg_adapters.geometry import vector_from_msg
+from msg_adapters.contacts import contacts_from_msg, contacts_to_msg
+from msg_adapters.field_names import renamed
+from msg_adapters.geometry import vector_from_msg, vector_to_msg
 
 if TYPE_CHECKING:
     from geometry_msgs.msg import Vector3
 
     from contact_dynamics.contact.contact import ContactSet
-    from contact_dynamics.questions.sample_times import Sampling
+    from contact_dynamics.questions.contact_modes import ContactModeQuestion
+    from contact_dynamics.questions.impact_question import ImpactQuestion
     from contact_dynamics.validation import FloatArray
     from contact_dynamics_interfaces.msg import ContactSet as ContactSetMsg
-    from contact_dynamics_interfaces.srv import PredictImpact, PredictTumbling
 
 LEFT_OUT: Final = -1
 """The default of a number that a request may leave out. No such number may be negative, and zero is zero."""
@@ -48,6 +46,13 @@ class ContactRequest(Protocol):
     CONTACTS_EXPLICIT: int
     contact_source: int
     contacts: ContactSetMsg
+
+
+class ProblemRequest(Protocol):
+    """The fields about a plane of motion."""
+
+    problem: int
+    plane_normal: Vector3
 
 
 class GravityRequest(Protocol):
@@ -81,61 +86,6 @@ def asked_gravity(request: GravityRequest) -> FloatArray | None:
     if request.gravity == request.GRAVITY_NONE:
         return NOTHING
     raise InvalidFieldError("gravity", request.gravity, "GRAVITY_AS_CONFIGURED (0) or GRAVITY_NONE (1)")
-
-
-def asked_wrench(request: PredictTumbling.Request) -> ConstantWrench:
-    """Return the wrench that acts on the body of a request."""
-    wrench = request.applied_wrench
-    force, torque = wrench.force, wrench.torque
-    if not any((force.x, force.y, force.z, torque.x, torque.y, torque.z)):
-        return NO_WRENCH
-    try:
-        return ConstantWrench(
-            force=vector_from_msg(force),
-            torque=vector_from_msg(torque),
-            axes=WrenchAxes.BODY if request.wrench_in_body_axes else WrenchAxes.WORLD,
-        )
-    except InvalidFieldError as error:
-        raise renamed(error, WRENCH_FIELDS) from None
-
-
-def asked_drag(request: PredictTumbling.Request) -> Drag:
-    """Return the drag that acts on the body of a request."""
-    linear, quadratic = request.linear_drag, request.quadratic_drag
-    linear_angular, quadratic_angular = request.linear_angular_drag, request.quadratic_angular_drag
-    if not any((linear, quadratic, linear_angular, quadratic_angular)):
-        return NO_DRAG
-    return Drag(
-        linear=linear,
-        quadratic=quadratic,
-        linear_angular=linear_angular,
-        quadratic_angular=quadratic_angular,
-    )
-
-
-def asked_sampling(request: PredictTumbling.Request) -> Sampling:
-    """Return the times that a request asks about, or raise `InvalidFieldError`."""
-    if request.sampling == request.AT_TIMES:
-        if len(request.times) == 0:
-            raise InvalidFieldError("times", "none", "at least one time, unless sampling is AT_RATE (2)")
-        return AtTimes(times=request.times)
-    if request.sampling == request.AT_STAMPS:
-        return AtStamps(stamps_ns=request.stamps_ns)
-    rate, duration = optional(request.rate), optional(request.duration)
-    if request.sampling == request.AT_RATE:
-        return AtRate(rate=rate, duration=duration)
-    if request.sampling == request.UNTIL_CONTACT:
-        return UntilContact(rate=rate, duration=duration)
-    if request.sampling == request.UNTIL_PLANE:
-        return UntilPlane(
-            rate=rate,
-            duration=duration,
-            plane_point=vector_from_msg(request.plane_point),
-            plane_normal=vector_from_msg(request.plane_normal),
-            body_point=vector_from_msg(request.body_point),
-        )
-    allowed = "AT_TIMES (0), AT_STAMPS (1), AT_RATE (2), UNTIL_CONTACT (3) or UNTIL_PLANE (4)"
-    raise InvalidFieldError("sampling", request.sampling, allowed)
 
 
 def asked_problem(value: int) -> Problem:
@@ -174,19 +124,40 @@ def _asked_law(field: str, kind: type[Law], value: int) -> Law:
         raise InvalidFieldError(field, value, allowed) from None
 
 
-def asked_several_contacts_law(request: PredictImpact.Request) -> SeveralContactsLaw | InTime:
-    """Return the law for several contacts that a request asks for, or raise `InvalidFieldError`."""
-    value = request.several_contacts_law
-    if value == request.SEQUENTIAL_IN_TIME:
-        window = optional(request.strike_window)
-        most = optional(request.max_strikes)
-        return InTime(
-            strike_window=STRIKE_WINDOW if window is None else window,
-            max_strikes=MAX_STRIKES if most is None else most,
-            hold_step=request.hold_step or None,
-        )
-    try:
-        return SeveralContactsLaw(value)
-    except ValueError:
-        allowed = "SEQUENTIAL (0), SIMULTANEOUS (1), SEQUENTIAL_IN_TIME (2)"
-        raise InvalidFieldError("several_contacts_law", value, allowed) from None
+def write_contacts(msg: ContactRequest, contacts: ContactSet | None) -> None:
+    """Write contacts, with None for those that are found from geometry."""
+    msg.contact_source = msg.CONTACTS_FROM_GEOMETRY if contacts is None else msg.CONTACTS_EXPLICIT
+    if contacts is not None:
+        contacts_to_msg(contacts, into=msg.contacts)
+
+
+def write_gravity(msg: GravityRequest, gravity_W: FloatArray | None) -> None:
+    """Write a gravity, with None for the configured one.
+
+    Raises:
+        NotSupportedError: it is neither the configured one nor zero.
+    """
+    if gravity_W is not None and gravity_W.any():
+        message = f"gravity_W must be the server's, or zero, got {gravity_W.tolist()}"
+        raise NotSupportedError(message)
+    msg.gravity = msg.GRAVITY_AS_CONFIGURED if gravity_W is None else msg.GRAVITY_NONE
+
+
+def write_problem(msg: ProblemRequest, question: ContactModeQuestion | ImpactQuestion) -> None:
+    """Write whether a question is about a plane, the plane, and the tolerances."""
+    msg.problem = int(question.problem)
+    if question.plane is not None:
+        msg.plane_normal = vector_to_msg(question.plane.normal_W)
+    write_given(
+        msg,
+        out_of_plane_tolerance=question.out_of_plane_tolerance,
+        velocity_tolerance=question.velocity_tolerance,
+        distance_tolerance=question.distance_tolerance,
+    )
+
+
+def write_given(msg: object, **numbers: float | None) -> None:
+    """Write the numbers that a question has. The others keep their fields' defaults, which leave them out."""
+    for field, number in numbers.items():
+        if number is not None:
+            setattr(msg, field, number)

@@ -1,4 +1,4 @@
-"""Reads from requests which body they are about and where its state comes from.
+"""Reads from requests, and writes, which body they are about and where its state comes from.
 
 A body is named, or described by an inertia, or both. Its state stands in the request, or was published.
 """
@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING, Final, Protocol
 
 import numpy as np
 
-from contact_dynamics.errors import InvalidFieldError, TooLargeError
+from contact_dynamics.errors import InvalidFieldError, NotSupportedError, TooLargeError
 from contact_dynamics.questions.subject import NEWEST, PublishedState, changed_body
 from contact_dynamics.world import LONGEST_NAME, Body
-from msg_adapters.body_state import known_state_from_msg
+from msg_adapters.body_state import known_state_from_msg, known_state_to_msg
 from msg_adapters.field_names import renamed
-from msg_adapters.geometry import mass_properties_from_msg
-from msg_adapters.stamps import stamp_ns_from_msg
+from msg_adapters.geometry import mass_properties_from_msg, mass_properties_to_msg
+from msg_adapters.stamps import stamp_ns_from_msg, stamp_to_msg
 
 if TYPE_CHECKING:
     from builtin_interfaces.msg import Time
@@ -44,6 +44,12 @@ class _SubjectRequest(Protocol):
     state_source: int
     stamp: Time
     state: BodyStateMsg
+
+
+class _FittedRequest(_SubjectRequest, Protocol):
+    """Those and the window of a fit to published states."""
+
+    fit_window: float
 
 
 def asked_subject(
@@ -133,3 +139,49 @@ def _published(stamp_ns: int | None, fit_window: float = 0.0) -> PublishedState:
     if stamp_ns is None and fit_window == 0.0:
         return NEWEST
     return PublishedState(stamp_ns=stamp_ns, fit_window=fit_window)
+
+
+def write_fitted_subject(
+    msg: _FittedRequest, body: Body | str, source: StateSource, world: World, world_frame: str
+) -> None:
+    """Write what `write_subject` writes, and the window of the fit to published states."""
+    write_subject(msg, body, source, world, world_frame)
+    if isinstance(source, PublishedState):
+        msg.fit_window = source.fit_window
+
+
+def write_subject(
+    msg: _SubjectRequest, body: Body | str, source: StateSource, world: World, world_frame: str
+) -> None:
+    """Write the body that a request is about, and where its state comes from.
+
+    Raises:
+        UnknownBodyError: the world does not have the body.
+        NotSupportedError: the body has no request.
+    """
+    body = world.body(body) if isinstance(body, str) else body
+    msg.body_name = body.name
+    inertia = asked_inertia(body, world)
+    if inertia is not None:
+        msg.inertia = inertia
+    if isinstance(source, PublishedState):
+        msg.state_source = msg.STATE_NEWEST
+        if source.stamp_ns is not None:
+            msg.state_source = msg.STATE_AT_STAMP
+            msg.stamp = stamp_to_msg(source.stamp_ns)
+        return
+    msg.state_source = msg.STATE_EXPLICIT
+    known_state_to_msg(
+        source, body_name=body.name, world_frame=world_frame, p_FB_F=body.p_FB_F, into=msg.state
+    )
+
+
+def asked_inertia(body: Body, world: World) -> Inertia | None:
+    """Return the inertia of a body that differs from the known one, or None if the body is the known one."""
+    named = [known for known in world.bodies if known.name == body.name]
+    if body in named:
+        return None
+    if not named and (body.name or not body.shape.is_empty):
+        message = f"body must be one of the world's, or one without name and shape, got {body.name!r}"
+        raise NotSupportedError(message)
+    return mass_properties_to_msg(body.mass_properties, body.p_FB_F)

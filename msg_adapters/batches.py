@@ -22,12 +22,17 @@ from contact_dynamics.questions.many import (
 from contact_dynamics.rigid_body.published_frame import centers_of_mass, origins_of_published_frame
 from contact_dynamics_interfaces.msg import BodyStates
 from contact_dynamics_interfaces.srv import PredictImpactBatch, PredictTumblingBatch
-from msg_adapters.asked_fields import asked_gravity, asked_restitution_law, optional
-from msg_adapters.asked_subject import asked_body
+from msg_adapters.asked_fields import (
+    asked_gravity,
+    asked_restitution_law,
+    optional,
+    write_given,
+    write_gravity,
+)
+from msg_adapters.asked_subject import asked_body, asked_inertia
 from msg_adapters.body_state import center_of_mass
 from msg_adapters.contacts import flat
 from msg_adapters.field_names import renamed
-from msg_adapters.requests import asked_inertia, write_given, write_gravity
 from msg_adapters.status import with_warnings, without_warnings
 
 if TYPE_CHECKING:

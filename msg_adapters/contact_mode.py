@@ -1,4 +1,7 @@
-"""Converts answers about contact modes to the service's response and back, in world axes."""
+"""Converts questions and answers about contact modes to the service's request and response, and back.
+
+All vectors are in world axes.
+"""
 
 from __future__ import annotations
 
@@ -8,6 +11,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from contact_dynamics.contact.uncertainty import EXACT_CONTACTS, ContactUncertainty
 from contact_dynamics.contact_modes.result import (
     BodyStatics,
     Certainty,
@@ -19,30 +23,184 @@ from contact_dynamics.contact_modes.result import (
 from contact_dynamics.contact_modes.spatial.margins import SpatialModeMargin
 from contact_dynamics.contact_modes.spatial.result import SpatialMode
 from contact_dynamics.contact_modes.spatial.wrench_sets import SpatialWrenchSet
+from contact_dynamics.errors import InvalidFieldError, NotSupportedError
 from contact_dynamics.plane.projection import PlaneOfMotion
-from contact_dynamics.questions.contact_modes import ContactModeAnswer
+from contact_dynamics.questions.contact_modes import ContactModeAnswer, ContactModeQuestion
 from contact_dynamics.questions.problem import Problem
 from contact_dynamics.questions.settled_impact import SettledImpact
+from contact_dynamics.questions.subject import PublishedState
 from contact_dynamics_interfaces.msg import ContactMode, ModeWrenches
 from contact_dynamics_interfaces.srv import PredictContactMode
+from msg_adapters.asked_fields import (
+    NOTHING,
+    asked_contacts,
+    asked_gravity,
+    asked_plane,
+    asked_problem,
+    optional,
+    write_contacts,
+    write_given,
+    write_gravity,
+    write_problem,
+)
+from msg_adapters.asked_subject import asked_subject, write_subject
 from msg_adapters.body_state import body_state_from_msg, body_state_to_msg, center_of_mass
 from msg_adapters.contacts import contacts_from_msg, contacts_to_msg, flat, rows
-from msg_adapters.geometry import vector_from_msg, vector_to_msg
+from msg_adapters.field_names import WRENCH_FIELDS, renamed
+from msg_adapters.geometry import vector_from_msg, vector_to_msg, wrench_to_msg
 from msg_adapters.geometry_margins import (
     geometry_margin_from_msg,
     geometry_margin_to_msg,
+    uncertainty_from_msg,
     within_from_msg,
+    write_uncertainty,
     write_within,
 )
 from msg_adapters.impact import resolved_impact_from_msg, resolved_impact_to_msg
 from msg_adapters.status import with_warnings, without_warnings
+from msg_adapters.unread_fields import CONTACT_MODE, check_unread
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from contact_dynamics.validation import FloatArray
     from contact_dynamics.world import World
+    from contact_dynamics_interfaces.srv import PredictContactModeBatch
+    from msg_adapters.unread_fields import ReadIf
 
 _WEDGED: Final = {True: Certainty.POSSIBLE, False: Certainty.NO, None: Certainty.UNKNOWN}
 """Answers to whether a body is wedged, as they are in the message."""
+
+
+def contact_mode_question_from_msg(
+    request: PredictContactMode.Request, *, world: World, world_frame: str
+) -> ContactModeQuestion:
+    """Return the question of a `PredictContactMode` request.
+
+    Args:
+        request: The request.
+        world: The bodies that it can name.
+        world_frame: The frame that an explicit state must be in.
+
+    Raises:
+        ContactDynamicsError: a field holds what is not allowed, or names a body that is not known.
+    """
+    try:
+        return asked_contact_modes(
+            request,
+            world,
+            world_frame,
+            read_if=CONTACT_MODE,
+            force_W=vector_from_msg(request.applied_wrench.force),
+            torque_W=vector_from_msg(request.applied_wrench.torque),
+            include_wrenches=request.include_wrenches,
+            include_statics=request.include_statics,
+            include_impact=request.include_impact,
+            uncertainty=uncertainty_from_msg(request),
+            include_geometry_margins=request.include_geometry_margins,
+            include_probabilities=request.include_probabilities,
+        )
+    except InvalidFieldError as error:
+        raise renamed(error, WRENCH_FIELDS) from None
+
+
+def asked_contact_modes(
+    request: PredictContactMode.Request | PredictContactModeBatch.Request,
+    world: World,
+    world_frame: str,
+    *,
+    read_if: Iterable[ReadIf],
+    force_W: FloatArray = NOTHING,
+    torque_W: FloatArray = NOTHING,
+    include_wrenches: bool = False,
+    include_statics: bool = False,
+    include_impact: bool = False,
+    uncertainty: ContactUncertainty = EXACT_CONTACTS,
+    include_geometry_margins: bool = False,
+    include_probabilities: bool = False,
+) -> ContactModeQuestion:
+    """Return the question of what requests about one candidate and about many have in common.
+
+    Args:
+        request: The request.
+        world: The bodies that it can name.
+        world_frame: The frame that an explicit state must be in.
+        read_if: The fields of it that are not always read.
+        force_W: The question's own, as what follows.
+        torque_W: As the question's.
+        include_wrenches: As the question's.
+        include_statics: As the question's.
+        include_impact: As the question's.
+        uncertainty: As the question's.
+        include_geometry_margins: As the question's.
+        include_probabilities: As the question's.
+
+    Raises:
+        ContactDynamicsError: a field holds what is not allowed, or names a body that is not known.
+    """
+    problem, contacts, gravity_W = (
+        asked_problem(request.problem),
+        asked_contacts(request),
+        asked_gravity(request),
+    )
+    body, state = asked_subject(request, world, world_frame)
+    check_unread(request, read_if)
+    return ContactModeQuestion(
+        body=body,
+        state=state,
+        contacts=contacts,
+        gravity_W=gravity_W,
+        problem=problem,
+        plane=asked_plane(request.plane_normal),
+        out_of_plane_tolerance=optional(request.out_of_plane_tolerance),
+        velocity_tolerance=optional(request.velocity_tolerance),
+        distance_tolerance=optional(request.distance_tolerance),
+        friction_facets=optional(request.friction_facets),
+        margin_length=optional(request.margin_length),
+        force_W=force_W,
+        torque_W=torque_W,
+        include_margins=request.include_margins,
+        include_wrenches=include_wrenches,
+        include_statics=include_statics,
+        include_impact=include_impact,
+        uncertainty=uncertainty,
+        include_geometry_margins=include_geometry_margins,
+        include_probabilities=include_probabilities,
+    )
+
+
+def contact_mode_question_to_msg(
+    question: ContactModeQuestion, *, world: World, world_frame: str
+) -> PredictContactMode.Request:
+    """Return the request of a question about contact modes, as in `tumbling_question_to_msg`."""
+    msg = PredictContactMode.Request()
+    write_contact_modes(msg, question, world, world_frame)
+    msg.applied_wrench = wrench_to_msg(question.force_W, question.torque_W)
+    msg.include_wrenches = question.include_wrenches
+    msg.include_statics = question.include_statics
+    msg.include_impact = question.include_impact
+    write_uncertainty(question.uncertainty, msg)
+    msg.include_geometry_margins = question.include_geometry_margins
+    msg.include_probabilities = question.include_probabilities
+    return msg
+
+
+def write_contact_modes(
+    msg: PredictContactMode.Request | PredictContactModeBatch.Request,
+    question: ContactModeQuestion,
+    world: World,
+    world_frame: str,
+) -> None:
+    """Write what requests about one candidate and about many have in common."""
+    write_subject(msg, question.body, question.state, world, world_frame)
+    if isinstance(question.state, PublishedState) and question.state.fit_window > 0.0:
+        message = f"fit_window must be 0 for contact modes, got {question.state.fit_window:g}"
+        raise NotSupportedError(message)
+    write_contacts(msg, question.contacts)
+    write_gravity(msg, question.gravity_W)
+    write_problem(msg, question)
+    write_given(msg, friction_facets=question.friction_facets, margin_length=question.margin_length)
+    msg.include_margins = question.include_margins
 
 
 def contact_mode_answer_to_msg(

@@ -11,10 +11,9 @@ from contact_dynamics.questions.many_contact_modes import ManyContactModesAnswer
 from contact_dynamics_interfaces.srv import PredictContactModeBatch
 from msg_adapters.batches import flat_rows
 from msg_adapters.body_state import body_state_from_msg, body_state_to_msg, center_of_mass
+from msg_adapters.contact_mode import asked_contact_modes, write_contact_modes
 from msg_adapters.contacts import contacts_from_msg, contacts_to_msg, flat
 from msg_adapters.field_names import renamed
-from msg_adapters.questions import asked_contact_modes
-from msg_adapters.requests import write_contact_modes
 from msg_adapters.status import with_warnings, without_warnings
 from msg_adapters.unread_fields import CONTACT_MODE_BATCH
 

@@ -1,4 +1,4 @@
-"""Converts answers about impacts to the service's response and back, and impacts to messages and back.
+"""Converts questions and answers about impacts to the service's request and response, and back.
 
 Messages are new, unless ``into`` is an empty one that a response has already. A message costs more to build
 than to fill.
@@ -12,30 +12,144 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from contact_dynamics.constants import ns_after
+from contact_dynamics.errors import InvalidFieldError, NotSupportedError
 from contact_dynamics.impact.in_time.result import SequenceEnd
+from contact_dynamics.impact.in_time.sequence import MAX_STRIKES, STRIKE_WINDOW
 from contact_dynamics.impact.law import ImpactOutcome, PathEvent, RestitutionLaw
 from contact_dynamics.impact.several.result import SeveralContactsLaw
 from contact_dynamics.plane.projection import PlaneOfMotion
 from contact_dynamics.questions.impact_answer import ImpactAnswer, StruckBody
+from contact_dynamics.questions.impact_question import ImpactQuestion, InTime
 from contact_dynamics.questions.problem import Problem
 from contact_dynamics.questions.resolved_impact import ResolvedImpact, SequenceStrike
+from contact_dynamics.questions.subject import PublishedState
 from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.rigid_body.published_frame import centers_of_mass, origin_of_published_frame
 from contact_dynamics_interfaces.msg import Impact as ImpactMsg
 from contact_dynamics_interfaces.srv import PredictImpact
-from msg_adapters.body_state import body_state_from_msg, body_state_to_msg, center_of_mass
+from msg_adapters.asked_fields import (
+    asked_contacts,
+    asked_plane,
+    asked_problem,
+    asked_restitution_law,
+    optional,
+    write_contacts,
+    write_given,
+    write_problem,
+)
+from msg_adapters.asked_subject import asked_inertia, asked_other, asked_subject, write_fitted_subject
+from msg_adapters.body_state import body_state_from_msg, body_state_to_msg, center_of_mass, known_state_to_msg
 from msg_adapters.contacts import contacts_from_msg, contacts_to_msg, flat, rows
 from msg_adapters.geometry import vector_from_msg, vector_to_msg
 from msg_adapters.stamps import stamp_ns_from_msg
 from msg_adapters.status import with_warnings, without_warnings
 from msg_adapters.tumbling import read_fit, write_fit
+from msg_adapters.unread_fields import IMPACT, check_unread
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from contact_dynamics.questions.subject import StateSource
     from contact_dynamics.validation import FloatArray
-    from contact_dynamics.world import World
+    from contact_dynamics.world import Body, World
     from contact_dynamics_interfaces.msg import BodyState as BodyStateMsg
+
+
+def impact_question_from_msg(
+    request: PredictImpact.Request, *, world: World, world_frame: str
+) -> ImpactQuestion:
+    """Return the question of a `PredictImpact` request.
+
+    Args:
+        request: The request.
+        world: The bodies that it can name.
+        world_frame: The frame that explicit states must be in.
+
+    Raises:
+        ContactDynamicsError: a field holds what is not allowed, or names a body that is not known.
+    """
+    problem, law = asked_problem(request.problem), _several_contacts_law(request)
+    body, state = asked_subject(request, world, world_frame, fit_window=request.fit_window)
+    other, other_state = asked_other(request, world, world_frame)
+    contacts = asked_contacts(request)
+    check_unread(request, IMPACT)
+    return ImpactQuestion(
+        body=body,
+        state=state,
+        other=other,
+        other_state=other_state,
+        contacts=contacts,
+        horizon=optional(request.horizon),
+        restitution_law=asked_restitution_law(request.restitution_law),
+        several_contacts_law=law,
+        include_orders=request.include_orders,
+        include_covariance=request.include_covariance,
+        problem=problem,
+        plane=asked_plane(request.plane_normal),
+        out_of_plane_tolerance=optional(request.out_of_plane_tolerance),
+        velocity_tolerance=optional(request.velocity_tolerance),
+        distance_tolerance=optional(request.distance_tolerance),
+    )
+
+
+def _several_contacts_law(request: PredictImpact.Request) -> SeveralContactsLaw | InTime:
+    """Return the law for several contacts that a request asks for, or raise `InvalidFieldError`."""
+    value = request.several_contacts_law
+    if value == request.SEQUENTIAL_IN_TIME:
+        window = optional(request.strike_window)
+        most = optional(request.max_strikes)
+        return InTime(
+            strike_window=STRIKE_WINDOW if window is None else window,
+            max_strikes=MAX_STRIKES if most is None else most,
+            hold_step=request.hold_step or None,
+        )
+    try:
+        return SeveralContactsLaw(value)
+    except ValueError:
+        allowed = "SEQUENTIAL (0), SIMULTANEOUS (1), SEQUENTIAL_IN_TIME (2)"
+        raise InvalidFieldError("several_contacts_law", value, allowed) from None
+
+
+def impact_question_to_msg(
+    question: ImpactQuestion, *, world: World, world_frame: str
+) -> PredictImpact.Request:
+    """Return the request of a question about an impact, with arguments as in `tumbling_question_to_msg`."""
+    msg = PredictImpact.Request()
+    write_fitted_subject(msg, question.body, question.state, world, world_frame)
+    if question.other is not None:
+        _write_other(msg, question.other, question.other_state, world, world_frame)
+    write_contacts(msg, question.contacts)
+    write_given(msg, horizon=question.horizon)
+    msg.restitution_law = int(question.restitution_law)
+    law = question.several_contacts_law
+    if isinstance(law, InTime):
+        msg.several_contacts_law = msg.SEQUENTIAL_IN_TIME
+        msg.strike_window, msg.max_strikes = law.strike_window, law.max_strikes
+        msg.hold_step = law.hold_step or 0.0
+    else:
+        msg.several_contacts_law = int(law)
+    msg.include_orders = question.include_orders
+    msg.include_covariance = question.include_covariance
+    write_problem(msg, question)
+    return msg
+
+
+def _write_other(
+    msg: PredictImpact.Request, body: Body | str, source: StateSource, world: World, world_frame: str
+) -> None:
+    """Write the second body of an impact."""
+    body = world.body(body) if isinstance(body, str) else body
+    msg.other_body_name = body.name
+    inertia = asked_inertia(body, world)
+    if inertia is not None:
+        msg.other_inertia = inertia
+    stamp_ns = stamp_ns_from_msg(msg.stamp) if msg.state_source == msg.STATE_AT_STAMP else None
+    if not isinstance(source, PublishedState):
+        state = known_state_to_msg(source, body_name=body.name, world_frame=world_frame, p_FB_F=body.p_FB_F)
+        msg.other_state = [state]
+    elif source.stamp_ns != stamp_ns or source.fit_window > 0.0:
+        message = "other_state must be that of the request's stamp, without a fit, got a published one"
+        raise NotSupportedError(message)
 
 
 def impact_answer_to_msg(

@@ -23,13 +23,12 @@ from contact_dynamics.toss import (
 from contact_dynamics_interfaces.msg import TossEvent as TossEventMsg
 from contact_dynamics_interfaces.msg import TossPath as TossPathMsg
 from contact_dynamics_interfaces.srv import PredictToss
-from msg_adapters.asked_fields import asked_instant_law, asked_restitution_law, optional
-from msg_adapters.asked_subject import asked_subject
+from msg_adapters.asked_fields import asked_instant_law, asked_restitution_law, optional, write_given
+from msg_adapters.asked_subject import asked_subject, write_fitted_subject
 from msg_adapters.body_state import body_state_from_msg, body_state_to_msg, center_of_mass
 from msg_adapters.contacts import flat, rows
 from msg_adapters.field_names import renamed
 from msg_adapters.geometry import vector_from_msg, vector_to_msg
-from msg_adapters.requests import write_fitted_subject, write_given
 from msg_adapters.toss_distribution import distribution_from_msg, distribution_to_msg
 from msg_adapters.tumbling import read_fit, trajectory_from_msg, trajectory_to_msg, write_fit
 from msg_adapters.unread_fields import TOSS, check_unread

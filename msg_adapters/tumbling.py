@@ -1,4 +1,4 @@
-"""Converts answers about tumbling to the service's response and back."""
+"""Converts questions and answers about tumbling to the service's request and response, and back."""
 
 from __future__ import annotations
 
@@ -7,11 +7,21 @@ from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
+from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.motion.covariance import CarriedCovariance, PropagationMethod, orientation_deviations
+from contact_dynamics.motion.forces import NO_DRAG, NO_WRENCH, ConstantWrench, Drag, WrenchAxes
 from contact_dynamics.motion.integrated import Method
-from contact_dynamics.questions.sample_times import Event, EventKind
+from contact_dynamics.questions.sample_times import (
+    AtRate,
+    AtStamps,
+    AtTimes,
+    Event,
+    EventKind,
+    UntilContact,
+    UntilPlane,
+)
 from contact_dynamics.questions.subject import FitQuality
-from contact_dynamics.questions.tumbling import TumblingAnswer
+from contact_dynamics.questions.tumbling import TumblingAnswer, TumblingQuestion
 from contact_dynamics.rigid_body.published_frame import centers_of_mass, origins_of_published_frame
 from contact_dynamics.tumbling import Trajectory
 from contact_dynamics.tumbling.flips import Flips
@@ -20,17 +30,152 @@ from contact_dynamics.tumbling.regime import Regime
 from contact_dynamics_interfaces.msg import Poinsot as PoinsotMsg
 from contact_dynamics_interfaces.msg import Trajectory as TrajectoryMsg
 from contact_dynamics_interfaces.srv import PredictTumbling
+from msg_adapters.asked_fields import asked_gravity, optional, write_given, write_gravity
+from msg_adapters.asked_subject import asked_subject, write_fitted_subject
 from msg_adapters.body_state import body_state_from_msg, body_state_to_msg, center_of_mass
 from msg_adapters.contacts import flat, rows
-from msg_adapters.geometry import point_to_msg, vector_from_msg, vector_to_msg
+from msg_adapters.field_names import WRENCH_FIELDS, renamed
+from msg_adapters.geometry import point_to_msg, vector_from_msg, vector_to_msg, wrench_to_msg
 from msg_adapters.stamps import stamp_to_msg
+from msg_adapters.unread_fields import TUMBLING, check_unread
 
 if TYPE_CHECKING:
+    from contact_dynamics.questions.sample_times import Sampling
     from contact_dynamics.validation import FloatArray
     from contact_dynamics.world import World
     from contact_dynamics_interfaces.srv import PredictImpact, PredictToss
 
     FittedResponse: TypeAlias = PredictImpact.Response | PredictToss.Response | PredictTumbling.Response
+
+
+def tumbling_question_from_msg(
+    request: PredictTumbling.Request, *, world: World, world_frame: str
+) -> TumblingQuestion:
+    """Return the question of a `PredictTumbling` request.
+
+    Args:
+        request: The request.
+        world: The bodies that it can name.
+        world_frame: The frame that an explicit state must be in.
+
+    Raises:
+        ContactDynamicsError: a field holds what is not allowed, or names a body that is not known.
+    """
+    gravity_W, wrench, drag = asked_gravity(request), _wrench(request), _drag(request)
+    body, state = asked_subject(request, world, world_frame, fit_window=request.fit_window)
+    sampling = _sampling(request)
+    check_unread(request, TUMBLING)
+    return TumblingQuestion(
+        body=body,
+        state=state,
+        sampling=sampling,
+        gravity_W=gravity_W,
+        wrench=wrench,
+        drag=drag,
+        include_covariance=request.include_covariance,
+        curve_points=request.curve_points,
+    )
+
+
+def _wrench(request: PredictTumbling.Request) -> ConstantWrench:
+    """Return the wrench that acts on the body of a request."""
+    wrench = request.applied_wrench
+    force, torque = wrench.force, wrench.torque
+    if not any((force.x, force.y, force.z, torque.x, torque.y, torque.z)):
+        return NO_WRENCH
+    try:
+        return ConstantWrench(
+            force=vector_from_msg(force),
+            torque=vector_from_msg(torque),
+            axes=WrenchAxes.BODY if request.wrench_in_body_axes else WrenchAxes.WORLD,
+        )
+    except InvalidFieldError as error:
+        raise renamed(error, WRENCH_FIELDS) from None
+
+
+def _drag(request: PredictTumbling.Request) -> Drag:
+    """Return the drag that acts on the body of a request."""
+    linear, quadratic = request.linear_drag, request.quadratic_drag
+    linear_angular, quadratic_angular = request.linear_angular_drag, request.quadratic_angular_drag
+    if not any((linear, quadratic, linear_angular, quadratic_angular)):
+        return NO_DRAG
+    return Drag(
+        linear=linear,
+        quadratic=quadratic,
+        linear_angular=linear_angular,
+        quadratic_angular=quadratic_angular,
+    )
+
+
+def _sampling(request: PredictTumbling.Request) -> Sampling:
+    """Return the times that a request asks about, or raise `InvalidFieldError`."""
+    if request.sampling == request.AT_TIMES:
+        if len(request.times) == 0:
+            raise InvalidFieldError("times", "none", "at least one time, unless sampling is AT_RATE (2)")
+        return AtTimes(times=request.times)
+    if request.sampling == request.AT_STAMPS:
+        return AtStamps(stamps_ns=request.stamps_ns)
+    rate, duration = optional(request.rate), optional(request.duration)
+    if request.sampling == request.AT_RATE:
+        return AtRate(rate=rate, duration=duration)
+    if request.sampling == request.UNTIL_CONTACT:
+        return UntilContact(rate=rate, duration=duration)
+    if request.sampling == request.UNTIL_PLANE:
+        return UntilPlane(
+            rate=rate,
+            duration=duration,
+            plane_point=vector_from_msg(request.plane_point),
+            plane_normal=vector_from_msg(request.plane_normal),
+            body_point=vector_from_msg(request.body_point),
+        )
+    allowed = "AT_TIMES (0), AT_STAMPS (1), AT_RATE (2), UNTIL_CONTACT (3) or UNTIL_PLANE (4)"
+    raise InvalidFieldError("sampling", request.sampling, allowed)
+
+
+def tumbling_question_to_msg(
+    question: TumblingQuestion, *, world: World, world_frame: str
+) -> PredictTumbling.Request:
+    """Return the request of a question about tumbling.
+
+    Args:
+        question: The question.
+        world: The bodies that the server knows by name.
+        world_frame: The frame of its world.
+
+    Raises:
+        UnknownBodyError: the question names a body that the world does not have.
+        NotSupportedError: the question has no request.
+    """
+    msg = PredictTumbling.Request()
+    write_fitted_subject(msg, question.body, question.state, world, world_frame)
+    _write_sampling(msg, question.sampling)
+    write_gravity(msg, question.gravity_W)
+    msg.applied_wrench = wrench_to_msg(question.wrench.force, question.wrench.torque)
+    msg.wrench_in_body_axes = question.wrench.axes is WrenchAxes.BODY
+    msg.linear_drag, msg.quadratic_drag = question.drag.linear, question.drag.quadratic
+    msg.linear_angular_drag = question.drag.linear_angular
+    msg.quadratic_angular_drag = question.drag.quadratic_angular
+    msg.include_covariance = question.include_covariance
+    msg.curve_points = question.curve_points
+    return msg
+
+
+def _write_sampling(msg: PredictTumbling.Request, sampling: Sampling) -> None:
+    if isinstance(sampling, AtTimes):
+        msg.sampling, msg.times = msg.AT_TIMES, sampling.times.tolist()
+        return
+    if isinstance(sampling, AtStamps):
+        msg.sampling, msg.stamps_ns = msg.AT_STAMPS, list(sampling.stamps_ns)
+        return
+    msg.sampling = msg.AT_RATE
+    if isinstance(sampling, UntilContact):
+        msg.sampling = msg.UNTIL_CONTACT
+    elif isinstance(sampling, UntilPlane):
+        msg.sampling = msg.UNTIL_PLANE
+        msg.plane_point = point_to_msg(sampling.plane_point)
+        msg.plane_normal = vector_to_msg(sampling.plane_normal)
+        msg.body_point = point_to_msg(sampling.body_point)
+    write_given(msg, rate=sampling.rate, duration=sampling.duration)
 
 
 def tumbling_answer_to_msg(

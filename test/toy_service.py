@@ -71,7 +71,9 @@ def answer(question: ApexQuestion, context: Context | None = None) -> ApexAnswer
     )
 
 
-def question_from_msg(request: PredictTumbling.Request, *, world: World, world_frame: str) -> ApexQuestion:
+def apex_question_from_msg(
+    request: PredictTumbling.Request, *, world: World, world_frame: str
+) -> ApexQuestion:
     """Return the question of a request."""
     from msg_adapters.asked_subject import asked_subject
 
@@ -79,17 +81,19 @@ def question_from_msg(request: PredictTumbling.Request, *, world: World, world_f
     return ApexQuestion(body=body, state=state)
 
 
-def question_to_msg(question: ApexQuestion, *, world: World, world_frame: str) -> PredictTumbling.Request:
+def apex_question_to_msg(
+    question: ApexQuestion, *, world: World, world_frame: str
+) -> PredictTumbling.Request:
     """Return the request of a question."""
     from contact_dynamics_interfaces.srv import PredictTumbling
-    from msg_adapters.requests import write_subject
+    from msg_adapters.asked_subject import write_subject
 
     msg = PredictTumbling.Request()
     write_subject(msg, question.body, question.state, world, world_frame)
     return msg
 
 
-def answer_to_msg(
+def apex_answer_to_msg(
     answer: ApexAnswer, *, world_frame: str, into: PredictTumbling.Response
 ) -> PredictTumbling.Response:
     """Write an answer into a response."""
@@ -102,7 +106,7 @@ def answer_to_msg(
     return into
 
 
-def answer_from_msg(msg: PredictTumbling.Response, *, world: World) -> ApexAnswer:
+def apex_answer_from_msg(msg: PredictTumbling.Response, *, world: World) -> ApexAnswer:
     """Return the answer of a response."""
     from msg_adapters.body_state import body_state_from_msg
     from msg_adapters.tumbling import trajectory_from_msg
@@ -150,11 +154,8 @@ APEX = Service(
     digest=services.service_of_type("PredictTumbling").digest,
     question_type="toy_service:ApexQuestion",
     answer_type="toy_service:ApexAnswer",
-    question_from_msg=ImportedOnUse("toy_service:question_from_msg"),
-    question_to_msg=ImportedOnUse("toy_service:question_to_msg"),
+    adapters="toy_service:apex",
     answer=ImportedOnUse("toy_service:answer"),
-    answer_to_msg=ImportedOnUse("toy_service:answer_to_msg"),
-    answer_from_msg=ImportedOnUse("toy_service:answer_from_msg"),
     words=ImportedOnUse("toy_service:words"),
     draw=ImportedOnUse("toy_service:draw"),
     figures=ImportedOnUse("toy_service:figures"),

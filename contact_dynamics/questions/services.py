@@ -9,7 +9,7 @@ imports no viewer, a table no server, and this file none of them.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from importlib import import_module
 from typing import TYPE_CHECKING, Final, Generic, Protocol, TypeVar
@@ -135,17 +135,19 @@ class Service:
         digest: The digest of its fields (`replay.same_definitions`). A test compares it with the interface.
         question_type: The place of the class of its questions, "package.module:Class".
         answer_type: The place of the class of its answers.
-        question_from_msg: Makes a question of a request.
-        question_to_msg: Makes a request of a question.
+        adapters: The place of its adapters, "package.module:prefix", whose names begin with the prefix:
+            ``prefix_question_from_msg`` and so on.
         answer: Answers a question; a function of a module, which a worker imports.
-        answer_to_msg: Makes a response of an answer.
-        answer_from_msg: Makes an answer of a response.
         is_quick: Whether a question is sure to be answered within some 30 ms. Without it, none is.
         words: Puts an answer into words, a list with the most important first.
         draw: Draws an answer into a `viewing.picture.Picture`, at the stamp in its last argument, and returns
             what of `viewing.entities` is in view by then, and remarks for the words.
         figures: Yields the figures of an answer (`plots.figures`).
         cells: Yields the cells of each row of an answer in a table (`replay.rows`).
+        question_from_msg: Makes a question of a request.
+        question_to_msg: Makes a request of a question.
+        answer_to_msg: Makes a response of an answer.
+        answer_from_msg: Makes an answer of a response.
     """
 
     name: str
@@ -154,16 +156,22 @@ class Service:
     digest: str
     question_type: str
     answer_type: str
-    question_from_msg: ImportedOnUse[Question[Answer]]
-    question_to_msg: ImportedOnUse[object]
+    adapters: str
     answer: ImportedOnUse[Answer]
-    answer_to_msg: ImportedOnUse[object]
-    answer_from_msg: ImportedOnUse[Answer]
     is_quick: ImportedOnUse[bool] | None = None
     words: ImportedOnUse[list[str]] | None = None
     draw: ImportedOnUse[tuple[list[str], list[str]]] | None = None
     figures: ImportedOnUse[Iterator[tuple[str, object]]] | None = None
     cells: ImportedOnUse[Iterator[dict[str, str | int | float | None]]] | None = None
+    question_from_msg: ImportedOnUse[Question[Answer]] = field(init=False)
+    question_to_msg: ImportedOnUse[object] = field(init=False)
+    answer_to_msg: ImportedOnUse[object] = field(init=False)
+    answer_from_msg: ImportedOnUse[Answer] = field(init=False)
+
+    def __post_init__(self) -> None:
+        """Find the adapters."""
+        for name in ("question_from_msg", "question_to_msg", "answer_to_msg", "answer_from_msg"):
+            object.__setattr__(self, name, ImportedOnUse(f"{self.adapters}_{name}"))
 
     @property
     def service_type(self) -> ServiceType:
@@ -197,11 +205,8 @@ SERVICES: Final = (
         digest="c01e2bc54d5ecf14",
         question_type="contact_dynamics.questions.contact_modes:ContactModeQuestion",
         answer_type="contact_dynamics.questions.contact_modes:ContactModeAnswer",
-        question_from_msg=ImportedOnUse("msg_adapters.questions:contact_mode_question_from_msg"),
-        question_to_msg=ImportedOnUse("msg_adapters.requests:contact_mode_question_to_msg"),
+        adapters="msg_adapters.contact_mode:contact_mode",
         answer=ImportedOnUse("contact_dynamics.questions.contact_modes:answer"),
-        answer_to_msg=ImportedOnUse("msg_adapters.contact_mode:contact_mode_answer_to_msg"),
-        answer_from_msg=ImportedOnUse("msg_adapters.contact_mode:contact_mode_answer_from_msg"),
         is_quick=ImportedOnUse("contact_dynamics.questions.effort:are_quick_modes"),
         words=ImportedOnUse("contact_dynamics.diagrams.words:contact_modes_in_words"),
         draw=ImportedOnUse("contact_dynamics.viewing.picture:Picture.draw_contact_modes"),
@@ -215,11 +220,8 @@ SERVICES: Final = (
         digest="6fec62f9a6020c11",
         question_type="contact_dynamics.questions.impact_question:ImpactQuestion",
         answer_type="contact_dynamics.questions.impact_answer:ImpactAnswer",
-        question_from_msg=ImportedOnUse("msg_adapters.questions:impact_question_from_msg"),
-        question_to_msg=ImportedOnUse("msg_adapters.requests:impact_question_to_msg"),
+        adapters="msg_adapters.impact:impact",
         answer=ImportedOnUse("contact_dynamics.questions.impact:answer"),
-        answer_to_msg=ImportedOnUse("msg_adapters.impact:impact_answer_to_msg"),
-        answer_from_msg=ImportedOnUse("msg_adapters.impact:impact_answer_from_msg"),
         is_quick=ImportedOnUse("contact_dynamics.questions.effort:is_quick_impact"),
         words=ImportedOnUse("contact_dynamics.diagrams.words:impact_in_words"),
         draw=ImportedOnUse("contact_dynamics.viewing.picture:Picture.draw_impact"),
@@ -233,11 +235,8 @@ SERVICES: Final = (
         digest="faff7ceb375e4674",
         question_type="contact_dynamics.questions.tumbling:TumblingQuestion",
         answer_type="contact_dynamics.questions.tumbling:TumblingAnswer",
-        question_from_msg=ImportedOnUse("msg_adapters.questions:tumbling_question_from_msg"),
-        question_to_msg=ImportedOnUse("msg_adapters.requests:tumbling_question_to_msg"),
+        adapters="msg_adapters.tumbling:tumbling",
         answer=ImportedOnUse("contact_dynamics.questions.tumbling:answer"),
-        answer_to_msg=ImportedOnUse("msg_adapters.tumbling:tumbling_answer_to_msg"),
-        answer_from_msg=ImportedOnUse("msg_adapters.tumbling:tumbling_answer_from_msg"),
         is_quick=ImportedOnUse("contact_dynamics.questions.effort:is_quick_flight"),
         words=ImportedOnUse("contact_dynamics.diagrams.words:tumbling_in_words"),
         draw=ImportedOnUse("contact_dynamics.viewing.picture:Picture.draw_tumbling"),
@@ -251,11 +250,8 @@ SERVICES: Final = (
         digest="e134e6cfc8c53f8d",
         question_type="contact_dynamics.questions.toss:TossQuestion",
         answer_type="contact_dynamics.questions.toss:TossAnswer",
-        question_from_msg=ImportedOnUse("msg_adapters.toss:toss_question_from_msg"),
-        question_to_msg=ImportedOnUse("msg_adapters.toss:toss_question_to_msg"),
+        adapters="msg_adapters.toss:toss",
         answer=ImportedOnUse("contact_dynamics.questions.toss:answer"),
-        answer_to_msg=ImportedOnUse("msg_adapters.toss:toss_answer_to_msg"),
-        answer_from_msg=ImportedOnUse("msg_adapters.toss:toss_answer_from_msg"),
         words=ImportedOnUse("contact_dynamics.diagrams.words:toss_in_words"),
         draw=ImportedOnUse("contact_dynamics.viewing.picture:Picture.draw_toss"),
         figures=ImportedOnUse("contact_dynamics.plots.figures:figures_of_toss"),
@@ -268,11 +264,8 @@ SERVICES: Final = (
         digest="9638ca21106dfd4a",
         question_type="contact_dynamics.questions.many:ManyImpactsQuestion",
         answer_type="contact_dynamics.questions.many:ManyImpactsAnswer",
-        question_from_msg=ImportedOnUse("msg_adapters.batches:impacts_question_from_msg"),
-        question_to_msg=ImportedOnUse("msg_adapters.batches:impacts_question_to_msg"),
+        adapters="msg_adapters.batches:impacts",
         answer=ImportedOnUse("contact_dynamics.questions.many:answer_impacts"),
-        answer_to_msg=ImportedOnUse("msg_adapters.batches:impacts_answer_to_msg"),
-        answer_from_msg=ImportedOnUse("msg_adapters.batches:impacts_answer_from_msg"),
         is_quick=ImportedOnUse("contact_dynamics.questions.effort:are_quick_impacts"),
         words=ImportedOnUse("contact_dynamics.diagrams.words:many_impacts_in_words"),
         draw=ImportedOnUse("contact_dynamics.viewing.picture:Picture.draw_many"),
@@ -286,11 +279,8 @@ SERVICES: Final = (
         digest="f198a921773488f5",
         question_type="contact_dynamics.questions.many:ManyTumblingsQuestion",
         answer_type="contact_dynamics.questions.many:ManyTumblingsAnswer",
-        question_from_msg=ImportedOnUse("msg_adapters.batches:tumblings_question_from_msg"),
-        question_to_msg=ImportedOnUse("msg_adapters.batches:tumblings_question_to_msg"),
+        adapters="msg_adapters.batches:tumblings",
         answer=ImportedOnUse("contact_dynamics.questions.many:answer_tumblings"),
-        answer_to_msg=ImportedOnUse("msg_adapters.batches:tumblings_answer_to_msg"),
-        answer_from_msg=ImportedOnUse("msg_adapters.batches:tumblings_answer_from_msg"),
         is_quick=ImportedOnUse("contact_dynamics.questions.effort:are_quick_flights"),
         words=ImportedOnUse("contact_dynamics.diagrams.words:many_tumblings_in_words"),
         draw=ImportedOnUse("contact_dynamics.viewing.picture:Picture.draw_many"),
@@ -304,11 +294,8 @@ SERVICES: Final = (
         digest="4e9a384d6b1f41dd",
         question_type="contact_dynamics.questions.many_contact_modes:ManyContactModesQuestion",
         answer_type="contact_dynamics.questions.many_contact_modes:ManyContactModesAnswer",
-        question_from_msg=ImportedOnUse("msg_adapters.contact_mode_batch:contact_modes_question_from_msg"),
-        question_to_msg=ImportedOnUse("msg_adapters.contact_mode_batch:contact_modes_question_to_msg"),
+        adapters="msg_adapters.contact_mode_batch:contact_modes",
         answer=ImportedOnUse("contact_dynamics.questions.many_contact_modes:answer"),
-        answer_to_msg=ImportedOnUse("msg_adapters.contact_mode_batch:contact_modes_answer_to_msg"),
-        answer_from_msg=ImportedOnUse("msg_adapters.contact_mode_batch:contact_modes_answer_from_msg"),
         is_quick=ImportedOnUse("contact_dynamics.questions.effort:are_quick_candidates"),
         words=ImportedOnUse("contact_dynamics.diagrams.words:many_contact_modes_in_words"),
         cells=ImportedOnUse("contact_dynamics.replay.rows:cells_of_many_contact_modes"),

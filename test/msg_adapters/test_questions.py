@@ -32,11 +32,9 @@ from contact_dynamics.questions import (
 from contact_dynamics.questions.subject import NEWEST
 from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact, PredictTumbling
-from msg_adapters.questions import (
-    contact_mode_question_from_msg,
-    impact_question_from_msg,
-    tumbling_question_from_msg,
-)
+from msg_adapters.contact_mode import contact_mode_question_from_msg
+from msg_adapters.impact import impact_question_from_msg
+from msg_adapters.tumbling import tumbling_question_from_msg
 from questions.known_world import CUBE, WORLD
 
 FROM_MSG = {

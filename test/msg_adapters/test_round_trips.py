@@ -69,6 +69,7 @@ from msg_adapters.batches import (
 )
 from msg_adapters.body_state import known_state_from_msg, known_state_to_msg
 from msg_adapters.contact_mode import (
+    contact_mode_question_to_msg,
     margin_from_msg,
     mode_from_msg,
     mode_to_msg,
@@ -78,15 +79,10 @@ from msg_adapters.contact_mode import (
 from msg_adapters.contacts import contacts_from_msg, contacts_to_msg
 from msg_adapters.geometry_margins import geometry_margin_from_msg, geometry_margin_to_msg
 from msg_adapters.impact import (
+    impact_question_from_msg,
+    impact_question_to_msg,
     resolved_impact_from_msg,
     resolved_impact_to_msg,
-)
-from msg_adapters.questions import (
-    impact_question_from_msg,
-)
-from msg_adapters.requests import (
-    contact_mode_question_to_msg,
-    impact_question_to_msg,
 )
 from msg_adapters.toss import (
     toss_event_from_msg,

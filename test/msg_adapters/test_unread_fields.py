@@ -22,13 +22,11 @@ from contact_dynamics_interfaces.srv import (
 )
 from message_values.shared import same
 from msg_adapters.batches import impacts_question_from_msg, tumblings_question_from_msg
+from msg_adapters.contact_mode import contact_mode_question_from_msg
 from msg_adapters.contact_mode_batch import contact_modes_question_from_msg
-from msg_adapters.questions import (
-    contact_mode_question_from_msg,
-    impact_question_from_msg,
-    tumbling_question_from_msg,
-)
+from msg_adapters.impact import impact_question_from_msg
 from msg_adapters.toss import toss_question_from_msg
+from msg_adapters.tumbling import tumbling_question_from_msg
 from questions.known_world import WORLD
 
 FROM_MSG = {
