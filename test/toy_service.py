@@ -1,8 +1,8 @@
 """A service that is added as a user would add one: how high does a body rise?
 
-It has its question and answer, what answers it, its adapters, what shows and lists its answers, and its
-record. A service that is added for good has a ``.srv``. This one takes the place of `PredictTumbling`, whose
-request and response have room for it.
+It has its question and answer, what answers it, its adapters, what shows its answers, and its record. A
+service that is added for good has a ``.srv``. This one takes the place of `PredictTumbling`, whose request and
+response have room for it.
 """
 
 from __future__ import annotations
@@ -142,11 +142,6 @@ def figures(answer: ApexAnswer, **_: object) -> Iterator[tuple[str, Figure]]:
     yield "top", figure
 
 
-def cells(answer: ApexAnswer, asked: object) -> Iterator[dict[str, str]]:  # noqa: ARG001
-    """Yield what a row of a table says."""
-    yield {"says": "rises" if answer.trajectory.seconds[0] > 0.0 else "falls"}
-
-
 APEX = Service(
     name="predict_apex",
     type_name="PredictTumbling",
@@ -159,7 +154,6 @@ APEX = Service(
     words=ImportedOnUse("toy_service:words"),
     draw=ImportedOnUse("toy_service:draw"),
     figures=ImportedOnUse("toy_service:figures"),
-    cells=ImportedOnUse("toy_service:cells"),
 )
 PROGRAM = ("-c", "import sys, toy_service; sys.exit(toy_service.run())")
 """Arguments of Python that run the command line with this service in the table."""

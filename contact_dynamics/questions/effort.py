@@ -70,7 +70,7 @@ def _same(now_ns: int | None) -> int | None:
 
 
 def is_quick_flight(question: TumblingQuestion, context: Context) -> bool:
-    """Tell whether a motion is free, and any search for its end short."""
+    """Return whether a motion is free, and any search for its end is short."""
     sampling = question.sampling
     if question.wrench is not NO_WRENCH or question.drag is not NO_DRAG:
         return False
@@ -83,7 +83,7 @@ def is_quick_flight(question: TumblingQuestion, context: Context) -> bool:
 
 
 def is_quick_impact(question: ImpactQuestion, context: Context) -> bool:
-    """Tell whether an impact is one at few contacts, which need no long search."""
+    """Return whether an impact is at few contacts, which need no long search."""
     if question.include_orders or question.include_covariance:
         return False
     if not _is_quick_fit(question.body, question.state, context):
@@ -99,7 +99,7 @@ def is_quick_impact(question: ImpactQuestion, context: Context) -> bool:
 
 
 def are_quick_modes(question: ContactModeQuestion, context: Context) -> bool:
-    """Tell whether the modes are those of few contacts, without what takes long."""
+    """Return whether the modes are those of few contacts, without the options that take long."""
     if (
         question.include_geometry_margins
         or question.include_probabilities
@@ -121,17 +121,17 @@ def are_quick_modes(question: ContactModeQuestion, context: Context) -> bool:
 
 
 def are_quick_candidates(question: ManyContactModesQuestion, context: Context) -> bool:
-    """Tell whether candidates are few, and each is quick."""
+    """Return whether candidates are few, and each is quick."""
     return len(question) <= MAX_QUICK_CANDIDATES and are_quick_modes(question.asked, context)
 
 
 def are_quick_impacts(question: ManyImpactsQuestion, context: Context) -> bool:  # noqa: ARG001  as all
-    """Tell whether impacts are few."""
+    """Return whether impacts are few."""
     return len(question.states) <= MAX_QUICK_IMPACTS
 
 
 def are_quick_flights(question: ManyTumblingsQuestion, context: Context) -> bool:  # noqa: ARG001  as all
-    """Tell that free flights are quick: 10 000 of them take 30 ms."""
+    """Return that free flights are quick: 10 000 of them take 30 ms."""
     return True
 
 

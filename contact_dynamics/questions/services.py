@@ -104,10 +104,9 @@ class ServiceType(Protocol):
 class ImportedOnUse(Generic[Result]):
     """A function that is imported when it is used first."""
 
-    def __init__(self, place: str) -> None:
-        """Name it, as "package.module:function" or "package.module:Class.function"."""
-        self.place = place
-        self.module, _, self._name = place.partition(":")
+    def __init__(self, path: str) -> None:
+        """Take its import path, "package.module:function" or "package.module:Class.function"."""
+        self.module, _, self._name = path.partition(":")
 
     @cached_property
     def function(self) -> Callable[..., Result]:
@@ -124,22 +123,23 @@ class ImportedOnUse(Generic[Result]):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Service:
-    """A service of the server, and all that the package knows about it.
+    """A service of the server: what it is, what answers it, and how its answers are shown.
 
-    Only what makes it a service is required. Without the rest, an answer shows as words, in one row.
+    What is optional concerns how answers are shown. By default, they are short texts, and one row of a table.
 
     Attributes:
         name: Its name below the node's, "predict_impact".
         type_name: The name of its type, "PredictImpact".
         kind: The kind of its answers, in words.
-        digest: The digest of its fields (`replay.same_definitions`). A test compares it with the interface.
-        question_type: The place of the class of its questions, "package.module:Class".
-        answer_type: The place of the class of its answers.
-        adapters: The place of its adapters, "package.module:prefix", whose names begin with the prefix:
-            ``prefix_question_from_msg`` and so on.
-        answer: Answers a question; a function of a module, which a worker imports.
-        is_quick: Whether a question is sure to be answered within some 30 ms. Without it, none is.
-        words: Puts an answer into words, a list with the most important first.
+        digest: The digest of its fields (`replay.of_log`). A test compares it with the interface.
+        question_type: The import path of the class of its questions, "package.module:Class".
+        answer_type: The import path of the class of its answers.
+        adapters: The import path of its adapters, "package.module:prefix". The names of the four functions
+            begin with the prefix: ``prefix_question_from_msg`` and so on.
+        answer: Answers a question. It is a function of a module, so that a worker can import it.
+        is_quick: Returns whether a question is sure to be answered within 30 ms. By default, none is, and
+            workers answer all of them.
+        words: Puts an answer into words, with the most important first.
         draw: Draws an answer into a `viewing.picture.Picture`, at the stamp in its last argument, and returns
             what of `viewing.entities` is in view by then, and remarks for the words.
         figures: Yields the figures of an answer (`plots.figures`).
@@ -186,7 +186,7 @@ class Service:
                 each.function  # noqa: B018  it is imported by that
 
     def is_answered_at_once(self, question: Question[Answer], context: Context) -> bool:
-        """Tell whether the answer is sure to come soon; what will be rejected counts as quick."""
+        """Return whether the answer is sure to come soon. A question that is rejected counts as quick."""
         try:
             return self.is_quick is not None and self.is_quick(question, context)
         except ContactDynamicsError:
@@ -323,12 +323,12 @@ def service_of(what: Question[Answer] | Answer) -> Service:
     Raises:
         NotSupportedError: there is none.
     """
-    place = f"{type(what).__module__}:{type(what).__qualname__}"
+    path = f"{type(what).__module__}:{type(what).__qualname__}"
     for service in SERVICES:
-        if place in {service.question_type, service.answer_type}:
+        if path in {service.question_type, service.answer_type}:
             return service
     known = ", ".join(each.kind for each in SERVICES)
-    raise NotSupportedError(f"a question or an answer must be of one of these kinds: {known}, got {place}")
+    raise NotSupportedError(f"a question or an answer must be of one of these kinds: {known}, got {path}")
 
 
 def ask(question: Question[Answer_co], context: Context | None = None) -> Answer_co:

@@ -7,8 +7,8 @@ over ROS, in the time that `pacing` keeps.
 Tables and pictures are made of `events`. `logged` reads them from a log of the server. `asking` reads the
 states of any recording, with a `configuration` beside it, and asks its own questions.
 
-`of_log` makes the server of a log, and `again` answers as it did. `timeline` puts questions and states into
-the order in which they came, and takes both out of events. `compare` finds the fields in which two responses
-differ. `stand_ins` makes the classes of messages where ROS is not installed. `same_definitions` rejects a log
-whose services have other fields. `arguments`, `run`, `report` and `progress` are the command.
+`of_log` makes the server of a log, or rejects one whose services have other fields, and `again` answers as it
+did. `timeline` puts questions and states into the order in which they came, and takes both out of events.
+`compare` finds the fields in which two responses differ. `stand_ins` makes the classes of messages where ROS
+is not installed. `arguments`, `run`, `report` and `progress` are the command.
 """

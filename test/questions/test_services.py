@@ -35,8 +35,8 @@ def test_every_interface_has_a_record_and_a_row_in_the_index() -> None:
 def test_what_a_record_names_exists(service: Service) -> None:
     named = [getattr(service, field.name) for field in fields(service)]
     assert all(callable(each.function) for each in named if isinstance(each, ImportedOnUse))
-    for place, base in ((service.question_type, Question), (service.answer_type, Answer)):
-        assert base in inspect.getmro(ImportedOnUse[Any](place).function)
+    for path, base in ((service.question_type, Question), (service.answer_type, Answer)):
+        assert base in inspect.getmro(ImportedOnUse[Any](path).function)
     assert service.service_type.__name__ == service.type_name
     assert service_of_type(f"contact_dynamics_interfaces/srv/{service.type_name}") is service
 

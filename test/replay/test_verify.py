@@ -20,8 +20,8 @@ from contact_dynamics.questions.services import SERVICES
 from contact_dynamics.recording import BagReader, BagWriter, LoggedMessage, NotALogError, service_calls
 from contact_dynamics.recording.definitions import find_definition
 from contact_dynamics.recording.errors import DamagedLogWarning
+from contact_dynamics.replay.of_log import digest
 from contact_dynamics.replay.run import main
-from contact_dynamics.replay.same_definitions import digest
 from contact_dynamics.replay.verify import Verification, verify_log
 from message_words import says
 from replay.asked_log import Asked, configured, without_ros
