@@ -1,8 +1,8 @@
 """A service that is added as a user would add one: how high does a body rise?
 
 It has its question and answer, what answers it, its adapters, what shows its answers, and its record. A
-service that is added for good has a ``.srv``. This one takes the place of `PredictTumbling`, whose request and
-response have room for it.
+service that is added for good has a ``.srv``. This one takes the place of `PredictTumbling`, whose request
+and response have room for it.
 """
 
 from __future__ import annotations
