@@ -44,7 +44,7 @@ def test_bytes_that_are_no_requests_disturb_nobody_who_asks() -> None:
     with served() as (_, client, domain_id):
         rude = subprocess.Popen(
             [sys.executable, str(Path(__file__).with_name("raw_requests.py")), str(EACH), "12"],
-            env={**environment(domain_id), "PYTHONPATH": str(ROOT / "test")},
+            env={**environment(domain_id), "PYTHONPATH": f"{ROOT}:{ROOT / 'test'}"},
             stdout=subprocess.PIPE,
             text=True,
         )
