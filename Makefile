@@ -42,7 +42,7 @@ test: lint types $(MADE)/test ## lint, types and the tests; JOBS=1 runs them in 
 test-matrix: ## the physics with the oldest and newest NumPy and SciPy, on every Python and several kinds of processors
 	@setup/matrix.sh $(VENV)-matrix
 
-wheels: ## wheels for every Python of this machine, in dist/, checked by auditwheel
+wheels: ## wheels for every Python of this machine, checked by auditwheel, and a plain one for all platforms, in dist/
 	@setup/wheels.sh $(VENV)-wheels
 
 SWEEP ?= test

@@ -1,7 +1,8 @@
 """Packaging for pip and for colcon.
 
 package.xml has the version and the description of the package, and requirements/ has the dependencies. Each
-`.pxd` of the package names a module that Cython compiles. Without Cython or a C compiler it stays Python.
+`.pxd` of the package names a module that Cython compiles. Without Cython or a C compiler it stays Python, and
+with `CONTACT_DYNAMICS_PLAIN=1` in the environment too: the wheel is then for every platform.
 """
 
 from __future__ import annotations
@@ -43,16 +44,16 @@ def files(pattern: str) -> list[str]:
 
 
 def core() -> list[Extension]:
-    """Return the modules that compile, if Cython is there."""
-    if find_spec("Cython") is None:
+    """Return the modules to compile: none without Cython, or where the environment asks for plain Python."""
+    compiled = runpy.run_path(str(HERE / NAME / "numerics" / "compiled.py"))
+    if find_spec("Cython") is None or compiled["plain_is_chosen"]():
         return []
-    checksum = runpy.run_path(str(HERE / NAME / "numerics" / "compiled.py"))["checksum"]
     sources = [Path(name).with_suffix(".py") for name in files(f"{NAME}/**/*.pxd")]
     return [
         Extension(
             ".".join(source.with_suffix("").parts),
             [str(source)],
-            define_macros=[("SOURCE_CRC", str(checksum(HERE / source)))],
+            define_macros=[("SOURCE_CRC", str(compiled["checksum"](HERE / source)))],
             # A fused multiply-add would round once where Python rounds twice. GCC 12 makes some of
             # pairs of operations all the same, unless it leaves these alone.
             extra_compile_args=["-O2", "-ffp-contract=off", "-fno-tree-slp-vectorize"],

@@ -3,7 +3,7 @@
 Both forms give the same bits, and the compiled one is much faster. Python imports it by itself where it
 exists, even if it was built from older sources. So compiled modules carry a checksum of their sources, and
 where it does not fit, the `.py` runs. The variable `CONTACT_DYNAMICS_PLAIN=1` in the environment chooses the
-`.py` too, for tests, coverage and debuggers.
+`.py` too, for tests, coverage and debuggers, and makes setup.py build a wheel without the core.
 """
 
 from __future__ import annotations
@@ -23,6 +23,11 @@ SLOWER: Final = "impacts in space take 4 to 5 times as long, and large batches o
 """The cost of running without the compiled core. `make bench` measures it with `CONTACT_DYNAMICS_PLAIN=1`."""
 
 
+def plain_is_chosen() -> bool:
+    """Return whether the environment asks for plain Python."""
+    return os.environ.get(PLAIN, "0") not in {"", "0"}
+
+
 def checksum(source: Path) -> int:
     """Return the checksum of a `.py` file and the `.pxd` beside it, which setup.py compiles in."""
     return zlib.crc32(source.read_bytes() + source.with_suffix(".pxd").read_bytes()) & 0x7FFFFFFF
@@ -37,7 +42,7 @@ def import_core(module: str) -> None:
         return
     package, _, name = module.rpartition(".")
     source = Path(sys.modules[package].__path__[0], f"{name}.py")
-    if os.environ.get(PLAIN, "0") in {"", "0"}:
+    if not plain_is_chosen():
         try:
             built = getattr(importlib.import_module(module), "SOURCE_CRC", None)
         except ImportError as error:
