@@ -1,8 +1,8 @@
 """A hook of MkDocs: pages from outside of docs/, links that leave docs/, and the order of all pages.
 
 The documents are written for people who read them in the repository, so they link to sources and to pages
-beside docs/. The site gets those pages too, and the examples as pages with code. A link to another source
-file becomes its name.
+beside docs/. The site gets those pages too, the examples as pages with code, and for the playground the wheel
+without the compiled core. A link to another source file becomes its name.
 """
 
 from __future__ import annotations
@@ -11,10 +11,14 @@ import ast
 import json
 import os
 import re
+import subprocess
+import sys
 from base64 import b64decode
 from itertools import pairwise
 from pathlib import Path, PurePosixPath
+from tempfile import TemporaryDirectory
 from typing import Any
+from xml.etree import ElementTree as ET
 
 from mkdocs.structure.files import File, Files
 from mkdocs.structure.nav import Navigation
@@ -45,11 +49,17 @@ NOTEBOOKS = {
 }
 """The pages that show the notebooks."""
 
+VERSION = ET.parse(ROOT / "package.xml").getroot().findtext("version")
+WHEEL = {f"contact_dynamics-{VERSION}-py3-none-any.whl": "setup/plain_wheel.sh"}
+"""The wheel that the playground runs, and what builds it."""
+
 SECTION_PAGES = {"guides.md", "reference.md", "explanation.md"}
 """The first pages of sections, which link to every page of theirs."""
 
 LINK = re.compile(r"(?<!!)\[((?:[^\[\]]|\[[^\]]*\])*)\]\(([^)\s:#]+)(#[^)\s]*)?\)")
 IMAGE = re.compile(r"(!\[[^\]]*\])\(docs/([^)\s]+)\)")
+NUMBER = re.compile(r"\d[\d.]*e-\d+")
+CELL = re.compile(r"<td.*?</td>", re.DOTALL)
 MARKER = re.compile(r"<!--/?(?:bench:[\w.]+)?-->")
 
 
@@ -114,6 +124,13 @@ def notebook_page(source: str) -> tuple[str, dict[str, bytes]]:
     return "\n\n".join(parts), pictures
 
 
+def plain_wheel(name: str) -> bytes:
+    """Return the wheel without the compiled core."""
+    with TemporaryDirectory() as folder:
+        subprocess.run([ROOT / WHEEL[name], sys.executable, folder], check=True)
+        return (Path(folder) / name).read_bytes()
+
+
 def on_files(files: Files, config: Any) -> Files:
     """Add the pages from elsewhere."""
     files.append(File.generated(config, INTERFACE_FILES, content=interface_files()))
@@ -124,6 +141,8 @@ def on_files(files: Files, config: Any) -> Files:
         files.append(File.generated(config, name, content=page))
         for picture, content in pictures.items():
             files.append(File.generated(config, f"notebooks/{picture}", content=content))
+    for name in WHEEL:
+        files.append(File.generated(config, name, content=plain_wheel(name)))
     for name, source in PAGES.items():
         text = (ROOT / source).read_text(encoding="utf-8")
         files.append(File.generated(config, name, content=IMAGE.sub(r"\1(\2)", text)))
@@ -158,11 +177,16 @@ def on_page_markdown(markdown: str, page: Any, **_: Any) -> str:
     return MARKER.sub("", LINK.sub(lambda link: link_on_site(link, name, source), markdown))
 
 
+def on_page_content(html: str, **_: Any) -> str:
+    """Mark numbers in tables that a line must not end in: browsers break it at a hyphen."""
+    return CELL.sub(lambda cell: NUMBER.sub(r'<span class="number">\g<0></span>', cell[0]), html)
+
+
 def link_on_site(link: re.Match[str], name: str, source: PurePosixPath) -> str:
     """Return the link as the page of that name needs it. What leads nowhere stays, and MkDocs complains."""
     text, target, anchor = link.groups()
     path = os.path.normpath(source.parent / target)
-    elsewhere = {of: page for page, of in (PAGES | CODE | NOTEBOOKS).items()}
+    elsewhere = {of: page for page, of in (PAGES | CODE | NOTEBOOKS | WHEEL).items()}
     definition = re.fullmatch(r"contact_dynamics_interfaces/(?:srv|msg)/(\w+)\.(?:srv|msg)", path)
     if definition and (ROOT / path).is_file():
         to = os.path.relpath(INTERFACE_FILES, PurePosixPath(name).parent)

@@ -40,7 +40,7 @@ def test_it_prints_what_the_readme_shows(wheel: Path, tmp_path: Path) -> None:
     readme = (ROOT / "README.md").read_text(encoding="utf-8")
     example = re.search(r"```python\n(.*?)```", readme, re.DOTALL)
     assert example
-    # Only what is installed there, with NumPy and SciPy beside it. No ROS: nothing starts the wheels' bootstrapper.
+    # Only what is installed there, with NumPy and SciPy beside it.
     program = (
         f"import sys; sys.path[:0] = {[str(tmp_path), *LIBRARIES]!r}\n{example[1]}\nprint(cd.__file__)\n"
         "print(sorted({name.partition('.')[0] for name in sys.modules} & {'rclpy', 'mcap', 'rerun'}))"
