@@ -106,7 +106,7 @@ FLOOR = np.array([[-3.5, TIP[1]], [3.5, TIP[1]]])
 def two_modes() -> Figure:
     """Lecture 26: the rod that is pulled along the wall has two consistent modes."""
     problem = PlanarContactProblem(body=ROD, contacts=[TOUCH], wrench=PlanarWrench(f=(-1.0, 0.0)))
-    figure = Figure(figsize=(10, 5), layout="constrained")
+    figure = Figure(figsize=(10, 5), layout="compressed")
     modes = sorted(contact_modes(problem).modes, key=lambda mode: mode.mode)
     for i, mode in enumerate(modes, start=1):
         scene = planar_scene_of(ROD_OUTLINE, [TOUCH], walls=[FLOOR], mode=mode)
@@ -179,7 +179,7 @@ ARMS = ((0.0, -1.0), (0.1, -1.5), (0.3, -3.0), (1.0, -1.2), (1.0, -2.0), (-1.0, 
 
 def six_paths() -> Figure:
     """Lecture 27: six impacts in impulse space."""
-    figure = Figure(figsize=(13, 8), layout="constrained")
+    figure = Figure(figsize=(9, 9), layout="constrained")
     body = MassProperties(mass=1.0, I_B=np.eye(3))
     moving = BodyState(p_WB_W=[0, 0, 0], q_WB=[0, 0, 0, 1], v_WB_W=[-1, 0, -1], w_WB_W=[0, 0, 0])
     for i, (x, z) in enumerate(ARMS, start=1):
@@ -194,7 +194,7 @@ def six_paths() -> Figure:
                 plane=PlaneOfMotion(normal_W=[0.0, -1.0, 0.0]),
             )
         )
-        axes = figure.add_subplot(2, 3, i)
+        axes = figure.add_subplot(3, 2, i)
         draw_impulse_space(axes, body, answer)
         jams = "jams, " if answer.impact.jams else ""
         axes.set_title(
@@ -210,7 +210,7 @@ def swerving() -> Figure:
     falling = BodyState(p_WB_W=[0, 0, 0], q_WB=[0, 0, 0, 1], v_WB_W=[-1, 0.4, -1], w_WB_W=[0, 0, 0])
     ground = ContactSet(p_WC_W=[[0.3, 0.2, -0.9]], normals_W=[0, 0, 1], frictions=0.6, restitutions=0.5)
     answer = ask(ImpactQuestion(body=Body(name="rod", mass_properties=rod), state=falling, contacts=ground))
-    figure = Figure(figsize=(9, 6), layout="constrained")
+    figure = Figure(figsize=(9.6, 6), layout="constrained")
     draw_impulse_space_in_3d(figure.add_subplot(projection="3d"), rod, answer)
     return figure
 
