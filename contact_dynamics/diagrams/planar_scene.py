@@ -31,6 +31,7 @@ LABEL_OFFSET: Final = 0.07
 """Distance of a label from its contact, relative to the body's size."""
 
 _COVERED: Final = 0.13  # labels nearer than this would cover each other, relative to the body's size
+_ALIGNED: Final = 0.95  # length of the mean of unit normals that are taken for those of one surface
 _SHOWN: Final = 1e-6  # arrows shorter than this are left out, relative to the longest
 
 
@@ -123,7 +124,7 @@ def planar_scene_of(
         letters=letters,
         cones=[cone_edges(contact, length=CONE_LENGTH * size) for contact in contacts],
         labels=[
-            Label(same, places[same[0]], _text_of(same, letters if mode else ""))
+            Label(same, _place_of(same, points, normals, size), _text_of(same, letters if mode else ""))
             for same in _same_places(places, size)
         ],
         forces=_arrows(mode.contact_forces, contacts, "N", size) if mode else None,
@@ -181,6 +182,16 @@ def _text_of(contacts: list[int], letters: str) -> str:
     for i in contacts:
         by_letter.setdefault(letters[i] if letters else "", []).append(str(i + 1))
     return "; ".join(f"{', '.join(numbers)} {letter}".rstrip() for letter, numbers in by_letter.items())
+
+
+def _place_of(contacts: list[int], points: FloatArray, normals: FloatArray, size: float) -> FloatArray:
+    """Return the place of a label, (2,), m: behind its contact, or in the corner between two surfaces."""
+    outward = -normals[contacts].sum(axis=0)
+    aligned = float(np.linalg.norm(outward)) / len(contacts)
+    if aligned > _ALIGNED or aligned < 1.0 - _ALIGNED:  # one surface, or two that face each other
+        return np.asarray(points[contacts[0]] - LABEL_OFFSET * size * normals[contacts[0]])
+    corner = points[contacts].mean(axis=0)
+    return np.asarray(corner + 2.0 * LABEL_OFFSET * size * outward / np.linalg.norm(outward))
 
 
 def _same_places(places: FloatArray, size: float) -> list[list[int]]:

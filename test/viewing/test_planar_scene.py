@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from contact_dynamics.contact_modes import PlanarContactProblem, contact_modes
-from contact_dynamics.diagrams.planar_scene import cone_edges
+from contact_dynamics.diagrams.planar_scene import cone_edges, planar_scene_of
 from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
 from contact_dynamics.viewing.planar_scene import draw_planar_scene
 
@@ -72,3 +72,22 @@ def test_contacts_at_one_place_share_a_label(
 ) -> None:
     draw_planar_scene(recording, OUTLINE, [*BLOCK, *BLOCK])
     assert read().last("/planar_scene/letters", "LineStrips2D:labels") == ["1, 3", "2, 4"]
+
+
+def test_the_label_of_a_corner_is_clear_of_both_surfaces() -> None:
+    floor, wall = (
+        PlanarContact(r=(1.0, -0.5), normal=normal, friction=0.5) for normal in ((0.0, 1.0), (-1.0, 0.0))
+    )
+    alone, corner = planar_scene_of(OUTLINE, [BLOCK[0], floor, wall]).labels
+    assert (alone.contacts, corner.contacts) == ([0], [1, 2])
+    distance = BLOCK[0].r[1] - alone.place[1]
+    assert distance > 0.0
+    right, up = corner.place - np.array(floor.r)
+    assert min(right, -up) > distance
+
+
+def test_the_label_of_a_body_around_a_peg_is_behind_its_first_contact() -> None:
+    pair = [PlanarContact(r=(0.0, y), normal=(0.0, 2.0 * y), friction=0.5) for y in (-0.5, 0.5)]
+    (label,) = planar_scene_of(OUTLINE, pair, size=10.0).labels
+    assert label.place[0] == pytest.approx(0.0)
+    assert label.place[1] > pair[0].r[1]
