@@ -18,6 +18,7 @@
 
   function finish(status) {
     running.status.textContent = status;
+    running.output.scrollTop = running.output.scrollHeight; // an error is explained in its last line
     running = null;
     for (const each of examples) {
       each.run.textContent = "Run";

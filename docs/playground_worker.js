@@ -3,7 +3,6 @@
 
 const MAX_OUTPUT = 100_000; // characters of one run, which the page can still show
 const FILE = "example.py"; // the name of the code in tracebacks
-const PYODIDE_FRAMES = /^(Traceback.*\n)[^]*?(?=  File "example\.py")/; // its own, above those of the code
 let python = null; // the promise of Pyodide with the library
 let printed = 0;
 
@@ -14,6 +13,14 @@ function say(kind, text) {
 function output(text) {
   if (printed < MAX_OUTPUT) say("output", text.slice(0, MAX_OUTPUT - printed));
   printed += text.length;
+}
+
+// A traceback without the lines of Pyodide and of the library, which would hide the error on a phone.
+function shortened(traceback) {
+  return traceback
+    .split(/^(?=  File ")/m)
+    .map((part) => (part.startsWith(`  File "${FILE}"`) ? part : part.replace(/^(?: .*\n)+/, "")))
+    .join("");
 }
 
 // Pyodide waits for ever where one of its files does not load, so a failed request ends the run.
@@ -72,7 +79,7 @@ onmessage = async ({ data: { pyodide, wheel, code } }) => {
     loaded.runPython(code, { globals, filename: FILE });
   } catch (error) {
     failed = true;
-    output(error.message.replace(PYODIDE_FRAMES, "$1"));
+    output(shortened(error.message));
   }
   globals.destroy();
   loaded.runPython("import sys; sys.stdout.flush(); sys.stderr.flush()");

@@ -63,7 +63,6 @@ NOT_MEASURED: dict[
         "velocity: median, and 90 %",
         "50/90/95 %",
     ],
-    "docs/playground.md": ["| 14 MB |", "| 3 MB |", "| 20 MB |", "| 1.4 MB |"],  # sizes of files
     "docs/lectures.md": ["a floor at 75°"],  # the lecture's rod
     "docs/log.md": [
         "room again (1 MB)",
