@@ -11,13 +11,14 @@ import inspect
 import itertools
 import math
 import textwrap
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from decimal import Decimal
 from fractions import Fraction
 from typing import Any, Final, TypeVar
 
 import numpy as np
 
+from contact_dynamics.errors import NotSupportedError
 from contact_dynamics.tolerances import SHOWN_AS_ZERO
 from contact_dynamics.validation_types import check_names, checks_fields
 
@@ -132,6 +133,39 @@ class Record:
         "nan", "inf" and "-inf", which `float` takes.
         """
         return {name: _plain(value) for name, value in _fields(self)}
+
+
+class Rows(Record):
+    """A result of many cases or times, whose arrays have a row for each."""
+
+    __slots__ = ()
+
+    def to_frame(self) -> Any:
+        """Return the result as a `DataFrame` of pandas, with a row for each case or time.
+
+        Each component of a vector has a column, such as ``v_WB_W.x``. Other arrays count theirs from 0.
+        What is None, or the same for all rows, is left out.
+
+        Raises:
+            NotSupportedError: pandas is not installed.
+        """
+        try:
+            import pandas as pd  # few need it
+        except ModuleNotFoundError:
+            raise NotSupportedError("to_frame needs pandas: pip install pandas") from None
+        return pd.DataFrame(dict(_columns("", self)))
+
+
+def _columns(prefix: str, rows: Rows) -> Iterator[tuple[str, Any]]:
+    """Yield the columns of a result of many, by their names."""
+    for name, value in _fields(rows):
+        if isinstance(value, Rows):
+            yield from _columns(f"{prefix}{name}.", value)
+        elif isinstance(value, np.ndarray):
+            for index in np.ndindex(value.shape[1:]):
+                is_vector = value.shape[1:] in {(3,), (4,)}
+                parts = ["xyzw"[k] if is_vector else str(k) for k in index]
+                yield ".".join([prefix + name, *parts]), value[(slice(None), *index)]
 
 
 def _fields(record: object) -> list[tuple[str, Any]]:

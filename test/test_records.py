@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import json
 import math
+import sys
 from dataclasses import dataclass, field, make_dataclass
 from decimal import Decimal
 from enum import Enum
@@ -9,8 +10,11 @@ from typing import NamedTuple
 from xml.etree import ElementTree as ET
 
 import numpy as np
+import pytest
 
-from contact_dynamics import Body, BodyState, Surface, World
+from contact_dynamics import Body, BodyState, Surface, World, free_motion
+from contact_dynamics.errors import NotSupportedError
+from contact_dynamics.impact import planar_impacts
 from contact_dynamics.records import NamedInt, Record
 from contact_dynamics.toss import toss
 from contact_dynamics.validation import FloatArray
@@ -158,3 +162,37 @@ def test_a_notebook_shows_a_table_of_the_fields() -> None:
     assert "".join(table.itertext()).startswith("InnercolourREDlong0.333333")
     assert len(cells["several"].findall("details/table")) == 9
     assert "and 3 more" in shown
+
+
+def test_a_result_of_many_is_a_table_of_pandas() -> None:
+    pytest.importorskip("pandas", reason="pandas of requirements/test.txt is not installed")
+    body = Body.box((0.1, 0.2, 0.3), 0.5)
+    state = BodyState(p_WB_W=[0, 0, 1], q_WB=[0, 0, 0, 1], v_WB_W=[1, 0, 0], w_WB_W=[1, 2, 3])
+    trajectory = free_motion(body, state).at(np.linspace(0.0, 1.0, 5))
+    frame = trajectory.to_frame()
+    parts = [f"{name}.{axis}" for name in ("p_WB_W", "q_WB", "v_WB_W", "w_WB_W") for axis in "xyzw"]
+    assert list(frame.columns) == ["seconds", *(part for part in parts if part[0] == "q" or part[-1] != "w")]
+    np.testing.assert_array_equal(frame["q_WB.w"], trajectory.q_WB[:, 3])
+    np.testing.assert_array_equal(frame.set_index("seconds").loc[0.5, "p_WB_W.x"], trajectory.p_WB_W[2, 0])
+    impacts = planar_impacts(
+        masses=1.0,
+        inertias=1.0,
+        v=[[0, -1], [1, -1]],
+        w=0.0,
+        r=[0, -1],
+        normals=[0, 1],
+        frictions=0.3,
+        restitutions=0.5,
+    )
+    frame = impacts.to_frame()
+    assert len(frame) == 2
+    np.testing.assert_array_equal(frame["impulses_C.1"], impacts.impulses_C[:, 1])
+
+
+def test_a_table_without_pandas_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "pandas", None)
+    impacts = planar_impacts(
+        masses=1.0, inertias=1.0, v=[0, -1], w=0.0, r=[0, -1], normals=[0, 1], frictions=0.3, restitutions=0.5
+    )
+    with pytest.raises(NotSupportedError, match=r"to_frame needs pandas: pip install pandas"):
+        impacts.to_frame()

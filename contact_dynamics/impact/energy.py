@@ -7,9 +7,9 @@ difference of the bodies' energies gives it too, but it loses the digits of a sm
 from __future__ import annotations
 
 from abc import abstractmethod
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
-from contact_dynamics.records import Record
+from contact_dynamics.records import Rows
 from contact_dynamics.tolerances import ENERGY_TOLERANCE
 
 if TYPE_CHECKING:
@@ -18,8 +18,10 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from contact_dynamics.numerics.elementwise import Real
     from contact_dynamics.validation import FloatArray
+
+Real = TypeVar("Real", float, "FloatArray")
+"""A float, or an array, (N,), with an element for each case. Sums and products round equally in both."""
 
 
 def energy_change(impulse: Sequence[Real], before: Sequence[Real], after: Sequence[Real]) -> Real:
@@ -40,7 +42,7 @@ def law_created(impulse: Sequence[Real], before: Sequence[Real], after: Sequence
     return created(energy_change(impulse, before, after), _inner([abs(i) for i in impulse], sizes))
 
 
-class ManyEnergies(Record):
+class ManyEnergies(Rows):
     """The energies of many impacts, for results that know what happened at their contacts."""
 
     __slots__ = ()

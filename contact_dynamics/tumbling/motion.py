@@ -23,7 +23,7 @@ import numpy as np
 from contact_dynamics.constants import STANDARD_GRAVITY_W, ns_after
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.numerics.arithmetic import Precision
-from contact_dynamics.records import Record
+from contact_dynamics.records import Record, Rows
 from contact_dynamics.rigid_body.body import BodyState, HasMassProperties, MassProperties
 from contact_dynamics.rotations.many import make_continuous
 from contact_dynamics.rotations.one import (
@@ -56,7 +56,7 @@ FEW: Final = 16
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class Trajectory(Record):
+class Trajectory(Rows):
     """A motion at n times. Row i belongs to ``seconds[i]``.
 
     Attributes:

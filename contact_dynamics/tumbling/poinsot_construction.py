@@ -18,7 +18,7 @@ import numpy as np
 
 from contact_dynamics.errors import InvalidFieldError, TooLargeError
 from contact_dynamics.numerics.arithmetic import ARRAYS, DOUBLES
-from contact_dynamics.records import Record
+from contact_dynamics.records import Record, Rows
 from contact_dynamics.rigid_body.body import angular_momentum
 from contact_dynamics.rigid_body.inertia.axes_of_inertia import axes_of_bytes
 from contact_dynamics.rotations.one import rotated, rotation_matrix
@@ -174,7 +174,7 @@ MAX_POINTS: Final = 1_000_000
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class RollingCurves(Record):
+class RollingCurves(Rows):
     """Polhode and herpolhode, which roll on each other. They touch in row i of both at ``seconds[i]``.
 
     Arcs of the two between the same rows have equal length.
