@@ -1,7 +1,6 @@
 """This file calculates with vectors of three numbers, and finds the tangents of a plane.
 
-`Vector3` is three plain floats. For one answer they are much faster than an array. The numbers of a `Triple`
-may be floats or arrays (`numerics.elementwise`), for one case or for many.
+`Vector3` is three plain floats. For one answer they are much faster than an array.
 
 **Which tangents?**  No choice changes continuously with all normals. Physics does not depend on the choice,
 but the order of a pyramid's edges and the last bits of answers do. So each choice has its own function here.
@@ -13,7 +12,7 @@ but the order of a pyramid's edges and the last bits of answers do. So each choi
 | `tangents_towards` | towards a direction, or least x normal | edges of friction pyramids start there |
 | `along_least` | least, made orthogonal | the one tangent of a side that is alike all around |
 | `near_x`, `tangents_near_x` | x, made orthogonal; y for normals along x | people look, or a rim begins |
-| `tangents_by_sign` | a formula without a choice of axes | a batch must not branch |
+| `tangents_by_sign` | a formula without a choice of axes | impacts, whose compiled form does not branch |
 """
 
 from __future__ import annotations
@@ -24,7 +23,6 @@ from typing import TYPE_CHECKING, Final, TypeAlias
 
 import numpy as np
 
-from contact_dynamics.numerics.elementwise import Real, sign
 from contact_dynamics.tolerances import ROW_TOLERANCE, SQUARES_UNDERFLOW
 
 if TYPE_CHECKING:
@@ -33,7 +31,6 @@ if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
 
 Vector3: TypeAlias = tuple[float, float, float]
-Triple: TypeAlias = "tuple[Real, Real, Real]"
 
 AXES: Final[tuple[Vector3, ...]] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
@@ -41,17 +38,17 @@ ALONG_X: Final = 0.9
 """Cosine above which a direction counts as along x."""
 
 
-def dot(a: Triple[Real], b: Triple[Real]) -> Real:
+def dot(a: Vector3, b: Vector3) -> float:
     """Return the inner product."""
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
-def cross(a: Triple[Real], b: Triple[Real]) -> Triple[Real]:
+def cross(a: Vector3, b: Vector3) -> Vector3:
     """Return the cross product."""
     return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
 
 
-def combined(x: Real, a: Triple[Real], y: Real, b: Triple[Real]) -> Triple[Real]:
+def combined(x: float, a: Vector3, y: float, b: Vector3) -> Vector3:
     """Return x a + y b."""
     return (x * a[0] + y * b[0], x * a[1] + y * b[1], x * a[2] + y * b[2])
 
@@ -143,10 +140,10 @@ def tangents_near_x(normal: FloatArray) -> tuple[FloatArray, FloatArray]:
     return first, cross_of_two(normal, first)
 
 
-def tangents_by_sign(normal: Triple[Real]) -> tuple[Triple[Real], Triple[Real]]:
+def tangents_by_sign(normal: Vector3) -> tuple[Vector3, Vector3]:
     """Return two unit tangents (Duff et al. 2017, "Building an orthonormal basis, revisited")."""
     x, y, z = normal
-    s = sign(z)
+    s = math.copysign(1.0, z)
     a = -1.0 / (s + z)
     b = x * y * a
     return (1.0 + s * x * x * a, s * b, -s * x), (b, s + y * y * a, -y)

@@ -7,8 +7,6 @@ from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
-from contact_dynamics.numerics.elementwise import Real
-
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
@@ -89,8 +87,8 @@ def from_z_onto(direction: Sequence[float]) -> Quaternion:
     return normalised((-y, x, 0.0, 1.0 + z))
 
 
-def rows_of(x: Real, y: Real, z: Real, w: Real) -> tuple[tuple[Real, Real, Real], ...]:
-    """Return the three rows of the rotation matrix of a unit quaternion, each number a float or an array."""
+def rows_of(x: float, y: float, z: float, w: float) -> tuple[Vector, Vector, Vector]:
+    """Return the three rows of the rotation matrix of a unit quaternion."""
     return (
         (1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)),
         (2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)),

@@ -11,7 +11,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -22,8 +21,8 @@ from contact_dynamics.impact.law import RestitutionLaw
 from contact_dynamics.impact.several.orders import several_impact
 from contact_dynamics.impact.several.result import SeveralContactsLaw, SeveralVerdict
 from contact_dynamics.impact.several.tied import next_to_strike, strike_as_one
-from contact_dynamics.impact.spatial.path import SlidingLaw, trace
-from contact_dynamics.impact.spatial.response import contact_axes, pushed, responding
+from contact_dynamics.impact.spatial.path import OUTCOMES
+from contact_dynamics.impact.spatial.response import Strike, refuse
 from contact_dynamics.numerics.vectors import cross, dot, norm
 from contact_dynamics.tolerances import CONE_CREEPS, STRIKES, TIED_APPROACH
 from contact_dynamics.toss.cone_forces import Site, cone_forces
@@ -66,18 +65,14 @@ def routh(
 ) -> tuple[Numbers, Struck]:
     """Return the state after the impact at one contact, which approaches or jams (lecture 27)."""
     pose, flat = pose_of(solid, y), solid.flats[touch[0]]
-    body = responding(solid.mass, solid.inertia, y[3:7], arm_of(solid, pose, touch), pose.v, pose.w)
-    axes = contact_axes(body, None, flat.normal)
-    u1, u2, v_n = axes.components(velocity_of(pose, body.r))
-    if math.hypot(u1, u2) <= STRIKES:
-        u1 = u2 = 0.0
-    if v_n >= -STRIKES:  # it jams, without approach
-        v_n = 0.0
-    sliding = SlidingLaw(axes.l1, axes.l2, axes.k1, axes.k2, axes.kn, friction)
-    path = trace(sliding, (u1, u2), v_n, restitution=flat.restitution, law=law)
-    impulse = axes.in_world(path.impulse)
-    v, w = pushed(body, impulse)
-    return [*y[:7], *v, *w], Struck(touch, impulse, path.outcome)
+    (a, b, c), (d, e, f), (g, h, i) = solid.inertia
+    inertia, arm = (a, b, c, d, e, f, g, h, i), arm_of(solid, pose, touch)
+    one = Strike(law)
+    one.body.take(solid.mass, inertia, (y[3], y[4], y[5], y[6]), arm, pose.v, pose.w)
+    outcome = one.strike(flat.normal, friction, flat.restitution, False, STRIKES)  # noqa: FBT003  as compiled
+    if outcome < 0:
+        refuse(one, STRIKES)
+    return [*y[:7], *one.body.v, *one.body.w], Struck(touch, one.impulse, OUTCOMES[outcome])
 
 
 def check_laws(restitution_law: RestitutionLaw, several_contacts_law: SeveralContactsLaw) -> None:

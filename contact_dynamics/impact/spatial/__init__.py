@@ -1,5 +1,6 @@
-"""This chapter resolves impacts in space. Its `path` is part of the compiled core."""
+"""This chapter resolves impacts in space. Its `path` and `response` are parts of the compiled core."""
 
 from contact_dynamics.numerics.compiled import import_core
 
 import_core("contact_dynamics.impact.spatial.path")
+import_core("contact_dynamics.impact.spatial.response")

@@ -1,27 +1,20 @@
 """This file resolves many impacts in space at once, with the numbers of `one_contact` to the last bit.
 
-Responses are worked out together, and paths one after the other by the code of one (`path`). Vertices of the
-impulse paths are not kept.
+They are struck one after the other by the code of one (`response`). Vertices of the impulse paths are not
+kept.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from contact_dynamics.errors import NORMAL_HINT, InvalidFieldError, SeparatingContactError
+from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.impact.energy import ManyEnergies
 from contact_dynamics.impact.law import RestitutionLaw, check_law_rows
-from contact_dynamics.impact.spatial.path import trace_all
-from contact_dynamics.impact.spatial.response import (
-    Responding,
-    contact_axes,
-    pushed,
-    responding,
-    velocity_at_contact,
-)
+from contact_dynamics.impact.spatial.response import Strike, refuse
 from contact_dynamics.records import Record
 from contact_dynamics.tolerances import (
     LARGEST_ARM,
@@ -42,10 +35,12 @@ from contact_dynamics.validation_batches import (
 )
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import ArrayLike, NDArray
 
 _CHUNK: Final = 8192
-"""Cases whose responses are worked out together. Ctrl-C acts between two of them."""
+"""Cases that are struck without a pause. Ctrl-C acts between two chunks."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -190,100 +185,53 @@ def spatial_impacts(
         fields |= {f"others.{name}": rows for name, rows in others.fields.items()}
     count = common_length(fields)
     every_law = np.broadcast_to(fields["restitution_laws"], count)
-    outcomes = np.empty(count, dtype=np.int64)
-    results = np.empty((18 if others is None else 24, count))
-    # Formulas are also evaluated for cases that they are not meant for. Those values are not used.
-    with np.errstate(all="ignore"):
-        for law in RestitutionLaw:
-            cases = np.flatnonzero(every_law == law)
-            for first in range(0, len(cases), _CHUNK):
-                chunk = cases[first : first + _CHUNK]
-                rows = {name: x[chunk] if len(x) > 1 else x for name, x in fields.items()}
-                outcomes[chunk], components = _strike(
-                    rows, chunk, law, tolerance, skip_separating=skip_separating
-                )
-                for result, component in zip(results, components, strict=True):
-                    result[chunk] = component
-    triples = [results[i : i + 3].T for i in range(0, len(results), 3)]
+    outcomes, results = np.empty(count, dtype=np.int64), np.empty((count, 24))
+    materials = fields["frictions"][:, None], fields["restitutions"][:, None]
+    tables = [
+        _table(bodies, count),
+        np.empty((0, 23)) if others is None else _table(others, count),
+        _columns((fields["normals_W"], *materials), count),
+    ]
+    for law in RestitutionLaw:
+        cases = np.flatnonzero(every_law == law)
+        strike = Strike(law)
+        for first in range(0, len(cases), _CHUNK):
+            chunk = cases[first : first + _CHUNK]
+            own, found = np.empty(len(chunk), dtype=np.int64), np.empty((len(chunk), 24))
+            # Python reads a plain number from a memory view, and a NumPy scalar from an array.
+            ours, theirs, contacts = (table[chunk].data if len(table) > 0 else table.data for table in tables)
+            done = strike.strike_rows(
+                ours, theirs, contacts, tolerance, skip_separating, own.data, found.data
+            )
+            if done < len(chunk):
+                refuse(strike, tolerance, f" of case {chunk[done]}")
+            outcomes[chunk], results[chunk] = own, found
+    vectors = [np.ascontiguousarray(results[:, i : i + 3]) for i in range(0, 24, 3)]
     return SpatialImpacts(
         restitution_laws=every_law.astype(np.int64),
         outcomes=outcomes,
-        v_WB_W=triples[0],
-        w_WB_W=triples[1],
-        impulses_W=triples[2],
-        compressions_W=triples[3],
-        velocities_before_W=triples[4],
-        velocities_after_W=triples[5],
-        other_v_WB_W=None if others is None else triples[6],
-        other_w_WB_W=None if others is None else triples[7],
+        v_WB_W=vectors[0],
+        w_WB_W=vectors[1],
+        impulses_W=vectors[2],
+        compressions_W=vectors[3],
+        velocities_before_W=vectors[4],
+        velocities_after_W=vectors[5],
+        other_v_WB_W=None if others is None else vectors[6],
+        other_w_WB_W=None if others is None else vectors[7],
     )
 
 
-def _strike(
-    rows: dict[str, FloatArray],
-    cases: NDArray[np.intp],
-    law: RestitutionLaw,
-    tolerance: float,
-    *,
-    skip_separating: bool,
-) -> tuple[NDArray[np.int64], list[FloatArray]]:
-    """Return the outcomes of `spatial_impact` for some ``cases``, and the answers component by component."""
-    count = len(cases)
-    first = _responding(rows, "bodies", count)
-    second = _responding(rows, "others", count) if "others.masses" in rows else None
-    velocity = velocity_at_contact(first, second)
-    axes = contact_axes(first, second, _columns(rows["normals_W"], count))
-    u1, u2, v_n = axes.components(velocity)
-    apart = v_n > tolerance
-    refused = np.isnan(v_n) if skip_separating else ~(v_n <= tolerance)
-    for i in np.flatnonzero(refused)[:1]:
-        raise SeparatingContactError(
-            f"contact normal velocity of case {cases[i]}",
-            f"v_n = {v_n[i]:.9g} m/s",
-            f"at most {tolerance:g} m/s, since above it nothing strikes ({NORMAL_HINT})",
-        )
-    still = np.sqrt(u1 * u1 + u2 * u2) <= tolerance
-    rests = v_n >= -tolerance
-    parting = (u1[apart], u2[apart], v_n[apart])
-    u1[still | apart] = u2[still | apart] = 0.0
-    v_n[rests] = 0.0
-    counted = zip(velocity, axes.in_world((u1, u2, v_n)), strict=True)
-    velocity = tuple(np.where((still | rests) & ~apart, without, whole) for whole, without in counted)
-    mu, e = (np.broadcast_to(rows[name], count) for name in ("frictions", "restitutions"))
-    columns = (axes.l1, axes.l2, axes.k1, axes.k2, axes.kn, mu, u1, u2, v_n, e)
-    paths = trace_all(np.column_stack(columns), law)
-    for component, kept in zip((*paths.u, paths.v_n), parting, strict=True):
-        component[apart] = kept
-    impulse = axes.in_world(paths.impulse)
-    parts = [
-        *pushed(first, impulse),
-        impulse,
-        axes.in_world(paths.compression),
-        velocity,
-        axes.in_world((*paths.u, paths.v_n)),
-    ]
-    if second is not None:
-        parts += pushed(second, (-impulse[0], -impulse[1], -impulse[2]))
-    return paths.outcomes, [component for part in parts for component in part]
-
-
-def _responding(rows: dict[str, FloatArray], which: str, count: int) -> Responding:
-    mass, inertia, q, r, v, w = (
-        rows[f"{which}.{name}"] for name in ("masses", "inertias_B", "q_WB", "r_W", "v_WB_W", "w_WB_W")
-    )
-    return responding(
-        np.broadcast_to(mass, count),
-        [[np.broadcast_to(inertia[:, i, j], count) for j in range(3)] for i in range(3)],
-        _columns(q, count),
-        _columns(r, count),
-        _columns(v, count),
-        _columns(w, count),
+def _table(bodies: StrikingBodies, count: int) -> FloatArray:
+    """Return the rows that `Strike.strike_rows` takes."""
+    inertias = bodies.inertias_B.reshape(len(bodies.inertias_B), 9)
+    return _columns(
+        (bodies.masses[:, None], inertias, bodies.q_WB, bodies.r_W, bodies.v_WB_W, bodies.w_WB_W), count
     )
 
 
-def _columns(rows: FloatArray, count: int) -> Any:
-    """Return the columns of ``rows``, each of ``count`` numbers."""
-    return tuple(np.ascontiguousarray(np.broadcast_to(column, count)) for column in rows.T)
+def _columns(parts: Sequence[FloatArray], count: int) -> FloatArray:
+    """Return a table of ``count`` rows, whose columns are those of the parts. One row stands for all."""
+    return np.hstack([np.broadcast_to(part, (count, part.shape[1])) for part in parts])
 
 
 def _possible_inertias(inertias: FloatArray) -> NDArray[np.bool_]:

@@ -18,17 +18,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from contact_dynamics.errors import NORMAL_HINT, InvalidFieldError, SeparatingContactError
+from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.impact.law import RestitutionLaw
-from contact_dynamics.impact.spatial.path import SlidingLaw, trace
-from contact_dynamics.impact.spatial.response import (
-    Responding,
-    contact_axes,
-    pushed,
-    responding,
-    response,
-    velocity_at_contact,
-)
+from contact_dynamics.impact.spatial.path import OUTCOMES
+from contact_dynamics.impact.spatial.response import BodyAtContact, Strike, refuse
 from contact_dynamics.impact.spatial.result import SpatialImpact
 from contact_dynamics.tolerances import LARGEST_ARM, LARGEST_NUMBER, VELOCITY_TOLERANCE
 from contact_dynamics.validation import (
@@ -37,6 +30,8 @@ from contact_dynamics.validation import (
 
 if TYPE_CHECKING:
     from contact_dynamics.contact.contact import Contact
+    from contact_dynamics.impact.law import PathEvent
+    from contact_dynamics.numerics.vectors import Vector3
     from contact_dynamics.rigid_body.body import BodyState, HasMassProperties, MassProperties
     from contact_dynamics.validation import FloatArray
 
@@ -118,48 +113,37 @@ def _impact(
     restitution = contact.impact_restitution
     tolerance = check_not_negative("velocity_tolerance", velocity_tolerance)
 
-    first, second = _responding(body, state, contact.p_WC_W), None
+    vertices: list[tuple[PathEvent, Vector3]] = []
+    strike = Strike(law, vertices)
+    _take(strike.body, body, state, contact.p_WC_W)
+    has_other = other is not None and other_state is not None
     if other is not None and other_state is not None:
-        second = _responding(other, other_state, contact.p_WC_W)
-    velocity = velocity_at_contact(first, second)
-    axes = contact_axes(first, second, tuple(contact.normal_W.tolist()))
-    u1, u2, v_n = axes.components(velocity)
-    if not v_n <= tolerance:
-        raise SeparatingContactError(
-            "contact normal velocity",
-            f"v_n = {v_n:.9g} m/s",
-            f"at most {tolerance:g} m/s, since above it nothing strikes ({NORMAL_HINT})",
-        )
-    still, rests = math.sqrt(u1 * u1 + u2 * u2) <= tolerance, v_n >= -tolerance
-    if still:
-        u1 = u2 = 0.0
-    if rests:
-        v_n = 0.0
-    if still or rests:
-        velocity = axes.in_world((u1, u2, v_n))
-    sliding = SlidingLaw(axes.l1, axes.l2, axes.k1, axes.k2, axes.kn, contact.friction)
-    path = trace(sliding, (u1, u2), v_n, restitution=restitution, law=law)
-
-    impulse = axes.in_world(path.impulse)
-    other_after = None
-    if second is not None and other_state is not None:
-        opposite = (-impulse[0], -impulse[1], -impulse[2])
-        other_after = other_state.with_velocities(*pushed(second, opposite))
-    columns = np.array([axes.t1, axes.t2, axes.n]).T
-    matrix = np.array([[axes.l1, 0.0, axes.k1], [0.0, axes.l2, axes.k2], [axes.k1, axes.k2, axes.kn]])
+        _take(strike.other, other, other_state, contact.p_WC_W)
+    n_x, n_y, n_z = contact.normal_W.tolist()
+    outcome = strike.strike((n_x, n_y, n_z), contact.friction, restitution, has_other, tolerance)
+    if outcome < 0:
+        refuse(strike, tolerance)
+    l1, l2, k1, k2, kn = strike.l1, strike.l2, strike.k1, strike.k2, strike.kn
+    axes = np.array((strike.t1, strike.t2, strike.n))
+    matrix = np.array(((l1, 0.0, k1), (0.0, l2, k2), (k1, k2, kn)))
+    impulse, compression, before, after = np.array(
+        (strike.impulse, strike.compression, strike.before, strike.after)
+    )
     return SpatialImpact(
         restitution_law=law,
-        outcome=path.outcome,
-        jams=path.jams,
-        state=state.with_velocities(*pushed(first, impulse)),
-        impulse_W=np.array(impulse),
-        compression_W=np.array(axes.in_world(path.compression)),
-        path_W=np.array([vertex for _, vertex in path.vertices]) @ columns.T,
-        path_events=tuple(event for event, _ in path.vertices),
-        velocity_before_W=np.array(velocity),
-        velocity_after_W=np.array(axes.in_world((*path.u, path.v_n))),
-        inverse_inertia_W=columns @ matrix @ columns.T,
-        other_state=other_after,
+        outcome=OUTCOMES[outcome],
+        jams=strike.tracer.jams,
+        state=state.with_velocities(strike.body.v, strike.body.w),
+        impulse_W=impulse,
+        compression_W=compression,
+        path_W=np.array([vertex for _, vertex in vertices]) @ axes,
+        path_events=tuple(event for event, _ in vertices),
+        velocity_before_W=before,
+        velocity_after_W=after,
+        inverse_inertia_W=axes.T @ matrix @ axes,
+        other_state=None
+        if other_state is None
+        else other_state.with_velocities(strike.other.v, strike.other.w),
     )
 
 
@@ -172,10 +156,10 @@ def contact_inverse_inertia(body: MassProperties, state: BodyState, arm: FloatAr
         arm: (3,), m, from the centre of mass to the point, world axes.
     """
     axes = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
-    whole = response(_responding(body, state, state.p_WB_W + arm), *axes)
-    return np.array(
-        [[whole.aa, whole.ab, whole.an], [whole.ab, whole.bb, whole.bn], [whole.an, whole.bn, whole.nn]]
-    )
+    at_contact = BodyAtContact()
+    _take(at_contact, body, state, state.p_WB_W + arm)
+    aa, ab, an, bb, bn, nn = at_contact.response(*axes)
+    return np.array([[aa, ab, an], [ab, bb, bn], [an, bn, nn]])
 
 
 def check_striking(body: MassProperties, state: BodyState, points_W: FloatArray) -> None:
@@ -213,7 +197,13 @@ def check_striking(body: MassProperties, state: BodyState, points_W: FloatArray)
         raise InvalidFieldError("p_WC_W", found, f"{LARGEST_ARM:g} radii of gyration at most")
 
 
-def _responding(body: MassProperties, state: BodyState, point: FloatArray) -> Responding:
-    check_striking(body, state, point)
-    arm, v, w = (point - state.p_WB_W).tolist(), state.v_WB_W.tolist(), state.w_WB_W.tolist()
-    return responding(body.mass, body.I_B.tolist(), state.q_WB.tolist(), tuple(arm), tuple(v), tuple(w))
+def _take(at_contact: BodyAtContact, body: MassProperties, state: BodyState, point: FloatArray) -> None:
+    if not at_contact.take(
+        body.mass,
+        tuple(body.I_B.ravel().tolist()),
+        tuple(state.q_WB.tolist()),
+        tuple((point - state.p_WB_W).tolist()),
+        tuple(state.v_WB_W.tolist()),
+        tuple(state.w_WB_W.tolist()),
+    ):
+        check_striking(body, state, point)

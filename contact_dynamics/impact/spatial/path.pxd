@@ -124,15 +124,14 @@ cdef double coefficient(double* a, double* b, int n) noexcept nogil
 
 
 @cython.final
-cdef class _Tracer:
+cdef class Tracer:
     cdef SlidingLaw law
     cdef Progress progress
     cdef SlidingSeries series
     cdef Stop stop
     cdef double u1, u2
-    cdef bint jams
+    cdef readonly bint jams
 
-    cdef void trace_rows(self, double[:, ::1] numbers, long[::1] outcomes, double[:, ::1] results) noexcept nogil
     @cython.locals(held=cython.bint, in_compression=cython.bint)
     cdef int trace(self, double u1, double u2, double v_n, double restitution) noexcept nogil
     @cython.locals(ends_before=cython.int)

@@ -13,9 +13,7 @@ C, a quotient by zero is not an error, and functions have no keywords.
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, Final, NamedTuple
-
-import numpy as np
+from typing import Final, NamedTuple
 
 from contact_dynamics.impact.law import ImpactOutcome, PathEvent, RestitutionLaw
 from contact_dynamics.impact.planar.routh import LARGEST_FRICTION
@@ -33,11 +31,6 @@ from contact_dynamics.tolerances import (
     TRUNCATION,
     UNCOUPLED,
 )
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from contact_dynamics.validation import FloatArray
 
 MAX_STRETCHES: Final = 2000
 
@@ -93,7 +86,7 @@ _STICKS_IN_RESTITUTION: Final = ImpactOutcome.STICKS_IN_RESTITUTION
 _REVERSES_IN_RESTITUTION: Final = ImpactOutcome.REVERSES_IN_RESTITUTION
 
 # An enumeration takes longer to find a member.
-_OUTCOMES: Final = tuple(ImpactOutcome)
+OUTCOMES: Final = tuple(ImpactOutcome)
 _EVENTS: Final = tuple(PathEvent)
 
 Impulse = tuple[float, float, float]  # N s: two tangential components and the normal one
@@ -121,24 +114,6 @@ class SpatialPath(NamedTuple):
     v_n: float
 
 
-class SpatialPaths(NamedTuple):
-    """Many impulse paths, in contact axes. Element i of each array belongs to contact i.
-
-    Attributes:
-        outcomes: Values of ImpactOutcome.
-        compression: N s, impulses at the end of compression.
-        impulse: N s, total impulses.
-        u: m/s, sliding velocities afterwards.
-        v_n: m/s, normal velocities afterwards.
-    """
-
-    outcomes: NDArray[np.int64]
-    compression: tuple[FloatArray, FloatArray, FloatArray]
-    impulse: tuple[FloatArray, FloatArray, FloatArray]
-    u: tuple[FloatArray, FloatArray]
-    v_n: FloatArray
-
-
 def trace(
     sliding: SlidingLaw, u: tuple[float, float], v_n: float, *, restitution: float, law: RestitutionLaw
 ) -> SpatialPath:
@@ -149,12 +124,12 @@ def trace(
     """
     vertices: list[tuple[PathEvent, Impulse]] = []
     progress = Progress(RULES[law], vertices)
-    tracer = _Tracer(sliding, progress)
+    tracer = Tracer(sliding, progress)
     outcome = tracer.trace(u[0], u[1], v_n, restitution)
     if outcome == _NOT_ENDED:
         raise AssertionError  # each stretch turns or slows the sliding by a fixed part
     return SpatialPath(
-        _OUTCOMES[outcome],
+        OUTCOMES[outcome],
         tracer.jams,
         vertices,
         (progress.c1, progress.c2, progress.c),
@@ -162,24 +137,6 @@ def trace(
         (tracer.u1, tracer.u2),
         progress.v_n,
     )
-
-
-def trace_all(numbers: FloatArray, law: RestitutionLaw) -> SpatialPaths:
-    """Return the paths of many contacts, each as `trace` does.
-
-    Args:
-        numbers: (n, 10), a row for each contact: the numbers of its `SlidingLaw`, in their order, then the
-            velocities u_1, u_2 and v_n, m/s, and the coefficient of restitution.
-        law: What the coefficients of restitution mean.
-    """
-    outcomes, results = np.empty(len(numbers), dtype=np.int64), np.empty((len(numbers), 9))
-    tracer = _Tracer(SlidingLaw(1.0, 1.0, 0.0, 0.0, 1.0, 0.0), Progress(RULES[law], None))
-    # Python reads a plain number from a memory view, and a NumPy scalar from an array.
-    tracer.trace_rows(np.ascontiguousarray(numbers).data, outcomes.data, results.data)
-    if _NOT_ENDED in outcomes:
-        raise AssertionError  # each stretch turns or slows the sliding by a fixed part
-    c1, c2, c, i1, i2, p, u1, u2, v_n = np.ascontiguousarray(results.T)
-    return SpatialPaths(outcomes, (c1, c2, c), (i1, i2, p), (u1, u2), v_n)
 
 
 class SlidingLaw:
@@ -890,8 +847,8 @@ def coefficient(a: list[float], b: list[float], n: int) -> float:
     return total
 
 
-class _Tracer:
-    """Follows one path after the other.
+class Tracer:
+    """Follows one path after the other, each with the numbers that its law has then.
 
     Attributes:
         u1: m/s, the first component of the sliding velocity.
@@ -906,17 +863,6 @@ class _Tracer:
         self.stop = Stop()
         self.u1 = self.u2 = 0.0
         self.jams = False
-
-    def trace_rows(self, numbers: Any, outcomes: Any, results: Any) -> None:
-        """Follow the path of each row of ``numbers``, as in `trace_all`, and fill in what it returns."""
-        for i in range(len(outcomes)):
-            self.law.take(
-                numbers[i, 0], numbers[i, 1], numbers[i, 2], numbers[i, 3], numbers[i, 4], numbers[i, 5]
-            )
-            outcomes[i] = self.trace(numbers[i, 6], numbers[i, 7], numbers[i, 8], numbers[i, 9])
-            results[i, 0], results[i, 1], results[i, 2] = self.progress.c1, self.progress.c2, self.progress.c
-            results[i, 3], results[i, 4], results[i, 5] = self.progress.i1, self.progress.i2, self.progress.p
-            results[i, 6], results[i, 7], results[i, 8] = self.u1, self.u2, self.progress.v_n
 
     def trace(self, u1: float, u2: float, v_n: float, restitution: float) -> int:
         """Follow the path of a contact with these velocities, m/s, and return its outcome."""

@@ -1,194 +1,353 @@
-"""How a contact in space responds to an impulse, and what an impulse does to a body.
+"""One impact at a contact in space: how the contact responds to impulses, and what they do to the bodies.
 
 Contact axes are two tangents and the normal. The tangents are the principal ones of the tangential block of
-the inverse inertia, as the sliding equations need them (`path`). Everything is written by component,
-so that the same lines serve one case and many (`elementwise`).
+the inverse inertia, as the sliding equations need them (`path`). The inverse inertia of a pair of bodies is
+the sum of both, because their impulses are opposite, and so are their shares of the relative velocity.
 
-The inverse inertia of a pair of bodies is the sum of both, because their impulses are opposite, and so are
-their shares of the relative velocity.
+`response.pxd` gives the C types with which this file compiles, as `path.pxd` does for the path.
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple, TypeAlias
+import math
+from typing import TYPE_CHECKING, Any, Final, NoReturn
 
-from contact_dynamics.numerics.elementwise import Number, larger, sign, sqrt
-from contact_dynamics.numerics.vectors import combined, cross, dot, tangents_by_sign
-from contact_dynamics.rotations.one import rows_of
-from contact_dynamics.tolerances import LEAST_PIVOT, SMALLEST
+from contact_dynamics.impact.law import ImpactOutcome, PathEvent, RestitutionLaw
+from contact_dynamics.impact.planar.one_contact import refuse_separating
+from contact_dynamics.impact.spatial.path import RULES, Progress, SlidingLaw, Tracer
+from contact_dynamics.tolerances import LARGEST_ARM, LARGEST_NUMBER, LEAST_PIVOT, SMALLEST
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from contact_dynamics.numerics.vectors import Vector3
 
-Vector3: TypeAlias = "tuple[Number, Number, Number]"
+Inertia = tuple[float, ...]  # nine, row by row
+Quaternion = tuple[float, float, float, float]
+Response = tuple[float, float, float, float, float, float]
+
+LEAST_NUMBER: Final = 1.0 / LARGEST_NUMBER
+
+_SEPARATES: Final = -2
+_NO_IMPULSE: Final = ImpactOutcome.NO_IMPULSE
 
 
-class Responding(NamedTuple):
+def refuse(strike: Strike, tolerance: float, case: str = "") -> NoReturn:
+    """Raise the error of a strike without an outcome.
+
+    Raises:
+        SeparatingContactError: the contact's normal velocity is above the tolerance, m/s.
+    """
+    if strike.v_n <= tolerance:
+        raise AssertionError  # each stretch of a path turns or slows the sliding by a fixed part
+    refuse_separating(strike.v_n, tolerance, case)
+
+
+class BodyAtContact:
     """A body at a contact, with everything that its change of velocity follows from, world axes.
 
-    Attributes:
-        per_mass: 1/kg, one over the mass.
-        inertia: kg m^2, body axes, factored as I = L D L^T. It holds the pivots d1, d2, d3 of D, then l21,
-            l31, l32 of L, which have no unit.
-        rotation: The body's axes in the world, which are the columns of R_WB.
-        r: m, from the centre of mass to the contact.
-        v: m/s, of the centre of mass.
-        w: rad/s, angular velocity.
+    Its inertia, kg m^2, body axes, is factored as I = L D L^T.
     """
 
-    per_mass: Number
-    inertia: tuple[Number, ...]
-    rotation: tuple[Vector3, Vector3, Vector3]
-    r: Vector3
-    v: Vector3
-    w: Vector3
+    def __init__(self) -> None:
+        self.per_mass = 0.0  # 1/kg
+        self.d1 = self.d2 = self.d3 = 0.0  # the pivots D
+        self.l21 = self.l31 = self.l32 = 0.0  # of L, without unit
+        # The body's axes in the world; from the centre of mass to the contact; velocities.
+        self.e_x = self.e_y = self.e_z = self.r = self.v = self.w = (0.0, 0.0, 0.0)
+
+    def take(  # noqa: PLR0917
+        self, mass: float, inertia: Inertia, q: Quaternion, r: Vector3, v: Vector3, w: Vector3
+    ) -> bool:
+        """Take the numbers of a body, and return whether their products stay in the range of doubles.
+
+        Args:
+            mass: kg.
+            inertia: The nine numbers of a (3, 3), kg m^2, body axes.
+            q: Unit quaternion x, y, z, w, body coordinates into world coordinates.
+            r: m, from the centre of mass to the contact, world axes.
+            v: m/s, of the centre of mass, world axes.
+            w: rad/s, world axes.
+        """
+        i_xx, i_yy, i_zz = inertia[0], inertia[4], inertia[8]
+        i_xy, i_xz = 0.5 * (inertia[1] + inertia[3]), 0.5 * (inertia[2] + inertia[6])
+        i_yz = 0.5 * (inertia[5] + inertia[7])
+        self.per_mass = 1.0 / mass
+        self.d1, self.l21, self.l31 = i_xx, i_xy / i_xx, i_xz / i_xx
+        self.d2 = max(i_yy - self.l21 * i_xy, LEAST_PIVOT * i_yy)
+        rest = i_yz - self.l31 * i_xy
+        self.l32 = rest / self.d2
+        self.d3 = max(i_zz - self.l31 * i_xz - self.l32 * rest, LEAST_PIVOT * i_zz)
+        a, b, c, d = q[0], q[1], q[2], q[3]
+        self.e_x = (1.0 - 2.0 * (b * b + c * c), 2.0 * (a * b + d * c), 2.0 * (a * c - d * b))
+        self.e_y = (2.0 * (a * b - d * c), 1.0 - 2.0 * (a * a + c * c), 2.0 * (b * c + d * a))
+        self.e_z = (2.0 * (a * c + d * b), 2.0 * (b * c - d * a), 1.0 - 2.0 * (a * a + b * b))
+        self.r, self.v, self.w = r, v, w
+        largest = max(i_xx, i_yy, i_zz)
+        return (
+            LEAST_NUMBER <= mass <= LARGEST_NUMBER
+            and LEAST_NUMBER <= largest <= LARGEST_NUMBER
+            and is_small(r)
+            and is_small(v)
+            and is_small(w)
+            and dot(r, r) <= LARGEST_ARM * LARGEST_ARM * (largest / mass)
+        )
+
+    def velocity(self) -> Vector3:
+        """Return the velocity of the contact point, v + w x r, m/s, world axes."""
+        turning = cross(self.w, self.r)
+        return (self.v[0] + turning[0], self.v[1] + turning[1], self.v[2] + turning[2])
+
+    def half_turned(self, axis: Vector3) -> Vector3:
+        """Return L^-1 of the moment, body axes, of a unit impulse along ``axis``."""
+        moment = cross(self.r, axis)
+        x, y, z = dot(self.e_x, moment), dot(self.e_y, moment), dot(self.e_z, moment)
+        y = y - self.l21 * x
+        return (x, y, z - self.l31 * x - self.l32 * y)
+
+    def coupled(self, a: Vector3, b: Vector3) -> float:
+        """Return the turning that two impulses share, 1/kg, from their moments by `half_turned`."""
+        return a[0] * b[0] / self.d1 + a[1] * b[1] / self.d2 + a[2] * b[2] / self.d3
+
+    def response(self, a: Vector3, b: Vector3, n: Vector3) -> Response:
+        """Return the inverse inertia in axes a, b, n, 1/kg: aa, ab, an, bb, bn, nn (lecture 27, eq. 7)."""
+        a, b, n = self.half_turned(a), self.half_turned(b), self.half_turned(n)
+        return (
+            self.per_mass + self.coupled(a, a),
+            self.coupled(a, b),
+            self.coupled(a, n),
+            self.per_mass + self.coupled(b, b),
+            self.coupled(b, n),
+            self.per_mass + self.coupled(n, n),
+        )
+
+    def push(self, impulse: Vector3) -> None:
+        """Change the velocities as an impulse at the contact does, N s, world axes."""
+        half = self.half_turned(impulse)
+        z = half[2] / self.d3
+        y = half[1] / self.d2 - self.l32 * z
+        x = half[0] / self.d1 - self.l21 * y - self.l31 * z
+        self.v = (
+            self.v[0] + self.per_mass * impulse[0],
+            self.v[1] + self.per_mass * impulse[1],
+            self.v[2] + self.per_mass * impulse[2],
+        )
+        self.w = (
+            self.w[0] + (self.e_x[0] * x + self.e_y[0] * y + self.e_z[0] * z),
+            self.w[1] + (self.e_x[1] * x + self.e_y[1] * y + self.e_z[1] * z),
+            self.w[2] + (self.e_x[2] * x + self.e_y[2] * y + self.e_z[2] * z),
+        )
 
 
-class Response(NamedTuple):
-    """Inverse inertia in axes a, b, n, 1/kg: changes of velocity along one axis per impulse along another."""
-
-    aa: Number
-    ab: Number
-    an: Number
-    bb: Number
-    bn: Number
-    nn: Number
-
-
-class ContactAxes(NamedTuple):
-    """The principal tangents and the normal, world axes, with the response in them.
+class Strike:
+    """One impact after the other, at one contact each.
 
     Attributes:
-        t1: The first tangent, unit.
-        t2: The second tangent, unit.
-        n: The normal, unit.
+        body: The body that the normal points into. After a strike it has its new velocities.
+        other: The body that it strikes, likewise, if there is one.
+        t1: The first principal tangent, unit, world axes.
+        t2: The second one.
+        n: The normal, unit, world axes.
         l1: 1/kg, response along the first tangent to an impulse along it.
         l2: 1/kg, response along the second tangent to an impulse along it.
         k1: 1/kg, coupling between the first tangent and the normal.
         k2: 1/kg, coupling between the second tangent and the normal.
         kn: 1/kg, response along the normal to an impulse along it.
+        v_n: m/s, the normal velocity before.
+        impulse: N s, the whole one on the body, world axes.
+        compression: N s, the one of compression.
+        before: m/s, the contact's velocity before, relative to what it touches, world axes. A component
+            within the tolerance is 0.
+        after: m/s, the same afterwards.
+        law: How the contact slides, contact axes.
+        progress: What has come of the impulse path so far, contact axes.
+        tracer: The one that follows the path.
     """
 
-    t1: Vector3
-    t2: Vector3
-    n: Vector3
-    l1: Number
-    l2: Number
-    k1: Number
-    k2: Number
-    kn: Number
+    def __init__(self, law: RestitutionLaw, vertices: list[tuple[PathEvent, Vector3]] | None = None) -> None:
+        self.body, self.other = BodyAtContact(), BodyAtContact()
+        self.t1 = self.t2 = self.n = (0.0, 0.0, 0.0)
+        self.l1 = self.l2 = self.k1 = self.k2 = self.kn = self.v_n = 0.0
+        self.impulse = self.compression = self.before = self.after = (0.0, 0.0, 0.0)
+        self.law, self.progress = SlidingLaw(1.0, 1.0, 0.0, 0.0, 1.0, 0.0), Progress(RULES[law], vertices)
+        self.tracer = Tracer(self.law, self.progress)
 
-    def components(self, vector: Vector3) -> Vector3:
-        """Return the contact components of a vector in world axes."""
-        return (dot(self.t1, vector), dot(self.t2, vector), dot(self.n, vector))
+    def strike(  # noqa: PLR0917
+        self,
+        normal: Vector3,
+        friction: float,
+        restitution: float,
+        has_other: bool,  # noqa: FBT001  C has no keywords
+        tolerance: float,
+        skips: bool = False,  # noqa: FBT001, FBT002  C has no keywords
+    ) -> int:
+        """Strike at a contact of `body`, and return the outcome, below 0 if there is none (`refuse`).
 
-    def in_world(self, components: Vector3) -> Vector3:
+        Args:
+            normal: Unit, into the body, world axes.
+            friction: Coulomb's coefficient.
+            restitution: The coefficient.
+            has_other: Whether `other` is struck, and not the fixed world.
+            tolerance: m/s. A normal or tangential velocity within it counts as zero.
+            skips: Whether nothing happens to a contact that separates.
+        """
+        self.find_axes(normal, has_other)
+        self.before = self.body.velocity()
+        if has_other:
+            second = self.other.velocity()
+            self.before = (
+                self.before[0] - second[0],
+                self.before[1] - second[1],
+                self.before[2] - second[2],
+            )
+        u1, u2, v_n = dot(self.t1, self.before), dot(self.t2, self.before), dot(self.n, self.before)
+        self.v_n = v_n
+        if not v_n <= tolerance:
+            if skips and v_n > tolerance:
+                self.impulse = self.compression = (0.0, 0.0, 0.0)
+                self.after = self.in_world(u1, u2, v_n)
+                return _NO_IMPULSE
+            return _SEPARATES
+        still, rests = math.sqrt(u1 * u1 + u2 * u2) <= tolerance, v_n >= -tolerance
+        if still:
+            u1 = u2 = 0.0
+        if rests:
+            v_n = 0.0
+        if still or rests:
+            self.before = self.in_world(u1, u2, v_n)
+        self.law.take(self.l1, self.l2, self.k1, self.k2, self.kn, friction)
+        outcome = self.tracer.trace(u1, u2, v_n, restitution)
+        self.impulse = self.in_world(self.progress.i1, self.progress.i2, self.progress.p)
+        self.compression = self.in_world(self.progress.c1, self.progress.c2, self.progress.c)
+        self.after = self.in_world(self.tracer.u1, self.tracer.u2, self.progress.v_n)
+        self.body.push(self.impulse)
+        if has_other:
+            self.other.push((-self.impulse[0], -self.impulse[1], -self.impulse[2]))
+        return outcome
+
+    def strike_rows(  # noqa: PLR0917
+        self,
+        bodies: Any,
+        others: Any,
+        contacts: Any,
+        tolerance: float,
+        skips: bool,  # noqa: FBT001  C has no keywords
+        outcomes: Any,
+        results: Any,
+    ) -> int:
+        """Strike at the contact of each row, and return how many there were before one without an outcome.
+
+        Args:
+            bodies: (n, 23), a row for each: what `BodyAtContact.take` takes.
+            others: The same, or (0, 23) where the fixed world is struck.
+            contacts: (n, 5), normals, frictions and restitutions.
+            tolerance: As of `strike`.
+            skips: As of `strike`.
+            outcomes: (n,), which are filled in.
+            results: (n, 24), which are filled in: v and w afterwards, impulse, compression, the contact's
+                velocity before and after, then v and w of the other body.
+        """
+        has_other = len(others) > 0
+        for i in range(len(outcomes)):
+            take_row(self.body, bodies, i)
+            if has_other:
+                take_row(self.other, others, i)
+            normal = vector_of(contacts, i, 0)
+            outcome = self.strike(normal, contacts[i, 3], contacts[i, 4], has_other, tolerance, skips)
+            if outcome < 0:
+                return i
+            outcomes[i] = outcome
+            put(results, i, 0, self.body.v)
+            put(results, i, 3, self.body.w)
+            put(results, i, 6, self.impulse)
+            put(results, i, 9, self.compression)
+            put(results, i, 12, self.before)
+            put(results, i, 15, self.after)
+            if has_other:
+                put(results, i, 18, self.other.v)
+                put(results, i, 21, self.other.w)
+        return len(outcomes)
+
+    def find_axes(self, normal: Vector3, has_other: bool) -> None:  # noqa: FBT001
+        """Find the contact's axes and its response, of `body` against the fixed world or against `other`."""
+        a, b = first_tangent(normal), second_tangent(normal)
+        aa, ab, an, bb, bn, nn = self.body.response(a, b, normal)
+        if has_other:
+            more = self.other.response(a, b, normal)
+            aa, ab, an = aa + more[0], ab + more[1], an + more[2]
+            bb, bn, nn = bb + more[3], bn + more[4], nn + more[5]
+        # Jacobi's rotation by the smaller angle.
+        difference = bb - aa
+        root = math.sqrt(difference * difference + 4.0 * ab * ab)
+        tangent = math.copysign(1.0, difference) * (2.0 * ab) / (abs(difference) + root + SMALLEST)
+        c = 1.0 / math.sqrt(1.0 + tangent * tangent)
+        s = tangent * c
+        self.t1, self.t2, self.n = combined(c, a, -s, b), combined(s, a, c, b), normal
+        self.l1, self.l2, self.kn = aa - tangent * ab, bb + tangent * ab, nn
+        self.k1, self.k2 = c * an - s * bn, s * an + c * bn
+
+    def in_world(self, u1: float, u2: float, along: float) -> Vector3:
         """Return the vector in world axes that has these contact components."""
-        x, y, z = combined(components[0], self.t1, components[1], self.t2)
-        n, p = self.n, components[2]
-        return (x + p * n[0], y + p * n[1], z + p * n[2])
+        flat, n = combined(u1, self.t1, u2, self.t2), self.n
+        return (flat[0] + along * n[0], flat[1] + along * n[1], flat[2] + along * n[2])
 
 
-def responding(  # noqa: PLR0917 - the columns of one table
-    mass: Number, inertia: Sequence[Sequence[Number]], q: Sequence[Number], r: Vector3, v: Vector3, w: Vector3
-) -> Responding:
-    """Return a body for the contact at ``r``.
-
-    Args:
-        mass: kg.
-        inertia: (3, 3), kg m^2, body axes.
-        q: Unit quaternion x, y, z, w, body coordinates into world coordinates.
-        r: m, from the centre of mass to the contact, world axes.
-        v: m/s, of the centre of mass, world axes.
-        w: rad/s, world axes.
-    """
-    (i_xx, i_xy, i_xz), (i_yx, i_yy, i_yz), (i_zx, i_zy, i_zz) = inertia
-    i_xy, i_xz, i_yz = 0.5 * (i_xy + i_yx), 0.5 * (i_xz + i_zx), 0.5 * (i_yz + i_zy)
-    l21, l31 = i_xy / i_xx, i_xz / i_xx
-    d2 = larger(i_yy - l21 * i_xy, LEAST_PIVOT * i_yy)
-    rest = i_yz - l31 * i_xy
-    l32 = rest / d2
-    d3 = larger(i_zz - l31 * i_xz - l32 * rest, LEAST_PIVOT * i_zz)
-    (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = rows_of(*q)
-    columns = ((xx, yx, zx), (xy, yy, zy), (xz, yz, zz))
-    return Responding(1.0 / mass, (i_xx, d2, d3, l21, l31, l32), columns, r, v, w)
-
-
-def velocity_at_contact(body: Responding, other: Responding | None) -> Vector3:
-    """Return v + w x r of ``body``, relative to ``other`` if there is one, m/s, world axes."""
-    turning = cross(body.w, body.r)
-    velocity = (body.v[0] + turning[0], body.v[1] + turning[1], body.v[2] + turning[2])
-    if other is None:
-        return velocity
-    x, y, z = velocity_at_contact(other, None)
-    return (velocity[0] - x, velocity[1] - y, velocity[2] - z)
-
-
-def response(body: Responding, a: Vector3, b: Vector3, n: Vector3) -> Response:
-    """Return the inverse inertia in axes ``a``, ``b``, ``n`` (lecture 27, eq. 7, by components)."""
-    d1, d2, d3, l21, l31, l32 = body.inertia
-    halves = []
-    for axis in (a, b, n):
-        x, y, z = _in_body(body, cross(body.r, axis))
-        y = y - l21 * x
-        halves.append((x, y, z - l31 * x - l32 * y))
-    (a1, a2, a3), (b1, b2, b3), (n1, n2, n3) = halves
-    return Response(
-        body.per_mass + (a1 * a1 / d1 + a2 * a2 / d2 + a3 * a3 / d3),
-        a1 * b1 / d1 + a2 * b2 / d2 + a3 * b3 / d3,
-        a1 * n1 / d1 + a2 * n2 / d2 + a3 * n3 / d3,
-        body.per_mass + (b1 * b1 / d1 + b2 * b2 / d2 + b3 * b3 / d3),
-        b1 * n1 / d1 + b2 * n2 / d2 + b3 * n3 / d3,
-        body.per_mass + (n1 * n1 / d1 + n2 * n2 / d2 + n3 * n3 / d3),
+def take_row(body: BodyAtContact, rows: Any, i: int) -> None:
+    """Take row ``i`` of bodies."""
+    x, y, z = vector_of(rows, i, 1), vector_of(rows, i, 4), vector_of(rows, i, 7)
+    q, q_w = vector_of(rows, i, 10), rows[i, 13]
+    body.take(
+        rows[i, 0],
+        (x[0], x[1], x[2], y[0], y[1], y[2], z[0], z[1], z[2]),
+        (q[0], q[1], q[2], q_w),
+        vector_of(rows, i, 14),
+        vector_of(rows, i, 17),
+        vector_of(rows, i, 20),
     )
 
 
-def contact_axes(body: Responding, other: Responding | None, normal: Vector3) -> ContactAxes:
-    """Return the contact's axes and response, of ``body`` against the fixed world or against ``other``."""
-    a, b = tangents_by_sign(normal)
-    whole = response(body, a, b, normal)
-    if other is not None:
-        second = response(other, a, b, normal)
-        whole = Response(*(x + y for x, y in zip(whole, second, strict=True)))
-    aa, ab, an, bb, bn, nn = whole
-    # Jacobi's rotation by the smaller angle.
-    difference = bb - aa
-    root = sqrt(difference * difference + 4.0 * ab * ab)
-    tangent = sign(difference) * (2.0 * ab) / (abs(difference) + root + SMALLEST)
-    c = 1.0 / sqrt(1.0 + tangent * tangent)
-    s = tangent * c
-    return ContactAxes(
-        t1=combined(c, a, -s, b),
-        t2=combined(s, a, c, b),
-        n=normal,
-        l1=aa - tangent * ab,
-        l2=bb + tangent * ab,
-        k1=c * an - s * bn,
-        k2=s * an + c * bn,
-        kn=nn,
-    )
+def vector_of(rows: Any, i: int, first: int) -> Vector3:
+    """Return a vector of row ``i``, from column ``first`` on."""
+    x, y, z = rows[i, first], rows[i, first + 1], rows[i, first + 2]
+    return (x, y, z)
 
 
-def pushed(body: Responding, impulse: Vector3) -> tuple[Vector3, Vector3]:
-    """Return the body's linear and angular velocity, world axes, after an ``impulse`` at the contact, N s."""
-    v, w, per_mass = body.v, body.w, body.per_mass
-    d1, d2, d3, l21, l31, l32 = body.inertia
-    x, y, z = _in_body(body, cross(body.r, impulse))
-    y = y - l21 * x
-    z = (z - l31 * x - l32 * y) / d3
-    y = y / d2 - l32 * z
-    x = x / d1 - l21 * y - l31 * z
-    e_x, e_y, e_z = body.rotation
-    return (
-        (v[0] + per_mass * impulse[0], v[1] + per_mass * impulse[1], v[2] + per_mass * impulse[2]),
-        (
-            w[0] + (e_x[0] * x + e_y[0] * y + e_z[0] * z),
-            w[1] + (e_x[1] * x + e_y[1] * y + e_z[1] * z),
-            w[2] + (e_x[2] * x + e_y[2] * y + e_z[2] * z),
-        ),
-    )
+def is_small(vector: Vector3) -> bool:
+    """Return whether no component is too large to multiply."""
+    return max(abs(vector[0]), abs(vector[1]), abs(vector[2])) <= LARGEST_NUMBER
 
 
-def _in_body(body: Responding, vector: Vector3) -> Vector3:
-    e_x, e_y, e_z = body.rotation
-    return (dot(e_x, vector), dot(e_y, vector), dot(e_z, vector))
+def put(rows: Any, i: int, first: int, vector: Vector3) -> None:
+    """Write a vector into row ``i``, from column ``first`` on."""
+    rows[i, first], rows[i, first + 1], rows[i, first + 2] = vector[0], vector[1], vector[2]
+
+
+# As in `numerics.vectors`, with C types. Tangents are found by a formula without a choice of axes (Duff et
+# al. 2017, "Building an orthonormal basis, revisited").
+
+
+def first_tangent(n: Vector3) -> Vector3:
+    """Return one of two unit tangents."""
+    s = math.copysign(1.0, n[2])
+    a = -1.0 / (s + n[2])
+    return (1.0 + s * n[0] * n[0] * a, s * (n[0] * n[1] * a), -s * n[0])
+
+
+def second_tangent(n: Vector3) -> Vector3:
+    """Return the other one."""
+    s = math.copysign(1.0, n[2])
+    a = -1.0 / (s + n[2])
+    return (n[0] * n[1] * a, s + n[1] * n[1] * a, -n[1])
+
+
+def dot(a: Vector3, b: Vector3) -> float:
+    """Return the inner product."""
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+def cross(a: Vector3, b: Vector3) -> Vector3:
+    """Return the cross product."""
+    return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
+
+
+def combined(x: float, a: Vector3, y: float, b: Vector3) -> Vector3:
+    """Return x a + y b."""
+    return (x * a[0] + y * b[0], x * a[1] + y * b[1], x * a[2] + y * b[2])
