@@ -18,7 +18,7 @@ from contact_dynamics.impact import ImpactOutcome, RestitutionLaw, StrikingBodie
 from contact_dynamics.questions.context import Context, check_optional, or_default
 from contact_dynamics.questions.services import Answer, Question
 from contact_dynamics.questions.touching import outside_shape
-from contact_dynamics.records import Record, Rows
+from contact_dynamics.records import Rows
 from contact_dynamics.rotations.many import matrices_of
 from contact_dynamics.tumbling import states_of_many
 from contact_dynamics.validation import FloatArray, check_array

@@ -10,8 +10,6 @@ from hypothesis import strategies as st
 from contact_dynamics.numerics.vectors import (
     across,
     along_least,
-    cross,
-    dot,
     near_x,
     normalised,
     point_jacobians,
@@ -76,20 +74,6 @@ def test_one_tangent_is_as_near_to_x_as_can_be() -> None:
     assert near_x(np.array([0.0, 0.0, 1.0])).tolist() == [1.0, 0.0, 0.0]
     assert near_x(np.array([0.6, 0.0, 0.8])) == pytest.approx([0.64, 0.0, -0.48], abs=ROUNDING)
     assert near_x(np.array([-1.0, 0.0, 0.0])).tolist() == [0.0, 1.0, 0.0]
-
-
-def test_many_at_once_are_each_to_the_last_bit() -> None:
-    drawn = np.random.default_rng(5).normal(size=(100, 3))
-    unit = drawn / np.linalg.norm(drawn, axis=1)[:, None]
-    x, y, z = unit.T
-    first, second = tangents_by_sign((x, y, z))
-    turned, heights = cross(first, second), dot(first, (x, y, z))
-    for i, (a, b, c) in enumerate(unit.tolist()):
-        one, two = tangents_by_sign((a, b, c))
-        assert tuple(float(part[i]) for part in first) == one
-        assert tuple(float(part[i]) for part in second) == two
-        assert tuple(float(part[i]) for part in turned) == cross(one, two)
-        assert float(heights[i]) == dot(one, (a, b, c))
 
 
 def test_point_jacobians_give_the_velocities_of_points() -> None:

@@ -142,7 +142,7 @@ class Strike:
 
     Attributes:
         body: The body that the normal points into. After a strike it has its new velocities.
-        other: The body that it strikes, likewise, if there is one.
+        other: The body that it strikes, if there is one. After a strike it has its new velocities too.
         t1: The first principal tangent, unit, world axes.
         t2: The second one.
         n: The normal, unit, world axes.
