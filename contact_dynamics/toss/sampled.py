@@ -97,8 +97,8 @@ def sampled_toss(
         by_gravity: s^2 and s, by how much the best position and velocity change with gravity, as
             `FitResult.by_gravity`. A state that does not depend on gravity has zeros.
         uncertainty: How uncertain parameters and law are.
-        count: Number of samples, from 1 to `MAX_SAMPLES`. Standard errors of probabilities are at most half of
-            1 / sqrt(count), which is 0.035 for 200.
+        count: Number of samples, from 1 to `MAX_SAMPLES`. Standard errors of probabilities are at most
+            0.5 / sqrt(count), which is 0.035 for 200.
         strikes: How many next strikes the tree has, from 1 to `MAX_STRIKES`.
         to_rest: Whether samples are followed to rest.
         seed: Samples are drawn from it, >= 0. The same seed draws the same ones.
