@@ -31,6 +31,7 @@ from contact_dynamics.tolerances import (
 from contact_dynamics.toss.cone_forces import Site, cone_forces
 from contact_dynamics.toss.forces import (
     Free,
+    Pushed,
     force_rounding,
     free_accelerations,
     least_left,
@@ -81,10 +82,18 @@ class Choice(NamedTuple):
     Attributes:
         verdict: On the contact set.
         modes: The held contacts of each mode; a contact that separates is in none. The first goes on.
+        pushed: The rates and forces in the first mode, if they are known.
     """
 
     verdict: ModeVerdict
     modes: list[Mode]
+    pushed: Pushed | None = None
+
+    def pushed_in(self, way: int, solid: Solid, y: Numbers) -> Pushed:
+        """Return the rates and forces in a mode, for the state that modes were looked for in."""
+        if way == 0 and self.pushed is not None:
+            return self.pushed
+        return pushed_by_contacts(solid, y, self.modes[way])
 
 
 def choose_mode(solid: Solid, y: Numbers, touching: list[Touch], *, thorough: bool = False) -> Choice:
@@ -129,21 +138,18 @@ def choose_mode(solid: Solid, y: Numbers, touching: list[Touch], *, thorough: bo
             going_on = [(one.touch, one.slides) for one in guess]
             choice.modes.sort(key=lambda mode: [(one.touch, one.slides) for one in mode] != going_on)
             return choice
-    mode = corrected(solid, y, tuple(guess), free)
+    mode, pushed = corrected(solid, y, tuple(guess), free)
     if mode is None:
         found = cone_forces(1.0 / solid.mass, free.pose.inverse, sites)
         if found is None:
             return choice if paradox else _all_modes(solid, y, touching)
         mode = _read_off(solid, y, guess, sites, pushes=found[0], motions=found[1])
+    others, verdict = [], ModeVerdict.UNIQUE
     if thorough and not paradox and may_be_wedged(solid, touching):
-        return _with_others(mode, _all_modes(solid, y, touching))
-    return Choice(ModeVerdict.UNIQUE, [mode])
-
-
-def _with_others(mode: Mode, known: Choice) -> Choice:
-    """Return a mode and the others among those that are known."""
-    others = [other for other in known.modes if _letters(other) != _letters(mode)]
-    return Choice(known.verdict if others else ModeVerdict.UNIQUE, [mode, *others])
+        known = _all_modes(solid, y, touching)
+        others = [other for other in known.modes if _letters(other) != _letters(mode)]
+        verdict = known.verdict if others else verdict
+    return Choice(verdict, [mode, *others], pushed)
 
 
 def _letters(mode: Mode) -> set[tuple[Touch, bool]]:
@@ -188,8 +194,8 @@ def _beginning(touch: Touch, towards: Vector3) -> Held:
     return Held(touch=touch, slides=True, towards=towards, begins=True)
 
 
-def corrected(solid: Solid, y: Numbers, guess: Mode, free: Free) -> Mode | None:
-    """Return a consistent mode near a guess, or None if corrections do not lead to one.
+def corrected(solid: Solid, y: Numbers, guess: Mode, free: Free) -> tuple[Mode, Pushed] | tuple[None, None]:
+    """Return a consistent mode near a guess and what it does, or None if corrections do not lead to one.
 
     In each round, a contact that pulls separates, one that approaches is held again, one that friction does
     not hold slides against its friction, and one that begins to slide does so along its acceleration, or
@@ -212,9 +218,9 @@ def corrected(solid: Solid, y: Numbers, guess: Mode, free: Free) -> Mode | None:
         ]
         after = {one.touch: one for one in corrections if one is not None}
         if after == held:
-            return mode
+            return mode, pushed
         held = after
-    return None
+    return None, None
 
 
 def _correction(

@@ -238,7 +238,7 @@ def _turned(solid: Solid, y: Numbers, mode: tuple[Held, ...]) -> tuple[Held, ...
     if not any(one.begins for one in mode):
         return mode
     free = free_accelerations(solid, y)
-    found = corrected(solid, y, tuple(Held(one.touch) if one.begins else one for one in mode), free)
+    found, _ = corrected(solid, y, tuple(Held(one.touch) if one.begins else one for one in mode), free)
     new = {} if found is None else {one.touch: one for one in found}
     turned = []
     for one in mode:

@@ -47,6 +47,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from contact_dynamics.rigid_body.body import BodyState
+    from contact_dynamics.toss.forces import Pushed
     from contact_dynamics.toss.laid_flat import Faces
     from contact_dynamics.toss.mode_choice import Choice, Mode
     from contact_dynamics.toss.solid import Held, Numbers, Solid, Touch
@@ -160,14 +161,14 @@ class Simulation(History):
         """Go on from contacts that neither approach nor leave, and return what touches then."""
         if not touching:
             return self._fly(0.0)
-        modes = self._modes(touching)
-        if not modes:
+        found = self._next_mode(touching)
+        if found is None:
             return self._jam(touching)
-        mode = modes[0]
+        mode, pushed = found
         if not mode:
             self.note(TossEventKind.LIFTS_OFF, touching)
             return self._fly(LIFT_OFF_PAUSE)
-        if least_left(self.solid, mode, pushed_by_contacts(self.solid, self.y, mode).forces) < 0.0:
+        if least_left(self.solid, mode, pushed.forces) < 0.0:
             return self._pass_over()
         return self._follow(mode)
 
@@ -284,19 +285,20 @@ class Simulation(History):
 
     # Contact
 
-    def _modes(self, touching: list[Touch]) -> list[Mode]:
-        """Return the consistent modes, the one that is taken first."""
+    def _next_mode(self, touching: list[Touch]) -> tuple[Mode, Pushed] | None:
+        """Return the consistent mode that is taken, with its rates and forces, or None if there is none."""
         if self.way_on is not None:
             mode, self.way_on = self.way_on, None
-            return [mode]
+            return mode, pushed_by_contacts(self.solid, self.y, mode)
         thorough = self.settings.thorough and touching != self.looked_at
         self.looked_at = touching
         known = self._known_since_strikes(touching, thorough=thorough)
-        modes = (known or choose_mode(self.solid, self.y, touching, thorough=thorough)).modes
-        if len(modes) > 1:
-            way = self.way(UndecidedReason.SEVERAL_MODES, len(modes))
-            return [modes[way]]
-        return modes
+        choice = known or choose_mode(self.solid, self.y, touching, thorough=thorough)
+        if not choice.modes:
+            return None
+        options = len(choice.modes)
+        way = self.way(UndecidedReason.SEVERAL_MODES, options) if options > 1 else 0
+        return choice.modes[way], choice.pushed_in(way, self.solid, self.y)
 
     def _known_since_strikes(self, touching: list[Touch], *, thorough: bool) -> Choice | None:
         """Return the modes that the last strikes found for these contacts in this state, if they did."""
@@ -395,10 +397,11 @@ class Simulation(History):
             return False
         touching = self.touching_now(math.inf)
         still = [*self.y[:7], *[0.0] * 6]
-        modes = choose_mode(self.solid, still, touching, thorough=self.settings.thorough).modes
+        choice = choose_mode(self.solid, still, touching, thorough=self.settings.thorough)
+        modes = choice.modes
         if not modes:
             return False
-        pushed = pushed_by_contacts(self.solid, still, modes[0])
+        pushed = choice.pushed_in(0, self.solid, still)
         rates = pushed.rates[7:]
         fastest = max(map(abs, rates[:3])) + self.solid.reach * max(map(abs, rates[3:]))
         # A mode of nearly flush contacts may be still by forces that pull, because they are not quite flush.

@@ -18,7 +18,6 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 from contact_dynamics.impact.several.result import SeveralContactsLaw
 from contact_dynamics.numerics.vectors import cross, dot, norm
 from contact_dynamics.tolerances import STILL_TOUCHING, STRIKES
-from contact_dynamics.toss.forces import pushed_by_contacts
 from contact_dynamics.toss.holding import heights_held, held_in_place, without_rebounds
 from contact_dynamics.toss.impacts import (
     Struck,
@@ -226,7 +225,8 @@ def _pressed(
     if not choice.modes:
         return None
     mode = choice.modes[0]
-    forces = dict(zip((one.touch for one in mode), pushed_by_contacts(solid, y, mode).forces, strict=True))
+    pushed = choice.pushed_in(0, solid, y)
+    forces = dict(zip((one.touch for one in mode), pushed.forces, strict=True))
     pose = pose_of(solid, y)
     staying = []
     for touch, rate, motion in zip(touching, before, motions, strict=True):

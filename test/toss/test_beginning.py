@@ -39,7 +39,7 @@ class OnEdge(NamedTuple):
             self.body, World(surfaces=(replace(self.ramp, friction=friction),), gravity_W=GRAVITY)
         )
         y = numbers_of(self.state)
-        return corrected(solid, y, tuple(map(Held, self.touching)), free_accelerations(solid, y))
+        return corrected(solid, y, tuple(map(Held, self.touching)), free_accelerations(solid, y))[0]
 
 
 def on_edge(seed: int) -> OnEdge:
