@@ -1,4 +1,4 @@
-"""What is known of a toss as it goes on: where it is, what happened, and what is told of it at the end."""
+"""A toss as it goes on: where it is, what has happened, and the `Toss` that is returned at its end."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ more closely."""
 
 
 class Noted(NamedTuple):
-    """An event, as `TossEvent` tells it, with the contacts and the 13 numbers of the state after it."""
+    """An event, as `TossEvent` has it, with the contacts and the 13 numbers of the state after it."""
 
     seconds: float
     kind: TossEventKind
@@ -82,8 +82,8 @@ class History:
         self._began_ns = state.stamp_ns
         self._first = energy_of(self.solid, self.y)
 
-    def told(self, end: TossEnd, law: RestitutionLaw) -> Toss:
-        """Return what there is to tell of a toss that ends so."""
+    def as_toss(self, end: TossEnd, law: RestitutionLaw) -> Toss:
+        """Return the toss, which ends so."""
         energy = TossEnergy(
             first=self._first - energy_of(self.solid, self.y) + kinetic_energy_of(self.solid, self.y),
             lost_in_strikes=self.lost_in_strikes,
@@ -95,7 +95,7 @@ class History:
             end=end,
             seconds=self.now,
             state=self.present(),
-            events=tuple(self._told_events()),
+            events=tuple(self._toss_events()),
             resting_corners=tuple(sorted({self.solid.indices[corner] for _, corner in self.resting})),
             resting_normal_B=np.array(self.resting_normal_B()),
             energy=energy,
@@ -135,7 +135,7 @@ class History:
         return [touch for _, touch in listed if touch in found]
 
     def way(self, reason: UndecidedReason, options: int) -> int:
-        """Return which way is taken at a point that mechanics does not decide, and tell of it."""
+        """Return which way is taken at a point that mechanics does not decide, and note it."""
         k = len(self._undecided)
         taken = self._ways[k] if k < len(self._ways) else 0
         self._undecided.append(Undecided(seconds=self.now, reason=reason, options=options, taken=taken))
@@ -164,17 +164,17 @@ class History:
     def _state(self, seconds: float, y: Numbers) -> BodyState:
         return state_of(y, ns_after(self._began_ns, seconds))
 
-    def _told_events(self) -> Iterator[TossEvent]:
-        """Return what is told of the events. Those that leave one state share it."""
+    def _toss_events(self) -> Iterator[TossEvent]:
+        """Return the events for users. Those that leave one state share it."""
         last: Noted | None = None
         state = None
         for noted in self.events:
             if state is None or last is None or noted.y is not last.y or noted.seconds != last.seconds:
                 state = self._state(noted.seconds, noted.y)
             last = noted
-            yield self._told_event(noted, state)
+            yield self._toss_event(noted, state)
 
-    def _told_event(self, noted: Noted, state: BodyState) -> TossEvent:
+    def _toss_event(self, noted: Noted, state: BodyState) -> TossEvent:
         touching, y = noted.touching, noted.y
         return TossEvent(
             seconds=noted.seconds,

@@ -34,7 +34,7 @@ FEWEST_AT_ONCE: Final = 32
 """Samples below which one after the other is faster than all at once."""
 
 MAX_FURTHER: Final = 50
-"""Strikes that are followed beyond those to tell of. A body that still bounces then goes on by itself."""
+"""Strikes that are followed beyond those returned. A body that still bounces then goes on by itself."""
 
 
 _MAX_STEPS: Final = 200
@@ -108,7 +108,7 @@ def next_strikes(
         samples: What differs between them.
         law: What the coefficients of restitution mean.
         spread: The law's own spread.
-        depth: How many strikes to tell of.
+        depth: How many strikes to return.
         horizon: s, how far.
         further: Whether the last states are those after later strikes. Samples go on as long as
             `FEWEST_AT_ONCE` fly on after each.
@@ -117,7 +117,7 @@ def next_strikes(
     state = [samples.p_WB_W.copy(), samples.q_WB.copy(), samples.v_WB_W.copy(), samples.w_WB_W.copy()]
     now = np.zeros(n)
     ends = np.full(n, SampleEnd.FOLLOWED, dtype=np.int64)
-    told = ManyStrikes(
+    many = ManyStrikes(
         seconds=np.full((depth, n), np.nan),
         surfaces=np.full((depth, n), -1, dtype=np.int64),
         corners=np.full((depth, n), -1, dtype=np.int64),
@@ -154,12 +154,12 @@ def next_strikes(
         if k < depth:
             ends[over] = SampleEnd.FLIES
             ends[going[slow]] = SampleEnd.STAYS
-            told.seconds[k, going], told.surfaces[k, going] = now[going], surfaces
-            told.corners[k, going] = corners
-            for rows, each in zip((told.p_WB_W, told.q_WB, told.v_WB_W, told.w_WB_W), state, strict=True):
+            many.seconds[k, going], many.surfaces[k, going] = now[going], surfaces
+            many.corners[k, going] = corners
+            for rows, each in zip((many.p_WB_W, many.q_WB, many.v_WB_W, many.w_WB_W), state, strict=True):
                 rows[k, going] = each[going]
         going = going[~slow]
-    return told
+    return many
 
 
 def _strike(

@@ -6,7 +6,7 @@ until it ends (`phase`). The toss is over where the kinetic energy has fallen so
 or slide by `SETTLING_HEIGHT` at most, and friction and contacts hold it there.
 
 Where mechanics does not decide (several modes, contacts that strike at one instant), one way is taken and the
-point is told. The other ways are followed as tosses of their own, as many as are asked for.
+point is listed. The other ways are followed as tosses of their own, as many as are asked for.
 """
 
 from __future__ import annotations

@@ -149,7 +149,7 @@ def sampled_toss(
         chance=chance,
     )
     spread = LawSpread(uncertainty, count, chance)
-    told = next_strikes(
+    many = next_strikes(
         solid, samples, law=restitution_law, spread=spread, depth=strikes, horizon=horizon, further=to_rest
     )
     rests: dict[int, Followed] = {}
@@ -157,7 +157,7 @@ def sampled_toss(
         followed = followed_to_rest(
             solid,
             samples,
-            told,
+            many,
             spread,
             law=restitution_law,
             several_contacts_law=several_contacts_law,
@@ -165,7 +165,7 @@ def sampled_toss(
             processes=shared_by,
         )
         for i, one in followed.items():
-            _tell(told, i, one)
+            _add_strikes(many, i, one)
         rests = {i: one for i, one in followed.items() if one.rests}
     faces, shares = _faces([each.normal_B for each in rests.values()], count)
     rest = None
@@ -174,59 +174,59 @@ def sampled_toss(
         rest = rest_of(times, np.array([each.y[:3] for each in rests.values()]))
     return TossDistribution(
         samples=count,
-        strikes=tuple(_marginals(told, count)),
-        branches=tuple(_branches(solid, told, count)),
+        strikes=tuple(_marginals(many, count)),
+        branches=tuple(_branches(solid, many, count)),
         face_normals_B=faces,
         face_probabilities=shares,
         rest=rest,
-        ghosts=_ghosts(told, rests, count),
+        ghosts=_ghosts(many, rests, count),
     )
 
 
-def _tell(told: ManyStrikes, i: int, followed: Followed) -> None:
-    """Tell of the strikes of one sample that the tree still lacks."""
-    k = int((told.corners[:, i] >= 0).sum())
+def _add_strikes(many: ManyStrikes, i: int, followed: Followed) -> None:
+    """Add the strikes of one sample that the tree still lacks."""
+    k = int((many.corners[:, i] >= 0).sum())
     for seconds, touch, y in followed.strikes:
-        told.seconds[k, i] = seconds
-        told.surfaces[k, i], told.corners[k, i] = touch
-        told.p_WB_W[k, i], told.q_WB[k, i] = y[:3], y[3:7]
-        told.v_WB_W[k, i], told.w_WB_W[k, i] = y[7:10], y[10:]
+        many.seconds[k, i] = seconds
+        many.surfaces[k, i], many.corners[k, i] = touch
+        many.p_WB_W[k, i], many.q_WB[k, i] = y[:3], y[3:7]
+        many.v_WB_W[k, i], many.w_WB_W[k, i] = y[7:10], y[10:]
         k += 1
-    told.ends[i] = SampleEnd.FOLLOWED if k == len(told.seconds) else SampleEnd.ENDS
+    many.ends[i] = SampleEnd.FOLLOWED if k == len(many.seconds) else SampleEnd.ENDS
 
 
-def _marginals(told: ManyStrikes, count: int) -> list[EventRegions]:
+def _marginals(many: ManyStrikes, count: int) -> list[EventRegions]:
     found = []
-    for k in range(len(told.seconds)):
-        which = np.flatnonzero(told.corners[k] >= 0)
+    for k in range(len(many.seconds)):
+        which = np.flatnonzero(many.corners[k] >= 0)
         if len(which) == 0:
             break
-        found.append(_regions(told, k, which, count))
+        found.append(_regions(many, k, which, count))
     return found
 
 
-def _regions(told: ManyStrikes, k: int, which: NDArray[np.intp], count: int) -> EventRegions:
+def _regions(many: ManyStrikes, k: int, which: NDArray[np.intp], count: int) -> EventRegions:
     return regions_of(
         len(which) / count,
-        told.seconds[k, which],
-        p=told.p_WB_W[k, which],
-        q=told.q_WB[k, which],
-        v=told.v_WB_W[k, which],
-        w=told.w_WB_W[k, which],
+        many.seconds[k, which],
+        p=many.p_WB_W[k, which],
+        q=many.q_WB[k, which],
+        v=many.v_WB_W[k, which],
+        w=many.w_WB_W[k, which],
     )
 
 
-def _branches(solid: Solid, told: ManyStrikes, count: int) -> list[Branch]:
+def _branches(solid: Solid, many: ManyStrikes, count: int) -> list[Branch]:
     """Return the tree, strike after strike."""
     branches: list[Branch] = []
     level = [(-1, np.arange(count))]
-    for k in range(len(told.seconds)):
+    for k in range(len(many.seconds)):
         after = []
         for parent, members in level:
             keys = [
-                (int(told.surfaces[k, i]), int(told.corners[k, i]))
-                if told.corners[k, i] >= 0
-                else (-1, -int(told.ends[i]))
+                (int(many.surfaces[k, i]), int(many.corners[k, i]))
+                if many.corners[k, i] >= 0
+                else (-1, -int(many.ends[i]))
                 for i in members
             ]
             for key, number in Counter(keys).most_common():
@@ -242,7 +242,7 @@ def _branches(solid: Solid, told: ManyStrikes, count: int) -> list[Branch]:
                         surface=solid.flats[key[0]].name if strikes else "",
                         corner=solid.indices[key[1]] if strikes else -1,
                         probability=number / count,
-                        regions=_regions(told, k, which, count) if strikes and number >= FEWEST else None,
+                        regions=_regions(many, k, which, count) if strikes and number >= FEWEST else None,
                     )
                 )
         level = after
@@ -264,11 +264,11 @@ def _faces(rests: list[Vector3], count: int) -> tuple[FloatArray, FloatArray]:
     return normals, np.array([number / count for _, number in faces])
 
 
-def _ghosts(told: ManyStrikes, rests: dict[int, Followed], count: int) -> Ghosts:
+def _ghosts(many: ManyStrikes, rests: dict[int, Followed], count: int) -> Ghosts:
     rows = []
     for i in range(min(count, MAX_GHOSTS)):
-        for k in np.flatnonzero(told.corners[:, i] >= 0).tolist():
-            at = (told.p_WB_W[k, i], told.q_WB[k, i], told.v_WB_W[k, i], told.w_WB_W[k, i])
+        for k in np.flatnonzero(many.corners[:, i] >= 0).tolist():
+            at = (many.p_WB_W[k, i], many.q_WB[k, i], many.v_WB_W[k, i], many.w_WB_W[k, i])
             rows.append((i, k + 1, np.concatenate(at)))
         if i in rests:
             rows.append((i, 0, np.array(rests[i].y)))

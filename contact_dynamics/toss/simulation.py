@@ -133,8 +133,8 @@ class Simulation(History):
         self.way_on: Mode | None = None  # how it goes on where it could rest as well
 
     def toss(self) -> Toss:
-        """Follow the motion to its end, and return what there is to tell of it."""
-        return self.told(self.to_end(), self.settings.law)
+        """Follow the motion to its end, and return it."""
+        return self.as_toss(self.to_end(), self.settings.law)
 
     def to_end(self) -> TossEnd:
         """Follow the motion to its end, and return why it ends."""

@@ -135,7 +135,7 @@ def solid_of(
     Args:
         body: The body.
         world: Flats, and gravity.
-        indices: (k,), those that are told of the body's corners. Without any, they count from 0.
+        indices: (k,), those by which the body's corners are known. Without any, they count from 0.
         settling: m. Rebounds that are lower are not followed.
         lasting_factors: (s,), the friction of each surface where contact lasts, relative to that of its
             strikes. Without any, those of the surfaces hold.

@@ -81,7 +81,7 @@ def check_processes(processes: Any) -> int | Executor:
 def followed_to_rest(
     solid: Solid,
     samples: Samples,
-    told: ManyStrikes,
+    many: ManyStrikes,
     spread: LawSpread,
     *,
     law: RestitutionLaw,
@@ -94,16 +94,16 @@ def followed_to_rest(
     Args:
         solid: The body and the flats.
         samples: What differs between samples.
-        told: The strikes up to where they go on.
+        many: The strikes up to where they go on.
         spread: The law's own spread.
         law: What the coefficients of restitution mean.
         several_contacts_law: The law for several contacts that strike at one instant.
         horizon: s, how far they are followed.
         processes: How many processes share the work, or an executor.
     """
-    going = np.flatnonzero(told.now < horizon).tolist()
-    began, states = told.now.tolist(), np.hstack(told.last).tolist()
-    lacking = (told.corners < 0).sum(axis=0).tolist()
+    going = np.flatnonzero(many.now < horizon).tolist()
+    began, states = many.now.tolist(), np.hstack(many.last).tolist()
+    lacking = (many.corners < 0).sum(axis=0).tolist()
     tosses = []
     for i in going:
         settings = TossSettings(

@@ -1,6 +1,6 @@
 """What is not known exactly about a toss, and samples of it.
 
-A state has a covariance, and so have parameters: what a calibration tells of friction, restitution, mass
+A state has a covariance, and so have parameters: what a calibration finds of friction, restitution, mass
 centre and inertia. The law of impact has a spread of its own, by which velocities after strikes differ from
 what it says. Each sample is a body, a world and a state that all this allows.
 """
