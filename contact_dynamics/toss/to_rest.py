@@ -52,17 +52,17 @@ class Followed(NamedTuple):
 
 
 class _Going(NamedTuple):
-    """A sample that goes on.
+    """A sample that goes on, as it is handed to a process.
 
     Attributes:
-        run: The toss that it goes on with.
-        began: s after the first state, when that toss begins.
-        lacking: How many strikes the tree lacks.
+        settings: How it does. It may be laid flat after as many strikes as the tree lacks.
+        y: The 13 numbers of its state.
+        began: s after the first state, when it is there.
     """
 
-    run: Simulation
+    settings: TossSettings
+    y: Numbers
     began: float
-    lacking: int
 
 
 def check_processes(processes: Any) -> int | Executor:
@@ -118,7 +118,7 @@ def followed_to_rest(
             thorough=False,
             has_pieces=False,
         )
-        tosses.append(_Going(Simulation(settings, state_of(states[i]), ()), began[i], lacking[i]))
+        tosses.append(_Going(settings, states[i], began[i]))
     return dict(zip(going, _done(tosses, processes), strict=True))
 
 
@@ -138,14 +138,18 @@ def _done(tosses: list[_Going], processes: int | Executor) -> Iterable[Followed]
 
 
 def _followed(one: _Going) -> Followed:
-    run, end = one.run, one.run.to_end()
+    run = Simulation(one.settings, state_of(one.y), ())
+    end = run.to_end()
     struck = [event for event in run.events if event.kind == TossEventKind.STRIKES]
     return Followed(
         rests=end == TossEnd.RESTS,
         seconds=one.began + run.now,
         y=run.y,
         normal_B=run.resting_normal_B(),
-        strikes=[(one.began + event.seconds, event.touching[0], event.y) for event in struck[: one.lacking]],
+        strikes=[
+            (one.began + event.seconds, event.touching[0], event.y)
+            for event in struck[: one.settings.flat_after]
+        ],
     )
 
 
