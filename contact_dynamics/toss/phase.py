@@ -67,8 +67,8 @@ LARGEST_STEP: Final = 0.2
 """s. A step is no longer than this where no other corner comes down."""
 
 SHORT_STEP: Final = 0.02
-"""s. A step may be this long where another corner would come down earlier, by its present speed. A corner
-that comes down and leaves again within it is not seen."""
+"""s. A step may be this long where another corner would come down earlier, by its present speed. One that
+comes down and leaves again within it is looked for where it is lowest."""
 
 FIRST_STEP: Final = 0.03
 """s. The first step at `SAMPLED_PHASE_ERROR`, shorter for smaller errors as the order of the steps says."""
@@ -80,6 +80,9 @@ _MAX_ROOT_STEPS: Final = 60
 
 Watched: TypeAlias = "list[tuple[Flat, list[tuple[Vector3, float]]]]"
 """The corners that could come down on each flat, m, body axes, with the depths, m, that they may have."""
+
+Falling: TypeAlias = "tuple[float, float, Touch]"
+"""A corner that comes nearer to a flat: its height, m, and its rate, m/s, below 0."""
 
 
 class PhaseEnd(NamedInt):
@@ -151,8 +154,8 @@ def phase(
     before_stop, _ = _sliding(solid, y, pushed, mode, resolved=resolved)
     fast, short = kinetic_energy_of(solid, y) > slow, 0
     for _ in range(MAX_PHASE_STEPS):
-        longest = _before_arrival(solid, y, held)
-        step = min(step, longest, until - now, before_stop)
+        falling = [each for each in heights_and_rates(solid, y) if each[1] < 0.0 and each[2] not in held]
+        step = min(step, _before_arrival(falling), until - now, before_stop)
         trial, size, stages, after = tried(solid, y, pushed, mode, span=step, scales=scales, error=error)
         short += step < CREEPING_STEP
         if short > _MAX_SHORT_STEPS:
@@ -161,7 +164,7 @@ def phase(
             step *= max(0.2, 0.9 * size**-0.2)
             continue
         done = PhaseStep(solid, now, step, np.array(y), stages.T @ INTERPOLANT, step)
-        found = _first_end(solid, done, mode, after=after, trial=trial, watched=watched)
+        found = _first_end(solid, done, mode, after=after, trial=trial, watched=watched, falling=falling)
         if found is not None:
             reason, x = found
             span = x * step
@@ -195,13 +198,9 @@ def phase(
     return Phase(PhaseEnd.STEPS, now, y, steps)
 
 
-def _before_arrival(solid: Solid, y: Numbers, held: set[Touch]) -> float:
-    """Return a step, s, in which no other corner can come down and leave again unseen."""
-    longest = LARGEST_STEP
-    for height, rate, touch in heights_and_rates(solid, y):
-        if touch not in held and rate < 0.0:
-            longest = min(longest, max(-height / rate, SHORT_STEP))
-    return longest
+def _before_arrival(falling: list[Falling]) -> float:
+    """Return a step, s, in which hardly another corner comes down and leaves again."""
+    return min([LARGEST_STEP, *(max(-height / rate, SHORT_STEP) for height, rate, _ in falling)])
 
 
 def _sliding(
@@ -304,8 +303,13 @@ def _first_end(
     after: Pushed,
     trial: Numbers,
     watched: Watched,
+    falling: list[Falling],
 ) -> tuple[PhaseEnd, float] | None:
-    """Return why and where, as a share of the step, the mode ends within a step, or None."""
+    """Return why and where, as a share of the step, the mode ends within a step, or None.
+
+    Corners that come down are those below a flat at the end of the step, and those of ``falling``, with their
+    heights and rates at its beginning, that are below one in between.
+    """
 
     def height_at(x: float) -> float:
         return _least_height(solid, within(step, x).tolist(), watched)
@@ -315,8 +319,10 @@ def _first_end(
         return least_left(solid, mode, pushed.forces)
 
     first: tuple[PhaseEnd, float] | None = None
-    if _least_height(solid, trial, watched) < 0.0:
-        first = PhaseEnd.COMES_DOWN, _crossing(height_at, 1.0, step.whole, COMES_DOWN_FOUND)
+    dips = [x for x in _lowest(solid, trial, falling, step.whole) if height_at(x) < 0.0]
+    if dips or _least_height(solid, trial, watched) < 0.0:
+        x = min(dips, default=1.0)
+        first = PhaseEnd.COMES_DOWN, _crossing(height_at, x, step.whole, COMES_DOWN_FOUND)
     if least_left(solid, mode, after.forces) < 0.0:
         x = 1.0 if first is None else first[1]
         if first is None or force_at(x) < 0.0:
@@ -325,6 +331,27 @@ def _first_end(
                 _crossing(force_at, x, step.whole, FORCE_END_FOUND * force_rounding(solid)),
             )
     return first
+
+
+def _lowest(solid: Solid, trial: Numbers, falling: list[Falling], span: float) -> list[float]:
+    """Return where corners that fall at first and rise at the end are lowest, as shares of a step, s.
+
+    Heights and rates at both ends make a cubic. Corners that by their first rate stay above their flat are
+    left out.
+    """
+    falling = [each for each in falling if each[0] + each[1] * span < 0.0]
+    if not falling:
+        return []
+    ends = {touch: (height, rate) for height, rate, touch in heights_and_rates(solid, trial)}
+    found = []
+    for height, rate, touch in falling:
+        last, rise = ends[touch]
+        if rise > 0.0:
+            change, first, end = last - height, rate * span, rise * span
+            # The derivative is a x^2 + b x + first, which is below zero at 0 and above at 1.
+            a, b = 3.0 * (first + end - 2.0 * change), 2.0 * (3.0 * change - 2.0 * first - end)
+            found.append(2.0 * -first / (b + math.sqrt(max(b * b - 4.0 * a * first, 0.0))))
+    return found
 
 
 def _crossing(value: Callable[[float], float], bad: float, span: float, enough: float) -> float:

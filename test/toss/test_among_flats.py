@@ -236,3 +236,8 @@ def test_a_block_of_tosses_of_round_bodies_ends(block: int) -> None:
 def test_a_body_that_only_forces_that_pull_would_hold_does_not_rest() -> None:
     """A prism in a groove, with an edge on one side and its base, some 1e-7 m off flush, on the other."""
     check_ends_well(*drawn(2054))
+
+
+def test_a_corner_that_comes_down_and_leaves_within_a_step_is_seen() -> None:
+    """It had been 0.15 mm deep in a flat."""
+    check_ends_well(*drawn_round(202), horizon=ROUND_HORIZON)
