@@ -33,24 +33,19 @@ def checksum(source: Path) -> int:
     return zlib.crc32(source.read_bytes() + source.with_suffix(".pxd").read_bytes()) & 0x7FFFFFFF
 
 
-def import_core(module: str) -> None:
-    """Import a module, of a package that is being imported, in its compiled form if that is up to date.
+def import_core(*modules: str) -> None:
+    """Import modules, of a package that is being imported, in their compiled form if that is up to date.
 
-    Otherwise a warning says so, unless `CONTACT_DYNAMICS_PLAIN` chooses plain Python.
+    They share what only C sees, so that all of them are compiled or none. If they are not, a warning says so,
+    unless `CONTACT_DYNAMICS_PLAIN` chooses plain Python.
     """
-    if module in sys.modules:
+    if modules[-1] in sys.modules:
         return
-    package, _, name = module.rpartition(".")
-    source = Path(sys.modules[package].__path__[0], f"{name}.py")
-    if not plain_is_chosen():
-        try:
-            built = getattr(importlib.import_module(module), "SOURCE_CRC", None)
-        except ImportError as error:
-            problem = f"cannot be imported ({error})"
-        else:
-            if built == checksum(source):
-                return
-            problem = "is missing" if built is None else "was built from other sources"
+    if os.environ.get(PLAIN, "0") in {"", "0"}:
+        problems = [(module, problem) for module in modules if (problem := _problem_of(module))]
+        if not problems:
+            return
+        module, problem = problems[0]
         warnings.warn(
             f"the compiled core of contact_dynamics {problem}; {module} runs as plain Python: {SLOWER}. "
             "Where there is a C compiler, `make setup` in a clone or `pip install` builds it. "
@@ -58,10 +53,28 @@ def import_core(module: str) -> None:
             RuntimeWarning,
             stacklevel=3,
         )
-    spec = importlib.util.spec_from_file_location(module, source)
-    if spec is None or spec.loader is None:
-        raise ImportError(module)
-    plain = importlib.util.module_from_spec(spec)
-    sys.modules[module] = plain
-    spec.loader.exec_module(plain)
-    setattr(sys.modules[package], name, plain)
+    for module in modules:
+        package, _, name = module.rpartition(".")
+        spec = importlib.util.spec_from_file_location(module, _source_of(module))
+        if spec is None or spec.loader is None:
+            raise ImportError(module)
+        plain = importlib.util.module_from_spec(spec)
+        sys.modules[module] = plain
+        spec.loader.exec_module(plain)
+        setattr(sys.modules[package], name, plain)
+
+
+def _source_of(module: str) -> Path:
+    package, _, name = module.rpartition(".")
+    return Path(sys.modules[package].__path__[0], f"{name}.py")
+
+
+def _problem_of(module: str) -> str:
+    """Return why the compiled form of a module cannot be used, or nothing if it can."""
+    try:
+        built = getattr(importlib.import_module(module), "SOURCE_CRC", None)
+    except ImportError as error:
+        return f"cannot be imported ({error})"
+    if built == checksum(_source_of(module)):
+        return ""
+    return "is missing" if built is None else "was built from other sources"

@@ -22,7 +22,7 @@ import pytest
 
 from contact_dynamics.impact.law import RestitutionLaw
 from contact_dynamics.impact.planar import routh
-from contact_dynamics.impact.spatial import path
+from contact_dynamics.impact.spatial import path, response
 from contact_dynamics.numerics.compiled import import_core
 from impact.spatial.test_to_rounding import SLENDER, beside_an_invariant_direction, drawn
 
@@ -44,11 +44,10 @@ def loaded(file: Path) -> ModuleType:
 
 
 def bits(module: ModuleType) -> list[object]:
-    """Return what a module finds on drawn paths, one by one and together."""
+    """Return what a module finds on drawn paths."""
     rng = np.random.default_rng(3)
     found: list[object] = []
     for law in RestitutionLaw:
-        rows = []
         for i in range(COUNT):
             sliding, u, v_n, e = drawn(rng, list(SLENDER.values())[i % 3])
             if i % 5 == 0:
@@ -58,10 +57,28 @@ def bits(module: ModuleType) -> list[object]:
             elif i % 5 == 2 and i % 2:
                 u = (0.0, 0.0)
             numbers = [getattr(sliding, name) for name in ("l1", "l2", "k1", "k2", "kn", "mu")]
-            rows.append([*numbers, *u, v_n, e])
             found.append(module.trace(module.SlidingLaw(*numbers), u, v_n, restitution=e, law=law))
-        together = module.trace_all(np.array(rows), law)
-        found += [*together.outcomes.tolist(), np.array([*together.impulse, *together.u]).tolist()]
+    return found
+
+
+def response_bits(module: ModuleType) -> list[object]:
+    """Return what a module finds of drawn strikes of a body, and of two bodies."""
+    rng = np.random.default_rng(5)
+    rows = np.empty((2, COUNT, 23))
+    rows[..., 0] = 10.0 ** rng.uniform(-1.0, 1.0, size=(2, COUNT))
+    rows[..., 1:10] = (np.diag([0.6, 0.7, 0.9]) + 0.1).ravel()
+    rows[..., 10:] = rng.normal(size=(2, COUNT, 13))
+    rows[..., 10:14] /= np.linalg.norm(rows[..., 10:14], axis=2)[..., None]
+    contacts = np.hstack([rng.normal(size=(COUNT, 3)), rng.uniform(size=(COUNT, 2))])
+    contacts[:, :3] /= np.linalg.norm(contacts[:, :3], axis=1)[:, None]
+    found: list[object] = []
+    for law in RestitutionLaw:
+        for others in (np.empty((0, 23)), rows[1]):
+            outcomes, results = np.empty(COUNT, dtype=np.int64), np.zeros((COUNT, 24))
+            tables = rows[0].data, others.data, contacts.data
+            done = module.Strike(law).strike_rows(*tables, 1e-9, True, outcomes.data, results.data)  # noqa: FBT003
+            assert done == COUNT
+            found += [outcomes.tolist(), results.tolist()]
     return found
 
 
@@ -89,13 +106,15 @@ def planar_bits(module: ModuleType) -> list[object]:
 
 
 def test_the_suite_runs_with_the_compiled_core() -> None:
-    assert all((module.__file__ or "").endswith(SUFFIX) for module in (path, routh))
+    assert all((module.__file__ or "").endswith(SUFFIX) for module in (path, response, routh))
 
 
-def test_compiled_and_plain_give_the_same_bits() -> None:
+def test_compiled_and_plain_give_the_same_bits(monkeypatch: pytest.MonkeyPatch) -> None:
     plain = loaded(SOURCE)
     assert (plain.__file__ or "").endswith(".py")
     assert bits(plain) == bits(path)
+    monkeypatch.setitem(sys.modules, path.__name__, plain)
+    assert response_bits(loaded(SOURCE.with_name("response.py"))) == response_bits(response)
     assert planar_bits(loaded(IMPACT / "planar" / "routh.py")) == planar_bits(routh)
 
 
@@ -109,6 +128,8 @@ def test_a_build_for_a_processor_that_fuses_gives_the_same_bits(tmp_path: Path) 
     )
     (built,) = (tmp_path / "lib").rglob(f"path{SUFFIX}")
     assert bits(loaded(built)) == bits(path)
+    (built,) = (tmp_path / "lib").rglob(f"response{SUFFIX}")
+    assert response_bits(loaded(built)) == response_bits(response)
     (built,) = (tmp_path / "lib").rglob(f"routh{SUFFIX}")
     assert planar_bits(loaded(built)) == planar_bits(routh)
 

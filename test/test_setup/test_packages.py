@@ -53,6 +53,7 @@ KEYS = {
     "mpmath": None,
     "mypy": "python3-mypy",
     "numpy": "python3-numpy",
+    "pandas": None,  # `to_frame` uses it where it is installed
     "pyarrow": None,
     "pytest": "python3-pytest",
     "rerun": None,
@@ -111,7 +112,7 @@ def test_what_has_no_rosdep_key_is_named_beside_the_keys() -> None:
     text = MANIFESTS[0].read_text(encoding="utf-8")
     needed = set().union(*(imported(folder)[0] for folder in ("contact_dynamics", "test")))
     assert {module for module in needed if KEYS.get(module, module) is None} == {
-        *("mpmath", "rerun", "rerun_bindings"),
+        *("mpmath", "pandas", "rerun", "rerun_bindings"),
         *EVALUATION,
     }
     assert "rerun-sdk" in text

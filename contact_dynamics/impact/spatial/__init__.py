@@ -2,5 +2,4 @@
 
 from contact_dynamics.numerics.compiled import import_core
 
-import_core("contact_dynamics.impact.spatial.path")
-import_core("contact_dynamics.impact.spatial.response")
+import_core("contact_dynamics.impact.spatial.path", "contact_dynamics.impact.spatial.response")
