@@ -26,80 +26,83 @@ A chapter with a function of its name, `contact_modes` or `toss`, can be called 
 `errors` has what misuse raises, and `tolerances` says what counts as zero.
 """
 
-import inspect
-from types import ModuleType
-from typing import TYPE_CHECKING, Any
+from importlib import import_module
+from typing import TYPE_CHECKING, Any, Final
 
-from contact_dynamics import (
-    contact,
-    impact,
-    landing,
-    motion,
-    plane,
-    questions,
-    rigid_body,
-    shapes,
-    tumbling,
-)
-from contact_dynamics.contact import Contact, ContactSet, find_contacts
-from contact_dynamics.contact_modes import (
-    ModeVerdict,
-    PlanarContactProblem,
-    SpatialContactProblem,
-    mode_margins,
-    statics,
-)
-from contact_dynamics.errors import ContactDynamicsError
-from contact_dynamics.impact import (
-    RestitutionLaw,
-    impact_sequence,
-    planar_impact,
-    several_impact,
-    spatial_impact,
-)
-from contact_dynamics.landing import next_landing
-from contact_dynamics.motion import motion_of
-from contact_dynamics.plane import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
-from contact_dynamics.rigid_body import BodyState, MassProperties, inertia
-from contact_dynamics.shapes import Obstacle
-from contact_dynamics.toss import sampled_toss
-from contact_dynamics.tumbling import free_motion
-from contact_dynamics.world import Body, Surface, World
+if TYPE_CHECKING:  # the same as `_HOMES`
+    from contact_dynamics import (
+        contact,
+        impact,
+        landing,
+        motion,
+        plane,
+        questions,
+        rigid_body,
+        shapes,
+        tumbling,
+    )
+    from contact_dynamics.contact import Contact, ContactSet, find_contacts
+    from contact_dynamics.contact_modes import (
+        ModeVerdict,
+        PlanarContactProblem,
+        SpatialContactProblem,
+        contact_modes,
+        mode_margins,
+        statics,
+    )
+    from contact_dynamics.errors import ContactDynamicsError
+    from contact_dynamics.impact import (
+        RestitutionLaw,
+        impact_sequence,
+        planar_impact,
+        several_impact,
+        spatial_impact,
+    )
+    from contact_dynamics.landing import next_landing
+    from contact_dynamics.motion import motion_of
+    from contact_dynamics.plane import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
+    from contact_dynamics.rigid_body import BodyState, MassProperties, inertia
+    from contact_dynamics.shapes import Obstacle
+    from contact_dynamics.toss import sampled_toss, toss
+    from contact_dynamics.tumbling import free_motion
+    from contact_dynamics.world import Body, Surface, World
 
-if TYPE_CHECKING:  # what a call of them is
-    from contact_dynamics.contact_modes import contact_modes
-    from contact_dynamics.toss import toss
-else:
-    from contact_dynamics import contact_modes, toss
+_HOMES: Final = {
+    "contact": ("Contact", "ContactSet", "find_contacts"),
+    "contact_modes": (
+        "ModeVerdict",
+        "PlanarContactProblem",
+        "SpatialContactProblem",
+        "mode_margins",
+        "statics",
+    ),
+    "errors": ("ContactDynamicsError",),
+    "impact": ("RestitutionLaw", "impact_sequence", "planar_impact", "several_impact", "spatial_impact"),
+    "landing": ("next_landing",),
+    "motion": ("motion_of",),
+    "plane": ("PlanarBody", "PlanarContact", "PlanarVelocity", "PlanarWrench"),
+    "rigid_body": ("BodyState", "MassProperties", "inertia"),
+    "shapes": ("Obstacle",),
+    "toss": ("sampled_toss",),
+    "tumbling": ("free_motion",),
+    "world": ("Body", "Surface", "World"),
+}
+"""What this page has of each chapter. It is imported when it is asked for, since to import all chapters takes
+several times as long as to import NumPy."""
+
+_CHAPTERS: Final = (*_HOMES, "questions", "tolerances")
 
 
-class _CallableChapter(ModuleType):
-    """A chapter that is called as its function of the same name."""
-
-    def __call__(self, *args: Any, **kwargs: Any) -> Any:
-        """Call the function."""
-        return _own_function(self)(*args, **kwargs)
-
-    @property
-    def __signature__(self) -> inspect.Signature:
-        """The function's signature, which help and completion show."""
-        return inspect.signature(_own_function(self))
-
-
-def _own_function(chapter: ModuleType) -> Any:
-    return vars(chapter)[chapter.__name__.rpartition(".")[2]]
-
-
-for _chapter in (contact_modes, toss):
-    _chapter.__class__ = _CallableChapter
-
-
-def __getattr__(name: str) -> str:
-    """Return ``__version__``, which is looked up where it is asked for."""
+def __getattr__(name: str) -> Any:
+    """Import a chapter, or what this page has of it, where it is asked for."""
+    if name in _CHAPTERS:
+        return import_module(f"{__name__}.{name}")
     if name == "__version__":
-        from contact_dynamics.version import version_of_this_package
-
-        return version_of_this_package()
+        return import_module(f"{__name__}.version").version_of_this_package()
+    for chapter, names in _HOMES.items():
+        if name in names:
+            globals()[name] = found = getattr(import_module(f"{__name__}.{chapter}"), name)
+            return found
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
 

@@ -68,8 +68,27 @@ class Expected(NamedTuple):
     elements: Expected | None = None
 
 
+class CallableChapter(types.ModuleType):
+    """A chapter that is called as its function of the same name: ``contact_dynamics.toss(...)``."""
+
+    def __call__(self, *args: Any, **kwargs: Any) -> Any:
+        """Call the function."""
+        return _own_function(self)(*args, **kwargs)
+
+    @property
+    def __signature__(self) -> inspect.Signature:
+        """The function's signature, which help and completion show."""
+        return inspect.signature(_own_function(self))
+
+
+def _own_function(chapter: types.ModuleType) -> Any:
+    return vars(chapter).get(chapter.__name__.rpartition(".")[2])
+
+
 def check_types_of(page: dict[str, Any]) -> None:
     """Make the functions that a chapter's page offers check the types of their arguments.
+
+    A page that offers a function of its own name can be called as that function.
 
     Args:
         page: The page's ``globals()``, with ``__all__``.
@@ -81,6 +100,9 @@ def check_types_of(page: dict[str, Any]) -> None:
             if checked is not function:
                 checked.__module__ = page["__name__"]  # where pickle finds it
                 page[name] = checked
+    chapter = sys.modules[page["__name__"]]
+    if inspect.isfunction(_own_function(chapter)):
+        chapter.__class__ = CallableChapter
 
 
 def checks_types(function: Callable[P, R]) -> Callable[P, R]:

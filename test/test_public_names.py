@@ -6,11 +6,14 @@ import enum
 import importlib
 import inspect
 import re
+import subprocess
+import sys
 from dataclasses import fields, is_dataclass
 from types import ModuleType
 
 import pytest
 
+import contact_dynamics
 from architecture.test_doors import CHAPTERS
 from running_server import ROOT
 
@@ -69,3 +72,30 @@ def test_the_quick_start_has_the_table_of_questions() -> None:
         assert word in table[0]
     for name in re.findall(r"`(?:\w+ = )?(\w+)\(", table[0]):
         assert re.search(rf"^\| `{name}\(", PAGE, re.MULTILINE), name
+
+
+@pytest.mark.parametrize(
+    ("code", "most"),
+    [
+        ("import contact_dynamics", 5),
+        ("from contact_dynamics import Body, BodyState, World", 60),
+        (
+            "import contact_dynamics as cd; cd.toss; assert callable(cd.toss) and callable(cd.contact_modes)",
+            400,
+        ),
+        ("import contact_dynamics.toss; import contact_dynamics as cd; assert callable(cd.toss)", 400),
+    ],
+)
+def test_chapters_are_imported_when_they_are_asked_for(code: str, most: int) -> None:
+    count = "import sys; print(sum(name.startswith('contact_dynamics') for name in sys.modules))"
+    done = subprocess.run(
+        [sys.executable, "-c", f"{code}; {count}"], capture_output=True, text=True, check=True, cwd=ROOT
+    )
+    assert int(done.stdout) <= most
+
+
+def test_all_that_the_front_page_lists_is_there() -> None:
+    for name in dir(contact_dynamics):
+        assert getattr(contact_dynamics, name) is not None
+    with pytest.raises(AttributeError, match="has no attribute 'bounce'"):
+        contact_dynamics.bounce  # noqa: B018
