@@ -19,8 +19,9 @@ sys.path.insert(0, str(ROOT))  # the benchmarks are not installed
 
 from benchmarks import _quotes as quotes  # noqa: E402 # after the path
 from contact_dynamics.cases import CASES, Case  # noqa: E402
+from contact_dynamics.cases.engine import OURS  # noqa: E402
 from contact_dynamics.cases.published import PublishedVerdict, published_values  # noqa: E402
-from contact_dynamics.cases.report import published_row, shown  # noqa: E402
+from contact_dynamics.cases.run import published_row, shown  # noqa: E402
 from contact_dynamics.questions.services import SERVICES  # noqa: E402
 
 PAGE = ROOT / "docs" / "cases.md"
@@ -79,16 +80,17 @@ def table(measured: dict[str, str]) -> Iterator[str]:
     for name, case in CASES.items():
         for i, setting in enumerate(case.settings):
             title = f"[{case.title}](#{anchor(case.title)})" if i == 0 else ""
-            exact, ours = (shown(of(setting), case.tolerance) for of in (case.exact, case.ours))
+            exact, ours = (
+                shown(value, case.tolerance) for value in (case.exact(setting), OURS.answer(name, setting))
+            )
             yield f"| {title} | {label(case, setting)} | {exact} | {ours} | {mujoco(name, i, measured)} |"
 
 
-def source_of(case: Case) -> str:
-    """Return the code of `ours` with all that it needs from its file, and lines that print its answers."""
-    module = import_module(case.ours.__module__)
-    text = Path(str(module.__file__)).read_text(encoding="utf-8")
+def source_of(name: str, case: Case) -> str:
+    """Return the package's solution with all that it needs from its file, and lines that print its answers."""
+    text = Path(str(import_module(OURS.module).__file__)).read_text(encoding="utf-8")
     nodes = [node for node in ast.parse(text).body if not is_future(node)]
-    needed, before = {case.ours.__name__}, set[str]()
+    needed, before = {name}, set[str]()
     while needed != before:
         before = set(needed)
         for node in nodes:
@@ -98,7 +100,7 @@ def source_of(case: Case) -> str:
     imports = [line for node in nodes for line in import_lines(node, needed)]
     digits = -math.floor(math.log10(case.tolerance))
     prints = "\n".join(
-        f"print(round({case.ours.__name__}({setting!r}), {digits}) + 0.0)  #> {round(case.ours(setting), digits) + 0.0!r}"
+        f"print(round({name}({setting!r}), {digits}) + 0.0)  #> {round(OURS.answer(name, setting), digits) + 0.0!r}"
         for setting in case.settings
     )
     return "\n".join(imports) + "\n\n\n" + "\n\n\n".join(parts) + f"\n\n\n{prints}"
@@ -136,8 +138,8 @@ TYPES = {each.name: each.type_name for each in SERVICES}
 def section(name: str, case: Case) -> str:
     """Return the section of one case."""
     threads = ", ".join(f"[{address_text(address)}]({address})" for address in case.threads)
-    request = case.request
-    exact = shown(request.exact(case.settings[0]), request.tolerance)
+    service, path = case.answer.split(".", maxsplit=1)
+    exact = shown(*case.answer_of(case.settings[0]))
     return f"""\
 ## {case.title}
 
@@ -147,15 +149,15 @@ def section(name: str, case: Case) -> str:
 `contact-dynamics cases {name}` solves it.
 
 ```python
-{source_of(case)}
+{source_of(name, case)}
 ```
 
 ```sh
-ros2 service call /contact_dynamics/{request.service} contact_dynamics_interfaces/srv/{TYPES[request.service]} \\
-  "{request.text(case.settings[0])}"
+ros2 service call /contact_dynamics/{service} contact_dynamics_interfaces/srv/{TYPES[service]} \\
+  "{case.request_text(case.settings[0])}"
 ```
 
-In the response, `{request.answer}` is {exact}.
+In the response, `{path}` is {exact}.
 """
 
 

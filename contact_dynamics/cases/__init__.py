@@ -1,14 +1,14 @@
-"""Questions whose exact answers are known, because simulators got them wrong or because somebody published them.
+"""Questions with known exact answers, which simulators got wrong or which somebody published.
 
-`contact-dynamics cases` asks all of them and prints the exact answer, the package's own and MuJoCo's. Each
-case is a file that is small enough to read: `creeping_capsule`, `tipping_cube` and so on. `case` says what a
-case consists of, `peer` runs MuJoCo, `every_case` lists all, and `report` makes the table.
+`contact-dynamics cases` solves all of them and prints the exact answer, the package's own and MuJoCo's.
+`catalog` has the cases as data, `ours` and `mujoco` the answers of each engine, `run` prints the table, and
+`published` compares with numbers that others published.
 """
 
-from contact_dynamics.cases.case import Case, Request
-from contact_dynamics.cases.every_case import CASES
+from contact_dynamics.cases.case import Case
+from contact_dynamics.cases.catalog import CASES
 
-__all__ = ["CASES", "Case", "Request"]
+__all__ = ["CASES", "Case"]
 
 
 def __dir__() -> list[str]:

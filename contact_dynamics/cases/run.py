@@ -1,22 +1,26 @@
-"""The command `contact-dynamics cases` asks questions whose exact answers are known, and prints a table."""
+"""The command `contact-dynamics cases`: all engines' answers beside the exact ones, or published numbers."""
 
 from __future__ import annotations
 
+import math
 import sys
+from collections import Counter
 from typing import Final
 
 from contact_dynamics.cases.arguments import cases_parser
-from contact_dynamics.cases.every_case import CASES
-from contact_dynamics.cases.peer import mujoco_version
-from contact_dynamics.cases.published import PublishedVerdict, published_values
-from contact_dynamics.cases.report import asked, heading, published_row, row
+from contact_dynamics.cases.catalog import CASES
+from contact_dynamics.cases.engine import OURS, PEERS, Engine
+from contact_dynamics.cases.published import PublishedValue, PublishedVerdict, published_values
 
 NOT_EXACT: Final = 1
 """This exit code says that an answer differs from the exact one by more than its tolerance."""
 
+DIGITS: Final = 6
+"""Significant digits of a number in the table."""
+
 
 def main(arguments: list[str]) -> int:
-    """Ask the cases, print the table and return the exit code."""
+    """Solve the cases, print the table and return the exit code."""
     parser = cases_parser()
     given = parser.parse_args(arguments)
     unknown = [name for name in given.names if name not in CASES]
@@ -29,26 +33,58 @@ def main(arguments: list[str]) -> int:
         for name in names:
             print(f"{name:18} {CASES[name].title}")
         return 0
-    version = "" if given.without_mujoco else mujoco_version()
-    simulate = bool(version)
-    absent = "not asked" if given.without_mujoco else "not installed"
-    results = []
-    for name in names:
-        print(heading(CASES[name], f"MuJoCo {version}".rstrip()), flush=True)
-        for setting in CASES[name].settings:
-            one = asked(name, CASES[name], setting, simulate=simulate)
-            results.append(one)
-            print(row(one, no_mujoco=absent), flush=True)
-        print()
-    right = sum(one.is_right for one in results)
-    print(f"{right} of {len(results)} answers are exact within their tolerances")
-    if not simulate and not given.without_mujoco:
-        print("MuJoCo is not installed, so its answers are missing: pip install mujoco", file=sys.stderr)
-    return 0 if right == len(results) else NOT_EXACT
+    skipped = [peer for peer in PEERS if getattr(given, f"without_{peer.package}")]
+    versions = {peer: "" if peer in skipped else peer.version for peer in PEERS}
+    exact = [row for name in names for row in _solve(name, versions, skipped)]
+    print(f"{sum(exact)} of {len(exact)} answers are exact within their tolerances")
+    for peer, version in versions.items():
+        if not version and peer not in skipped:
+            missing = f"{peer.name} is not installed, so its answers are missing: pip install {peer.package}"
+            print(missing, file=sys.stderr)
+    return 0 if all(exact) else NOT_EXACT
+
+
+def _solve(name: str, versions: dict[Engine, str], skipped: list[Engine]) -> list[bool]:
+    """Print the table of a case, and return for each row whether this package's answer is exact."""
+    case, verdicts = CASES[name], []
+    titles = ["exact", OURS.name, *(f"{peer.name} {version}".rstrip() for peer, version in versions.items())]
+    print(
+        f"{case.title}\n  {case.quantity}: {case.formula}\n  {case.setting}\n  {'':10} {_cells(titles)}",
+        flush=True,
+    )
+    for setting in case.settings:
+        exact, ours = case.exact(setting), OURS.answer(name, setting)
+        verdicts.append(abs(ours - exact) <= case.tolerance)
+        cells = [shown(exact, case.tolerance), shown(ours, case.tolerance)]
+        for peer, version in versions.items():
+            absent = "not asked" if peer in skipped else "not installed"
+            cells.append(f"{peer.answer(name, setting):.4g}" if version else absent)
+        verdict = "exact" if verdicts[-1] else "WRONG"
+        print(f"  {setting:<10g} {_cells(cells)}  {verdict}", flush=True)
+    print()
+    return verdicts
+
+
+def _cells(texts: list[str]) -> str:
+    return " ".join(f"{text:>14}" for text in texts)
+
+
+def shown(value: float, tolerance: float = 0.0) -> str:
+    """Return a number with a few digits. What is below the tolerance is rounding, and is not shown."""
+    if tolerance > 0.0:
+        value = round(value, -math.floor(math.log10(tolerance)))
+    return f"{value + 0.0:.{DIGITS}g}"
+
+
+def published_row(value: PublishedValue, ours: float, verdict: PublishedVerdict) -> str:
+    """Return one line about a published number, with a second one if the difference has an explanation."""
+    explained = f"\n{'':42}{value.explained}" if verdict is PublishedVerdict.EXPLAINED else ""
+    numbers = f"{value.expected:>14.{DIGITS}g} {ours:>14.{DIGITS}g} {value.tolerance:>10.2g}"
+    return f"{numbers}  {verdict.name.lower():9} {value.what} [{value.where}]{explained}"
 
 
 def _compare_published() -> int:
-    counts = dict.fromkeys(PublishedVerdict, 0)
+    counts: Counter[PublishedVerdict] = Counter()
     source = ""
     for value in published_values():
         if value.source != source:
@@ -58,5 +94,5 @@ def _compare_published() -> int:
         verdict = value.verdict(ours)
         counts[verdict] += 1
         print(published_row(value, ours, verdict))
-    print(", ".join(f"{count} {verdict.name.lower()}" for verdict, count in counts.items()))
+    print(", ".join(f"{counts[verdict]} {verdict.name.lower()}" for verdict in PublishedVerdict))
     return NOT_EXACT if counts[PublishedVerdict.WRONG] else 0

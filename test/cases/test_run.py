@@ -7,8 +7,7 @@ from dataclasses import replace
 import pytest
 
 from contact_dynamics.cases import run
-from contact_dynamics.cases.every_case import CASES
-from contact_dynamics.cases.report import shown
+from contact_dynamics.cases.catalog import CASES
 from message_words import says
 
 
@@ -50,4 +49,4 @@ def test_an_unknown_name_is_refused_with_those_that_there_are(capsys: pytest.Cap
     [(-4e-16, 1e-14, "0"), (1.0964e-8, 1e-14, "1.0964e-08"), (2.5, 0.0, "2.5")],
 )
 def test_rounding_is_not_shown(value: float, tolerance: float, text: str) -> None:
-    assert shown(value, tolerance) == text
+    assert run.shown(value, tolerance) == text
