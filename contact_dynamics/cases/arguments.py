@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import argparse
 
+from contact_dynamics.cases.engine import PEERS
+
 
 def cases_parser() -> argparse.ArgumentParser:
     """Return the parser of `contact-dynamics cases`."""
@@ -19,5 +21,6 @@ def cases_parser() -> argparse.ArgumentParser:
     parser.add_argument("names", nargs="*", metavar="NAME", help="cases to ask (default: all)")
     parser.add_argument("--list", action="store_true", help="print names and questions, and ask nothing")
     parser.add_argument("--published", action="store_true", help=published)
-    parser.add_argument("--without-mujoco", action="store_true", help=without)
+    for peer in PEERS:
+        parser.add_argument(f"--without-{peer.package}", action="store_true", help=without)
     return parser

@@ -5,11 +5,12 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterator
+from importlib import import_module
 
 import pytest
 
 from contact_dynamics.cases import CASES, Case
-from contact_dynamics.cases.engine import MUJOCO, OURS
+from contact_dynamics.cases.engine import MUJOCO, OURS, PEERS, Engine
 from contact_dynamics.cases.mujoco import CONTACT_S, Simulation, softness
 
 SETTINGS = [(name, setting) for name, case in CASES.items() for setting in case.settings]
@@ -27,6 +28,11 @@ def test_there_are_at_least_fifteen_and_each_was_asked_in_public() -> None:
         assert case.threads
         for address in case.threads:
             assert re.fullmatch(r"https://github\.com/[\w.-]+/[\w.-]+/(issues|pull)/\d+", address)
+
+
+@pytest.mark.parametrize("engine", [OURS, *PEERS], ids=lambda engine: engine.name)
+def test_an_engine_answers_every_case(engine: Engine) -> None:
+    assert [name for name in CASES if not callable(getattr(import_module(engine.module), name, None))] == []
 
 
 @pytest.mark.parametrize("name", ["four_feet", "cradle_at_once", "turning_bar"])

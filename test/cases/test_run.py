@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import pytest
 
-from contact_dynamics.cases import run
-from contact_dynamics.cases.catalog import CASES
+from contact_dynamics.cases import CASES, arguments, run
+from contact_dynamics.cases.engine import OURS, Engine
 from message_words import says
 
 
@@ -27,6 +27,23 @@ def test_an_answer_that_is_not_exact_is_told(
     printed = capsys.readouterr().out
     assert "WRONG" in printed
     assert "0 of 1 answers are exact" in printed
+
+
+def test_another_engine_has_a_column_and_an_option(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    peer = Engine(name="Peer", package="numpy", module=OURS.module)
+    for module in (arguments, run):
+        monkeypatch.setattr(module, "PEERS", (peer, replace(peer, name="Other", package="not_installed")))
+    assert run.main(["free_fall"]) == 0
+    printed = capsys.readouterr()
+    assert f"Peer {peer.version}".rjust(14) + " " * 10 + "Other\n" in printed.out
+    assert "-4.90332       -4.90332         -4.903  not installed  exact" in printed.out
+    assert says(printed.err, "Other is not installed... pip install not_installed")
+    assert run.main(["free_fall", "--without-numpy", "--without-not_installed"]) == 0
+    printed = capsys.readouterr()
+    assert "-4.90332      not asked      not asked  exact" in printed.out
+    assert printed.err == ""
 
 
 def test_the_list_asks_nothing(capsys: pytest.CaptureFixture[str]) -> None:
