@@ -89,14 +89,14 @@ def table(measured: dict[str, str]) -> Iterator[str]:
 def source_of(name: str, case: Case) -> str:
     """Return the package's solution with all that it needs from its file, and lines that print its answers."""
     text = Path(str(import_module(OURS.module).__file__)).read_text(encoding="utf-8")
-    nodes = [node for node in ast.parse(text).body if not is_future(node)]
+    nodes = ast.parse(text).body
+    functions = {node.name: node for node in nodes if isinstance(node, ast.FunctionDef)}
     needed, before = {name}, set[str]()
     while needed != before:
         before = set(needed)
-        for node in nodes:
-            if names_of(node) & needed:
-                needed |= {one.id for one in ast.walk(node) if isinstance(one, ast.Name)}
-    parts = [str(ast.get_source_segment(text, node)) for node in nodes if names_of(node) & needed]
+        for function in before & functions.keys():
+            needed |= {one.id for one in ast.walk(functions[function]) if isinstance(one, ast.Name)}
+    parts = [str(ast.get_source_segment(text, node)) for key, node in functions.items() if key in needed]
     imports = [line for node in nodes for line in import_lines(node, needed)]
     digits = -math.floor(math.log10(case.tolerance))
     prints = "\n".join(
@@ -104,20 +104,6 @@ def source_of(name: str, case: Case) -> str:
         for setting in case.settings
     )
     return "\n".join(imports) + "\n\n\n" + "\n\n\n".join(parts) + f"\n\n\n{prints}"
-
-
-def is_future(node: ast.stmt) -> bool:
-    """Tell whether a statement is `from __future__ import ...`."""
-    return isinstance(node, ast.ImportFrom) and node.module == "__future__"
-
-
-def names_of(node: ast.stmt) -> set[str]:
-    """Return the names that a statement defines."""
-    if isinstance(node, ast.FunctionDef):
-        return {node.name}
-    if isinstance(node, ast.AnnAssign) and isinstance(node.target, ast.Name):
-        return {node.target.id}
-    return set()
 
 
 def import_lines(node: ast.stmt, needed: set[str]) -> list[str]:

@@ -27,7 +27,7 @@ class Case(Record):
         exact: The closed form as a function of the setting.
         tolerance: Largest difference of this package's answer from it, in the unit of the quantity.
         why_tolerance: The reason for that size.
-        answer: The service, and the path of the number in its response: ``predict_impact.impact.w_after.x``.
+        answer: Service, and path of the number in its response: ``predict_tumbling.poinsot.polhode_period``.
         request: The request in YAML, as `ros2 service call` takes it. ``%(x)s`` stands for the setting.
         values: Other values in the request, by name, that follow from the setting.
         answer_exact: The number in the response, if it is not ``exact``, as a velocity is not a ratio.

@@ -22,8 +22,8 @@ def _friction_angle(beyond: float) -> float:
 
 
 def _standing(beyond: float) -> float:
-    """Return the angle of the ladder, rad: below it, by ``beyond``, the foot slips at mu = 1/2."""
-    return math.atan(0.5 / 0.5) - beyond
+    """Return the angle of the ladder, rad: the limit atan(1 / (2 mu)) at mu = 1/2, less ``beyond``."""
+    return math.atan(1.0) - beyond
 
 
 def _ladder(beyond: float) -> float:
@@ -42,6 +42,7 @@ def _tipping_cube(friction: float) -> float:
 
 
 def _rolling_down(degrees: float) -> float:
+    """Return the acceleration of a ball that rolls up to tan(slope) = 7/2 mu, and slides beyond, m/s^2."""
     slope = math.radians(degrees)
     rolls = math.tan(slope) <= 3.5 * 0.2
     return _G * (5.0 / 7.0 * math.sin(slope) if rolls else math.sin(slope) - 0.2 * math.cos(slope))
@@ -122,6 +123,7 @@ CASES: Final = {
   contacts: {positions: [-0.05, 0.0, -0.02, 0.05, 0.0, -0.02], normals: [0.0, 0.0, 1.0, 0.0, 0.0, 1.0],
   frictions: [0.5, 0.5], restitutions: [0.0, 0.0]}, gravity: 1, problem: 1, plane_normal: {y: -1.0},
   applied_wrench: {force: {x: %(down)s, z: %(into)s}}}""",
+        # At ten times the angle, whose acceleration is well above the service's tolerance of 1e-9 m/s^2.
         values=lambda beyond: _weight(1.0, math.atan(0.5) + 10.0 * beyond),
         answer_exact=lambda beyond: _friction_angle(10.0 * beyond),
         answer_tolerance=1e-13,
@@ -217,6 +219,7 @@ CASES: Final = {
         tolerance=1e-10,
         why_tolerance="rounding of the weight, N",
         answer="predict_contact_mode.modes[0].contact_forces[2]",
+        # The table on two opposite feet: the response has the most that one of them can carry.
         request="""{inertia: {m: %(x)s, ixx: %(moment).9f, iyy: %(moment).9f, izz: %(axial).9f},
   state_source: 1, state: {pose: {position: {z: 0.25}}}, contact_source: 1, problem: 2,
   contacts: {positions: [0.5, 0.5, 0.0, -0.5, -0.5, 0.0], normals: [0.0, 0.0, 1.0, 0.0, 0.0, 1.0],
@@ -337,6 +340,7 @@ CASES: Final = {
         tolerance=1e-12,
         why_tolerance="rounding over a hundred landings",
         answer="predict_impact.impact.state_after.linear_velocity.z",
+        # One bounce, with the speed after falling 1 m.
         request="""{inertia: {m: 1.0, ixx: 0.004, iyy: 0.004, izz: 0.004}, state_source: 1,
   state: {linear_velocity: {z: -4.428690551}}, contact_source: 1, contacts: {positions: [0.0, 0.0, -0.1],
   normals: [0.0, 0.0, 1.0], frictions: [0.5], restitutions: [1.0]}}""",

@@ -151,7 +151,7 @@ def turning_bar(arm: float) -> float:
 
 def ladder(beyond: float) -> float:
     """Return the mean angular acceleration over 0.1 s, rad/s^2, of a ladder with small balls as ends."""
-    angle, ball = math.atan(0.5 / 0.5) - beyond, 0.001
+    angle, ball = math.atan(1.0) - beyond, 0.001
     x, y = math.cos(angle), math.sin(angle)
     simulation = Simulation(
         f'<geom type="plane" size="9 9 1" priority="1" {_friction(0.5)}/>'

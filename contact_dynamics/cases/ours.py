@@ -96,11 +96,10 @@ def four_feet(mass: float) -> float:
     state = BodyState(p_WB_W=[0, 0, 0.25], q_WB=[0, 0, 0, 1], v_WB_W=[0, 0, 0], w_WB_W=[0, 0, 0])
     corners = [[0.5, 0.5, 0.0], [-0.5, -0.5, 0.0], [0.5, -0.5, 0.0], [-0.5, 0.5, 0.0]]
     weight = [0.0, 0.0, mass * STANDARD_GRAVITY_W[2]]
+    sets = [ContactSet(p_WC_W=feet, normals_W=[0, 0, 1], frictions=0.5) for feet in (corners, corners[:2])]
     four, two = (
-        contact_modes(SpatialContactProblem(body=table, state=state, contacts=contacts, force_W=weight)).modes
-        for contacts in (
-            ContactSet(p_WC_W=feet, normals_W=[0, 0, 1], frictions=0.5) for feet in (corners, corners[:2])
-        )
+        contact_modes(SpatialContactProblem(body=table, state=state, contacts=feet, force_W=weight)).modes
+        for feet in sets
     )
     still = next(mode for mode in two if mode.mode == "ff")
     return 0.0 if four[0].forces_unique else float(still.contact_forces_W[0, 2])
