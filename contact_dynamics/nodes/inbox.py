@@ -22,12 +22,12 @@ from rosgraph_msgs.msg import Clock
 from contact_dynamics.constants import NS_PER_S
 from contact_dynamics.nodes.introductions import ask_for_introductions
 from contact_dynamics.nodes.parameter_reader import ConfigurationError
-from contact_dynamics.nodes.ros_services import refuse_what_ros_cannot_do
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
     from rclpy.qos import QoSProfile
+    from rclpy.service import Service
     from rclpy.subscription import Subscription
 
     from contact_dynamics.nodes.running import RunnableNode
@@ -245,3 +245,27 @@ def _allowed(qos: QoSProfile) -> SetParametersResult:
     """Tell whether an overridden QoS can be served: a queue without room would take nothing, silently."""
     reason = "" if qos.depth > 0 else f"depth must be a whole number > 0, got {qos.depth}"
     return SetParametersResult(successful=not reason, reason=reason)
+
+
+def refuse_what_ros_cannot_do(node: Node) -> None:
+    """Let the services that a node has so far answer errors with an empty response and a warning.
+
+    They are those that ROS gives every node. rclpy raises where it cannot do what is asked, which would end
+    the process: so for a lifecycle transition that the present state does not have. Managers ask for such
+    when they bring up all nodes and one is active already. rclcpp answers that it was no success.
+    """
+    for service in node.services:
+        _guard(service, node)
+
+
+def _guard(service: Service, node: Node) -> None:
+    answer = service.callback
+
+    def answer_or_refuse(request: Any, response: Any) -> Any:
+        try:
+            return answer(request, response)
+        except Exception as error:  # noqa: BLE001  rclpy raises several unrelated types
+            node.get_logger().warning(f"{service.service_name}: request refused: {error}")
+            return type(response)()
+
+    service.callback = answer_or_refuse

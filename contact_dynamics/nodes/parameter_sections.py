@@ -1,7 +1,8 @@
-"""The sections of a file of parameters: which node each is for, and which of them miss their node.
+"""The sections of a YAML file of parameters: their nodes, those that miss their node, and repeated keys.
 
-ROS gives a node the parameters of all sections whose name fits its full name, and says nothing of the others.
-So a misspelled name costs all parameters of its section. This file notices that, and imports no ROS.
+ROS gives a node the parameters of all sections whose name fits its full name, and says nothing of the others,
+so a misspelled name costs all parameters of its section. YAML forbids repeated keys, but ROS silently takes
+the last one. This file finds both, and imports no ROS.
 """
 
 from __future__ import annotations
@@ -14,18 +15,16 @@ from itertools import pairwise
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from contact_dynamics.nodes.parameter_reader import ConfigurationError
-from contact_dynamics.nodes.repeated_keys import repeated_keys
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
     from pathlib import Path
 
-    from contact_dynamics.nodes.repeated_keys import RepeatedKey
-
 ANY_NODE: Final = "/**"
 """The name of a section that is for every node."""
 
 _VALUES: Final = "ros__parameters"
+_MERGE: Final = "<<"  # a key of YAML itself
 _ALIKE: Final = 0.9  # the share of equal letters; a name of 16 letters with two that are swapped has 0.94
 _NUMBER: Final = re.compile(r"[_\d]+$")
 _FILE: Final = "--params-file"
@@ -177,3 +176,58 @@ def _without_repeated_keys(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
         message = "a key stands twice"
         raise ValueError(message)
     return found
+
+
+class RepeatedKey(NamedTuple):
+    """A key that stands in a file more than once.
+
+    Attributes:
+        section: The keys down to `ros__parameters`, or all keys where there is none above it.
+        name: The name of the parameter, or an empty text where the key names a section.
+        lines: The lines of the first one and of the next, counted from 1.
+    """
+
+    section: tuple[str, ...]
+    name: str
+    lines: tuple[int, int]
+
+    def __str__(self) -> str:
+        """Return in words which key stands where."""
+        key = self.name or "/".join(self.section)
+        return f"{key} must appear once, got lines {self.lines[0]} and {self.lines[1]}"
+
+
+def repeated_keys(root: Any) -> tuple[RepeatedKey, ...]:
+    """Return the keys that a file has more than once.
+
+    A parameter can be written in one word or nested: ``body.brick.mass: 1.0`` and
+    ``body: {brick: {mass: 2.0}}`` are the same one.
+
+    Args:
+        root: the file as nodes of PyYAML, or None for an empty file.
+    """
+    lines: dict[tuple[tuple[str, ...], str], int] = {}
+    found: list[RepeatedKey] = []
+    for path, line, is_leaf in _keys(root, ()):
+        after = path.index(_VALUES) + 1 if _VALUES in path else len(path)
+        # A group of parameters may be opened twice where one is nested and the other is written in one word.
+        place = (path[:after], ".".join(path[after:]) if is_leaf else "/".join(("", *path[after:])))
+        if place in lines:
+            found.append(RepeatedKey(path[:after], ".".join(path[after:]), (lines[place], line)))
+        else:
+            lines[place] = line
+    return tuple(found)
+
+
+def _keys(node: Any, above: tuple[str, ...]) -> Iterator[tuple[tuple[str, ...], int, bool]]:
+    """Yield each key of a node with those above it, its line, and whether its value is no mapping."""
+    if getattr(node, "id", "") != "mapping":
+        return
+    for key, value in node.value:
+        if key.value == _MERGE:
+            continue
+        path = (*above, str(key.value))
+        is_leaf = getattr(value, "id", "") != "mapping"
+        yield path, key.start_mark.line + 1, is_leaf
+        if not is_leaf:
+            yield from _keys(value, path)

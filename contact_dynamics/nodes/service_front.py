@@ -14,12 +14,17 @@ from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
 from rclpy.exceptions import InvalidHandle
+from rclpy.serialization import serialize_message
 from rclpy.service_introspection import ServiceIntrospectionState
 
 from contact_dynamics.errors import BusyError, ContactDynamicsError
 from contact_dynamics.nodes.call_times import CallTimes
-from contact_dynamics.nodes.event_bytes import EventBytes
 from contact_dynamics.questions.effort import excerpt
+from contact_dynamics.recording.cdr import cut_to_its_end
+from contact_dynamics.recording.cdr_stamp import EventType
+from contact_dynamics.recording.decoding import message_class
+from contact_dynamics.recording.definitions import find_definition
+from msg_adapters.stamps import stamp_to_msg
 from msg_adapters.status import report_error
 
 if TYPE_CHECKING:
@@ -285,3 +290,34 @@ class ServiceFront:
         if happened.is_logged:
             return
         self._record(self.topic, event.data, happened.log_time_ns, happened.publish_time_ns)
+
+
+class EventBytes:
+    """Makes the events of one service's responses, for a log that has them before they leave.
+
+    ROS publishes such an event only after its response has left.
+    """
+
+    def __init__(self, type_name: str) -> None:
+        """Take the type of the events, "package/srv/Name_Event"."""
+        self._definition = find_definition(type_name)
+        self._class = message_class(type_name)
+
+    def of_response(
+        self, response: Response, *, client_gid: bytes, sequence_number: int, stamp_ns: int
+    ) -> bytes:
+        """Return the event that tells of a response.
+
+        Args:
+            response: the response.
+            client_gid: the 16 bytes that identify the client.
+            sequence_number: the number of the request among those of that client.
+            stamp_ns: when it leaves, ns by the node's clock.
+        """
+        event = self._class(response=[response])
+        event.info.event_type = int(EventType.RESPONSE_SENT)
+        event.info.client_gid = list(client_gid)
+        event.info.sequence_number = sequence_number
+        stamp_to_msg(stamp_ns, into=event.info.stamp)
+        data = serialize_message(event)
+        return cut_to_its_end(data, type_name=self._definition.type_name, definition=self._definition.text)
