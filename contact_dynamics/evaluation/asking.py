@@ -10,8 +10,8 @@ import numpy as np
 from contact_dynamics.constants import ns_after, seconds_between
 from contact_dynamics.contact_modes.result import ModeVerdict
 from contact_dynamics.errors import ContactDynamicsError, NotSupportedError
-from contact_dynamics.evaluation.comparison import Comparison
-from contact_dynamics.evaluation.differences import (
+from contact_dynamics.evaluation.comparison import (
+    Comparison,
     arrival_std,
     in_deviations,
     pose_difference,

@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from contact_dynamics.evaluation.comparison import Comparison
-from contact_dynamics.evaluation.differences import arrival_std, in_deviations, pose_difference
+from contact_dynamics.evaluation.comparison import Comparison, arrival_std, in_deviations, pose_difference
 from contact_dynamics.evaluation.found_event import EventKind
 from contact_dynamics.evaluation.settings import Method
 from contact_dynamics.evaluation.summary import is_inside, summarise
