@@ -11,9 +11,8 @@ import pytest
 from calibration.made_tosses import BRICK, FLOOR, RATE, Truth, made_tosses
 from contact_dynamics.calibration import Calibration, calibrate
 from contact_dynamics.calibration.model import Model
-from contact_dynamics.calibration.observed import observe
+from contact_dynamics.calibration.observed import observe, part_of
 from contact_dynamics.calibration.toss_uncertainty import toss_uncertainty
-from contact_dynamics.calibration.tosses import part_of
 from contact_dynamics.errors import InvalidFieldError, NotSupportedError
 from contact_dynamics.shapes import cylinder
 

@@ -14,9 +14,8 @@ from calibration.made_tosses import Truth, made_tosses
 from contact_dynamics.calibration import Calibration, calibrate
 from contact_dynamics.calibration.arguments import calibrate_parser
 from contact_dynamics.calibration.plots import write_plots
-from contact_dynamics.calibration.report import content_of, report
+from contact_dynamics.calibration.report import content_of, report, server_parameters
 from contact_dynamics.calibration.run import SOMETHING_OPEN, main
-from contact_dynamics.calibration.server_parameters import server_parameters
 from contact_dynamics.evaluation.command import NOTHING
 from contact_dynamics.measured.read_toss import DEFAULT_RECORDING
 from contact_dynamics.nodes.parameter_file import ParameterFile
