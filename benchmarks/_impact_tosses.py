@@ -27,7 +27,7 @@ from contact_dynamics.contact.contact import Contact
 from contact_dynamics.errors import SeparatingContactError
 from contact_dynamics.impact import RestitutionLaw, spatial_impact
 from contact_dynamics.measured.cube_tosses import BOARD, CUBE, read_cube_toss
-from contact_dynamics.measured.events import measure_events
+from contact_dynamics.measured.events import find_strikes
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 
 if TYPE_CHECKING:
@@ -118,7 +118,7 @@ def measured_strikes(path: Path) -> tuple[list[Strike], int]:
     strikes = []
     found = 0
     for index in range(TOSSES):
-        for strike in measure_events(read_cube_toss(path, index=index)).strikes:
+        for strike in find_strikes(read_cube_toss(path, index=index)):
             found += 1
             linear = math.hypot(strike.before.velocity_std, strike.after.velocity_std)
             angular = math.hypot(

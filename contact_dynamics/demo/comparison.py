@@ -16,8 +16,10 @@ from contact_dynamics_interfaces.msg import Impact
 from msg_adapters.geometry import vector_from_msg
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from contact_dynamics.demo.questioner import Asked, Questioner
-    from contact_dynamics.measured.events import MeasuredEvents, MeasuredStrike
+    from contact_dynamics.measured.events import MeasuredStrike
     from contact_dynamics.measured.recorded_toss import Toss
     from contact_dynamics.validation import FloatArray
 
@@ -68,24 +70,24 @@ class Section:
     rows: list[Row]
 
 
-def sections(toss: Toss, events: MeasuredEvents, questioner: Questioner) -> list[Section]:
+def sections(toss: Toss, strikes: Sequence[MeasuredStrike], questioner: Questioner) -> list[Section]:
     """Return the questions in the order of time."""
     found = [
-        *(_flight_section(asked, events, questioner) for asked in questioner.flights),
-        *(_impact_section(asked, events, questioner) for asked in questioner.impacts),
+        *(_flight_section(asked, strikes, questioner) for asked in questioner.flights),
+        *(_impact_section(asked, strikes, questioner) for asked in questioner.impacts),
         *(_mode_section(asked, toss) for asked in questioner.modes),
     ]
     return sorted(found, key=lambda section: section.time)
 
 
-def print_table(toss: Toss, events: MeasuredEvents, questioner: Questioner) -> None:
+def print_table(toss: Toss, strikes: Sequence[MeasuredStrike], questioner: Questioner) -> None:
     """Print the table."""
     print(f"\n{'':34}{'predicted':>27}{'measured':>27}{'difference':>16}")
-    for section in sections(toss, events, questioner):
+    for section in sections(toss, strikes, questioner):
         print(f"\nt = {section.time:.3f} s, {section.title}")
         for row in section.rows:
             print(f"  {row.quantity:32}{row.predicted:>27}{row.measured:>27}{row.difference:>16}")
-    if missed := not_asked(events, [asked.time for asked in questioner.flights]):
+    if missed := not_asked(strikes, [asked.time for asked in questioner.flights]):
         times = ", ".join(f"{time:.3f} s" for time in missed)
         print(f"\nNot asked in time, so not in the table: the landing at t = {times}. The machine was busy.")
     print(
@@ -95,37 +97,37 @@ def print_table(toss: Toss, events: MeasuredEvents, questioner: Questioner) -> N
     )
 
 
-def not_asked(events: MeasuredEvents, times: list[float]) -> list[float]:
+def not_asked(strikes: Sequence[MeasuredStrike], times: list[float]) -> list[float]:
     """Return when the body landed after enough flight, s, although nobody asked during that flight.
 
     Args:
-        events: what was measured.
+        strikes: the measured strikes.
         times: when somebody asked where the body will be, s.
     """
-    strikes = [0.0, *(strike.time for strike in events.strikes)]
+    times_of_strikes = [0.0, *(strike.time for strike in strikes)]
     return [
         landing
-        for start, landing in pairwise(strikes)
+        for start, landing in pairwise(times_of_strikes)
         if landing - start >= ENOUGH_FLIGHT and not any(start <= time < landing for time in times)
     ]
 
 
-def _strike_at(events: MeasuredEvents, time: float) -> MeasuredStrike | None:
-    near = [strike for strike in events.strikes if abs(strike.time - time) < SAME_STRIKE]
+def _strike_at(strikes: Sequence[MeasuredStrike], time: float) -> MeasuredStrike | None:
+    near = [strike for strike in strikes if abs(strike.time - time) < SAME_STRIKE]
     return min(near, key=lambda strike: abs(strike.time - time), default=None)
 
 
-def _flight_section(asked: Asked, events: MeasuredEvents, questioner: Questioner) -> Section:
+def _flight_section(asked: Asked, strikes: Sequence[MeasuredStrike], questioner: Questioner) -> Section:
     response = asked.response
     landing = questioner.seconds_of(response.state.header.stamp) + response.event_time
     return Section(
         time=asked.time,
         title=f"in flight, {landing - asked.time:.2f} s before landing: where will it be? {_answered(asked)}",
-        rows=_landing_rows(response, landing, _strike_at(events, landing)),
+        rows=_landing_rows(response, landing, _strike_at(strikes, landing)),
     )
 
 
-def _impact_section(asked: Asked, events: MeasuredEvents, questioner: Questioner) -> Section:
+def _impact_section(asked: Asked, strikes: Sequence[MeasuredStrike], questioner: Questioner) -> Section:
     response = asked.response
     if response.status != response.OK:
         return Section(time=asked.time, title=f"what after the impact? {response.message}", rows=[])
@@ -134,7 +136,7 @@ def _impact_section(asked: Asked, events: MeasuredEvents, questioner: Questioner
     return Section(
         time=asked.time,
         title=f"{before:.0f} ms before landing: what after the impact? {_answered(asked)}",
-        rows=_impact_rows(response, _strike_at(events, strike)),
+        rows=_impact_rows(response, _strike_at(strikes, strike)),
     )
 
 

@@ -24,7 +24,7 @@ from contact_dynamics.demo.parameters import write_parameters
 from contact_dynamics.demo.processes import Processes
 from contact_dynamics.demo.questioner import Questioner
 from contact_dynamics.errors import ContactDynamicsError
-from contact_dynamics.measured.events import measure_events
+from contact_dynamics.measured.events import find_strikes
 from contact_dynamics.measured.read_toss import read_toss
 from contact_dynamics.nodes.ros_log_directory import ensure_ros_log_directory
 from contact_dynamics.nodes.running import stop_signals
@@ -66,7 +66,7 @@ def main(arguments: list[str]) -> int:
         print(f"{error}\nWhat the processes printed is in {folder}", file=sys.stderr)
         return 1
     if not given.quiet:
-        print_table(toss, measure_events(toss), asked)
+        print_table(toss, find_strikes(toss), asked)
     print(f"\nto look at the picture: {_opening(folder / PICTURE)}")
     print(f"\nlog and picture ({asked.received} states):")
     for path in (*sorted(folder.glob("*/*.mcap")), folder / PICTURE):

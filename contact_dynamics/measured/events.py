@@ -107,49 +107,13 @@ class RestingPose(Record):
     orientation_std: float
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class MeasuredRest(Record):
-    """The body at rest at the end of the recording.
-
-    Attributes:
-        time: Time of the first frame from which on the pose stayed, s.
-        state: The mean pose from then on, at velocity 0.
-        position_std: Standard deviation of each coordinate of the mean, m.
-        orientation_std: Standard deviation of each component of the mean, rad.
-        heights: (k,), m, of the body's corners above the surface.
-    """
-
-    time: float
-    state: BodyState
-    position_std: float
-    orientation_std: float
-    heights: FloatArray
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class MeasuredEvents(Record):
-    """All events of one toss.
-
-    Attributes:
-        flights: The frames of each free flight.
-        strikes: The strikes in the order of time.
-        rest: The rest, or None if the body still moves at the end.
-    """
-
-    flights: tuple[slice, ...]
-    strikes: tuple[MeasuredStrike, ...]
-    rest: MeasuredRest | None
-
-
-def measure_events(toss: Toss) -> MeasuredEvents:
-    """Return the flights, strikes and rest of a recorded toss."""
-    flights = tuple(find_flights(toss))
-    strikes = tuple(
+def find_strikes(toss: Toss) -> tuple[MeasuredStrike, ...]:
+    """Return the strikes of a recorded toss in the order of time."""
+    return tuple(
         _strike(toss, before, after)
-        for before, after in pairwise(flights)
+        for before, after in pairwise(find_flights(toss))
         if after.start - before.stop <= MAX_BETWEEN
     )
-    return MeasuredEvents(flights=flights, strikes=strikes, rest=_rest(toss))
 
 
 def corner_heights(toss: Toss, state: BodyState) -> FloatArray:
@@ -229,19 +193,6 @@ def find_rest(poses: MeasuredPoses) -> RestingPose | None:
         ),
         position_std=float(std[0]),
         orientation_std=float(std[3]),
-    )
-
-
-def _rest(toss: Toss) -> MeasuredRest | None:
-    pose = find_rest(toss)
-    if pose is None:
-        return None
-    return MeasuredRest(
-        time=pose.time,
-        state=pose.state,
-        position_std=pose.position_std,
-        orientation_std=pose.orientation_std,
-        heights=corner_heights(toss, pose.state),
     )
 
 

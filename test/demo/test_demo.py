@@ -24,7 +24,7 @@ from rosbags.highlevel import AnyReader
 
 from contact_dynamics.command_line import VERBS, main
 from contact_dynamics.demo.comparison import not_asked
-from contact_dynamics.measured.events import measure_events
+from contact_dynamics.measured.events import find_strikes
 from contact_dynamics.measured.read_toss import DEFAULT_RECORDING, read_toss
 from contact_dynamics.measured.recorded_toss import Toss
 from contact_dynamics.recording import BagReader, service_calls
@@ -141,7 +141,7 @@ def run_demo(toss_path: str, directory: Path) -> Run:
 
 def asked_in_time(run: Run) -> bool:
     """Whether landing and impact were asked for before the first strike."""
-    strike = measure_events(run.toss).strikes[0].time
+    strike = find_strikes(run.toss)[0].time
     firsts = [run.sections(question)[:1] for question in ("where will it be?", "what after the impact?")]
     return all(first and float(re.findall(NUMBER, first[0])[0]) < strike for first in firsts)
 
@@ -272,7 +272,7 @@ def test_the_brick_lands_and_leaves_as_predicted(brick: Run) -> None:
     """
     flight, impact = brick.sections("where will it be?")[0], brick.sections("what after the impact?")[0]
     predicted, measured, _ = numbers("time of landing, s", flight)
-    strike = measure_events(brick.toss).strikes[0]
+    strike = find_strikes(brick.toss)[0]
     assert measured == pytest.approx(strike.time, abs=5e-5)
     assert predicted == pytest.approx(measured, abs=0.003)
     position = numbers("position then, m", flight)
@@ -306,17 +306,17 @@ def test_the_cube_lands_and_leaves_about_as_predicted(cube: Run) -> None:
 
 def test_a_landing_that_nobody_asked_about_is_told(brick: Run) -> None:
     """The brick lands after 0.44 s, 0.32 s and 0.18 s of flight."""
-    events = measure_events(brick.toss)
-    landings = [strike.time for strike in events.strikes]
-    assert not_asked(events, [0.05, 0.51, 0.84]) == []
-    assert not_asked(events, [0.05]) == landings[1:]
-    assert not_asked(events, []) == landings
+    strikes = find_strikes(brick.toss)
+    landings = [strike.time for strike in strikes]
+    assert not_asked(strikes, [0.05, 0.51, 0.84]) == []
+    assert not_asked(strikes, [0.05]) == landings[1:]
+    assert not_asked(strikes, []) == landings
     asked = [
         float(re.findall(NUMBER, section)[0])
         for section in brick.sections("in flight")
         if "landing: where" in section
     ]
-    for landing in not_asked(events, asked):  # none on a machine that is not busy
+    for landing in not_asked(strikes, asked):  # none on a machine that is not busy
         assert f"{landing:.3f} s" in brick.printed.partition("Not asked in time")[2]
 
 

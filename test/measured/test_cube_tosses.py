@@ -9,7 +9,7 @@ import pytest
 
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.measured.cube_tosses import HALF_SIDE, RATE
-from contact_dynamics.measured.events import measure_events
+from contact_dynamics.measured.events import corner_heights, find_rest, find_strikes
 from contact_dynamics.measured.read_toss import read_toss
 from contact_dynamics.motion.velocity_estimate import FEWEST_FRAMES
 from oracles.rigid_flight import about, fly, matrix
@@ -132,11 +132,11 @@ def test_published_tosses_fly_strike_and_come_to_rest() -> None:
     for index in tosses:
         toss = read_toss(MEASURED, index=index)
         assert np.linalg.norm(toss.v_WB_W, axis=1).max() < 3.0  # thrown at 1.4 m/s from 15 cm
-        events = measure_events(toss)
-        assert events.rest is not None
+        rest = find_rest(toss)
+        assert rest is not None
         # the board is where corners are at rest, to what frame, half side and board are known
-        assert -0.006 < events.rest.heights.min() < 0.002
-        with_strikes += len(events.strikes) > 0
+        assert -0.006 < corner_heights(toss, rest.state).min() < 0.002
+        with_strikes += len(find_strikes(toss)) > 0
     assert with_strikes > 0.7 * len(tosses)  # of all 360, 281 have a strike between two flights
 
 
