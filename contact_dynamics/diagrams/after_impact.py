@@ -40,16 +40,14 @@ class AfterImpact:
 
     Attributes:
         answer: The prediction.
-        strike_ns: ns, when the impact was predicted to end.
         stamps_ns: The stamps of the poses that the velocities are found from, and of the curves.
-        v_WB_W: (3,), m/s, the measured velocity of the centre of mass at ``strike_ns``.
+        v_WB_W: (3,), m/s, the measured velocity of the centre of mass when the impact was predicted to end.
         w_WB_W: (3,), rad/s, the measured angular velocity then.
         predicted_speeds: (n,), m/s, at the stamps, if the body flies on as predicted.
         measured_speeds: (n,), m/s, at the stamps.
     """
 
     answer: ImpactAnswer
-    strike_ns: int
     stamps_ns: tuple[int, ...]
     v_WB_W: FloatArray
     w_WB_W: FloatArray
@@ -134,7 +132,6 @@ class AwaitedImpacts:
         predicted_W = answer.impact.state.v_WB_W + np.outer(seconds, self._gravity_W)
         return AfterImpact(
             answer=answer,
-            strike_ns=strike_ns,
             stamps_ns=stamps_ns,
             v_WB_W=v_W,
             w_WB_W=w_W,

@@ -23,14 +23,12 @@ class TreeNode(NamedTuple):
 
     Attributes:
         parent: The index of the node before it, or -1 for the state that the toss begins with.
-        strike: Which strike it is, from 1.
         text: Which strike it is, what happens, and with which probability.
         probability: Share of all samples.
         regions: When and where it happens.
     """
 
     parent: int
-    strike: int
     text: str
     probability: float
     regions: EventRegions
@@ -45,7 +43,7 @@ def tree_of(told: TossDistribution) -> list[TreeNode]:
             continue
         places[k] = len(nodes)
         text = f"{branch.strike}. {branch_in_words(branch.kind, branch.corner)}: {branch.probability:.0%}"
-        nodes.append(TreeNode(places[branch.parent], branch.strike, text, branch.probability, branch.regions))
+        nodes.append(TreeNode(places[branch.parent], text, branch.probability, branch.regions))
     return nodes
 
 

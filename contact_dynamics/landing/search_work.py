@@ -20,10 +20,9 @@ OBSTACLE_STEP: Final = 25
 class SearchWork:
     """Counts the steps of one or several searches, and ends them if there are too many."""
 
-    def __init__(self, field: str = "horizon", *, most: int = MAX_SEARCH_STEPS) -> None:
+    def __init__(self, field: str = "horizon") -> None:
         """Begin to count. ``field`` is the caller's name of the time to search."""
         self._field = field
-        self._most = most
         self._spent = 0
 
     def spend(self, steps: int, seconds: float) -> None:
@@ -33,9 +32,9 @@ class SearchWork:
             TooLargeError: there are more steps than allowed.
         """
         self._spent += steps
-        if self._spent > self._most:
+        if self._spent > MAX_SEARCH_STEPS:
             raise TooLargeError(
                 self._field,
-                f"more than {self._most} steps of the search, the last of them at {seconds:.9g} s",
+                f"more than {MAX_SEARCH_STEPS} steps of the search, the last of them at {seconds:.9g} s",
                 "a shorter time, a slower spin, a smaller body, longer steps or fewer contacts",
             )

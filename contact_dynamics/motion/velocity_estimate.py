@@ -34,9 +34,9 @@ FEWEST_FRAMES: Final = 5
 slope's noise."""
 
 
-def frames_in_window(rate: float, window: float = WINDOW) -> int:
+def frames_in_window(rate: float) -> int:
     """Return how many frames at ``rate`` (Hz) the estimate uses, including the newest."""
-    return max(FEWEST_FRAMES, round(rate * window))
+    return max(FEWEST_FRAMES, round(rate * WINDOW))
 
 
 def causal_velocities(

@@ -180,12 +180,6 @@ class InboxNode(Node):
         for subscription in self._in_rounds:
             self.empty(subscription)
 
-    def deliver(self, topic: str, data: bytes) -> None:
-        """Give the bytes of a message to who receives a topic, as if they had come just now."""
-        for subscription in self.inbox:
-            if subscription.topic_name == topic:
-                subscription.callback(Taken(data, time.time_ns(), None))
-
     def note_question(self, received_ns: int) -> None:
         """Note that a question came at that time, ns since the epoch: what is taken later came after it."""
         self._question_ns = received_ns

@@ -32,7 +32,7 @@ from contact_dynamics.nodes.state_subscriptions import present_ns, subscribe_to_
 from contact_dynamics.nodes.topic_faults import TopicFaults
 from contact_dynamics.questions.context import Context
 from contact_dynamics.questions.services import SERVICES
-from contact_dynamics.questions.state_store import CLOCK_SET_BACK, StateStore
+from contact_dynamics.questions.state_store import StateStore
 from contact_dynamics.questions.workers import Workers
 from msg_adapters.path import path_from_trajectory
 from msg_adapters.transforms import TransformTree
@@ -152,9 +152,7 @@ class Serving:
         # It comes last, since the clock goes on to call what is not unregistered, and ends the process if
         # that is not there any more.
         set_back = JumpThreshold(min_forward=None, min_backward=Duration(nanoseconds=-1))
-        self._jumps = node.get_clock().create_jump_callback(
-            set_back, post_callback=lambda _: states.clear(CLOCK_SET_BACK)
-        )
+        self._jumps = node.get_clock().create_jump_callback(set_back, post_callback=lambda _: states.clear())
 
     def __str__(self) -> str:
         """Return in words what is served."""

@@ -31,11 +31,10 @@ def legend_beside(axes: Axes, *, columns: int = 1, **options: Any) -> None:
     )
 
 
-def lines_through_zero(axes: Axes, *, vertical: bool = True) -> None:
+def lines_through_zero(axes: Axes) -> None:
     """Draw the axes of coordinates below everything else."""
     axes.axhline(0.0, color=AXIS, linewidth=1.0, zorder=0.5)
-    if vertical:
-        axes.axvline(0.0, color=AXIS, linewidth=1.0, zorder=0.5)
+    axes.axvline(0.0, color=AXIS, linewidth=1.0, zorder=0.5)
 
 
 def save_figure(figure: Figure, path: Path | str) -> None:

@@ -34,9 +34,6 @@ differ by far less."""
 MAX_STATES: Final = 20_000
 """States of one body that are kept, where nothing else is said: 20 s at 1 kHz, some 20 MB of Odometry."""
 
-CLOCK_SET_BACK: Final = "the clock was set back"
-"""Why all states are forgotten, live and where a log is replayed."""
-
 
 class StateStore:
     """Published states by body, sorted by their stamps. When new ones come, those beyond the history go."""
@@ -111,10 +108,10 @@ class StateStore:
         if track is not None and track.stamps:
             self._arrivals[body_name].throw_away(reason)
 
-    def clear(self, reason: str) -> None:
-        """Forget all states, as when the clock is set back and their stamps become times to come."""
+    def clear(self) -> None:
+        """Forget all states because the clock was set back, so that their stamps become times to come."""
         for body_name in list(self._tracks):
-            self.forget(body_name, reason)
+            self.forget(body_name, "the clock was set back")
 
     @checks_types
     def newest(self, body_name: str, *, now_ns: int | None = None) -> KnownState:

@@ -19,7 +19,7 @@ from contact_dynamics.nodes.state_sources import no_message, state_sources
 from contact_dynamics.questions.context import Context
 from contact_dynamics.questions.extent import check_believable
 from contact_dynamics.questions.services import service_of_type
-from contact_dynamics.questions.state_store import CLOCK_SET_BACK, StateStore
+from contact_dynamics.questions.state_store import StateStore
 from contact_dynamics.questions.uncertain_state import state_of
 from contact_dynamics.recording.cdr import decode_without_ros
 from contact_dynamics.recording.cdr_stamp import leading_stamp_ns
@@ -220,5 +220,5 @@ class ServerAgain:
 
     def _tick(self, clock_ns: int) -> None:
         if clock_ns < self._clock_ns:  # the server forgets all states when its clock is set back
-            self._states.clear(CLOCK_SET_BACK)
+            self._states.clear()
         self._clock_ns = clock_ns

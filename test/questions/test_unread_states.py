@@ -97,17 +97,17 @@ def missing(store: StateStore) -> str:
 def test_who_finds_no_state_is_told_how_many_came_and_what_became_of_them() -> None:
     store = StateStore(history=1.0, timeout=1.0)
     assert missing(store) == "none was published yet"
-    store.clear("the clock was set back")
+    store.clear()
     assert missing(store) == "none was published yet"
     store.refuse("ball", "stamp must be less, got 5 s")
     store.refuse("ball", "mass must be > 0, got -1")
     refused = "none of 2 messages was kept: the last was rejected because mass must be > 0, got -1"
     assert missing(store) == refused
-    store.clear("the clock was set back")  # which changes nothing where none is kept
+    store.clear()  # which changes nothing where none is kept
     assert missing(store) == refused
     for stamp_ns in (1, 2, 3):
         store.add("ball", state(stamp_ns))
-    store.clear("the clock was set back")
+    store.clear()
     assert missing(store) == "none of 5 messages was kept: they were discarded when the clock was set back"
     store.add("ball", state(9_000_000_000))
     store.add("other", state(1), now_ns=1)
