@@ -42,10 +42,9 @@ from contact_dynamics.questions.services import SERVICES
 from contact_dynamics.questions.state_store import StateStore
 from contact_dynamics.questions.uncertain_state import state_of
 from contact_dynamics.recording.cdr_stamp import EventType, event_type_of
-from contact_dynamics.viewing.pace import SHORTEST_S
 from contact_dynamics.viewing.picture import Picture
 from contact_dynamics.viewing.sinks import OpenRecording, ViewerMode, raise_errors
-from contact_dynamics.viewing.states_in_turn import StatesInTurn
+from contact_dynamics.viewing.states_in_turn import SHORTEST_S, StatesInTurn
 from msg_adapters.stamps import stamp_ns_from_msg
 from msg_adapters.transforms import TransformTree
 

@@ -7,7 +7,7 @@ In reading order: the colours (`palette`) and what they mean in words (`legend`)
 (`entities`), bodies and surfaces (`scene`), what was measured (`measured`), the three kinds of answers
 (`trajectory`, `impact` with its `impulse_space`, `contact_modes`), lecture 25's picture of rotations
 (`poinsot`), lecture 26's of modes and wrenches (`planar_scene`, `planar_modes`, `mode_map`, `force_dual`),
-the arrangement of the views (`blueprint`), where they look (`framing`), all of it together (`picture`), and
+the arrangement of the views and where they look (`blueprint`), all of it together (`picture`), and
 where it goes (`sinks`): files (`rrd_files`), a viewer that is drawn to (`live_viewer`) or started
 (`viewer_process`), a browser (`web_viewer`). All of these are places of one recording (`kept_recording`). The
 arrays that the diagrams show come from `contact_dynamics.diagrams`.

@@ -21,7 +21,7 @@ from contact_dynamics.questions.services import service_of
 from contact_dynamics.tumbling.regime import Regime
 from contact_dynamics.viewing.after_impact import draw_after_impact
 from contact_dynamics.viewing.answers_in_words import AnswersInWords, sentence
-from contact_dynamics.viewing.blueprint import NO_TRAVEL, WINDOW_S, make_blueprint
+from contact_dynamics.viewing.blueprint import NO_TRAVEL, WINDOW_S, Framing, make_blueprint, near_most
 from contact_dynamics.viewing.contact_modes import draw_contact_modes
 from contact_dynamics.viewing.diagrams_in_view import DiagramsInView
 from contact_dynamics.viewing.entities import (
@@ -36,13 +36,12 @@ from contact_dynamics.viewing.entities import (
     PREDICTED,
     TOSSES,
 )
-from contact_dynamics.viewing.framing import Framing, near_most
 from contact_dynamics.viewing.impact import draw_impact
 from contact_dynamics.viewing.in_view import ImpactsInView, LettersInView
 from contact_dynamics.viewing.legend import LEGEND_TEXT
 from contact_dynamics.viewing.many_states import draw_many_states
 from contact_dynamics.viewing.measured import SET_BACK_S, set_time
-from contact_dynamics.viewing.poinsot_in_view import PoinsotInView
+from contact_dynamics.viewing.poinsot import PoinsotInView
 from contact_dynamics.viewing.predictions_in_view import PredictionsInView
 from contact_dynamics.viewing.toss import draw_toss
 from contact_dynamics.viewing.trajectory import DEFAULT_PREDICTIONS, draw_earlier_path, draw_trajectory

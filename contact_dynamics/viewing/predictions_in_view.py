@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from contact_dynamics.rigid_body.body import BodyState
     from contact_dynamics.tumbling import Trajectory
     from contact_dynamics.validation import FloatArray
-    from contact_dynamics.viewing.bodies_in_world import BodiesInWorld
+    from contact_dynamics.viewing.world_in_view import BodiesInWorld
 
 MAX_KEPT: Final = 500
 """States of a body, 2 s at 250 Hz. An answer that comes later than that is not drawn beside the earliest."""

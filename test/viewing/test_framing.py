@@ -5,8 +5,7 @@ from itertools import permutations
 import numpy as np
 import pytest
 
-from contact_dynamics.viewing.blueprint import LOWEST_DISTANCE, Eye
-from contact_dynamics.viewing.framing import FAR, Framing, near_most
+from contact_dynamics.viewing.blueprint import FAR, LOWEST_DISTANCE, Eye, Framing, near_most
 
 UP = np.array([0.0, 0.0, 1.0])
 PATH = np.column_stack([np.linspace(0.0, 0.3, 20), np.zeros(20), np.linspace(1.0, 0.0, 20) ** 2])

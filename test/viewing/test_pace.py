@@ -6,7 +6,7 @@ import time
 
 import pytest
 
-from contact_dynamics.viewing.pace import LONGEST_S, SHARE, SHORTEST_S, Pace, wait_after
+from contact_dynamics.viewing.states_in_turn import LONGEST_S, SHARE, SHORTEST_S, Pace, wait_after
 
 
 @pytest.mark.parametrize(
