@@ -21,12 +21,12 @@ from typing import TYPE_CHECKING, Final
 
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.recording.bag_metadata import METADATA_FILE, custom_data_of
+from contact_dynamics.recording.definitions import standard_definition
 from contact_dynamics.recording.errors import DamagedLogWarning, NotALogError
 from contact_dynamics.recording.file_messages import Loss, MessageFile, Span, Topic
 from contact_dynamics.recording.mcap_messages import McapMessages
 from contact_dynamics.recording.packed import SUFFIXES, unpacked_file, unpacked_message
 from contact_dynamics.recording.sqlite_messages import SqliteMessages
-from contact_dynamics.recording.standard_types import standard_definition
 from contact_dynamics.validation_types import checks_types
 
 if TYPE_CHECKING:
