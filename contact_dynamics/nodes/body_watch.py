@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
     from contact_dynamics.nodes.state_subscriptions import StateTopic
     from contact_dynamics.nodes.world_parameters import BodySources
-    from contact_dynamics.questions.arrivals import Arrivals
+    from contact_dynamics.questions.state_store import Arrivals
 
 
 class BodyWatch:

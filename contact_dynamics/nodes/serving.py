@@ -22,13 +22,12 @@ from contact_dynamics.nodes.diagnostics import (
 )
 from contact_dynamics.nodes.gone_clients import GoneClients
 from contact_dynamics.nodes.log import Log
-from contact_dynamics.nodes.offered_qos import OfferedQosWatch
 from contact_dynamics.nodes.reconfiguring import CONFIGURED_ANEW, bodies_read_otherwise
 from contact_dynamics.nodes.self_check import SelfCheck
 from contact_dynamics.nodes.service_front import ServiceFront
 from contact_dynamics.nodes.situations import Part, Present, Situation
 from contact_dynamics.nodes.state_sources import state_sources
-from contact_dynamics.nodes.state_subscriptions import present_ns, subscribe_to_states
+from contact_dynamics.nodes.state_subscriptions import OfferedQosWatch, present_ns, subscribe_to_states
 from contact_dynamics.nodes.topic_faults import TopicFaults
 from contact_dynamics.questions.context import Context
 from contact_dynamics.questions.services import SERVICES

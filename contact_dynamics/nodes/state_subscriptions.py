@@ -16,7 +16,6 @@ from rclpy.serialization import deserialize_message
 
 from contact_dynamics.constants import NS_PER_S
 from contact_dynamics.errors import ContactDynamicsError
-from contact_dynamics.nodes.offered_qos import OfferedQosWatch
 from contact_dynamics.nodes.situations import Present, Situation
 from contact_dynamics.nodes.state_sources import no_message
 from contact_dynamics.nodes.topic_faults import TopicFaults, TopicTraffic
@@ -236,3 +235,27 @@ def _leading_frame(data: bytes) -> bytes:
     """Return the frame of a header, with the four bytes before it that tell its length."""
     letters = int.from_bytes(data[_FRAME_AT : _FRAME_AT + 4], "little" if data[1] else "big")
     return data[_FRAME_AT : _FRAME_AT + 4 + letters]
+
+
+class OfferedQosWatch:
+    """Tells the log what the publishers of a topic offer, whenever that has changed.
+
+    DDS does not say how deep the queues of a publisher are. The history is then unknown, as in bags of
+    rosbag2.
+    """
+
+    def __init__(self, node: Node, topic: str, tell: Callable[[str, list[Any]], object]) -> None:
+        """Watch for a node. ``tell`` takes the topic and the ``QoSProfile`` of each publisher."""
+        self._node = node
+        self._topic = topic
+        self._tell = tell
+        self._told: list[Any] = []
+
+    def look(self) -> list[TopicEndpointInfo]:
+        """Look at who publishes, and return it. Those that left are remembered until others come."""
+        publishers: list[TopicEndpointInfo] = self._node.get_publishers_info_by_topic(self._topic)
+        found = [info.qos_profile for info in publishers]
+        if found and found != self._told:
+            self._told = found
+            self._tell(self._topic, found)
+        return publishers

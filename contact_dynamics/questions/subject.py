@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import TYPE_CHECKING, Final, TypeAlias
 
 import numpy as np
@@ -12,9 +13,8 @@ from contact_dynamics.constants import seconds_between
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.motion.between_states import share_between, state_between
 from contact_dynamics.motion.covariance import covariance_along
-from contact_dynamics.motion.free_fit import FitResult
+from contact_dynamics.motion.free_fit import FitResult, fit_free_motion
 from contact_dynamics.motion.whole_turns import THIRD_OF_A_TURN
-from contact_dynamics.questions.kept_fits import kept_fit
 from contact_dynamics.questions.uncertain_state import KnownState, UncertainState, state_of
 from contact_dynamics.records import Record
 from contact_dynamics.rigid_body.body import BodyState
@@ -35,6 +35,10 @@ if TYPE_CHECKING:
     from contact_dynamics.rigid_body.body import MassProperties
 
     Fitting: TypeAlias = Callable[[MassProperties, Sequence[BodyState]], FitResult]
+    from collections.abc import Sequence
+
+    from contact_dynamics.rigid_body.body import BodyState, MassProperties
+    from contact_dynamics.validation import FloatArray
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
@@ -292,3 +296,20 @@ def _carried_over(published: KnownState, known: Body, body: Body) -> KnownState:
         return moved
     covariance = covariance_of_other_point(published.covariance, state, body.p_FB_F - known.p_FB_F)
     return UncertainState(state=moved, covariance=covariance)
+
+
+_KEPT: Final = 4
+
+
+def kept_fit(body: MassProperties, states: Sequence[BodyState], *, gravity_W: FloatArray) -> FitResult:
+    """Return the free motion that fits ``states`` best; see `fit_free_motion`, and its errors.
+
+    The last few are kept, since several questions are asked about one window of states: where it will land,
+    which impact follows, with which law. To fit it again costs more than the rest of an answer.
+    """
+    return _fit(body, tuple(states), tuple(gravity_W.tolist()))
+
+
+@lru_cache(maxsize=_KEPT)
+def _fit(body: MassProperties, states: tuple[BodyState, ...], gravity_W: tuple[float, ...]) -> FitResult:
+    return fit_free_motion(body, states, gravity_W=gravity_W)

@@ -11,7 +11,6 @@ from contact_dynamics.motion.forces import NO_DRAG, NO_WRENCH, ConstantWrench, D
 from contact_dynamics.motion.integrated import ForcedMotion, Method, motion_of
 from contact_dynamics.motion.integrated_fit import fit_motion
 from contact_dynamics.questions.context import Context
-from contact_dynamics.questions.kept_fits import kept_fit
 from contact_dynamics.questions.sample_times import (
     MAX_INTEGRATED_STEPS,
     AtRate,
@@ -27,6 +26,7 @@ from contact_dynamics.questions.subject import (
     StateSource,
     Subject,
     covariance_of,
+    kept_fit,
     subject_of,
 )
 from contact_dynamics.rigid_body.body import BodyState
