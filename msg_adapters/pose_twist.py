@@ -6,7 +6,7 @@ Its own header says whether it is in the axes of the world or of the body.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, Generic, Protocol, TypeVar
 
 from geometry_msgs.msg import PoseStamped, TwistStamped
 
@@ -21,15 +21,15 @@ from contact_dynamics.validation import check_unit
 from msg_adapters.frames import check_frame
 from msg_adapters.geometry import pose_to_msg, quaternion_from_msg, vector_from_msg, vector_to_msg
 from msg_adapters.in_world import in_world
-from msg_adapters.pairs import Pairs
 from msg_adapters.published_covariance import covariance_from_msg, of_pose_and_twist, with_covariance
 from msg_adapters.stamps import stamp_ns_from_msg, stamp_to_msg
 from msg_adapters.state_adapter import StateAdapter
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from geometry_msgs.msg import PoseWithCovarianceStamped, TwistWithCovarianceStamped
+    from std_msgs.msg import Header
 
     from contact_dynamics.questions.uncertain_state import KnownState
     from contact_dynamics.rigid_body.body import BodyState
@@ -140,3 +140,47 @@ def pose_twist_from_body_state(
     twist.twist.linear = vector_to_msg(velocity_of_published_frame(state, p_FB_F))
     twist.twist.angular = vector_to_msg(state.w_WB_W)
     return pose, twist
+
+
+class Stamped(Protocol):
+    """A message with a header."""
+
+    header: Header
+
+
+First = TypeVar("First", bound=Stamped)
+Second = TypeVar("Second", bound=Stamped)
+
+MAX_UNPAIRED: Final = 100
+"""Messages that wait for the other one of their stamp. Then the other topic is silent, and the oldest go."""
+
+
+class Pairs(Generic[First, Second]):
+    """Joins the two messages of one stamp that make a state together, whichever comes first."""
+
+    def __init__(self, join: Callable[[First, Second], KnownState]) -> None:
+        """Begin without messages; ``join`` makes a state of a message of each topic."""
+        self._join = join
+        self._first: dict[int, First] = {}
+        self._second: dict[int, Second] = {}
+
+    def first(self, msg: First) -> KnownState | None:
+        """Take a message of the first topic."""
+        other = _partner(msg, self._first, self._second)
+        return None if other is None else self._join(msg, other)
+
+    def second(self, msg: Second) -> KnownState | None:
+        """Take a message of the second topic."""
+        other = _partner(msg, self._second, self._first)
+        return None if other is None else self._join(other, msg)
+
+
+def _partner(msg: First, mine: dict[int, First], others: dict[int, Second]) -> Second | None:
+    """Return the message of the same stamp that waits, or let this one wait."""
+    stamp_ns = stamp_ns_from_msg(msg.header.stamp)
+    partner = others.pop(stamp_ns, None)
+    if partner is None:
+        mine[stamp_ns] = msg
+        if len(mine) > MAX_UNPAIRED:
+            del mine[next(iter(mine))]
+    return partner

@@ -25,8 +25,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from contact_dynamics.constants import ns_after
+from contact_dynamics.contact.found import contacts_within
 from contact_dynamics.evaluation.found_event import EventKind, FoundEvent
-from contact_dynamics.evaluation.touching import touch_of
 from contact_dynamics.measured.events import FIT_SPAN, MAX_BETWEEN, meeting_of_flights
 from contact_dynamics.measured.flight_fit import FEWEST_FRAMES, MeasuredState, fit_flight
 from contact_dynamics.measured.flights import DEVIATIONS, ORIENTATION_SLACK, POSITION_SLACK, find_flights
@@ -41,13 +41,50 @@ from contact_dynamics.tolerances import (
     SHARP_VELOCITY,
     TOUCHING_GAP,
 )
+from contact_dynamics.world import Surface
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from contact_dynamics.contact.contact import ContactSet
     from contact_dynamics.evaluation.found_event import FoundEvent
     from contact_dynamics.evaluation.motion import MeasuredMotion
-    from contact_dynamics.evaluation.touching import Touch
+    from contact_dynamics.world import Body, World
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class Touch(Record):
+    """What a body touches.
+
+    Attributes:
+        surface: Name of the nearest surface.
+        gap: m, height of the body's lowest point above it, negative below. It is None at an obstacle, whose
+            contacts tell no height.
+        contacts: All contacts, with whichever surface.
+    """
+
+    surface: str
+    gap: float | None
+    contacts: ContactSet
+
+
+def touch_of(body: Body, state: BodyState, world: World, *, within: float) -> Touch | None:
+    """Return what a body touches within that gap, m. Without a shape or a surface it touches nothing."""
+    if body.shape.is_empty or not world.surfaces:
+        return None
+    contacts = contacts_within(body, state, world.surfaces, within)
+    if len(contacts) == 0:
+        return None
+    flats = {surface.name: surface for surface in world.surfaces if isinstance(surface, Surface)}
+    gaps = [
+        (float(flats[name].gaps(point)), name)
+        for name, point in zip(contacts.surfaces, contacts.p_WC_W, strict=True)
+        if name in flats
+    ]
+    if not gaps:
+        return Touch(surface=contacts.surfaces[0], gap=None, contacts=contacts)
+    gap, surface = min(gaps)
+    return Touch(surface=surface, gap=gap, contacts=contacts)
 
 
 def find_events(motion: MeasuredMotion) -> list[FoundEvent]:

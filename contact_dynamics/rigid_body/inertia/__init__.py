@@ -16,7 +16,7 @@ from contact_dynamics.rigid_body.inertia.axes_of_inertia import (
     inertia_ellipsoid,
     principal_axes,
 )
-from contact_dynamics.rigid_body.inertia.composition import combined, without
+from contact_dynamics.rigid_body.inertia.composition import combined, particles, without
 from contact_dynamics.rigid_body.inertia.distribution import MassDistribution
 from contact_dynamics.rigid_body.inertia.sheets_and_wires import (
     cylindrical_shell,
@@ -38,7 +38,6 @@ from contact_dynamics.rigid_body.inertia.solids import (
     torus,
     tube,
 )
-from contact_dynamics.rigid_body.inertia.system_of_particles import particles
 from contact_dynamics.rigid_body.inertia.triangle_mesh import convex_hull, mesh
 from contact_dynamics.validation_types import check_types_of
 

@@ -1,4 +1,4 @@
-"""This file adds and subtracts mass distributions, part by part (lecture 24)."""
+"""Mass distributions of particles and of several parts, which are added and subtracted (lecture 24)."""
 
 from __future__ import annotations
 
@@ -7,10 +7,18 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from contact_dynamics.errors import InvalidFieldError
-from contact_dynamics.rigid_body.inertia.distribution import MassDistribution, difference, point_inertia
+from contact_dynamics.rigid_body.inertia.distribution import (
+    MassDistribution,
+    difference,
+    inertia_of_second_moments,
+    point_inertia,
+)
+from contact_dynamics.validation import check_array, check_magnitude
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
+
+    from numpy.typing import ArrayLike
 
 
 def combined(parts: Iterable[MassDistribution]) -> MassDistribution:
@@ -60,3 +68,30 @@ def without(whole: MassDistribution, part: MassDistribution) -> MassDistribution
         raise InvalidFieldError(
             "part", f"one that leaves {error.found}", "a part that lies within the whole"
         ) from None
+
+
+def particles(masses: ArrayLike, p_FP_F: ArrayLike) -> MassDistribution:
+    """Return the distribution of n particles.
+
+    Args:
+        masses: (n,), kg, >= 0 and not all zero.
+        p_FP_F: (n, 3), m, their places in F.
+
+    Raises:
+        InvalidFieldError: a mass is negative or all are zero, a number is not finite or beyond 1e60, the
+            lengths differ.
+    """
+    m = check_magnitude("masses", check_array("masses", masses, (None,)))
+    points = check_magnitude("p_FP_F", check_array("p_FP_F", p_FP_F, (len(m), 3)))
+    if (m < 0.0).any():
+        raise InvalidFieldError("masses", float(m.min()), "numbers >= 0")
+    total = float(m.sum())
+    if total <= 0.0:
+        raise InvalidFieldError("masses", m.tolist(), "at least one number > 0")
+    origin = points[int(m.argmax())]  # measured from a particle, so that a far frame costs no digits
+    arms = points - origin
+    center = m @ arms / total
+    arms = arms - center
+    return MassDistribution(
+        mass=total, p_FB_F=origin + center, I_B=inertia_of_second_moments((arms * m[:, None]).T @ arms)
+    )
