@@ -127,16 +127,7 @@ class Model:
 
     def _named(self) -> list[Parameter]:
         length = PLAUSIBLE_SHARE * self.half_size
-        found = [
-            Parameter(
-                name=f"center_of_mass.{axis}",
-                group=Free.CENTER_OF_MASS,
-                configured=0.0,
-                step=length,
-                unit="m",
-            )
-            for axis in AXES
-        ]
+        found = _along_axes("center_of_mass", Free.CENTER_OF_MASS, step=length, unit="m")
         found.append(_factor("inertia", Free.INERTIA))
         most = _largest_ratio(self.body.mass_properties.I_B)
         found += [
@@ -155,26 +146,8 @@ class Model:
             )
         )
         found.append(_factor("size", Free.SIZE))
-        found += [
-            Parameter(
-                name=f"shape_position.{axis}",
-                group=Free.SHAPE_POSITION,
-                configured=0.0,
-                step=length,
-                unit="m",
-            )
-            for axis in AXES
-        ]
-        found += [
-            Parameter(
-                name=f"shape_orientation.{axis}",
-                group=Free.SHAPE_ORIENTATION,
-                configured=0.0,
-                step=PLAUSIBLE_ANGLE,
-                unit="rad",
-            )
-            for axis in AXES
-        ]
+        found += _along_axes("shape_position", Free.SHAPE_POSITION, step=length, unit="m")
+        found += _along_axes("shape_orientation", Free.SHAPE_ORIENTATION, step=PLAUSIBLE_ANGLE, unit="rad")
         for surface in self.surfaces:
             found += _of_surface(surface, length)
         return found
@@ -221,6 +194,12 @@ class Model:
             points=np.array(points).reshape(-1, 3),
             normals=np.array(normals).reshape(-1, 3),
         )
+
+
+def _along_axes(name: str, group: Free, *, step: float, unit: str) -> list[Parameter]:
+    return [
+        Parameter(name=f"{name}.{axis}", group=group, configured=0.0, step=step, unit=unit) for axis in AXES
+    ]
 
 
 def _factor(name: str, group: Free, *, lower: float = -math.inf, upper: float = math.inf) -> Parameter:

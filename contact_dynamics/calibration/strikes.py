@@ -7,7 +7,7 @@ ratios of moments alone, and nearly linearly; its slopes are numerical, where th
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -157,16 +157,7 @@ def _fitted(motion: MeasuredMotion, frames: slice, time: float, with_ratios: boo
 def _side(rows: Sequence[tuple[Any, ...]]) -> Side:
     shapes = ((3,), (3, 3), (), (3,), (3, 2), (), (3,), (2,))
     columns = [np.array([row[k] for row in rows]).reshape(-1, *shape) for k, shape in enumerate(shapes)]
-    return Side(
-        velocities_W=columns[0],
-        by_center=columns[1],
-        by_gravity=columns[2],
-        spins_W=columns[3],
-        by_ratio=columns[4],
-        velocity_stds=columns[5],
-        spin_stds=columns[6],
-        factors=columns[7],
-    )
+    return Side(**{field.name: column for field, column in zip(fields(Side), columns, strict=True)})
 
 
 def _with_ratio(motion: MeasuredMotion, ratio: int, logarithm: float) -> MeasuredMotion:

@@ -17,8 +17,9 @@ Places are in points of the picture, x to the right, y down.
 from __future__ import annotations
 
 import math
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final, Protocol
+from typing import TYPE_CHECKING, ClassVar, Final
 
 import numpy as np
 
@@ -41,23 +42,27 @@ _CURVE_POINTS: Final = 3000
 """Number of points of a boundary. They are closer together than the points of the screen."""
 
 
-class WrenchChart(Protocol):
-    """A flat picture of wrenches (f_x, f_y, moment), N and N m."""
+@dataclass(frozen=True, slots=True, kw_only=True)
+class WrenchChart(ABC):
+    """A flat picture of wrenches (f_x, f_y, moment), N and N m.
 
-    @property
-    def resolution(self) -> int:
-        """Return the points on a side of each part."""
+    Attributes:
+        parts: How many parts stand side by side.
+        resolution: Points on a side of each part.
+    """
 
-    @property
-    def parts(self) -> int:
-        """Return how many parts stand side by side."""
+    parts: ClassVar[int] = 2
+    resolution: int = 400
 
+    @abstractmethod
     def wrenches(self) -> tuple[FloatArray, NDArray[np.bool_]]:
         """Return the wrench at each point, (h, w, 3), and which points belong to the chart, (h, w)."""
 
+    @abstractmethod
     def boundary(self, side: WrenchHalfSpace) -> FloatArray:
         """Return wrenches along the boundary of a half-space, (k, 3), in their order."""
 
+    @abstractmethod
     def place(self, wrenches: FloatArray) -> tuple[FloatArray, NDArray[np.int64]]:
         """Return the places of wrenches, (k, 3), as (k, 2), and the parts that they are on, (k,)."""
 
@@ -81,7 +86,7 @@ def part_centre(chart: WrenchChart, part: int) -> Vector2:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class DirectionChart:
+class DirectionChart(WrenchChart):
     """Two discs that show all directions of wrenches.
 
     Attributes:
@@ -89,12 +94,6 @@ class DirectionChart:
     """
 
     length: float
-    resolution: int = 400
-
-    @property
-    def parts(self) -> int:
-        """Return 2."""
-        return 2
 
     def wrenches(self) -> tuple[FloatArray, NDArray[np.bool_]]:
         """Return the wrench of unit size at each point. Each disc keeps areas (Lambert's projection)."""
@@ -119,7 +118,7 @@ class DirectionChart:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ForceDualChart:
+class ForceDualChart(WrenchChart):
     """Two squares that show force duals in the plane of the body.
 
     Attributes:
@@ -131,12 +130,6 @@ class ForceDualChart:
     length: float
     half_side: float
     centre: Vector2 = (0.0, 0.0)
-    resolution: int = 400
-
-    @property
-    def parts(self) -> int:
-        """Return 2."""
-        return 2
 
     def wrenches(self) -> tuple[FloatArray, NDArray[np.bool_]]:
         """Return the wrench that would turn the free body about each point with unit angular acceleration."""
@@ -166,7 +159,7 @@ class ForceDualChart:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ForceChart:
+class ForceChart(WrenchChart):
     """A square that shows forces at one torque.
 
     Attributes:
@@ -174,14 +167,9 @@ class ForceChart:
         half_side: N, > 0.
     """
 
+    parts: ClassVar[int] = 1
     moment: float
     half_side: float
-    resolution: int = 400
-
-    @property
-    def parts(self) -> int:
-        """Return 1."""
-        return 1
 
     def wrenches(self) -> tuple[FloatArray, NDArray[np.bool_]]:
         """Return the wrench at each point."""
