@@ -20,7 +20,7 @@ from contact_dynamics.questions.subject import PublishedState
 from contact_dynamics.questions.tumbling import TumblingQuestion
 from contact_dynamics.recording.bag_reader import BagReader
 from contact_dynamics.recording.errors import DamagedLogWarning
-from contact_dynamics.replay.events import OK, Answered, StateCame
+from contact_dynamics.replay.events import OK, Answered, Events, StateCame
 from contact_dynamics.replay.stand_ins import stand_in
 from contact_dynamics.replay.timeline import CLOCK
 from contact_dynamics.validation import check_not_negative
@@ -33,7 +33,6 @@ if TYPE_CHECKING:
     from contact_dynamics.nodes.parameter_reader import ParameterSource
     from contact_dynamics.questions.services import Answer, Question
     from contact_dynamics.recording.file_messages import Span
-    from contact_dynamics.replay.again import Refused, ServerAgain
     from contact_dynamics.replay.events import Event
 
 LANDING: Final = "landing"
@@ -75,7 +74,7 @@ class Asking:
         check_not_negative("fit_window", self.fit_window)
 
 
-class AskedEvents:
+class AskedEvents(Events):
     """A recording as a source of events: its states, and answers to questions that are asked now."""
 
     def __init__(self, path: Path, source: ParameterSource, *, asking: Asking, span: Span) -> None:
@@ -92,12 +91,11 @@ class AskedEvents:
             ConfigurationError: a parameter is missing or not allowed.
             InvalidFieldError: a body that is asked about is not configured.
         """
-        self._reader = BagReader(path)
+        reader = BagReader(path)
         stand_in(())
         from contact_dynamics.replay.again import ServerAgain  # here, for it imports what stands in for ROS
 
-        self._server: ServerAgain = ServerAgain(source)
-        self.world = self._server.world
+        super().__init__(reader, ServerAgain(source))
         self._asking = asking
         self._span = span
         known = [body.name for body in self.world.bodies]
@@ -106,16 +104,6 @@ class AskedEvents:
                 raise InvalidFieldError("body", name, f"one of {known}")
         self._numbers = dict.fromkeys(QUESTIONS, 0)
         self._next_ns: dict[str, int] = {}
-
-    @property
-    def refused(self) -> Mapping[str, Refused]:
-        """Messages that made no state, by topic."""
-        return self._server.refused
-
-    @property
-    def damage(self) -> str | None:
-        """What of the recording could not be read, in words, or None if all was whole."""
-        return self._reader.damage
 
     @property
     def why_empty(self) -> str:

@@ -6,13 +6,16 @@ recording and asks questions of them.
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Protocol, TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
     from contact_dynamics.questions.services import Answer, Question, Service
+    from contact_dynamics.recording.bag_reader import BagReader
+    from contact_dynamics.replay.again import Refused, ServerAgain
     from contact_dynamics.rigid_body.body import BodyState
     from contact_dynamics.world import World
 
@@ -84,18 +87,34 @@ class Answered:
 Event: TypeAlias = StateCame | WorldChanged | Answered
 
 
-class Events(Protocol):
+class Events(ABC):
     """A recording that events are read from.
 
     Attributes:
         world: The bodies and surfaces that they are about, as they were at the beginning.
     """
 
-    world: World
+    def __init__(self, reader: BagReader, server: ServerAgain) -> None:
+        """Take the recording, and what stands in for the server."""
+        self._reader = reader
+        self._server = server
+        self.world = server.world
 
+    @abstractmethod
     def __iter__(self) -> Iterator[Event]:
         """Read the recording and yield what happened."""
 
     @property
+    @abstractmethod
+    def why_empty(self) -> str:
+        """Why there is no question, in words, where there is none."""
+
+    @property
+    def refused(self) -> Mapping[str, Refused]:
+        """Messages that made no state, by topic."""
+        return self._server.refused
+
+    @property
     def damage(self) -> str | None:
         """What of the recording could not be read, in words, or None if all was whole."""
+        return self._reader.damage

@@ -14,21 +14,20 @@ from contact_dynamics.recording.errors import DamagedLogWarning
 from contact_dynamics.recording.message_types import Message
 from contact_dynamics.recording.service_calls import ServiceCall
 from contact_dynamics.replay.compare import differences
-from contact_dynamics.replay.events import OK, UNREADABLE, Answered, StateCame, WorldChanged
+from contact_dynamics.replay.events import OK, UNREADABLE, Answered, Events, StateCame, WorldChanged
 from contact_dynamics.replay.of_log import server_of_log
 from contact_dynamics.replay.timeline import EVERYTHING, in_order, part_of
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterator
     from pathlib import Path
 
     from contact_dynamics.questions.services import Answer, Question
     from contact_dynamics.recording.file_messages import Span
-    from contact_dynamics.replay.again import Refused
     from contact_dynamics.replay.events import Event
 
 
-class LoggedEvents:
+class LoggedEvents(Events):
     """A log of the server as a source of events."""
 
     def __init__(self, path: Path, *, span: Span = EVERYTHING, states: bool = True) -> None:
@@ -43,23 +42,12 @@ class LoggedEvents:
             NotALogError: it is no log, or none of the server.
             ConfigurationError: its record of the run lacks a parameter, or has one that is not allowed.
         """
-        _, self._server = server_of_log(path)
-        self.world = self._server.world
+        _, server = server_of_log(path)
+        super().__init__(BagReader(path), server)
         self._topics = self._server.topics if states else self._server.topics_of_changes
         self._span = span
         self._numbers: dict[str, int] = {}
-        self._reader = BagReader(path)
         self._path = path
-
-    @property
-    def refused(self) -> Mapping[str, Refused]:
-        """Messages that made no state, by topic."""
-        return self._server.refused
-
-    @property
-    def damage(self) -> str | None:
-        """What of the log could not be read, in words, or None if all was whole."""
-        return self._reader.damage
 
     @property
     def why_empty(self) -> str:

@@ -31,6 +31,8 @@ if TYPE_CHECKING:
     import argparse
     from collections.abc import Iterator, Sequence
 
+    from contact_dynamics.replay.events import Events
+
 DIFFERENT: Final = 1
 """This exit code says that an answer differs, that a call cannot be read, that a viewer failed, or that
 there is nothing to write or to publish."""
@@ -191,7 +193,7 @@ def _is_bag(folder: Path) -> bool:
     return any(next(folder.glob(kind), None) is not None for kind in _KINDS)
 
 
-def _events(path: Path, given: argparse.Namespace) -> LoggedEvents | AskedEvents:
+def _events(path: Path, given: argparse.Namespace) -> Events:
     span = _span(path, given)
     asking = Asking(
         names=tuple(given.ask), bodies=tuple(given.body), every=given.every, fit_window=given.fit_window
@@ -245,7 +247,7 @@ def _progress(path: Path) -> Progress:
     return Progress(str(path), begin=start_ns, end=end_ns)
 
 
-def _tell(name: str, what: str, events: LoggedEvents | AskedEvents) -> None:
+def _tell(name: str, what: str, events: Events) -> None:
     print(f"{name}: {what}", file=sys.stderr)
     for topic, refused in events.refused.items():
         print(
