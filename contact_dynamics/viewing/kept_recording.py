@@ -296,9 +296,9 @@ class Arrangement:
     """The arrangement of the views of one picture, sent again and again at no lasting cost.
 
     `rr.send_blueprint` makes a recording for each blueprint that it sends, which rerun keeps to the end of
-    the process: two threads and 2 MB each time, and pictures in rolling files send one with each file. Here all
-    blueprints go through one recording. It uses what `rr.send_blueprint` uses itself; a test with the real
-    rerun counts the threads.
+    the process: two threads and 2 MB each time, and pictures in rolling files send one with each file. Here
+    all blueprints go through one recording. It uses what `rr.send_blueprint` uses itself; a test with the
+    real rerun counts the threads.
 
     Attributes:
         newest: The newest one, or None while there is none.
