@@ -6,7 +6,7 @@ a run that is over (`run_record`).
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
 from contact_dynamics.errors import ContactDynamicsError, InvalidFieldError
@@ -14,7 +14,7 @@ from contact_dynamics.world import LONGEST_NAME
 from msg_adapters.field_names import renamed
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Mapping
 
 T = TypeVar("T")
 
@@ -89,6 +89,26 @@ class ParameterReader:
             message = f"{name} must be 0 or in [{least:g}, {most:g}] {unit}, got {found:g} {unit}"
             raise ConfigurationError(message)
         return found or None
+
+    def filled(
+        self,
+        default: T,
+        names: Mapping[str, str] | None = None,
+        /,
+        **fields: tuple[str, tuple[float, float]],
+    ) -> T:
+        """Return a dataclass whose fields are parameters, with the values of ``default`` as theirs.
+
+        Args:
+            default: The defaults.
+            names: The parameter of each field that is not named as the field is.
+            fields: The description and the bounds of each.
+        """
+        values = {
+            field: self.read((names or {}).get(field, field), getattr(default, field), description, bounds)
+            for field, (description, bounds) in fields.items()
+        }
+        return replace(default, **values)  # type: ignore[type-var]  # only dataclasses are given
 
     def name(self, name: str, default: str, description: str) -> str:
         """Return a name of something, which cannot be empty."""

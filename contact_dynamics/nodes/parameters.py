@@ -108,12 +108,7 @@ def read_server_parameters(source: ParameterSource) -> ServerParameters:
             "Topic of tf2_msgs/TFMessage with static transforms. Not used if empty.",
         ),
         world_frame=reader.name("world_frame", "world", "Frame of states and answers."),
-        state_timeout=reader.read(
-            "state_timeout",
-            0.5,
-            "Largest age of the newest state, s.",
-            (1e-3, 1e6),
-        ),
+        state_timeout=reader.read("state_timeout", 0.5, "Largest age of the newest state, s.", (1e-3, 1e6)),
         state_history=reader.read("state_history", 5.0, "Length of the history of states, s.", (0.0, 1e4)),
         future_tolerance=reader.read(
             "future_tolerance",
@@ -122,20 +117,41 @@ def read_server_parameters(source: ParameterSource) -> ServerParameters:
             (0.0, 1e6),
         ),
         max_states=reader.read(
-            "max_states",
-            MAX_STATES,
-            "Largest number of states kept for a body.",
-            (1, 10_000_000),
+            "max_states", MAX_STATES, "Largest number of states kept for a body.", (1, 10_000_000)
         ),
-        fault_limits=_read_fault_limits(reader),
+        fault_limits=reader.filled(
+            FaultLimits(),
+            warn_every=("Shortest time between two warnings of one kind about a topic, s.", (0.0, 1e6)),
+            silent_after=("Time without a message after which a topic counts as silent, s.", (0.1, 1e6)),
+        ),
         client_gone_for=reader.read(
-            "client_gone_for",
-            1.0,
-            "How long to drop old requests of a lost client, s.",
-            (0.0, 3600.0),
+            "client_gone_for", 1.0, "How long to drop old requests of a lost client, s.", (0.0, 3600.0)
         ),
-        defaults=_read_defaults(reader),
-        worker_limits=_read_worker_limits(reader),
+        defaults=reader.filled(
+            Defaults(),
+            velocity_tolerance=("Speed below which a contact counts as at rest, m/s.", (0.0, 1e3)),
+            distance_tolerance=(
+                "Gap below which a body counts as touching, and largest depth in a surface, m.",
+                (0.0, 1e3),
+            ),
+            out_of_plane_tolerance=(
+                "Motion out of the plane that still counts as planar, m/s.",
+                (0.0, 1e3),
+            ),
+            horizon=("Look-ahead time for a first contact, s.", (0.0, 1e4)),
+            rate=("Samples a second of trajectories, Hz.", (1e-6, 1e6)),
+        ),
+        worker_limits=reader.filled(
+            WorkerLimits(),
+            {"count": "workers", "deadline": "answer_deadline", "memory": "worker_memory"},
+            count=(
+                "Number of processes for long questions. With 0, the server answers them itself.",
+                (0, 64),
+            ),
+            deadline=("Time limit for an answer of a worker, s.", (0.01, 3600.0)),
+            memory=("Memory limit of a worker, MB.", (100, 1_000_000)),
+            max_waiting=("Largest number of queued questions.", (0, 1000)),
+        ),
         autostart=reader.read(
             "autostart",
             default=True,
@@ -215,76 +231,3 @@ def _read_log_limits(reader: ParameterReader) -> LogLimits:
 
 def _bytes(megabytes: float | None) -> int | None:
     return None if megabytes is None else round(MEGABYTE * megabytes)
-
-
-def _read_worker_limits(reader: ParameterReader) -> WorkerLimits:
-    default = WorkerLimits()
-    return WorkerLimits(
-        count=reader.read(
-            "workers",
-            default.count,
-            "Number of processes for long questions. With 0, the server answers them itself.",
-            (0, 64),
-        ),
-        deadline=reader.read(
-            "answer_deadline", default.deadline, "Time limit for an answer of a worker, s.", (0.01, 3600.0)
-        ),
-        memory=reader.read(
-            "worker_memory",
-            default.memory,
-            "Memory limit of a worker, MB.",
-            (100, 1_000_000),
-        ),
-        max_waiting=reader.read(
-            "max_waiting",
-            default.max_waiting,
-            "Largest number of queued questions.",
-            (0, 1000),
-        ),
-    )
-
-
-def _read_fault_limits(reader: ParameterReader) -> FaultLimits:
-    default = FaultLimits()
-    return FaultLimits(
-        warn_every=reader.read(
-            "warn_every",
-            default.warn_every,
-            "Shortest time between two warnings of one kind about a topic, s.",
-            (0.0, 1e6),
-        ),
-        silent_after=reader.read(
-            "silent_after",
-            default.silent_after,
-            "Time without a message after which a topic counts as silent, s.",
-            (0.1, 1e6),
-        ),
-    )
-
-
-def _read_defaults(reader: ParameterReader) -> Defaults:
-    default = Defaults()
-    return Defaults(
-        velocity_tolerance=reader.read(
-            "velocity_tolerance",
-            default.velocity_tolerance,
-            "Speed below which a contact counts as at rest, m/s.",
-            (0.0, 1e3),
-        ),
-        distance_tolerance=reader.read(
-            "distance_tolerance",
-            default.distance_tolerance,
-            "Gap below which a body counts as touching, and largest depth in a surface, m.",
-            (0.0, 1e3),
-        ),
-        out_of_plane_tolerance=reader.read(
-            "out_of_plane_tolerance",
-            default.out_of_plane_tolerance,
-            "Motion out of the plane that still counts as planar, m/s.",
-            (0.0, 1e3),
-        ),
-        horizon=reader.read(
-            "horizon", default.horizon, "Look-ahead time for a first contact, s.", (0.0, 1e4)
-        ),
-        rate=reader.read("rate", default.rate, "Samples a second of trajectories, Hz.", (1e-6, 1e6)),
-    )
