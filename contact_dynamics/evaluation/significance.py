@@ -23,10 +23,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from contact_dynamics.evaluation.found_event import EventKind
-from contact_dynamics.evaluation.settings import Law, Method
 from contact_dynamics.evaluation.summary import ERRORS, Group, group_of
-from contact_dynamics.records import Record
 from contact_dynamics.tolerances import SAME_EVENT
 
 if TYPE_CHECKING:
@@ -46,16 +43,10 @@ _SEED: Final = 1945
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
-class Change(Record):
+class Change(Group):
     """One error of one group under two evaluations.
 
     Attributes:
-        kind: What happened.
-        body: The body's name.
-        surface: The surface's name; empty for flights.
-        horizon: s before the event.
-        method: What the predictions were made from.
-        law: The law of the impact. It is None where no impact was asked about.
         error: Which error, of `ERRORS`, or ``wrong_mode``, which is 1 where the mode is wrong, else 0.
         pairs: Events that both evaluations answered.
         units: What is taken as independent, "recordings" or "events".
@@ -66,12 +57,6 @@ class Change(Record):
         probability: How probable so large a difference is by chance, adjusted for the number of tests.
     """
 
-    kind: EventKind
-    body: str
-    surface: str
-    horizon: float
-    method: Method
-    law: Law | None
     error: str
     pairs: int
     units: str
@@ -119,7 +104,7 @@ def _pairs(first: Evaluation, second: Evaluation) -> Iterator[tuple[str, Compari
 
 def _what(row: Comparison) -> Group:
     """Return the group of a comparison without its surface, whose name another configuration may change."""
-    return row.kind, row.body, "", row.horizon, row.method, row.law
+    return replace(group_of(row), surface="")
 
 
 def _change(group: Group, error: str, pairs: dict[str, list[tuple[float, float]]]) -> Change:
@@ -130,14 +115,8 @@ def _change(group: Group, error: str, pairs: dict[str, list[tuple[float, float]]
         units, tested = "events", events
     differences = tested[:, 1] - tested[:, 0]
     low, high = _interval(differences)
-    kind, body, surface, horizon, method, law = group
     return Change(
-        kind=kind,
-        body=body,
-        surface=surface,
-        horizon=horizon,
-        method=method,
-        law=law,
+        **Group.shared(group),
         error=error,
         pairs=len(events),
         units=units,

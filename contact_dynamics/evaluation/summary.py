@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final, TypeAlias
+from dataclasses import dataclass, fields
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
@@ -23,7 +23,31 @@ LEVELS: Final = (0.5, 0.9, 0.95)
 ERRORS: Final = ("time_error", "position_error", "attitude_error", "velocity_error", "spin_error")
 """The errors of a comparison that are numbers with units: s, m, rad, m/s, rad/s."""
 
-Group: TypeAlias = tuple[EventKind, str, str, float, Method, Law | None]
+
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
+class Group(Record):
+    """What comparisons that are put together have in common.
+
+    Attributes:
+        kind: What happened.
+        body: The body's name.
+        surface: The surface's name; empty for flights.
+        horizon: s before the event.
+        method: What the predictions were made from.
+        law: The law of the impact. It is None where no impact was asked about.
+    """
+
+    kind: EventKind
+    body: str
+    surface: str
+    horizon: float
+    method: Method
+    law: Law | None
+
+    @staticmethod
+    def shared(row: Comparison | Group) -> dict[str, Any]:
+        """Return these fields by name, of a comparison or a group."""
+        return {field.name: getattr(row, field.name) for field in fields(Group)}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
@@ -44,16 +68,10 @@ class Spread(Record):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
-class Summary(Record):
+class Summary(Group):
     """The comparisons of one group.
 
     Attributes:
-        kind: What happened.
-        body: The body's name.
-        surface: The surface's name; empty for flights.
-        horizon: s before the event.
-        method: What the predictions were made from.
-        law: The law of the impact. It is None where no impact was asked about.
         asked: How many questions there were.
         refused: How many of them had no answer.
         errors: The distribution of each error of `ERRORS` that there is.
@@ -63,12 +81,6 @@ class Summary(Record):
         covariances: How many predictions had covariances.
     """
 
-    kind: EventKind
-    body: str
-    surface: str
-    horizon: float
-    method: Method
-    law: Law | None
     asked: int
     refused: int
     errors: dict[str, Spread]
@@ -87,7 +99,7 @@ def summarise(rows: Iterable[Comparison]) -> list[Summary]:
 
 def group_of(row: Comparison) -> Group:
     """Return what a comparison has in common with those that it is put together with."""
-    return row.kind, row.body, row.surface, row.horizon, row.method, row.law
+    return Group(**Group.shared(row))
 
 
 def is_inside(row: Comparison, level: float) -> bool | None:
@@ -111,7 +123,6 @@ def spread_of(errors: Sequence[float]) -> Spread:
 
 
 def _summary(group: Group, rows: Sequence[Comparison]) -> Summary:
-    kind, body, surface, horizon, method, law = group
     errors = {}
     for name in ERRORS:
         found = [error for row in rows if (error := getattr(row, name)) is not None]
@@ -120,12 +131,7 @@ def _summary(group: Group, rows: Sequence[Comparison]) -> Summary:
     modes = [row.mode_is_right for row in rows if row.mode_is_right is not None]
     known = [row for row in rows if row.distance is not None]
     return Summary(
-        kind=kind,
-        body=body,
-        surface=surface,
-        horizon=horizon,
-        method=method,
-        law=law,
+        **Group.shared(group),
         asked=len(rows),
         refused=sum(bool(row.refused) for row in rows),
         errors=errors,
@@ -138,6 +144,12 @@ def _summary(group: Group, rows: Sequence[Comparison]) -> Summary:
 
 
 def _place(group: Group) -> tuple[int, str, str, float, int, int]:
-    kind, body, surface, horizon, method, law = group
     kinds, methods, laws = list(EventKind), list(Method), [None, *Law]
-    return kinds.index(kind), body, surface, horizon, methods.index(method), laws.index(law)
+    return (
+        kinds.index(group.kind),
+        group.body,
+        group.surface,
+        group.horizon,
+        methods.index(group.method),
+        laws.index(group.law),
+    )

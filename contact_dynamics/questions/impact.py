@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -159,30 +160,23 @@ def _in_time(question: ImpactQuestion, law: InTime, strike: Strike, context: Con
     """Return the strikes from a state on. Without any, raise `SeparatingContactError` or `NoContactError`."""
     world = context.world
     if question.contacts is not None:
-        sequence = impact_sequence_of(
+        follow = partial(
+            impact_sequence_of,
             strike.before.body,
             strike.state,
             strike.contacts,
             gravity_W=world.gravity_W,
-            restitution_law=question.restitution_law,
-            window=law.strike_window,
-            max_strikes=law.max_strikes,
-            distance_tolerance=strike.distance_tolerance,
-            velocity_tolerance=strike.velocity_tolerance,
-            hold_step=law.hold_step,
         )
     else:
-        sequence = impact_sequence(
-            strike.subject.body,
-            strike.state,
-            world,
-            restitution_law=question.restitution_law,
-            window=law.strike_window,
-            max_strikes=law.max_strikes,
-            distance_tolerance=strike.distance_tolerance,
-            velocity_tolerance=strike.velocity_tolerance,
-            hold_step=law.hold_step,
-        )
+        follow = partial(impact_sequence, strike.subject.body, strike.state, world)
+    sequence = follow(
+        restitution_law=question.restitution_law,
+        window=law.strike_window,
+        max_strikes=law.max_strikes,
+        distance_tolerance=strike.distance_tolerance,
+        velocity_tolerance=strike.velocity_tolerance,
+        hold_step=law.hold_step,
+    )
     if not sequence.strikes and sequence.end == SequenceEnd.STAYS:
         message = (
             "contacts: at least one must strike, got one that stays (a contact mode question says what "
