@@ -10,14 +10,12 @@ import subprocess
 import sys
 from typing import TYPE_CHECKING, Final
 
-from typing_extensions import Self
-
 from contact_dynamics.demo.ros_domain import claim_domain
+from contact_dynamics.recording.closing import ClosedAtTheEnd
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
-    from types import TracebackType
 
 STOP_PATIENCE_S: Final = 10.0
 """Time that a process has to finish its files after SIGINT before it is killed, s."""
@@ -26,7 +24,7 @@ _COMPLAINT: Final = re.compile(r"\b(?:WARN|ERROR|FATAL)\b|^Traceback")
 _LEVEL: Final = re.compile(r"^\[")  # what begins a message of ROS's or rerun's log
 
 
-class Processes:
+class Processes(ClosedAtTheEnd):
     """The child processes of one run. Leaving the context stops all of them, the newest first."""
 
     def __init__(self, log_folder: Path) -> None:
@@ -39,16 +37,6 @@ class Processes:
             "ROS_DOMAIN_ID": str(claim_domain()),
         }
         self._environment = {**os.environ, **self.ros_environment, "PYTHONUNBUFFERED": "1"}
-
-    def __enter__(self) -> Self:
-        """Return itself."""
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        """Stop what still runs."""
-        self.stop()
 
     def start(self, verb: str, arguments: Sequence[str]) -> subprocess.Popen[bytes]:
         """Start a verb of the command line. Its output goes to a file."""
@@ -102,7 +90,7 @@ class Processes:
                     found.append(f"{verb}: {line}")
         return found
 
-    def stop(self) -> None:
+    def close(self) -> None:
         """Ask all processes to finish, wait for each, and kill the one that does not.
 
         All are asked at once. A server that waited for the visualizer to end would find the states silent.

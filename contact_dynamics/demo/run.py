@@ -60,7 +60,7 @@ def main(arguments: list[str]) -> int:
     try:
         with stop_signals() as stop, Processes(folder) as processes:
             asked = _play(toss, given, folder, processes, stop)
-            processes.stop()
+            processes.close()
             _tell(processes)
     except (TimeoutError, RuntimeError) as error:
         print(f"{error}\nWhat the processes printed is in {folder}", file=sys.stderr)
