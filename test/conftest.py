@@ -4,7 +4,7 @@ import os
 
 from hypothesis import settings
 
-from contact_dynamics.nodes.reserved_memory import keep_reserved_memory_untouched
+from contact_dynamics.nodes.own_process import keep_reserved_memory_untouched
 
 # Jazzy's message classes check their fields only where this is set, before the first of them is imported.
 os.environ["ROS_PYTHON_CHECK_FIELDS"] = "1"

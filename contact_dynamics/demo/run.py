@@ -26,7 +26,7 @@ from contact_dynamics.demo.questioner import Questioner
 from contact_dynamics.errors import ContactDynamicsError
 from contact_dynamics.measured.events import find_strikes
 from contact_dynamics.measured.read_toss import read_toss
-from contact_dynamics.nodes.ros_log_directory import ensure_ros_log_directory
+from contact_dynamics.nodes.own_process import ensure_ros_log_directory
 from contact_dynamics.nodes.running import stop_signals
 
 if TYPE_CHECKING:

@@ -18,7 +18,7 @@ from contact_dynamics.demo.arguments import toss_publisher_parser
 from contact_dynamics.errors import ContactDynamicsError
 from contact_dynamics.measured.read_toss import read_toss
 from contact_dynamics.measured.recorded_toss import Toss
-from contact_dynamics.nodes.ros_log_directory import ensure_ros_log_directory
+from contact_dynamics.nodes.own_process import ensure_ros_log_directory
 from msg_adapters.odometry import odometry_from_body_state
 
 WORLD_FRAME: Final = "world"

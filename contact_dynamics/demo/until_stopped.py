@@ -9,7 +9,7 @@ import rclpy
 from rclpy.signals import SignalHandlerOptions
 
 from contact_dynamics.errors import ContactDynamicsError
-from contact_dynamics.nodes.ros_log_directory import ensure_ros_log_directory
+from contact_dynamics.nodes.own_process import ensure_ros_log_directory
 from contact_dynamics.nodes.running import stop_signals
 
 if TYPE_CHECKING:

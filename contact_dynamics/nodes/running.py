@@ -25,9 +25,11 @@ from rclpy.signals import SignalHandlerOptions
 from contact_dynamics.errors import ContactDynamicsError
 from contact_dynamics.nodes.arguments import ros_arguments
 from contact_dynamics.nodes.dds_profile import profile_of_fast_dds
-from contact_dynamics.nodes.reserved_memory import keep_reserved_memory_untouched
-from contact_dynamics.nodes.ros_log_directory import ensure_ros_log_directory
-from contact_dynamics.nodes.unread_output import never_wait_for_readers
+from contact_dynamics.nodes.own_process import (
+    ensure_ros_log_directory,
+    keep_reserved_memory_untouched,
+    never_wait_for_readers,
+)
 from contact_dynamics.questions.numpy_warnings import leave_out_numpy_warnings
 
 if TYPE_CHECKING:

@@ -24,7 +24,7 @@ from rosgraph_msgs.msg import Clock
 
 from contact_dynamics.constants import NS_PER_S
 from contact_dynamics.errors import InvalidFieldError
-from contact_dynamics.nodes.ros_log_directory import ensure_ros_log_directory
+from contact_dynamics.nodes.own_process import ensure_ros_log_directory
 from contact_dynamics.nodes.run_record import versions_here
 from contact_dynamics.nodes.running import stop_signals
 from contact_dynamics.recording.bag_reader import BagReader

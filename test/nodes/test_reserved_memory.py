@@ -24,7 +24,7 @@ ROUND = (
 JOINS_FOUR_TIMES = """
 import sys
 import rclpy
-from contact_dynamics.nodes.reserved_memory import keep_reserved_memory_untouched
+from contact_dynamics.nodes.own_process import keep_reserved_memory_untouched
 from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact, PredictTumbling
 
 def taken_mb():

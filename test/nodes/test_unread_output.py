@@ -46,7 +46,7 @@ def test_a_server_whose_output_nobody_reads_goes_on_answering() -> None:
 
 def test_others_with_the_same_pipe_wait_as_before() -> None:
     reader, writer = os.pipe()
-    code = "from contact_dynamics.nodes.unread_output import never_wait_for_readers as f; f(); "
+    code = "from contact_dynamics.nodes.own_process import never_wait_for_readers as f; f(); "
     code += "import os; print(os.get_blocking(1), os.get_blocking(2), flush=True)"
     with os.fdopen(reader) as printed:
         subprocess.run(
