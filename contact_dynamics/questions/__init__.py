@@ -10,18 +10,15 @@ body will be (lectures 24, 25). `impact` says which velocities follow (lecture 2
 `impact_question` and its answer in `impact_answer`, and `which_impact` finds the contacts that it means.
 `contact_modes` says which contacts separate, slide or stay (lecture 26). `toss` says where all that ends.
 
-The kinds share these files: `context` (the world, defaults, and in a `state_store` what was published, with
-its `arrivals`),
+The kinds share these files: `context` (the world, defaults, and in a `state_store` what was published),
 `subject` (which body, in which state, which may be an `uncertain_state`), `sample_times` (when), `touching`
-(which contacts), `extent` (how large numbers may be) and `problem` (in a plane or in space).
-Answers describe every impact in the same way (`resolved_impact`, `resolving`). They give modes of a plane in
-world axes
-(`lifted_modes`), and `planar_view` leads back.
-`settled_impact` has the impact that follows an inconsistency. `many` asks about many states at once, and
-`many_contact_modes` about many wrenches or sets of contacts.
+(which contacts), `extent` (how large numbers may be) and `problem` (in a plane or in space). Answers describe
+every impact in the same way (`resolved_impact`, `resolving`). They give modes of a plane in world axes
+(`lifted_modes`), and `planar_view` leads back. `settled_impact` has the impact that follows an inconsistency.
+`many` asks about many states at once, and `many_contact_modes` about many wrenches or sets of contacts.
 
 `effort` determines whether a question is quick, and `workers` are processes that answer those that are not.
-They and the server leave out `numpy_warnings`. `kept_fits` has the fits of the last few questions.
+They and the server leave out `numpy_warnings`.
 """
 
 from contact_dynamics.questions.contact_modes import ContactModeAnswer, ContactModeQuestion

@@ -3,11 +3,10 @@
 `from contact_dynamics import inertia`, then for a hammer: ``inertia.combined([inertia.cylinder(...),
 inertia.box(...).placed(p_GF_G=...)])``; `Body.of` makes a body of it for a `World`.
 
-`distribution` is what all shapes become, and `composition` puts several together. Mass properties come from
-`system_of_particles`, `solids`, `sheets_and_wires` (each of a `mass_or_density`), or a `triangle_mesh`,
-which is checked by `closed_surface` and `mesh_parts` and integrated by `polyhedron_integrals`.
-`axes_of_inertia` has principal axes and the inertia ellipsoid, `principal_frame` the same in extended
-precision.
+`distribution` is what all shapes become, and `composition` makes one of particles or of several parts. Mass
+properties come from `solids`, `sheets_and_wires` (each of a `mass_or_density`), or a `triangle_mesh`, which
+is checked by `closed_surface` and `mesh_parts` and integrated by `polyhedron_integrals`. `axes_of_inertia`
+has principal axes and the inertia ellipsoid, `principal_frame` the same in extended precision.
 """
 
 from contact_dynamics.rigid_body.inertia.axes_of_inertia import (
