@@ -39,7 +39,6 @@ from contact_dynamics.questions.impact_question import ImpactQuestion, InTime
 from contact_dynamics.questions.problem import Problem, planar_problem_of
 from contact_dynamics.questions.resolved_impact import Before, ResolvedImpact
 from contact_dynamics.questions.resolving import (
-    pair_resolved,
     planar_resolved,
     sequence_resolved,
     several_resolved,
@@ -255,7 +254,7 @@ def _of_two(
         restitution_law=question.restitution_law,
         velocity_tolerance=strike.velocity_tolerance,
     )
-    return pair_resolved(several, before, other_before)
+    return several_resolved(several, before, other_before)
 
 
 def _problem(question: ImpactQuestion, strike: Strike, context: Context) -> PlanarProblem:

@@ -6,12 +6,13 @@ for two.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from dataclasses import replace
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from contact_dynamics.impact import (
+    BodiesImpact,
     ImpactOutcome,
     PathEvent,
     SequenceEnd,
@@ -21,14 +22,13 @@ from contact_dynamics.impact import (
 from contact_dynamics.impact.energy import created
 from contact_dynamics.plane.lifting import with_planar_velocity
 from contact_dynamics.questions.resolved_impact import Before, ResolvedImpact, SequenceStrike
-from contact_dynamics.rigid_body.body import BodyState, kinetic_energy
+from contact_dynamics.rigid_body.body import kinetic_energy
 from contact_dynamics.validation import FloatArray
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from contact_dynamics.impact import (
-        BodiesImpact,
         ImpactDistribution,
         ImpactSequence,
         OrderedOutcomes,
@@ -104,14 +104,26 @@ def planar_resolved(impact: PlanarImpact, problem: PlanarProblem, before: Before
     )
 
 
-def several_resolved(impact: SeveralImpact, before: Before) -> ResolvedImpact:
-    """Return an impact at several contacts in space, of a body with the world."""
-    return _several(impact, [before], [impact.state])
-
-
-def pair_resolved(impact: BodiesImpact, before: Before, other: Before) -> ResolvedImpact:
-    """Return an impact of two bodies at several contacts in space."""
-    return _several(impact, [before, other], impact.states)
+def several_resolved(impact: SeveralImpact | BodiesImpact, *before: Before) -> ResolvedImpact:
+    """Return an impact at several contacts in space, of one body with the world, or of two bodies."""
+    after = impact.states if isinstance(impact, BodiesImpact) else (impact.state,)
+    energy_before = sum(kinetic_energy(one.body, one.state) for one in before)
+    energy_after = sum(kinetic_energy(one.body, state) for one, state in zip(before, after, strict=True))
+    told = _told_by(impact.strikes, len(impact.impulses_W)) if impact.strikes else _NOT_TOLD
+    return ResolvedImpact(
+        restitution_law=impact.restitution_law,
+        several_contacts_law=impact.several_contacts_law,
+        converged=impact.verdict == SeveralVerdict.RESOLVED,
+        state=after[0],
+        other_state=after[1] if len(after) > 1 else None,
+        impulses_W=impact.impulses_W,
+        velocities_before_W=impact.velocities_before_W,
+        velocities_after_W=impact.velocities_after_W,
+        kinetic_energy_before=energy_before,
+        kinetic_energy_after=energy_after,
+        creates_energy=created(energy_after - energy_before, energy_before),
+        **told._asdict(),
+    )
 
 
 def sequence_resolved(impact: ImpactSequence, before: Before) -> ResolvedImpact:
@@ -128,17 +140,11 @@ def sequence_resolved(impact: ImpactSequence, before: Before) -> ResolvedImpact:
     return ResolvedImpact(
         restitution_law=impact.restitution_law,
         several_contacts_law=SeveralContactsLaw.SEQUENTIAL,
-        outcome=told.outcome,
-        jams=told.jams,
         converged=impact.end != SequenceEnd.MAX_STRIKES,
         state=impact.state,
         impulses_W=impulses,
-        compression_impulses_W=told.compression_W,
         velocities_before_W=velocities_before,
         velocities_after_W=velocities_after,
-        path_W=told.path_W,
-        path_events=told.path_events,
-        path_contacts=told.path_contacts,
         kinetic_energy_before=kinetic_energy(before.body, before.state),
         kinetic_energy_after=kinetic_energy(before.body, impact.state),
         creates_energy=impact.creates_energy,
@@ -157,6 +163,7 @@ def sequence_resolved(impact: ImpactSequence, before: Before) -> ResolvedImpact:
         end=impact.end,
         staying=impact.staying,
         limit_seconds=None if impact.limit_seconds is None else impact.limit_seconds - first,
+        **told._asdict(),
     )
 
 
@@ -181,40 +188,12 @@ def with_distribution(resolved: ResolvedImpact, distribution: ImpactDistribution
     )
 
 
-def _several(
-    impact: SeveralImpact | BodiesImpact, before: Sequence[Before], after: Sequence[BodyState]
-) -> ResolvedImpact:
-    energy_before = sum(kinetic_energy(one.body, one.state) for one in before)
-    energy_after = sum(kinetic_energy(one.body, state) for one, state in zip(before, after, strict=True))
-    told = _told_by(impact.strikes, len(impact.impulses_W)) if impact.strikes else _NOT_TOLD
-    return ResolvedImpact(
-        restitution_law=impact.restitution_law,
-        several_contacts_law=impact.several_contacts_law,
-        outcome=told.outcome,
-        jams=told.jams,
-        converged=impact.verdict == SeveralVerdict.RESOLVED,
-        state=after[0],
-        other_state=after[1] if len(after) > 1 else None,
-        impulses_W=impact.impulses_W,
-        compression_impulses_W=told.compression_W,
-        velocities_before_W=impact.velocities_before_W,
-        velocities_after_W=impact.velocities_after_W,
-        path_W=told.path_W,
-        path_events=told.path_events,
-        path_contacts=told.path_contacts,
-        kinetic_energy_before=energy_before,
-        kinetic_energy_after=energy_after,
-        creates_energy=created(energy_after - energy_before, energy_before),
-    )
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class _Told:
-    """What only a sequence has: its outcome, the split of each contact's impulse, and the paths."""
+class _Told(NamedTuple):
+    """The fields that only a sequence has: its outcome, the split of the impulses, and the paths."""
 
     outcome: ImpactOutcome | None
     jams: bool
-    compression_W: FloatArray
+    compression_impulses_W: FloatArray
     path_W: FloatArray
     path_events: tuple[PathEvent, ...]
     path_contacts: tuple[int, ...]
@@ -223,7 +202,7 @@ class _Told:
 _NOT_TOLD = _Told(
     outcome=None,
     jams=False,
-    compression_W=np.zeros((0, 3)),
+    compression_impulses_W=np.zeros((0, 3)),
     path_W=np.zeros((0, 3)),
     path_events=(),
     path_contacts=(),
@@ -247,7 +226,7 @@ def _told_by(strikes: Sequence[tuple[int, SpatialImpact]], contact_count: int) -
     return _Told(
         outcome=hardest.outcome,
         jams=hardest.jams,
-        compression_W=compression,
+        compression_impulses_W=compression,
         path_W=np.concatenate(path),
         path_events=tuple(events),
         path_contacts=tuple(contacts),
