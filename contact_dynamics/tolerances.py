@@ -389,6 +389,14 @@ STRICT: Final = 1e-8
 AT_SECTORS_BORDER: Final = 1e-9
 """In sectors of a friction pyramid. An edge this far beyond the border of a sector still counts as acting."""
 
+GIVES_WAY: Final = 1e-4
+"""Relative to the largest acceleration. What the stiffest compliant contacts let move by less stays or
+sticks. They give way by about 1e-6 under the load."""
+
+COMPLIANT_SETTLED: Final = 1e-18
+"""The square of what the equations of motion may miss on compliant contacts, relative to the load. It is far
+less than those contacts give way."""
+
 TRIAL_TURN: Final = 1e-6
 """rad. A direction of friction is turned by this to see how the sliding turns. It is somewhat above the root
 of rounding."""

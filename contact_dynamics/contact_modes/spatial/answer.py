@@ -8,9 +8,10 @@ that slides within the sector opposite to an edge has its force on that edge. A 
 border of two sectors has its force on the side between their edges.
 
 The letters are s (separates), f (sticks) and c (stays and slides); the sector or border belongs to the mode.
-The search finds all modes of the pyramids (`search`). Then friction is turned exactly against the sliding
-(`exact_friction`, `exact_modes`). What the pyramids missed is found or refuted (`completeness`), unless it is
-proven at once that one mode is alone (`only_motion`). So the answer does not depend on the pyramids. One
+First the most likely mode is found (`likely_mode`). Often it is proven at once that it is alone
+(`only_motion`). Otherwise all other modes are found or refuted (`completeness`). Only what this leaves
+undecided takes a search for all modes of the pyramids (`search`), whose friction is then turned exactly
+against the sliding (`exact_friction`, `exact_modes`). So the answer does not depend on the pyramids. One
 contact at rest is solved exactly (`one_contact`), and round cones decide whether all contacts can stick
 (`round_cones`).
 A contact without friction has the letter c, whether it slides or not.
@@ -26,15 +27,12 @@ from typing import TYPE_CHECKING, Final, NamedTuple, cast
 
 import numpy as np
 
-from contact_dynamics.contact_modes.letters import SEPARATES, STAYS, STICKS
+from contact_dynamics.contact_modes.letters import SEPARATES, SPATIAL_LETTERS, STAYS, STICKS
 from contact_dynamics.contact_modes.result import SOME_MODE, ModeVerdict, verdict_on
 from contact_dynamics.contact_modes.spatial.completeness import Known, completed, has_none
 from contact_dynamics.contact_modes.spatial.exact_modes import by_letters, each_once, is_exact, letters_of
-from contact_dynamics.contact_modes.spatial.mode_with_forces import (
-    are_the_same,
-    mode_with_forces,
-    with_least_forces,
-)
+from contact_dynamics.contact_modes.spatial.likely_mode import likely_mode
+from contact_dynamics.contact_modes.spatial.mode_with_forces import mode_with_forces, with_least_forces
 from contact_dynamics.contact_modes.spatial.narrowly import narrowly
 from contact_dynamics.contact_modes.spatial.one_contact import modes_of_one
 from contact_dynamics.contact_modes.spatial.only_motion import is_only_motion, rests_alone
@@ -48,18 +46,18 @@ from contact_dynamics.contact_modes.spatial.realised import as_given, realised
 from contact_dynamics.contact_modes.spatial.result import SpatialMode, SpatialModeAnswer
 from contact_dynamics.contact_modes.spatial.round_cones import (
     held_by_round_cones,
+    holds_in_one_way,
     polished,
-    rests_in_one_way,
     sticking,
 )
 from contact_dynamics.errors import TooLargeError
-from contact_dynamics.tolerances import FEASIBLE, FLUSH, FLUSH_ROUGHLY, MODE_STRAIGHT, NARROWLY, STRICT
+from contact_dynamics.tolerances import FEASIBLE, FLUSH, FLUSH_ROUGHLY, NARROWLY, STRICT
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from contact_dynamics.contact_modes.spatial.problem import SpatialContactProblem
-    from contact_dynamics.contact_modes.spatial.search import Found, Search
+    from contact_dynamics.contact_modes.spatial.search import Search
 
 
 _DOUBT: Final = "rounding decides whether some modes are consistent: contacts or normals are nearly the same"
@@ -94,12 +92,12 @@ class Evidence(NamedTuple):
     """The modes of a case, and what could not be decided about them.
 
     Attributes:
-        modes: Each mode, with what the search of the pyramids found, or None if another way found the mode.
+        modes: The modes.
         undecided: What could not be decided, and why. It is empty where everything was decided.
         undecided_modes: The letters of modes that hold with friction pyramids, and may not with round cones.
     """
 
-    modes: list[tuple[SpatialMode, Found | None]]
+    modes: list[SpatialMode]
     undecided: str
     undecided_modes: tuple[str, ...] = ()
 
@@ -220,7 +218,7 @@ def _evidence(
 
 def _answered(problem: SpatialContactProblem, one: Considered) -> SpatialModeAnswer:
     case, search, found, within = one
-    modes = [(as_given(case, with_least_forces(case, mode)), pair) for mode, pair in found.modes]
+    modes = [as_given(case, with_least_forces(case, mode)) for mode in found.modes]
     answer = _answer(problem, found._replace(modes=modes), examined=search.examined)
     return answer if within == 0.0 else replace(answer, flush_within=within)
 
@@ -231,7 +229,7 @@ def _answer(
     verdict = ModeVerdict.UNDECIDED if found.undecided else verdict_on(found.modes)
     return SpatialModeAnswer(
         verdict=ModeVerdict.IMPACT if approaching else verdict,
-        modes=tuple(mode for mode, _ in found.modes),
+        modes=tuple(found.modes),
         approaching=approaching,
         velocity_tolerance=problem.velocity_tolerance,
         friction_facets=problem.friction_facets,
@@ -253,17 +251,18 @@ def evidenced(
         hurried: Whether to give up soon.
     """
     found = _sought(case, search, beside_rest=beside_rest, hurried=hurried)
-    rounded = [mode.mode for mode, _ in found.modes if _penetrates(case, mode)]
+    rounded = [mode.mode for mode in found.modes if _penetrates(case, mode)]
     if rounded:
-        kept = [pair for pair in found.modes if not _penetrates(case, pair[0])]
+        kept = [mode for mode in found.modes if not _penetrates(case, mode)]
         names = tuple(dict.fromkeys((*rounded, *found.undecided_modes)))
         found = Evidence(kept, found.undecided or _DOUBT, names)
-    exact = [pair for pair in found.modes if is_exact(pair[0])]
-    others = tuple(dict.fromkeys(mode.mode for mode, _ in found.modes if not is_exact(mode)))
+    exact = [mode for mode in found.modes if is_exact(mode)]
+    others = tuple(dict.fromkeys(mode.mode for mode in found.modes if not is_exact(mode)))
     turned = _TURNED.format(", ".join(others)) if others else ""
     letters = tuple(dict.fromkeys((*others, *found.undecided_modes)))
     if not exact and not others:
         return _narrow(case, search, found)
+    exact.sort(key=lambda mode: [SPATIAL_LETTERS.index(letter) for letter in mode.mode])
     return Evidence(exact, found.undecided or turned, letters)
 
 
@@ -283,17 +282,9 @@ def _narrow(case: SpatialCase, search: Search, found: Evidence) -> Evidence:
         return found
     near = narrowly(search)
     if near.modes:
-        modes: list[tuple[SpatialMode, Found | None]] = [
-            (
-                mode_with_forces(
-                    case,
-                    one.letters,
-                    one.forces,
-                    forces_unique=one.alone,
-                    motion_unique=True,
-                    slowest=NARROWLY,
-                ),
-                None,
+        modes = [
+            mode_with_forces(
+                case, one.letters, one.forces, forces_unique=one.alone, motion_unique=True, slowest=NARROWLY
             )
             for one in near.modes
         ]
@@ -315,67 +306,85 @@ def _of_all(case: SpatialCase, letters: str) -> str:
 
 def _sought(case: SpatialCase, search: Search, *, beside_rest: bool, hurried: bool) -> Evidence:
     """Return the modes of a case, also those whose friction could not be turned."""
-    slides = bool(np.any(case.sliding[case.touching]))
     if rests_alone(search):
-        rest = search.resting()
-        resting = [] if rest is None else [(realised(case, search, rest, sharpen=True), rest)]
-        return _with_rest(case, search, Evidence([*resting], ""))
-    kept = found_by(case, search, sharpen=True)
-    undecided = _DOUBT if search.doubtful else ""
+        return _with_rest(case, search, Evidence([], ""))
+    slides = bool(np.any(case.sliding[case.touching]))
     if not slides and len(case.touching) == 1 and search.touching[0].friction > 0.0:
-        return Evidence(_of_one_contact(case, search, kept), "")
-    if not any(one.frame is not None for one in search.pyramids):
-        return Evidence(kept, undecided)
-    known = Evidence(by_letters(case, search, kept), "")
-    if beside_rest and not slides:
-        exact = [pair for pair in known.modes if is_exact(pair[0])]
-        if not all(_all_stick(case, search, mode) for mode, _ in exact):
-            return _with_rest(case, search, Evidence(exact, undecided))
-    if not _is_alone(case, search, known) and not slides:
+        return Evidence(_of_one_contact(case, search), "")
+    likely = likely_mode(search)
+    modes = [] if likely is None else [_mode_of(case, likely)]
+    rounds = any(one.frame is not None for one in search.pyramids)
+    found = _with_others(case, search, modes, beside_rest=beside_rest and not slides, hurried=hurried)
+    if found.modes and not found.undecided:
+        return found
+    search.most_examined += search.examined
+    kept = found_by(case, search, sharpen=True)
+    if not rounds:
+        return Evidence(kept, _DOUBT if search.doubtful else "")
+    exact = by_letters(case, search, kept)
+    return _with_others(
+        case,
+        search,
+        each_once([*exact, *found.modes]),
+        beside_rest=beside_rest and not slides,
+        hurried=hurried,
+    )
+
+
+def _with_others(
+    case: SpatialCase, search: Search, modes: list[SpatialMode], *, beside_rest: bool, hurried: bool
+) -> Evidence:
+    """Return modes that were found, with all others."""
+    if _is_alone(case, search, modes):
+        return Evidence(modes, "")
+    known = Evidence(modes, "")
+    if not np.any(case.sliding[case.touching]):
         known = _with_rest(case, search, known)
-    if _is_alone(case, search, known):
-        return Evidence([pair for pair in known.modes if is_exact(pair[0])], "")
+        if beside_rest and not all(_all_stick(case, search, mode) for mode in known.modes if is_exact(mode)):
+            return known
+        if _is_alone(case, search, known.modes):
+            return known
     found = _completed(case, search, known.modes, hurried=hurried)
     return found._replace(undecided=found.undecided or known.undecided)
 
 
-def _is_alone(case: SpatialCase, search: Search, found: Evidence) -> bool:
-    """Return whether one mode was found, and it is proven that there is no other."""
-    exact = [mode for mode, _ in found.modes if is_exact(mode)]
+def _is_alone(case: SpatialCase, search: Search, modes: list[SpatialMode]) -> bool:
+    """Return whether it is proven that a mode that was found has no others beside it."""
+    exact = [mode for mode in modes if is_exact(mode)]
     if len(exact) != 1 or not exact[0].motion_unique:
         return False
     return is_only_motion(search, exact[0].contact_forces_W[case.touching] / case.motion.scale)
 
 
-def _completed(
-    case: SpatialCase, search: Search, found: list[tuple[SpatialMode, Found | None]], *, hurried: bool
-) -> Evidence:
-    """Return the modes that were found and are exact, and those that the pyramids missed."""
-    exact = [pair for pair in found if is_exact(pair[0])]
+def _mode_of(case: SpatialCase, known: Known) -> SpatialMode:
+    return mode_with_forces(
+        case, known.letters, known.forces, forces_unique=known.forces_unique, motion_unique=known.alone
+    )
+
+
+def _completed(case: SpatialCase, search: Search, found: list[SpatialMode], *, hurried: bool) -> Evidence:
+    """Return the modes that were found and are exact, and those that were missed."""
+    exact = [mode for mode in found if is_exact(mode)]
     known = [
         Known(
             letters_of(mode, case, search),
             mode.contact_forces_W[case.touching] / case.motion.scale,
             alone=mode.motion_unique,
         )
-        for mode, _ in exact
+        for mode in exact
     ]
     missed = completed(search, known, hurried=hurried)
-    for one in missed.further:
-        mode = mode_with_forces(
-            case, one.letters, one.forces, forces_unique=one.forces_unique, motion_unique=one.alone
-        )
-        exact.append((mode, None))
+    exact += [_mode_of(case, one) for one in missed.further]
     names = [_of_all(case, letters) for letters in missed.undecided]
     undecided = _MISSED.format(", ".join(names)) if names else ""
     if missed.unended:
         open_ones = _of_all(case, missed.unended)
         undecided = _UNENDED.format(open_ones)
-        names += [*(mode.mode for mode, _ in found if not is_exact(mode)), open_ones]
+        names += [*(mode.mode for mode in found if not is_exact(mode)), open_ones]
     return Evidence(each_once(exact), undecided, tuple(dict.fromkeys(names)))
 
 
-def found_by(case: SpatialCase, search: Search, *, sharpen: bool) -> list[tuple[SpatialMode, Found | None]]:
+def found_by(case: SpatialCase, search: Search, *, sharpen: bool) -> list[SpatialMode]:
     """Return the modes of a case with friction pyramids.
 
     If friction is sharpened, each mode is returned once. Two modes are the same if their letters and their
@@ -383,13 +392,10 @@ def found_by(case: SpatialCase, search: Search, *, sharpen: bool) -> list[tuple[
     and the one represents them whose slowest contact that begins to slide is fastest: rounding limits the
     direction of very slow sliding.
     """
-    every = search.run(grouped=sharpen)
-    found: list[tuple[SpatialMode, Found | None]] = [
-        (realised(case, search, one, sharpen=sharpen), one) for one in every
-    ]
+    found = [realised(case, search, one, sharpen=sharpen) for one in search.run(grouped=sharpen)]
     if not sharpen:
         return found
-    return each_once(sorted(found, key=lambda pair: _unique_and_slow(case, pair[0])))
+    return each_once(sorted(found, key=lambda mode: _unique_and_slow(case, mode)))
 
 
 def _unique_and_slow(case: SpatialCase, mode: SpatialMode) -> tuple[bool, float]:
@@ -402,26 +408,18 @@ def _unique_and_slow(case: SpatialCase, mode: SpatialMode) -> tuple[bool, float]
     return False, -float(np.linalg.norm(across, axis=1).min(initial=math.inf))
 
 
-def _of_one_contact(
-    case: SpatialCase, search: Search, found: list[tuple[SpatialMode, Found | None]]
-) -> list[tuple[SpatialMode, Found | None]]:
-    """Return all modes of one contact at rest. A mode that the search found exactly stays as it is."""
+def _of_one_contact(case: SpatialCase, search: Search) -> list[SpatialMode]:
+    """Return all modes of one contact at rest."""
     (contact,) = search.touching
     G = (
         case.motion.points[3 * case.touching[0] :][:3]
         @ case.motion.of_forces[:, 3 * case.touching[0] :][:, :3]
     )
     b = case.motion.points_free[case.touching[0]] / case.motion.scale
-    exact = modes_of_one(G, b, contact.normal, contact.friction)
-    kept: list[tuple[SpatialMode, Found | None]] = []
-    for one in exact:
-        mode = mode_with_forces(case, one.letter, one.force[None, :], forces_unique=True, motion_unique=True)
-        alike = [
-            pair for pair in found if pair[0].misdirection <= MODE_STRAIGHT and are_the_same(mode, pair[0])
-        ]
-        kept.append(alike[0] if alike else (mode, None))
-    order = [mode for mode, _ in found]
-    return sorted(kept, key=lambda pair: order.index(pair[0]) if pair[1] is not None else len(order))
+    return [
+        mode_with_forces(case, one.letter, one.force[None, :], forces_unique=True, motion_unique=True)
+        for one in modes_of_one(G, b, contact.normal, contact.friction)
+    ]
 
 
 def _all_stick(case: SpatialCase, search: Search, mode: SpatialMode) -> bool:
@@ -435,19 +433,16 @@ def _with_rest(case: SpatialCase, search: Search, found: Evidence) -> Evidence:
     """Return the modes, with the one in which all contacts stick if forces in the round cones allow it."""
     letters = "".join(STICKS if one.friction > 0.0 else STAYS for one in search.touching)
     undecided = found.undecided
-    still = [pair for pair in found.modes if _all_stick(case, search, pair[0])]
+    still = [mode for mode in found.modes if _all_stick(case, search, mode)]
     if len(still) > 1:  # the forces that hold a body form a convex set, and are one mode
-        found = found._replace(modes=[pair for pair in found.modes if pair not in still[1:]])
+        found = found._replace(modes=[mode for mode in found.modes if mode not in still[1:]])
     if not still:
         rows = sticking(search)
         held = held_by_round_cones(search, rows)
         if held.forces is not None:
-            unique = rests_in_one_way(search, rows)
-            own = polished(search, rows, held.forces)
-            mode = mode_with_forces(
-                case, letters, own, forces_unique=unique.forces, motion_unique=unique.motion
-            )
-            return found._replace(modes=[*found.modes, (mode, None)])
+            own, unique = polished(search, rows, held.forces), holds_in_one_way(search, rows)
+            mode = mode_with_forces(case, letters, own, forces_unique=unique, motion_unique=True)
+            return found._replace(modes=[*found.modes, mode])
         if not held.certain:
             undecided = _AT_REST
     return found._replace(undecided=undecided)

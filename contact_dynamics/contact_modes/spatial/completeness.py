@@ -160,7 +160,7 @@ class _Set(NamedTuple):
 def completed(search: Search, known: Sequence[Known], *, hurried: bool = False) -> Completed:
     """Return the modes that are not known yet, and the letters that may have more.
 
-    Whether all contacts can stick together is not asked here.
+    Whether a body at rest can stick at all contacts is not asked here.
 
     Args:
         search: The case.
@@ -173,6 +173,7 @@ def completed(search: Search, known: Sequence[Known], *, hurried: bool = False) 
         work.run()
     except _TooManyError:
         unended = work.at
+    search.examined += work.examined
     settled = {one.letters for one in work.further if not one.alone}
     return Completed(tuple(work.further), tuple(one for one in work.undecided if one not in settled), unended)
 
@@ -215,7 +216,7 @@ class _Work(PyramidPrograms):
         self._refutes = refutes
         self._most = most
         self._open = [i for i, one in enumerate(search.pyramids) if one.frame is not None]
-        self._all_stick = "".join(STAYS if one.frame is None else STICKS for one in search.pyramids)
+        self._all_stick = "".join(STICKS if one.friction > 0.0 else STAYS for one in search.touching)
         self._programs = HoldingPrograms(search, least)
         self._known = known
         self._held = {one.letters for one in known}
@@ -319,21 +320,23 @@ class _Work(PyramidPrograms):
 
     def _decide_without_directions(self, letters: str) -> None:
         """Find or refute a mode in which no contact begins to slide."""
-        if self._refutes and set(letters) == {SEPARATES}:
-            raise _NotRefutedError
-        if letters in self._held or set(letters) == {SEPARATES}:
+        if letters in self._held or (letters == self._all_stick and not self._refutes):
             return
-        if letters == self._all_stick and not self._refutes:
-            return
-        start = self._forces(letters, {}, FINE)
+        leave = set(letters) == {SEPARATES}  # without forces: the programs have decided that they do
+        start = np.zeros((len(letters), 3)) if leave else self._forces(letters, {}, FINE)
         if start is None:
             return
         if self._refutes:
             raise _NotRefutedError
+        if leave:
+            self._keep(Known(letters, start, alone=True))
+            return
         forces = forces_with_letters(self._search, letters, start, shared=True)
         regular = solution_near(self._search, letters, start) is not None
         if forces is not None:
-            self._keep(Known(letters, forces, alone=regular, forces_unique=regular))
+            near = solution_near(self._search, letters, forces, shared=True)
+            alone = regular or (near is not None and near.motion_unique)
+            self._keep(Known(letters, forces, alone=alone, forces_unique=regular))
         elif not regular:
             self.undecided.append(letters)
 

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from contact_dynamics.contact_modes.spatial.problem import SpatialCase
     from contact_dynamics.contact_modes.spatial.result import SpatialMode
-    from contact_dynamics.contact_modes.spatial.search import Found, Search
+    from contact_dynamics.contact_modes.spatial.search import Search
 
 
 def is_exact(mode: SpatialMode) -> bool:
@@ -30,28 +30,24 @@ def is_exact(mode: SpatialMode) -> bool:
     return mode.misdirection <= MODE_STRAIGHT
 
 
-def each_once(
-    found: list[tuple[SpatialMode, Found | None]],
-) -> list[tuple[SpatialMode, Found | None]]:
+def each_once(found: list[SpatialMode]) -> list[SpatialMode]:
     """Return the modes without those that are the same as an earlier one."""
-    kept: list[tuple[SpatialMode, Found | None]] = []
-    for mode, one in found:
-        if not any(are_the_same(mode, other) for other, _ in kept):
-            kept.append((mode, one))
+    kept: list[SpatialMode] = []
+    for mode in found:
+        if not any(are_the_same(mode, other) for other in kept):
+            kept.append(mode)
     return kept
 
 
-def by_letters(
-    case: SpatialCase, search: Search, found: list[tuple[SpatialMode, Found | None]]
-) -> list[tuple[SpatialMode, Found | None]]:
+def by_letters(case: SpatialCase, search: Search, found: list[SpatialMode]) -> list[SpatialMode]:
     """Return the modes, where exact solutions replace those whose friction could not be turned.
 
     Those that are certain to have none are left out.
     """
-    kept: list[tuple[SpatialMode, Found | None]] = []
-    for mode, one in found:
+    kept: list[SpatialMode] = []
+    for mode in found:
         if is_exact(mode):
-            kept.append((mode, one))
+            kept.append(mode)
             continue
         letters = letters_of(mode, case, search)
         if mode.motion_unique:
@@ -63,7 +59,7 @@ def by_letters(
             ]
             refused = False
         else:
-            others = [other for other, _ in found if other is not mode]
+            others = [other for other in found if other is not mode]
             held = _shared(case, search, letters, [mode, *others])
             trials, refused = [(letters, held.forces)], held.certain
         near = [
@@ -73,9 +69,9 @@ def by_letters(
             for trial, forces in trials
             if forces is not None
         ]
-        kept += [(exact, None if mode.motion_unique else one) for exact in near]
+        kept += near
         if not near and not refused:
-            kept.append((mode, one))
+            kept.append(mode)
     return each_once(kept)
 
 

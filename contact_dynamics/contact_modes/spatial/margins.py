@@ -20,10 +20,9 @@ import numpy as np
 
 from contact_dynamics.contact_modes.result import ModeVerdict, verdict_on
 from contact_dynamics.contact_modes.spatial.answer import Considered, considered, found_by
-from contact_dynamics.contact_modes.spatial.margins_of_sliding import union_margin
-from contact_dynamics.contact_modes.spatial.mode_with_forces import are_the_same
+from contact_dynamics.contact_modes.spatial.exact_modes import letters_of
+from contact_dynamics.contact_modes.spatial.margins_of_sliding import begin_to_slide, union_margin
 from contact_dynamics.contact_modes.spatial.problem import (
-    FRICTION_FACETS,
     SpatialCase,
     search_of,
     search_of_few_edges,
@@ -31,13 +30,13 @@ from contact_dynamics.contact_modes.spatial.problem import (
 )
 from contact_dynamics.contact_modes.spatial.wrenches import Way, supports, wrench_generators
 from contact_dynamics.records import Record
-from contact_dynamics.tolerances import BEYOND_MARGIN, ROW_TOLERANCE
+from contact_dynamics.tolerances import BEYOND_MARGIN, ON_BOUNDARY, ROW_TOLERANCE
 from contact_dynamics.validation import check_size
 
 if TYPE_CHECKING:
     from contact_dynamics.contact_modes.spatial.problem import SpatialContactProblem
-    from contact_dynamics.contact_modes.spatial.result import SpatialMode, SpatialModeAnswer
-    from contact_dynamics.contact_modes.spatial.search import Found, Search
+    from contact_dynamics.contact_modes.spatial.result import SpatialModeAnswer
+    from contact_dynamics.contact_modes.spatial.search import Search
     from contact_dynamics.validation import FloatArray
 
 
@@ -95,14 +94,12 @@ def spatial_mode_margins(
     metric = np.array([1.0, 1.0, 1.0, length, length, length])
     present = None if answer is None or not problem.sharpen else tuple(one.mode for one in answer.modes)
     margins = []
-    for mode, found in _with_found(one, search, friction_facets):
-        beyond = None
-        if found is None:
-            margin, way = math.nan, np.zeros(6)
-        elif any(letters.item >= 0 for letters in found.letters):
-            margin, way, beyond = union_margin(case, search, found, metric, friction_facets)
+    for mode in one.found.modes:
+        letters, beyond = letters_of(mode, case, search), None
+        if begin_to_slide(search, letters):
+            margin, way, beyond = union_margin(case, search, letters, metric, friction_facets)
         else:
-            margin, way = _nearest(case, search, found, metric)
+            margin, way = _nearest(case, search, letters, metric)
         if beyond is None and math.isfinite(margin):
             beyond = _beyond(problem, mode.mode, margin, way, metric, within=within)
         if beyond is None:
@@ -118,19 +115,6 @@ def spatial_mode_margins(
             )
         )
     return tuple(margins)
-
-
-def _with_found(
-    one: Considered, search: Search, friction_facets: int
-) -> list[tuple[SpatialMode, Found | None]]:
-    """Return the modes of a case, each with what the search of pyramids with some facets found."""
-    case, modes = one.case, one.found.modes
-    if friction_facets == FRICTION_FACETS:
-        return modes
-    found = found_by(case, search, sharpen=True)
-    return [
-        (mode, next((one for other, one in found if are_the_same(mode, other)), None)) for mode, _ in modes
-    ]
 
 
 def _beyond(
@@ -162,14 +146,17 @@ def _modes_under(problem: SpatialContactProblem, within: float, wrench_W: FloatA
     if not isinstance(case, SpatialCase):
         return ()
     found = found_by(case, search_of(case, problem.friction_facets), sharpen=True)
-    return tuple(mode.mode for mode, _ in found)
+    return tuple(mode.mode for mode in found)
 
 
-def _nearest(case: SpatialCase, search: Search, found: Found, metric: FloatArray) -> tuple[float, FloatArray]:
-    """Return the distance, N, to the mode's nearest boundary and the direction to it, (6,), in the metric."""
+def _nearest(case: SpatialCase, search: Search, letters: str, metric: FloatArray) -> tuple[float, FloatArray]:
+    """Return the distance, N, to the mode's nearest boundary and the direction to it, (6,), in the metric.
+
+    The distance is NaN if the pyramids do not hold the mode.
+    """
     motion = case.motion
     unit = motion.mass * motion.scale  # N; wrenches are divided by it, and torques by the length
-    ways = [Way(one.letter, one.item) for one in found.letters]
+    ways = [Way(letter, -1) for letter in letters]
     positive, zero = supports(wrench_generators(case, search, ways, metric))
     target = np.append(motion.wrench / metric / unit, 1.0)
     for row in zero:
@@ -180,7 +167,10 @@ def _nearest(case: SpatialCase, search: Search, found: Found, metric: FloatArray
     for row in positive:
         across = float(np.linalg.norm(row[:6]))
         if across > ROW_TOLERANCE:
-            depth = max(0.0, float(row @ target)) / across
+            depth = float(row @ target) / across
+            if depth < -ON_BOUNDARY:
+                return math.nan, way
+            depth = max(0.0, depth)
             if depth < margin:
                 margin, way = depth, -row[:6] / across
     return margin * unit, way

@@ -21,6 +21,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
+from contact_dynamics.contact_modes.letters import STAYS
 from contact_dynamics.contact_modes.spatial.answer import found_by
 from contact_dynamics.contact_modes.spatial.cone import nearest_sum
 from contact_dynamics.contact_modes.spatial.problem import search_of
@@ -33,7 +34,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from contact_dynamics.contact_modes.spatial.problem import SpatialCase
-    from contact_dynamics.contact_modes.spatial.search import Found, Search
+    from contact_dynamics.contact_modes.spatial.search import Search
     from contact_dynamics.validation import FloatArray
 
 MAX_PROBES: Final = 64
@@ -82,24 +83,32 @@ class _Boundary(NamedTuple):
 
 
 def union_margin(
-    case: SpatialCase, search: Search, found: Found, metric: FloatArray, facets: int
+    case: SpatialCase, search: Search, letters: str, metric: FloatArray, facets: int
 ) -> UnionMargin:
     """Return the distance to the nearest wrench outside a mode.
 
     Args:
         case: The body with its contacts.
         search: The search of that case.
-        found: A mode of that search, in which contacts at rest begin to slide.
+        letters: Those of its touching contacts in a mode in which contacts at rest begin to slide.
         metric: (6,), m, by which a wrench is divided: ones, then the length that torques are divided by.
         facets: Edges of the friction pyramids.
     """
-    beginning = sum(one.item >= 0 for one in found.letters)
+    beginning = begin_to_slide(search, letters)
     if case.motion.at_rest and not np.any(case.motion.turning) and beginning <= MAX_BEGINNING:
-        union = _Union(case, search, "".join(one.letter for one in found.letters), facets)
+        union = _Union(case, search, letters, facets)
         # Each way of sliding counts here, and there can be more of them than the search accepts.
         with contextlib.suppress(TooLargeError):
             return _gone_through(union, case.motion.wrench / union.own / union.unit, union.own / metric)
     return UnionMargin(math.nan, np.zeros(6), None)
+
+
+def begin_to_slide(search: Search, letters: str) -> int:
+    """Return how many contacts at rest begin to slide with some letters."""
+    return sum(
+        letter == STAYS and one.frame is not None
+        for letter, one in zip(letters, search.pyramids, strict=True)
+    )
 
 
 def _gone_through(union: _Union, wrench: FloatArray, stretch: FloatArray) -> UnionMargin:
@@ -197,7 +206,7 @@ class _Union:
         """Return the letters of all modes that a wrench brings about."""
         case = self._under(wrench)
         found = found_by(case, search_of(case, self._facets), sharpen=True)
-        return tuple(mode.mode for mode, _ in found)
+        return tuple(mode.mode for mode in found)
 
     def _under(self, wrench: FloatArray) -> SpatialCase:
         """Return the case under another wrench, with the friction pyramids that it has."""

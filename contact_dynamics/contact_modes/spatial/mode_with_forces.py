@@ -34,7 +34,8 @@ def mode_with_forces(
         own: (n, 3), the forces of the touching contacts, in the units of the motion.
         forces_unique: Whether the forces are the only ones with this mode.
         motion_unique: Whether the accelerations are the only ones with this mode.
-        slowest: What begins to slide more slowly sticks, relative to the largest acceleration.
+        slowest: What begins to slide more slowly without friction sticks, relative to the largest
+            acceleration.
     """
     motion, contacts, sliding, touching, _ = case
     forces = np.zeros((len(contacts), 3))
@@ -48,7 +49,8 @@ def mode_with_forces(
         way = sliding[i] if np.any(sliding[i]) else across[i]
         size = float(np.linalg.norm(way))
         # Without friction one letter stands for both, and the acceleration says whether the contact slides.
-        rests = letter == STAYS and not np.any(sliding[i]) and size <= slowest * motion.scale
+        smooth = letter == STAYS and contacts.frictions[i] == 0.0
+        rests = smooth and not np.any(sliding[i]) and size <= slowest * motion.scale
         letters[i] = STICKS if rests else letter
         if letters[i] == STAYS:
             friction = forces[i] - float(forces[i] @ contacts.normals_W[i]) * contacts.normals_W[i]

@@ -65,6 +65,8 @@ def is_only_motion(search: Search, forces: FloatArray, staying: Sequence[int] | 
         forces: (n, 3), of a mode, in the units of the motion.
         staying: If given, only modes are meant in which just these contacts stay, as in the first.
     """
+    if not search.touching:
+        return True
     motion = search.motion[:, -1] + search.of_forces @ forces.ravel()
     everyone = list(range(len(search.touching))) if staying is None else list(staying)
     contacts = _contacts(search, everyone)

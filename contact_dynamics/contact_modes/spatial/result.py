@@ -61,7 +61,7 @@ class SpatialModeAnswer(Record):
 
     Attributes:
         verdict: On the whole contact set.
-        modes: All consistent modes.
+        modes: All consistent modes. Separating comes before sticking, and sticking before sliding.
         approaching: The contacts that approach. It is not empty exactly where the verdict is IMPACT.
         velocity_tolerance: m/s. A contact's velocity up to it counted as zero.
         friction_facets: The number of edges of each friction pyramid.

@@ -166,18 +166,9 @@ def polished(search: Search, rows: FloatArray, forces: FloatArray) -> FloatArray
     return found
 
 
-class Unique(NamedTuple):
-    """Whether forces are the only ones, and whether their motion is the only one."""
-
-    forces: bool
-    motion: bool
-
-
-def rests_in_one_way(search: Search, rows: FloatArray) -> Unique:
-    """Return whether forces that make rows of the motion vanish are the only ones, and their motion."""
-    of_forces = search.of_forces
-    seen, moved = (len(row_space(of)) for of in (rows[:, :-1] @ of_forces, of_forces))
-    return Unique(forces=seen == of_forces.shape[1], motion=seen == moved)
+def holds_in_one_way(search: Search, rows: FloatArray) -> bool:
+    """Return whether forces that make rows of the motion vanish are the only ones."""
+    return len(row_space(rows[:, :-1] @ search.of_forces)) == search.of_forces.shape[1]
 
 
 class _Demand(NamedTuple):

@@ -97,16 +97,6 @@ class Search(PyramidPrograms):
             self._search()
         return list(self._found.values())
 
-    def resting(self) -> Found | None:
-        """Return the mode in which all contacts stick, or None if pyramids do not hold them."""
-        sticks = []
-        for both in self._trials:
-            stays = both.parts[1]
-            sticks.append(stays.parts[0] if stays.parts else stays)
-        self._found, self._grouped = {}, False
-        self._note(sticks)
-        return next(iter(self._found.values()), None)
-
     def _search(self) -> None:
         root = self._solved(self._root)
         if root is not None:

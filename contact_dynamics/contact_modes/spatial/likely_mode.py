@@ -1,0 +1,148 @@
+"""The most likely mode: what a body does whose contacts give way a little.
+
+A contact that would penetrate presses in proportion to that. Friction opposes its sliding in the same
+proportion, up to Coulomb's limit. So the motion solves six equations, however many contacts there are.
+Newton's method solves them for stiffer and stiffer contacts. What gives way in the end separates or slides,
+and then forces with these letters are made exact (`exact_letters`). This finds one mode at most.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+import numpy as np
+
+from contact_dynamics.contact_modes.letters import SEPARATES, STAYS, STICKS
+from contact_dynamics.contact_modes.spatial.completeness import Known
+from contact_dynamics.contact_modes.spatial.exact_letters import solution_near
+from contact_dynamics.tolerances import COMPLIANT_SETTLED, GIVES_WAY
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from contact_dynamics.contact_modes.spatial.search import Search
+    from contact_dynamics.validation import FloatArray
+
+_STIFFNESSES: Final = (1.0, 1e1, 1e2, 1e3, 1e4, 1e6)
+"""Forces of contacts that penetrate with unit acceleration, in parts of those that give it to the body."""
+
+_MAX_STEPS: Final = 8
+"""Newton's steps for each stiffness. Two are enough on average."""
+
+_SHORTEST_STEP: Final = 0.02
+"""The share of a step that is taken whatever it gains."""
+
+_ENOUGH: Final = 0.1
+"""The share of what a step should gain that a longer one must gain."""
+
+
+def likely_mode(search: Search) -> Known | None:
+    """Return the most likely mode of touching contacts, or None if there is none with its letters."""
+    letters, near = _compliant(search)
+    if set(letters) <= {SEPARATES}:
+        return Known(letters, near, alone=True)
+    solution = solution_near(search, letters, near) or solution_near(search, letters, near, shared=True)
+    if solution is None or not solution.has_letters:
+        return None
+    unique = solution.equations is not None
+    return Known(letters, solution.forces, alone=solution.motion_unique, forces_unique=unique)
+
+
+class _Response(NamedTuple):
+    """What compliant contacts do under a motion.
+
+    Attributes:
+        missed: (6,), the force and torque that the equations of motion miss.
+        forces: (n, 3), on the body.
+        rising: (n,), the normal accelerations.
+        speeds: (n,), the tangential ones.
+        ways: (n, 3), unit, the directions against which friction acts.
+        grips: (n,), whether friction is below its limit.
+    """
+
+    missed: FloatArray
+    forces: FloatArray
+    rising: FloatArray
+    speeds: FloatArray
+    ways: FloatArray
+    grips: NDArray[np.bool_]
+
+
+class _Compliant:
+    """The equations of motion of a body on compliant contacts."""
+
+    def __init__(self, search: Search) -> None:
+        touching = search.touching
+        self.mass, self._wrench = search.mass, search.mass @ search.motion[:, -1]
+        points = np.array([one.point for one in touching]).reshape(-1, 7)
+        self._points, self._constant = np.ascontiguousarray(points[:, :6]), points[:, 6]
+        self._normals = np.array([one.normal for one in touching]).reshape(-1, 3)
+        self._frictions = np.array([one.friction for one in touching])
+        self.rests = np.array([one.frame is not None for one in search.pyramids], dtype=bool)
+        sliding = np.array([one.sliding for one in touching]).reshape(-1, 3)
+        self._sliding = _directions(sliding, np.sqrt((sliding * sliding).sum(axis=1)))
+        self._along = self._normals[:, :, None] * self._normals[:, None, :]
+
+    def response(self, motion: FloatArray, stiffness: float) -> _Response:
+        """Return what the contacts do under a motion, (6,)."""
+        accelerations = (self._points @ motion + self._constant).reshape(-1, 3)
+        rising = (self._normals * accelerations).sum(axis=1)
+        across = accelerations - rising[:, None] * self._normals
+        speeds = np.sqrt((across * across).sum(axis=1))
+        ways = np.where(self.rests[:, None], _directions(across, speeds), self._sliding)
+        pressing = stiffness * np.maximum(-rising, 0.0)
+        limits = self._frictions * pressing
+        grips = self.rests & (stiffness * speeds <= limits)
+        friction = np.where(grips, stiffness * speeds, limits)
+        forces = pressing[:, None] * self._normals - friction[:, None] * ways
+        missed = self._wrench + self._points.T @ forces.ravel() - self.mass @ motion
+        return _Response(missed, forces, rising, speeds, ways, grips)
+
+    def step(self, now: _Response, stiffness: float) -> FloatArray:
+        """Return Newton's step, (6,)."""
+        presses = np.where(now.rising < 0.0, stiffness, 0.0)
+        slips = np.where(now.grips, 0.0, 1.0)
+        leaning = self._normals - (slips * self._frictions)[:, None] * now.ways
+        limits = -self._frictions * presses * now.rising
+        turning = np.where(self.rests, limits / np.where(now.speeds > 0.0, now.speeds, math.inf), 0.0)
+        holding = np.where(now.grips, presses, turning)
+        rates = presses[:, None, None] * leaning[:, :, None] * self._normals[:, None, :]
+        turns = slips[:, None, None] * now.ways[:, :, None] * now.ways[:, None, :]
+        rates += holding[:, None, None] * (np.eye(3) - self._along - turns)
+        slopes = self.mass + self._points.T @ (rates @ self._points.reshape(-1, 3, 6)).reshape(-1, 6)
+        found: FloatArray = np.linalg.solve(slopes, now.missed)
+        return found
+
+
+def _directions(vectors: FloatArray, sizes: FloatArray) -> FloatArray:
+    found: FloatArray = vectors / np.where(sizes > 0.0, sizes, 1.0)[:, None]
+    return found
+
+
+def _compliant(search: Search) -> tuple[str, FloatArray]:
+    """Return the letters of stiff compliant contacts, and their forces, (n, 3)."""
+    body, inverse = _Compliant(search), np.linalg.inv(search.mass)
+    motion: FloatArray = search.motion[:, -1]
+    for stiffness in _STIFFNESSES:
+        stiff = stiffness * float(search.mass[0, 0])
+        now = body.response(motion, stiff)
+        left = float(now.missed @ inverse @ now.missed)
+        for _ in range(_MAX_STEPS):
+            if left <= COMPLIANT_SETTLED:
+                break
+            step, share = body.step(now, stiff), 1.0
+            while True:
+                now = body.response(motion + share * step, stiff)
+                trial = float(now.missed @ inverse @ now.missed)
+                if trial <= (1.0 - _ENOUGH * share) ** 2 * left or share < _SHORTEST_STEP:
+                    break
+                share *= 0.5
+            motion, left = motion + share * step, trial
+    letters = [
+        SEPARATES if rising > GIVES_WAY else STICKS if rests and speed <= GIVES_WAY else STAYS
+        for rising, speed, rests in zip(
+            now.rising.tolist(), now.speeds.tolist(), body.rests.tolist(), strict=True
+        )
+    ]
+    return "".join(letters), now.forces
