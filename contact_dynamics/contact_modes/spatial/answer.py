@@ -29,7 +29,14 @@ import numpy as np
 
 from contact_dynamics.contact_modes.letters import SEPARATES, SPATIAL_LETTERS, STAYS, STICKS
 from contact_dynamics.contact_modes.result import SOME_MODE, ModeVerdict, verdict_on
-from contact_dynamics.contact_modes.spatial.completeness import Known, completed, has_none
+from contact_dynamics.contact_modes.spatial.completeness import (
+    ENOUGH_PROGRAMS,
+    FEW_PROGRAMS,
+    MAX_PROGRAMS,
+    Known,
+    completed,
+    has_none,
+)
 from contact_dynamics.contact_modes.spatial.exact_modes import by_letters, each_once, is_exact, letters_of
 from contact_dynamics.contact_modes.spatial.likely_mode import likely_mode
 from contact_dynamics.contact_modes.spatial.mode_with_forces import mode_with_forces, with_least_forces
@@ -50,7 +57,6 @@ from contact_dynamics.contact_modes.spatial.round_cones import (
     polished,
     sticking,
 )
-from contact_dynamics.errors import TooLargeError
 from contact_dynamics.tolerances import FEASIBLE, FLUSH, FLUSH_ROUGHLY, NARROWLY, STRICT
 
 if TYPE_CHECKING:
@@ -80,12 +86,6 @@ _UNENDED: Final = (
 _NARROW: Final = "rounding decides whether modes hold that hold under nearly the same load: {}"
 
 _NOT_REFUTED: Final = "no mode was found, and it could not be shown that there is none"
-
-
-_GIVEN_UP: Final = "rounding decides about too many combinations of letters: contacts are nearly flush"
-
-_FEW_TRIALS: Final = 150
-"""Maximum number of trials of a search after which another way to a verdict is left."""
 
 
 class Evidence(NamedTuple):
@@ -145,14 +145,7 @@ def considered(problem: SpatialContactProblem) -> Considered | tuple[int, ...]:
     tried: list[Considered] = []
     for case, within, hurried in _cases(problem, rough):
         search = search_of(case, facets)
-        if hurried:
-            search.most_examined = _FEW_TRIALS
-        try:
-            found = _evidence(problem, case, search, hurried=hurried)
-        except TooLargeError:
-            if not hurried:
-                raise
-            found = Evidence([], _GIVEN_UP)
+        found = _evidence(problem, case, search, hurried=hurried)
         tried.append(Considered(case, search, found, within))
         if not found.undecided:
             return tried[-1]
@@ -261,7 +254,7 @@ def evidenced(
     turned = _TURNED.format(", ".join(others)) if others else ""
     letters = tuple(dict.fromkeys((*others, *found.undecided_modes)))
     if not exact and not others:
-        return _narrow(case, search, found)
+        return _narrow(case, search, found, hurried=hurried)
     exact.sort(key=lambda mode: [SPATIAL_LETTERS.index(letter) for letter in mode.mode])
     return Evidence(exact, found.undecided or turned, letters)
 
@@ -276,10 +269,13 @@ def _penetrates(case: SpatialCase, mode: SpatialMode) -> bool:
     return bool(rising.min() < -STRICT * motion.scale - FEASIBLE * float(caused.max()))
 
 
-def _narrow(case: SpatialCase, search: Search, found: Evidence) -> Evidence:
+def _narrow(case: SpatialCase, search: Search, found: Evidence, *, hurried: bool) -> Evidence:
     """Return the modes that hold so narrowly that the search found none, or what is known of them."""
-    if not (found.undecided or search.at_rest) and has_none(search):
+    moved = hurried and case.given is not None  # that there is no mode should be shown for the given contacts
+    if not (found.undecided or search.at_rest or moved) and has_none(search):
         return found
+    if hurried:
+        return found._replace(undecided=found.undecided or _NOT_REFUTED)
     near = narrowly(search)
     if near.modes:
         modes = [
@@ -313,26 +309,19 @@ def _sought(case: SpatialCase, search: Search, *, beside_rest: bool, hurried: bo
         return Evidence(_of_one_contact(case, search), "")
     likely = likely_mode(search)
     modes = [] if likely is None else [_mode_of(case, likely)]
-    rounds = any(one.frame is not None for one in search.pyramids)
-    found = _with_others(case, search, modes, beside_rest=beside_rest and not slides, hurried=hurried)
-    if found.modes and not found.undecided:
+    most = FEW_PROGRAMS if hurried else ENOUGH_PROGRAMS
+    found = _with_others(case, search, modes, beside_rest=beside_rest, most=most)
+    if hurried or (found.modes and not found.undecided):
         return found
-    search.most_examined += search.examined
     kept = found_by(case, search, sharpen=True)
-    if not rounds:
+    if all(one.frame is None for one in search.pyramids):
         return Evidence(kept, _DOUBT if search.doubtful else "")
-    exact = by_letters(case, search, kept)
-    return _with_others(
-        case,
-        search,
-        each_once([*exact, *found.modes]),
-        beside_rest=beside_rest and not slides,
-        hurried=hurried,
-    )
+    every = each_once([*by_letters(case, search, kept), *found.modes])
+    return _with_others(case, search, every, beside_rest=beside_rest, most=MAX_PROGRAMS)
 
 
 def _with_others(
-    case: SpatialCase, search: Search, modes: list[SpatialMode], *, beside_rest: bool, hurried: bool
+    case: SpatialCase, search: Search, modes: list[SpatialMode], *, beside_rest: bool, most: int
 ) -> Evidence:
     """Return modes that were found, with all others."""
     if _is_alone(case, search, modes):
@@ -344,7 +333,7 @@ def _with_others(
             return known
         if _is_alone(case, search, known.modes):
             return known
-    found = _completed(case, search, known.modes, hurried=hurried)
+    found = _completed(case, search, known.modes, most=most)
     return found._replace(undecided=found.undecided or known.undecided)
 
 
@@ -362,7 +351,7 @@ def _mode_of(case: SpatialCase, known: Known) -> SpatialMode:
     )
 
 
-def _completed(case: SpatialCase, search: Search, found: list[SpatialMode], *, hurried: bool) -> Evidence:
+def _completed(case: SpatialCase, search: Search, found: list[SpatialMode], *, most: int) -> Evidence:
     """Return the modes that were found and are exact, and those that were missed."""
     exact = [mode for mode in found if is_exact(mode)]
     known = [
@@ -373,7 +362,7 @@ def _completed(case: SpatialCase, search: Search, found: list[SpatialMode], *, h
         )
         for mode in exact
     ]
-    missed = completed(search, known, hurried=hurried)
+    missed = completed(search, known, most=most)
     exact += [_mode_of(case, one) for one in missed.further]
     names = [_of_all(case, letters) for letters in missed.undecided]
     undecided = _MISSED.format(", ".join(names)) if names else ""

@@ -49,10 +49,13 @@ if TYPE_CHECKING:
     from contact_dynamics.contact_modes.spatial.search import Search
     from contact_dynamics.validation import FloatArray
 
-_MAX_PROGRAMS: Final = 3000
+MAX_PROGRAMS: Final = 3000
 """The search for missed modes is given up after this many linear programs of 0.3 ms."""
 
-_FEW_PROGRAMS: Final = 200
+ENOUGH_PROGRAMS: Final = 1500
+"""Maximum number of programs before the pyramids are searched. Few cases take more."""
+
+FEW_PROGRAMS: Final = 200
 """Maximum number of programs where another way to a verdict is left."""
 
 _CARE: Final = 3
@@ -157,7 +160,7 @@ class _Set(NamedTuple):
     ranges: Ranges
 
 
-def completed(search: Search, known: Sequence[Known], *, hurried: bool = False) -> Completed:
+def completed(search: Search, known: Sequence[Known], *, most: int) -> Completed:
     """Return the modes that are not known yet, and the letters that may have more.
 
     Whether a body at rest can stick at all contacts is not asked here.
@@ -165,9 +168,9 @@ def completed(search: Search, known: Sequence[Known], *, hurried: bool = False) 
     Args:
         search: The case.
         known: The modes that were found, all exact.
-        hurried: Whether to give up soon.
+        most: After so many programs the work is given up.
     """
-    work = _Work(search, known, most=_FEW_PROGRAMS if hurried else _MAX_PROGRAMS)
+    work = _Work(search, known, most=most)
     unended = ""
     try:
         work.run()
@@ -197,7 +200,7 @@ class _Work(PyramidPrograms):
         *,
         least: float = STRICT,
         refutes: bool = False,
-        most: int = _MAX_PROGRAMS,
+        most: int = MAX_PROGRAMS,
     ) -> None:
         wider = 1.0 / math.cos(math.pi / COARSE)
         super().__init__(

@@ -168,7 +168,7 @@ def polished(search: Search, rows: FloatArray, forces: FloatArray) -> FloatArray
 
 def holds_in_one_way(search: Search, rows: FloatArray) -> bool:
     """Return whether forces that make rows of the motion vanish are the only ones."""
-    return len(row_space(rows[:, :-1] @ search.of_forces)) == search.of_forces.shape[1]
+    return bool(len(row_space(rows[:, :-1] @ search.of_forces)) == search.of_forces.shape[1])
 
 
 class _Demand(NamedTuple):
