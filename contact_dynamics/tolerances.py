@@ -389,6 +389,9 @@ STRICT: Final = 1e-8
 AT_SECTORS_BORDER: Final = 1e-9
 """In sectors of a friction pyramid. An edge this far beyond the border of a sector still counts as acting."""
 
+NEARLY_PARALLEL: Final = 1e-4
+"""A sine. Rows that differ, and by less, leave it to rounding which of them vanish together."""
+
 GIVES_WAY: Final = 1e-4
 """Relative to the largest acceleration. What the stiffest compliant contacts let move by less stays or
 sticks. They give way by about 1e-6 under the load."""

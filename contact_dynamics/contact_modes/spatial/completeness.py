@@ -173,7 +173,7 @@ def completed(search: Search, known: Sequence[Known], *, most: int) -> Completed
     work = _Work(search, known, most=most)
     unended = ""
     try:
-        work.run()
+        work.decide_who_stays()
     except _TooManyError:
         unended = work.at
     search.examined += work.examined
@@ -184,7 +184,7 @@ def completed(search: Search, known: Sequence[Known], *, most: int) -> Completed
 def has_none(search: Search) -> bool:
     """Return whether it is certain that a case has no mode, also none that holds narrowly."""
     try:
-        _Work(search, (), least=0.0, refutes=True).run()
+        _Work(search, (), least=0.0, refutes=True).decide_who_stays()
     except (_TooManyError, _NotRefutedError):
         return False
     return True
@@ -232,12 +232,6 @@ class _Work(PyramidPrograms):
         self.undecided: list[str] = []
         self.at = STAYS * len(search.touching)  # the letters that are decided now
 
-    def run(self) -> None:
-        """Part the set of all modes."""
-        root = self._solved(self._root)
-        if root is not None:
-            self._decide_who_stays(root, self._trials, 0)
-
     def _solved(self, program: AnyProgram) -> AnyProgram | None:
         if isinstance(program, CarefulProgram):
             self.examined += _CARE
@@ -260,16 +254,7 @@ class _Work(PyramidPrograms):
         self.examined += _CARE * careful
         return found
 
-    def _decide_who_stays(self, program: AnyProgram, trials: list[Option], at: int) -> None:
-        if at == len(trials):
-            self._decide_staying(trials)
-            return
-        for part in trials[at].parts:
-            narrower = self._solved(self._narrowed(program, at, part))
-            if narrower is not None:
-                self._decide_who_stays(narrower, [*trials[:at], part, *trials[at + 1 :]], at + 1)
-
-    def _decide_staying(self, trials: list[Option]) -> None:
+    def _decide_staying(self, _program: AnyProgram, trials: list[Option], /) -> None:
         """Decide all modes in which the same contacts stay."""
         letters = "".join(one.letter or STICKS for one in trials)
         self.at = letters.replace(STICKS, STAYS)
@@ -372,18 +357,23 @@ class _Work(PyramidPrograms):
             return True
         if letters in self._held:
             return False
-        held = sliding_together(self._search, letters, [])
+        staying = _staying(letters)
+        near = [
+            self._search.motion[:, -1] + self._search.of_forces @ one.forces.ravel()
+            for one in (*self._known, *self.further)
+            if not one.alone and _staying(one.letters) == staying
+        ]
+        held = sliding_together(self._search, letters, near)
         if held.forces is None:
             return held.certain
         if self._refutes:
             raise _NotRefutedError
         forces = forces_with_letters(self._search, letters, held.forces, shared=True)
-        if forces is None:
+        solution = None if forces is None else solution_near(self._search, letters, forces, shared=True)
+        if forces is None or solution is None or (solution.motion_unique and not held.certain):
             return False
         regular = solution_near(self._search, letters, forces) is not None
-        solution = solution_near(self._search, letters, forces, shared=True)
-        alone = solution is not None and solution.motion_unique
-        self._keep(Known(letters, forces, alone=alone, forces_unique=regular))
+        self._keep(Known(letters, forces, alone=solution.motion_unique, forces_unique=regular))
         self._decided.add(letters)  # the forces that move it so form a convex set
         return True
 

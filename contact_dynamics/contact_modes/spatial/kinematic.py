@@ -24,7 +24,12 @@ from contact_dynamics.contact.velocities import check_speeds
 from contact_dynamics.contact_modes.letters import SEPARATES, STAYS
 from contact_dynamics.contact_modes.spatial.cone import cone_of
 from contact_dynamics.errors import TooLargeError
-from contact_dynamics.tolerances import ACCELERATION_TOLERANCE, ROW_TOLERANCE, VELOCITY_TOLERANCE
+from contact_dynamics.tolerances import (
+    ACCELERATION_TOLERANCE,
+    NEARLY_PARALLEL,
+    ROW_TOLERANCE,
+    VELOCITY_TOLERANCE,
+)
 from contact_dynamics.validation import check_not_negative
 
 if TYPE_CHECKING:
@@ -104,6 +109,26 @@ def cone_faces(rows: FloatArray) -> set[int]:
     faces = {everything}
     for vanishing in np.unique(heights <= 10.0 * ROW_TOLERANCE, axis=0):
         ray = implied | sum(bit for bit, zero in zip(positions, vanishing, strict=True) if zero)
+        faces |= {face & ray for face in faces}
+    return faces
+
+
+def faces_in_space(rows: FloatArray) -> set[int] | None:
+    """Return the same for rows, (m, 3), that span all directions, or None if some rows are nearly parallel.
+
+    Extreme rays are across two rows each, so that neither an inner point nor a convex hull is needed.
+    """
+    unit = rows / np.sqrt((rows * rows).sum(axis=1))[:, None]
+    rays = np.cross(unit[:, None], unit[None]).reshape(-1, 3)
+    sizes = np.sqrt((rays * rays).sum(axis=1))
+    apart = sizes > ROW_TOLERANCE
+    if sizes[apart].min() < NEARLY_PARALLEL:
+        return None
+    heights = (rays[apart] / sizes[apart, None]) @ unit.T
+    faces = {(1 << len(rows)) - 1}
+    zero = np.abs(heights) <= ROW_TOLERANCE
+    for vanishing in np.unique(zero[heights.min(axis=1) >= -ROW_TOLERANCE], axis=0):
+        ray = _mask(vanishing)
         faces |= {face & ray for face in faces}
     return faces
 

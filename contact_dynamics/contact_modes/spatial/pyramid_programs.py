@@ -9,8 +9,10 @@ import numpy as np
 from contact_dynamics.contact_modes.letters import SEPARATES, STICKS
 from contact_dynamics.contact_modes.spatial.careful_program import CarefulProgram
 from contact_dynamics.contact_modes.spatial.dual_simplex import Narrowing, Program
+from contact_dynamics.contact_modes.spatial.kinematic import faces_in_space
 from contact_dynamics.contact_modes.spatial.options import any_letter, pyramid_of, way_of_sliding
 from contact_dynamics.errors import TooLargeError
+from contact_dynamics.numerics.linear_spaces import seen_and_unseen
 from contact_dynamics.tolerances import STRICT
 
 if TYPE_CHECKING:
@@ -25,6 +27,9 @@ not unique, hundreds of combinations of their sectors may be consistent, and the
 them."""
 
 AnyProgram = Program | CarefulProgram
+
+_FLUSH: Final = 3
+"""The dimension of the normal accelerations of contacts that are all on one plane."""
 
 CONTACT_TAG: Final = -3
 """The tag of contact 0. Each further contact's tag is one less."""
@@ -124,6 +129,49 @@ class PyramidPrograms:
             any_letter(pyramid, contact.point, first + i)
             for i, (contact, pyramid) in enumerate(zip(touching, self.pyramids, strict=True))
         ]
+
+    def decide_who_stays(self) -> None:
+        """Decide which contacts stay, and for each choice that may hold all else."""
+        root = self._solved(self._root)
+        choices = self._choices()
+        if root is None:
+            return
+        if choices is None:
+            self._decide_next(root, self._trials, 0)
+            return
+        for stays in choices:
+            parts = [one.parts[stays >> i & 1] for i, one in enumerate(self._trials)]
+            raised = [one.raised for one in parts if one.raised is not None]
+            zeroed = frozenset[int]().union(*(one.zeroed for one in parts))
+            program = self._solved(root.narrowed(Narrowing(zeroed=zeroed, raised=raised, least=self._least)))
+            if program is not None:
+                self._decide_staying(program, parts)
+
+    def _choices(self) -> list[int] | None:
+        """Return all choices of contacts that can stay, each as the bits of an integer, or None if unknown.
+
+        They are known where all contacts are on one plane, and then they are few.
+        """
+        rows = self._normals[:, :-1]
+        basis = seen_and_unseen(rows)[0]
+        if len(basis) != _FLUSH or self._normals[:, -1].any():
+            return None
+        faces = faces_in_space(rows @ basis.T)
+        return None if faces is None else sorted(faces)
+
+    def _decide_next(self, program: AnyProgram, trials: list[Option], at: int) -> None:
+        """Decide whether one contact after another stays."""
+        if at == len(trials):
+            self._decide_staying(program, trials)
+            return
+        for part in trials[at].parts:
+            narrower = self._solved(self._narrowed(program, at, part))
+            if narrower is not None:
+                self._decide_next(narrower, [*trials[:at], part, *trials[at + 1 :]], at + 1)
+
+    def _decide_staying(self, program: AnyProgram, trials: list[Option], /) -> None:
+        """Decide all modes in which the same contacts stay."""
+        raise NotImplementedError
 
     def allows(self, letters: str, items: Sequence[int]) -> bool:
         """Return whether some forces bring a mode about, given its letters and items of sliding.

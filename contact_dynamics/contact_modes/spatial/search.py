@@ -91,16 +91,11 @@ class Search(PyramidPrograms):
         self._grouped = grouped
         self._goal = ""  # the letters that are sought, where all are known
         self._settled: set[str] = set()  # letters that need no further mode
-        self._search()
+        self.decide_who_stays()
         if not self._found and isinstance(self._root, Program):
             self._root = self._careful_root
-            self._search()
+            self.decide_who_stays()
         return list(self._found.values())
-
-    def _search(self) -> None:
-        root = self._solved(self._root)
-        if root is not None:
-            self._decide_who_stays(root, self._trials, 0)
 
     def loaded(self, free: FloatArray) -> Search:
         """Return the search for the modes of the same contacts, with other motion without their forces."""
@@ -113,16 +108,7 @@ class Search(PyramidPrograms):
             facets=self._facets,
         )
 
-    def _decide_who_stays(self, program: AnyProgram, trials: list[Option], at: int) -> None:
-        if at == len(trials):
-            self._decide_common_motion(program, trials)
-            return
-        for part in trials[at].parts:
-            narrower = self._solved(self._narrowed(program, at, part))
-            if narrower is not None:
-                self._decide_who_stays(narrower, [*trials[:at], part, *trials[at + 1 :]], at + 1)
-
-    def _decide_common_motion(self, program: AnyProgram, trials: list[Option]) -> None:
+    def _decide_staying(self, program: AnyProgram, trials: list[Option], /) -> None:
         open_ones = [i for i, letters in enumerate(trials) if letters.parts]
         frames = np.array([trials[i].parts[0].rows for i in open_ones]).reshape(-1, 2, 7)
         if len(open_ones) < 2 or np.any(frames[:, :, -1]):

@@ -41,7 +41,9 @@ contacts may stick, and its friction has no direction."""
 
 
 def sliding_together(search: Search, letters: str, motions: Sequence[FloatArray]) -> Held:
-    """Return forces with the letters, to `FEASIBLE`, or whether it is certain that there are none.
+    """Return forces with the letters, to `FEASIBLE`, or none.
+
+    It is certain that there are none, or that no others move the body differently, if it says so.
 
     Args:
         search: The case, of a body at rest.
@@ -59,7 +61,7 @@ def sliding_together(search: Search, letters: str, motions: Sequence[FloatArray]
         for slowest in SLOWEST_SHARED:
             forces = _turned(problem, start, slowest)
             if forces is not None:
-                return Held(forces, certain=True)
+                return Held(forces, certain=False)
     return Held(None, certain=False)
 
 
