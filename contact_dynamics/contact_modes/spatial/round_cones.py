@@ -20,7 +20,6 @@ import numpy as np
 
 from contact_dynamics.contact_modes.spatial.careful_program import merged
 from contact_dynamics.numerics.linear_spaces import row_space
-from contact_dynamics.numerics.vectors import Vector3, combined, dot
 from contact_dynamics.tolerances import (
     ROUND_CONE_APART,
     ROUND_CONE_HELD,
@@ -226,8 +225,7 @@ def _nearest(demand: _Demand, normals: FloatArray, frictions: FloatArray) -> Hel
     """Return forces within the round cones whose images sum to the target, or are nearest to it."""
     images, target, sizes = demand
     load = float(np.linalg.norm(target))
-    axes, leaning = normals.tolist(), frictions.tolist()
-    wide = any(friction > _WIDE for friction in leaning)
+    wide = bool(np.any(frictions > _WIDE))
     owners: list[int] = []
     edges: list[FloatArray] = []
     spans, shares = np.zeros((len(target), 0)), np.zeros(0)
@@ -241,12 +239,10 @@ def _nearest(demand: _Demand, normals: FloatArray, frictions: FloatArray) -> Hel
             for i, edge, share in zip(owners, edges, shares.tolist(), strict=True):
                 forces[i] += share * edge
             return Held(forces, certain=True)
-        power = ((rest / left) @ images).tolist()  # (n, 3), of unit forces on what is left over
-        found = [_extreme(*one) for one in zip(power, axes, leaning, strict=True)]
-        best_of_each = np.array([force for force, _ in found]).reshape(-1, 3)
+        best_of_each, help_of_each = _extremes((rest / left) @ images, normals, frictions)
         moved = (images @ best_of_each[:, :, None])[:, :, 0]
         effects = np.sqrt((moved * moved).sum(axis=1))
-        cosines = np.array([helps for _, helps in found]) / np.where(effects > 0.0, effects, 1.0)
+        cosines = help_of_each / np.where(effects > 0.0, effects, 1.0)
         best = int(cosines.argmax()) if len(cosines) else -1
         helps = float(cosines[best]) if len(cosines) else 0.0
         if helps * _MAX_FORCE * load <= left and left > ROUND_CONE_ROUNDING * load:
@@ -268,22 +264,23 @@ def _nearest(demand: _Demand, normals: FloatArray, frictions: FloatArray) -> Hel
     return Held(None, certain=False)
 
 
-def _extreme(power: Vector3, axis: Vector3, friction: float) -> tuple[Vector3, float]:
-    """Return the force of unit normal part in a cone that has the most power, and its power.
+def _extremes(power: FloatArray, axes: FloatArray, frictions: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return the forces of unit normal part in cones that have the most power, (n, 3), and that power, (n,).
 
     Args:
-        power: The power of unit forces.
-        axis: The axis of the cone.
-        friction: How far forces lean from it.
+        power: (n, 3), the power of unit forces.
+        axes: (n, 3), the axes of the cones.
+        frictions: (n,), how far forces lean from them.
     """
-    along = dot(power, axis)
-    x, y, z = combined(1.0, power, -along, axis)
-    slope = math.sqrt(x * x + y * y + z * z)
-    if slope <= ROUND_CONE_ROUNDING * abs(along):  # rounding has no direction
-        return axis, along
+    along = (power * axes).sum(axis=1)
+    across = power - along[:, None] * axes
+    slopes = np.sqrt((across * across).sum(axis=1))
     # Where the remainder is inside of a wide cone, the force is along it, since edges hardly press.
-    lean = slope / along if friction > _WIDE and slope < friction * along else friction
-    return combined(1.0, axis, lean / slope, (x, y, z)), along + lean * slope
+    inside = (frictions > _WIDE) & (slopes < frictions * along)
+    leans = np.where(inside, slopes / np.where(inside, along, 1.0), frictions)
+    leans[slopes <= ROUND_CONE_ROUNDING * np.abs(along)] = 0.0  # rounding has no direction
+    ways = across / np.where(slopes > 0.0, slopes, 1.0)[:, None]
+    return axes + leans[:, None] * ways, along + leans * slopes
 
 
 def _shares(spans: FloatArray, target: FloatArray, shares: FloatArray) -> FloatArray:

@@ -12,6 +12,7 @@ forces move it so (`round_cones`), and a refusal is certain.
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
@@ -54,7 +55,10 @@ def sliding_together(search: Search, letters: str, motions: Sequence[FloatArray]
         return Held(None, certain=False)
     problem = _problem(search, letters)
     if len(problem.motions) == 1:
-        ways = [_one_way(search, letters, problem, sign) for sign in (1.0, -1.0)]
+        # The applied wrench has power on a motion from rest, since contact forces have none.
+        power = float(problem.motions[0] @ search.mass @ search.motion[:, -1])
+        signs = (1.0, -1.0) if abs(power) <= FEASIBLE else (math.copysign(1.0, power),)
+        ways = [_one_way(search, letters, problem, sign) for sign in signs]
         found = next((held for held in ways if held.forces is not None), None)
         return found or Held(None, certain=all(held.certain for held in ways))
     for start in problem.directions(motions):
