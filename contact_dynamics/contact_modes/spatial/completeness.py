@@ -55,7 +55,7 @@ MAX_PROGRAMS: Final = 3000
 ENOUGH_PROGRAMS: Final = 1500
 """Maximum number of programs before the pyramids are searched. Few cases take more."""
 
-FEW_PROGRAMS: Final = 200
+FEW_PROGRAMS: Final = 400
 """Maximum number of programs where another way to a verdict is left."""
 
 _CARE: Final = 3
@@ -276,10 +276,9 @@ class _Work(PyramidPrograms):
             return
         frames = np.array([trials[i].parts[0].rows[:, :-1] for i in open_ones])
         normals = self._normals[staying, :-1]
-        rest = flat_of(normals, frames, tuple(range(len(open_ones))))
         self._decide_without_directions(letters)
         flats = [flat_of(normals, frames, ())]
-        seen = {rest.stuck, flats[0].stuck}
+        seen = {frozenset(range(len(open_ones))), flats[0].stuck}
         while flats:
             flat = flats.pop()
             if self._decide_flat(flat, letters, open_ones):
@@ -344,7 +343,7 @@ class _Work(PyramidPrograms):
             return True
         gains = None if self._power is None else gains_in(flat.image, self._power, self.mass)
         may_hold = False
-        for region in whole(len(flat.image.coordinates)):
+        for region in whole(len(flat.image.coordinates), gains):
             may_hold |= self._decide(_Set(own, turning, flat, region, gains, {}))
         return may_hold
 

@@ -9,6 +9,7 @@ edge forces as small as it can. That bounds every step, and makes ties rare.
 
 from __future__ import annotations
 
+from functools import cache
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
@@ -123,9 +124,8 @@ class Program:
             names: The names of these rows for `narrowed`, each >= K. Edge forces have the names 0 to K - 1.
         """
         count = motion.shape[1] - 1
-        weights = np.append(1.0 + 0.5 * (np.arange(1, count + 1) * _GOLDEN % 1.0), 0.0)
         rows = _rows_of(named, motion)
-        table = np.vstack([weights[None, :], motion, rows])
+        table = np.concatenate([_weights(count), motion, rows])
         return Program(table, list(names), list(range(count)), np.zeros(len(rows)))
 
     def renamed(self, columns: list[int], equalities: int) -> Program:
@@ -321,6 +321,14 @@ class Program:
             steps = np.maximum(table[_HEAD + falls, -1], 0.0) / -table[_HEAD + falls, enters]
             self._pivot(int(falls[steps.argmin()]), enters)
         return True
+
+
+@cache
+def _weights(count: int) -> FloatArray:
+    """Return the weights of edge forces, (1, count + 1), with that of the constant, which is zero."""
+    weights = np.append(1.0 + 0.5 * (np.arange(1, count + 1) * _GOLDEN % 1.0), 0.0)
+    weights.flags.writeable = False
+    return weights[None, :]
 
 
 def _rows_of(rows: FloatArray, motion: FloatArray) -> FloatArray:

@@ -17,7 +17,6 @@ from typing import TYPE_CHECKING, Final, NamedTuple, TypeAlias
 
 import numpy as np
 
-from contact_dynamics.contact.friction import edges_in_frame
 from contact_dynamics.contact_modes.letters import SEPARATES, STICKS
 from contact_dynamics.contact_modes.spatial.careful_program import CarefulProgram
 from contact_dynamics.contact_modes.spatial.dual_simplex import Narrowing, Program
@@ -74,11 +73,13 @@ class _Edges(NamedTuple):
         edges: (k, 3).
         moved: (k, 6), the motion that each causes.
         sizes: (k,), the motion that a unit normal part of each causes.
+        owners: (k,), the contact of each.
     """
 
     edges: FloatArray
     moved: FloatArray
     sizes: FloatArray
+    owners: NDArray[np.intp]
 
 
 class HoldingPrograms:
@@ -91,13 +92,22 @@ class HoldingPrograms:
         n = len(search.touching)
         self._normals = np.array([one.normal for one in search.touching])
         self._frictions = np.array([one.friction for one in search.touching])
-        self._frames = np.array([np.zeros((2, 3)) if p.frame is None else p.frame for p in search.pyramids])
         self._points = np.array([one.point for one in search.touching])  # (n, 3, 7)
         self._rising = np.einsum("ij,ijk->ik", self._normals, self._points)
-        self._across = self._frames @ self._points  # (n, 2, 7)
-        self._of_forces = search.of_forces.reshape(6, n, 3).transpose(1, 2, 0)  # (n, 3, 6)
+        frames = np.array([np.zeros((2, 3)) if p.frame is None else p.frame for p in search.pyramids])
+        self._across = frames @ self._points  # (n, 2, 7)
+        # Each contact's only edge, or the middle of its edges, and its tangents, with what they cause.
+        axes = [
+            p.edges[0] if p.frame is None else of.normal
+            for p, of in zip(search.pyramids, search.touching, strict=True)
+        ]
+        units = np.concatenate([np.array(axes)[:, None], frames], axis=1)
+        of_forces = search.of_forces.reshape(6, n, 3).transpose(1, 2, 0)  # (n, 3, 6)
+        self._units = np.concatenate([units, units @ of_forces], axis=2)  # (n, 3, 9)
+        self._nothing = self._leaning([], np.zeros((0, 1)), np.zeros((0, 1)))
         self._around: dict[int, list[_Edges]] = {}
         self._equations: dict[str, FloatArray] = {}
+        self._parts: dict[tuple[str, tuple[int, ...], int], tuple[FloatArray, FloatArray, _Edges]] = {}
 
     def forces(
         self, letters: str, ranges: Ranges, facets: int = COARSE, *, within: Within | None = None
@@ -112,33 +122,23 @@ class HoldingPrograms:
             facets: The number of edges of the pyramids around round cones.
             within: A region in which the common motion lies.
         """
-        zero, positive = self._rows_of(letters), []
         turning = list(ranges)
-        owners: list[int] = []
-        parts: list[_Edges] = []
-        whole = self._whole(facets)
-        for i, letter in enumerate(letters):
-            if letter == SEPARATES:
-                positive.append(self._rising[i] - self._least * _CONSTANT)
-            elif i not in ranges:
-                parts.append(whole[i])
-                owners += [i] * len(whole[i].sizes)
+        zero, leaving, whole = self._fixed(letters, tuple(turning), facets)
+        positive = [leaving]
+        edges, moved, sizes, owners = whole
         if turning:
-            own, rows = self._in_ranges(turning, np.array([ranges[i] for i in turning]))
-            parts.append(own)
-            owners += np.repeat(turning, len(own.sizes) // len(turning)).tolist()
-            implied: frozenset[int] = frozenset() if within is None else within.implied
-            positive += [
-                row for i, some in zip(turning, rows, strict=True) if i not in implied for row in some
-            ]
+            own, conditions = self._in_ranges(turning, np.array(list(ranges.values())))
+            edges, moved, sizes, owners = (np.concatenate(pair) for pair in zip(whole, own, strict=True))
+            if within is not None and within.implied:
+                conditions = conditions[[i not in within.implied for i in turning]]
+            positive.append(conditions.reshape(-1, 7))
         if within is not None:
-            positive += list(within.region.rows(within.image))
-        every, moved, sizes = (np.concatenate(one) for one in zip(*parts, strict=True))
+            positive.append(within.region.rows(within.image))
         table = np.column_stack([moved.T, self._search.motion[:, -1]])
-        rows = np.array([*zero, *positive]).reshape(-1, 7)
-        names = range(len(every), len(every) + len(rows))
+        rows = np.concatenate([zero, *positive])
+        names = range(len(edges), len(edges) + len(rows))
         program: Program | CarefulProgram = Program.stated(table, rows, names).renamed(
-            list(range(len(every))), len(zero)
+            list(range(len(edges))), len(zero)
         )
         holds = program.solve()
         careful = not holds and program.doubtful
@@ -150,7 +150,7 @@ class HoldingPrograms:
         if not holds or not (within is None or self._has_power(program, within, owners, sizes)):
             return None, careful
         found = np.zeros((len(letters), 3))
-        np.add.at(found, owners, program.shares(len(every))[:, None] * every)
+        np.add.at(found, owners, program.shares(len(edges))[:, None] * edges)
         return found, careful
 
     def _rows_of(self, letters: str) -> FloatArray:
@@ -167,27 +167,47 @@ class HoldingPrograms:
             self._equations[letters] = stacked
         return self._equations[letters]
 
+    def _fixed(
+        self, letters: str, turning: tuple[int, ...], facets: int
+    ) -> tuple[FloatArray, FloatArray, _Edges]:
+        """Return what does not depend on ranges of directions.
+
+        These are the rows that vanish with some letters, those of the contacts that separate, and the edges
+        of the contacts whose directions are not restricted.
+        """
+        key = letters, turning, facets
+        if key not in self._parts:
+            leaving = [i for i, letter in enumerate(letters) if letter == SEPARATES]
+            others = [i for i in range(len(letters)) if i not in leaving and i not in turning]
+            whole = [self._nothing, *(self._whole(facets)[i] for i in others)]
+            self._parts[key] = (
+                self._rows_of(letters),
+                self._rising[leaving] - self._least * _CONSTANT,
+                _Edges(*(np.concatenate(one) for one in zip(*whole, strict=True))),
+            )
+        return self._parts[key]
+
     def _whole(self, facets: int) -> list[_Edges]:
         """Return the edges of each contact's whole cone."""
         if facets not in self._around:
+            turns = np.arange(0.0, facets)[None, :] * (2.0 * math.pi / facets)
             wider = 1.0 / math.cos(math.pi / facets)
             self._around[facets] = [
-                self._sized(
-                    pyramid.edges
-                    if pyramid.frame is None
-                    else edges_in_frame(contact.normal, wider * contact.friction, facets, pyramid.frame),
-                    np.full(1 if pyramid.frame is None else facets, i),
-                )
-                for i, (contact, pyramid) in enumerate(
-                    zip(self._search.touching, self._search.pyramids, strict=True)
-                )
+                self._leaning([i], np.zeros((1, 1)), np.zeros((1, 1)))
+                if pyramid.frame is None
+                else self._leaning([i], np.full((1, facets), -wider * self._frictions[i]), turns)
+                for i, pyramid in enumerate(self._search.pyramids)
             ]
         return self._around[facets]
 
-    def _sized(self, edges: FloatArray, owners: NDArray[np.intp]) -> _Edges:
-        moved = (edges[:, None, :] @ self._of_forces[owners])[:, 0]
+    def _leaning(self, contacts: list[int], leans: FloatArray, turns: FloatArray) -> _Edges:
+        """Return edges that lean by some slopes, (m, k), against directions, (m, k) rad."""
+        parts = np.stack([np.ones_like(leans), -leans * np.cos(turns), -leans * np.sin(turns)], axis=-1)
+        both = (parts @ self._units[contacts]).reshape(-1, 9)
+        edges, moved = both[:, :3], both[:, 3:]
         sizes = np.sqrt((moved * moved).sum(axis=1))  # so that the unit of mass does not matter
-        return _Edges(edges / sizes[:, None], moved / sizes[:, None], sizes)
+        owners = np.repeat(np.array(contacts, dtype=np.intp), leans.shape[1])
+        return _Edges(edges / sizes[:, None], moved / sizes[:, None], sizes, owners)
 
     def _in_ranges(self, turning: list[int], ends: FloatArray) -> tuple[_Edges, FloatArray]:
         """Return the edges of contacts that slide in ranges of directions, and conditions, (m, 3, 7)."""
@@ -196,22 +216,20 @@ class HoldingPrograms:
         pieces = max(1, math.ceil(float(wide.max()) / _PIECE))
         half = 0.5 * wide / pieces
         shares = np.array([0.0, *(2.0 * k + 1.0 for k in range(pieces)), 2.0 * pieces])
-        angles = low[:, None] + half[:, None] * shares
-        leaning = np.repeat((self._frictions[turning] / np.cos(half))[:, None], len(shares), axis=1)
-        leaning[:, [0, -1]] = self._frictions[turning][:, None]
-        along = leaning[:, :, None] * np.stack([np.cos(angles), np.sin(angles)], axis=-1)  # (m, k, 2)
-        edges = self._normals[turning][:, None, :] - along @ self._frames[turning]
-        middle = 0.5 * (low + high)
-        turns = np.stack([low + _QUARTER, middle, high - _QUARTER], axis=1)  # (m, 3)
+        frictions = self._frictions[turning]
+        leans = np.repeat((frictions / np.cos(half))[:, None], len(shares), axis=1)
+        leans[:, [0, -1]] = frictions[:, None]
+        edges = self._leaning(turning, leans, low[:, None] + half[:, None] * shares)
+        turns = np.stack([low + _QUARTER, 0.5 * (low + high), high - _QUARTER], axis=1)  # (m, 3)
         rows = np.stack([np.cos(turns), np.sin(turns)], axis=-1) @ self._across[turning]
         rows[:, 1, -1] -= MILDER * self._least
-        return self._sized(edges.reshape(-1, 3), np.repeat(turning, len(shares))), rows
+        return edges, rows
 
     def _has_power(
         self,
         program: Program | CarefulProgram,
         within: Within,
-        owners: list[int],
+        owners: NDArray[np.intp],
         sizes: FloatArray,
     ) -> bool:
         """Return whether the applied wrench may have the power that friction takes in a region."""

@@ -154,7 +154,7 @@ class Search(PyramidPrograms):
         self._goal = "".join(letters.letter for letters in trials)
         common = self._common(image, open_ones)
         may_hold = False
-        for region in whole(len(image.coordinates)):
+        for region in whole(len(image.coordinates), common.gains):
             may_hold |= self._decide_within(region, program, trials, common)
         self._goal = ""
         return may_hold

@@ -53,7 +53,10 @@ def sliding_together(search: Search, letters: str, motions: Sequence[FloatArray]
     """
     if any(contact.point[:, -1].any() or contact.sliding.any() for contact in search.touching):
         return Held(None, certain=False)
-    problem = _problem(search, letters)
+    free_motions = _motions(search, letters)
+    if len(free_motions) > 1 and not motions:
+        return Held(None, certain=False)
+    problem = _problem(search, letters, free_motions)
     if len(problem.motions) == 1:
         # The applied wrench has power on a motion from rest, since contact forces have none.
         power = float(problem.motions[0] @ search.mass @ search.motion[:, -1])
@@ -129,16 +132,24 @@ class _Problem(NamedTuple):
             yield unit + _BENT * chance.normal(size=unit.shape)
 
 
-def _problem(search: Search, letters: str) -> _Problem:
+def _motions(search: Search, letters: str) -> FloatArray:
+    """Return the motions, (p, 6), with some letters, whatever else they do."""
+    still = [
+        one.point[:, :6] if letter == STICKS else (one.normal @ one.point)[None, :6]
+        for letter, one in zip(letters, search.touching, strict=True)
+        if letter != SEPARATES
+    ]
+    return seen_and_unseen(np.vstack([np.zeros((0, 6)), *still]))[1]
+
+
+def _problem(search: Search, letters: str, free_motions: FloatArray) -> _Problem:
     size = 3 * len(letters)
     normals, tangents, others, slides = [], [], [np.zeros((0, size))], []
-    still = [np.zeros((0, 6))]
     for i, (letter, contact, pyramid) in enumerate(
         zip(letters, search.touching, search.pyramids, strict=True)
     ):
         if letter == SEPARATES:
             continue
-        still.append(contact.point[:, :6] if letter == STICKS else (contact.normal @ contact.point)[None, :6])
         spread = np.zeros((3, size))
         spread[:, 3 * i : 3 * i + 3] = np.eye(3)
         if letter == STAYS and pyramid.frame is not None:
@@ -148,7 +159,6 @@ def _problem(search: Search, letters: str) -> _Problem:
             slides.append(frame @ contact.point[:, :6])
         else:
             others.append(pyramid.edges @ spread)
-    free_motions = seen_and_unseen(np.vstack(still))[1]
     return _Problem(
         normals=np.array(normals).reshape(-1, size),
         tangents=np.array(tangents).reshape(-1, 2, size),
