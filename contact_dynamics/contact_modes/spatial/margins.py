@@ -159,18 +159,14 @@ def _nearest(case: SpatialCase, search: Search, letters: str, metric: FloatArray
     ways = [Way(letter, -1) for letter in letters]
     positive, zero = supports(wrench_generators(case, search, ways, metric))
     target = np.append(motion.wrench / metric / unit, 1.0)
-    for row in zero:
-        across = float(np.linalg.norm(row[:6]))
-        if across > ROW_TOLERANCE:
-            return 0.0, row[:6] / across
-    margin, way = math.inf, np.zeros(6)
-    for row in positive:
-        across = float(np.linalg.norm(row[:6]))
-        if across > ROW_TOLERANCE:
-            depth = float(row @ target) / across
-            if depth < -ON_BOUNDARY:
-                return math.nan, way
-            depth = max(0.0, depth)
-            if depth < margin:
-                margin, way = depth, -row[:6] / across
-    return margin * unit, way
+    zero, positive = (rows[np.linalg.norm(rows[:, :6], axis=1) > ROW_TOLERANCE] for rows in (zero, positive))
+    if len(zero):
+        return 0.0, zero[0, :6] / float(np.linalg.norm(zero[0, :6]))
+    if len(positive) == 0:
+        return math.inf, np.zeros(6)
+    sizes = np.linalg.norm(positive[:, :6], axis=1)
+    depths = positive @ target / sizes
+    nearest = int(depths.argmin())
+    if depths[nearest] < -ON_BOUNDARY:
+        return math.nan, np.zeros(6)
+    return max(0.0, float(depths[nearest])) * unit, -positive[nearest, :6] / sizes[nearest]

@@ -160,7 +160,7 @@ class _Union:
 
     def cones_at(self, wrench: FloatArray) -> Iterator[_Cone | None]:
         """Yield the mode's cones that contain a wrench, or None for one without inner points."""
-        for one in search_of(self._under(wrench), self._facets).run():
+        for one in search_of(self._under(wrench), self._facets).ways_with(self._mode):
             ways = tuple(Way(of.letter, of.item) for of in one.letters)
             if "".join(of.letter for of in ways) == self._mode:
                 yield self._cone(ways)

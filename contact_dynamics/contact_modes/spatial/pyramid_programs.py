@@ -141,9 +141,7 @@ class PyramidPrograms:
             return
         for stays in choices:
             parts = [one.parts[stays >> i & 1] for i, one in enumerate(self._trials)]
-            raised = [one.raised for one in parts if one.raised is not None]
-            zeroed = frozenset[int]().union(*(one.zeroed for one in parts))
-            program = self._solved(root.narrowed(Narrowing(zeroed=zeroed, raised=raised, least=self._least)))
+            program = self._solved(self._with_all(root, parts))
             if program is not None:
                 self._decide_staying(program, parts)
 
@@ -178,7 +176,7 @@ class PyramidPrograms:
 
         A contact has the item -1 if it has none.
         """
-        program = self._root
+        options = []
         for i, (letter, item) in enumerate(zip(letters, items, strict=True)):
             separates, stays = self._trials[i].parts
             option = stays
@@ -188,8 +186,8 @@ class PyramidPrograms:
                 option = way_of_sliding(self.pyramids[i], self.touching[i].point, item)
             elif letter == STICKS:
                 (option,) = stays.parts
-            program = self._narrowed(program, i, option, staying=letter != SEPARATES)
-        return self._solved(program) is not None
+            options.append(option)
+        return self._solved(self._with_all(self._root, options)) is not None
 
     def _solved(self, program: AnyProgram) -> AnyProgram | None:
         """Return a program that holds some edge forces, or None if none satisfy its conditions.
@@ -215,15 +213,26 @@ class PyramidPrograms:
                 "fewer contacts, or other friction_facets",
             )
 
-    def _narrowed(
-        self, program: AnyProgram, at: int, letters: Option, *, staying: bool = False
-    ) -> AnyProgram:
-        zeroed = letters.zeroed
-        if staying:
-            zeroed |= {self._first_normal + at}
+    def _with_all(self, program: AnyProgram, letters: Sequence[Option]) -> AnyProgram:
+        """Return a program of which no contact is decided, with what each contact does."""
+        staying = {self._first_normal + i for i, one in enumerate(letters) if one.raised is None}
+        equations = [one.rows[: one.equalities] for one in letters]
+        others = [one.rows[one.equalities :] for one in letters]
         return program.narrowed(
             Narrowing(
-                zeroed=zeroed,
+                zeroed=frozenset(staying).union(*(one.zeroed for one in letters)),
+                raised=[one.raised for one in letters if one.raised is not None],
+                least=self._least,
+                rows=np.concatenate([np.zeros((0, 7)), *equations, *others]),
+                equalities=sum(one.equalities for one in letters),
+                tag=CONTACT_TAG - len(self.touching),
+            )
+        )
+
+    def _narrowed(self, program: AnyProgram, at: int, letters: Option) -> AnyProgram:
+        return program.narrowed(
+            Narrowing(
+                zeroed=letters.zeroed,
                 raised=() if letters.raised is None else (letters.raised,),
                 least=self._least,
                 rows=letters.rows,
