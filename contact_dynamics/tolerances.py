@@ -666,7 +666,7 @@ TABLE_SMALL_PIVOT: Final = 1e-3
 TABLE_ROUNDING: Final = 1e-16
 """Relative. Doubles lose so much in a step or two."""
 
-SLOWEST_SHARED: Final = (1e-3, 1e-5, 1e-7)
+SLOWEST_SHARED: Final = (1e-3, 1e-5, 1e-7, 3e-8)
 """Relative to the largest acceleration. Contacts that share a load are made to slide at least so fast, one
 after another, since forces at rest would also do at zero."""
 
