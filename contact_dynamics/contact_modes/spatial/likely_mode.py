@@ -16,7 +16,7 @@ import numpy as np
 from contact_dynamics.contact_modes.letters import SEPARATES, STAYS, STICKS
 from contact_dynamics.contact_modes.spatial.completeness import Known
 from contact_dynamics.contact_modes.spatial.exact_letters import solution_near
-from contact_dynamics.tolerances import COMPLIANT_SETTLED, GIVES_WAY
+from contact_dynamics.tolerances import COMPLIANT_SETTLED, GIVES_WAY, STRICT
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -39,14 +39,17 @@ _ENOUGH: Final = 0.1
 
 def likely_mode(search: Search) -> Known | None:
     """Return the most likely mode of touching contacts, or None if there is none with its letters."""
-    letters, near = _compliant(search)
-    if set(letters) <= {SEPARATES}:
-        return Known(letters, near, alone=True)
-    solution = solution_near(search, letters, near) or solution_near(search, letters, near, shared=True)
-    if solution is None or not solution.has_letters:
-        return None
-    unique = solution.equations is not None
-    return Known(letters, solution.forces, alone=solution.motion_unique, forces_unique=unique)
+    body, now = _settled(search)
+    for gives_way in (GIVES_WAY, 0.0):
+        letters = body.letters(now, gives_way)
+        if set(letters) <= {SEPARATES} and now.rising.min(initial=1.0) > STRICT:
+            return Known(letters, now.forces, alone=True)
+        solution = solution_near(search, letters, now.forces)
+        solution = solution or solution_near(search, letters, now.forces, shared=True)
+        if solution is not None and solution.has_letters:
+            unique = solution.equations is not None
+            return Known(letters, solution.forces, alone=solution.motion_unique, forces_unique=unique)
+    return None
 
 
 class _Response(NamedTuple):
@@ -79,7 +82,7 @@ class _Compliant:
         self._points, self._constant = np.ascontiguousarray(points[:, :6]), points[:, 6]
         self._normals = np.array([one.normal for one in touching]).reshape(-1, 3)
         self._frictions = np.array([one.friction for one in touching])
-        self.rests = np.array([one.frame is not None for one in search.pyramids], dtype=bool)
+        self._rests = np.array([one.frame is not None for one in search.pyramids], dtype=bool)
         sliding = np.array([one.sliding for one in touching]).reshape(-1, 3)
         self._sliding = _directions(sliding, np.sqrt((sliding * sliding).sum(axis=1)))
         self._along = self._normals[:, :, None] * self._normals[:, None, :]
@@ -90,10 +93,10 @@ class _Compliant:
         rising = (self._normals * accelerations).sum(axis=1)
         across = accelerations - rising[:, None] * self._normals
         speeds = np.sqrt((across * across).sum(axis=1))
-        ways = np.where(self.rests[:, None], _directions(across, speeds), self._sliding)
+        ways = np.where(self._rests[:, None], _directions(across, speeds), self._sliding)
         pressing = stiffness * np.maximum(-rising, 0.0)
         limits = self._frictions * pressing
-        grips = self.rests & (stiffness * speeds <= limits)
+        grips = self._rests & (stiffness * speeds <= limits)
         friction = np.where(grips, stiffness * speeds, limits)
         forces = pressing[:, None] * self._normals - friction[:, None] * ways
         missed = self._wrench + self._points.T @ forces.ravel() - self.mass @ motion
@@ -105,7 +108,7 @@ class _Compliant:
         slips = np.where(now.grips, 0.0, 1.0)
         leaning = self._normals - (slips * self._frictions)[:, None] * now.ways
         limits = -self._frictions * presses * now.rising
-        turning = np.where(self.rests, limits / np.where(now.speeds > 0.0, now.speeds, math.inf), 0.0)
+        turning = np.where(self._rests, limits / np.where(now.speeds > 0.0, now.speeds, math.inf), 0.0)
         holding = np.where(now.grips, presses, turning)
         rates = presses[:, None, None] * leaning[:, :, None] * self._normals[:, None, :]
         turns = slips[:, None, None] * now.ways[:, :, None] * now.ways[:, None, :]
@@ -114,14 +117,22 @@ class _Compliant:
         found: FloatArray = np.linalg.solve(slopes, now.missed)
         return found
 
+    def letters(self, now: _Response, gives_way: float) -> str:
+        """Return what contacts do, where those that move by no more than ``gives_way`` stay or stick.
+
+        Where that is zero, contacts without force separate, and those whose friction is at its limit slide.
+        """
+        sticks = self._rests & (now.grips if gives_way == 0.0 else now.speeds <= gives_way)
+        return "".join(np.where(now.rising > gives_way, SEPARATES, np.where(sticks, STICKS, STAYS)).tolist())
+
 
 def _directions(vectors: FloatArray, sizes: FloatArray) -> FloatArray:
     found: FloatArray = vectors / np.where(sizes > 0.0, sizes, 1.0)[:, None]
     return found
 
 
-def _compliant(search: Search) -> tuple[str, FloatArray]:
-    """Return the letters of stiff compliant contacts, and their forces, (n, 3)."""
+def _settled(search: Search) -> tuple[_Compliant, _Response]:
+    """Return a body on the stiffest contacts, and what these do."""
     body, inverse = _Compliant(search), np.linalg.inv(search.mass)
     motion: FloatArray = search.motion[:, -1]
     for stiffness in _STIFFNESSES:
@@ -139,10 +150,4 @@ def _compliant(search: Search) -> tuple[str, FloatArray]:
                     break
                 share *= 0.5
             motion, left = motion + share * step, trial
-    letters = [
-        SEPARATES if rising > GIVES_WAY else STICKS if rests and speed <= GIVES_WAY else STAYS
-        for rising, speed, rests in zip(
-            now.rising.tolist(), now.speeds.tolist(), body.rests.tolist(), strict=True
-        )
-    ]
-    return "".join(letters), now.forces
+    return body, now

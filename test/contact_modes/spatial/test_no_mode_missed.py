@@ -81,6 +81,31 @@ def test_a_contact_that_begins_to_slide_does_so_as_fast_as_was_found() -> None:
     assert places_of(range(8255, 8256))["missed"] == 0
 
 
+@pytest.mark.parametrize(("seed", "modes"), [(194, ["fccccc", "cccccc"]), (326, ["fcccc", "ccccc"])])
+def test_a_body_that_slides_at_all_contacts_but_one_may_stick_there_or_begin_to_slide(
+    seed: int, modes: list[str]
+) -> None:
+    """Whichever of the modes is found first, the other one is not missed."""
+    answer = contact_modes(problem_of(made(seed)))
+    assert [mode.mode for mode in answer.modes] == modes
+
+
+@pytest.mark.parametrize("seed", sweep(12, whole=300))
+def test_modes_are_listed_in_the_order_of_their_letters(seed: int) -> None:
+    order = {"s": 0, "f": 1, "c": 2}
+    keys = [[order[letter] for letter in mode.mode] for mode in contact_modes(problem_of(made(seed))).modes]
+    assert keys == sorted(keys)
+
+
+def test_what_sticks_has_one_motion_and_what_only_begins_to_translate_too() -> None:
+    """Loads that eight contacts share in many ways do not change how the body translates."""
+    (sliding,) = contact_modes(problem_of(made(93))).modes
+    assert (sliding.mode, sliding.forces_unique, sliding.motion_unique) == ("c" * 8, False, True)
+    assert sliding.angular_acceleration_W == pytest.approx(np.zeros(3), abs=1e-9)
+    still = next(mode for mode in contact_modes(problem_of(made(5))).modes if mode.mode == "f" * 7)
+    assert (still.forces_unique, still.motion_unique) == (False, True)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("block", range(20))
 def test_no_mode_that_was_made_on_planes_is_missed_in_twenty_thousand_draws(block: int) -> None:
