@@ -21,6 +21,7 @@ import numpy as np
 from contact_dynamics.contact_modes.letters import SEPARATES, STAYS, STICKS
 from contact_dynamics.contact_modes.spatial.only_solution import Equations
 from contact_dynamics.tolerances import (
+    FEASIBLE,
     LETTERS_NO_FORCE,
     LETTERS_ON_CONE,
     LETTERS_REGULAR,
@@ -207,8 +208,14 @@ class _System:
         return np.array(missed), np.array(slopes)
 
     def forces(self, unknowns: FloatArray) -> FloatArray:
-        """Return the contact forces, (n, 3)."""
-        return self._forces_and_changes(unknowns)[0]
+        """Return the contact forces, (n, 3). Those that pull no more than by rounding are zero."""
+        found = self._forces_and_changes(unknowns)[0]
+        for i, (contact, force) in enumerate(zip(self._search.touching, found, strict=True)):
+            if float(contact.normal @ force) < 0.0:
+                moved = self._search.of_forces[:, 3 * i : 3 * i + 3] @ force
+                if float(np.abs(moved).max()) <= FEASIBLE:
+                    found[i] = 0.0
+        return found
 
     def has_letters(self, forces: FloatArray, least: float = STRICT) -> bool:
         """Return whether contacts do under these forces what the letters say."""
