@@ -53,7 +53,7 @@ from contact_dynamics.contact_modes.spatial.realised import as_given, realised
 from contact_dynamics.contact_modes.spatial.result import SpatialMode, SpatialModeAnswer
 from contact_dynamics.contact_modes.spatial.round_cones import (
     held_by_round_cones,
-    holds_in_one_way,
+    hold_alone,
     polished,
     sticking,
 )
@@ -429,7 +429,8 @@ def _with_rest(case: SpatialCase, search: Search, found: Evidence) -> Evidence:
         rows = sticking(search)
         held = held_by_round_cones(search, rows)
         if held.forces is not None:
-            own, unique = polished(search, rows, held.forces), holds_in_one_way(search, rows)
+            own = polished(search, rows, held.forces)
+            unique = hold_alone(search, own)
             mode = mode_with_forces(case, letters, own, forces_unique=unique, motion_unique=True)
             return found._replace(modes=[*found.modes, mode])
         if not held.certain:

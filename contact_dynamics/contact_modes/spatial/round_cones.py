@@ -21,6 +21,7 @@ import numpy as np
 from contact_dynamics.contact_modes.spatial.careful_program import merged
 from contact_dynamics.numerics.linear_spaces import row_space
 from contact_dynamics.tolerances import (
+    LETTERS_NO_FORCE,
     ROUND_CONE_APART,
     ROUND_CONE_HELD,
     ROUND_CONE_INDEPENDENT,
@@ -165,9 +166,30 @@ def polished(search: Search, rows: FloatArray, forces: FloatArray) -> FloatArray
     return found
 
 
-def holds_in_one_way(search: Search, rows: FloatArray) -> bool:
-    """Return whether forces that make rows of the motion vanish are the only ones."""
-    return bool(len(row_space(rows[:, :-1] @ search.of_forces)) == search.of_forces.shape[1])
+def hold_alone(search: Search, forces: FloatArray) -> bool:
+    """Return whether no other forces in the round cones do the same as forces, (n, 3), that hold a body.
+
+    Those of contacts that press must be independent, and contacts that do not press must not be able to press
+    against what these can balance.
+    """
+    normals, frictions = _cones(search)
+    wrenches = (search.mass @ search.of_forces).reshape(6, -1, 3).transpose(1, 0, 2)  # (n, 6, 3)
+    wrenches = wrenches / max(float(np.abs(wrenches).max(initial=0.0)), np.finfo(float).tiny)
+    sizes = np.linalg.norm(forces, axis=1)
+    idle = sizes <= LETTERS_NO_FORCE * sizes.max(initial=0.0)
+    acting = [
+        one if friction > 0.0 else (one @ normal)[:, None]
+        for one, normal, friction, rests in zip(wrenches, normals, frictions, idle, strict=True)
+        if not rests
+    ]
+    columns = np.hstack([np.zeros((6, 0)), *acting])
+    basis = row_space(columns.T)
+    if len(basis) < columns.shape[1] or not idle.any():
+        return bool(len(basis) == columns.shape[1])
+    left = wrenches[idle] - basis.T @ (basis @ wrenches[idle])
+    images = np.concatenate([left, normals[idle][:, None, :]], axis=1)  # the last row sums normal forces
+    held = _nearest(_Demand(images, np.eye(7)[-1], np.ones(7)), normals[idle], frictions[idle])
+    return held.forces is None and held.certain
 
 
 class _Demand(NamedTuple):
