@@ -302,8 +302,9 @@ def _of_all(case: SpatialCase, letters: str) -> str:
 
 def _sought(case: SpatialCase, search: Search, *, beside_rest: bool, hurried: bool) -> Evidence:
     """Return the modes of a case, also those whose friction could not be turned."""
-    if rests_alone(search):
-        return _with_rest(case, search, Evidence([], ""))
+    resting = _with_rest(case, search, Evidence([], "")) if rests_alone(search) else None
+    if resting is not None and resting.modes:
+        return resting
     slides = bool(np.any(case.sliding[case.touching]))
     if not slides and len(case.touching) == 1 and search.touching[0].friction > 0.0:
         return Evidence(_of_one_contact(case, search), "")
@@ -324,15 +325,15 @@ def _with_others(
     case: SpatialCase, search: Search, modes: list[SpatialMode], *, beside_rest: bool, most: int
 ) -> Evidence:
     """Return modes that were found, with all others."""
-    if _is_alone(case, search, modes):
-        return Evidence(modes, "")
     known = Evidence(modes, "")
+    if _is_alone(case, search, modes):
+        return Evidence([mode for mode in modes if is_exact(mode)], "")
     if not np.any(case.sliding[case.touching]):
         known = _with_rest(case, search, known)
         if beside_rest and not all(_all_stick(case, search, mode) for mode in known.modes if is_exact(mode)):
             return known
         if _is_alone(case, search, known.modes):
-            return known
+            return Evidence([mode for mode in known.modes if is_exact(mode)], "")
     found = _completed(case, search, known.modes, most=most)
     return found._replace(undecided=found.undecided or known.undecided)
 
