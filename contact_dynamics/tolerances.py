@@ -688,6 +688,11 @@ LETTERS_SETTLED: Final = 1e-13
 LETTERS_REGULAR: Final = 1e-11
 """Ratio of singular values. Below it, the unknowns count as dependent, because loads are shared."""
 
+NEARLY_ALIKE: Final = 1e-3
+"""rad. Normals that differ by less and by more than `FLUSH`, or are opposite but for that, as in a slot whose
+walls lean by 1e-5 rad, may have forces between them that are a million times the load. The modes of
+friction pyramids are sought then, too."""
+
 NARROWLY: Final = 1e-11
 """Relative to the largest acceleration. Where no mode holds by `STRICT`, one must hold by this. It is a
 hundred times `LETTERS_SETTLED`."""

@@ -57,7 +57,14 @@ from contact_dynamics.contact_modes.spatial.round_cones import (
     polished,
     sticking,
 )
-from contact_dynamics.tolerances import FEASIBLE, FLUSH, FLUSH_ROUGHLY, NARROWLY, STRICT
+from contact_dynamics.tolerances import (
+    FEASIBLE,
+    FLUSH,
+    FLUSH_ROUGHLY,
+    NARROWLY,
+    NEARLY_ALIKE,
+    STRICT,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -271,11 +278,10 @@ def _penetrates(case: SpatialCase, mode: SpatialMode) -> bool:
 
 def _narrow(case: SpatialCase, search: Search, found: Evidence, *, hurried: bool) -> Evidence:
     """Return the modes that hold so narrowly that the search found none, or what is known of them."""
-    moved = hurried and case.given is not None  # that there is no mode should be shown for the given contacts
-    if not (found.undecided or search.at_rest or moved) and has_none(search):
-        return found
-    if hurried:
+    if hurried:  # noise of contacts that are nearly flush may leave no mode
         return found._replace(undecided=found.undecided or _NOT_REFUTED)
+    if not (found.undecided or search.at_rest) and has_none(search):
+        return found
     near = narrowly(search)
     if near.modes:
         modes = [
@@ -312,13 +318,22 @@ def _sought(case: SpatialCase, search: Search, *, beside_rest: bool, hurried: bo
     modes = [] if likely is None else [_mode_of(case, likely)]
     most = FEW_PROGRAMS if hurried else ENOUGH_PROGRAMS
     found = _with_others(case, search, modes, beside_rest=beside_rest, most=most)
-    if hurried or (found.modes and not found.undecided):
+    if hurried or (found.modes and not found.undecided and not _nearly_alike(case)):
         return found
     kept = found_by(case, search, sharpen=True)
     if all(one.frame is None for one in search.pyramids):
         return Evidence(kept, _DOUBT if search.doubtful else "")
     every = each_once([*by_letters(case, search, kept), *found.modes])
     return _with_others(case, search, every, beside_rest=beside_rest, most=MAX_PROGRAMS)
+
+
+def _nearly_alike(case: SpatialCase) -> bool:
+    """Return whether normals are nearly alike or opposite: bounds overlook huge forces between them."""
+    normals = case.contacts.normals_W[case.touching]
+    apart = np.minimum(
+        np.linalg.norm(normals[:, None] - normals, axis=2), np.linalg.norm(normals[:, None] + normals, axis=2)
+    )
+    return bool(((apart > FLUSH) & (apart < NEARLY_ALIKE)).any())
 
 
 def _with_others(
