@@ -214,7 +214,7 @@ def _spatial() -> None:
             name = kind.name if isinstance(kind, ImpactOutcome) else kind
             median, high, worst = 1e6 * np.percentile(spent_on, [50.0, 90.0, 100.0])
             if kind == "all" and law is RestitutionLaw.POISSON:
-                quote("impact.space", 1e-3 * median, "ms")
+                quote("impact.space", median, "µs")
             print(f"  {law.name:>10} {name:>24} {len(spent_on):5d} x {median:7.0f} {high:7.0f} {worst:7.0f}")
 
 
