@@ -66,8 +66,14 @@ _ROUNDS_AT_ONCE: Final = 12
 """Rounds of strikes, modes and flights after which the time that they take is looked at. Up to six are usual
 at one instant."""
 
+_BUSY: Final = 0.01
+"""s. Where many rounds (`_ROUNDS_WHILE_BUSY`) take less, they lead to one another, although time goes on."""
+
+_ROUNDS_WHILE_BUSY: Final = 400
+"""Rounds within `_BUSY`. Bodies that rattle to rest have up to a hundred there."""
+
 _LONGEST_LINGER: Final = 0.1
-"""s, the same where that happens again and again."""
+"""s. So long a toss goes on in short steps at most, where rounds lead to one another again and again."""
 
 _LONGER: Final = 4.0
 """By this factor the time becomes longer then."""
@@ -126,6 +132,7 @@ class Simulation(History):
         self.slow = math.inf  # J, rest is tried where the kinetic energy is below this
         self.struck = self.laid = self.steps = 0  # strikes, how often it was laid flat, steps in contact
         self.mark, self.rounds = 0.0, 0  # a time, s, and the rounds since then
+        self.busy_mark, self.busy_rounds = 0.0, 0  # the same over a longer time
         self.linger = SHORTEST_LINGER  # s, as long as rounds have to take, and short steps go on
         self.settled: Strikes | None = None  # the last strikes
         self.looked_at: list[Touch] = []  # contacts whose modes were all looked for last
@@ -344,6 +351,12 @@ class Simulation(History):
             self.mark, self.rounds = self.now, 0
             self.linger = max(0.5 * self.linger, SHORTEST_LINGER)
         self.rounds += 1
+        if self.now > self.busy_mark + _BUSY:
+            self.busy_mark, self.busy_rounds = self.now, 0
+        self.busy_rounds += 1
+        if self.busy_rounds > _ROUNDS_WHILE_BUSY:
+            self.linger = max(self.linger, _SHARE * _BUSY)
+            return True
         return self.rounds > _ROUNDS_AT_ONCE
 
     def _pass_over(self) -> list[Touch]:
@@ -367,6 +380,7 @@ class Simulation(History):
         self.lost_in_contact += before - energy_of(self.solid, self.y)
         self.linger = min(_LONGER * self.linger, _LONGEST_LINGER)
         self.mark, self.rounds = self.now, 0
+        self.busy_mark, self.busy_rounds = self.now, 0
         return self.touching_now(self._fast())
 
     def _slow(self, touching: list[Touch]) -> float:

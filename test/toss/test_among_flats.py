@@ -241,3 +241,8 @@ def test_a_body_that_only_forces_that_pull_would_hold_does_not_rest() -> None:
 def test_a_corner_that_comes_down_and_leaves_within_a_step_is_seen() -> None:
     """It had been 0.15 mm deep in a flat."""
     check_ends_well(*drawn_round(202), horizon=ROUND_HORIZON)
+
+
+def test_a_body_that_changes_its_contacts_again_and_again_goes_on() -> None:
+    """It slides on one side of a groove and touches the other, and had 10,000 new modes, 20 us each."""
+    check_ends_well(*drawn(6737))
