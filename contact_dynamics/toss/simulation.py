@@ -14,6 +14,7 @@ from contact_dynamics.impact.several.settling import settling_impact
 from contact_dynamics.numerics.vectors import norm
 from contact_dynamics.shapes.convex import ConvexShape
 from contact_dynamics.tolerances import (
+    BUSY,
     LIFT_OFF_PAUSE,
     LONGEST_SHORT_STEP,
     RESTING_ACCELERATION,
@@ -66,11 +67,8 @@ _ROUNDS_AT_ONCE: Final = 12
 """Rounds of strikes, modes and flights after which the time that they take is looked at. Up to six are usual
 at one instant."""
 
-_BUSY: Final = 0.01
-"""s. Where many rounds (`_ROUNDS_WHILE_BUSY`) take less, they lead to one another, although time goes on."""
-
 _ROUNDS_WHILE_BUSY: Final = 400
-"""Rounds within `_BUSY`. Bodies that rattle to rest have up to a hundred there."""
+"""Rounds within `BUSY`. Bodies that rattle to rest have up to a hundred there."""
 
 _LONGEST_LINGER: Final = 0.1
 """s. So long a toss goes on in short steps at most, where rounds lead to one another again and again."""
@@ -351,11 +349,11 @@ class Simulation(History):
             self.mark, self.rounds = self.now, 0
             self.linger = max(0.5 * self.linger, SHORTEST_LINGER)
         self.rounds += 1
-        if self.now > self.busy_mark + _BUSY:
+        if self.now > self.busy_mark + BUSY:
             self.busy_mark, self.busy_rounds = self.now, 0
         self.busy_rounds += 1
         if self.busy_rounds > _ROUNDS_WHILE_BUSY:
-            self.linger = max(self.linger, _SHARE * _BUSY)
+            self.linger = max(self.linger, _SHARE * BUSY)
             return True
         return self.rounds > _ROUNDS_AT_ONCE
 
