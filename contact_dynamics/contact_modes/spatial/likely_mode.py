@@ -42,8 +42,11 @@ def likely_mode(search: Search) -> Known | None:
     body, now = _settled(search)
     for gives_way in (GIVES_WAY, 0.0):
         letters = body.letters(now, gives_way)
-        if set(letters) <= {SEPARATES} and now.rising.min(initial=1.0) > STRICT:
-            return Known(letters, now.forces, alone=True)
+        if set(letters) <= {SEPARATES}:
+            free = body.response(search.motion[:, -1], 0.0)  # what is not settled may move in any way
+            if free.rising.min(initial=1.0) > STRICT:
+                return Known(letters, np.zeros_like(now.forces), alone=True)
+            continue
         solution = solution_near(search, letters, now.forces)
         solution = solution or solution_near(search, letters, now.forces, shared=True)
         if solution is not None and solution.has_letters:

@@ -56,7 +56,7 @@ def mode_with_forces(
             friction = forces[i] - float(forces[i] @ contacts.normals_W[i]) * contacts.normals_W[i]
             if size <= STRICT * motion.scale and friction.any():
                 way, size = -friction, float(np.linalg.norm(friction))  # the sliding is hardly above rounding
-            directions[i] = way / size
+            directions[i] = way / size if size > 0.0 else way
     return SpatialMode(
         mode="".join(letters),
         acceleration_W=body[:3],
