@@ -6,11 +6,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from contact_dynamics.contact_modes import PlanarContactProblem, PlanarModeAnswer, SpatialContactProblem
+from contact_dynamics.contact_modes import (
+    PlanarContactProblem,
+    PlanarModeAnswer,
+    SpatialContactProblem,
+    SpatialModeAnswer,
+)
 from contact_dynamics.contact_modes.letters import mode_in_words
 from contact_dynamics.diagrams.planar_modes import side_by_side
 from contact_dynamics.diagrams.shape import drawn_shape
-from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.plots.contact_forces import draw_contact_forces
 from contact_dynamics.plots.figures import MAX_MODES, blank_figure
 from contact_dynamics.plots.planar_scene import draw_planar_scene
@@ -21,7 +25,6 @@ from contact_dynamics.validation_types import checks_types
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from contact_dynamics.contact_modes import SpatialModeAnswer
     from contact_dynamics.toss.result import Toss
     from contact_dynamics.world import Body
 
@@ -44,9 +47,7 @@ def toss(toss: Toss, body: Body | None = None) -> Figure:
 
 
 @checks_types
-def modes(
-    answer: PlanarModeAnswer | SpatialModeAnswer, problem: PlanarContactProblem | SpatialContactProblem
-) -> Figure:
+def modes(answer: PlanarModeAnswer | SpatialModeAnswer) -> Figure:
     """Return a figure of the first `MAX_MODES` consistent modes, one below the other, with their forces.
 
     In the plane it has contacts, friction cones, forces and accelerations. In space it has the force at each
@@ -54,20 +55,13 @@ def modes(
 
     Args:
         answer: What `contact_dynamics.contact_modes.contact_modes` returns.
-        problem: The problem that it answers.
-
-    Raises:
-        InvalidFieldError: one is planar and the other is in space, or they differ in the number of contacts.
     """
     found = answer.modes[:MAX_MODES]
-    planar = isinstance(answer, PlanarModeAnswer)
-    counts = {len(mode.mode) for mode in found} or {len(problem.contacts)}
-    if planar != isinstance(problem, PlanarContactProblem) or counts != {len(problem.contacts)}:
-        raise InvalidFieldError("problem", "another problem", "the one that was answered")
     titles = [f"{mode.mode}: {mode_in_words(mode.mode)}" for mode in found]
     rows = max(len(found), 1)
     figure = blank_figure(8.0, 4.6 * rows)
     each = figure.subplots(rows, 1, squeeze=False)[:, 0]
+    problem = answer.problem
     if isinstance(answer, PlanarModeAnswer) and isinstance(problem, PlanarContactProblem):
         view = side_by_side(
             tuple(problem.contacts),
@@ -77,7 +71,7 @@ def modes(
         )
         for k, title in enumerate(view.titles):
             draw_planar_scene(each[k], view.scene(k), title=title)
-    elif isinstance(problem, SpatialContactProblem) and not isinstance(answer, PlanarModeAnswer):
+    elif isinstance(answer, SpatialModeAnswer) and isinstance(problem, SpatialContactProblem):
         for axes, mode, title in zip(each, answer.modes, titles, strict=False):
             draw_contact_forces(axes, problem.contacts, mode, title=title)
     figure.suptitle(answer.in_short())

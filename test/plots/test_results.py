@@ -49,7 +49,8 @@ def test_modes_are_drawn_with_their_words(
     problem: cd.SpatialContactProblem | cd.PlanarContactProblem,
 ) -> None:
     answer: PlanarModeAnswer | SpatialModeAnswer = cd.contact_modes(problem)
-    figure = plots.modes(answer, problem)
+    assert answer.problem is problem
+    figure = plots.modes(answer)
     assert [axes.get_title() for axes in figure.axes] == [f"{answer.modes[0].mode}: it stays fixed"]
     assert figure.get_suptitle() == answer.in_short()
 
@@ -58,12 +59,12 @@ def test_an_answer_without_a_mode_is_drawn() -> None:
     falling = cd.PlanarContactProblem(
         body=FLAT.body, velocity=cd.PlanarVelocity(v=(0, -1), w=0), contacts=FEET, wrench=FLAT.wrench
     )
-    figure = plots.modes(cd.contact_modes(falling), falling)
+    figure = plots.modes(cd.contact_modes(falling))
     assert [axes.get_title() for axes in figure.axes] == ["IMPACT"]
 
 
-def test_the_answer_to_another_problem_is_refused() -> None:
-    with pytest.raises(ValueError, match="the one that was answered"):
-        plots.modes(cd.contact_modes(PROBLEM), FLAT)
+def test_what_is_no_result_is_refused() -> None:
+    with pytest.raises(TypeError, match="answer must be a PlanarModeAnswer or a SpatialModeAnswer"):
+        plots.modes(PROBLEM)  # type: ignore[arg-type]
     with pytest.raises(TypeError, match="toss must be a Toss"):
         plots.toss(CUBE)  # type: ignore[arg-type]

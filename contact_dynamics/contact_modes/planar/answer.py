@@ -94,6 +94,7 @@ def planar_contact_modes(problem: PlanarContactProblem) -> PlanarModeAnswer:
         acceleration_tolerance=a_tolerance,
         undecided=undecided,
         undecided_modes=tuple(undecided_modes),
+        problem=problem,
     )
 
 

@@ -7,7 +7,7 @@ normal turned by -90 degrees.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from contact_dynamics.contact_modes.letters import mode_in_words, words_of
 from contact_dynamics.contact_modes.result import ModeVerdict, RefusedMode, VerdictsWithin, verdict_in_short
@@ -64,6 +64,7 @@ class PlanarModeAnswer(Record):
         undecided: What could not be decided, and why. It is empty unless the verdict is UNDECIDED.
         undecided_modes: The modes that are possible kinematically and neither consistent nor refused.
         within: The verdicts that occur within the problem's uncertainty, or None if it has none.
+        problem: The `PlanarContactProblem` that is answered.
     """
 
     verdict: ModeVerdict
@@ -76,6 +77,7 @@ class PlanarModeAnswer(Record):
     undecided: str = ""
     undecided_modes: tuple[str, ...] = ()
     within: VerdictsWithin | None = None
+    problem: Record = field(repr=False, compare=False)
 
     def in_short(self) -> str:
         """Return the verdict, and what the first modes are in words."""

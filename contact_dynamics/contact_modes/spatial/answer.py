@@ -236,6 +236,7 @@ def _answer(
         examined=examined,
         undecided=found.undecided,
         undecided_modes=found.undecided_modes,
+        problem=problem,
     )
 
 

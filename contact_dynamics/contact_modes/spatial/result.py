@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from contact_dynamics.contact_modes.letters import mode_in_words, words_of
@@ -72,6 +72,7 @@ class SpatialModeAnswer(Record):
             differ by no more than this from the given ones, in which flush ones are exactly flush
             (`spatial.flush`). It is 0 where the modes are those of the given contacts.
         within: The verdicts that occur within the problem's uncertainty, or None if it has none.
+        problem: The `SpatialContactProblem` that is answered.
     """
 
     verdict: ModeVerdict
@@ -84,6 +85,7 @@ class SpatialModeAnswer(Record):
     undecided_modes: tuple[str, ...] = ()
     flush_within: float = 0.0
     within: VerdictsWithin | None = None
+    problem: Record = field(repr=False)
 
     def in_short(self) -> str:
         """Return the verdict, and what the first modes are in words."""
