@@ -69,12 +69,18 @@ def test_a_block_that_is_pushed_high_tips() -> None:
 
 
 def test_a_block_slides_on_a_tray_that_tilts_until_it_meets_the_rim() -> None:
-    printed = told(TRAY, "tray.yaml", "block_publisher", TRAY, "--degrees-per-second", "6", "--seconds", "7")
+    """The slide lasts about as long as the commentator pauses, and where a machine stalls it may miss it."""
+    for _ in range(3):
+        printed = told(
+            TRAY, "tray.yaml", "block_publisher", TRAY, "--degrees-per-second", "6", "--seconds", "7"
+        )
+        # atan 0.3 = 16.7 degrees.
+        tilts = [float(tilt) for tilt in re.findall(r"by ([ .\d]+) degrees: it slides right", printed)]
+        if tilts:
+            break
     in_order(
-        printed, "it stays fixed", "it slides right", "it stays fixed", "4 contacts separate, 4 slide left"
+        printed, "it stays fixed", ": it slides right", "it stays fixed", "4 contacts separate, 4 slide left"
     )
-    # atan 0.3 = 16.7 degrees.
-    tilts = [float(tilt) for tilt in re.findall(r"by ([ .\d]+) degrees: it slides right", printed)]
     assert min(tilts) > 16.6
 
 
