@@ -781,7 +781,7 @@ SHORTEST_LINGER: Final = 1e-5
 """s. If rounds of a toss take less time, it is not followed by them, but for so long in short steps."""
 
 BUSY: Final = 0.01
-"""s. Where hundreds of rounds of a toss take less time, they lead to one another, although time goes on."""
+"""s. If a toss needs hundreds of strikes and modes within this time, its contacts chatter."""
 
 CREEPING_STEP: Final = 1e-6
 """s. A contact phase whose steps are that short again and again creeps."""

@@ -160,7 +160,7 @@ def bounce(restitution: float) -> float:
 
 
 def hundred_bounces(bounces: float) -> float:
-    """Return the height to which a ball rises after so many bounces, m, that was dropped from 1 m."""
+    """Return the height, m, to which a ball dropped from 1 m rises after a number of bounces."""
     mass = inertia.sphere(radius=0.1, mass=1.0).mass_properties
     ball = Body(name="ball", mass_properties=mass, shape=sphere(radius=0.1))
     floor = Surface(name="floor", p_WS_W=[0, 0, 0], normal_W=[0, 0, 1], friction=0.5, restitution=1.0)

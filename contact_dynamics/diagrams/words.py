@@ -88,7 +88,7 @@ TOSS_ENDS: Final = {
 EVENTS: Final = {
     TossEventKind.STRIKES: "strikes",
     TossEventKind.SETTLES: "settles",
-    TossEventKind.NEW_MODE: "goes on in a mode",
+    TossEventKind.NEW_MODE: "changes its contact mode",
     TossEventKind.LIFTS_OFF: "lifts off",
     TossEventKind.JAMS: "jams",
     TossEventKind.RESTS: "rests",

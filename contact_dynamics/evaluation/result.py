@@ -1,4 +1,4 @@
-"""What came of an evaluation: of one recording, and of all, as objects, as JSON, and as CSV and Parquet."""
+"""Results of an evaluation, of one recording and of all, as objects, JSON, CSV and Parquet."""
 
 from __future__ import annotations
 

@@ -8,7 +8,7 @@ keeps what happens, and `result` has what is returned.
   each other are one (`distinct_corners`).
 - `strike` has the strikes of one instant, of the `impacts` at one contact, at contacts that have no order,
   and without restitution, as where contacts jam.
-- `mode_choice` says which contact mode follows. It tries the one that goes on, corrects it, seeks pushes in
+- `mode_choice` chooses the next contact mode. It tries the present one first, corrects it, seeks pushes in
   friction cones (`cone_forces`), and asks `contact_modes` where there may be several modes.
 - `forces` has the accelerations in a mode, `flush` those of a body that slides on a face, and `phase`
   integrates them (`phase_step`) until the mode ends. `holding` keeps contacts where they are, and the body

@@ -1,4 +1,4 @@
-"""A toss as it goes on: where it is, what has happened, and the `Toss` that is returned at its end."""
+"""The history of a toss while it is computed: its state, its events, and the `Toss` that results."""
 
 from __future__ import annotations
 

@@ -68,7 +68,7 @@ _ROUNDS_AT_ONCE: Final = 12
 at one instant."""
 
 _ROUNDS_WHILE_BUSY: Final = 400
-"""Rounds within `BUSY`. Bodies that rattle to rest have up to a hundred there."""
+"""Rounds within `BUSY` after which short steps pass over the chatter."""
 
 _LONGEST_LINGER: Final = 0.1
 """s. So long a toss goes on in short steps at most, where rounds lead to one another again and again."""

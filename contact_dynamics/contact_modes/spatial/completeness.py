@@ -168,7 +168,7 @@ def completed(search: Search, known: Sequence[Known], *, most: int) -> Completed
     Args:
         search: The case.
         known: The modes that were found, all exact.
-        most: After so many programs the work is given up.
+        most: The number of programs after which the search gives up.
     """
     work = _Work(search, known, most=most)
     unended = ""

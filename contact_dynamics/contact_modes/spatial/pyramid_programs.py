@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
@@ -53,7 +54,7 @@ class Touching(NamedTuple):
     free: FloatArray
 
 
-class PyramidPrograms:
+class PyramidPrograms(ABC):
     """Touching contacts, and programs about their forces.
 
     Motions, (a, alpha) in units that the caller chooses so that contact points' accelerations are about 1,
@@ -167,9 +168,9 @@ class PyramidPrograms:
             if narrower is not None:
                 self._decide_next(narrower, [*trials[:at], part, *trials[at + 1 :]], at + 1)
 
+    @abstractmethod
     def _decide_staying(self, program: AnyProgram, trials: list[Option], /) -> None:
         """Decide all modes in which the same contacts stay."""
-        raise NotImplementedError
 
     def allows(self, letters: str, items: Sequence[int]) -> bool:
         """Return whether some forces bring a mode about, given its letters and items of sliding.
