@@ -343,7 +343,7 @@ class _Work(PyramidPrograms):
             return True
         gains = None if self._power is None else gains_in(flat.image, self._power, self.mass)
         may_hold = False
-        for region in whole(len(flat.image.coordinates), gains):
+        for region in whole(len(flat.image.coordinates)):
             may_hold |= self._decide(_Set(own, turning, flat, region, gains, {}))
         return may_hold
 

@@ -9,15 +9,15 @@ sector of any contact in it need be tried.
 
 from __future__ import annotations
 
+import itertools
 import math
-from functools import cache
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
 from contact_dynamics.contact_modes.spatial.options import MILDER, acting_edges
 from contact_dynamics.numerics.linear_spaces import seen_and_unseen
-from contact_dynamics.tolerances import AT_SECTORS_BORDER, FEASIBLE, ROW_TOLERANCE, STRICT
+from contact_dynamics.tolerances import AT_SECTORS_BORDER, ROW_TOLERANCE, STRICT
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -211,31 +211,8 @@ def gains_in(image: Image, power: FloatArray, mass: FloatArray) -> FloatArray:
     return gains
 
 
-def whole(dimensions: int, gains: FloatArray | None) -> Iterator[Region]:
-    """Yield regions that together cover every direction of motion. A space of no dimensions has none.
-
-    Args:
-        dimensions: Those of the space, p.
-        gains: (p,), the power of the applied wrench on unit coordinates, which must be positive; None if it
-            may be negative.
-    """
-    size = 0.0 if gains is None else float(np.linalg.norm(gains))
-    if gains is None or size <= FEASIBLE:
-        fixed, corners = np.zeros((0, dimensions)), _simplex(dimensions)
-    else:
-        fixed = gains[None, :] / size
-        corners = _simplex(dimensions - 1) @ np.linalg.svd(fixed)[2][1:]
-    for k in range(len(corners)) if dimensions else ():
-        rays = np.concatenate([fixed, corners[:k], corners[k + 1 :]])
-        shares = np.linalg.inv(rays).T
-        yield Region(rays, np.concatenate([shares, shares.sum(axis=0)[None, :]]))
-
-
-@cache
-def _simplex(dimensions: int) -> FloatArray:
-    """Return unit vectors to the corners of a regular simplex, (p + 1, p). Any p of them span a region."""
-    corners: FloatArray = np.eye(dimensions + 1) - 1.0 / (dimensions + 1)
-    corners = corners @ np.linalg.svd(corners)[2][:dimensions].T
-    corners /= np.sqrt((corners * corners).sum(axis=1))[:, None]
-    corners.flags.writeable = False
-    return corners
+def whole(dimensions: int) -> Iterator[Region]:
+    """Yield regions that together cover every direction. There are none in a space of no dimensions."""
+    for signs in itertools.product((1.0, -1.0), repeat=dimensions) if dimensions else ():
+        rays = np.diag(signs)  # its own inverse
+        yield Region(rays, np.concatenate([rays, [signs]]))

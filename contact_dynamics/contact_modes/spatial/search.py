@@ -170,7 +170,7 @@ class Search(PyramidPrograms):
             return True
         common = self._common(image, open_ones)
         may_hold = False
-        for region in whole(len(image.coordinates), common.gains):
+        for region in whole(len(image.coordinates)):
             may_hold |= self._decide_within(region, program, trials, common)
         self._goal = ""
         return may_hold

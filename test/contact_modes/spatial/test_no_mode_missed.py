@@ -169,3 +169,27 @@ def test_a_box_that_rests_on_many_feet_is_proven_to_rest_without_a_search(feet: 
     )
     assert (answer.verdict, [mode.mode for mode in answer.modes]) == (ModeVerdict.UNIQUE, ["f" * feet])
     assert answer.examined <= 1
+
+
+def test_two_feet_that_leave_a_squeezed_box_are_found() -> None:
+    """With fewer and wider regions of motions the mode `cccssc` could be neither found nor refuted."""
+    points = [
+        (0.5, -0.2, 0.5),
+        (0.5, 0.2, 0.5),
+        (-0.5, -0.2, -0.5),
+        (0, -0.2, 0.5),
+        (-0.5, -0.2, 0),
+        (0, 0.2, 0),
+    ]
+    answer = contact_modes(
+        SpatialContactProblem(
+            body=MassProperties(mass=2.0, I_B=np.diag([0.3, 0.4, 0.5])),
+            state=BodyState(p_WB_W=[0, 0, 0], q_WB=[0, 0, 0, 1], v_WB_W=[0, 0, 0], w_WB_W=[0, 0, 0]),
+            contacts=ContactSet(
+                p_WC_W=points, normals_W=[(0, -math.copysign(1.0, y), 0) for _, y, _ in points], frictions=0.5
+            ),
+            force_W=[-5, 0, 0],
+        )
+    )
+    assert answer.verdict == ModeVerdict.INDETERMINATE
+    assert {mode.mode for mode in answer.modes} == {"ffffff", "ffcccc", "cccssc", "cccccc"}
