@@ -16,6 +16,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
+import pytest
 import rclpy
 from rcl_interfaces.srv import GetParameters
 from rclpy.context import Context
@@ -47,6 +48,7 @@ def environment(domain_id: int = DOMAIN_ID) -> dict[str, str]:
         "ROS_DOMAIN_ID": str(domain_id),
         "ROS_PYTHON_CHECK_FIELDS": "1",
         "PYTHONUNBUFFERED": "1",
+        "PYTHONFAULTHANDLER": "1",  # so that SIGABRT makes it print where it is
     }
 
 
@@ -108,7 +110,10 @@ def wait_for(started: subprocess.Popen[str], text: str) -> str:
     while text not in printed:
         readable, _, _ = select.select([started.stdout], [], [], max(0.0, deadline - time.monotonic()))
         line = started.stdout.readline() if readable else ""
-        assert line, f"{started.args} did not print {text!r}:\n{printed}"
+        if not line:
+            started.send_signal(signal.SIGABRT)
+            last, _ = started.communicate(timeout=PATIENCE_S)
+            pytest.fail(f"{started.args} did not print {text!r}:\n{printed}{last}")
         printed += line
     return printed
 

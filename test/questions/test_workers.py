@@ -145,14 +145,18 @@ def test_a_worker_that_was_killed_while_it_waited_costs_no_question() -> None:
 
 
 def test_a_worker_that_ends_before_it_is_ready_is_started_again_without_a_question() -> None:
-    others = active_children()
-    workers = Workers(WorkerLimits(count=1, deadline=PATIENCE_S, memory=300, max_waiting=1))
-    try:
+    for _ in range(10):  # where this process is held up, the worker is ready before it is killed
+        others = active_children()
+        workers = Workers(WorkerLimits(count=1, deadline=PATIENCE_S, memory=300, max_waiting=1))
         give_up = time.monotonic() + PATIENCE_S
         while not (begun := set(active_children()) - set(others)) and time.monotonic() < give_up:
             pass
         for process in begun:
             process.kill()
+        if workers.ready == 0:
+            break
+        workers.close()
+    try:
         assert workers.ready == 0
         while workers.ready == 0 and time.monotonic() < give_up:
             time.sleep(0.05)
