@@ -17,8 +17,8 @@ PATIENCE_S = 60.0
 def told(situation: str, config: str, *arguments: str, once: str = "") -> str:
     """What the commentator prints until the states end; the publisher's arguments follow its name.
 
-    It is shown again, at most four times, until the commentator tells what happens ``once``, for about as long
-    as it pauses: where a machine stalls, it misses that.
+    It is shown again, at most four times, until the commentator tells what happens ``once``, for about as
+    long as it pauses: where a machine stalls, it misses that.
     """
     for _ in range(5):
         printed = _told(situation, config, *arguments)
