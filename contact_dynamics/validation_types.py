@@ -116,6 +116,7 @@ def checks_types(function: Callable[P, R]) -> Callable[P, R]:
     by_name: dict[str, Expected] = {}
     names: dict[str, inspect.Parameter] = {}
     by_place: list[tuple[str, Expected | None]] = []
+    places: dict[str, int] = {}
 
     @functools.wraps(function)
     def checked(*args: P.args, **kwargs: P.kwargs) -> R:
@@ -123,8 +124,11 @@ def checks_types(function: Callable[P, R]) -> Callable[P, R]:
             by_name.update(_expected(annotations, vars(sys.modules[function.__module__])))
             names.update(inspect.signature(function).parameters)
             by_place.extend((name, by_name.get(name)) for name in names)
+            places.update(_places(names.values()))
         if not kwargs.keys() <= names.keys():
             refuse_unknown(function, next(name for name in kwargs if name not in names), names)
+        if len(args) > len(places) or any(places.get(name, len(args)) < len(args) for name in kwargs):
+            _refuse_places(function, names.values(), args, kwargs)
         for value, (name, expected) in zip(args, by_place, strict=False):
             if expected is not None and not isinstance(value, expected.types):
                 check_type(name, value, expected)
@@ -134,6 +138,30 @@ def checks_types(function: Callable[P, R]) -> Callable[P, R]:
         return function(*args, **kwargs)
 
     return checked
+
+
+def _places(parameters: Iterable[inspect.Parameter]) -> dict[str, int]:
+    """Return the place of each argument that may be given by place."""
+    return {each.name: i for i, each in enumerate(parameters) if each.kind is each.POSITIONAL_OR_KEYWORD}
+
+
+def _refuse_places(
+    function: Callable[..., object],
+    parameters: Collection[inspect.Parameter],
+    args: Collection[object],
+    kwargs: Collection[str],
+) -> NoReturn:
+    """Raise the error that a call has too many arguments by place, or one by place and by name."""
+    places = _places(parameters)
+    is_method = next(iter(places), "") in {"self", "cls"}
+    by_place = [name for name in places if name not in {"self", "cls"}]
+    by_name = [each.name for each in parameters if each.kind is each.KEYWORD_ONLY]
+    given = len(args) - is_method
+    twice = [name for name in kwargs if places.get(name, len(args)) < len(args)]
+    words = f"{function.__qualname__} got {given} argument{'s' if given != 1 else ''} by place"
+    words += f", and {twice[0]} by name too" if twice else ""
+    also = f", and by name only {', '.join(by_name)}" if by_name else ""
+    raise UnknownArgumentError(f"{words}. It takes {', '.join(by_place)} in this order{also}")
 
 
 def checks_fields(post_init: Callable[[Any], None], annotations: Mapping[str, str]) -> Callable[[Any], None]:

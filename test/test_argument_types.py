@@ -150,6 +150,22 @@ def test_a_guessed_name_is_an_error_that_names_the_right_one(
     assert isinstance(raised.value, ContactDynamicsError)
 
 
+@pytest.mark.parametrize(
+    ("arguments", "by_name", "got"),
+    [
+        ((0.1, 0.1, 0.1), {"mass": 1.0}, "3 arguments by place, and mass by name too"),
+        (((0.1, 0.1, 0.1), 1.0, 800.0), {}, "3 arguments by place"),
+    ],
+)
+def test_too_many_arguments_by_place_are_an_error_that_names_those_allowed(
+    arguments: tuple[Any, ...], by_name: dict[str, Any], got: str
+) -> None:
+    with pytest.raises(TypeError) as raised:
+        Body.box(*arguments, **by_name)
+    allowed = "It takes size, mass in this order, and by name only density, name"
+    assert str(raised.value) == f"Body.box got {got}. {allowed}"
+
+
 def test_the_error_of_a_mass_names_what_takes_one() -> None:
     with pytest.raises(TypeError, match=r"Body\.box, Body\.sphere"):
         Body(name="cup", mass=1.0)  # type: ignore[call-arg]
