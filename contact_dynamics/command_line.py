@@ -11,7 +11,6 @@ from importlib import import_module
 from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
-from contact_dynamics.nodes.arguments import check_arguments
 from contact_dynamics.version import version_of_this_package
 
 if TYPE_CHECKING:
@@ -149,6 +148,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _run(name: str, arguments: list[str]) -> int:
+    from contact_dynamics.nodes.arguments import check_arguments  # loads SciPy, which --help needs not
+
     verb = VERBS[name]
     check_arguments(verb.make_parser(), arguments)
     missing = [needed.partition(".")[0] for needed in verb.needs if not _is_installed(needed)]

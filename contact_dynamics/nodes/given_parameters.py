@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 from contact_dynamics.nodes.argument_values import IN_WORDS
-from contact_dynamics.nodes.parameter_reader import ConfigurationError
+from contact_dynamics.nodes.parameter_reader import ConfigurationError, DeclaredParameter
 from contact_dynamics.nodes.run_record import NODE_NAME
 from contact_dynamics.nodes.unknown_parameters import likely_misspelling, qos_overrides_of, refuse_unknown
 
@@ -13,26 +13,12 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
 
 
-class ReadParameter(NamedTuple):
-    """A parameter that was read.
-
-    Attributes:
-        value: Its value, which may be the default.
-        description: What it means.
-        bounds: Its least and greatest value, if it has any.
-    """
-
-    value: Any
-    description: str
-    bounds: tuple[float, float] | None
-
-
 class GivenParameters:
     """Values that are given; a `ParameterSource`.
 
     Attributes:
         values: Plain values by the parameters' names.
-        read: The parameters that were read from it, by name.
+        read: The parameters that were read from it, by name, with their values.
     """
 
     def __init__(
@@ -55,7 +41,7 @@ class GivenParameters:
         self._before = f"{origin}: " if origin else ""
         self._also_known = frozenset(also_known)
         self._resolve = resolve
-        self.read: dict[str, ReadParameter] = {}
+        self.read: dict[str, DeclaredParameter] = {}
         self._topics: set[str] = set()
 
     def value(
@@ -75,7 +61,7 @@ class GivenParameters:
         if bounds is not None and not bounds[0] <= number <= bounds[1]:
             message = f"{self._before}{name} must be in [{bounds[0]:g}, {bounds[1]:g}], got {found!r}"
             raise ConfigurationError(message)
-        self.read[name] = ReadParameter(found, description, bounds)
+        self.read[name] = DeclaredParameter(name, found, description, bounds)
         return found
 
     def resolved_topic(self, name: str, topic: str) -> str:

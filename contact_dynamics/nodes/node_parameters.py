@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     from rclpy.node import Node
 
-    from contact_dynamics.nodes.given_parameters import ReadParameter
+    from contact_dynamics.nodes.parameter_reader import DeclaredParameter
 
 _MANDATORY: Final = {float: Parameter.Type.DOUBLE, list: Parameter.Type.DOUBLE_ARRAY}
 
@@ -83,10 +83,10 @@ class NodeParameters:
             raise ConfigurationError(message)
         return value
 
-    def declare(self, name: str, parameter: ReadParameter) -> None:
+    def declare(self, parameter: DeclaredParameter) -> None:
         """Declare a parameter that has come with a change, whatever a file says of it."""
-        value = parameter.value
-        descriptor = _descriptor(value, parameter.description, parameter.bounds, read_only=self._read_only)
+        name, value, description, bounds = parameter
+        descriptor = _descriptor(value, description, bounds, read_only=self._read_only)
         self._node.declare_parameter(name, value, descriptor, ignore_override=True)
 
     def resolved_topic(self, name: str, topic: str) -> str:

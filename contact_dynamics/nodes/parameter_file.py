@@ -8,11 +8,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Final
 
-from contact_dynamics.nodes.arguments import VISUALIZER_PARAMETERS
 from contact_dynamics.nodes.given_parameters import GivenParameters
 from contact_dynamics.nodes.parameter_reader import ConfigurationError
 from contact_dynamics.nodes.parameter_sections import check_sections, read_sections
 from contact_dynamics.nodes.run_record import NODE_NAME
+from contact_dynamics.nodes.visualizer_parameters import VISUALIZER_PARAMETERS
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -7,7 +7,7 @@ a run that is over (`run_record`).
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, TypeVar
 
 from contact_dynamics.errors import ContactDynamicsError, InvalidFieldError
 from contact_dynamics.world import LONGEST_NAME
@@ -21,6 +21,22 @@ T = TypeVar("T")
 
 class ConfigurationError(ContactDynamicsError):
     """A parameter is missing or not allowed. The message names it."""
+
+
+class DeclaredParameter(NamedTuple):
+    """A parameter as it is declared or read, in the order of the arguments of `ParameterSource.value`.
+
+    Attributes:
+        name: Its name.
+        value: Its default, or the value that was read.
+        description: What it means, for people.
+        bounds: Its least and greatest value, if it has any.
+    """
+
+    name: str
+    value: Any
+    description: str
+    bounds: tuple[float, float] | None = None
 
 
 class ParameterSource(Protocol):

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 from contact_dynamics.constants import STANDARD_GRAVITY_W
+from contact_dynamics.nodes.given_parameters import GivenParameters
 from contact_dynamics.nodes.parameter_reader import ConfigurationError, ParameterReader
 from contact_dynamics.nodes.topic_faults import FaultLimits
 from contact_dynamics.nodes.world_parameters import read_body, read_surface
@@ -27,7 +28,7 @@ from contact_dynamics.recording.limits import (
 from contact_dynamics.world import World
 
 if TYPE_CHECKING:
-    from contact_dynamics.nodes.parameter_reader import ConfiguredTopic, ParameterSource
+    from contact_dynamics.nodes.parameter_reader import ConfiguredTopic, DeclaredParameter, ParameterSource
     from contact_dynamics.nodes.world_parameters import BodySources
 
 MEGABYTE: Final = 1_000_000
@@ -73,6 +74,24 @@ class ServerParameters:
     log_before_answer: bool
     log_limits: LogLimits
     self_check_period: float | None
+
+
+def described_server_parameters() -> tuple[DeclaredParameter, ...]:
+    """Return the parameters of a server with a body NAME and a surface NAME, without values if required."""
+    source = GivenParameters(
+        {
+            "bodies": ["NAME"],
+            "surfaces": ["NAME"],
+            "body.NAME.mass": 1.0,
+            "body.NAME.inertia": [1.0, 1.0, 1.0, 0.0, 0.0, 0.0],
+            "surface.NAME.friction": 0.0,
+            "surface.NAME.restitution": 0.0,
+        }
+    )
+    read_server_parameters(source)
+    return tuple(
+        each._replace(value=None) if name in source.values else each for name, each in source.read.items()
+    )
 
 
 def read_server_parameters(source: ParameterSource) -> ServerParameters:

@@ -19,7 +19,7 @@ from rclpy.lifecycle import LifecycleNode, TransitionCallbackReturn
 from rclpy.parameter import Parameter
 
 from contact_dynamics.errors import ConcaveShapeWarning, ContactDynamicsError
-from contact_dynamics.nodes.arguments import VISUALIZER_PARAMETERS, server_parser
+from contact_dynamics.nodes.arguments import server_parser
 from contact_dynamics.nodes.given_parameters import GivenParameters
 from contact_dynamics.nodes.inbox import InboxNode
 from contact_dynamics.nodes.node_parameters import NodeParameters, refuse_lost_sections
@@ -30,6 +30,7 @@ from contact_dynamics.nodes.run_record import NODE_NAME, plain, run_record
 from contact_dynamics.nodes.running import run_node
 from contact_dynamics.nodes.serving import Serving
 from contact_dynamics.nodes.unknown_parameters import is_of_ros
+from contact_dynamics.nodes.visualizer_parameters import VISUALIZER_PARAMETERS
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -201,7 +202,7 @@ class Server(InboxNode, LifecycleNode):
             return SetParametersResult(successful=False, reason=str(error))
         new = [name for name in given.read if name not in before]
         for name in new:
-            self._source.declare(name, given.read[name])
+            self._source.declare(given.read[name])
         result = super().set_parameters_atomically(parameter_list)
         unread = [name for name in self._values() if name not in given.read and not is_of_ros(name)]
         for name in unread if result.successful else new:

@@ -24,7 +24,7 @@ from rclpy.qos import QoSProfile
 from rclpy.serialization import deserialize_message
 
 from contact_dynamics.nodes import parameter_event
-from contact_dynamics.nodes.arguments import VISUALIZER_PARAMETERS, visualizer_parser
+from contact_dynamics.nodes.arguments import visualizer_parser
 from contact_dynamics.nodes.given_parameters import GivenParameters
 from contact_dynamics.nodes.inbox import InboxNode
 from contact_dynamics.nodes.node_parameters import NodeParameters, refuse_lost_sections
@@ -37,7 +37,7 @@ from contact_dynamics.nodes.running import run_node
 from contact_dynamics.nodes.state_sources import state_sources
 from contact_dynamics.nodes.state_subscriptions import subscribe_to_states
 from contact_dynamics.nodes.topic_faults import TopicFaults
-from contact_dynamics.nodes.visualizer_parameters import read_visualizer_parameters
+from contact_dynamics.nodes.visualizer_parameters import VISUALIZER_PARAMETERS, read_visualizer_parameters
 from contact_dynamics.questions.services import SERVICES
 from contact_dynamics.questions.state_store import StateStore
 from contact_dynamics.questions.uncertain_state import state_of

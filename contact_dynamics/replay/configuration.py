@@ -5,12 +5,12 @@ from __future__ import annotations
 import json
 from typing import TYPE_CHECKING, Any
 
-from contact_dynamics.nodes.arguments import VISUALIZER_PARAMETERS
 from contact_dynamics.nodes.given_parameters import GivenParameters
 from contact_dynamics.nodes.parameter_file import ParameterFile
 from contact_dynamics.nodes.parameter_reader import ConfigurationError
 from contact_dynamics.nodes.run_record import LoggedParameters
 from contact_dynamics.nodes.unknown_parameters import refuse_unknown
+from contact_dynamics.nodes.visualizer_parameters import VISUALIZER_PARAMETERS
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

@@ -35,8 +35,6 @@ from contact_dynamics.viewing.web_viewer import WebViewer
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-DEFAULT_MEMORY: Final = "1GiB"
-DEFAULT_WEB_PORT: Final = 9090
 NO_WEB_PORT: Final = 0
 
 _MEMORY: Final = re.compile(r"(\d+(\.\d+)?)(%|B|[kKMGT]B|[KMGT]iB)")
@@ -77,7 +75,7 @@ class Sinks:
     viewer: ViewerMode = ViewerMode.NONE
     port: int = DEFAULT_PORT
     url: str = ""
-    memory: str = DEFAULT_MEMORY
+    memory: str = "1GiB"
     web_port: int = NO_WEB_PORT
 
     def __post_init__(self) -> None:

@@ -17,7 +17,6 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter
 
 from contact_dynamics.nodes import server, visualizer
-from contact_dynamics.nodes.arguments import SERVER_PARAMETERS, VISUALIZER_PARAMETERS
 from contact_dynamics.nodes.log import Log
 from contact_dynamics.nodes.state_sources import ADAPTERS
 from contact_dynamics.recording.limits import UNLIMITED
@@ -163,12 +162,6 @@ def test_every_topic_that_is_configured_is_subscribed() -> None:
         node.destroy_node()
     finally:
         rclpy.shutdown()
-
-
-def test_help_lists_every_parameter() -> None:
-    single = {name for name in values_of(SERVER_FILE) if "." not in name}
-    assert single == set(SERVER_PARAMETERS)
-    assert set(values_of(VISUALIZER_FILE)) == set(VISUALIZER_PARAMETERS)
 
 
 def test_every_parameter_is_described(declared: dict[str, dict[str, Any]]) -> None:

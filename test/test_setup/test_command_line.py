@@ -11,7 +11,8 @@ import numpy as np
 import pytest
 
 from contact_dynamics.command_line import INTERRUPTED, VERBS, main
-from contact_dynamics.nodes.arguments import SERVER_PARAMETERS, VISUALIZER_PARAMETERS
+from contact_dynamics.nodes.parameters import described_server_parameters
+from contact_dynamics.nodes.visualizer_parameters import VISUALIZER_PARAMETERS
 
 ROOT = Path(__file__).parents[2]
 BROUGHT = ("numpy", "numpy.libs", "scipy", "scipy.libs", "mcap", "lz4", "zstandard", "typing_extensions.py")
@@ -25,7 +26,7 @@ OPTIONS = {
     "plot": ["--output", "--format", "--max-questions", "LOG"],
     "recover": ["--output", "LOG"],
     "replay": ["verify", "table", "view", "publish", "LOG"],
-    "server": ["--params-file", "--ros-args", *SERVER_PARAMETERS],
+    "server": ["--params-file", "--ros-args", *(each.name for each in described_server_parameters())],
     "toss_publisher": ["--toss", "--listeners"],
     "visualizer": ["--params-file", "--ros-args", *VISUALIZER_PARAMETERS],
 }
