@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Final
 from contact_dynamics.constants import STANDARD_GRAVITY_W
 from contact_dynamics.nodes.given_parameters import GivenParameters
 from contact_dynamics.nodes.parameter_reader import ConfigurationError, ParameterReader
-from contact_dynamics.nodes.topic_faults import FaultLimits
+from contact_dynamics.nodes.situations import FaultLimits
 from contact_dynamics.nodes.world_parameters import read_body, read_surface
 from contact_dynamics.questions.context import Defaults
 from contact_dynamics.questions.extent import check_vector

@@ -7,11 +7,26 @@ instant, such as the loss of a message, counts as present for `RECENT_S` after i
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from enum import Enum, IntEnum
 from typing import Final, NamedTuple
 
 RECENT_S: Final = 3.0
 """s. A monitor that looks every few seconds sees what happened at an instant, and it is over soon after."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FaultLimits:
+    """When faults are told.
+
+    Attributes:
+        warn_every: s. Time between two warnings of one kind about one topic. Another topic or another fault
+            has a warning at once.
+        silent_after: s without a message, from which on a topic that was heard of counts as silent.
+    """
+
+    warn_every: float = 5.0
+    silent_after: float = 2.0
 
 
 class Level(IntEnum):

@@ -11,27 +11,13 @@ from collections import Counter
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from contact_dynamics.nodes.situations import RECENT_S, Present, Situation
+from contact_dynamics.nodes.situations import RECENT_S, FaultLimits, Present, Situation
 from msg_adapters.status import short
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from contact_dynamics.nodes.inbox import Taken
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class FaultLimits:
-    """When faults are told.
-
-    Attributes:
-        warn_every: s. Time between two warnings of one kind about one topic. Another topic or another fault
-            has a warning at once.
-        silent_after: s without a message, from which on a topic that was heard of counts as silent.
-    """
-
-    warn_every: float = 5.0
-    silent_after: float = 2.0
 
 
 class TopicFaults:

@@ -19,9 +19,10 @@ from rclpy.serialization import serialize_message
 from rosgraph_msgs.msg import Clock
 
 from contact_dynamics.nodes.inbox import InboxNode, Taken
+from contact_dynamics.nodes.situations import FaultLimits
 from contact_dynamics.nodes.state_sources import BodyReader, StateSource
 from contact_dynamics.nodes.state_subscriptions import LATCHED_QOS, StateTopic
-from contact_dynamics.nodes.topic_faults import FaultLimits, TopicFaults, TopicTraffic
+from contact_dynamics.nodes.topic_faults import TopicFaults, TopicTraffic
 from contact_dynamics.questions.state_store import StateStore
 from contact_dynamics_interfaces.srv import PredictTumbling
 from msg_adapters.stamps import stamp_ns_from_msg, stamp_to_msg
