@@ -26,6 +26,7 @@ A chapter with a function of its name, `contact_modes` or `toss`, can be called 
 `errors` has what misuse raises, and `tolerances` says what counts as zero.
 """
 
+import difflib
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, Final
 
@@ -103,7 +104,18 @@ def __getattr__(name: str) -> Any:
         if name in names:
             globals()[name] = found = getattr(import_module(f"{__name__}.{chapter}"), name)
             return found
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}{_meant(name)}")
+
+
+def _meant(name: str) -> str:
+    """Return where a name is that this page does not have, or which similar name it has."""
+    if name.startswith("_"):
+        return ""
+    for chapter in _CHAPTERS:
+        if name in getattr(import_module(f"{__name__}.{chapter}"), "__all__", ()):
+            return f", did you mean {__name__}.{chapter}.{name}?"
+    near = difflib.get_close_matches(name, __all__, n=1)
+    return f", did you mean {near[0]}?" if near else ""
 
 
 __all__ = [

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import dataclasses
+import difflib
 import enum
 import functools
 import html
@@ -14,13 +15,13 @@ import textwrap
 from collections.abc import Iterable, Iterator, Mapping
 from decimal import Decimal
 from fractions import Fraction
-from typing import Any, Final, TypeVar
+from typing import TYPE_CHECKING, Any, Final, TypeVar
 
 import numpy as np
 
 from contact_dynamics.errors import NotSupportedError
 from contact_dynamics.tolerances import SHOWN_AS_ZERO
-from contact_dynamics.validation_types import check_names, checks_fields
+from contact_dynamics.validation_types import check_names, checks_fields, no_attribute
 
 Made = TypeVar("Made", bound="Record")
 
@@ -45,6 +46,17 @@ class MembersInHelp(enum.EnumMeta):
         found = vars(cls)["_member_map_"].items()
         members = [f"    {name}: {texts.get(name, repr(one))}" for name, one in found]
         return "\n".join([own, "", "Members:", *members]) if members else own
+
+    if not TYPE_CHECKING:
+
+        def __getattr__(cls, name: str) -> Any:
+            """Return a member, which older Pythons look for here, or raise an error that names the others."""
+            members = vars(cls).get("_member_map_", {})
+            if name.startswith("_") or name in members:
+                return members[name] if name in members else type.__getattribute__(cls, name)
+            near = difflib.get_close_matches(name, members, n=1)
+            meant = f", did you mean {near[0]}?" if near else "."
+            raise AttributeError(f"{cls.__name__} has no member {name!r}{meant} It has {', '.join(members)}")
 
 
 @functools.cache
@@ -109,6 +121,14 @@ class Record:
         if post_init is not None and not hasattr(post_init, "__wrapped__"):
             type.__setattr__(cls, "__post_init__", checks_fields(post_init, inspect.get_annotations(cls)))
         super().__init_subclass__()
+
+    if not TYPE_CHECKING:  # type checkers know which attributes there are
+
+        def __getattr__(self, name: str) -> Any:
+            """Raise the error that there is no such attribute, and name the one that was probably meant."""
+            if name.startswith("_") or hasattr(type(self), name):
+                return object.__getattribute__(self, name)  # a property's own error
+            raise AttributeError(no_attribute(self, name))
 
     def __repr__(self) -> str:
         """Return the fields, as many as fit into one line."""

@@ -40,7 +40,8 @@ _MEANT: Final[dict[str, tuple[str, ...]]] = {
     **dict.fromkeys(("e", "coefficient_of_restitution", "bounce"), ("restitution", "restitutions")),
     **dict.fromkeys(("mass", "inertia", "density"), ("mass_properties", "I_B")),
     **dict.fromkeys(("vertices", "corners", "size"), ("vertices_B", "vertices_W", "shape")),
-    **dict.fromkeys(("duration", "until", "timeout", "time", "seconds", "max_time"), ("horizon", "stamp_ns")),
+    **dict.fromkeys(("duration", "until", "timeout", "seconds", "max_time"), ("horizon", "stamp_ns")),
+    **dict.fromkeys(("time", "times"), ("seconds", "horizon", "stamp_ns")),
     **dict.fromkeys(("samples", "n"), ("count",)),
     **dict.fromkeys(("floor", "surface", "ground"), ("surfaces",)),
     "normal": ("normal_W", "normals_W"),
@@ -48,6 +49,9 @@ _MEANT: Final[dict[str, tuple[str, ...]]] = {
     "force": ("force_W", "f"),
 }
 """Names that newcomers guess, with what they may mean. Arguments that begin with the guess are found too."""
+
+_INTERNAL: Final = ("_", "HINT_IF", "ALLOWED")
+"""How names begin that no user asks for."""
 
 _NAMES: Final[dict[type, Mapping[str, inspect.Parameter]]] = {}
 """What each class is made with, once that was asked for."""
@@ -219,6 +223,34 @@ def refuse_unknown(called: Callable[..., object], name: str, allowed: Collection
         words += "."
     hint = getattr(called, "HINT_IF_UNKNOWN", "")
     raise UnknownArgumentError(f"{words} It has {', '.join(known)}{'; ' if hint else ''}{hint}")
+
+
+def no_attribute(record: object, name: str) -> str:
+    """Return the error that a record has no attribute of a name, with the one that was probably meant."""
+    kind = type(record)
+    fields = _shown_fields(record)
+    hidden = {one.name for one in _fields_of(record)}
+    known = [*fields, *(one for one in dir(kind) if one not in hidden and not one.startswith(_INTERNAL))]
+    guesses = []
+    for meant in (name, *_MEANT.get(name, ())):
+        guesses += [one for one in fields if one == meant]
+        for field in fields:
+            value = getattr(record, field)
+            is_list = isinstance(value, tuple) and len(value) > 0
+            if meant in _shown_fields(value[0] if is_list else value):
+                guesses.append(f"{field}{'[0]' if is_list else ''}.{meant}")
+    guesses += [one for one in known if one.startswith(f"{name}_")]
+    guesses += difflib.get_close_matches(name, known, n=1)
+    hint = f", did you mean {guesses[0]}?" if guesses else "."
+    return f"{kind.__name__} has no attribute {name!r}{hint} It has {', '.join(known)}"
+
+
+def _fields_of(record: object) -> tuple[dataclasses.Field[Any], ...]:
+    return dataclasses.fields(record) if dataclasses.is_dataclass(record) else ()
+
+
+def _shown_fields(record: object) -> list[str]:
+    return [one.name for one in _fields_of(record) if one.repr and not one.name.startswith("_")]
 
 
 def check_type(field: str, value: object, expected: Expected) -> None:

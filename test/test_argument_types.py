@@ -5,12 +5,14 @@ from __future__ import annotations
 import importlib
 import inspect
 import pickle
+import re
 import sys
 from typing import Any
 
 import numpy as np
 import pytest
 
+import contact_dynamics
 from architecture.test_doors import CHAPTERS
 from contact_dynamics import (
     Body,
@@ -20,6 +22,7 @@ from contact_dynamics import (
     PlanarContact,
     PlanarContactProblem,
     PlanarWrench,
+    RestitutionLaw,
     Surface,
     World,
     free_motion,
@@ -164,6 +167,37 @@ def test_too_many_arguments_by_place_are_an_error_that_names_those_allowed(
         Body.box(*arguments, **by_name)
     allowed = "It takes size, mass in this order, and by name only density, name"
     assert str(raised.value) == f"Body.box got {got}. {allowed}"
+
+
+@pytest.mark.parametrize(
+    ("record", "guess", "meant"),
+    [
+        (BOX, "mass", "mass_properties.mass"),
+        (BALL, "inertia", "I_B"),
+        (STATE, "position", "p_WB_W"),
+        (STATE, "p_WB", "p_WB_W"),
+        (World(bodies=[BOX]), "gravity", "gravity_W"),
+        (World(bodies=[BOX]), "name", "bodies[0].name"),
+        (free_motion(BOX, STATE).at([0.0]), "times", "seconds"),
+    ],
+)
+def test_a_guessed_attribute_is_an_error_that_names_the_right_one(
+    record: Any, guess: str, meant: str
+) -> None:
+    words = rf"no attribute '{guess}', did you mean {re.escape(meant)}\? It has "
+    with pytest.raises(AttributeError, match=words):
+        getattr(record, guess)
+    assert not hasattr(record, "nothing_of_that_kind")
+    assert not hasattr(record, "_private")
+
+
+def test_a_guessed_name_of_a_chapter_or_a_member_is_an_error_that_names_the_right_one() -> None:
+    with pytest.raises(AttributeError, match=r"did you mean contact_dynamics\.toss\.TossUncertainty\?"):
+        _ = contact_dynamics.TossUncertainty
+    with pytest.raises(AttributeError, match=r"did you mean Body\?"):
+        _ = contact_dynamics.Bodi
+    with pytest.raises(AttributeError, match=r"'STRONGE'\. It has POISSON, NEWTON, ENERGETIC"):
+        _ = RestitutionLaw.STRONGE  # type: ignore[attr-defined]
 
 
 def test_the_error_of_a_mass_names_what_takes_one() -> None:
