@@ -6,6 +6,7 @@ inconsistent, ambiguous) is a result and never an error.
 
 from __future__ import annotations
 
+import inspect
 from typing import Final
 
 
@@ -97,6 +98,19 @@ class ConcaveShapeWarning(UserWarning):
     """The corners are those of a concave body. Shapes are convex, and the convex hull is used."""
 
 
+class FarContactWarning(UserWarning):
+    """A contact is farther from a body than its shape reaches, so that its state or the contact is wrong."""
+
+
+def frames_to_caller() -> int:
+    """Return the number of frames from the function that warns to the first one outside of this package."""
+    count, frame = 0, inspect.currentframe()
+    while frame is not None and str(frame.f_globals.get("__name__")).startswith(_PACKAGE):
+        count, frame = count + 1, frame.f_back
+    return count
+
+
+_PACKAGE: Final = __name__.partition(".")[0] + "."
 _LONGEST_SHOWN: Final = 120
 
 

@@ -41,6 +41,11 @@ universe."""
 SHOWN_AS_ZERO: Final = 1e-12
 """Relative to the largest number of an array. Where an array is printed, a smaller one is rounding and 0."""
 
+# contacts that are given
+
+FAR_CONTACT: Final = 0.01
+"""Relative to the reach of a body's shape: a contact that is out of it by more is a mistake, not noise."""
+
 # numerics
 
 SMALL_SHARE: Final = 1e-10

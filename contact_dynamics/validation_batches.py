@@ -5,7 +5,7 @@ Batches are checked as single calls are. Each error names the field and the firs
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
@@ -23,6 +23,10 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from numpy.typing import ArrayLike, NDArray
+
+
+_STATE: Final = 12
+"""Numbers of a state's deviation: position, rotation vector, velocity, angular velocity."""
 
 
 def check_rows(
@@ -102,7 +106,7 @@ def common_length(fields: Mapping[str, FloatArray]) -> int:
     return next(iter(lengths.values()), 1)
 
 
-def check_covariance(field: str, value: ArrayLike, size: int = 12) -> FloatArray:
+def check_covariance(field: str, value: ArrayLike, size: int = _STATE) -> FloatArray:
     """Return a covariance, (``size``, ``size``), made exactly symmetric.
 
     Raises:
@@ -110,7 +114,14 @@ def check_covariance(field: str, value: ArrayLike, size: int = 12) -> FloatArray
             or beyond the square of `LARGEST_NUMBER`, a negative variance, a correlation beyond 1, or a
             direction in which the variance is negative.
     """
-    matrix = check_magnitude(field, check_array(field, value, (size, size)), LARGEST_NUMBER**2)
+    try:
+        given = check_array(field, value, (size, size))
+    except InvalidFieldError as error:
+        if size != _STATE:
+            raise
+        hint = f"{error.allowed}, as rigid_body.state_covariance makes one from standard deviations"
+        raise InvalidFieldError(field, error.found, hint) from None
+    matrix = check_magnitude(field, given, LARGEST_NUMBER**2)
     variances = matrix.diagonal()
     if (variances < 0.0).any():
         raise InvalidFieldError(field, f"variances {variances.tolist()}", "variances >= 0")

@@ -58,6 +58,9 @@ from hostile_values.shared import (
 SECONDS = 10
 """Of the processor's time: a call may take no longer. The slowest takes less than one."""
 
+# A hostile state is far from the contact that it is given with.
+pytestmark = pytest.mark.filterwarnings("ignore::contact_dynamics.errors.FarContactWarning")
+
 HOSTILE = [
     math.nan,
     math.inf,

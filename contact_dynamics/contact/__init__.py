@@ -5,6 +5,7 @@
 where it meets a solid. `velocities` says which contacts count as at rest. `kinds` says what velocities add to
 the accelerations of contacts. `friction` makes pyramids from friction cones. `uncertainty` says how well
 contacts are known, and `noise` which of them touch and rest where the state is measured.
+`reach` warns of contacts that a body cannot have.
 """
 
 from contact_dynamics.contact.contact import Contact, ContactSet

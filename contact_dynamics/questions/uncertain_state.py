@@ -5,10 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeAlias
 
-import numpy as np
-
 from contact_dynamics.records import Record
-from contact_dynamics.rigid_body.body import BodyState
+from contact_dynamics.rigid_body.body import BodyState, state_covariance
 from contact_dynamics.validation import FloatArray
 from contact_dynamics.validation_batches import check_covariance
 
@@ -65,7 +63,11 @@ def with_deviations(known: KnownState, deviations: Sequence[float]) -> KnownStat
     """
     if not deviations or not isinstance(known, BodyState):
         return known
-    return UncertainState(state=known, covariance=np.diag(np.repeat(np.square(deviations), 3)))
+    position, rotation, velocity, angular_velocity = deviations
+    covariance = state_covariance(
+        position=position, rotation=rotation, velocity=velocity, angular_velocity=angular_velocity
+    )
+    return UncertainState(state=known, covariance=covariance)
 
 
 def state_of(known: KnownState) -> BodyState:

@@ -14,6 +14,7 @@ from contact_dynamics.rigid_body.body import (
     kinetic_energy,
     momentum,
     rotational_energy,
+    state_covariance,
 )
 from contact_dynamics.validation_types import check_types_of
 
@@ -26,6 +27,7 @@ __all__ = [
     "kinetic_energy",
     "momentum",
     "rotational_energy",
+    "state_covariance",
 ]
 
 check_types_of(globals())

@@ -23,6 +23,7 @@ from contact_dynamics.validation import (
     check_positive,
     check_stamp,
     check_unit,
+    check_within,
 )
 
 if TYPE_CHECKING:
@@ -186,6 +187,23 @@ def inverse_mass_matrix(mass: float, inertia_W: FloatArray) -> FloatArray:
     inverse[:3, :3] = np.eye(3) / mass
     inverse[3:, 3:] = np.linalg.inv(inertia_W)
     return inverse
+
+
+def state_covariance(
+    *, position: float = 0.0, rotation: float = 0.0, velocity: float = 0.0, angular_velocity: float = 0.0
+) -> FloatArray:
+    """Return the covariance of a state, (12, 12), from standard deviations that are the same along all axes.
+
+    Args:
+        position: m, >= 0, of the centre of mass.
+        rotation: rad, >= 0, of a small rotation that is applied after the attitude.
+        velocity: m/s, >= 0, of the centre of mass.
+        angular_velocity: rad/s, >= 0.
+    """
+    names = ("position", "rotation", "velocity", "angular_velocity")
+    numbers = (position, rotation, velocity, angular_velocity)
+    deviations = [check_within(name, x, 0.0, LARGEST_NUMBER) for name, x in zip(names, numbers, strict=True)]
+    return np.diag(np.repeat(np.square(deviations), 3))
 
 
 def momentum(body: HasMassProperties, state: BodyState) -> FloatArray:

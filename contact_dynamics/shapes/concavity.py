@@ -11,14 +11,13 @@ the hull. No corners show them.
 
 from __future__ import annotations
 
-import inspect
 import math
 import warnings
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from contact_dynamics.errors import ConcaveShapeWarning, UndecidedError
+from contact_dynamics.errors import ConcaveShapeWarning, UndecidedError, frames_to_caller
 from contact_dynamics.numerics.convex_hull import Hull, hull_of
 from contact_dynamics.tolerances import FLAT_HULL, INSIDE_HULL
 
@@ -27,8 +26,6 @@ if TYPE_CHECKING:
 
     from contact_dynamics.rigid_body.body import MassProperties
     from contact_dynamics.validation import FloatArray
-
-_PACKAGE: Final = __name__.partition(".")[0] + "."
 
 _FEW: Final = 300
 """Up to this number of corners, the products of all of them are cheap."""
@@ -58,15 +55,7 @@ def warn_if_concave(
             f"{name}: {found}. Its convex hull is taken instead, which touches where the body does not. "
             "If the hull is meant, give its corners alone"
         )
-        warnings.warn(message, ConcaveShapeWarning, stacklevel=_frames_to_caller())
-
-
-def _frames_to_caller() -> int:
-    """Return the number of frames from the function that warns to the first one outside of this package."""
-    count, frame = 0, inspect.currentframe()
-    while frame is not None and str(frame.f_globals.get("__name__")).startswith(_PACKAGE):
-        count, frame = count + 1, frame.f_back
-    return count
+        warnings.warn(message, ConcaveShapeWarning, stacklevel=frames_to_caller())
 
 
 def _concave_by(

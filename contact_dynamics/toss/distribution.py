@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, overload
 
 import numpy as np
 
@@ -178,8 +178,21 @@ class TossDistribution(Record):
     rest: RestSpread | None
     ghosts: Ghosts
 
-    def standard_error(self, probability: float) -> float:
-        """Return the standard error of a probability, such as a branch's, by the number of samples."""
+    @overload
+    def standard_error(self, probability: float) -> float: ...
+
+    @overload
+    def standard_error(self, probability: FloatArray) -> FloatArray: ...
+
+    def standard_error(self, probability: float | FloatArray) -> float | FloatArray:
+        """Return the standard error of a probability, such as a branch's, by the number of samples.
+
+        Of several, such as ``face_probabilities``, it returns an array.
+        """
+        if isinstance(probability, np.ndarray):
+            return np.array([self.standard_error(share) for share in probability.ravel().tolist()]).reshape(
+                probability.shape
+            )
         share = check_within("probability", probability, 0.0, 1.0)
         return math.sqrt(share * (1.0 - share) / self.samples)
 
@@ -187,7 +200,8 @@ class TossDistribution(Record):
     def faces_on_top(self) -> tuple[str, ...]:
         """Which body axis points away from the surface in each kind of rest: "+z", or its numbers.
 
-        They are in the order of ``face_probabilities``. On a die it is the face on top.
+        They are in the order of ``face_probabilities``. On a die it is the face on top. A face on which no
+        sample rests is not among them, and without ``to_rest`` there is none.
         """
         return tuple(axis_in_words(normal) for normal in self.face_normals_B)
 

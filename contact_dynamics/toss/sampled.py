@@ -93,14 +93,15 @@ def sampled_toss(
         world: Surfaces, which are flats, and gravity.
         covariance: (12, 12), of the state, or None if the state is exact. Rows and columns are position (m),
             rotation vector (rad, applied after the attitude), velocity of the centre of mass (m/s) and
-            angular velocity (rad/s), each as x, y, z in world axes.
+            angular velocity (rad/s), each as x, y, z in world axes. `rigid_body.state_covariance` makes one
+            from standard deviations.
         by_gravity: s^2 and s, by how much the best position and velocity change with gravity, as
             `FitResult.by_gravity`. A state that does not depend on gravity has zeros.
-        uncertainty: How uncertain parameters and law are.
+        uncertainty: How uncertain parameters and law are. The uncertainty of the state is ``covariance``.
         count: Number of samples, from 1 to `MAX_SAMPLES`. Standard errors of probabilities are at most
             0.5 / sqrt(count), which is 0.035 for 200.
         strikes: How many next strikes the tree has, from 1 to `MAX_STRIKES`.
-        to_rest: Whether samples are followed to rest.
+        to_rest: Whether samples are followed to rest. Otherwise no face and no place of rest is found.
         seed: Samples are drawn from it, >= 0. The same seed draws the same ones.
         restitution_law: What the coefficients of restitution mean. ENERGETIC only goes with SEQUENTIAL.
         several_contacts_law: The law for several contacts that strike at one instant, in samples that go on

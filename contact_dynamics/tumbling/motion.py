@@ -252,6 +252,9 @@ def free_motion(
 ) -> FreeMotion:
     """Return the motion of a body without torque, in uniform gravity, from its state at one time.
 
+    ``free_motion(body, state).at(seconds)`` is the `Trajectory` at many times, ``.state_at(seconds)`` the
+    state at one.
+
     Gravity is (3,), m/s^2, world axes. The precision is that of the motion's constants: double costs a third
     of the time, and its errors grow with the angle turned. The constants of the last
     `constants.REMEMBERED` rotations are kept.

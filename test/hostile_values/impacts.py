@@ -33,6 +33,10 @@ from hostile_values.shared import (
 
 IMPACTS: Calls = {
     "StrikingBodies": (StrikingBodies, STRIKERS),
+    "StrikingBodies.of": (
+        StrikingBodies.of,
+        {"body": BALL, **FALLING, "p_WC_W": [0.0, 0.0, 0.0]},
+    ),
     "spatial_impact": (
         spatial_impact,
         {**WHERE, "contact": CONTACT, "velocity_tolerance": 1e-9},

@@ -26,6 +26,10 @@ RIGID_BODIES: Calls = {
     "angular_momentum": (rigid_body.angular_momentum, WHERE),
     "kinetic_energy": (rigid_body.kinetic_energy, WHERE),
     "momentum": (rigid_body.momentum, WHERE),
+    "state_covariance": (
+        rigid_body.state_covariance,
+        {"position": 1e-3, "rotation": 0.01, "velocity": 0.1, "angular_velocity": 0.2},
+    ),
     "rotational_energy": (rigid_body.rotational_energy, WHERE),
     "MassDistribution": (
         inertia.MassDistribution,

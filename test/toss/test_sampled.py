@@ -8,9 +8,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.impact import RestitutionLaw
 from contact_dynamics.rigid_body import inertia
-from contact_dynamics.rigid_body.body import BodyState
+from contact_dynamics.rigid_body.body import BodyState, state_covariance
 from contact_dynamics.rotations.many import matrices_of
 from contact_dynamics.shapes import box
 from contact_dynamics.toss import TossDistribution, TossEventKind, TossUncertainty, sampled_toss, toss
@@ -277,3 +278,14 @@ def test_a_surface_has_a_factor_of_its_own_that_a_list_replaces() -> None:
         )
         assert found.rest is not None
         np.testing.assert_allclose(found.rest.positions[:, 0], end, rtol=1e-3)
+
+
+def test_deviations_make_the_covariance_and_errors_come_in_arrays() -> None:
+    covariance = state_covariance(position=0.002, velocity=0.05)
+    np.testing.assert_array_equal(np.diag(covariance), [4e-6] * 3 + [0.0] * 3 + [0.05**2] * 3 + [0.0] * 3)
+    found = told(thrown(1), covariance=covariance, to_rest=True)
+    shares = found.face_probabilities
+    by_hand = np.sqrt(shares * (1.0 - shares) / 200)
+    np.testing.assert_allclose(found.standard_error(shares), by_hand, rtol=1e-14)
+    with pytest.raises(InvalidFieldError, match=r"\(12, 12\), as rigid_body\.state_covariance makes one"):
+        told(thrown(1), covariance=[0.002, 0.0, 0.05, 0.0])

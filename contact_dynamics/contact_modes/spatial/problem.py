@@ -12,18 +12,21 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
+from contact_dynamics.contact.found import find_contacts
 from contact_dynamics.contact.friction import check_facets
 from contact_dynamics.contact.kinds import velocity_accelerations
+from contact_dynamics.contact.reach import warn_if_far
 from contact_dynamics.contact.uncertainty import EXACT_CONTACTS, ContactUncertainty
 from contact_dynamics.contact_modes.spatial.flush import made_flush
 from contact_dynamics.contact_modes.spatial.pyramid_programs import Touching
 from contact_dynamics.contact_modes.spatial.search import Search
-from contact_dynamics.errors import TooLargeError
+from contact_dynamics.errors import NoContactError, TooLargeError
 from contact_dynamics.numerics.vectors import point_jacobians
 from contact_dynamics.records import Record
 from contact_dynamics.rigid_body.body import inverse_mass_matrix
-from contact_dynamics.tolerances import VELOCITY_TOLERANCE
+from contact_dynamics.tolerances import DISTANCE_TOLERANCE, VELOCITY_TOLERANCE
 from contact_dynamics.validation import check_not_negative, check_vector3
+from contact_dynamics.validation_types import checks_types
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -31,6 +34,7 @@ if TYPE_CHECKING:
     from contact_dynamics.contact.contact import ContactSet
     from contact_dynamics.rigid_body.body import BodyState, HasMassProperties, MassProperties
     from contact_dynamics.validation import FloatArray
+    from contact_dynamics.world import Body, World
 
 MAX_EDGES: Final = 128
 """The largest number of edges of all friction pyramids together. Their cone in R^6 has thousands of
@@ -49,6 +53,12 @@ FRICTION_FACETS: Final = 8
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class SpatialContactProblem(Record):
     """A question about the contact modes of one body in space; its sister is `PlanarContactProblem`.
+
+    ``SpatialContactProblem.of(body, state, world, force_W=push)`` finds the contacts and adds the weight:
+
+        crate = Body.box((0.4, 0.3, 0.6), mass=20.0)
+        problem = SpatialContactProblem.of(crate, state, world, force_W=[90, 0, 0], at_W=[-0.2, 0, 0.5])
+        print(contact_modes(problem))
 
     The modes are those of round cones, whatever the number of facets. In margins, statics and wrench sets,
     friction cones of contacts at rest are pyramids, and 8 edges serve most questions. Margins of sticking are
@@ -109,6 +119,7 @@ class SpatialContactProblem(Record):
 
     def __post_init__(self) -> None:
         """Take the mass properties of a body. Check the wrench, the facets and the tolerance."""
+        warn_if_far(self.body, self.state, self.contacts.p_WC_W)
         object.__setattr__(self, "body", self.body.mass_properties)
         object.__setattr__(self, "force_W", check_vector3("force_W", self.force_W))
         object.__setattr__(self, "torque_W", check_vector3("torque_W", self.torque_W))
@@ -116,6 +127,45 @@ class SpatialContactProblem(Record):
         object.__setattr__(self, "velocity_tolerance", tolerance)
         object.__setattr__(self, "friction_facets", check_facets(self.friction_facets))
         self.uncertainty.check_count(len(self.contacts))
+
+    @classmethod
+    @checks_types
+    def of(
+        cls,
+        body: Body,
+        state: BodyState,
+        world: World,
+        *,
+        force_W: ArrayLike = (0.0, 0.0, 0.0),
+        torque_W: ArrayLike = (0.0, 0.0, 0.0),
+        at_W: ArrayLike | None = None,
+        distance_tolerance: float = DISTANCE_TOLERANCE,
+    ) -> SpatialContactProblem:
+        """Return the problem of a body that touches the world, under its weight and a push.
+
+        Args:
+            body: The body, with a shape.
+            state: Its state. Where it touches is found as by `find_contacts`.
+            world: Surfaces and gravity. A tray or a truck that accelerates stands still in its own frame, in
+                which gravity is that of the world minus its acceleration.
+            force_W: (3,), N, the push besides gravity, world axes.
+            torque_W: (3,), N m, about the centre of mass, besides that of the push, world axes.
+            at_W: (3,), m, where the push acts, world axes, or None for the centre of mass.
+            distance_tolerance: m, >= 0, as in `find_contacts`.
+
+        Raises:
+            NoContactError: the body has no shape, or touches nothing.
+            InvalidFieldError: an error of `find_contacts`, or a number that is not finite.
+        """
+        contacts = find_contacts(body, state, world, distance_tolerance=distance_tolerance)
+        if len(contacts) == 0:
+            message = f"state: no point of {body.name!r} is within {distance_tolerance:g} m of a surface"
+            raise NoContactError(message)
+        push, torque = check_vector3("force_W", force_W), check_vector3("torque_W", torque_W)
+        if at_W is not None:
+            torque = torque + np.cross(check_vector3("at_W", at_W) - state.p_WB_W, push)
+        weight = body.mass_properties.mass * world.gravity_W
+        return cls(body=body, state=state, contacts=contacts, force_W=weight + push, torque_W=torque)
 
     @property
     def wrench_W(self) -> FloatArray:

@@ -22,6 +22,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from contact_dynamics.contact.reach import warn_if_far
 from contact_dynamics.errors import TooLargeError
 from contact_dynamics.impact.law import RestitutionLaw
 from contact_dynamics.impact.several.result import (
@@ -82,6 +83,7 @@ def several_impact(
         InvalidFieldError: there are no contacts, the tolerance is not > 0, or ENERGETIC and SIMULTANEOUS are
             asked for together.
     """
+    warn_if_far(body, state, contacts.p_WC_W)
     answer = bodies_impact(
         [body],
         [state],

@@ -33,11 +33,14 @@ from contact_dynamics.validation_batches import (
     check_unit_rows,
     common_length,
 )
+from contact_dynamics.validation_types import checks_types
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from numpy.typing import ArrayLike, NDArray
+
+    from contact_dynamics.rigid_body.body import HasMassProperties
 
 _CHUNK: Final = 8192
 """Cases that are struck without a pause. Ctrl-C acts between two chunks."""
@@ -65,6 +68,41 @@ class StrikingBodies(Record):
     v_WB_W: FloatArray
     w_WB_W: FloatArray
     r_W: FloatArray
+
+    @classmethod
+    @checks_types
+    def of(
+        cls,
+        body: HasMassProperties,
+        *,
+        p_WB_W: ArrayLike,
+        q_WB: ArrayLike,
+        v_WB_W: ArrayLike,
+        w_WB_W: ArrayLike,
+        p_WC_W: ArrayLike,
+    ) -> StrikingBodies:
+        """Return one body in many states, each with its contact, or with one for all.
+
+        Args:
+            body: A `Body`, or its `MassProperties`.
+            p_WB_W: (N, 3) or (3,), m, positions of the centre of mass, world.
+            q_WB: (N, 4) or (4,), unit quaternions x, y, z, w.
+            v_WB_W: (N, 3) or (3,), m/s, world axes.
+            w_WB_W: (N, 3) or (3,), rad/s, world axes.
+            p_WC_W: (N, 3) or (3,), m, contact points, world.
+        """
+        points = check_magnitude("p_WC_W", check_rows("p_WC_W", p_WC_W, (3,)))
+        places = check_magnitude("p_WB_W", check_rows("p_WB_W", p_WB_W, (3,)))
+        common_length({"p_WC_W": points, "p_WB_W": places})
+        own = body.mass_properties
+        return cls(
+            masses=own.mass,
+            inertias_B=own.I_B,
+            q_WB=q_WB,
+            v_WB_W=v_WB_W,
+            w_WB_W=w_WB_W,
+            r_W=points - places,
+        )
 
     if TYPE_CHECKING:
 

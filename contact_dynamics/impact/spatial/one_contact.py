@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from contact_dynamics.contact.reach import warn_if_far
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.impact.law import RestitutionLaw
 from contact_dynamics.impact.spatial.path import OUTCOMES
@@ -44,13 +45,15 @@ def spatial_impact(
     restitution_law: RestitutionLaw = RestitutionLaw.POISSON,
     velocity_tolerance: float = VELOCITY_TOLERANCE,
 ) -> SpatialImpact:
-    """Return what the impact of ``body`` does.
+    """Return what the impact of ``body`` does; `impact.spatial_impacts` does it for many at once.
+
+    A contact out of reach of the body's shape, if it has one, is told by a `FarContactWarning`.
 
     Args:
         body: A `Body`, or its `MassProperties`.
         state: Pose and velocities just before.
         contact: The contact, with its normal into the body, friction and restitution. Curvatures play no part
-            in an impact.
+            in an impact. If several strike at once, as where a box lands on a face, use `several_impact`.
         restitution_law: What the coefficient of restitution means.
         velocity_tolerance: m/s, >= 0. A normal or tangential velocity of the contact within it counts as
             zero.
@@ -60,6 +63,7 @@ def spatial_impact(
         InvalidFieldError: the tolerance is negative, a velocity or the contact's distance from a centre of
             mass is beyond `LARGEST_NUMBER`, or a mass or moment of inertia is, or is below its inverse.
     """
+    warn_if_far(body, state, contact.p_WC_W)
     body = body.mass_properties
     return _impact(
         body, state, None, None, contact, law=restitution_law, velocity_tolerance=velocity_tolerance
@@ -92,6 +96,8 @@ def spatial_pair_impact(
         InvalidFieldError: the tolerance is negative, a velocity or the contact's distance from a centre of
             mass is beyond `LARGEST_NUMBER`, or a mass or moment of inertia is, or is below its inverse.
     """
+    warn_if_far(body, state, contact.p_WC_W)
+    warn_if_far(other, other_state, contact.p_WC_W)
     body = body.mass_properties
     other = other.mass_properties
     return _impact(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,7 +11,9 @@ import pytest
 from contact_dynamics.contact.contact import ContactSet
 from contact_dynamics.contact_modes import SpatialContactProblem, contact_modes
 from contact_dynamics.contact_modes.spatial.applied_wrench import applied_wrench
+from contact_dynamics.errors import NoContactError
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
+from contact_dynamics.world import Body, Surface, World
 
 BODY = MassProperties(mass=0.7, I_B=np.diag([0.02, 0.05, 0.06]))
 
@@ -48,3 +51,19 @@ def test_the_applied_wrench_follows_from_each_mode(seed: int) -> None:
         wrench_W = applied_wrench(BODY, state, contacts, mode)
         size = math.hypot(*force_W) + float(np.abs(mode.contact_forces_W).sum())
         np.testing.assert_allclose(wrench_W, [*force_W, *torque_W], atol=1e-9 * size)
+
+
+def test_a_push_at_a_point_and_the_weight_make_the_wrench() -> None:
+    """By hand: a crate of 20 kg that is pushed 0.2 m above its centre, and tips from m g 0.2 / 0.5 on."""
+    crate = Body.box((0.4, 0.3, 0.6), mass=20.0, name="crate")
+    floor = Surface(name="floor", p_WS_W=[0, 0, 0], normal_W=[0, 0, 1], friction=0.5, restitution=0.3)
+    world = World(surfaces=(floor,), gravity_W=[0, 0, -10.0])
+    state = BodyState(p_WB_W=[1, 0, 0.3], q_WB=[0, 0, 0, 1], v_WB_W=[0, 0, 0], w_WB_W=[0, 0, 0])
+    for push, mode in ((79.9, "ffff"), (80.1, "ssff")):
+        problem = SpatialContactProblem.of(
+            crate, state, world, force_W=[push, 0, 0], at_W=[0.8, 0, 0.5], torque_W=[0, 0, 0.1]
+        )
+        np.testing.assert_allclose(problem.wrench_W, [push, 0, -200.0, 0, 0.2 * push, 0.1], atol=1e-12)
+        assert [found.mode for found in contact_modes(problem).modes] == [mode]
+    with pytest.raises(NoContactError, match=r"no point of 'crate' is within 1e-06 m of a surface"):
+        SpatialContactProblem.of(crate, replace(state, p_WB_W=[0, 0, 0.31]), world)

@@ -22,6 +22,7 @@ from contact_dynamics.impact import (
 )
 from contact_dynamics.impact.spatial import batch as spatial_batch
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
+from contact_dynamics.world import Body
 
 Case = tuple[MassProperties, BodyState, dict[str, object]]
 
@@ -264,3 +265,28 @@ def test_separating_rows_can_be_left_as_they_are() -> None:
     assert answers.velocities_after_W[1].tolist() == velocities[1]
     assert np.array_equal(answers.v_WB_W[[0, 2]], alone.v_WB_W)
     assert np.array_equal(answers.outcomes[[0, 2]], alone.outcomes)
+
+
+def test_one_body_in_many_states_needs_no_unpacking() -> None:
+    rng = np.random.default_rng(6)
+    body = Body.box((0.1, 0.2, 0.3), mass=0.7)
+    states = [draw(rng, 0)[1] for _ in range(20)]
+    columns = {
+        name: [getattr(state, name) for state in states] for name in ("p_WB_W", "q_WB", "v_WB_W", "w_WB_W")
+    }
+    points = columns["p_WB_W"] + rng.normal(size=(20, 3))
+    batch = spatial_impacts(
+        StrikingBodies.of(body, p_WC_W=points, **columns),
+        normals_W=[0, 0, 1],
+        frictions=0.3,
+        restitutions=0.5,
+        skip_separating=True,
+    )
+    for i, (state, point) in enumerate(zip(states, points, strict=True)):
+        contact = Contact(p_WC_W=point, normal_W=[0, 0, 1], friction=0.3, restitution=0.5)
+        if state.velocity_of_point(point)[2] < 0.0:
+            single = spatial_impact(body.mass_properties, state, contact)
+            np.testing.assert_array_equal(batch.v_WB_W[i], single.state.v_WB_W)
+    assert (batch.outcomes != ImpactOutcome.NO_IMPULSE).sum() >= 2
+    with pytest.raises(InvalidFieldError, match="p_WC_W"):
+        StrikingBodies.of(body, p_WC_W=points[:2], **columns)
