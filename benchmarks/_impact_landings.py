@@ -28,9 +28,8 @@ from contact_dynamics.errors import SeparatingContactError
 from contact_dynamics.impact import impact_sequence, several_impact
 from contact_dynamics.landing.earliest import next_landing
 from contact_dynamics.measured.cube_tosses import BOARD, CUBE, GRAVITY, read_cube_toss
-from contact_dynamics.measured.events import FIT_SPAN, corner_heights
 from contact_dynamics.measured.flight_fit import FEWEST_FRAMES, fit_flight
-from contact_dynamics.measured.flights import find_flights
+from contact_dynamics.measured.flights import corner_heights, find_flights, first_part, last_part
 from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.rotations.one import rotation_matrix
 from contact_dynamics.tumbling import free_motion
@@ -92,13 +91,12 @@ def _landing(toss: Toss, index: int, before: slice, after: slice) -> MeasuredLan
     stop, start = before.stop - 1, after.start + 1
     if between > MAX_BETWEEN or min(stop - before.start, after.stop - start) < FEWEST_FRAMES:
         return None
-    span = max(FEWEST_FRAMES, round(FIT_SPAN * toss.rate))
-    first = fit_flight(toss, slice(max(before.start, stop - span), stop))
-    second = fit_flight(toss, slice(start, min(after.stop, start + span)), reference=start)
+    first = fit_flight(toss, last_part(toss, before, stop))
+    second = fit_flight(toss, first_part(toss, slice(start, after.stop)), reference=start)
     begin, end = first.at(float(toss.times[stop - 1])), second.at(float(toss.times[start]))
     if between <= 1:
         middle = 0.5 * float(toss.times[before.stop - 1] + toss.times[after.start])
-        lowest, next_one = np.sort(corner_heights(toss, first.at(middle).state))[:2]
+        lowest, next_one = np.sort(corner_heights(toss, first.at(middle).state)[0])[:2]
         if next_one - lowest >= ALONE:
             return None
     state = begin.state

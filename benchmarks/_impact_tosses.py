@@ -27,7 +27,7 @@ from contact_dynamics.contact.contact import Contact
 from contact_dynamics.errors import SeparatingContactError
 from contact_dynamics.impact import RestitutionLaw, spatial_impact
 from contact_dynamics.measured.cube_tosses import BOARD, CUBE, read_cube_toss
-from contact_dynamics.measured.events import find_strikes
+from contact_dynamics.measured.flights import find_strikes
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 
 if TYPE_CHECKING:

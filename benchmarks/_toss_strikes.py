@@ -22,8 +22,9 @@ from contact_dynamics.toss import TossEventKind, toss
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from contact_dynamics.calibration.observed import Observed, Strike
-    from contact_dynamics.evaluation.motion import MeasuredMotion
+    from contact_dynamics.calibration.observed import Observed
+    from contact_dynamics.measured.flights import Strike
+    from contact_dynamics.measured.motion import MeasuredMotion
     from contact_dynamics.rigid_body.body import BodyState
     from contact_dynamics.toss import TossDistribution
     from contact_dynamics.toss.distribution import EventRegions, Region
@@ -74,7 +75,7 @@ def strikes(early: list[Early], world: World, predicted: Callable[[Early], TossD
             for name, region, value in _before(one, arrival.seconds, arrival.state, told.strikes[1]):
                 held.setdefault(f"2.{name}", []).append(region.holds([value])[0])
             corners[2].append(_chance(told, 2, arrival.corner))
-            apart += [arrival.seconds - strike.meeting.time for strike in found[1:]]
+            apart += [arrival.seconds - strike.time for strike in found[1:]]
     print(f"Shares of measured values in the regions of 50 and 90 %, from {len(early)} early states\n")
     _print_shares(held)
     off = 1e3 * float(np.sqrt(np.mean(np.square(apart))))
@@ -109,7 +110,7 @@ def _with_flights(observed: Observed) -> list[Strike]:
     """Return the first two strikes, as far as they are the first ones and flights follow them."""
     found: list[Strike] = []
     for strike, flight in zip(observed.strikes[:2], observed.flights, strict=False):
-        if not flight.start <= strike.before.start < flight.stop:
+        if not flight.start <= strike.frames_before.start < flight.stop:
             break
         found.append(strike)
     return found
@@ -122,10 +123,10 @@ def _chance(told: TossDistribution, number: int, corner: int) -> float:
 def _values(
     one: Early, strike: Strike, regions: EventRegions, world: World
 ) -> list[tuple[str, Region, FloatArray]]:
-    time = strike.meeting.time
+    time = strike.time
     moved = about_its_centre(one.observed.motion, world, one.gravity_W)
-    before = fit_flight(moved, strike.before).at(time).state
-    after = fit_flight(moved, strike.after, reference=strike.after.start).at(time).state
+    before = fit_flight(moved, strike.frames_before).at(time).state
+    after = fit_flight(moved, strike.frames_after, reference=strike.frames_after.start).at(time).state
     return [
         *_before(one, time, before, regions),
         ("velocity", regions.velocity, after.v_WB_W),
@@ -161,10 +162,10 @@ def second_arrival(observed: Observed, world: World, gravity_W: FloatArray) -> A
     Its last frame is left out, since the body may touch in it.
     """
     strike, flights = observed.strikes[0], observed.flights
-    after = next((each for each in flights if each.start <= strike.after.start < each.stop), None)
-    if after is None or after.stop - 1 - strike.after.start < FEWEST_FRAMES:
+    after = next((each for each in flights if each.start <= strike.frames_after.start < each.stop), None)
+    if after is None or after.stop - 1 - strike.frames_after.start < FEWEST_FRAMES:
         return None
-    frames = slice(strike.after.start, after.stop - 1)
+    frames = slice(strike.frames_after.start, after.stop - 1)
     middle = (frames.start + frames.stop) // 2
     motion = about_its_centre(observed.motion, world, gravity_W)
     state = fit_flight(motion, frames, reference=middle).at(float(motion.times[middle])).state

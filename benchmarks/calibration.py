@@ -28,7 +28,7 @@ from contact_dynamics.calibration import Free, calibrate_observed
 from contact_dynamics.calibration.free import STANDARD
 from contact_dynamics.calibration.impacts import velocities_after
 from contact_dynamics.calibration.model import Model
-from contact_dynamics.calibration.observed import observe, surfaces_of
+from contact_dynamics.calibration.observed import observe
 from contact_dynamics.evaluation.recording import recording_of_toss
 from contact_dynamics.measured.cube_tosses import BOARD, CUBE, read_cube_toss
 
@@ -71,7 +71,7 @@ def run() -> None:
     for count, given in ((20, few), (60, seen[:60]), (180, seen), (300, [*seen, *seen[:120]])):
         begin = time.process_time()
         found[count] = calibrate_observed(
-            Model(given[0].motion.body, surfaces_of(given[0].motion)),
+            Model(given[0].motion.body, given[0].motion.surfaces),
             given,
             free=(*STANDARD, Free.SURFACE_HEIGHT),
             with_paths=False,
@@ -135,7 +135,7 @@ def _strikes(observed: Sequence[Observed]) -> list[Strike]:
     strikes = []
     for each in observed:
         for strike in each.strikes:
-            before, after = strike.meeting.before.state, strike.meeting.after.state
+            before, after = strike.before.state, strike.after.state
             corner = before.p_WB_W + before.R_WB @ CUBE.vertices_B[strike.corner]
             velocity = np.concatenate([after.v_WB_W, after.w_WB_W])
             strikes.append(Strike(int(each.name.partition(",")[0]), before, corner, velocity, np.zeros(2)))

@@ -40,7 +40,6 @@ from contact_dynamics.calibration import calibrate_observed
 from contact_dynamics.calibration.first_flights import gravity_and_center
 from contact_dynamics.calibration.free import STANDARD, Free
 from contact_dynamics.calibration.model import Model
-from contact_dynamics.calibration.observed import surfaces_of
 from contact_dynamics.calibration.toss_uncertainty import toss_uncertainty
 from contact_dynamics.impact import RestitutionLaw
 from contact_dynamics.motion.free_fit import fit_free_motion
@@ -89,7 +88,7 @@ def run() -> None:
     split = json.loads((Path(__file__).parent / "cube_split.json").read_text(encoding="utf-8"))
     seen = _observed(path, split["fit"])
     free = (*STANDARD, Free.ROUNDING, Free.SURFACE_HEIGHT)
-    model = Model(seen[0].motion.body, surfaces_of(seen[0].motion))
+    model = Model(seen[0].motion.body, seen[0].motion.surfaces)
     found = calibrate_observed(model, seen, free=free, with_paths=False)
     world = World(bodies=(found.body,), surfaces=found.surfaces, gravity_W=found.gravity_W)
     early = _known_early(_observed(path, split["test"]), found)
@@ -127,9 +126,9 @@ def _early(observed: Observed, gravity_W: FloatArray, found: Calibration) -> Ear
     if observed.first is None or not observed.strikes:
         return None
     flight, strike = observed.flights[0], observed.strikes[0]
-    if not flight.start <= strike.before.start < strike.before.stop <= flight.stop:
+    if not flight.start <= strike.frames_before.start < strike.frames_before.stop <= flight.stop:
         return None
-    count = (strike.before.stop - flight.start) // 2
+    count = (strike.frames_before.stop - flight.start) // 2
     if count < FEWEST:
         return None
     motion = observed.motion

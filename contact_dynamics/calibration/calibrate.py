@@ -13,14 +13,14 @@ from contact_dynamics.calibration.free import STANDARD, Free
 from contact_dynamics.calibration.heights import at_rests, at_strikes
 from contact_dynamics.calibration.jumps import jump_covariances, jumps
 from contact_dynamics.calibration.model import Model
-from contact_dynamics.calibration.observed import observe, surfaces_of
+from contact_dynamics.calibration.observed import observe
 from contact_dynamics.calibration.paths import Paths
 from contact_dynamics.calibration.problems import bent_surfaces, check_that_it_flies, problems_of, warnings_of
 from contact_dynamics.calibration.result import Calibration, Estimate, MeasuredGravity, Outlier
 from contact_dynamics.calibration.slides import lasting_frictions
 from contact_dynamics.calibration.strikes import strikes_of
 from contact_dynamics.errors import InvalidFieldError
-from contact_dynamics.evaluation.motion import MeasuredMotion
+from contact_dynamics.measured.motion import MeasuredMotion
 from contact_dynamics.numerics.vectors import tangents
 from contact_dynamics.rigid_body.body import MassProperties
 from contact_dynamics.shapes.convex import ConvexShape
@@ -65,7 +65,7 @@ def calibrate(
     bodies = sorted({motion.body.name for motion in motions})
     if len(bodies) > 1:
         raise InvalidFieldError("motions", f"states of {', '.join(bodies)}", "those of one body")
-    model = Model(motions[0].body, surfaces_of(motions[0]))
+    model = Model(motions[0].body, motions[0].surfaces)
     observed: list[Observed] = []
     for number, motion in enumerate(motions):
         if tell is not None:

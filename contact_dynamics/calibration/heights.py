@@ -72,7 +72,7 @@ def at_rests(observed: Sequence[Observed], described: Described, half_size: floa
         points = state.p_WB_W + described.corners @ state.R_WB.T
         heights = (points - described.points[surface]) @ described.normals[surface]
         low = np.flatnonzero(heights < heights.min() + SAME_HEIGHT * half_size)
-        std = np.hypot(each.rest.position_std, half_size * each.rest.orientation_std)
+        std = np.hypot(each.rest.position_std, half_size * each.rest.orientation_std.max())
         rows += [(number, surface, int(k), state.p_WB_W, state.q_WB, std) for k in low]
     return Touching(
         recordings=np.array([row[0] for row in rows], dtype=int),

@@ -2,8 +2,7 @@
 
 Flights are found with the configured body and gravity, which need not be exact (`measured.flights`). A strike
 lies between two flights with at most one frame between. It counts if one corner was lower than all others by
-`ALONE` of the body's size, and above a surface. Of each flight next to a strike the part within `FIT_SPAN`
-is kept, on its side of the time at which both flights' poses meet.
+`ALONE` of the body's size, and near a surface.
 
 A long recording is cut into tosses. A toss is a flight with what follows it, until the body rests or is
 thrown again. A flight after a pause belongs to another toss only if the body was off its surfaces in between,
@@ -14,24 +13,24 @@ some frames too.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from itertools import pairwise
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from contact_dynamics.measured.events import FIT_SPAN, MAX_BETWEEN, REST_SPAN, find_rest, meeting_of_flights
+from contact_dynamics.measured.events import REST_SPAN, find_rest
 from contact_dynamics.measured.flight_fit import FEWEST_FRAMES
-from contact_dynamics.measured.flights import find_flights
+from contact_dynamics.measured.flights import find_flights, find_strikes
 from contact_dynamics.records import Record
 from contact_dynamics.rotations.many import matrices_of
-from contact_dynamics.world import Surface
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from contact_dynamics.evaluation.motion import MeasuredMotion
-    from contact_dynamics.measured.events import FlightMeeting, RestingPose
+    from contact_dynamics.measured.flight_fit import MeasuredState
+    from contact_dynamics.measured.flights import Strike
+    from contact_dynamics.measured.motion import MeasuredMotion
     from contact_dynamics.validation import FloatArray
+    from contact_dynamics.world import Surface
 
 ALONE: Final = 0.1
 """Share of the body's largest half size by which the second corner is higher in a strike of a single one."""
@@ -42,27 +41,6 @@ struck."""
 
 FEWEST_IN_FIRST: Final = 8
 """Frames. A shorter first flight says next to nothing of gravity and mass centre."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class Strike(Record):
-    """One strike of one corner.
-
-    Attributes:
-        meeting: When both flights' poses meet, and the states then.
-        before: Frames of the flight before it that are used.
-        after: Frames of the flight after it that are used.
-        corner: Number of the corner that struck.
-        surface: Number of the surface that it struck, of the motion's flat surfaces.
-        height: m, of the corner above that surface, as configured.
-    """
-
-    meeting: FlightMeeting
-    before: slice
-    after: slice
-    corner: int
-    surface: int
-    height: float
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -86,13 +64,8 @@ class Observed(Record):
     first: slice | None
     strikes: tuple[Strike, ...]
     several: int
-    rest: RestingPose | None
+    rest: MeasuredState | None
     rest_surface: int
-
-
-def surfaces_of(motion: MeasuredMotion) -> list[Surface]:
-    """Return the flat surfaces of the world that the motion was measured in."""
-    return [surface for surface in motion.world.surfaces if isinstance(surface, Surface)]
 
 
 def observe(name: str, motion: MeasuredMotion) -> list[Observed]:
@@ -105,17 +78,9 @@ def observe(name: str, motion: MeasuredMotion) -> list[Observed]:
 
 
 def _observed(name: str, motion: MeasuredMotion, flights: tuple[slice, ...]) -> Observed:
-    surfaces = surfaces_of(motion)
-    reach = _reach(motion)
-    strikes, several = [], 0
-    for before, after in pairwise(flights):
-        if after.start - before.stop > MAX_BETWEEN or not surfaces:
-            continue
-        strike = _strike(motion, before, after, surfaces, reach)
-        if strike is None:
-            several += 1
-        elif abs(strike.height) <= NEAR * reach:
-            strikes.append(strike)
+    surfaces = motion.surfaces
+    found = find_strikes(motion, flights) if surfaces else ()
+    alone = [strike for strike in found if strike.margin >= ALONE * _reach(motion)]
     rest = find_rest(motion)
     first = slice(flights[0].start, flights[0].stop - 1) if flights else slice(0, 0)
     return Observed(
@@ -123,41 +88,10 @@ def _observed(name: str, motion: MeasuredMotion, flights: tuple[slice, ...]) -> 
         motion=motion,
         flights=flights,
         first=first if first.stop - first.start >= FEWEST_IN_FIRST else None,
-        strikes=tuple(strikes),
-        several=several,
+        strikes=tuple(strike for strike in alone if abs(strike.height) <= NEAR * _reach(motion)),
+        several=len(found) - len(alone),
         rest=rest,
         rest_surface=_nearest(surfaces, rest.state.p_WB_W) if rest is not None and surfaces else 0,
-    )
-
-
-def _strike(
-    motion: MeasuredMotion, before: slice, after: slice, surfaces: Sequence[Surface], reach: float
-) -> Strike | None:
-    meeting = meeting_of_flights(motion, before, after)
-    shape = motion.body.shape
-    R = meeting.before.state.R_WB
-    p = 0.5 * (meeting.before.state.p_WB_W + meeting.after.state.p_WB_W)
-    corners = p + shape.vertices @ R.T
-    heights = np.array([surface.gaps(corners) for surface in surfaces]) - shape.rounding
-    nearest = int(np.abs(heights.min(axis=1)).argmin())
-    order = np.argsort(heights[nearest])
-    if len(order) > 1 and heights[nearest][order[1]] - heights[nearest][order[0]] < ALONE * reach:
-        return None
-    count = max(FEWEST_FRAMES, round(FIT_SPAN * motion.rate))
-    half_frame = 0.5 / motion.rate
-    stop = before.stop
-    while stop - before.start > FEWEST_FRAMES and motion.times[stop - 1] > meeting.time + half_frame:
-        stop -= 1
-    start = after.start
-    while after.stop - start > FEWEST_FRAMES and motion.times[start] < meeting.time - half_frame:
-        start += 1
-    return Strike(
-        meeting=meeting,
-        before=slice(max(before.start, stop - count), stop),
-        after=slice(start, min(after.stop, start + count)),
-        corner=int(order[0]),
-        surface=nearest,
-        height=float(heights[nearest][order[0]]),
     )
 
 
@@ -210,7 +144,7 @@ def _thrown_again(motion: MeasuredMotion, last: slice, flight: slice) -> bool:
     """Return whether a flight belongs to another toss than the last one."""
     if motion.times[flight.start] - motion.times[last.stop - 1] < BETWEEN_TOSSES:
         return False
-    surfaces = [surface for surface in motion.world.surfaces if isinstance(surface, Surface)]
+    surfaces = motion.surfaces
     shape, between = motion.body.shape, slice(last.stop, flight.stop)
     if not surfaces or not len(shape.vertices):
         return True
@@ -218,8 +152,7 @@ def _thrown_again(motion: MeasuredMotion, last: slice, flight: slice) -> bool:
     corners = motion.p_WB_W[between][:, None] + turned
     gaps = np.min([surface.gaps(corners.reshape(-1, 3)) for surface in surfaces], axis=0)
     lowest = gaps.reshape(len(corners), -1).min(axis=1) - shape.rounding
-    reach = float(np.linalg.norm(shape.vertices - shape.vertices.mean(axis=0), axis=1).max())
-    return float(lowest.max()) > LIFTED * (reach + shape.rounding)
+    return float(lowest.max()) > LIFTED * _reach(motion)
 
 
 def part_of(motion: MeasuredMotion, begin: int, stop: int) -> MeasuredMotion:

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from contact_dynamics.calibration.estimation import Fitting, Spread
     from contact_dynamics.calibration.model import Described
     from contact_dynamics.calibration.observed import Observed
-    from contact_dynamics.evaluation.motion import MeasuredMotion
+    from contact_dynamics.measured.motion import MeasuredMotion
     from contact_dynamics.validation import FloatArray
 
 OWN: Final = 19
@@ -75,12 +75,9 @@ class Paths:
         found = [strike for each in observed for strike in each.strikes]
         self._sides = [
             _windows(
-                [
-                    (motion, frames, s.meeting.time)
-                    for motion, s, frames in zip(motions, found, each, strict=True)
-                ]
+                [(motion, frames, s.time) for motion, s, frames in zip(motions, found, each, strict=True)]
             )
-            for each in ([s.before for s in found], [s.after for s in found])
+            for each in ([s.frames_before for s in found], [s.frames_after for s in found])
         ]
         noise = np.array([[m.position_noise, m.orientation_noise] for m in motions]).reshape(-1, 2)
         self._noise = [noise * side.factors for side in (strikes.before, strikes.after)]

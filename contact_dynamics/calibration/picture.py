@@ -25,8 +25,9 @@ from contact_dynamics.viewing.side_by_side import EVENTS, MAX_DRAWN, TABLE, Side
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from contact_dynamics.calibration.observed import Observed, Strike
+    from contact_dynamics.calibration.observed import Observed
     from contact_dynamics.calibration.result import Calibration
+    from contact_dynamics.measured.flights import Strike
     from contact_dynamics.validation import FloatArray
 
 VELOCITY: Final = slice(0, 3)
@@ -66,7 +67,7 @@ def drawn_strikes(found: Calibration) -> list[DrawnStrike]:
     sizes = found.residuals / np.hypot(found.residual_stds, spread)
     rows = []
     for k, (toss, strike) in enumerate(strikes):
-        after = strike.meeting.after.state
+        after = strike.after.state
         arm_W = after.R_WB @ (found.body.p_FB_F - toss.motion.body.p_FB_F)
         measured = np.concatenate([after.v_WB_W + np.cross(after.w_WB_W, arm_W), after.w_WB_W])
         rows.append(
@@ -76,7 +77,7 @@ def drawn_strikes(found: Calibration) -> list[DrawnStrike]:
                 measured=measured,
                 predicted=measured + found.residuals[k],
                 deviations=np.sqrt(np.square(sizes[k]).reshape(2, 3).mean(axis=1)),
-                rejected=(toss.name, strike.meeting.time) in outliers,
+                rejected=(toss.name, strike.time) in outliers,
             )
         )
     return sorted(rows, key=lambda row: (not row.rejected, -float(row.deviations.max())))
@@ -124,7 +125,7 @@ def table_of(rows: list[DrawnStrike]) -> str:
         off = row.predicted - row.measured
         sizes = [float(np.linalg.norm(x[part])) for part in (VELOCITY, SPIN) for x in (off, row.measured)]
         lines.append(
-            f"| {number} | {row.toss.name} | {row.strike.meeting.time:.3f} s | "
+            f"| {number} | {row.toss.name} | {row.strike.time:.3f} s | "
             f"{sizes[0]:.3f} of {sizes[1]:.2f} m/s | {row.deviations[0]:.1f} | "
             f"{sizes[2]:.2f} of {sizes[3]:.1f} rad/s | {row.deviations[1]:.1f} | "
             f"{'left out' if row.rejected else ''} |"
@@ -134,7 +135,7 @@ def table_of(rows: list[DrawnStrike]) -> str:
 
 def _draw_body(recording: rr.RecordingStream, path: str, row: DrawnStrike, found: Calibration) -> FloatArray:
     """Draw the body and its path, and return where its mass centre is, (3,), m."""
-    state = row.strike.meeting.before.state
+    state = row.strike.before.state
     shape, motion = drawn_shape(found.body.shape), row.toss.motion
     at_W = state.p_WB_W + state.R_WB @ (found.body.p_FB_F - motion.body.p_FB_F)
     pose = rr.Transform3D(translation=at_W, quaternion=rr.Quaternion(xyzw=state.q_WB))
@@ -144,7 +145,7 @@ def _draw_body(recording: rr.RecordingStream, path: str, row: DrawnStrike, found
     color = palette.IMPACT if row.rejected else palette.MEASURED_EDGE
     edges = rr.LineStrips3D(list(shape.edges_B), colors=color, radii=_WIDTH)
     recording.log(f"{path}/body/edges", edges, static=True)
-    paths = [motion.p_WB_W[frames] for frames in (row.strike.before, row.strike.after)]
+    paths = [motion.p_WB_W[frames] for frames in (row.strike.frames_before, row.strike.frames_after)]
     trail = rr.LineStrips3D(paths, colors=palette.MEASURED, radii=_WIDTH)
     recording.log(f"{path}/path", trail, static=True)
     return at_W

@@ -20,8 +20,8 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from contact_dynamics.calibration.result import Calibration
-    from contact_dynamics.evaluation.motion import MeasuredMotion
     from contact_dynamics.evaluation.sources import Source
+    from contact_dynamics.measured.motion import MeasuredMotion
 
 SOMETHING_OPEN: Final = 1
 """Exit code: the data leave something open, or a recording could not be read."""

@@ -8,6 +8,7 @@ ratios of moments alone, and nearly linearly; its slopes are numerical, where th
 from __future__ import annotations
 
 from dataclasses import dataclass, fields, replace
+from operator import attrgetter
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -23,8 +24,8 @@ if TYPE_CHECKING:
 
     from contact_dynamics.calibration.first_flights import IntArray
     from contact_dynamics.calibration.observed import Observed
-    from contact_dynamics.evaluation.motion import MeasuredMotion
     from contact_dynamics.measured.flight_fit import MeasuredState
+    from contact_dynamics.measured.motion import MeasuredMotion
     from contact_dynamics.validation import FloatArray
 
 
@@ -91,29 +92,22 @@ class Strikes(Record):
 def strikes_of(observed: Sequence[Observed], *, with_ratios: bool) -> Strikes:
     """Return the strikes of all recordings, in their order."""
     found = [(number, each, strike) for number, each in enumerate(observed) for strike in each.strikes]
-    states = [(strike.meeting.before, strike.meeting.after) for _, _, strike in found]
-    sides = [
-        _side(
-            [
-                _fitted(
-                    each.motion, strike.after if later else strike.before, strike.meeting.time, with_ratios
-                )
-                for _, each, strike in found
-            ]
-        )
-        for later in (False, True)
-    ]
+    states = [(strike.before, strike.after) for _, _, strike in found]
+    before, after = (
+        _side([_fitted(each.motion, frames(strike), strike.time, with_ratios) for _, each, strike in found])
+        for frames in (attrgetter("frames_before"), attrgetter("frames_after"))
+    )
     places = [0.5 * (before.state.p_WB_W + after.state.p_WB_W) for before, after in states]
     return Strikes(
         recordings=np.array([number for number, _, _ in found], dtype=int),
         surfaces=np.array([strike.surface for _, _, strike in found], dtype=int),
         corners=np.array([strike.corner for _, _, strike in found], dtype=int),
-        times=np.array([strike.meeting.time for _, _, strike in found]),
+        times=np.array([strike.time for _, _, strike in found]),
         q_WB=np.array([before.state.q_WB for before, _ in states]).reshape(-1, 4),
         p_W=np.array(places).reshape(-1, 3),
         place_stds=np.array([_place_std(*both) for both in states]),
-        before=sides[0],
-        after=sides[1],
+        before=before,
+        after=after,
     )
 
 

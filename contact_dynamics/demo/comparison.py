@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from contact_dynamics.demo.questioner import Asked, Questioner
-    from contact_dynamics.measured.events import MeasuredStrike
+    from contact_dynamics.measured.flights import Strike
     from contact_dynamics.measured.recorded_toss import Toss
     from contact_dynamics.validation import FloatArray
 
@@ -70,7 +70,7 @@ class Section:
     rows: list[Row]
 
 
-def sections(toss: Toss, strikes: Sequence[MeasuredStrike], questioner: Questioner) -> list[Section]:
+def sections(toss: Toss, strikes: Sequence[Strike], questioner: Questioner) -> list[Section]:
     """Return the questions in the order of time."""
     found = [
         *(_flight_section(asked, strikes, questioner) for asked in questioner.flights),
@@ -80,7 +80,7 @@ def sections(toss: Toss, strikes: Sequence[MeasuredStrike], questioner: Question
     return sorted(found, key=lambda section: section.time)
 
 
-def print_table(toss: Toss, strikes: Sequence[MeasuredStrike], questioner: Questioner) -> None:
+def print_table(toss: Toss, strikes: Sequence[Strike], questioner: Questioner) -> None:
     """Print the table."""
     print(f"\n{'':34}{'predicted':>27}{'measured':>27}{'difference':>16}")
     for section in sections(toss, strikes, questioner):
@@ -97,7 +97,7 @@ def print_table(toss: Toss, strikes: Sequence[MeasuredStrike], questioner: Quest
     )
 
 
-def not_asked(strikes: Sequence[MeasuredStrike], times: list[float]) -> list[float]:
+def not_asked(strikes: Sequence[Strike], times: list[float]) -> list[float]:
     """Return when the body landed after enough flight, s, although nobody asked during that flight.
 
     Args:
@@ -112,12 +112,12 @@ def not_asked(strikes: Sequence[MeasuredStrike], times: list[float]) -> list[flo
     ]
 
 
-def _strike_at(strikes: Sequence[MeasuredStrike], time: float) -> MeasuredStrike | None:
+def _strike_at(strikes: Sequence[Strike], time: float) -> Strike | None:
     near = [strike for strike in strikes if abs(strike.time - time) < SAME_STRIKE]
     return min(near, key=lambda strike: abs(strike.time - time), default=None)
 
 
-def _flight_section(asked: Asked, strikes: Sequence[MeasuredStrike], questioner: Questioner) -> Section:
+def _flight_section(asked: Asked, strikes: Sequence[Strike], questioner: Questioner) -> Section:
     response = asked.response
     landing = questioner.seconds_of(response.state.header.stamp) + response.event_time
     return Section(
@@ -127,7 +127,7 @@ def _flight_section(asked: Asked, strikes: Sequence[MeasuredStrike], questioner:
     )
 
 
-def _impact_section(asked: Asked, strikes: Sequence[MeasuredStrike], questioner: Questioner) -> Section:
+def _impact_section(asked: Asked, strikes: Sequence[Strike], questioner: Questioner) -> Section:
     response = asked.response
     if response.status != response.OK:
         return Section(time=asked.time, title=f"what after the impact? {response.message}", rows=[])
@@ -154,7 +154,7 @@ def _answered(asked: Asked) -> str:
     return f"[answered in {1e3 * asked.round_trip:.1f} ms]"
 
 
-def _landing_rows(response: Any, landing: float, strike: MeasuredStrike | None) -> list[Row]:
+def _landing_rows(response: Any, landing: float, strike: Strike | None) -> list[Row]:
     position = np.array(response.trajectory.positions[-3:])
     rows = [
         Row(
@@ -190,7 +190,7 @@ def _landing_rows(response: Any, landing: float, strike: MeasuredStrike | None) 
     ]
 
 
-def _impact_rows(response: Any, strike: MeasuredStrike | None) -> list[Row]:
+def _impact_rows(response: Any, strike: Strike | None) -> list[Row]:
     after = response.impact.state_after
     v, w = vector_from_msg(after.linear_velocity), vector_from_msg(after.angular_velocity)
     outcome = _OUTCOMES[response.impact.outcome]

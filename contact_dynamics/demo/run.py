@@ -24,7 +24,7 @@ from contact_dynamics.demo.parameters import write_parameters
 from contact_dynamics.demo.processes import Processes
 from contact_dynamics.demo.questioner import Questioner
 from contact_dynamics.errors import ContactDynamicsError
-from contact_dynamics.measured.events import find_strikes
+from contact_dynamics.measured.flights import find_strikes
 from contact_dynamics.measured.read_toss import read_toss
 from contact_dynamics.nodes.own_process import ensure_ros_log_directory
 from contact_dynamics.nodes.running import stop_signals

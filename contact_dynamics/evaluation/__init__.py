@@ -1,8 +1,8 @@
 """Predictions beside what came: events are found in recordings, asked about beforehand, and compared.
 
 `recording` has the one call, `evaluate_recording`. A recording is read from a log (`log_states`) or a toss by
-`sources`; `motion` has its measured states. `events` finds what happened in them, as `found_event` describes.
-`asking` asks, as `settings` say, and makes a `comparison` of each answer.
+`sources`. `measured.events` finds what happened in it. `asking` asks, as `settings` say, and makes a
+`comparison` of each answer.
 
 At size, `job` is one recording's work, whose result is kept, `workers` share it, and `result` is the whole.
 `summary` and `significance` put it together. `report`, `plots` and `picture` show it. `arguments` and `run`

@@ -17,8 +17,8 @@ from contact_dynamics.evaluation.comparison import (
     pose_difference,
     velocity_difference,
 )
-from contact_dynamics.evaluation.found_event import EventKind
 from contact_dynamics.evaluation.settings import Method
+from contact_dynamics.measured.events import EventKind
 from contact_dynamics.questions.contact_modes import ContactModeQuestion
 from contact_dynamics.questions.context import Context
 from contact_dynamics.questions.impact_question import ImpactQuestion
@@ -35,9 +35,9 @@ from contact_dynamics.tumbling import free_motion
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-    from contact_dynamics.evaluation.found_event import FoundEvent
-    from contact_dynamics.evaluation.motion import MeasuredMotion
     from contact_dynamics.evaluation.settings import Law, Settings
+    from contact_dynamics.measured.events import FoundEvent
+    from contact_dynamics.measured.motion import MeasuredMotion
     from contact_dynamics.questions.context import Defaults
     from contact_dynamics.questions.impact_answer import ImpactAnswer
     from contact_dynamics.tumbling import Trajectory

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from contact_dynamics.evaluation.found_event import EventKind
 from contact_dynamics.evaluation.settings import Law, Method
+from contact_dynamics.measured.events import EventKind
 from contact_dynamics.records import Record
 from contact_dynamics.rotations.many import rotation_vectors
 from contact_dynamics.world import Surface

@@ -11,8 +11,8 @@ import numpy as np
 from contact_dynamics.constants import to_ns
 from contact_dynamics.errors import ContactDynamicsError, InvalidFieldError
 from contact_dynamics.evaluation.asking import Informed
-from contact_dynamics.evaluation.motion import motions_of
 from contact_dynamics.evaluation.recording import Recording
+from contact_dynamics.measured.motion import motions_of
 from contact_dynamics.nodes.parameter_file import ParameterFile
 from contact_dynamics.nodes.parameters import ServerParameters, read_server_parameters
 from contact_dynamics.nodes.run_record import PARAMETERS, LoggedParameters

@@ -15,10 +15,9 @@ import numpy as np
 import rerun as rr
 
 from contact_dynamics.diagrams.shape import drawn_shape
-from contact_dynamics.evaluation.events import find_events
-from contact_dynamics.evaluation.found_event import EventKind
 from contact_dynamics.evaluation.report import COLUMNS, UNITS
 from contact_dynamics.evaluation.settings import Method
+from contact_dynamics.measured.events import EventKind, find_events
 from contact_dynamics.records import Record
 from contact_dynamics.viewing import palette
 from contact_dynamics.viewing.entities import entity
@@ -32,10 +31,10 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from contact_dynamics.evaluation.comparison import Comparison
-    from contact_dynamics.evaluation.found_event import FoundEvent
-    from contact_dynamics.evaluation.motion import MeasuredMotion
     from contact_dynamics.evaluation.result import Evaluation
     from contact_dynamics.evaluation.sources import Source
+    from contact_dynamics.measured.events import FoundEvent
+    from contact_dynamics.measured.motion import MeasuredMotion
 
 TRAIL_S: Final = 0.08
 """s of the measured path on either side of an event."""

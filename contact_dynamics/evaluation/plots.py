@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from contact_dynamics.errors import NotSupportedError
-from contact_dynamics.evaluation.found_event import EventKind
 from contact_dynamics.evaluation.report import COLUMNS, TITLES, UNITS
 from contact_dynamics.evaluation.settings import Law, Method
 from contact_dynamics.evaluation.summary import is_inside
+from contact_dynamics.measured.events import EventKind
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

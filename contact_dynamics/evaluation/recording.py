@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 from contact_dynamics.evaluation.asking import Informed, compare_event
-from contact_dynamics.evaluation.events import find_events
-from contact_dynamics.evaluation.motion import motions_of
+from contact_dynamics.measured.events import find_events
+from contact_dynamics.measured.motion import motions_of
 from contact_dynamics.questions.context import Defaults
 from contact_dynamics.records import Record
 from contact_dynamics.tolerances import TOUCHING_GAP
@@ -15,9 +15,9 @@ from contact_dynamics.world import World
 
 if TYPE_CHECKING:
     from contact_dynamics.evaluation.comparison import Comparison
-    from contact_dynamics.evaluation.found_event import FoundEvent
-    from contact_dynamics.evaluation.motion import MeasuredMotion
     from contact_dynamics.evaluation.settings import Settings
+    from contact_dynamics.measured.events import FoundEvent
+    from contact_dynamics.measured.motion import MeasuredMotion
     from contact_dynamics.measured.recorded_toss import Toss
 
 SLOW: Final = 5.0

@@ -7,9 +7,9 @@ from collections import Counter
 from itertools import groupby
 from typing import TYPE_CHECKING, Final
 
-from contact_dynamics.evaluation.found_event import EventKind
 from contact_dynamics.evaluation.settings import Method
 from contact_dynamics.evaluation.summary import LEVELS, Summary, spread_of, summarise
+from contact_dynamics.measured.events import EventKind
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence

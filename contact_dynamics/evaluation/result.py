@@ -12,8 +12,8 @@ import numpy as np
 
 from contact_dynamics.errors import InvalidFieldError, NotSupportedError
 from contact_dynamics.evaluation.comparison import Comparison
-from contact_dynamics.evaluation.found_event import EventKind, FoundEvent
 from contact_dynamics.evaluation.settings import Law, Method
+from contact_dynamics.measured.events import EventKind, FoundEvent
 from contact_dynamics.records import Record
 from contact_dynamics.rigid_body.body import BodyState
 

@@ -1,44 +1,67 @@
-"""This file finds in hindsight the strikes of a measured toss, with the states around them, and its rest.
+"""This file finds all events of a measured body: flights, how each ends, and when it rests or slides.
 
-A strike is between two flights with at most one frame between them. Both flights are fitted over the frames
-next to the strike. The time of the strike is when their positions and orientations agree best, because the
-pose is continuous while velocities jump. This gives the time far more sharply than the spacing of frames, and
-does not use where corners or surface are. For a strike of some length it is the centre of the impulse.
+Flights and strikes are found in poses alone (`flights`). A landing's time does not use the body's shape: if
+another flight follows with at most one frame between, it is that of the strike; otherwise it is halfway
+between the last frame of the flight and the next one. Shape and surfaces say only whether it was a landing,
+and on what.
 
-The body rests from when its pose no longer leaves the mean of its last `REST_SPAN`.
+In each window (`MODE_SPAN`) outside of flights the poses, as position and rotation vector, are fitted by a
+quadratic function of time, because friction slows a slide evenly. If the poses keep to it as noise allows,
+its slopes in the middle of the window are the velocities there. A contact point that is slower than
+`MODE_SPEED`, plus the slopes' noise, is fixed (`f`) or slides (`c`), as its velocity along the surface says;
+one that is faster across the surface separates or approaches, and then the window holds neither rest nor
+sliding. Neighbouring windows of one kind make one event.
 
-Each number has its standard deviation, so that an error of prediction can be compared with the noise of
-measurement. Not covered: strikes in such quick succession that `flights` finds no flight in between, and
-rocking and sliding contact.
+At the end of a recording, the body rests from when its pose no longer leaves the mean of its last
+`REST_SPAN`, which needs no surface and gives the pose best.
+
+Not covered: rocking, rolling, tipping and spinning on a point, which are neither rest nor slide; slides
+shorter than a window.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-from itertools import pairwise
+from dataclasses import dataclass, replace
+from enum import Enum
+from itertools import chain, pairwise
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from contact_dynamics.constants import to_ns
-from contact_dynamics.measured.flight_fit import FEWEST_FRAMES, FlightFit, MeasuredState, fit_flight
-from contact_dynamics.measured.flights import DEVIATIONS, ORIENTATION_SLACK, POSITION_SLACK, find_flights
+from contact_dynamics.constants import ns_after, to_ns
+from contact_dynamics.contact.found import contacts_within
+from contact_dynamics.measured.flight_fit import FEWEST_FRAMES, MeasuredState, fit_flight
+from contact_dynamics.measured.flights import (
+    AT_ONCE,
+    DEVIATIONS,
+    ORIENTATION_SLACK,
+    POSITION_SLACK,
+    find_flights,
+    first_part,
+    last_part,
+    strike_between,
+)
 from contact_dynamics.records import Record
 from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.rotations.many import rotation_vectors, turned
+from contact_dynamics.tolerances import (
+    IMPACT_SPAN,
+    LANDING_GAP,
+    MODE_SPAN,
+    MODE_SPEED,
+    SHARP_VELOCITY,
+    TOUCHING_GAP,
+)
+from contact_dynamics.world import Surface
 
 if TYPE_CHECKING:
-    from contact_dynamics.measured.poses import MeasuredPoses
-    from contact_dynamics.measured.recorded_toss import Toss
+    from collections.abc import Iterator
+
+    from contact_dynamics.contact.contact import ContactSet
+    from contact_dynamics.measured.motion import MeasuredMotion, MeasuredPoses
     from contact_dynamics.validation import FloatArray
-
-FIT_SPAN: Final = 0.08
-"""s. The velocity is fitted over this much of a flight next to a strike. In a longer span, errors of the
-model, such as gravity off by 2 %, would be larger than the gain in noise."""
-
-MAX_BETWEEN: Final = 1
-"""Most frames between two flights that one strike may take. Such a frame shows the body in contact."""
+    from contact_dynamics.world import Body, World
 
 REST_SPAN: Final = 0.05
 """s. A body that kept its pose for this time is at rest. It is short because the published recordings of
@@ -51,125 +74,286 @@ REST_SPIN: Final = 0.2
 """rad/s. Mean angular speed over `REST_SPAN` below which a body of a decimetre rests."""
 
 
+class EventKind(Enum):
+    """What kinds of events are found; `docs/evaluate.md` has the criteria."""
+
+    FLIGHT = "flight"
+    """The body flies: poses that one free flight explains."""
+    LANDING = "landing"
+    """First contact: a flight ends at a surface."""
+    IMPACT = "impact"
+    """A flight ends at a surface and another begins soon after."""
+    REST = "rest"
+    """The body touches, and no contact moves."""
+    SLIDING = "sliding"
+    """The body touches, no contact leaves or approaches, and one slides at least."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class FlightMeeting(Record):
-    """Where one flight passes into the next, by their poses alone.
+class FoundEvent(MeasuredState):
+    """One event of one body, with the state then: of an impact, ``duration`` later.
 
     Attributes:
-        time: When the poses of both flights agree best, s, on the recording's clock.
-        time_std: Standard deviation of that time, s.
-        before: The state at that time, from the flight that ends.
-        after: The state at that time, from the flight that begins.
+        kind: What happened.
+        body: The body's name.
+        surface: The surface's name; empty for a flight.
+        since: s after the epoch. For a flight, a rest and a slide its beginning; otherwise that of the flight
+            before.
+        first_sample: The sample at ``since``: no state before it belongs to a question about this event.
+        time: s after the epoch, when it is compared: near the end of a flight, a rest or a slide; the time of
+            a landing or an impact.
+        time_ns: The same as a stamp, ns.
+        time_std: Standard deviation of ``time``, s; zero where it is that of a sample.
+        gap: m, height of the body's lowest point above the surface then; negative below it.
+            It is None without a flat.
+        duration: s, from the first contact of an impact to the beginning of the flight after it; 0 otherwise.
+        mode: The letters of the contacts of a rest or a slide, as measured; empty otherwise.
     """
 
-    time: float
+    kind: EventKind
+    body: str
+    surface: str
+    since: float
+    first_sample: int
+    time_ns: int
     time_std: float
-    before: MeasuredState
-    after: MeasuredState
+    gap: float | None = None
+    duration: float = 0.0
+    mode: str = ""
+
+    def asked_ns(self, horizon: float) -> int:
+        """Return when a question is asked that is ``horizon``, s, ahead of the event, ns."""
+        return ns_after(self.time_ns, -horizon)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class MeasuredStrike(FlightMeeting):
-    """One strike between two flights, at the time when their poses agree best.
+class Touch(Record):
+    """What a body touches.
 
     Attributes:
-        heights: (k,), m, of the body's corners above the surface at that time, from both flights' mean.
+        surface: Name of the nearest surface.
+        gap: m, height of the body's lowest point above it, negative below. It is None at an obstacle, whose
+            contacts tell no height.
+        contacts: All contacts, with whichever surface.
     """
 
-    heights: FloatArray
-
-    @property
-    def corner(self) -> int:
-        """Index of the lowest corner: the row of the body's vertices that struck."""
-        return int(np.argmin(self.heights))
-
-    @property
-    def margin(self) -> float:
-        """How much higher the next corner was, m: small where an edge or a face struck."""
-        lowest, second = np.sort(self.heights)[:2]
-        return float(second - lowest)
+    surface: str
+    gap: float | None
+    contacts: ContactSet
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class RestingPose(Record):
-    """The pose that a body keeps at the end of a recording.
+def touch_of(body: Body, state: BodyState, world: World, *, within: float) -> Touch | None:
+    """Return what a body touches within that gap, m. Without a shape or a surface it touches nothing."""
+    if body.shape.is_empty or not world.surfaces:
+        return None
+    contacts = contacts_within(body, state, world.surfaces, within)
+    if len(contacts) == 0:
+        return None
+    gaps = []
+    for surface in world.surfaces:
+        if isinstance(surface, Surface):
+            mine = [name == surface.name for name in contacts.surfaces]
+            gaps.append((float(surface.gaps(contacts.p_WC_W[mine]).min(initial=math.inf)), surface.name))
+    gap, name = min(gaps, default=(math.inf, ""))
+    if gap == math.inf:
+        return Touch(surface=contacts.surfaces[0], gap=None, contacts=contacts)
+    return Touch(surface=name, gap=gap, contacts=contacts)
 
-    Attributes:
-        time: Time of the first frame from which on the pose stayed, s.
-        state: The mean pose from then on, at velocity 0.
-        position_std: Standard deviation of each coordinate of the mean, m.
-        orientation_std: Standard deviation of each component of the mean, rad.
+
+def find_events(motion: MeasuredMotion) -> list[FoundEvent]:
+    """Return the flights, landings, impacts, rests and slides of a body; `docs/evaluate.md` has the criteria.
+
+    Neither landings nor modes are found of a body without a shape, or in a world without surfaces.
     """
+    flights = find_flights(motion)
+    events = [_flight(motion, flight) for flight in flights]
+    for flight, after in pairwise([*flights, None]):
+        if flight is not None:
+            events += _end(motion, flight, after)
+    count = max(5, round(MODE_SPAN * motion.rate))
+    begins = [0, *(flight.stop for flight in flights)]
+    ends = [*(flight.start for flight in flights), len(motion)]
+    for begin, end in zip(begins, ends, strict=True):
+        events += _modes(motion, range(begin, end - count + 1, max(1, count // 4)), count)
+    return sorted(events, key=lambda event: (event.since, event.time))
 
-    time: float
-    state: BodyState
-    position_std: float
-    orientation_std: float
 
-
-def find_strikes(toss: Toss) -> tuple[MeasuredStrike, ...]:
-    """Return the strikes of a recorded toss in the order of time."""
-    return tuple(
-        _strike(toss, before, after)
-        for before, after in pairwise(find_flights(toss))
-        if after.start - before.stop <= MAX_BETWEEN
+def _flight(motion: MeasuredMotion, flight: slice) -> FoundEvent:
+    last = flight.stop - 2  # the last one may show the body just past its strike
+    time = float(motion.times[last])
+    fitted = fit_flight(motion, last_part(motion, flight, last + 1)).at(time)
+    state = BodyState(
+        p_WB_W=motion.p_WB_W[last],
+        q_WB=motion.q_WB[last],
+        v_WB_W=fitted.state.v_WB_W,
+        w_WB_W=fitted.state.w_WB_W,
+        stamp_ns=motion.stamp_ns(last),
+    )
+    return FoundEvent(
+        kind=EventKind.FLIGHT,
+        body=motion.body.name,
+        surface="",
+        since=float(motion.times[flight.start]),
+        first_sample=flight.start,
+        time=time,
+        time_ns=state.stamp_ns,
+        time_std=0.0,
+        state=state,
+        position_std=motion.position_noise,
+        orientation_std=np.full(3, motion.orientation_noise),
+        velocity_std=fitted.velocity_std,
+        angular_velocity_std=fitted.angular_velocity_std,
     )
 
 
-def corner_heights(toss: Toss, state: BodyState) -> FloatArray:
-    """Return the heights, (k,), m, of the body's corners above the toss's surface."""
-    return toss.surface.gaps(state.p_WB_W + toss.body.vertices_B @ state.R_WB.T)
+def _end(motion: MeasuredMotion, flight: slice, after: slice | None) -> Iterator[FoundEvent]:
+    if flight.stop >= len(motion):  # nothing was measured after it
+        return
+    strike = None if after is None else strike_between(motion, flight, after)
+    if strike is not None:
+        time_std, landing = strike.time_std, strike.before
+    else:
+        last, following = float(motion.times[flight.stop - 1]), float(motion.times[flight.stop])
+        fit = fit_flight(motion, last_part(motion, flight, flight.stop - 1))
+        time_std, landing = (following - last) / math.sqrt(12.0), fit.at(0.5 * (last + following))
+    touch = touch_of(motion.body, landing.state, motion.world, within=LANDING_GAP)
+    if touch is None or (touch.gap is not None and touch.gap < -LANDING_GAP):
+        return
 
-
-def _strike(toss: Toss, before: slice, after: slice) -> MeasuredStrike:
-    meeting = meeting_of_flights(toss, before, after)
-    heights = 0.5 * (corner_heights(toss, meeting.before.state) + corner_heights(toss, meeting.after.state))
-    return MeasuredStrike(
-        time=meeting.time,
-        time_std=meeting.time_std,
-        before=meeting.before,
-        after=meeting.after,
-        heights=heights,
-    )
-
-
-def meeting_of_flights(poses: MeasuredPoses, before: slice, after: slice) -> FlightMeeting:
-    """Return when one flight passes into the next, with at most `MAX_BETWEEN` frames between them."""
-    count = max(FEWEST_FRAMES, round(FIT_SPAN * poses.rate))
-    fit_after = fit_flight(
-        poses, slice(after.start, min(after.stop, after.start + count)), reference=after.start
-    )
-    stop = before.stop
-    while True:
-        fit_before = fit_flight(poses, slice(max(before.start, stop - count), stop))
-        time, time_std = _crossing(fit_before, fit_after)
-        # a frame just past the strike may have passed for flight: then the crossing comes before it
-        if time >= poses.times[stop - 1] - time_std or stop - 1 - before.start < FEWEST_FRAMES:
-            break
-        stop -= 1
-    return FlightMeeting(time=time, time_std=time_std, before=fit_before.at(time), after=fit_after.at(time))
-
-
-def _crossing(before: FlightFit, after: FlightFit) -> tuple[float, float]:
-    """Return when two flights agree best in position and orientation, s, and its standard deviation."""
-    time, time_std = 0.5 * (before.reference + after.reference), math.inf
-    for _ in range(3):  # Newton's steps; the paths are nearly straight, so that the first is nearly exact
-        a, b = before.at(time), after.at(time)
-        gap = np.concatenate(
-            [b.state.p_WB_W - a.state.p_WB_W, rotation_vectors(b.state.q_WB[None], a.state.q_WB)[0]]
+    def event(kind: EventKind, compared: MeasuredState) -> FoundEvent:
+        return FoundEvent(
+            kind=kind,
+            body=motion.body.name,
+            surface=touch.surface,
+            since=float(motion.times[flight.start]),
+            first_sample=flight.start,
+            time=landing.time,
+            time_ns=ns_after(motion.epoch_ns, landing.time),
+            time_std=time_std,
+            state=compared.state,
+            position_std=compared.position_std,
+            orientation_std=compared.orientation_std,
+            velocity_std=compared.velocity_std,
+            angular_velocity_std=compared.angular_velocity_std,
+            gap=touch.gap,
+            duration=max(0.0, compared.time - landing.time),
         )
-        rate = np.concatenate([b.state.v_WB_W - a.state.v_WB_W, b.state.w_WB_W - a.state.w_WB_W])
-        p_variance = a.position_std**2 + b.position_std**2
-        q_variance = a.orientation_std**2 + b.orientation_std**2
-        weight = 1.0 / np.concatenate([np.full(3, p_variance), q_variance])
-        information = float(rate @ (weight * rate))
-        time -= float(rate @ (weight * gap)) / information
-        time_std = 1.0 / math.sqrt(information)
-    return time, time_std
+
+    yield event(EventKind.LANDING, landing)
+    if after is None or float(motion.times[after.start] - motion.times[flight.stop - 1]) > IMPACT_SPAN:
+        return
+    # flights may meet a little after the first frame of the second one, which may show the body in contact
+    clear = strike is not None and motion.times[after.start] >= landing.time
+    start = after.start if clear else after.start + 1
+    fit = fit_flight(motion, first_part(motion, slice(start, after.stop)), reference=start)
+    departure = fit.at(float(motion.times[start]))
+    if _is_sharp(motion, landing) and _is_sharp(motion, departure):
+        yield event(EventKind.IMPACT, departure)
 
 
-def find_rest(poses: MeasuredPoses) -> RestingPose | None:
-    """Return the pose in which a body rests at the end of a recording, or None if it still moves."""
+def _is_sharp(motion: MeasuredMotion, found: MeasuredState) -> bool:
+    properties = motion.body.mass_properties
+    gyration = math.sqrt(float(np.trace(properties.I_B)) / (3.0 * properties.mass))
+    spin_std = float(found.angular_velocity_std.max())
+    return max(found.velocity_std, gyration * spin_std) <= SHARP_VELOCITY
+
+
+def _modes(motion: MeasuredMotion, firsts: range, count: int) -> Iterator[FoundEvent]:
+    """Yield the rests and slides in windows of ``count`` samples that begin with ``firsts``."""
+    first: FoundEvent | None = None
+    last: FoundEvent | None = None
+    for window in chain(_windows(motion, firsts, count), [None]):
+        if first is not None and last is not None and (window is None or window.kind is not last.kind):
+            yield replace(last, since=first.since, first_sample=first.first_sample)
+            first = None
+        first, last = first or window, window
+
+
+def _windows(motion: MeasuredMotion, firsts: range, count: int) -> Iterator[FoundEvent | None]:
+    """Yield what each window of ``count`` samples shows: a rest or a slide at its middle, or neither."""
+    noise = np.repeat([motion.position_noise, motion.orientation_noise], 3)
+    allowed = DEVIATIONS * noise + np.repeat([POSITION_SLACK, ORIENTATION_SLACK], 3)
+    for at in range(0, len(firsts), AT_ONCE):
+        samples = np.array(firsts[at : at + AT_ONCE])[:, None] + np.arange(count)
+        middles = samples[:, count // 2]
+        times = motion.times[samples] - motion.times[middles][:, None]
+        places = motion.p_WB_W[samples] - motion.p_WB_W[middles][:, None]
+        turns = rotation_vectors(
+            motion.q_WB[samples].reshape(-1, 4), np.repeat(motion.q_WB[middles], count, axis=0)
+        )
+        poses = np.concatenate([places, turns.reshape(places.shape)], axis=2)
+        powers = np.stack([np.ones_like(times), times, times * times], axis=2)
+        orthogonal, triangle = np.linalg.qr(powers)
+        fitted = np.linalg.solve(triangle, orthogonal.transpose(0, 2, 1) @ poses)
+        fits = (np.abs(poses - powers @ fitted) <= allowed).all(axis=(1, 2))
+        q_WB = turned(motion.q_WB[middles], fitted[:, 0, 3:])
+        spreads = np.sqrt(np.square(times - times.mean(axis=1, keepdims=True)).sum(axis=1))
+        for k, middle in enumerate(middles.tolist()):
+            if not fits[k]:
+                yield None
+                continue
+            state = BodyState(
+                p_WB_W=motion.p_WB_W[middle] + fitted[k, 0, :3],
+                q_WB=q_WB[k],
+                v_WB_W=fitted[k, 1, :3],
+                w_WB_W=fitted[k, 1, 3:],
+                stamp_ns=motion.stamp_ns(middle),
+            )
+            yield _mode(motion, state, int(samples[k, 0]), middle, spread=float(spreads[k]))
+
+
+def _mode(
+    motion: MeasuredMotion, state: BodyState, first: int, middle: int, *, spread: float
+) -> FoundEvent | None:
+    """Return the rest or the slide of a window with that state at its middle, or None if it is neither.
+
+    ``spread`` is the root of the sum of the squares of its times from their mean, s.
+    """
+    touch = touch_of(motion.body, state, motion.world, within=TOUCHING_GAP)
+    if touch is None:
+        return None
+    velocity_std, angular_velocity_std = motion.position_noise / spread, motion.orientation_noise / spread
+    points, normals = touch.contacts.p_WC_W, touch.contacts.normals_W
+    velocities = state.velocity_of_point(points)
+    across = np.einsum("ij,ij->i", velocities, normals)
+    along = np.linalg.norm(velocities - across[:, None] * normals, axis=1)
+    arms = np.linalg.norm(points - state.p_WB_W, axis=1)
+    allowed = MODE_SPEED + DEVIATIONS * np.hypot(velocity_std, arms * angular_velocity_std)
+    if (np.abs(across) > allowed).any():  # a contact separates or approaches
+        return None
+    mode = "".join("c" if slides else "f" for slides in (along > allowed).tolist())
+    shape = motion.body.shape
+    rims = [float(np.linalg.norm(rim.center)) + rim.radius for rim in shape.rims]
+    reach = max([*np.linalg.norm(shape.vertices, axis=1).tolist(), *rims]) + shape.rounding
+    is_slow = max(
+        np.linalg.norm(state.v_WB_W), reach * np.linalg.norm(state.w_WB_W)
+    ) <= MODE_SPEED + DEVIATIONS * (velocity_std + reach * angular_velocity_std)
+    if "c" not in mode and not is_slow:  # it rolls, or spins on a point
+        return None
+    return FoundEvent(
+        kind=EventKind.SLIDING if "c" in mode else EventKind.REST,
+        body=motion.body.name,
+        surface=touch.surface,
+        since=float(motion.times[first]),
+        first_sample=first,
+        time=float(motion.times[middle]),
+        time_ns=state.stamp_ns,
+        time_std=0.0,
+        state=state,
+        position_std=motion.position_noise,
+        orientation_std=np.full(3, motion.orientation_noise),
+        velocity_std=velocity_std,
+        angular_velocity_std=np.full(3, angular_velocity_std),
+        gap=touch.gap,
+        mode=mode,
+    )
+
+
+def find_rest(poses: MeasuredPoses) -> MeasuredState | None:
+    """Return the mean pose in which a body rests at the end of a recording, or None if it still moves.
+
+    Its time is that of the first frame from which on the pose stayed; the velocities are zero.
+    """
     n = max(FEWEST_FRAMES, round(REST_SPAN * poses.rate))
     rows = np.hstack([poses.p_WB_W, rotation_vectors(poses.q_WB, poses.q_WB[-1])])
     noise = np.repeat([poses.position_noise, poses.orientation_noise], 3)
@@ -182,17 +366,20 @@ def find_rest(poses: MeasuredPoses) -> RestingPose | None:
     if len(poses) - begin < n:
         return None
     mean, std = rows[begin:].mean(axis=0), noise / math.sqrt(len(poses) - begin)
-    return RestingPose(
-        time=float(poses.times[begin]),
+    time = float(poses.times[begin])
+    return MeasuredState(
+        time=time,
         state=BodyState(
             p_WB_W=mean[:3],
             q_WB=turned(poses.q_WB[-1], mean[None, 3:])[0],
             v_WB_W=np.zeros(3),
             w_WB_W=np.zeros(3),
-            stamp_ns=to_ns(float(poses.times[begin])),
+            stamp_ns=to_ns(time),
         ),
         position_std=float(std[0]),
-        orientation_std=float(std[3]),
+        orientation_std=std[3:],
+        velocity_std=0.0,
+        angular_velocity_std=np.zeros(3),
     )
 
 

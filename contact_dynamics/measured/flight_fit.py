@@ -23,10 +23,12 @@ import numpy as np
 from contact_dynamics.constants import to_ns
 from contact_dynamics.records import Record
 from contact_dynamics.rigid_body.body import BodyState
-from contact_dynamics.rotations.many import matrices_of, rotation_vectors, turned
+from contact_dynamics.rotations.many import cross_matrices, matrices_of, rotation_vectors, turned
 
 if TYPE_CHECKING:
-    from contact_dynamics.measured.poses import MeasuredPoses
+    from numpy.typing import NDArray
+
+    from contact_dynamics.measured.motion import MeasuredPoses
     from contact_dynamics.validation import FloatArray
 
 FEWEST_FRAMES: Final = 4
@@ -56,13 +58,13 @@ class MeasuredState(Record):
 
 
 class FittedPoses(NamedTuple):
-    """Poses of a fitted flight, with the standard deviation of each of their parts.
+    """Poses of fitted flights, with the standard deviation of each of their parts.
 
     Attributes:
-        p_WB_W: (n, 3), m.
-        q_WB: (n, 4), unit quaternions x, y, z, w.
-        position_std: (n,), m, that of each coordinate.
-        orientation_std: (n, 3), rad, those of a rotation vector's components, world axes.
+        p_WB_W: (..., n, 3), m.
+        q_WB: (..., n, 4), unit quaternions x, y, z, w.
+        position_std: (..., n), m, that of each coordinate.
+        orientation_std: (..., n, 3), rad, those of a rotation vector's components, world axes.
     """
 
     p_WB_W: FloatArray
@@ -73,22 +75,24 @@ class FittedPoses(NamedTuple):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class FlightFit(Record):
-    """A fitted free flight: position and rotation vector at a reference time, with velocity and L.
+    """A fitted free flight, or many: position and rotation vector at a reference time, with velocity and L.
+
+    The leading axes of all arrays are those of the flights; a single flight has none.
 
     Attributes:
-        reference: The reference time, s.
-        q_reference: (4,), x, y, z, w, the measured orientation from which rotation vectors start.
-        p_W: (3,), m, position at the reference.
-        v_W: (3,), m/s, velocity at the reference.
-        theta_W: (3,), rad, rotation vector at the reference, world axes.
-        L_W: (3,), kg m^2/s, angular momentum about the centre of mass.
+        reference: (...), the reference time, s.
+        q_reference: (..., 4), x, y, z, w, the measured orientation from which rotation vectors start.
+        p_W: (..., 3), m, position at the reference.
+        v_W: (..., 3), m/s, velocity at the reference.
+        theta_W: (..., 3), rad, rotation vector at the reference, world axes.
+        L_W: (..., 3), kg m^2/s, angular momentum about the centre of mass.
         gravity_W: (3,), m/s^2.
         I_B: (3, 3), kg m^2, body axes.
-        cov_p: (2, 2), covariance of a coordinate and its rate: m^2, m^2/s, m^2/s^2.
-        cov_rotation: (6, 6), covariance of theta and L.
+        cov_p: (..., 2, 2), covariance of a coordinate and its rate: m^2, m^2/s, m^2/s^2.
+        cov_rotation: (..., 6, 6), covariance of theta and L.
     """
 
-    reference: float
+    reference: FloatArray
     q_reference: FloatArray
     p_W: FloatArray
     v_W: FloatArray
@@ -100,8 +104,8 @@ class FlightFit(Record):
     cov_rotation: FloatArray
 
     def at(self, time: float) -> MeasuredState:
-        """Return the flight's state at ``time``, s; see `poses_at`."""
-        poses, after = self.poses_at(np.array([time])), time - self.reference
+        """Return a single flight's state at ``time``, s; see `poses_at`."""
+        poses, after = self.poses_at(np.array([time])), time - float(self.reference)
         inverse = self._inverse_inertias(poses.q_WB)[0]
         cov_w = inverse @ self.cov_rotation[3:, 3:] @ inverse.T
         return MeasuredState(
@@ -120,64 +124,79 @@ class FlightFit(Record):
         )
 
     def poses_at(self, times: FloatArray) -> FittedPoses:
-        """Return the poses at many ``times``, (n,), s.
+        """Return the poses at many ``times``, (..., n), s.
 
         An orientation is one step of the midpoint rule from the reference. Its error is of third order in the
         angle, so ask within a few frames of the reference.
         """
-        after = times - self.reference
-        q_0 = turned(self.q_reference, self.theta_W[None])
-        w_0 = self._inverse_inertias(q_0)[0] @ self.L_W
-        q_half = turned(q_0[0], 0.5 * after[:, None] * w_0)
-        q = turned(q_0[0], after[:, None] * (self._inverse_inertias(q_half) @ self.L_W))
-        to_q = np.concatenate(
-            [
-                np.broadcast_to(np.eye(3), (len(times), 3, 3)),
-                after[:, None, None] * self._inverse_inertias(q),
-            ],
-            axis=2,
-        )
-        to_p = np.column_stack([np.ones_like(after), after])
+        after = (times - self.reference[..., None])[..., None]  # (..., n, 1)
+        L = self.L_W[..., None]
+        q_0 = _turned(self.q_reference, self.theta_W)
+        w_0 = (self._inverse_inertias(q_0) @ L)[..., 0]
+        q_half = _turned(q_0[..., None, :], 0.5 * after * w_0[..., None, :])
+        w_half = (self._inverse_inertias(q_half) @ L[..., None, :, :])[..., 0]
+        q = _turned(q_0[..., None, :], after * w_half)
+        to_L = after[..., None] * self._inverse_inertias(q)
+        to_q = np.concatenate([np.broadcast_to(np.eye(3), to_L.shape), to_L], axis=-1)
+        to_p = np.concatenate([np.ones_like(after), after], axis=-1)
+        fallen = self.p_W[..., None, :] + after * self.v_W[..., None, :] + (0.5 * after**2) * self.gravity_W
         return FittedPoses(
-            p_WB_W=self.p_W + after[:, None] * self.v_W + (0.5 * after * after)[:, None] * self.gravity_W,
+            p_WB_W=fallen,
             q_WB=q,
-            position_std=np.sqrt(np.einsum("ni,ij,nj->n", to_p, self.cov_p, to_p)),
-            orientation_std=np.sqrt(np.einsum("nij,nij->ni", to_q @ self.cov_rotation, to_q)),
+            position_std=np.sqrt(np.einsum("...ni,...ij,...nj->...n", to_p, self.cov_p, to_p)),
+            orientation_std=np.sqrt(
+                np.einsum("...ij,...ij->...i", to_q @ self.cov_rotation[..., None, :, :], to_q)
+            ),
         )
 
     def _inverse_inertias(self, q: FloatArray) -> FloatArray:
-        R = matrices_of(q)
-        inverses: FloatArray = R @ np.linalg.solve(self.I_B, R.transpose(0, 2, 1))
+        R = _matrices(q)
+        inverses: FloatArray = R @ np.linalg.inv(self.I_B) @ np.swapaxes(R, -1, -2)
         return inverses
 
 
-def fit_flight(poses: MeasuredPoses, frames: slice, *, reference: int | None = None) -> FlightFit:
-    """Return the free flight that fits the poses of ``frames`` (a slice of at least `FEWEST_FRAMES`) best.
+def fit_flight(
+    poses: MeasuredPoses, frames: slice | NDArray[np.intp], *, reference: int | NDArray[np.intp] | None = None
+) -> FlightFit:
+    """Return the free flight that fits the poses of ``frames`` best, or that of each row of frames.
 
-    ``reference`` is the frame to which the fit refers in time and orientation. The default is the last one.
+    Args:
+        poses: The measured poses.
+        frames: At least `FEWEST_FRAMES`, as a slice, or their numbers, (..., n).
+        reference: (...), the frame of each flight to which the fit refers in time and orientation. The
+            default is the last one.
     """
-    if reference is None:
-        reference = frames.stop - 1
-    times = poses.times[frames] - poses.times[reference]
+    if isinstance(frames, slice):
+        frames = np.arange(frames.start, frames.stop)
+    chosen = frames[..., -1] if reference is None else np.asarray(reference)
+    times = poses.times[frames] - poses.times[chosen][..., None]
+    q_reference = poses.q_WB[chosen]
     gravity_W, I_B = poses.gravity_W, poses.body.mass_properties.I_B
 
-    line = np.column_stack([np.ones_like(times), times])
-    straight = poses.p_WB_W[frames] - 0.5 * np.square(times)[:, None] * gravity_W
-    (p_W, v_W), cov_p = _least_squares(line, straight, poses.position_noise)
+    line = np.stack([np.ones_like(times), times], axis=-1)
+    straight = poses.p_WB_W[frames] - 0.5 * np.square(times)[..., None] * gravity_W
+    lines, cov_p = _least_squares(line, straight, poses.position_noise)
 
-    theta = rotation_vectors(poses.q_WB[frames], poses.q_WB[reference])
-    R = matrices_of(poses.q_WB[frames])
-    rates = _inverse_left_jacobians(theta) @ (R @ np.linalg.inv(I_B) @ R.transpose(0, 2, 1))
-    turned = _integral(rates, times)
-    design = np.concatenate([np.broadcast_to(np.eye(3), turned.shape), turned], axis=2).reshape(-1, 6)
-    solution, cov_rotation = _least_squares(design, theta.reshape(-1, 1), poses.orientation_noise)
+    q = poses.q_WB[frames]
+    theta = rotation_vectors(
+        q.reshape(-1, 4), np.broadcast_to(q_reference[..., None, :], q.shape).reshape(-1, 4)
+    )
+    R = _matrices(q)
+    inverse_inertias = R @ np.linalg.inv(I_B) @ np.swapaxes(R, -1, -2)
+    rates = _inverse_left_jacobians(theta).reshape(R.shape) @ inverse_inertias
+    by_L = _integral(rates, times)
+    design = np.concatenate([np.broadcast_to(np.eye(3), by_L.shape), by_L], axis=-1)
+    rows = (*times.shape[:-1], 3 * times.shape[-1])
+    solution, cov_rotation = _least_squares(
+        design.reshape(*rows, 6), theta.reshape(*rows, 1), poses.orientation_noise
+    )
     return FlightFit(
-        reference=float(poses.times[reference]),
-        q_reference=poses.q_WB[reference],
-        p_W=p_W,
-        v_W=v_W,
-        theta_W=solution[:3, 0],
-        L_W=solution[3:, 0],
+        reference=poses.times[chosen],
+        q_reference=q_reference,
+        p_W=lines[..., 0, :],
+        v_W=lines[..., 1, :],
+        theta_W=solution[..., :3, 0],
+        L_W=solution[..., 3:, 0],
         gravity_W=gravity_W,
         I_B=I_B,
         cov_p=cov_p,
@@ -186,15 +205,26 @@ def fit_flight(poses: MeasuredPoses, frames: slice, *, reference: int | None = N
 
 
 def _least_squares(design: FloatArray, values: FloatArray, noise: float) -> tuple[FloatArray, FloatArray]:
-    """Return the solution, (m, k), and the covariance, (m, m), of each of its k columns."""
-    scale = np.abs(design).max(axis=0)
-    scaled = design / scale
-    solution = np.linalg.lstsq(scaled, values, rcond=None)[0]
-    residuals = values - scaled @ solution
-    freedom = residuals.size - solution.size
-    birge = max(1.0, float(np.square(residuals).sum()) / (freedom * noise * noise)) if freedom else 1.0
-    covariance = np.linalg.inv(scaled.T @ scaled) * (birge * noise * noise)
-    return solution / scale[:, None], covariance / np.outer(scale, scale)
+    """Return the solutions, (..., m, k), and the covariance, (..., m, m), of each of their k columns."""
+    scale = np.abs(design).max(axis=-2)
+    scaled = design / scale[..., None, :]
+    orthogonal, triangle = np.linalg.qr(scaled)
+    inverse = np.linalg.inv(triangle)
+    solution = inverse @ (np.swapaxes(orthogonal, -1, -2) @ values)
+    squares = np.square(values - scaled @ solution).sum(axis=(-2, -1))
+    freedom = (values.shape[-2] - design.shape[-1]) * values.shape[-1]
+    birge = np.maximum(1.0, squares / (freedom * noise * noise)) if freedom else np.ones_like(squares)
+    covariance = inverse @ np.swapaxes(inverse, -1, -2) * (birge * noise * noise)[..., None, None]
+    return solution / scale[..., None], covariance / (scale[..., None, :] * scale[..., None])
+
+
+def _matrices(q: FloatArray) -> FloatArray:
+    return matrices_of(q.reshape(-1, 4)).reshape(*q.shape[:-1], 3, 3)
+
+
+def _turned(q: FloatArray, theta: FloatArray) -> FloatArray:
+    q = np.broadcast_to(q, (*theta.shape[:-1], 4))
+    return turned(q.reshape(-1, 4), theta.reshape(-1, 3)).reshape(q.shape)
 
 
 def _inverse_left_jacobians(theta: FloatArray) -> FloatArray:
@@ -205,16 +235,16 @@ def _inverse_left_jacobians(theta: FloatArray) -> FloatArray:
     small = half < 1e-2
     h = np.where(small, 1.0, half)
     c = np.where(small, 1.0 / 12.0 + square / 720.0, (1.0 - h / np.tan(h)) / (4.0 * h * h))
-    cross = np.zeros((len(theta), 3, 3))
-    cross[:, 2, 1], cross[:, 0, 2], cross[:, 1, 0] = theta.T
-    cross -= cross.transpose(0, 2, 1)
+    cross = cross_matrices(theta)
     jacobians: FloatArray = np.eye(3) - 0.5 * cross + c[:, None, None] * (cross @ cross)
     return jacobians
 
 
 def _integral(rates: FloatArray, times: FloatArray) -> FloatArray:
-    """Return the integrals of ``rates``, (n, 3, 3), by trapezoids, from time 0, one of ``times``, to each."""
-    steps = 0.5 * (rates[1:] + rates[:-1]) * np.diff(times)[:, None, None]
-    total = np.concatenate([np.zeros((1, 3, 3)), np.cumsum(steps, axis=0)])
-    integral: FloatArray = total - total[np.argmin(np.abs(times))]
+    """Return the integrals of ``rates``, (..., n, 3, 3), by trapezoids, from time 0, one of ``times``."""
+    steps = 0.5 * (rates[..., 1:, :, :] + rates[..., :-1, :, :]) * np.diff(times)[..., None, None]
+    total = np.zeros_like(rates)
+    np.cumsum(steps, axis=-3, out=total[..., 1:, :, :])
+    begin = np.abs(times).argmin(axis=-1)[..., None, None, None]
+    integral: FloatArray = total - np.take_along_axis(total, begin, axis=-3)
     return integral

@@ -91,6 +91,11 @@ class Toss(Record):
         """Return the number of samples."""
         return len(self.times)
 
+    @property
+    def surfaces(self) -> tuple[Surface]:
+        """The surface, as the only one."""
+        return (self.surface,)
+
     def state(self, sample: int, *, epoch_ns: int = 0) -> BodyState:
         """Return one sample as a state, stamped with its time after ``epoch_ns`` (ns)."""
         return BodyState(

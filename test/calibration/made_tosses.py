@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from contact_dynamics.contact.contact import Contact
-from contact_dynamics.evaluation.motion import MeasuredMotion, motions_of
 from contact_dynamics.impact import spatial_impact
+from contact_dynamics.measured.motion import MeasuredMotion, motions_of
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.rotations.many import turned
 from contact_dynamics.shapes import box

@@ -21,7 +21,7 @@ def with_one_left_out(found: Calibration) -> Calibration:
     """The calibration as if its best strike had been left out."""
     best = drawn_strikes(found)[-1]
     outlier = Outlier(
-        recording=best.toss.name, kind="velocities after strikes", time=best.strike.meeting.time, size=9.0
+        recording=best.toss.name, kind="velocities after strikes", time=best.strike.time, size=9.0
     )
     return replace(found, outliers=(outlier,))
 
@@ -37,7 +37,7 @@ def test_strikes_that_were_left_out_come_first_and_then_the_worst(found: Calibra
 def test_velocities_are_those_of_the_calibrated_mass_centre(found: Calibration) -> None:
     """The mass centre is 5 mm off: at 5 rad/s its velocity is 25 mm/s off, far more than residuals are."""
     for row in drawn_strikes(found):
-        state = row.strike.meeting.after.state
+        state = row.strike.after.state
         arm = state.R_WB @ (found.body.p_FB_F - row.toss.motion.body.p_FB_F)
         assert row.measured[:3] == pytest.approx(state.velocity_of_point(state.p_WB_W + arm))
         # the noise is 3 mm/s; five standard deviations

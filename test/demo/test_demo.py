@@ -24,7 +24,7 @@ from rosbags.highlevel import AnyReader
 
 from contact_dynamics.command_line import VERBS, main
 from contact_dynamics.demo.comparison import not_asked
-from contact_dynamics.measured.events import find_strikes
+from contact_dynamics.measured.flights import find_strikes
 from contact_dynamics.measured.read_toss import DEFAULT_RECORDING, read_toss
 from contact_dynamics.measured.recorded_toss import Toss
 from contact_dynamics.recording import BagReader, service_calls

@@ -7,8 +7,8 @@ from typing import NamedTuple
 import numpy as np
 
 from contact_dynamics.evaluation.asking import Informed
-from contact_dynamics.evaluation.motion import MeasuredMotion, motions_of
 from contact_dynamics.evaluation.recording import Recording
+from contact_dynamics.measured.motion import MeasuredMotion, motions_of
 from contact_dynamics.questions.context import Defaults
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.shapes import box, sphere

@@ -9,12 +9,11 @@ import pytest
 
 from contact_dynamics.evaluation.asking import compare_event
 from contact_dynamics.evaluation.comparison import Comparison
-from contact_dynamics.evaluation.events import find_events
-from contact_dynamics.evaluation.found_event import EventKind, FoundEvent
-from contact_dynamics.evaluation.motion import MeasuredMotion
 from contact_dynamics.evaluation.recording import Recording, evaluate_recording, recording_of_toss
 from contact_dynamics.evaluation.settings import Law, Method, Settings
 from contact_dynamics.evaluation.summary import is_inside
+from contact_dynamics.measured.events import EventKind, FoundEvent, find_events
+from contact_dynamics.measured.motion import MeasuredMotion
 from contact_dynamics.measured.read_toss import read_toss
 from contact_dynamics.questions.uncertain_state import UncertainState, state_of
 from contact_dynamics.rigid_body.body import BodyState

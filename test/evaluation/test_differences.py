@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from contact_dynamics.evaluation.comparison import Comparison, arrival_std, in_deviations, pose_difference
-from contact_dynamics.evaluation.found_event import EventKind
 from contact_dynamics.evaluation.settings import Method
 from contact_dynamics.evaluation.summary import is_inside, summarise
+from contact_dynamics.measured.events import EventKind
 from contact_dynamics.questions.sample_times import Event
 from contact_dynamics.questions.sample_times import EventKind as Ending
 from contact_dynamics.rigid_body.body import BodyState

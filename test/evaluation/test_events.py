@@ -7,9 +7,20 @@ from functools import cache
 import numpy as np
 import pytest
 
-from contact_dynamics.evaluation.events import find_events
-from contact_dynamics.evaluation.found_event import EventKind, FoundEvent
-from evaluation.made_motion import BALL, BRICK, Bounces, bounces, only_motion, recording_of, slide, world_of
+from contact_dynamics.measured.events import EventKind, FoundEvent, find_events
+from contact_dynamics.shapes import cylinder
+from contact_dynamics.world import Body
+from evaluation.made_motion import (
+    BALL,
+    BRICK,
+    P_NOISE,
+    Bounces,
+    bounces,
+    only_motion,
+    recording_of,
+    slide,
+    world_of,
+)
 from oracles.bouncing_toss import RATE
 
 SEEDS = range(5)
@@ -106,6 +117,19 @@ def test_a_catch_in_the_air_is_a_flight_without_a_landing() -> None:
     q = np.tile([0.0, 0.0, 0.0, 1.0], (len(times), 1))
     recording = recording_of(BALL, world_of(BALL), times, p, q)
     assert [event.kind for event in find_events(only_motion(recording))] == [EventKind.FLIGHT]
+
+
+def test_a_cylinder_rests_on_its_rim() -> None:
+    """It has no corners; nothing but the noise moves it."""
+    random = np.random.default_rng(3)
+    times = np.arange(48) / RATE
+    p = [0.1, 0.2, 0.05] + P_NOISE * random.standard_normal((len(times), 3))
+    q = np.tile([0.0, 0.0, 0.0, 1.0], (len(times), 1))
+    can = Body(name="can", mass_properties=BRICK.mass_properties, shape=cylinder(radius=0.04, length=0.1))
+    (event,) = find_events(only_motion(recording_of(can, world_of(can), times, p, q)))
+    assert event.kind is EventKind.REST
+    assert set(event.mode) == {"f"}
+    assert event.since == times[0]
 
 
 def test_a_rolling_ball_neither_rests_nor_slides() -> None:

@@ -9,10 +9,10 @@ import pytest
 from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin, Writer
 from rosbags.typesys import Stores, get_typestore
 
-from contact_dynamics.evaluation.events import find_events
 from contact_dynamics.evaluation.log_states import recording_of_log
 from contact_dynamics.evaluation.recording import Recording, recording_of_toss
 from contact_dynamics.evaluation.sources import find_sources
+from contact_dynamics.measured.events import find_events
 from contact_dynamics.measured.read_toss import read_toss
 from contact_dynamics.nodes.parameter_reader import ConfigurationError
 from contact_dynamics.questions.uncertain_state import state_of

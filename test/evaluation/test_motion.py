@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from contact_dynamics.evaluation.motion import estimated_noise, motions_of
+from contact_dynamics.measured.motion import estimated_noise, motions_of
 from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.tolerances import LEAST_ORIENTATION_NOISE, LEAST_POSITION_NOISE
 from evaluation.made_motion import BRICK, P_NOISE, Q_NOISE, bounces, only_motion, world_of

@@ -9,10 +9,10 @@ import pytest
 
 from benchmarks.flights import cube_tosses
 from contact_dynamics.evaluation.comparison import Comparison
-from contact_dynamics.evaluation.found_event import EventKind
 from contact_dynamics.evaluation.result import Evaluation, read_evaluation
 from contact_dynamics.evaluation.run import main
 from contact_dynamics.evaluation.settings import Law, Method
+from contact_dynamics.measured.events import EventKind
 from contact_dynamics.motion.velocity_estimate import WINDOW
 
 TOSSES = cube_tosses()

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from contact_dynamics.evaluation.comparison import Comparison
-from contact_dynamics.evaluation.found_event import EventKind
 from contact_dynamics.evaluation.report import report_changes
 from contact_dynamics.evaluation.result import Evaluation, SourceResult
 from contact_dynamics.evaluation.settings import Method
 from contact_dynamics.evaluation.significance import changes
+from contact_dynamics.measured.events import EventKind
 
 
 def evaluation(errors: np.ndarray, *, shift: float = 0.0) -> Evaluation:

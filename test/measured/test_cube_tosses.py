@@ -9,7 +9,8 @@ import pytest
 
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.measured.cube_tosses import HALF_SIDE, RATE
-from contact_dynamics.measured.events import corner_heights, find_rest, find_strikes
+from contact_dynamics.measured.events import find_rest
+from contact_dynamics.measured.flights import corner_heights, find_strikes
 from contact_dynamics.measured.read_toss import read_toss
 from contact_dynamics.motion.velocity_estimate import FEWEST_FRAMES
 from oracles.rigid_flight import about, fly, matrix

@@ -9,8 +9,8 @@ import numpy as np
 
 from benchmarks._toss_strikes import second_arrival
 from contact_dynamics.calibration.observed import observe
-from contact_dynamics.evaluation.motion import motions_of
 from contact_dynamics.impact import RestitutionLaw
+from contact_dynamics.measured.motion import motions_of
 from contact_dynamics.rigid_body import inertia
 from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.rotations.many import quaternions_of, rotation_vectors, turned
@@ -179,7 +179,7 @@ def test_a_recording_tells_second_strikes_whether_or_not_a_flight_follows_them()
         if len(strikes) < 2 or strikes[1].seconds - strikes[0].seconds < 0.06:
             continue
         observed = recorded(state, strikes[1].seconds + 0.3, chance)
-        if observed is None or abs(observed.strikes[0].meeting.time - strikes[0].seconds) > 1e-3:
+        if observed is None or abs(observed.strikes[0].time - strikes[0].seconds) > 1e-3:
             continue
         arrival = second_arrival(observed, WORLD, WORLD.gravity_W)
         assert arrival is not None

@@ -12,7 +12,7 @@ import itertools
 import math
 from bisect import bisect_right
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, Protocol
 
 import numpy as np
 
@@ -21,6 +21,7 @@ from contact_dynamics.questions.uncertain_state import state_of
 from contact_dynamics.records import Record
 from contact_dynamics.rotations.many import rotation_vectors
 from contact_dynamics.tolerances import LEAST_ORIENTATION_NOISE, LEAST_POSITION_NOISE
+from contact_dynamics.world import Surface
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -37,6 +38,49 @@ GAP: Final = 5.0
 
 _ENLARGED: Final = math.sqrt(70.0)  # white noise in fourth differences: 1 + 16 + 36 + 16 + 1
 _MEDIAN: Final = 0.6745  # median of the absolute value of a standard normal variable
+
+
+class MeasuredPoses(Protocol):
+    """The poses of one body in the order of time, and how well they are measured. A `Toss` is one."""
+
+    def __len__(self) -> int:
+        """Return the number of samples."""
+
+    @property
+    def body(self) -> Body:
+        """The body, whose centre of mass the positions are of."""
+
+    @property
+    def gravity_W(self) -> FloatArray:
+        """Acceleration of gravity, (3,), m/s^2, world axes."""
+
+    @property
+    def rate(self) -> float:
+        """Rate of the samples, Hz."""
+
+    @property
+    def position_noise(self) -> float:
+        """Standard deviation of each coordinate of a measured position, m."""
+
+    @property
+    def orientation_noise(self) -> float:
+        """Standard deviation of each component of a measured orientation's rotation error, rad."""
+
+    @property
+    def times(self) -> FloatArray:
+        """Times of the samples, (n,), s, increasing."""
+
+    @property
+    def p_WB_W(self) -> FloatArray:
+        """Positions of the centre of mass, (n, 3), m, world."""
+
+    @property
+    def q_WB(self) -> FloatArray:
+        """Unit quaternions, (n, 4), x, y, z, w: body coordinates into world coordinates."""
+
+    @property
+    def surfaces(self) -> Sequence[Surface]:
+        """The flat surfaces on which it may fall."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -73,6 +117,11 @@ class MeasuredMotion(Record):
     def gravity_W(self) -> FloatArray:
         """Acceleration of gravity, (3,), m/s^2, world axes."""
         return self.world.gravity_W
+
+    @property
+    def surfaces(self) -> list[Surface]:
+        """The flat surfaces of the world."""
+        return [surface for surface in self.world.surfaces if isinstance(surface, Surface)]
 
     def stamp_ns(self, sample: int) -> int:
         """Return the stamp of a state, ns."""
