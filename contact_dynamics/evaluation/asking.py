@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Final
 
@@ -9,7 +10,12 @@ import numpy as np
 
 from contact_dynamics.constants import ns_after, seconds_between
 from contact_dynamics.contact_modes.result import ModeVerdict
-from contact_dynamics.errors import ContactDynamicsError, NotSupportedError
+from contact_dynamics.errors import (
+    ContactDynamicsError,
+    NoContactError,
+    NotSupportedError,
+    SeparatingContactError,
+)
 from contact_dynamics.evaluation.comparison import (
     Comparison,
     arrival_std,
@@ -21,7 +27,7 @@ from contact_dynamics.evaluation.settings import Method
 from contact_dynamics.measured.events import EventKind
 from contact_dynamics.questions.contact_modes import ContactModeQuestion
 from contact_dynamics.questions.context import Context
-from contact_dynamics.questions.impact_question import ImpactQuestion
+from contact_dynamics.questions.impact_question import ImpactQuestion, InTime
 from contact_dynamics.questions.sample_times import AtStamps, UntilContact
 from contact_dynamics.questions.services import ask
 from contact_dynamics.questions.state_store import StateStore
@@ -30,6 +36,7 @@ from contact_dynamics.questions.tumbling import TumblingQuestion
 from contact_dynamics.questions.uncertain_state import UncertainState
 from contact_dynamics.records import Record
 from contact_dynamics.rigid_body.body import BodyState
+from contact_dynamics.tolerances import HOLD_STEP
 from contact_dynamics.tumbling import free_motion
 
 if TYPE_CHECKING:
@@ -178,14 +185,20 @@ def _impact(row: Comparison, event: FoundEvent, known: Context, settings: Settin
 
 def _asked_impact(row: Comparison, event: FoundEvent, known: Context, settings: Settings) -> ImpactAnswer:
     law: Law = row.law or settings.laws[0]
+    several = law.several_contacts_law
     question = ImpactQuestion(
         body=event.body,
         state=_source(row.method, settings),
         restitution_law=law.restitution_law,
-        several_contacts_law=law.several_contacts_law,
+        several_contacts_law=several,
         include_covariance=row.law is settings.laws[0] and _has_covariance(row, known),
     )
     try:
+        if isinstance(several, InTime):
+            # strikes after the next flight has begun do not count, unless the first one is among them
+            brief = replace(several, strike_window=event.duration + HOLD_STEP)
+            with suppress(NoContactError, SeparatingContactError):
+                return ask(replace(question, several_contacts_law=brief), known)
         return ask(question, known)
     except NotSupportedError:  # covariances are carried through one contact alone
         if not question.include_covariance:
