@@ -10,11 +10,12 @@ import rerun as rr
 import rerun.blueprint as rrb
 
 from contact_dynamics import Body, BodyState, ContactSet, MassProperties
+from contact_dynamics.diagrams import palette
+from contact_dynamics.diagrams.impulse_space import impulse_space
 from contact_dynamics.diagrams.words import outcome_in_words
 from contact_dynamics.plane.projection import PlaneOfMotion
 from contact_dynamics.questions import ImpactQuestion, Problem, ask
-from contact_dynamics.viewing import palette
-from contact_dynamics.viewing.impulse_space import draw_impulse_space
+from contact_dynamics.viewing.drawing import draw_diagram
 
 # rho = 1, m = 1, v = (-1, -1), w = 0, mu = 0.25, e = 0.5; the plane is x, z. The figure with r is lost.
 ARMS = [(0.0, -1.0), (0.1, -1.5), (0.3, -3.0), (1.0, -1.2), (1.0, -2.0), (-1.0, -9.0)]
@@ -46,7 +47,7 @@ with rr.RecordingStream("contact_dynamics") as recording:
             outcome = f"jams, {outcome}"
         print(f"r = ({x:g}, {z:g}): {outcome}, impulse ({t:.4f}, {n:.4f}) N s")
         entity = f"example_{i}"
-        draw_impulse_space(recording, body, answer, entity=entity)
+        draw_diagram(recording, impulse_space(body, answer), entity)
         name = f"r = ({x:g}, {z:g}): {outcome}"
         views.append(rrb.Spatial2DView(origin=entity, name=name, background=palette.BACKGROUND))
     recording.send_blueprint(rrb.Blueprint(rrb.Grid(*views, grid_columns=2), collapse_panels=True))

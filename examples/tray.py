@@ -16,10 +16,10 @@ from contact_dynamics import (
     PlanarWrench,
 )
 from contact_dynamics.contact_modes import PlanarContactProblem, contact_modes, mode_margins, wrench_sets
+from contact_dynamics.diagrams.palette import BACKGROUND
 from contact_dynamics.diagrams.wrench_chart import DirectionChart, ForceDualChart
 from contact_dynamics.viewing.force_dual import draw_force_dual
 from contact_dynamics.viewing.mode_map import bounds, color_of_modes, draw_mode_map
-from contact_dynamics.viewing.palette import BACKGROUND
 from contact_dynamics.viewing.planar_scene import draw_planar_scene
 
 FLAT, TALL, BEND, THICK = 0.08, 0.06, 0.03, 0.012  # m: flush on the floor, on the wall; outer radius; bar

@@ -24,12 +24,12 @@ from contact_dynamics import (
     free_motion,
 )
 from contact_dynamics.contact_modes import contact_modes, mode_margins, wrench_sets
+from contact_dynamics.diagrams import paper as colors
 from contact_dynamics.diagrams.planar_scene import planar_scene_of
 from contact_dynamics.diagrams.words import outcome_in_words
 from contact_dynamics.diagrams.wrench_chart import DirectionChart, ForceDualChart
 from contact_dynamics.plane.projection import PlaneOfMotion
 from contact_dynamics.plots import (
-    colors,
     draw_force_dual,
     draw_impulse_space,
     draw_impulse_space_in_3d,
@@ -200,7 +200,6 @@ def six_paths() -> Figure:
         axes.set_title(
             f"r = ({x:g}, {z:g}): {jams}{outcome_in_words(answer.impact.outcome)}", fontsize="medium"
         )
-        axes.legend(loc="lower left", fontsize="xx-small", framealpha=0.85)
     return figure
 
 

@@ -27,8 +27,9 @@ from contact_dynamics import (
     next_landing,
 )
 from contact_dynamics.contact_modes import contact_modes
+from contact_dynamics.diagrams import paper as colors
 from contact_dynamics.diagrams.planar_scene import planar_scene_of
-from contact_dynamics.plots import colors, draw_impulse_space, draw_planar_scene, save_figure
+from contact_dynamics.plots import draw_impulse_space, draw_planar_scene, save_figure
 from contact_dynamics.questions import ImpactQuestion, ask
 from contact_dynamics.shapes import cylinder
 

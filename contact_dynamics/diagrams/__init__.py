@@ -1,12 +1,12 @@
-"""Computes what pictures show, as plain arrays. Nothing here draws.
+"""Computes diagrams as plain data. Nothing here draws.
 
-Two renderers draw these arrays: `contact_dynamics.viewing` in rerun, and `contact_dynamics.plots` with
-Matplotlib. They compute none of their own, so that both show the same numbers.
+Two renderers draw it: `contact_dynamics.viewing` in rerun, and `contact_dynamics.plots` with Matplotlib. They
+compute no geometry of their own, so that both show the same numbers.
 
-In reading order: the faces and edges of bodies (`shape`), lecture 27's impulse space (`impulse_space`),
-lecture 26's body with its contacts (`planar_scene`, `planar_modes`), charts of applied wrenches
-(`wrench_chart`) and the map of modes on them (`mode_map`), lecture 26's construction for one mode
-(`force_dual`), lecture 25's rolling ellipsoid (`poinsot`), energies and momenta over a trajectory
-(`trajectory_curves`), how far a flight goes until a surface is in its way (`outside`), and answers in words
-(`words`).
+In reading order: what diagrams are made of (`marks`) and their colours in the viewer (`palette`) and on paper
+(`paper`), the faces and edges of bodies (`shape`), lecture 27's impulse space (`impulse_space`), lecture 26's
+body with its contacts (`planar_scene`, `planar_modes`), charts of applied wrenches (`wrench_chart`) and the
+map of modes on them (`mode_map`), lecture 26's construction for one mode (`force_dual`), lecture 25's rolling
+ellipsoid (`poinsot`), energies and momenta over a trajectory (`trajectory_curves`), how far a flight goes
+until a surface is in its way (`outside`), and answers in words (`words`).
 """

@@ -4,10 +4,10 @@ The path of the accumulated impulse leaves the origin, inside the friction cone.
 contact does not slide, and on the compression line it does not approach. The path bends where it meets the
 sticking line, and compression ends where it meets the compression line.
 
-In space the picture's plane contains the normal and the total impulse. A path that swerves is projected onto
-it, and so is the sticking line, on which both tangential velocities are zero. The impulses after which the
-contact does not approach form a plane, and the picture shows a cut through it. The cut is as far out of the
-picture as the path is where compression ends. If compression ends more than once, each end has its own line.
+In space (Keller 1986) the friction cone is round, and the impulses after which the contact does not approach
+form a plane. The diagram in the plane of the normal and the total impulse is a projection: a path that
+swerves is projected onto it, and so is the sticking line. The compression plane is cut as far out of the
+diagram as the path is where compression ends. If compression ends more than once, each end has its own line.
 
 If a contact strikes more than once, its whole path is drawn, with the lines and events of its first strike.
 These lines take account of what other contacts did before.
@@ -17,139 +17,204 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from contact_dynamics.diagrams import palette, paper
+from contact_dynamics.diagrams.marks import Axis, Diagram, Faces, Lines, Points
+from contact_dynamics.diagrams.palette import Paint
+from contact_dynamics.diagrams.shape import part_above
+from contact_dynamics.diagrams.words import outcome_in_words
 from contact_dynamics.impact.law import PathEvent
 from contact_dynamics.impact.spatial.one_contact import contact_inverse_inertia
 from contact_dynamics.numerics.vectors import across, tangents_near_x
 
 if TYPE_CHECKING:
+    from contact_dynamics.diagrams.marks import Mark
     from contact_dynamics.questions.impact_answer import ImpactAnswer
     from contact_dynamics.questions.resolved_impact import ResolvedImpact
-    from contact_dynamics.rigid_body.body import BodyState, MassProperties
+    from contact_dynamics.rigid_body.body import BodyState, HasMassProperties, MassProperties
     from contact_dynamics.validation import FloatArray
 
-MARGIN: Final = 1.2
-"""Length of cone and lines, relative to the path."""
-
-BELOW: Final = 0.12
-"""Height of the picture below the origin, relative to that above it."""
-
 EVENTS: Final = {
-    PathEvent.SLIDING_STOPS: "sliding stops",
-    PathEvent.COMPRESSION_ENDS: "compression ends",
-    PathEvent.RESTITUTION_ENDS: "restitution ends",
+    PathEvent.SLIDING_STOPS: ("sliding stops", "s"),
+    PathEvent.COMPRESSION_ENDS: ("compression ends", "o"),
+    PathEvent.RESTITUTION_ENDS: ("restitution ends", "^"),
 }
-"""The events that are marked, in words."""
+"""The events that are marked, in words and with their markers."""
 
+_MARGIN: Final = 1.2  # height of the diagram, relative to the path
+_BELOW: Final = 0.12  # height of the diagram below the origin, relative to that above it
+_NARROWEST, _WIDEST = 0.5, 1.2  # half of its width, relative to its height, unless the path is wider
+_DIGITS: Final = 9  # relative to the diagram: what is below is rounding
+_RINGS: Final = 4  # of the round cone
+_ROUND: Final = 49  # points of a ring, the last one is the first
+_RAYS: Final = 12
 
-class Line(NamedTuple):
-    """Impulses x with ``normal . x + offset = 0``, after which a component of a contact's velocity is zero.
-
-    Attributes:
-        normal: (2,), 1/kg, tangential, normal.
-        offset: m/s.
-    """
-
-    normal: FloatArray
-    offset: float
-
-
-class ContactMotion(NamedTuple):
-    """The contact's velocity after an impulse x is ``velocity + response @ x`` (lecture 27, eq. 9 and 10).
-
-    The components are along the picture's tangent, along the normal, and out of the picture.
-    """
-
-    velocity: FloatArray  # (3,), m/s, before the impact
-    response: FloatArray  # (3, 3), 1/kg
-
-    def sticking_line(self, *, in_space: bool) -> Line:
-        """Return the line on which the contact does not slide. In space it is a projection."""
-        velocity, response = self.velocity, self.response
-        # The impulse out of the picture is eliminated. It has the size that leaves no velocity in that
-        # direction.
-        share = response[0, 2] / response[2, 2] if in_space else 0.0
-        normal = response[0, :2] - share * response[2, :2]
-        return Line(normal, float(velocity[0] - share * velocity[2]))
-
-    def compression_line(self, *, aside: float) -> Line:
-        """Return the line without approach, for impulses that are ``aside``, N s, out of the picture."""
-        return Line(self.response[1, :2], float(self.velocity[1] + self.response[1, 2] * aside))
+_CONE: Final = Paint(palette.FRICTION_CONE, paper.PURPLE)
+_STICKING: Final = Paint(palette.STICKING_LINE, paper.BLUE)
+_COMPRESSION: Final = Paint(palette.COMPRESSION_LINE, paper.ORANGE)
+_PATH: Final = Paint(palette.IMPACT, paper.BLACK)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class ImpulseSpace:
-    """The picture of a contact's impulse, with tangential and normal impulse as its coordinates, N s.
+class ContactImpulse:
+    """The impulse of an impact's main contact, along the two tangents and the normal of its picture.
+
+    After an impulse x at the contact, its velocity is ``velocity + response @ x`` (lecture 27, eq. 9 and 10).
+    Both are None without the mass properties of all bodies that move.
 
     Attributes:
-        in_space: Whether path and sticking line are projections.
-        axes_W: (2, 3), unit, the tangent and the normal of the picture, world axes.
-        extent: N s, how far the picture reaches to the right, to the left and up.
-        cone: (3, 2), the friction cone's edges, as a strip.
-        path: (k, 2), the vertices of the path.
-        sticking: The lines on which the contact does not slide. There are none without mass properties.
-        compression: The lines on which it does not approach. There are none without mass properties.
+        contact: The contact.
+        axes_W: (3, 3), unit, right-handed: two tangents and the normal, world axes.
+        path: (k, 3), N s, the vertices of the path.
         events: (m,), what is marked.
-        points: (m, 2), where.
+        points: (m, 3), N s, where.
+        velocity: (3,), m/s, before the impact.
+        response: (3, 3), 1/kg.
+        side: N s, half of the width of the diagram.
+        top: N s, its height.
     """
 
-    in_space: bool
+    contact: int
     axes_W: FloatArray
-    extent: float
-    cone: FloatArray
     path: FloatArray
-    sticking: tuple[Line, ...]
-    compression: tuple[Line, ...]
     events: tuple[PathEvent, ...]
     points: FloatArray
+    velocity: FloatArray | None
+    response: FloatArray | None
+    side: float
+    top: float
 
-    @property
-    def side(self) -> float:
-        """Return 1 if the path ends on the right of the normal or on it, and -1 on the left."""
-        return -1.0 if len(self.path) > 0 and self.path[-1, 0] < 0.0 else 1.0
 
+def impulse_space(
+    body: HasMassProperties | None, answer: ImpactAnswer, *, other: HasMassProperties | None = None
+) -> Diagram:
+    """Return the diagram of an impact's main contact in the plane of the normal and the total impulse.
 
-def impulse_space_of(
-    mass_properties: MassProperties | None, answer: ImpactAnswer, *, other: MassProperties | None = None
-) -> ImpulseSpace:
-    """Return the picture of an impact's main contact.
-
-    The sticking and compression lines need the mass properties of all bodies that move, and are left out
-    otherwise. ``other`` are the mass properties of the body that is struck.
+    Args:
+        body: The body, or its mass properties. If it is None, there are no sticking and compression lines.
+        answer: The impact.
+        other: The body that is struck, or its mass properties. Without it there are no lines for two bodies.
     """
+    found = contact_impulse(body, answer, other=other)
+    friction, side, top = float(answer.contacts.frictions[found.contact]), found.side, found.top
+    low, high = np.array([-side, -_BELOW * top]), np.array([side, top])
+    reach = min(top, side / friction) if friction > 0.0 else top
+    cone = np.array([(-friction * reach, reach), (0.0, 0.0), (friction * reach, reach)])
+    marks: list[Mark] = [
+        Faces(name="cone", paint=_CONE, opacity=0.12, corners=cone),
+        Lines(name="friction_cone", paint=_CONE, strips=[cone], legend=f"friction cone, μ = {friction:.3g}"),
+    ]
+    in_space = answer.plane is None
+    if found.velocity is not None and found.response is not None:
+        start, slope = _sticking_line(found.velocity, found.response, in_space=in_space)
+        ends = [part_in_box(start[[0, 2]], slope[[0, 2]], low, high)]
+        name = "sticking line" + (", projected" if in_space else "")
+        marks += _line("sticking_line", _STICKING, "--", name, ends)
+        compressed = [
+            point[1]
+            for event, point in zip(found.events, found.points.tolist(), strict=True)
+            if event == PathEvent.COMPRESSION_ENDS
+        ]
+        (v, r) = found.velocity[2], found.response[2]
+        rise = np.array([1.0, -r[0] / r[2]])
+        ends = [
+            part_in_box(np.array([0.0, -(v + r[1] * aside) / r[2]]), rise, low, high)
+            for aside in compressed or [0.0]
+        ]
+        name = "compression plane, cut" if in_space else "compression line"
+        marks += _line("compression_line", _COMPRESSION, "-.", name, ends)
+    projected = ", projected" if in_space else ""
+    marks += _path_marks(found, [0, 2], legend=f"impulse so far{projected}")
+    return Diagram(
+        marks=marks,
+        axes=(
+            Axis("tangential impulse, N s", float(low[0]), side),
+            Axis("normal impulse, N s", float(low[1]), top),
+        ),
+        title=_title(answer),
+    )
+
+
+def impulse_space_in_3d(
+    body: HasMassProperties | None, answer: ImpactAnswer, *, other: HasMassProperties | None = None
+) -> Diagram:
+    """Return the diagram of an impact's main contact in all three dimensions.
+
+    Args:
+        body: The body, or its mass properties. If it is None, there is neither sticking line nor compression
+            plane.
+        answer: The impact.
+        other: The body that is struck, or its mass properties. Without it both are missing for two bodies.
+    """
+    found = contact_impulse(body, answer, other=other)
+    friction, side, top = float(answer.contacts.frictions[found.contact]), found.side, found.top
+    cone = Lines(
+        name="friction_cone",
+        paint=_CONE,
+        opacity=0.8,
+        strips=_round_cone(friction, min(top, side / friction) if friction > 0.0 else top),
+        width=0.8,
+        legend=f"friction cone, μ = {friction:.3g}",
+    )
+    marks: list[Mark] = [cone]
+    low, high = np.array([-side, -side, 0.0]), np.array([side, side, top])
+    if found.velocity is not None and found.response is not None:
+        start, slope = _sticking_line(found.velocity, found.response, in_space=True)
+        marks += _line(
+            "sticking_line", _STICKING, "--", "sticking line", [part_in_box(start, slope, low, high)]
+        )
+        flat = side * np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
+        (v, r) = found.velocity[2], found.response[2]
+        corners = np.column_stack([flat, -(v + flat @ r[:2]) / r[2]])
+        corners = part_above(corners, corners[:, 2])
+        corners = part_above(corners, top - corners[:, 2])
+        if len(corners) > 2:
+            plane = Faces(name="compression_plane", paint=_COMPRESSION, opacity=0.15, corners=corners)
+            around = [np.vstack([corners, corners[:1]])]
+            marks += [plane, *_line("compression_border", _COMPRESSION, "-.", "compression plane", around)]
+    marks += _path_marks(found, [0, 1, 2], legend="impulse so far")
+    names = ("along the tangential impulse, N s", "across, N s", "normal impulse, N s")
+    axes = tuple(Axis(*each) for each in zip(names, low.tolist(), high.tolist(), strict=True))
+    return Diagram(marks=marks, axes=axes, title=_title(answer))
+
+
+def contact_impulse(
+    body: HasMassProperties | None, answer: ImpactAnswer, *, other: HasMassProperties | None = None
+) -> ContactImpulse:
+    """Return the impulse of an impact's main contact, as the diagrams show it."""
     impact = answer.impact
     contact = main_contact(impact)
     axes_W = contact_axes(answer, contact)
     chosen = [i for i, owner in enumerate(impact.path_contacts) if owner == contact]
     path = impact.path_W[chosen] @ axes_W.T
-    extent = MARGIN * float(np.abs(path).max(initial=0.0)) or 1.0
-    half_angle = math.atan(float(answer.contacts.frictions[contact]))
-    right, up = extent * math.sin(half_angle), extent * math.cos(half_angle)
-    events = [(i, impact.path_events[i]) for i in chosen if impact.path_events[i] in EVENTS]
-    ends = [k for k, (_, event) in enumerate(events) if event == PathEvent.RESTITUTION_ENDS]
-    events = events[: ends[0] + 1] if ends else events  # the lines belong to the first strike
-    sticking: tuple[Line, ...] = ()
-    compression: tuple[Line, ...] = ()
-    if mass_properties is not None and (answer.other is None or other is not None):
-        before = chosen[0] if chosen else 0
-        motion = contact_motion(mass_properties, answer, contact, axes_W, other=other, before=before)
-        sticking = (motion.sticking_line(in_space=answer.plane is None),)
-        compressed_W = [impact.path_W[i] for i, event in events if event == PathEvent.COMPRESSION_ENDS]
-        aside = [float(np.cross(*axes_W) @ p_W) for p_W in compressed_W]
-        compression = tuple(motion.compression_line(aside=s) for s in aside or [0.0])
-    return ImpulseSpace(
-        in_space=answer.plane is None,
+    marked = [i for i in chosen if impact.path_events[i] in EVENTS]
+    ends = [k for k, i in enumerate(marked) if impact.path_events[i] == PathEvent.RESTITUTION_ENDS]
+    marked = marked[: ends[0] + 1] if ends else marked  # the lines belong to the first strike
+    top = _MARGIN * float(np.abs(path).max(initial=0.0)) or 1.0
+    half_width = min(max(float(answer.contacts.frictions[contact]), _NARROWEST), _WIDEST) * top
+    velocity = response = None
+    if body is not None and (answer.other is None or other is not None):
+        velocity, response = _contact_motion(
+            body.mass_properties,
+            answer,
+            contact,
+            other=None if other is None else other.mass_properties,
+            before=chosen[0] if chosen else 0,
+        )
+        velocity, response = axes_W @ velocity, axes_W @ response @ axes_W.T
+    return ContactImpulse(
+        contact=contact,
         axes_W=axes_W,
-        extent=extent,
-        cone=np.array([(-right, up), (0.0, 0.0), (right, up)]),
         path=path,
-        sticking=sticking,
-        compression=compression,
-        events=tuple(event for _, event in events),
-        points=impact.path_W[[i for i, _ in events]] @ axes_W.T,
+        events=tuple(impact.path_events[i] for i in marked),
+        points=impact.path_W[marked] @ axes_W.T,
+        velocity=velocity,
+        response=response,
+        side=max(half_width, _MARGIN * float(np.abs(path[:, :2]).max(initial=0.0))),
+        top=top,
     )
 
 
@@ -161,9 +226,9 @@ def main_contact(impact: ResolvedImpact) -> int:
 
 
 def contact_axes(answer: ImpactAnswer, contact: int) -> FloatArray:
-    """Return the axes of the picture, tangent and normal, (2, 3), unit, world axes.
+    """Return the axes of the diagram, two tangents and the normal, (3, 3), unit, right-handed, world axes.
 
-    In the plane of motion the tangent is the normal turned by -90 degrees. In space it points along the
+    In the plane of motion the first tangent is the normal turned by -90 degrees. In space it points along the
     tangential impulse, or against the sliding if there is no tangential impulse.
     """
     normal_W = answer.contacts.normals_W[contact]
@@ -177,49 +242,92 @@ def contact_axes(answer: ImpactAnswer, contact: int) -> FloatArray:
         length = float(np.linalg.norm(tangent_W))
         if length > 1e-9 * float(np.linalg.norm(vector_W)):
             break
-    return np.array([tangent_W / length, normal_W])
+    tangent_W = tangent_W / length
+    return np.array([tangent_W, np.cross(normal_W, tangent_W), normal_W])
 
 
-def line_in_box(line: Line, extent: float) -> FloatArray:
-    """Return the ends of the part of a line within the picture, (1, 2, 2), or (0, 2, 2) without any."""
-    nothing = np.zeros((0, 2, 2))
-    squared = float(line.normal @ line.normal)
-    if squared == 0.0:
-        return nothing
-    foot = -line.offset * line.normal / squared
-    along = np.array([-line.normal[1], line.normal[0]]) / math.sqrt(squared)
+def part_in_box(start: FloatArray, slope: FloatArray, low: FloatArray, high: FloatArray) -> FloatArray:
+    """Return the ends, (2, d), of the part of a line ``start + s slope`` in a box, or (0, d) without any."""
     begin, end = -math.inf, math.inf
-    lowest, highest = (-extent, -BELOW * extent), (extent, extent)
-    for start, slope, low, high in zip(foot.tolist(), along.tolist(), lowest, highest, strict=True):
-        if slope == 0.0:
-            if not low <= start <= high:
-                return nothing
+    sides = (each.tolist() for each in (start, slope, low, high))
+    for at_zero, rise, least, most in zip(*sides, strict=True):
+        if rise == 0.0:
+            if not least <= at_zero <= most:
+                return np.zeros((0, len(start)))
             continue
-        first, last = sorted(((low - start) / slope, (high - start) / slope))
+        first, last = sorted(((least - at_zero) / rise, (most - at_zero) / rise))
         begin, end = max(begin, first), min(end, last)
     if begin >= end:
-        return nothing
-    return np.array([[foot + begin * along, foot + end * along]])
+        return np.zeros((0, len(start)))
+    return np.array([start + begin * slope, start + end * slope])
 
 
-def contact_motion(
-    mass_properties: MassProperties,
+def _sticking_line(
+    velocity: FloatArray, response: FloatArray, *, in_space: bool
+) -> tuple[FloatArray, FloatArray]:
+    """Return an impulse after which the contact does not slide, and how it grows with the normal impulse.
+
+    In a plane of motion the second tangential impulse is zero, and its velocity does not matter.
+    """
+    n = 2 if in_space else 1
+    sides = np.column_stack([-velocity[:n], -response[:n, 2]])
+    solved = np.zeros((2, 2))
+    solved[:n] = np.linalg.solve(response[:n, :n], sides)
+    return np.append(solved[:, 0], 0.0), np.append(solved[:, 1], 1.0)
+
+
+def _line(name: str, paint: Paint, dash: str, legend: str, strips: list[FloatArray]) -> list[Mark]:
+    """Return the mark of lines, if any of them is in the diagram."""
+    shown = [strip for strip in strips if len(strip) > 0]
+    return [Lines(name=name, paint=paint, strips=shown, dash=dash, legend=legend)] if shown else []
+
+
+def _path_marks(found: ContactImpulse, components: list[int], *, legend: str) -> list[Mark]:
+    decimals = _DIGITS - math.floor(math.log10(found.top))
+    marks: list[Mark] = []
+    if len(found.path) > 0:
+        path = found.path[:, components]
+        marks.append(Lines(name="path", paint=_PATH, strips=[path], width=2.75, legend=legend))
+    for i, (event, point) in enumerate(zip(found.events, found.points[:, components], strict=True)):
+        words, marker = EVENTS[event]
+        numbers = ", ".join(f"{round(x, decimals) + 0.0:.3g}" for x in point.tolist())
+        marks.append(
+            Points(
+                name=f"event_{i}",
+                paint=_PATH,
+                places=point[None],
+                marker=marker,
+                hollow=True,
+                legend=f"{words}:\n({numbers}) N s",
+            )
+        )
+    return marks
+
+
+def _title(answer: ImpactAnswer) -> str:
+    return f"{answer.body_name or 'a body'} {outcome_in_words(answer.impact.outcome)}"
+
+
+def _round_cone(friction: float, height: float) -> list[FloatArray]:
+    """Return rings and rays of the cone up to a height, N s, as strips, (k, 3) each."""
+    turns = np.linspace(0.0, 2.0 * math.pi, _ROUND)
+    ring = np.column_stack([friction * np.cos(turns), friction * np.sin(turns), np.ones(_ROUND)])
+    rings = [height * (i + 1) / _RINGS * ring for i in range(_RINGS)]
+    edge = height * ring[: -1 : (_ROUND - 1) // _RAYS]
+    return [*rings, *(np.array([[0.0, 0.0, 0.0], end]) for end in edge)]
+
+
+def _contact_motion(
+    body: MassProperties,
     answer: ImpactAnswer,
     contact: int,
-    axes_W: FloatArray,
     *,
     other: MassProperties | None,
     before: int,
-) -> ContactMotion:
-    """Return the motion of a contact after the strikes that come before a vertex of the path.
+) -> tuple[FloatArray, FloatArray]:
+    """Return the velocity, (3,), m/s, of a contact and its response to impulses, (3, 3), 1/kg, world axes.
 
-    Args:
-        mass_properties: Those of the body.
-        answer: The impact.
-        contact: Which contact.
-        axes_W: (2, 3), unit, the tangent and the normal of the picture, world axes.
-        other: Mass properties of the body that is struck.
-        before: The vertex of the path, as an index.
+    The strikes before a vertex of the path, which is given by its index, are over.
     """
     state, impact = answer.state, answer.impact
     p_WC_W = answer.contacts.p_WC_W[contact]
@@ -227,15 +335,14 @@ def contact_motion(
         zip(impact.path_contacts[:before], impact.path_W[:before], strict=True)
     )  # the last vertex of each contact
     pushes = [(answer.contacts.p_WC_W[i], impulse_W) for i, impulse_W in struck_W.items()]
-    velocity_W = _velocity_of_point(mass_properties, state, p_WC_W, pushes)
-    response_W = contact_inverse_inertia(mass_properties, state, p_WC_W - state.p_WB_W)
+    velocity_W = _velocity_of_point(body, state, p_WC_W, pushes)
+    response_W = contact_inverse_inertia(body, state, p_WC_W - state.p_WB_W)
     if answer.other is not None and other is not None:
         struck = answer.other.state
         pushes = [(p_W, -impulse_W) for p_W, impulse_W in pushes]
         velocity_W = velocity_W - _velocity_of_point(other, struck, p_WC_W, pushes)
         response_W = response_W + contact_inverse_inertia(other, struck, p_WC_W - struck.p_WB_W)
-    axes = np.vstack([axes_W, np.cross(*axes_W)])
-    return ContactMotion(axes @ velocity_W, axes @ response_W @ axes.T)
+    return velocity_W, response_W
 
 
 def _velocity_of_point(

@@ -148,3 +148,18 @@ def _normals(triangles: FloatArray) -> FloatArray:
     crosses = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
     normals: FloatArray = crosses / np.linalg.norm(crosses, axis=1, keepdims=True)
     return normals
+
+
+def part_above(corners: FloatArray, gaps: FloatArray) -> FloatArray:
+    """Return the corners, (k, d), of the part of a convex polygon or line whose gaps, (n,), are not negative.
+
+    The gaps are linear in the place.
+    """
+    kept = []
+    for i, gap in enumerate(gaps.tolist()):
+        before = float(gaps[i - 1])
+        if (gap < 0.0) != (before < 0.0):
+            kept.append(corners[i] + gap / (gap - before) * (corners[i - 1] - corners[i]))
+        if gap >= 0.0:
+            kept.append(corners[i])
+    return np.reshape(kept, (-1, corners.shape[1]))

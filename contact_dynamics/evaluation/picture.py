@@ -14,12 +14,12 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 import rerun as rr
 
+from contact_dynamics.diagrams import palette
 from contact_dynamics.diagrams.shape import drawn_shape
 from contact_dynamics.evaluation.report import COLUMNS, UNITS
 from contact_dynamics.evaluation.settings import Method
 from contact_dynamics.measured.events import EventKind, find_events
 from contact_dynamics.records import Record
-from contact_dynamics.viewing import palette
 from contact_dynamics.viewing.entities import entity
 from contact_dynamics.viewing.kept_recording import APPLICATION
 from contact_dynamics.viewing.scene import solid

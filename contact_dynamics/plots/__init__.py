@@ -5,18 +5,17 @@ functions draws one diagram into the `Axes` that it is given. What it draws are 
 `contact_dynamics.diagrams`, which the viewer draws too. `contact_dynamics.plots` can be imported without
 Matplotlib, which the extra ``[plot]`` brings.
 
-In reading order: the colours (`colors`) and what all diagrams share (`style`), lecture 25's curves
+In reading order: how marks are drawn (`drawing`, `style`), the diagrams (`draw`), lecture 25's curves
 (`trajectory`) and rolling ellipsoid (`poinsot`), lecture 26's body with its contacts (`planar_scene`),
-contact forces in their cones (`contact_forces`) and charts of wrenches (`wrenches`), lecture 27's impulse
-space (`impulse_space`, `impulse_space_in_3d`), whole tosses (`tosses`), all diagrams of an answer as figures
+contact forces in their cones (`contact_forces`) and charts of wrenches (`wrenches`), whole tosses
+(`tosses`), all diagrams of an answer as figures
 (`figures`), what the physics returns as figures (`results`), and the command `contact-dynamics plot`
 (`arguments`, `run`).
 """
 
 from contact_dynamics.plots.contact_forces import draw_contact_forces
+from contact_dynamics.plots.draw import draw_impulse_space, draw_impulse_space_in_3d
 from contact_dynamics.plots.figures import figures_of
-from contact_dynamics.plots.impulse_space import draw_impulse_space
-from contact_dynamics.plots.impulse_space_in_3d import draw_impulse_space_in_3d
 from contact_dynamics.plots.many_states import draw_many_states
 from contact_dynamics.plots.planar_scene import draw_planar_scene
 from contact_dynamics.plots.poinsot import draw_poinsot

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from contact_dynamics.plots import colors
+from contact_dynamics.diagrams import paper as colors
 from contact_dynamics.plots.style import legend_beside, lines_through_zero
 
 if TYPE_CHECKING:

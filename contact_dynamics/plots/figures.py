@@ -8,8 +8,7 @@ from contact_dynamics.diagrams.planar_modes import dual_chart_of, map_of_answer,
 from contact_dynamics.diagrams.planar_scene import silhouette
 from contact_dynamics.diagrams.shape import drawn_shape
 from contact_dynamics.plots.contact_forces import draw_contact_forces
-from contact_dynamics.plots.impulse_space import draw_impulse_space
-from contact_dynamics.plots.impulse_space_in_3d import draw_impulse_space_in_3d
+from contact_dynamics.plots.draw import draw_impulse_space, draw_impulse_space_in_3d
 from contact_dynamics.plots.many_states import draw_many_states
 from contact_dynamics.plots.planar_scene import draw_planar_scene
 from contact_dynamics.plots.poinsot import draw_poinsot

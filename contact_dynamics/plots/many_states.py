@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from contact_dynamics.diagrams import paper as colors
 from contact_dynamics.diagrams.words import OUTCOMES
 from contact_dynamics.impact import ImpactOutcome
-from contact_dynamics.plots import colors
 from contact_dynamics.plots.style import legend_beside
 from contact_dynamics.questions.many import ManyImpactsAnswer
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from contact_dynamics.plots import colors
+from contact_dynamics.diagrams import paper as colors
 from contact_dynamics.plots.style import legend_beside
 
 if TYPE_CHECKING:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Final
 
+from contact_dynamics.diagrams import paper as colors
 from contact_dynamics.diagrams.poinsot import poinsot_figure
-from contact_dynamics.plots import colors
 from contact_dynamics.rotations.one import rotation_matrix
 
 if TYPE_CHECKING:

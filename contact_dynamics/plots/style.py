@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from contact_dynamics.plots.colors import AXIS
+from contact_dynamics.diagrams.paper import AXIS
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -22,7 +22,7 @@ def legend_beside(axes: Axes, *, columns: int = 1, **options: Any) -> None:
     """
     axes.legend(
         loc="upper left",
-        bbox_to_anchor=(1.02, 1.0),
+        bbox_to_anchor=(1.12 if axes.name == "3d" else 1.02, 1.0),
         borderaxespad=0.0,
         frameon=False,
         fontsize="small",

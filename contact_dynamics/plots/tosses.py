@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from contact_dynamics.diagrams import paper as colors
 from contact_dynamics.diagrams.toss_tree import fan_of, rest_in_words, tree_of
-from contact_dynamics.plots import colors
 from contact_dynamics.plots.style import legend_beside
 from contact_dynamics.rotations.one import rotation_matrix
 from contact_dynamics.toss import Toss, TossEventKind

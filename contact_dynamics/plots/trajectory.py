@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from contact_dynamics.diagrams import paper as colors
 from contact_dynamics.diagrams.trajectory_curves import angular_momenta_of, energies_of, momenta_of
-from contact_dynamics.plots import colors
 from contact_dynamics.plots.style import legend_beside
 
 if TYPE_CHECKING:

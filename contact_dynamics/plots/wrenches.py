@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from contact_dynamics.diagrams import paper as colors
 from contact_dynamics.diagrams.force_dual import force_dual_of
 from contact_dynamics.diagrams.mode_map import (
     NO_MODE,
@@ -30,7 +31,6 @@ from contact_dynamics.diagrams.wrench_chart import (
     part_centre,
     picture_size,
 )
-from contact_dynamics.plots import colors
 from contact_dynamics.plots.style import legend_beside
 
 if TYPE_CHECKING:

@@ -3,9 +3,9 @@
 It draws the answers of `contact_dynamics.questions` and their parts. They may come from a question asked in
 Python, from a live server, or from its log.
 
-In reading order: the colours (`palette`) and what they mean in words (`legend`), names of what is drawn
-(`entities`), bodies and surfaces (`scene`), what was measured (`measured`), the three kinds of answers
-(`trajectory`, `impact` with its `impulse_space`, `contact_modes`), lecture 25's picture of rotations
+In reading order: how diagrams are drawn (`drawing`), what colours mean in words (`legend`), names of what is
+drawn (`entities`), bodies and surfaces (`scene`), what was measured (`measured`), the three kinds of answers
+(`trajectory`, `impact`, `contact_modes`), lecture 25's picture of rotations
 (`poinsot`), lecture 26's of modes and wrenches (`planar_scene`, `planar_modes`, `mode_map`, `force_dual`),
 the arrangement of the views and where they look (`blueprint`), all of it together (`picture`), and
 where it goes (`sinks`): files (`rrd_files`), a viewer that is drawn to (`live_viewer`) or started

@@ -13,7 +13,7 @@ import numpy as np
 import rerun as rr
 
 from contact_dynamics.constants import to_ns
-from contact_dynamics.viewing import palette
+from contact_dynamics.diagrams import palette
 from contact_dynamics.viewing.entities import SPEED, entity, impact_entity
 from contact_dynamics.viewing.impact import ARROW_WIDTH, velocity_arrows, velocity_labels
 from contact_dynamics.viewing.measured import set_time, time_column

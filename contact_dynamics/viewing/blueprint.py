@@ -8,8 +8,10 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 import rerun.blueprint as rrb
 
+from contact_dynamics.diagrams import palette
 from contact_dynamics.numerics.vectors import tangents_near_x
-from contact_dynamics.viewing import contact_modes, palette
+from contact_dynamics.viewing import contact_modes
+from contact_dynamics.viewing.drawing import EYE, TARGET
 from contact_dynamics.viewing.entities import (
     ANGULAR_MOMENTUM,
     ANGULAR_VELOCITY,
@@ -280,8 +282,8 @@ def impulse_space_in_3d_view() -> rrb.Spatial3DView:
         line_grid=False,
         eye_controls=rrb.EyeControls3D(
             kind=rrb.Eye3DKind.Orbital,
-            position=(0.65, -1.4, 0.95),  # all that is 1 high fits, and its words if the view is wide
-            look_target=(0.15, 0.0, 0.5),
+            position=EYE,
+            look_target=TARGET,
             eye_up=(0, 0, 1),
         ),
     )

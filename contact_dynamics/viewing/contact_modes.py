@@ -12,9 +12,9 @@ import numpy as np
 import rerun as rr
 
 from contact_dynamics.contact_modes.spatial.applied_wrench import applied_wrench
+from contact_dynamics.diagrams import palette
 from contact_dynamics.diagrams.words import contacts_in_words
 from contact_dynamics.questions.planar_view import beyond, sliding_directions
-from contact_dynamics.viewing import palette
 from contact_dynamics.viewing.entities import contacts_entity
 from contact_dynamics.viewing.impact import friction_cones
 from contact_dynamics.viewing.strips import strips_3d

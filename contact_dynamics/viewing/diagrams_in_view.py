@@ -6,7 +6,9 @@ from typing import TYPE_CHECKING
 
 import rerun as rr
 
+from contact_dynamics.diagrams.impulse_space import impulse_space, impulse_space_in_3d
 from contact_dynamics.diagrams.planar_modes import applied_of
+from contact_dynamics.viewing.drawing import draw_diagram
 from contact_dynamics.viewing.entities import (
     FORCE_DUAL,
     IMPULSE_SPACE,
@@ -14,8 +16,6 @@ from contact_dynamics.viewing.entities import (
     MODE_MAP,
     PLANAR_MODES,
 )
-from contact_dynamics.viewing.impulse_space import draw_impulse_space
-from contact_dynamics.viewing.impulse_space_in_3d import draw_impulse_space_in_3d
 from contact_dynamics.viewing.planar_dual import draw_planar_dual
 from contact_dynamics.viewing.planar_modes import draw_planar_map, draw_planar_modes
 
@@ -51,10 +51,11 @@ class DiagramsInView:
         """
         if len(answer.impact.path_W) == 0:
             return []
-        draw_impulse_space(self._recording, body, answer, other=other)
+        draw_diagram(self._recording, impulse_space(body, answer, other=other), IMPULSE_SPACE)
         if answer.plane is None:
             self._in_3d = True
-            draw_impulse_space_in_3d(self._recording, body, answer, other=other)
+            in_3d = impulse_space_in_3d(body, answer, other=other)
+            draw_diagram(self._recording, in_3d, IMPULSE_SPACE_IN_3D)
             return [IMPULSE_SPACE, IMPULSE_SPACE_IN_3D]
         if self._in_3d:  # that of an impact before
             self._in_3d = False

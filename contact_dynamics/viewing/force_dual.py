@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 import rerun as rr
 
+from contact_dynamics.diagrams import palette
 from contact_dynamics.diagrams.force_dual import force_dual_of
-from contact_dynamics.viewing import palette
 from contact_dynamics.viewing.entities import FORCE_DUAL
 from contact_dynamics.viewing.mode_map import draw_frame
 from contact_dynamics.viewing.strips import strips_2d

@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 import rerun as rr
 
+from contact_dynamics.diagrams import palette
 from contact_dynamics.numerics.vectors import tangents_near_x
-from contact_dynamics.viewing import palette
 from contact_dynamics.viewing.entities import impact_entity
 from contact_dynamics.viewing.strips import strips_3d
 from contact_dynamics.viewing.trajectory import outline

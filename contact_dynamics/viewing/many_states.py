@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 import rerun as rr
 
+from contact_dynamics.diagrams import palette
 from contact_dynamics.questions.many import ManyImpactsAnswer
-from contact_dynamics.viewing import palette
 from contact_dynamics.viewing.entities import many_entity
 from contact_dynamics.viewing.strips import strips_3d
 from contact_dynamics.viewing.trajectory import outline

@@ -12,13 +12,13 @@ import numpy as np
 import rerun as rr
 
 from contact_dynamics.constants import seconds_since
+from contact_dynamics.diagrams import palette
 from contact_dynamics.diagrams.trajectory_curves import (
     angular_momenta_of,
     energies_of,
     momenta_of,
     trajectory_of,
 )
-from contact_dynamics.viewing import palette
 from contact_dynamics.viewing.columns import pose_columns, scalar_columns, strip_columns
 from contact_dynamics.viewing.entities import (
     ANGULAR_MOMENTUM,

@@ -12,6 +12,7 @@ import numpy as np
 import rerun as rr
 import rerun.blueprint as rrb
 
+from contact_dynamics.diagrams import palette
 from contact_dynamics.diagrams.mode_map import (
     NO_MODE,
     borders_of,
@@ -24,7 +25,6 @@ from contact_dynamics.diagrams.mode_map import (
     widest_places,
 )
 from contact_dynamics.diagrams.wrench_chart import gap, picture_size
-from contact_dynamics.viewing import palette
 from contact_dynamics.viewing.entities import MODE_MAP
 from contact_dynamics.viewing.strips import strips_2d
 from contact_dynamics.viewing.words import room_2d, words_2d

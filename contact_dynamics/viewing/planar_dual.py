@@ -12,10 +12,10 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 import rerun as rr
 
+from contact_dynamics.diagrams import palette
 from contact_dynamics.diagrams.mode_map import LIVE_RESOLUTION
 from contact_dynamics.diagrams.planar_modes import dual_chart_of, modes_side_by_side
 from contact_dynamics.diagrams.wrench_chart import HIDDEN, ForceDualChart, picture_size
-from contact_dynamics.viewing import palette
 from contact_dynamics.viewing.entities import FORCE_DUAL
 from contact_dynamics.viewing.force_dual import draw_force_dual
 from contact_dynamics.viewing.mode_map import color_of_modes

@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 import rerun as rr
 
+from contact_dynamics.diagrams import palette
 from contact_dynamics.diagrams.mode_map import look_alike
 from contact_dynamics.diagrams.planar_modes import map_of_answer, modes_side_by_side
 from contact_dynamics.diagrams.wrench_chart import DirectionChart
-from contact_dynamics.viewing import palette
 from contact_dynamics.viewing.contact_modes import MAX_MODES
 from contact_dynamics.viewing.entities import MODE_MAP, PLANAR_MODES
 from contact_dynamics.viewing.mode_map import draw_applied, draw_mode_map

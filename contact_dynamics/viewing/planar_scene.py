@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 import rerun as rr
 
+from contact_dynamics.diagrams import palette
 from contact_dynamics.diagrams.planar_scene import planar_scene_of
-from contact_dynamics.viewing import palette
 from contact_dynamics.viewing.entities import PLANAR_SCENE
 from contact_dynamics.viewing.strips import strips_2d
 from contact_dynamics.viewing.words import words_2d

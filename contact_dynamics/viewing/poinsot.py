@@ -17,9 +17,9 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 import rerun as rr
 
+from contact_dynamics.diagrams import palette
 from contact_dynamics.diagrams.poinsot import poinsot_figure
 from contact_dynamics.rotations.one import rotation_matrix
-from contact_dynamics.viewing import palette
 from contact_dynamics.viewing.entities import POINSOT_WORDS, poinsot_entity
 from contact_dynamics.viewing.measured import set_time, time_column
 from contact_dynamics.viewing.strips import strips_3d

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 import rerun as rr
 
-from contact_dynamics.diagrams.shape import convex_shape
+from contact_dynamics.diagrams import palette
+from contact_dynamics.diagrams.shape import convex_shape, part_above
 from contact_dynamics.numerics.vectors import tangents_near_x
-from contact_dynamics.viewing import palette
 from contact_dynamics.viewing.entities import SCENE, SURFACES, entity, trail_entity
 from contact_dynamics.viewing.strips import strips_3d
 
@@ -82,15 +82,7 @@ def surface_parts(
 def _clipped(corners_W: FloatArray, others: Sequence[Surface]) -> FloatArray:
     """Return the corners of the part of a convex polygon or line, (n, 3), m, that is above other surfaces."""
     for other in others:
-        gaps = other.gaps(corners_W).tolist()
-        kept = []
-        for i, gap in enumerate(gaps):
-            before = gaps[i - 1]
-            if (gap < 0.0) != (before < 0.0):
-                kept.append(corners_W[i] + gap / (gap - before) * (corners_W[i - 1] - corners_W[i]))
-            if gap >= 0.0:
-                kept.append(corners_W[i])
-        corners_W = np.reshape(kept, (-1, 3))
+        corners_W = part_above(corners_W, other.gaps(corners_W))
     return corners_W
 
 

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 import rerun.blueprint as rrb
 
+from contact_dynamics.diagrams import palette
 from contact_dynamics.numerics.vectors import tangents_near_x
 from contact_dynamics.records import Record
-from contact_dynamics.viewing import palette
 
 if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray

@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 import rerun as rr
 
+from contact_dynamics.diagrams import palette
 from contact_dynamics.diagrams.toss_tree import fan_of, rest_in_words, tree_of
 from contact_dynamics.toss import TossEnd, TossEventKind
-from contact_dynamics.viewing import palette
 from contact_dynamics.viewing.entities import toss_entity
 from contact_dynamics.viewing.scene import solid
 from contact_dynamics.viewing.strips import strips_3d

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 import rerun as rr
 
+from contact_dynamics.diagrams import palette
 from contact_dynamics.rotations.one import rotation_matrix
-from contact_dynamics.viewing import palette
 from contact_dynamics.viewing.entities import predicted_entity
 from contact_dynamics.viewing.scene import solid
 from contact_dynamics.viewing.strips import strips_3d

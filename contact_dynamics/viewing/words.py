@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 import rerun as rr
 
-from contact_dynamics.viewing import palette
+from contact_dynamics.diagrams import palette
 from contact_dynamics.viewing.strips import strips_2d
 
 if TYPE_CHECKING:

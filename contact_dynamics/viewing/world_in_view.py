@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from contact_dynamics.diagrams import palette
 from contact_dynamics.diagrams.shape import Shape, drawn_shape
 from contact_dynamics.shapes.convex import NO_SHAPE
-from contact_dynamics.viewing import palette
 from contact_dynamics.viewing.after_impact import style_after_impact
 from contact_dynamics.viewing.entities import body_entity
 from contact_dynamics.viewing.measured import style_series

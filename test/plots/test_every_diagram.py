@@ -13,7 +13,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import to_rgb
 from matplotlib.text import Text
 
-from contact_dynamics.plots import colors
+from contact_dynamics.diagrams import paper as colors
 from plots.drawn_figures import DIAGRAMS, drawn
 
 TO_XYZ = np.array(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 from xml.etree import ElementTree as ET
 
 import numpy as np
@@ -15,13 +15,13 @@ from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 
 from contact_dynamics.contact_modes import PlanarContactProblem, contact_modes, mode_margins, wrench_sets
+from contact_dynamics.diagrams import paper as colors
 from contact_dynamics.diagrams.force_dual import split_generators
-from contact_dynamics.diagrams.impulse_space import EVENTS
-from contact_dynamics.diagrams.impulse_space_in_3d import impulse_space_in_3d_of
+from contact_dynamics.diagrams.impulse_space import EVENTS, impulse_space_in_3d
 from contact_dynamics.impact.law import ImpactOutcome, PathEvent
 from contact_dynamics.plane.force_dual import acceleration_centre
 from contact_dynamics.plane.types import PlanarWrench
-from contact_dynamics.plots import colors, draw_impulse_space, draw_many_states, save_figure
+from contact_dynamics.plots import draw_impulse_space, draw_many_states, save_figure
 from contact_dynamics.rigid_body.body import kinetic_energy, rotational_energy
 from plots.drawn_figures import (
     APPLIED,
@@ -78,33 +78,16 @@ def test_every_dot_of_impulse_space_lies_on_the_line_that_names_it(*, in_plane: 
     assert checked >= 1
 
 
-def test_the_path_in_three_dimensions_meets_what_bends_and_ends_it() -> None:
-    answer = impact(in_plane=False)
-    space = impulse_space_in_3d_of(ROD, answer)
-    np.testing.assert_allclose(space.path @ space.axes_W, answer.impact.path_W, atol=ROUNDING)
-    along = space.sticking[1] - space.sticking[0]
-    sticks = list(answer.impact.path_events).index(PathEvent.SLIDING_STOPS)
-    for point in space.path[sticks:]:  # it sticks from there on
-        away = np.cross(point - space.sticking[0], along) / np.linalg.norm(along)
-        assert np.linalg.norm(away) < 1e-9 * space.extent
-    normal = np.cross(
-        space.compression[1] - space.compression[0], space.compression[3] - space.compression[0]
-    )
-    ended = space.points[space.events.index(PathEvent.COMPRESSION_ENDS)]
-    assert abs(normal @ (ended - space.compression[0])) < 1e-9 * np.linalg.norm(normal)
-    slope = np.linalg.norm(space.path[1:, :2], axis=1) / space.path[1:, 2]
-    assert slope.max() <= 0.6 * (1.0 + 1e-9)  # inside the cone, and on it while it slides
-    for strip in space.cone[:4]:
-        np.testing.assert_allclose(np.linalg.norm(strip[:, :2], axis=1), 0.6 * strip[:, 2], rtol=ROUNDING)
+def test_the_path_in_three_dimensions_is_the_diagrams() -> None:
+    marks: dict[str, Any] = {
+        mark.name: mark for mark in impulse_space_in_3d(ROD, impact(in_plane=False)).marks
+    }
     _, axes = drawn("impulse space in 3D")
-    (line,) = (line for line in axes.lines if line.get_gid() == "path")
-    np.testing.assert_allclose(np.column_stack(line.get_data_3d()), space.path, atol=ROUNDING)
-
-
-def test_without_mass_properties_there_is_the_path_alone() -> None:
-    space = impulse_space_in_3d_of(None, impact(in_plane=False))
-    assert len(space.sticking) == len(space.compression) == 0
-    assert len(space.path) > 2
+    lines = {line.get_gid(): np.column_stack(line.get_data_3d()) for line in axes.lines}
+    np.testing.assert_array_equal(lines["path"], marks["path"].strips[0])
+    np.testing.assert_array_equal(lines["event_0"], marks["event_0"].places)
+    rings = np.array_split(lines["friction_cone"], np.flatnonzero(np.isnan(lines["friction_cone"][:, 0])))
+    np.testing.assert_array_equal(rings[0], marks["friction_cone"].strips[0])
 
 
 def test_a_projection_is_called_one() -> None:

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from contact_dynamics.contact_modes import SpatialMode
+from contact_dynamics.diagrams import palette
 from contact_dynamics.diagrams.shape import convex_shape
 from contact_dynamics.plane.projection import PlaneOfMotion
 from contact_dynamics.rigid_body.body import BodyState
-from contact_dynamics.viewing import palette
 from contact_dynamics.viewing.contact_modes import (
     LABEL_DEPTH,
     MAX_MODES,

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from contact_dynamics.contact_modes import PlanarContactProblem, PlanarWrenchSet, contact_modes, wrench_sets
+from contact_dynamics.diagrams import palette
 from contact_dynamics.diagrams.force_dual import split_generators
 from contact_dynamics.diagrams.mode_map import (
     NO_MODE,
@@ -19,7 +20,6 @@ from contact_dynamics.diagrams.mode_map import (
 from contact_dynamics.diagrams.wrench_chart import DirectionChart, ForceChart, ForceDualChart, WrenchChart
 from contact_dynamics.plane.force_dual import acceleration_centre
 from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
-from contact_dynamics.viewing import palette
 from contact_dynamics.viewing.force_dual import draw_force_dual
 from contact_dynamics.viewing.mode_map import color_of_modes, draw_mode_map
 

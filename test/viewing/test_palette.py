@@ -8,8 +8,8 @@ import pytest
 
 pytest.importorskip("matplotlib", reason="matplotlib of requirements/test.txt is not installed")
 
-from contact_dynamics.viewing import palette
-from contact_dynamics.viewing.palette import LEAST_DIFFERENCE, Color
+from contact_dynamics.diagrams import palette
+from contact_dynamics.diagrams.palette import LEAST_DIFFERENCE, Color
 from plots.test_every_diagram import difference
 
 MEANINGS = {

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from contact_dynamics.diagrams import palette
 from contact_dynamics.diagrams.shape import convex_shape
 from contact_dynamics.motion.covariance import CarriedCovariance, PropagationMethod, orientation_deviations
 from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.tumbling import free_motion
-from contact_dynamics.viewing import palette
 from contact_dynamics.viewing.trajectory import (
     DEVIATIONS,
     MAX_OUTLINES,

@@ -10,12 +10,12 @@ from __future__ import annotations
 
 import colorsys
 from functools import cache
-from typing import Final, TypeAlias
+from typing import Final, NamedTuple, TypeAlias
 
 Color: TypeAlias = tuple[int, int, int, int]
 
 LEAST_DIFFERENCE: Final = 20.0
-"""Difference of two colours, CIE 1976 ΔE*ab, as in `plots.colors`."""
+"""Difference of two colours, CIE 1976 ΔE*ab, as in `paper`."""
 
 WORD_CONTRAST: Final = 7.0
 """Least contrast of a word with the background, as WCAG 2.2 asks for at its level AAA."""
@@ -150,3 +150,15 @@ def mode_color(mode: str, index: int) -> Color:
     lightness = 0.48 + 0.1 * (index % 3)
     red, green, blue = colorsys.hls_to_rgb(hue, lightness, 0.55)
     return (round(255 * red), round(255 * green), round(255 * blue), 255)
+
+
+class Paint(NamedTuple):
+    """A colour with one meaning.
+
+    Attributes:
+        dark: On the dark background of the viewer.
+        paper: On paper, as Matplotlib writes it.
+    """
+
+    dark: Color
+    paper: str

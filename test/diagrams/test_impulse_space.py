@@ -1,43 +1,42 @@
-"""The sliding rod of lecture 27 (worked number 4), drawn in impulse space."""
+"""The sliding rod of lecture 27 (worked number 4) and impacts in space, in impulse space."""
 
 from __future__ import annotations
 
 import math
-import tempfile
 from dataclasses import replace
-from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
-import rerun as rr
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from contact_dynamics.contact.contact import Contact, ContactSet
-from contact_dynamics.diagrams.impulse_space import Line, contact_axes, line_in_box, main_contact
+from contact_dynamics.diagrams.impulse_space import (
+    contact_axes,
+    impulse_space,
+    impulse_space_in_3d,
+    main_contact,
+    part_in_box,
+)
 from contact_dynamics.impact.law import ImpactOutcome, PathEvent
 from contact_dynamics.impact.several.orders import several_impact
 from contact_dynamics.impact.spatial.one_contact import spatial_impact, spatial_pair_impact
 from contact_dynamics.plane.projection import PlaneOfMotion
-from contact_dynamics.questions import ImpactAnswer, StruckBody
+from contact_dynamics.questions import ImpactAnswer, ImpactQuestion, StruckBody, ask
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
-from contact_dynamics.viewing.impulse_space import draw_impulse_space
-from contact_dynamics.viewing.measured import set_time
+from contact_dynamics.world import Body
 from viewing.answers import impact_answer, of_two
-from viewing.drawn import STAMP_NS, read_drawn
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
+    from contact_dynamics.diagrams.marks import Diagram
     from contact_dynamics.impact import SpatialImpact
-    from viewing.drawn import Drawn
 
 MU = math.tan(math.radians(30.0))
 STICKS = (MU * 0.1719704, 0.1719704)
 COMPRESSED = (1.0 / 9.0, 2.0 / 9.0)
 ENDS = (0.1372549, 0.3333333)
-DIGITS = 1e-6  # the lecture's numbers have seven, the picture is float32
+DIGITS = 1e-6  # the lecture's numbers have seven
 
 # Seen from -y, the plane of motion has x to the right and z up.
 PLANE = PlaneOfMotion(normal_W=np.array([0.0, -1.0, 0.0]))
@@ -85,31 +84,34 @@ def of_one(answer: ImpactAnswer, impact: SpatialImpact) -> ImpactAnswer:
     return replace(answer, impact=resolved)
 
 
-def on_paper(points: object) -> np.ndarray:
-    """Points as the lecture draws them: rerun's 2D views have the second coordinate downwards."""
-    return np.array(points, dtype=np.float64) * (1.0, -1.0)
+def marks_of(diagram: Diagram) -> dict[str, Any]:
+    """The marks by their names."""
+    return {mark.name: mark for mark in diagram.marks}
+
+
+def events_of(diagram: Diagram) -> list[tuple[str, np.ndarray]]:
+    """The words and the place of each event."""
+    events = [mark for name, mark in marks_of(diagram).items() if name.startswith("event_")]
+    return [(mark.legend, mark.places[0]) for mark in events]
 
 
 @pytest.mark.parametrize("in_plane", [True, False])
-def test_the_lines_pass_through_the_lectures_points(
-    recording: rr.RecordingStream, read: Callable[[], Drawn], *, in_plane: bool
-) -> None:
-    draw_impulse_space(recording, ROD, sliding_rod(in_plane=in_plane))
-    drawn = read()
-    path = on_paper(drawn.last("/impulse_space/path", "LineStrips2D:strips")[0])
+def test_the_lines_pass_through_the_lectures_points(*, in_plane: bool) -> None:
+    diagram = impulse_space(ROD, sliding_rod(in_plane=in_plane))
+    marks = marks_of(diagram)
+    (path,) = marks["path"].strips
     np.testing.assert_allclose(path, [(0.0, 0.0), STICKS, COMPRESSED, ENDS], atol=DIGITS)
-    (sticking,) = on_paper(drawn.last(r"/impulse_space/sticking\ line", "LineStrips2D:strips"))
-    (compression,) = on_paper(drawn.last(r"/impulse_space/compression\ line", "LineStrips2D:strips"))
+    (sticking,), (compression,) = marks["sticking_line"].strips, marks["compression_line"].strips
     for point in (STICKS, COMPRESSED, ENDS):  # it sticks until the end
         assert distance(point, sticking) < DIGITS
     assert distance(COMPRESSED, compression) < DIGITS
     assert distance(ENDS, compression) > 0.01
-    labels = drawn.last(r"/impulse_space/event\ labels", "LineStrips2D:labels")
-    assert labels == [
-        "sliding stops: 0.0993, 0.172",
-        "compression ends: 0.111, 0.222",
-        "restitution ends: 0.137, 0.333",
+    assert [words for words, _ in events_of(diagram)] == [
+        "sliding stops:\n(0.0993, 0.172) N s",
+        "compression ends:\n(0.111, 0.222) N s",
+        "restitution ends:\n(0.137, 0.333) N s",
     ]
+    assert ("projected" in marks["sticking_line"].legend) != in_plane
 
 
 def distance(point: tuple[float, float], line: np.ndarray) -> float:
@@ -132,7 +134,6 @@ def test_every_dot_of_a_path_that_swerves_lies_on_the_line_that_names_it(
     friction: float,
     restitution: float,
 ) -> None:
-    """In a file of each example's own, read back."""
     body = MassProperties(mass=1.3, I_B=np.diag([0.2, 0.5, 0.6]))
     state = replace(
         sliding_rod().state, p_WB_W=-np.array(arm), v_WB_W=np.array(velocity), w_WB_W=np.array(spin)
@@ -145,24 +146,13 @@ def test_every_dot_of_a_path_that_swerves_lies_on_the_line_that_names_it(
 
 
 def check_dots(body: MassProperties, answer: ImpactAnswer) -> None:
-    """Each dot lies on the line that names it, within a thousandth of the picture's width."""
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "drawn.rrd"
-        stream = rr.RecordingStream("test")
-        stream.save(path)
-        set_time(stream, STAMP_NS)
-        draw_impulse_space(stream, body, answer)
-        stream.disconnect()
-        drawn = read_drawn(path)
-    extent = np.abs(drawn.last("/impulse_space/axes", "LineStrips2D:strips")[0]).max()
-    dots = on_paper(drawn.last("/impulse_space/events", "Points2D:positions")).reshape(-1, 2)
-    labels = drawn.last(r"/impulse_space/event\ labels", "LineStrips2D:labels")
-    for dot, label in zip(dots, labels, strict=True):
-        for words, name in (("compression ends", "compression"), ("sliding stops", "sticking")):
-            if label.startswith(words):
-                lines = drawn.last(rf"/impulse_space/{name}\ line", "LineStrips2D:strips")
-                distances = [distance(tuple(dot), on_paper(line)) for line in lines]
-                assert min(distances) < 1e-3 * extent, label
+    """Each dot lies on the line that names it, within a millionth of the diagram."""
+    diagram = impulse_space(body, answer)
+    for words, dot in events_of(diagram):
+        for begin, name in (("compression ends", "compression_line"), ("sliding stops", "sticking_line")):
+            if words.startswith(begin):
+                distances = [distance(tuple(dot), line) for line in marks_of(diagram)[name].strips]
+                assert min(distances) < 1e-6 * diagram.axes[1].high, words
 
 
 def test_a_contact_that_strikes_after_another_has_its_dots_on_its_lines() -> None:
@@ -195,18 +185,16 @@ def test_a_contact_that_strikes_after_another_has_its_dots_on_its_lines() -> Non
     check_dots(body, answer)
 
 
-def test_without_mass_properties_the_lines_are_left_out(
-    recording: rr.RecordingStream, read: Callable[[], Drawn]
-) -> None:
-    draw_impulse_space(recording, None, sliding_rod())
-    drawn = read()
-    assert drawn.last(r"/impulse_space/sticking\ line", "LineStrips2D:strips") == []
-    assert len(drawn.last("/impulse_space/path", "LineStrips2D:strips")) == 1
+def test_without_mass_properties_the_lines_are_left_out() -> None:
+    struck = StruckBody(name="", p_FB_F=np.zeros(3), state=sliding_rod().state)
+    of_both = of_two(sliding_rod(), struck, other_after=sliding_rod().state)
+    for body, answer in ((None, sliding_rod()), (ROD, of_both)):
+        assert set(marks_of(impulse_space(body, answer))) & {"path", "sticking_line"} == {"path"}
+    in_space = marks_of(impulse_space_in_3d(None, in_space_answer()))
+    assert set(in_space) == {"friction_cone", "path", "event_0", "event_1", "event_2"}
 
 
-def test_between_two_bodies_the_lines_are_those_of_their_relative_motion(
-    recording: rr.RecordingStream, read: Callable[[], Drawn]
-) -> None:
+def test_between_two_bodies_the_lines_are_those_of_their_relative_motion() -> None:
     """Where the bodies stick while they are pressed, the path's corners lie on the lines, as for one body."""
     rod = sliding_rod()
     bat = MassProperties(mass=3.0, I_B=2.0 * np.eye(3))
@@ -227,10 +215,8 @@ def test_between_two_bodies_the_lines_are_those_of_their_relative_motion(
     struck = StruckBody(name="bat", p_FB_F=np.zeros(3), state=bat_state)
     sticking_rod = replace(rod, contacts=replace(rod.contacts, frictions=np.array([2.0])))
     answer = of_two(of_one(sticking_rod, impact), struck, other_after=bat_state)
-    draw_impulse_space(recording, ROD, answer, other=bat)
-    drawn = read()
-    (sticking,) = on_paper(drawn.last(r"/impulse_space/sticking\ line", "LineStrips2D:strips"))
-    (compression,) = on_paper(drawn.last(r"/impulse_space/compression\ line", "LineStrips2D:strips"))
+    marks = marks_of(impulse_space(ROD, answer, other=bat))
+    (sticking,), (compression,) = marks["sticking_line"].strips, marks["compression_line"].strips
     compressed, ends = ((x, z) for x, _, z in (impact.compression_W.tolist(), impact.impulse_W.tolist()))
     assert distance(compressed, sticking) < DIGITS
     assert distance(compressed, compression) < DIGITS
@@ -238,17 +224,9 @@ def test_between_two_bodies_the_lines_are_those_of_their_relative_motion(
     assert distance(ends, compression) > 0.1
 
 
-def test_without_the_struck_bodys_mass_the_lines_are_left_out(
-    recording: rr.RecordingStream, read: Callable[[], Drawn]
-) -> None:
-    rod = sliding_rod()
-    other = StruckBody(name="", p_FB_F=np.zeros(3), state=rod.state)
-    draw_impulse_space(recording, ROD, of_two(rod, other, other_after=rod.state))
-    assert read().last(r"/impulse_space/sticking\ line", "LineStrips2D:strips") == []
-
-
 def test_right_is_right_seen_against_the_planes_normal() -> None:
-    np.testing.assert_allclose(contact_axes(sliding_rod(), 0), [[1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
+    axes_W = contact_axes(sliding_rod(), 0)
+    np.testing.assert_allclose(axes_W, [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
 
 
 def test_in_space_right_is_where_friction_pushes() -> None:
@@ -256,48 +234,68 @@ def test_in_space_right_is_where_friction_pushes() -> None:
 
 
 @given(
-    normal=st.tuples(st.floats(-10.0, 10.0), st.floats(-10.0, 10.0)).filter(lambda n: math.hypot(*n) > 1e-3),
-    offset=st.floats(-20.0, 20.0),
-    extent=st.floats(1e-3, 1e3),
+    dimensions=st.sampled_from([2, 3]),
+    numbers=st.lists(st.floats(-10.0, 10.0), min_size=12, max_size=12),
+    sizes=st.lists(st.floats(1e-3, 1e3), min_size=3, max_size=3),
 )
-def test_what_is_drawn_of_a_line_is_all_that_lies_in_the_picture(
-    normal: tuple[float, float], offset: float, extent: float
+def test_what_is_drawn_of_a_line_is_all_that_lies_in_the_diagram(
+    dimensions: int, numbers: list[float], sizes: list[float]
 ) -> None:
-    line = Line(np.array(normal), offset)
-    found = line_in_box(line, extent)
-    scale = abs(offset) + extent * math.hypot(*normal)
-    for end in found.reshape(-1, 2):
-        assert abs(line.normal @ end + offset) <= 1e-9 * scale
-        assert np.abs(end).max() <= extent * (1.0 + 1e-9)
-        at_border = np.isclose(np.abs(end), extent, rtol=1e-9).any() or end[1] <= 0.0
-        assert at_border
-    corners = np.array([(x, y) for x in (-extent, extent) for y in (0.0, extent)])
-    sides = corners @ line.normal + offset
-    if sides.min() < -1e-9 * scale and sides.max() > 1e-9 * scale:
-        assert len(found) == 1  # it separates corners of the part above the origin
+    start, slope, low = np.reshape(numbers[:9], (3, 3))[:, :dimensions]
+    high = low + sizes[:dimensions]
+    assume(np.abs(slope).max() > 1e-3)
+    found = part_in_box(start, slope, low, high)
+    slack = 1e-9 * np.abs([low, high]).max()
+    if len(found) > 0:
+        assert np.all((found >= low - slack) & (found <= high + slack))
+        beyond = np.array([found[0] - 1e-3 * (found[1] - found[0]), found[1] + 1e-3 * (found[1] - found[0])])
+        assert not np.all((beyond > low + slack) & (beyond < high - slack), axis=1).any()
+    else:
+        places = start + np.linspace(-1e4, 1e4, 1001)[:, None] * slope
+        assert not np.all((places > low + slack) & (places < high - slack), axis=1).any()
 
 
-def test_a_line_of_no_direction_is_not_drawn() -> None:
-    assert len(line_in_box(Line(np.zeros(2), 1.0), 1.0)) == 0
+def in_space_answer() -> ImpactAnswer:
+    """A rod that strikes the ground, whose path swerves."""
+    falling = BodyState(p_WB_W=[0, 0, 0], q_WB=[0, 0, 0, 1], v_WB_W=[-1, 0.4, -1], w_WB_W=[0, 0, 0])
+    ground = ContactSet(p_WC_W=[ARM], normals_W=[0, 0, 1], frictions=FRICTION, restitutions=0.5)
+    return ask(ImpactQuestion(body=THIN_ROD, state=falling, contacts=ground))
 
 
-def test_words_stand_beside_the_lines_and_apart_and_the_axes_have_names(
-    recording: rr.RecordingStream, read: Callable[[], Drawn]
-) -> None:
-    body, answer = MassProperties(mass=1.0, I_B=np.eye(3)), sliding_rod()
-    draw_impulse_space(recording, body, answer)
-    drawn = read()
-    (right, _) = drawn.last("/impulse_space/axes", "LineStrips2D:strips")[0]
-    extent = abs(right[0])
-    for name in (r"event\ labels", "names"):
-        places = on_paper([strip[0] for strip in drawn.last(f"/impulse_space/{name}", "LineStrips2D:strips")])
-        assert (np.abs(places[:, 0]) > 1.2 * extent).all()
-        # A word is 20 points high, and a picture in a grid of two columns has 125 from its lower axis up.
-        assert (np.diff(np.sort(places[:, 1])) > 0.16 * extent).all()
-    axes = drawn.last(r"/impulse_space/axis\ names", "LineStrips2D:labels")
-    assert axes == ["tangential impulse, N s", "normal impulse, N s"]
-    name_of_axis = on_paper(drawn.last(r"/impulse_space/axis\ names", "LineStrips2D:strips")[0])[0]
-    labels = on_paper(
-        [strip[0] for strip in drawn.last(r"/impulse_space/event\ labels", "LineStrips2D:strips")]
-    )
-    assert (name_of_axis[0] * labels[:, 0] < 0.0).all()  # low labels would cover it
+THIN_ROD = Body(name="rod", mass_properties=MassProperties(mass=1.0, I_B=np.diag([0.2, 0.5, 0.6])))
+ARM = np.array([0.3, 0.2, -0.9])
+FRICTION = 0.6
+
+
+def velocity_after(answer: ImpactAnswer, impulse_W: np.ndarray) -> np.ndarray:
+    """The velocity of the contact after an impulse at it, from Newton's and Euler's laws."""
+    known = THIN_ROD.mass_properties
+    v = answer.state.v_WB_W + impulse_W / known.mass
+    w = np.linalg.solve(known.I_B, np.cross(ARM, impulse_W))
+    return v + np.cross(w, ARM)
+
+
+def test_in_space_path_dots_lines_and_plane_are_what_they_are_named() -> None:
+    answer = in_space_answer()
+    along = answer.impact.impulses_W[0] * (1.0, 1.0, 0.0)
+    along /= np.linalg.norm(along)
+    axes_W = np.array([along, np.cross([0.0, 0.0, 1.0], along), [0.0, 0.0, 1.0]])
+    diagram = impulse_space_in_3d(THIN_ROD, answer)
+    marks, top = marks_of(diagram), diagram.axes[2].high
+    slack = 1e-9  # m/s, of impulses of 1 N s on 1 kg
+    np.testing.assert_allclose(marks["path"].strips[0] @ axes_W, answer.impact.path_W, atol=slack)
+    happened = {words.partition(":")[0]: dot @ axes_W for words, dot in events_of(diagram)}
+    assert set(happened) == {"sliding stops", "compression ends", "restitution ends"}
+    assert np.abs(velocity_after(answer, happened["sliding stops"])[:2]).max() < slack
+    assert abs(velocity_after(answer, happened["compression ends"])[2]) < slack
+    for end in marks["sticking_line"].strips[0] @ axes_W:
+        assert np.abs(velocity_after(answer, end)[:2]).max() < slack
+    for corner in marks["compression_plane"].corners @ axes_W:
+        assert abs(velocity_after(answer, corner)[2]) < slack
+        assert -slack <= corner[2] <= top + slack
+    for ring in marks["friction_cone"].strips[:4]:
+        t1, t2, n = ring.T
+        np.testing.assert_allclose(np.hypot(t1, t2), FRICTION * n, rtol=slack)
+    words, dot = events_of(diagram)[-1]
+    numbers = [float(x) for x in words.partition("(")[2].partition(")")[0].split(",")]
+    np.testing.assert_allclose(numbers, dot, atol=2e-3)

@@ -1,0 +1,205 @@
+"""Diagrams as plain data: marks (lines, points, arrows, faces, labels, ellipsoids, regions) between axes.
+
+A diagram is computed once. `viewing.drawing` draws it in rerun and `plots.drawing` with Matplotlib, and
+neither computes geometry. Places are rows with two or three coordinates, the second or third upwards.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final, NamedTuple, TypeAlias
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from contact_dynamics.diagrams.palette import Paint
+    from contact_dynamics.validation import FloatArray
+
+Strips: TypeAlias = Sequence["FloatArray"]
+Triangles: TypeAlias = "NDArray[np.int64]"
+
+NO_PLACES: Final = np.zeros((0, 2))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Mark:
+    """The base of all marks.
+
+    Attributes:
+        name: The name of the mark: an entity in rerun, an id in SVG.
+        paint: The colour, in the viewer and on paper.
+        opacity: Its opacity, 0 to 1.
+        legend: What the mark means, for the legend, or an empty string. In the viewer, that of points stands
+            beside them.
+        on_paper: Whether Matplotlib draws it.
+        in_viewer: Whether rerun draws it.
+    """
+
+    name: str
+    paint: Paint
+    opacity: float = 1.0
+    legend: str = ""
+    on_paper: bool = True
+    in_viewer: bool = True
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Lines(Mark):
+    """Line strips.
+
+    Attributes:
+        strips: (k, d) each.
+        width: Points of the screen or of paper.
+        dash: The style, as Matplotlib writes it. The viewer draws solid lines.
+    """
+
+    strips: Strips
+    width: float = 1.2
+    dash: str = "-"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Points(Mark):
+    """Points with a label each.
+
+    Attributes:
+        places: (n, d).
+        size: The diameter, in points of the screen or of paper.
+        radius: The radius in the units of the diagram, which replaces the size in the viewer if it is not 0.
+        marker: The form, as Matplotlib writes it.
+        hollow: Whether paper shows through.
+        labels: (n,), or none.
+        label_all: Whether all labels are shown. Otherwise, the viewer shows the one under the mouse.
+    """
+
+    places: FloatArray
+    size: float = 8.0
+    radius: float = 0.0
+    marker: str = "o"
+    hollow: bool = False
+    labels: Sequence[str] = ()
+    label_all: bool = False
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Arrows(Mark):
+    """Arrows with a label each.
+
+    Attributes:
+        origins: (n, d).
+        vectors: (n, d).
+        width: Points of the screen.
+        radius: The radius in the units of the diagram, which replaces the width in the viewer if it is not 0.
+        labels: (n,), or none.
+        label_all: Whether all labels are shown. Otherwise, the viewer shows the one under the mouse.
+    """
+
+    origins: FloatArray
+    vectors: FloatArray
+    width: float = 2.0
+    radius: float = 0.0
+    labels: Sequence[str] = ()
+    label_all: bool = False
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Faces(Mark):
+    """Triangles. The viewer draws them in three dimensions only.
+
+    Attributes:
+        corners: (n, d).
+        triangles: (m, 3), indices into the corners. By default, the corners are those of a convex polygon.
+        normals: (n, d), unit, or none.
+    """
+
+    corners: FloatArray
+    triangles: Triangles | None = None
+    normals: FloatArray | None = None
+
+    @property
+    def fan(self) -> Triangles:
+        """The triangles, (m, 3)."""
+        if self.triangles is not None:
+            return self.triangles
+        return np.array([[0, i, i + 1] for i in range(1, len(self.corners) - 1)], dtype=np.int64).reshape(
+            -1, 3
+        )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Labels(Mark):
+    """Words at places.
+
+    Attributes:
+        places: (n, d), of the middle of each.
+        texts: (n,).
+    """
+
+    places: FloatArray
+    texts: Sequence[str]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Ellipsoids(Mark):
+    """Ellipsoids of uncertainty, in three dimensions.
+
+    Attributes:
+        centers: (n, 3).
+        covariances: (n, 3, 3).
+        deviations: The half axes in standard deviations, a number or (n,).
+    """
+
+    centers: FloatArray
+    covariances: FloatArray
+    deviations: FloatArray | float = 1.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Regions(Mark):
+    """Regions of a flat diagram, as a picture of one pixel for each unit, whose rows go down from the top.
+
+    Attributes:
+        classes: (h, w), indices into the paints.
+        paints: The colour of each class.
+        legends: What each class means, for the legend on paper, or an empty string.
+    """
+
+    classes: NDArray[np.integer]
+    paints: Sequence[Paint]
+    legends: Sequence[str]
+
+
+class Axis(NamedTuple):
+    """An axis.
+
+    Attributes:
+        name: The quantity with its unit.
+        low: Where it begins.
+        high: Where it ends.
+        ticks: Where it has which words, or None for round numbers.
+    """
+
+    name: str
+    low: float
+    high: float
+    ticks: tuple[tuple[float, str], ...] | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Diagram:
+    """A diagram with two or three axes.
+
+    Attributes:
+        marks: What it shows. Later marks cover earlier ones.
+        axes: Its axes: to the right and up; or to the right, back and up.
+        title: Its title.
+        is_equal: Whether all axes have one scale.
+    """
+
+    marks: Sequence[Mark]
+    axes: tuple[Axis, ...]
+    title: str = ""
+    is_equal: bool = True

@@ -1,0 +1,110 @@
+"""Draws diagrams and their marks with Matplotlib."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from contact_dynamics.diagrams.marks import Arrows, Faces, Labels, Lines, Points
+from contact_dynamics.diagrams.paper import AXIS, BLACK
+from contact_dynamics.plots.style import legend_beside
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from contact_dynamics.diagrams.marks import Diagram, Mark
+    from contact_dynamics.validation import FloatArray
+
+_ROOM: Final = 8.0  # points between the numbers of an axis in three dimensions and its name
+_TICKS: Final = 4  # numbers on each axis there, few enough not to cover each other
+_LIGHTER: Final = 0.8  # widths on paper, relative to those in the viewer
+
+
+def draw_diagram(axes: Any, diagram: Diagram, *, title: str | None = None) -> None:
+    """Draw a diagram.
+
+    Args:
+        axes: The axes to draw into. In three dimensions, ``figure.add_subplot(projection="3d")`` makes them.
+        diagram: The diagram.
+        title: Its title, which is the diagram's own by default.
+    """
+    in_space = len(diagram.axes) == 3
+    names = "xyz"[: len(diagram.axes)]
+    if not in_space:
+        for name, line in zip(names, (axes.axvline, axes.axhline), strict=True):
+            axis = diagram.axes["xy".index(name)]
+            if axis.ticks is None and axis.low < 0.0 < axis.high:
+                line(0.0, color=AXIS, linewidth=1.0, zorder=0.5)
+    draw_marks(axes, diagram.marks)
+    for name, axis in zip(names, diagram.axes, strict=True):
+        getattr(axes, f"set_{name}lim")(axis.low, axis.high)
+        getattr(axes, f"set_{name}label")(axis.name, **({"labelpad": _ROOM} if in_space else {}))
+        if axis.ticks is not None:
+            getattr(axes, f"set_{name}ticks")(
+                [x for x, _ in axis.ticks], labels=[text for _, text in axis.ticks]
+            )
+    if in_space:
+        axes.locator_params(nbins=_TICKS)
+        axes.view_init(elev=20.0, azim=-60.0)
+    if diagram.is_equal:
+        axes.set_aspect("equal")
+    axes.set_title(diagram.title if title is None else title)
+    legend_beside(axes)
+
+
+def draw_marks(axes: Any, marks: Sequence[Mark]) -> None:
+    """Draw marks, later ones above earlier ones."""
+    for i, mark in enumerate(marks):
+        if mark.on_paper:
+            common = {"zorder": 1.0 + i / len(marks), "gid": mark.name, "label": mark.legend or None}
+            _draw(axes, mark, common)
+
+
+def _draw(axes: Any, mark: Mark, common: dict[str, Any]) -> None:
+    color, options = mark.paint.paper, dict[str, Any]()
+    match mark:
+        case Lines() if len(mark.strips) > 0:
+            axes.plot(
+                *_joined(mark.strips).T,
+                color=color,
+                alpha=mark.opacity,
+                linewidth=_LIGHTER * mark.width,
+                linestyle=mark.dash,
+                **common,
+            )
+        case Points() if len(mark.places) > 0:
+            axes.plot(
+                *mark.places.T,
+                color=color,
+                linestyle="",
+                marker=mark.marker,
+                markersize=mark.size,
+                markerfacecolor="white" if mark.hollow else color,
+                markeredgecolor=color if mark.hollow else BLACK,
+                markeredgewidth=1.0 if mark.hollow else 0.6,
+                **common,
+            )
+        case Arrows() if len(mark.origins) > 0:
+            options = {"arrow_length_ratio": 0.08, "linewidth": 1.8}
+            if mark.origins.shape[1] == 2:
+                options = {"angles": "xy", "scale_units": "xy", "scale": 1.0, "width": 0.008}
+            axes.quiver(*mark.origins.T, *mark.vectors.T, color=color, **options, **common)
+        case Faces() if len(mark.fan) > 0:
+            options = {"color": color, "alpha": mark.opacity, "linewidth": 0.0}
+            if mark.corners.shape[1] == 3:
+                axes.plot_trisurf(*mark.corners.T, triangles=mark.fan, shade=False, **options, **common)
+                return
+            from matplotlib.collections import PolyCollection
+
+            axes.add_collection(PolyCollection(list(mark.corners[mark.fan]), **options, **common))
+        case Labels():
+            for place, text in zip(mark.places.tolist(), mark.texts, strict=True):
+                axes.text(*place, text, color=color, ha="center", va="center", fontsize="small", zorder=4.0)
+
+
+def _joined(strips: Sequence[FloatArray]) -> FloatArray:
+    """Return strips as one, (k, d), with gaps."""
+    gap = np.full((1, strips[0].shape[1]), np.nan)
+    joined: FloatArray = np.vstack([part for strip in strips for part in (strip, gap)][:-1])
+    return joined

@@ -1,0 +1,329 @@
+"""Draws diagrams and their marks in rerun, at the recording's current time.
+
+rerun has neither axes nor legends for spatial views. So axes with numbers are drawn with the diagram, the
+legend stands in a column on its left, and words about points in a column on its right, at lines to the
+points. Columns keep words apart. The room that words need is estimated, since the viewer does not fit a view
+to words: it is right for a panel that is 250 points high, and more than enough for a larger one.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
+
+import numpy as np
+import rerun as rr
+
+from contact_dynamics.diagrams import palette
+from contact_dynamics.diagrams.marks import Arrows, Ellipsoids, Faces, Labels, Lines, Points, Regions
+from contact_dynamics.viewing.strips import strips_2d, strips_3d
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+    from contact_dynamics.diagrams.marks import Axis, Diagram, Mark
+    from contact_dynamics.validation import FloatArray
+
+_THICK: Final = 0.8  # radius of a line of width 1, in points of the screen
+_LARGE: Final = 0.6  # radius of a point of size 1, in points of the screen
+_FRAME_WIDTH: Final = 1.0
+_LEADER_WIDTH: Final = 0.8
+_TICKS: Final = 4  # numbers of an axis, at most
+_NO_COLOR: Final = (0, 0, 0, 0)
+
+_PANEL: Final = (400.0, 150.0)  # points, the part of a panel that the axes fill
+_LETTER: Final = 6.4  # points, width of a letter
+_LINE: Final = 23.0  # points, from one word to the one below
+_DROP: Final = 12.0  # points that the middle of a word is below its place
+
+EYE: Final = np.array([0.8, -1.7, 1.15])
+TARGET: Final = np.array([0.0, 0.0, 0.4])
+"""The place of the eye that sees a diagram in three dimensions with its words, and where it looks."""
+_SPACE: Final = 115.0  # points, the height of a diagram in three dimensions
+_RIGHT: Final = np.array([0.906, 0.423, 0.0])  # on the screen, as seen from there
+
+
+def draw_diagram(recording: rr.RecordingStream, diagram: Diagram, entity: str, *, shift: float = 0.0) -> None:
+    """Draw a diagram in place of what was there.
+
+    Args:
+        recording: To draw into.
+        diagram: The diagram.
+        entity: Where it is put. In three dimensions, it is put below, scaled so that its upright axis has
+            length 1, since a view does not scale its origin.
+        shift: How far to the right it stands, in its units.
+    """
+    recording.log(entity, rr.Clear(recursive=True))
+    if len(diagram.axes) == 3:
+        entity = f"{entity}/contact"
+        height = diagram.axes[2].high - diagram.axes[2].low
+        recording.log(entity, rr.Transform3D(scale=1.0 / height))
+    draw_marks(recording, diagram.marks, entity, shift=shift)
+    draw_marks(recording, _frame_of(diagram), f"{entity}/frame", shift=shift)
+
+
+def draw_marks(
+    recording: rr.RecordingStream, marks: Iterable[Mark], entity: str, *, shift: float = 0.0
+) -> None:
+    """Draw marks, each below ``entity`` at its name, and clear what is at the names of empty ones."""
+    for mark in marks:
+        if mark.in_viewer:
+            recording.log(f"{entity}/{mark.name}", _drawn(mark, shift) or rr.Clear(recursive=False))
+
+
+def _drawn(mark: Mark, shift: float) -> rr.AsComponents | None:  # noqa: PLR0911  one for each kind
+    """Return what rerun draws, or None for nothing."""
+    color = palette.translucent(mark.paint.dark, mark.opacity)
+    match mark:
+        case Lines():
+            strips = [_on_screen(strip, shift) for strip in mark.strips if len(strip) > 0]
+            return _strips(strips, color, -_THICK * mark.width)
+        case Points() if len(mark.places) > 0:
+            options: dict[str, Any] = {
+                "colors": color,
+                "radii": mark.radius or -_LARGE * mark.size,
+                "labels": list(mark.labels) or None,
+                "show_labels": mark.label_all if mark.labels else None,
+            }
+            flat = mark.places.shape[1] == 2
+            return (rr.Points2D if flat else rr.Points3D)(_on_screen(mark.places, shift), **options)
+        case Arrows() if len(mark.origins) > 0:
+            options = {
+                "vectors": _on_screen(mark.vectors),
+                "origins": _on_screen(mark.origins, shift),
+                "colors": color,
+                "radii": mark.radius or -_THICK * mark.width,
+                "labels": list(mark.labels) or None,
+                "show_labels": mark.label_all if mark.labels else None,
+            }
+            return (rr.Arrows2D if mark.origins.shape[1] == 2 else rr.Arrows3D)(**options)
+        case Faces() if len(mark.fan) > 0 and mark.corners.shape[1] == 3:
+            return rr.Mesh3D(
+                vertex_positions=mark.corners,
+                triangle_indices=mark.fan,
+                vertex_normals=mark.normals,
+                albedo_factor=color,
+            )
+        case Labels() if len(mark.texts) > 0:
+            return words(_on_screen(mark.places, shift), mark.texts, mark.paint.dark)
+        case Ellipsoids() if len(mark.centers) > 0:
+            from scipy.spatial.transform import Rotation
+
+            variances, axes = np.linalg.eigh(mark.covariances)
+            right_handed = axes * np.linalg.det(axes)[:, None, None]
+            sizes = np.reshape(mark.deviations, (-1, 1)) * np.sqrt(np.maximum(variances, 0.0))
+            turns = Rotation.from_matrix(right_handed).as_quat()
+            return rr.Ellipsoids3D(
+                centers=mark.centers,
+                half_sizes=sizes,
+                quaternions=[rr.Quaternion(xyzw=turn) for turn in turns],
+                colors=color,
+                line_radii=-_THICK,
+                fill_mode=rr.components.FillMode.MajorWireframe,
+            )
+        case Regions():
+            pixels = np.array([paint.dark[:3] for paint in mark.paints], dtype=np.uint8)[mark.classes]
+            return rr.Image(pixels, color_model="RGB", draw_order=-20.0)
+    return None
+
+
+def _strips(strips: Sequence[FloatArray], color: palette.Color, radius: float) -> rr.AsComponents | None:
+    if not strips:
+        return None
+    if strips[0].shape[1] == 2:
+        return rr.LineStrips2D(strips_2d(strips), colors=color, radii=radius)
+    return rr.LineStrips3D(strips_3d(strips), colors=color, radii=radius)
+
+
+def words(places: FloatArray, texts: Sequence[str], color: palette.Color) -> rr.AsComponents:
+    """Return words at places, (n, d), as rerun's views have them.
+
+    In the plane they stand at lines without length. The viewer allows for more room about points, which would
+    make the picture small.
+    """
+    readable = palette.readable(color)
+    if places.shape[1] == 3:
+        return rr.Points3D(places, colors=readable, radii=0.0, labels=list(texts), show_labels=True)
+    strips = strips_2d([np.array([place, place]) for place in places])
+    return rr.LineStrips2D(strips, colors=readable, radii=0.0, labels=list(texts), show_labels=True)
+
+
+def _on_screen(places: FloatArray, shift: float = 0.0) -> FloatArray:
+    """Return places as rerun's views have them: in the plane, the second coordinate goes down."""
+    if places.shape[1] == 3:
+        return places
+    flipped: FloatArray = (places + np.array([shift, 0.0])) * (1.0, -1.0)
+    return flipped
+
+
+class _Page(NamedTuple):
+    """The screen as the words of a diagram see it.
+
+    Attributes:
+        point: One point of the screen, in the units of the diagram.
+        right: (d,), unit, to the right on the screen.
+        up: (d,), unit.
+        low: (d,), the lower left corner of what is between the axes, as seen.
+        width: To the right of this corner.
+        height: Above it.
+    """
+
+    point: float
+    right: FloatArray
+    up: FloatArray
+    low: FloatArray
+    width: float
+    height: float
+
+    def at(self, right: float, up: float) -> FloatArray:
+        """Return the place that is so many points to the right of the lower left corner, and above it."""
+        place: FloatArray = self.low + self.point * (right * self.right + up * self.up)
+        return place
+
+    def height_of(self, place: FloatArray) -> float:
+        """Return how many points a place is above the lower left corner."""
+        return float((place - self.low) @ self.up) / self.point
+
+
+def _page_of(axes: tuple[Axis, ...]) -> _Page:
+    low, high = np.array([axis.low for axis in axes]), np.array([axis.high for axis in axes])
+    if len(axes) == 2:
+        width, height = (high - low).tolist()
+        point = max(width / _PANEL[0], height / _PANEL[1])
+        return _Page(point, np.array([1.0, 0.0]), np.array([0.0, 1.0]), low, width, height)
+    half = 0.5 * float(np.abs(_RIGHT) @ (high - low))
+    middle = 0.5 * (low + high) * (1.0, 1.0, 0.0) + low * (0.0, 0.0, 1.0)
+    height = float(high[2] - low[2])
+    corner = middle - half * _RIGHT
+    return _Page(height / _SPACE, _RIGHT, np.array([0.0, 0.0, 1.0]), corner, 2.0 * half, height)
+
+
+def _frame_of(diagram: Diagram) -> list[Mark]:
+    """Return the axes with their numbers and names, the title, the legend, and the words about points."""
+    page = _page_of(diagram.axes)
+    marks = _axes_of(diagram.axes, page)
+    left, top = page.at(0.0, 0.0), page.height / page.point
+    names = [axis.name for axis in diagram.axes]
+    across = page.width / page.point
+    room = [page.at(0.0, top + _DROP), page.at(0.0, -2.6 * _LINE), page.at(across, -2.6 * _LINE)]
+    title: list[tuple[float, float, str]] = []
+    if names[-1]:
+        title.append((0.0, top + _LINE, names[-1]))
+    if diagram.title and len(names) == 2:
+        title.append((0.5 * across, top + 2.0 * _LINE, diagram.title))
+    marks.append(
+        Labels(
+            name="title",
+            paint=_WHITE,
+            places=np.array([page.at(right, up + _DROP) for right, up, _ in title]).reshape(-1, len(left)),
+            texts=[text for *_, text in title],
+        )
+    )
+    room += [page.at(right, up + _DROP) for right, up, _ in title]
+    legend = [
+        mark for mark in diagram.marks if mark.legend and mark.in_viewer and not isinstance(mark, Points)
+    ]
+    nearer = 0.16 * across if len(names) == 3 else 0.0  # the upright axis is, and so farther to the left
+    aside = -0.5 * _widest(legend) - 7.0 * _LETTER - 8.0 - nearer
+    for i, mark in enumerate(legend):
+        place = page.at(aside, top - i * _LINE)
+        marks.append(
+            Labels(name=f"legend/{mark.name}", paint=mark.paint, places=place[None], texts=[mark.legend])
+        )
+        room.append(page.at(2.0 * aside, 0.0))
+    return [*marks, *_notes_of(diagram, page, room), _room(room)]
+
+
+_WHITE: Final = palette.Paint(palette.NORMAL, "")
+_GREY: Final = palette.Paint(palette.SURFACE_GRID, "")
+
+
+def _widest(marks: Sequence[Mark]) -> float:
+    """Return the width of the widest legend, in points of the screen."""
+    lines = [line for mark in marks for line in mark.legend.splitlines()]
+    return _LETTER * max(map(len, lines), default=0) + 10.0
+
+
+def _room(places: Sequence[FloatArray]) -> Mark:
+    """Return what keeps room for words in the view: lines without length or colour."""
+    strips = [np.array([place, place]) for place in places]
+    return Lines(name="room", paint=palette.Paint(_NO_COLOR, ""), opacity=0.0, strips=strips, width=0.0)
+
+
+def _notes_of(diagram: Diagram, page: _Page, room: list[FloatArray]) -> list[Mark]:
+    """Return the legends of points on the right, each at the height of its point as far as they are apart."""
+    noted = [
+        mark
+        for mark in diagram.marks
+        if isinstance(mark, Points) and mark.legend and mark.in_viewer and len(mark.places) > 0
+    ]
+    if not noted:
+        return []
+    noted.sort(key=lambda mark: page.height_of(mark.places[0]))
+    left = page.width / page.point + 14.0
+    middle = left + 0.5 * _widest(noted)
+    marks: list[Mark] = []
+    lines = [len(mark.legend.splitlines()) for mark in noted]
+    rooms = [(0.4 + 0.7 * count) * _LINE for count in lines]
+    heights = [page.height_of(mark.places[0]) for mark in noted]
+    for i in range(1, len(noted)):  # upwards, as far as needed
+        heights[i] = max(heights[i], heights[i - 1] + 0.5 * (rooms[i - 1] + rooms[i]))
+    above = page.height / page.point
+    for i in reversed(range(len(noted))):  # and down again, to stay beside the diagram
+        heights[i] = min(heights[i], above)
+        above = heights[i] - 0.5 * (rooms[i] + rooms[max(i - 1, 0)])
+    for mark, count, up in zip(noted, lines, heights, strict=True):
+        place = page.at(middle, up + 0.7 * count * _DROP)
+        leader = np.array([mark.places[0], page.at(left, up)])
+        marks += [
+            Labels(name=f"notes/{mark.name}", paint=mark.paint, places=place[None], texts=[mark.legend]),
+            Lines(
+                name=f"leaders/{mark.name}",
+                paint=mark.paint,
+                opacity=0.5,
+                strips=[leader],
+                width=_LEADER_WIDTH,
+            ),
+        ]
+        room.append(page.at(2.0 * middle - left, up + _LINE))
+    return marks
+
+
+def _axes_of(axes: tuple[Axis, ...], page: _Page) -> list[Mark]:
+    """Return the axes, with numbers and the names of those that lie flat."""
+    low = np.array([axis.low for axis in axes])
+    corners = [low] * 2
+    if len(axes) == 3:
+        corners = [low, np.array([axes[0].high, low[1], low[2]]), low]
+    strips, places, texts = [], [], []
+    for i, (axis, corner) in enumerate(zip(axes, corners, strict=True)):
+        along = np.eye(len(axes))[i]
+        strips.append(np.array([corner, corner + (axis.high - axis.low) * along]))
+        # Words are below the first axis, right of one that recedes, and left of the upright one.
+        side = (0.0, 1.0, -1.0)[i] if len(axes) == 3 else (0.0, -1.0)[i]
+        tick = side * page.right if side else -page.up
+        ticks = _round_numbers(axis.low, axis.high) if axis.ticks is None else axis.ticks
+        named = [] if i == len(axes) - 1 or not axis.name else [(0.5 * (axis.low + axis.high), axis.name)]
+        for number, text in (*ticks, *named):
+            place = corner + (number - axis.low) * along
+            beside = side * (0.5 * _LETTER * len(text) + 10.0)
+            below = -_DROP if side else 2.0
+            if text == axis.name:
+                beside, below = (beside + 40.0, below) if side else (-0.5 * _LETTER * len(text), 1.1 * _LINE)
+                beside = beside if len(axes) == 3 else 0.0
+            else:
+                strips.append(np.array([place, place + 4.0 * page.point * tick]))
+            places.append(place + page.point * (beside * page.right - below * page.up))
+            texts.append(text)
+    return [
+        Lines(name="axes", paint=_GREY, strips=strips, width=_FRAME_WIDTH),
+        Labels(name="numbers", paint=_WHITE, places=np.array(places).reshape(-1, len(axes)), texts=texts),
+    ]
+
+
+def _round_numbers(low: float, high: float) -> list[tuple[float, str]]:
+    """Return round numbers between two limits, `_TICKS` or fewer, with their words."""
+    rough = (high - low) / _TICKS
+    power = 10.0 ** np.floor(np.log10(rough))
+    step = next(power * each for each in (1.0, 2.0, 2.5, 5.0, 10.0) if power * each >= rough)
+    first, last = int(np.ceil(low / step)), int(np.floor(high / step))
+    return [(float(k * step), f"{k * step:.6g}") for k in range(first, last + 1)]
