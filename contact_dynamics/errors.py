@@ -21,17 +21,19 @@ class InvalidFieldError(ContactDynamicsError, ValueError):
         field: The field.
         found: The value received.
         allowed: What the field must be: the words of the message between "must be" and "got".
+        hint: What may be wrong or help, at the end of the message. It may be empty.
     """
 
-    def __init__(self, field: str, found: object, allowed: str) -> None:
-        super().__init__(f"{field} must be {allowed}, got {_short(found)}")
+    def __init__(self, field: str, found: object, allowed: str, hint: str = "") -> None:
+        super().__init__(f"{field} must be {allowed}, got {_short(found)}{hint and f' ({hint})'}")
         self.field = field
         self.found = found
         self.allowed = allowed
+        self.hint = hint
 
-    def __reduce__(self) -> tuple[type[InvalidFieldError], tuple[str, str, str]]:
+    def __reduce__(self) -> tuple[type[InvalidFieldError], tuple[str, str, str, str]]:
         """Return how to make it again, in another process, with what was found as text."""
-        return type(self), (self.field, _short(self.found), self.allowed)
+        return type(self), (self.field, _short(self.found), self.allowed, self.hint)
 
 
 class WrongTypeError(InvalidFieldError, TypeError):

@@ -36,6 +36,11 @@ moments of inertia are below the inverse, because fourth powers and products of 
 of doubles. Rates below the inverse count as rest, because such a body does not turn in the age of the
 universe."""
 
+MANGLED: Final = 2.0**-1042
+"""Any unit. A positive number below it in a message is what rclpy sends of an int or a float32 whose type it
+has not checked: their 32 bits, read as the last of a double's 64. Measured numbers are zero or far larger. A
+velocity that a simulation damps forever may end there, as one of any sign."""
+
 # What is shown
 
 SHOWN_AS_ZERO: Final = 1e-12

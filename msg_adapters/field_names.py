@@ -63,7 +63,7 @@ def renamed(error: Refused, names: Mapping[str, str] = FIELDS) -> Refused:
     if not isinstance(error, InvalidFieldError):
         return error
     field = _pattern(tuple(names)).sub(lambda found: names[found.group()], error.field)
-    return error if field == error.field else type(error)(field, error.found, error.allowed)
+    return error if field == error.field else type(error)(field, error.found, error.allowed, error.hint)
 
 
 @lru_cache

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Final, Protocol
 
 from contact_dynamics import errors
-from msg_adapters.field_names import renamed
+from msg_adapters.mangled_numbers import in_fields
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -68,7 +68,7 @@ def code_name(error: Exception) -> str:
 
 def report_error(response: Response, error: Exception) -> None:
     """Write an error into a response, as its code and a message with what was found and what is allowed."""
-    error = renamed(error)
+    error = in_fields(error)
     for error_type, code_name in _CODE_NAMES:
         code = getattr(response, code_name, None)
         if isinstance(error, error_type) and code is not None:

@@ -88,19 +88,20 @@ def _leaves(request: object, field: str) -> tuple[_Leaf, ...]:
     """Return the leaves of a field of a request, whose type has the defaults."""
     key = (type(request), field)
     if key not in _KNOWN:
-        _KNOWN[key] = tuple(_leaves_of(field, attrgetter(field)(type(request)())))
+        _KNOWN[key] = tuple(leaves_of(field, attrgetter(field)(type(request)())))
     return _KNOWN[key]
 
 
-def _leaves_of(path: str, default: object) -> Iterator[_Leaf]:
-    names = _field_names(default)
+def leaves_of(path: str, default: object) -> Iterator[_Leaf]:
+    """Yield the leaves of a field of a message, which is at that path and has that default."""
+    names = field_names(default)
     if not names:
         yield _Leaf(path, attrgetter(path), default)
     for name in names:
-        yield from _leaves_of(f"{path}.{name}", getattr(default, name))
+        yield from leaves_of(f"{path}.{name}", getattr(default, name))
 
 
-def _field_names(value: object) -> Sequence[str]:
+def field_names(value: object) -> Sequence[str]:
     """Return the names of the fields of a message. A value that is none has no fields."""
     if hasattr(value, "get_fields_and_field_types"):  # made by ROS; others are made from a log's texts
         return tuple(value.get_fields_and_field_types())

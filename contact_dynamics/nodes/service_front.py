@@ -190,7 +190,7 @@ class ServiceFront:
             if not self.is_active:
                 message = "the server is not active, which its lifecycle manager decides"
                 raise BusyError(message)
-            question = served.question_from_msg(request, world=context.world, world_frame=world_frame)
+            question = served.question_of(request, world=context.world, world_frame=world_frame)
             if self._workers is None or served.is_answered_at_once(question, context):
                 fill(served.answer(question, context))
                 return

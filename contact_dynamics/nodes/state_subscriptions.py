@@ -23,7 +23,7 @@ from contact_dynamics.questions.extent import check_believable
 from contact_dynamics.questions.uncertain_state import state_of
 from contact_dynamics.recording.cdr_stamp import leading_stamp_ns
 from contact_dynamics.recording.decoding import message_class
-from msg_adapters.field_names import renamed
+from msg_adapters.mangled_numbers import check_numbers, in_fields
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
@@ -177,6 +177,7 @@ class StateTopic:
                     self._states.add_unread(reader.body_name, stamp_ns, read, now_ns=now_ns)
                 return
             msg = deserialize_message(data, self._msg_type)
+            check_numbers(msg)
         except (ContactDynamicsError, RuntimeError) as error:  # bytes that are no message raise the latter
             self._refuse(error, data, *self.source.readers)
             return
@@ -207,7 +208,9 @@ class StateTopic:
     def _read(self, reader: BodyReader, data: bytes) -> KnownState | None:
         """Return the state of one body that a message is, or None if it cannot be read."""
         try:
-            state = reader.state_from(deserialize_message(data, self._msg_type))
+            msg = deserialize_message(data, self._msg_type)
+            check_numbers(msg)
+            state = reader.state_from(msg)
             if state is not None:
                 check_believable(state_of(state))
         except (ContactDynamicsError, RuntimeError) as error:  # bytes that are no message raise the latter
@@ -223,7 +226,7 @@ class StateTopic:
         was_kept: bool = False,
     ) -> None:
         """Tell of a message that is refused, and note it for those who ask about the bodies."""
-        error = renamed(error)
+        error = in_fields(error)
         self._faults.refuse(self.name, error)
         is_message = isinstance(error, ContactDynamicsError)
         reason = error if is_message else no_message(data, self.type_name)

@@ -244,6 +244,6 @@ def _candidate(
         force, torque = question.forces_W[i], question.torques_W[i]
         return contact_modes.answer(replace(shared, contacts=contacts, force_W=force, torque_W=torque), known)
     except InvalidFieldError as error:
-        raise type(error)(f"candidate {i}: {error.field}", error.found, error.allowed) from None
+        raise type(error)(f"candidate {i}: {error.field}", error.found, error.allowed, error.hint) from None
     except ContactDynamicsError as error:
         raise type(error)(f"candidate {i}: {error}") from None

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
     from contact_dynamics.questions.context import Context
     from contact_dynamics.tumbling import Trajectory
-    from contact_dynamics.world import Body
+    from contact_dynamics.world import Body, World
 
 Result = TypeVar("Result")
 
@@ -185,6 +185,16 @@ class Service:
             if each is not None:
                 each.function  # noqa: B018  it is imported by that
 
+    def question_of(self, request: object, *, world: World, world_frame: str) -> Question[Answer]:
+        """Return the question that a request asks, whoever made the request.
+
+        Raises:
+            InvalidFieldError: a number in it is none that its client meant, because rclpy mangled it.
+            ContactDynamicsError: the request is rejected by `question_from_msg`.
+        """
+        _CHECK_NUMBERS(request)
+        return self.question_from_msg(request, world=world, world_frame=world_frame)
+
     def is_answered_at_once(self, question: Question[Answer], context: Context) -> bool:
         """Return whether the answer is sure to come soon. A question that is rejected counts as quick."""
         try:
@@ -196,6 +206,8 @@ class Service:
         """Return an answer in words, with the most important first."""
         return [answer.in_short()] if self.words is None else self.words(answer)
 
+
+_CHECK_NUMBERS: Final = ImportedOnUse[None]("msg_adapters.mangled_numbers:check_numbers")
 
 SERVICES: Final = (
     Service(

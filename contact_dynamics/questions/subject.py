@@ -149,7 +149,8 @@ def subject_of(
     except InvalidFieldError as error:
         if error.field != "states":
             raise
-        raise type(error)("fit_window", error.found, error.allowed) from None  # the question's name for them
+        # The question's name for them.
+        raise type(error)("fit_window", error.found, error.allowed, error.hint) from None
     _check_fit(best, states)
     quality = FitQuality(
         count=best.count,

@@ -24,7 +24,7 @@ from contact_dynamics.questions.uncertain_state import state_of
 from contact_dynamics.recording.cdr import decode_without_ros
 from contact_dynamics.recording.cdr_stamp import leading_stamp_ns
 from contact_dynamics.replay.timeline import CLOCK
-from msg_adapters.field_names import renamed
+from msg_adapters.mangled_numbers import check_numbers, in_fields
 from msg_adapters.status import report_error
 from msg_adapters.transforms import TransformTree
 
@@ -134,13 +134,14 @@ class ServerAgain:
             self._refuse(message.topic, body_name, error, no_message(message.data, message.type_name))
             return None
         try:
+            check_numbers(decoded)
             state = state_from(decoded)
             if state is None:
                 return None
             check_believable(state_of(state))
             self._states.add(body_name, state, now_ns=now_ns)
         except ContactDynamicsError as error:
-            told = renamed(error)
+            told = in_fields(error)
             self._refuse(message.topic, body_name, told, told)
             return None
         return body_name, state_of(state)
@@ -160,8 +161,8 @@ class ServerAgain:
         Raises:
             ContactDynamicsError: the request is refused.
         """
-        read = service_of_type(service_type).question_from_msg
-        return read(request, world=self.world, world_frame=self._parameters.world_frame)
+        service = service_of_type(service_type)
+        return service.question_of(request, world=self.world, world_frame=self._parameters.world_frame)
 
     def answer_from(self, service_type: str, response: Any) -> Answer:
         """Return the answer that a response carries, whose status is OK.

@@ -38,8 +38,8 @@ def test_an_error_that_names_no_field_stays() -> None:
 
 def test_a_response_names_the_field_of_the_request() -> None:
     response = PredictImpact.Response()
-    report_error(response, InvalidFieldError("w_WB_W", [np.nan], "finite"))
-    assert response.message == "angular_velocity must be finite, got [nan]"
+    report_error(response, InvalidFieldError("w_WB_W", [np.inf], "finite"))
+    assert response.message == "angular_velocity must be finite, got [inf]"
 
 
 @pytest.mark.parametrize("side", ["body", "surface"])

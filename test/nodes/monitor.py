@@ -12,6 +12,7 @@ from typing import Any
 
 import yaml
 from diagnostic_msgs.msg import DiagnosticArray
+from geometry_msgs.msg import Point
 from nav_msgs.msg import Odometry
 
 from contact_dynamics.demo.ros_domain import claim_domain
@@ -22,6 +23,7 @@ from running_server import ROOT, Client, process
 
 def odometry(*, ahead_ns: int = 0, frame: str = "world", child: str = "brick", x: float = 0.0) -> Odometry:
     msg = Odometry(child_frame_id=child)
+    msg.pose.pose.position = Point(check_fields=False)  # ``x`` may be an int, as where nobody checks
     msg.header.frame_id, msg.header.stamp = frame, stamp_to_msg(time.time_ns() + ahead_ns)
     msg.pose.pose.position.x = x
     return msg

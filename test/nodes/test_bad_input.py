@@ -8,7 +8,9 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
+from geometry_msgs.msg import Point
 from nav_msgs.msg import Odometry
 
 from changed_requests import put
@@ -65,12 +67,32 @@ def unread_state(request: Any) -> None:
     request.state_source, request.state.pose.position.z = request.STATE_NEWEST, 0.5
 
 
+def unchecked(z: Any) -> Point:
+    """Return a point as a client makes it that has not set ROS_PYTHON_CHECK_FIELDS."""
+    point = Point(check_fields=False)
+    point.z = z
+    return point
+
+
 EVERY_SERVICE = [
     (
         unread_state,
         "INVALID_FIELD",
         "state.pose.position.z must be left out unless state_source is STATE_EXPLICIT (1), got 0.5",
     ),
+    (
+        put("state.pose.position", unchecked(2)),
+        "INVALID_FIELD",
+        "state.pose.position.z must be a number of normal size, got 5e-324 (rclpy sends this for an int",
+    ),
+    (
+        put("state.pose.position", unchecked(np.float32(0.5))),
+        "INVALID_FIELD",
+        "state.pose.position.z must be a number of normal size, got 5.2",
+    ),
+    (put("state.covariance", [5e-324] * 144), "INVALID_FIELD", "state.covariance[0] must be a number"),
+    (put("state.pose.position.x", math.nan), "INVALID_FIELD", "got [nan ... ROS_PYTHON_CHECK_FIELDS=1"),
+    (put("inertia.m", math.nan), "INVALID_FIELD", "got nan (rclpy sends this for an int"),
     (put("inertia.m", -1.0), "INVALID_FIELD", "inertia.m must be > 0..., got -1.0"),
     (put("inertia.m", math.nan), "INVALID_FIELD", "inertia.m must be ..., got nan"),
     (put("inertia.m", math.inf), "INVALID_FIELD", "inertia.m must be ..., got inf"),
