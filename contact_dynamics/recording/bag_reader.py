@@ -232,6 +232,9 @@ def _files_of(folder: Path) -> list[Path]:
 
 
 def _described(path: Path, losses: list[Loss]) -> str:
+    if all(loss.begin == loss.end for loss in losses):
+        read = losses[0].end
+        return f"{path} is still being written, or its writer was killed; all {read} bytes of it were read"
     told = "; ".join(str(loss) for loss in losses[:_MAX_TOLD])
     more = f"; and {len(losses) - _MAX_TOLD} places more" if len(losses) > _MAX_TOLD else ""
     return f"{path} is damaged or was cut short, all but this was read: {told}{more}"

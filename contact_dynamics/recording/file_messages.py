@@ -64,7 +64,7 @@ class Loss:
 
     Attributes:
         begin: Its first byte.
-        end: The byte after its last one.
+        end: The byte after its last one, or its first byte if only the end of the log is missing.
         messages: Number of lost messages, by the file's summary, or None if there is no summary.
     """
 

@@ -92,6 +92,7 @@ def _gaps(found: Verification) -> list[str]:
         lines.append(f"  {unreadable} calls could not be read; the first: {found.unreadable}")
     if found.damage is not None:
         lines.append(f"  {found.damage}")
+    if found.lost_bytes:
         lines.append(
             "  what was read is compared above; an answer can differ where a state that it used is lost"
         )

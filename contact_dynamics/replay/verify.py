@@ -85,6 +85,7 @@ class Verification:
         others: The questions whose answers differ most, the largest difference first.
         unreadable: The first reason why a call could not be read, or None if all could.
         damage: The damaged parts of the log, in words, or None if all was whole.
+        lost_bytes: How many bytes of the log could not be read.
     """
 
     path: Path
@@ -96,6 +97,7 @@ class Verification:
     others: list[OtherAnswer] = field(default_factory=list)
     unreadable: str | None = None
     damage: str | None = None
+    lost_bytes: int = 0
 
     @property
     def agrees(self) -> bool:
@@ -152,6 +154,7 @@ def verify_log(
                 if on_progress is not None:
                     on_progress(each.log_time_ns, f"{states} states, {questions} questions")
         found.damage = log.damage
+        found.lost_bytes = sum(loss.end - loss.begin for loss in log.losses)
     return found
 
 

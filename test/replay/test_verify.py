@@ -231,6 +231,25 @@ def test_a_truncated_log_is_asked_as_far_as_it_goes(
     assert "is damaged or was cut short" in capsys.readouterr().out
 
 
+def test_a_log_that_is_still_being_written_is_not_called_damaged(
+    asked: Asked, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Nor is that of a server that was killed. Both end after a whole record."""
+    (whole,) = asked.log.glob("*.mcap")
+    with whole.open("rb") as stream:
+        summary = make_reader(stream).get_summary()
+    assert summary is not None
+    middle = summary.chunk_indexes[len(summary.chunk_indexes) // 2]
+    size = middle.chunk_start_offset + middle.chunk_length + middle.message_index_length
+    written = tmp_path / "written.mcap"
+    written.write_bytes(whole.read_bytes()[:size])
+    assert main([str(written)]) == 0
+    said = capsys.readouterr().out
+    assert f"{written} is still being written, or its writer was killed; all {size} bytes of it" in said
+    assert "damaged" not in said
+    assert "can differ" not in said
+
+
 def with_a_flipped_bit_in_its_record(log: Path) -> Path:
     """The log, whose record of the run is damaged. What `metadata.yaml` says is whole."""
     (path,) = log.glob("*.mcap")
