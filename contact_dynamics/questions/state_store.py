@@ -116,7 +116,8 @@ class StateStore:
 
         Raises:
             InvalidFieldError: its stamp is ahead of the present time by more than the tolerance. Such a state
-                would stay the newest until the clock came to it.
+                would stay the newest until the clock came to it. Or the stamp is zero, which publishers leave
+                it at that forget it, unless the clock has only begun.
         """
         self._keep(body_name, state.stamp_ns, state, now_ns)
 
@@ -268,6 +269,10 @@ class StateStore:
 
     def _keep(self, body_name: str, stamp_ns: int, state: KnownState | ReadState, now_ns: int | None) -> None:
         if now_ns is not None:
+            if stamp_ns == 0 and now_ns > self._timeout_ns:
+                raise InvalidFieldError(
+                    "stamp", 0, "the time of the state", hint="fill in header.stamp, with the node's clock"
+                )
             ahead_ns = stamp_ns - now_ns
             if ahead_ns > self._future_tolerance_ns:
                 raise InvalidFieldError(

@@ -21,10 +21,18 @@ from msg_adapters.stamps import stamp_to_msg
 from running_server import ROOT, Client, process
 
 
-def odometry(*, ahead_ns: int = 0, frame: str = "world", child: str = "brick", x: float = 0.0) -> Odometry:
+def odometry(
+    *,
+    ahead_ns: int = 0,
+    frame: str = "world",
+    child: str = "brick",
+    x: float = 0.0,
+    is_stamped: bool = True,
+) -> Odometry:
     msg = Odometry(child_frame_id=child)
     msg.pose.pose.position = Point(check_fields=False)  # ``x`` may be an int, as where nobody checks
-    msg.header.frame_id, msg.header.stamp = frame, stamp_to_msg(time.time_ns() + ahead_ns)
+    msg.header.frame_id = frame
+    msg.header.stamp = stamp_to_msg(time.time_ns() + ahead_ns if is_stamped else 0)
     msg.pose.pose.position.x = x
     return msg
 

@@ -74,6 +74,7 @@ def test_a_body_of_which_nothing_came(monitor: Monitor) -> None:
         ({"x": math.nan}, "nan"),
         ({"x": 2}, "pose.pose.position.x must be a number of normal size, got 5e-324 (rclpy"),
         ({"ahead_ns": HOUR_NS}, "ahead of the clock"),
+        ({"is_stamped": False}, "stamp must be the time of the state, got 0 (fill in header.stamp"),
     ],
 )
 def test_states_that_are_all_rejected(
