@@ -26,7 +26,7 @@ from contact_dynamics.nodes.reconfiguring import CONFIGURED_ANEW, bodies_read_ot
 from contact_dynamics.nodes.self_check import SelfCheck
 from contact_dynamics.nodes.service_front import ServiceFront
 from contact_dynamics.nodes.situations import Part, Present, Situation
-from contact_dynamics.nodes.state_sources import state_sources
+from contact_dynamics.nodes.state_sources import expected, state_sources
 from contact_dynamics.nodes.state_subscriptions import OfferedQosWatch, present_ns, subscribe_to_states
 from contact_dynamics.nodes.topic_faults import TopicFaults
 from contact_dynamics.questions.context import Context
@@ -117,6 +117,7 @@ class Serving:
             offered=self._note_offers,
             faults=self._faults,
         )
+        self._note_publishers()
         by_name = {topic.name: topic for topic in self._topics}
         self._bodies = {
             body.body_name: BodyWatch(body, by_name) for body in parameters.sources if body.sources
@@ -286,6 +287,7 @@ class Serving:
     def _look_at_states(self) -> list[Present]:
         awake_for = self._looked - self._awake_since
         present = [found for topic in self._topics for found in topic.look(awake_for=awake_for)]
+        self._note_publishers()
         for name, body in self._bodies.items():
             silent_after = self._parameters.fault_limits.silent_after
             present += body.look(self._states.arrivals(name), silent_after=silent_after, awake_for=awake_for)
@@ -294,6 +296,13 @@ class Serving:
             if present_ns(self._node) is None:
                 present.append(Situation.NO_CLOCK.present())
         return present
+
+    def _note_publishers(self) -> None:
+        """Note, for whoever asks before the first state, on which topics how many publish."""
+        publishers = {topic.name: topic.publishers for topic in self._topics}
+        for body in self._parameters.sources:
+            names = {topic.full_name for source in body.sources for topic in source.topics}
+            self._states.expect(body.body_name, expected(body, sum(publishers[name] for name in names)))
 
     def _look_at_workers(self) -> list[Present]:
         if self.is_ready or self._workers is None:

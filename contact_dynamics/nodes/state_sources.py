@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
     from contact_dynamics.nodes.parameter_reader import ConfiguredTopic
     from contact_dynamics.nodes.parameters import ServerParameters
-    from contact_dynamics.nodes.world_parameters import ConfiguredSource
+    from contact_dynamics.nodes.world_parameters import BodySources, ConfiguredSource
     from contact_dynamics.questions.uncertain_state import KnownState
     from msg_adapters.state_adapter import Reader
     from msg_adapters.transforms import TFMessage
@@ -88,6 +88,22 @@ class StateSource:
 def no_message(data: bytes, type_name: str) -> InvalidFieldError:
     """Return the error that says that bytes are no message of a type, live and where a log is replayed."""
     return InvalidFieldError("data", f"{len(data)} bytes", f"a serialised {type_name}")
+
+
+def expected(body: BodySources, publishers: int | None = None) -> str:
+    """Return what whoever asks about a body is told before any state of it came.
+
+    Args:
+        body: the sources of its states.
+        publishers: how many publish on their topics. None means that nobody can know, since a log is
+            replayed, where this is not compared.
+    """
+    topics = " and ".join(dict.fromkeys(topic.full_name for each in body.sources for topic in each.topics))
+    instead = "set state_source: 1 (STATE_EXPLICIT) and give state"
+    if not topics:
+        return f"no topic of its states is configured, as body.{body.body_name}.odometry_topic; {instead}"
+    count = "" if publishers is None else f" ({publishers} publisher{'s' * (publishers != 1)})"
+    return f"none was published yet on {topics}{count}; publish there, or {instead}"
 
 
 def adapter_of(name: str, *, parameter: str) -> StateAdapter:

@@ -173,13 +173,13 @@ class StateTopic:
             if self.source.is_whole and self._is_as_before(taken):
                 stamp_ns = leading_stamp_ns(data)
                 for reader in self.source.readers:
-                    read = partial(self._read, reader, data)
+                    read = partial(self._read, reader, data, now_ns)
                     self._states.add_unread(reader.body_name, stamp_ns, read, now_ns=now_ns)
                 return
             msg = deserialize_message(data, self._msg_type)
             check_numbers(msg)
         except (ContactDynamicsError, RuntimeError) as error:  # bytes that are no message raise the latter
-            self._refuse(error, data, *self.source.readers)
+            self._refuse(error, data, *self.source.readers, now_ns=now_ns)
             return
         for reader in self.source.readers:
             self._keep(reader, msg, now_ns=now_ns, taken=taken)
@@ -194,7 +194,7 @@ class StateTopic:
                 self._examined_ns, self._length = taken.received_ns, len(taken.data)
                 self._frame = _leading_frame(taken.data)
         except ContactDynamicsError as error:
-            self._refuse(error, taken.data, reader)
+            self._refuse(error, taken.data, reader, now_ns=now_ns)
 
     def _is_as_before(self, taken: Taken) -> bool:
         """Tell whether a message looks like the one that was examined a moment ago."""
@@ -205,7 +205,7 @@ class StateTopic:
             and 0 <= taken.received_ns - self._examined_ns < _EXAMINE_EVERY_NS
         )
 
-    def _read(self, reader: BodyReader, data: bytes) -> KnownState | None:
+    def _read(self, reader: BodyReader, data: bytes, came_ns: int | None) -> KnownState | None:
         """Return the state of one body that a message is, or None if it cannot be read."""
         try:
             msg = deserialize_message(data, self._msg_type)
@@ -214,7 +214,7 @@ class StateTopic:
             if state is not None:
                 check_believable(state_of(state))
         except (ContactDynamicsError, RuntimeError) as error:  # bytes that are no message raise the latter
-            self._refuse(error, data, reader, was_kept=True)
+            self._refuse(error, data, reader, now_ns=came_ns, was_kept=True)
             return None
         return state
 
@@ -223,6 +223,7 @@ class StateTopic:
         error: ContactDynamicsError | RuntimeError,
         data: bytes,
         *readers: BodyReader,
+        now_ns: int | None,
         was_kept: bool = False,
     ) -> None:
         """Tell of a message that is refused, and note it for those who ask about the bodies."""
@@ -231,7 +232,7 @@ class StateTopic:
         is_message = isinstance(error, ContactDynamicsError)
         reason = error if is_message else no_message(data, self.type_name)
         for reader in readers:
-            self._states.refuse(reader.body_name, reason, was_kept=was_kept)
+            self._states.refuse(reader.body_name, reason, was_kept=was_kept, now_ns=now_ns)
 
 
 def _leading_frame(data: bytes) -> bytes:

@@ -37,8 +37,10 @@ class Arrivals:
         old: How many were too old for a question about now when they came.
         age: s. How old the last of these was.
         reason: Why the last one that was rejected was, in words.
+        rejected_ns: When that was, ns by the clock of the stamps, or None if that is not known.
         newest_is_rejected: Whether none was kept since.
-        fate: What happened to those that are not kept, or to the last of them, in words.
+        discarded: When those that were kept were discarded, in words. It is empty if the last was rejected.
+        expected: What to say where none came.
     """
 
     came: int = 0
@@ -46,31 +48,51 @@ class Arrivals:
     old: int = 0
     age: float = 0.0
     reason: str = ""
+    rejected_ns: int | None = None
     newest_is_rejected: bool = False
-    fate: str = "they could not be read"
+    discarded: str = ""
+    expected: str = "none was published yet"
 
-    def __str__(self) -> str:
-        """Return in words why there is no state."""
+    def why_none(self, now_ns: int | None) -> str:
+        """Return in words why there is no state at the present time, ns."""
         if not self.came:
-            return "none was published yet"
-        return f"none of {self.came} messages was kept: {self.fate}"
+            return self.expected
+        fate = "they could not be read"
+        if self.discarded:
+            fate = f"they were discarded when {self.discarded}"
+        elif self.reason:
+            fate = f"the last was rejected{self._ago(now_ns)} because {self.reason}"
+        return f"none of {self.came} messages was kept: {fate}"
+
+    def why_old(self, now_ns: int) -> str:
+        """Return in words what became of states since the newest that is kept, or nothing if none came."""
+        if not self.newest_is_rejected:
+            return ""
+        return f"; states that came since were rejected, the last{self._ago(now_ns)} because {self.reason}"
+
+    def _ago(self, now_ns: int | None) -> str:
+        """Return how long ago the last one was rejected, which may have been by a program that has ended."""
+        if now_ns is None or self.rejected_ns is None:
+            return ""
+        return f" {to_seconds(now_ns - self.rejected_ns):.1f} s ago"
 
     def keep(self) -> None:
         """Note a state that came and is kept."""
         self.came += 1
         self.newest_is_rejected = False
 
-    def refuse(self, reason: object, *, was_kept: bool) -> None:
+    def refuse(self, reason: object, *, was_kept: bool, now_ns: int | None) -> None:
         """Note a state that came and was not kept, or that was counted and kept, and cannot be read."""
         self.came += not was_kept
         self.rejected += 1
         self.reason = str(reason)
+        self.rejected_ns = now_ns
         self.newest_is_rejected = True
-        self.fate = f"the last was rejected because {reason}"
+        self.discarded = ""
 
     def throw_away(self, reason: str) -> None:
         """Note that states that were kept are not any more."""
-        self.fate = f"they were discarded when {reason}"
+        self.discarded = reason
 
 
 FUTURE_TOLERANCE: Final = 0.5
@@ -141,9 +163,18 @@ class StateStore:
         self._future_tolerance_ns = to_ns(check_not_negative("future_tolerance", future_tolerance))
         self._max_states = check_whole("max_states", max_states, 1)
 
-    def refuse(self, body_name: str, reason: object, *, was_kept: bool = False) -> None:
-        """Note, for whoever asks and finds none, that a state is not kept, or was kept and cannot be read."""
-        self._arrivals[body_name].refuse(reason, was_kept=was_kept)
+    def refuse(
+        self, body_name: str, reason: object, *, was_kept: bool = False, now_ns: int | None = None
+    ) -> None:
+        """Note, for whoever asks and finds none, that a state is not kept, or was kept and cannot be read.
+
+        ``now_ns`` is the time when it came, ns, if that is known.
+        """
+        self._arrivals[body_name].refuse(reason, was_kept=was_kept, now_ns=now_ns)
+
+    def expect(self, body_name: str, expected: str) -> None:
+        """Note, for whoever asks before a state of a body came, where its states are expected."""
+        self._arrivals[body_name].expected = expected
 
     def arrivals(self, body_name: str) -> Arrivals:
         """Return what became of the states of a body that came."""
@@ -173,7 +204,7 @@ class StateStore:
         track = self._tracks.get(body_name, _Track())
         state = track.last(len(track.stamps))
         if state is None:
-            message = f"state of {body_name!r}: {self.arrivals(body_name)}"
+            message = f"state of {body_name!r}: {self.arrivals(body_name).why_none(now_ns)}"
             raise NoStateError(message)
         return state if now_ns is None else self._fresh(body_name, state, now_ns)
 
@@ -202,8 +233,8 @@ class StateStore:
         earlier = track.last(bisect_right(track.stamps, stamp_ns))
         if earlier is None:
             oldest = track.first(0)
-            arrivals = self.arrivals(body_name)
-            kept = str(arrivals) if oldest is None else f"the oldest kept has {oldest.stamp_ns} ns"
+            none = self.arrivals(body_name).why_none(now_ns)
+            kept = none if oldest is None else f"the oldest kept has {oldest.stamp_ns} ns"
             message = f"state of {body_name!r} at {stamp_ns} ns: {kept}"
             raise NoStateError(message)
         if earlier.stamp_ns == stamp_ns:
@@ -307,10 +338,7 @@ class StateStore:
                 f"state of {body_name!r}: the newest must be at most {to_seconds(self._timeout_ns):g} s old "
                 f"(state_timeout), got {to_seconds(age_ns):.3f} s"
             )
-            arrivals = self.arrivals(body_name)
-            if arrivals.newest_is_rejected:
-                message += f"; states that came since were rejected, the last because {arrivals.reason}"
-            raise StaleStateError(message)
+            raise StaleStateError(message + self.arrivals(body_name).why_old(asked_ns))
         return state
 
 

@@ -15,7 +15,7 @@ from contact_dynamics.nodes.parameter_event import changed_values
 from contact_dynamics.nodes.parameters import read_server_parameters
 from contact_dynamics.nodes.reconfiguring import CONFIGURED_ANEW, bodies_read_otherwise
 from contact_dynamics.nodes.run_record import LoggedParameters
-from contact_dynamics.nodes.state_sources import no_message, state_sources
+from contact_dynamics.nodes.state_sources import expected, no_message, state_sources
 from contact_dynamics.questions.context import Context
 from contact_dynamics.questions.extent import check_believable
 from contact_dynamics.questions.services import service_of_type
@@ -131,7 +131,8 @@ class ServerAgain:
         try:
             decoded = decode_without_ros(message)
         except ContactDynamicsError as error:
-            self._refuse(message.topic, body_name, error, no_message(message.data, message.type_name))
+            told: Exception = no_message(message.data, message.type_name)
+            self._refuse(message.topic, body_name, error, told, now_ns)
             return None
         try:
             check_numbers(decoded)
@@ -142,13 +143,15 @@ class ServerAgain:
             self._states.add(body_name, state, now_ns=now_ns)
         except ContactDynamicsError as error:
             told = in_fields(error)
-            self._refuse(message.topic, body_name, told, told)
+            self._refuse(message.topic, body_name, told, told, now_ns)
             return None
         return body_name, state_of(state)
 
-    def _refuse(self, topic: str, body_name: str, error: Exception, said_by_server: Exception) -> None:
+    def _refuse(
+        self, topic: str, body_name: str, error: Exception, said_by_server: Exception, now_ns: int | None
+    ) -> None:
         self.refused.setdefault(topic, Refused(reason=str(error))).count += 1
-        self._states.refuse(body_name, said_by_server)
+        self._states.refuse(body_name, said_by_server, now_ns=now_ns)
 
     def context_at(self, asked_ns: int) -> Context:
         """Return what is known at a time, ns by the clock of the states."""
@@ -218,6 +221,8 @@ class ServerAgain:
     def _find_sources(self) -> None:
         sources = state_sources(self._parameters, static=self._static)
         self._sources = {each.full_name: each.readers for each in sources}
+        for body in self._parameters.sources:
+            self._states.expect(body.body_name, expected(body))
 
     def _tick(self, clock_ns: int) -> None:
         if clock_ns < self._clock_ns:  # the server forgets all states when its clock is set back

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
@@ -12,6 +13,9 @@ from contact_dynamics.recording.message_types import PRIMITIVES, PYTHON_TYPES, F
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
+
+_PUBLISHERS: Final = re.compile(r" \(\d+ publishers?\)")
+"""In a message: how many publishers there were, which no log has. It is not compared either."""
 
 MEASURED: Final = frozenset({"computation_time"})
 """These fields of a response say how the answer was made, not what it is. They are not compared."""
@@ -61,7 +65,7 @@ def _of_one(field: Field, name: str, ours: Any, theirs: Any) -> Iterator[Differe
     if field.type_name in PRIMITIVES:
         yield from _of_numbers(field, name, [ours], [theirs], is_array=False)
     elif field.type_name == "string":
-        if ours != theirs:
+        if _PUBLISHERS.sub("", ours) != _PUBLISHERS.sub("", theirs):
             yield Difference(field=name, logged=ours, recomputed=theirs, size=math.inf)
     else:
         yield from differences(ours, theirs, path=name)

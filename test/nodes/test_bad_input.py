@@ -216,7 +216,12 @@ CASES = [
         "INVALID_FIELD",
         "state.covariance must be ..., got none",
     ),
-    (PredictImpact, put("other_body_name", "brick"), "NO_STATE", "state of 'brick': none was published yet"),
+    (
+        PredictImpact,
+        put("other_body_name", "brick"),
+        "NO_STATE",
+        "none was published yet on /brick/odometry (0 pub",
+    ),
     (PredictImpact, put("other_body_name", "cat"), "UNKNOWN_BODY", "got 'cat'"),
     (PredictImpact, put("other_inertia.m", -1.0), "INVALID_FIELD", "other_inertia.m must be ..., got -1.0"),
     (PredictImpact, put("other_inertia.m", 1.0), "INVALID_FIELD", "positive definite"),
@@ -374,7 +379,7 @@ def test_no_state_published_yet(client: Client, service: Any) -> None:
         request.times = [0.0]
     answer = client.ask(request)
     assert answer.status == answer.NO_STATE
-    assert "state of 'brick': none was published yet" in answer.message
+    assert "state of 'brick': none was published yet on /brick/odometry (0 publishers)" in answer.message
 
 
 @pytest.fixture

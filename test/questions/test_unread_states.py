@@ -135,6 +135,8 @@ def test_a_state_that_is_too_old_says_whether_newer_ones_were_rejected() -> None
         "the newest must be at most 1 s old (state_timeout), got 2.000 s; "
         "states that came since were rejected, the last because header.frame_id must be 'world', got 'map'"
     )
+    store.refuse("ball", "it is NaN", now_ns=1_500_000_000)
+    assert stale(store, now_ns=8_000_000_000).endswith("were rejected, the last 6.5 s ago because it is NaN")
     store.add("ball", state(2))
     assert "rejected" not in stale(store, now_ns=2_000_000_000)
     store.add_unread("ball", 3, lambda: store.refuse("ball", "it is NaN", was_kept=True))
