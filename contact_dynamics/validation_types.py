@@ -165,7 +165,9 @@ def _refuse_places(
     words = f"{function.__qualname__} got {given} argument{'s' if given != 1 else ''} by place"
     words += f", and {twice[0]} by name too" if twice else ""
     also = f", and by name only {', '.join(by_name)}" if by_name else ""
-    raise UnknownArgumentError(f"{words}. It takes {', '.join(by_place)} in this order{also}")
+    order = f"{by_place[0]}{_meaning(function, by_place[0])}" if len(by_place) == 1 else ""
+    order = order or f"{', '.join(by_place)} in this order"
+    raise UnknownArgumentError(f"{words}. It takes {order}{also}")
 
 
 def checks_fields(post_init: Callable[[Any], None], annotations: Mapping[str, str]) -> Callable[[Any], None]:
@@ -217,8 +219,7 @@ def refuse_unknown(called: Callable[..., object], name: str, allowed: Collection
     guesses += difflib.get_close_matches(name, known, n=1)
     words = f"{called.__qualname__} has no argument {name!r}"
     if guesses:
-        meaning = re.search(rf"^\s*{guesses[0]}: (.+?)\.?$", inspect.getdoc(called) or "", re.MULTILINE)
-        words += f", did you mean {guesses[0]}{f' ({meaning[1]})' if meaning else ''}?"
+        words += f", did you mean {guesses[0]}{_meaning(called, guesses[0])}?"
     else:
         words += "."
     hint = getattr(called, "HINT_IF_UNKNOWN", "")
@@ -251,6 +252,12 @@ def _fields_of(record: object) -> tuple[dataclasses.Field[Any], ...]:
 
 def _shown_fields(record: object) -> list[str]:
     return [one.name for one in _fields_of(record) if one.repr and not one.name.startswith("_")]
+
+
+def _meaning(called: Callable[..., object], name: str) -> str:
+    """Return the first line of what the help of a call says of an argument, in brackets, or nothing."""
+    meaning = re.search(rf"^\s*{name}: (.+?)\.?$", inspect.getdoc(called) or "", re.MULTILINE)
+    return f" ({meaning[1]})" if meaning else ""
 
 
 def check_type(field: str, value: object, expected: Expected) -> None:

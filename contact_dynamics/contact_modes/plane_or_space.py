@@ -47,6 +47,9 @@ def contact_modes(
 ) -> PlanarModeAnswer | SpatialModeAnswer:
     """Return the verdict on a contact set and all consistent modes, with accelerations and forces.
 
+    Args:
+        problem: The question, such as SpatialContactProblem.of(body, state, world, force_W=push).
+
     Raises:
         TooLargeError: the problem is in space, and more contacts touch than are answered, or the search takes
             too many trials.
