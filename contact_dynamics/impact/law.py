@@ -23,7 +23,12 @@ if TYPE_CHECKING:
 
 
 class RestitutionLaw(NamedInt):
-    """How the coefficient e decides where restitution ends."""
+    """How the coefficient e decides where restitution ends.
+
+    The three laws give the same answer where the path is straight: without friction, or where the contact
+    slides in one direction throughout or sticks throughout, as it does for a body that falls without spin.
+    They differ where sliding stops or turns.
+    """
 
     POISSON = 0
     """e is the normal impulse of restitution over that of compression (lecture 27, eq. 2; Routh 1860)."""

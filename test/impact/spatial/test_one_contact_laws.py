@@ -7,10 +7,8 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from contact_dynamics.impact import (
-    PathEvent,
-    RestitutionLaw,
-)
+from contact_dynamics.contact.contact import Contact
+from contact_dynamics.impact import PathEvent, RestitutionLaw, spatial_impact
 from contact_dynamics.rigid_body.body import BodyState, MassProperties, kinetic_energy
 from impact.spatial.drawn_problem import IDENTITY, random_problem, random_rotation, solve
 
@@ -119,3 +117,25 @@ def test_mirrored_problems_have_mirrored_answers_to_the_last_bit(law: Restitutio
     assert other.impulse_W.tolist() == (answer.impulse_W * mirror).tolist()
     assert other.state.v_WB_W.tolist() == (answer.state.v_WB_W * mirror).tolist()
     assert other.state.w_WB_W.tolist() == (-answer.state.w_WB_W * mirror).tolist()
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_the_laws_agree_where_a_body_falls_without_spin(seed: int) -> None:
+    """The contact then slides in one direction throughout, or sticks throughout: the path is straight."""
+    rng = np.random.default_rng(seed)
+    q = rng.normal(size=4)
+    second_moments = rng.uniform(0.05, 2.0, size=3)
+    body = MassProperties(mass=1.3, I_B=np.diag(second_moments.sum() - second_moments))
+    state = BodyState(
+        p_WB_W=np.zeros(3), q_WB=q / np.linalg.norm(q), v_WB_W=[0.0, 0.0, -2.0], w_WB_W=np.zeros(3)
+    )
+    arm = rng.normal(size=3)
+    contact = Contact(
+        p_WC_W=[arm[0], arm[1], -abs(arm[2])],
+        normal_W=[0.0, 0.0, 1.0],
+        friction=float(rng.uniform(0.0, 1.0)),
+        restitution=float(rng.uniform(0.0, 1.0)),
+    )
+    poisson, *others = (spatial_impact(body, state, contact, restitution_law=law) for law in RestitutionLaw)
+    for other in others:
+        np.testing.assert_allclose(other.impulse_W, poisson.impulse_W, rtol=1e-12, atol=1e-12)
