@@ -32,6 +32,7 @@ from contact_dynamics.nodes.topic_faults import TopicFaults
 from contact_dynamics.questions.context import Context
 from contact_dynamics.questions.services import SERVICES
 from contact_dynamics.questions.state_store import StateStore
+from contact_dynamics.questions.twist_axes import TwistAxes
 from contact_dynamics.questions.workers import Workers
 from msg_adapters.path import path_from_trajectory
 from msg_adapters.transforms import TransformTree
@@ -122,6 +123,7 @@ class Serving:
         self._bodies = {
             body.body_name: BodyWatch(body, by_name) for body in parameters.sources if body.sources
         }
+        self._twist_axes = _watch_twists(parameters)
         self._log = Log(
             parameters.log_directory if parameters.log else None,
             run=run,
@@ -206,6 +208,7 @@ class Serving:
             for topic in self._topics:
                 topic.source = sources[topic.name]
         self._parameters = parameters
+        self._twist_axes = _watch_twists(parameters)
         self._faults.limits = parameters.fault_limits
         for front in self._fronts:
             front.gone.gone_for = parameters.client_gone_for
@@ -291,6 +294,12 @@ class Serving:
         for name, body in self._bodies.items():
             silent_after = self._parameters.fault_limits.silent_after
             present += body.look(self._states.arrivals(name), silent_after=silent_after, awake_for=awake_for)
+        for topic, axes in self._twist_axes:
+            speed = axes.look(self._states)
+            if speed is not None:
+                found = Situation.TWIST_AXES.present(topic=topic, speed=speed)
+                self._faults.add(topic, "twist in other axes", 1, found.text.removeprefix(f"{topic}: "))
+                present.append(found)
         if self._clock_publishers is not None:
             self._clock_publishers.look()
             if present_ns(self._node) is None:
@@ -371,3 +380,12 @@ class Serving:
         is_path = trajectory is not None and response.status == response.OK
         if is_path and self._path.get_subscription_count() > 0:
             self._path.publish(path_from_trajectory(trajectory))
+
+
+def _watch_twists(parameters: ServerParameters) -> list[tuple[str, TwistAxes]]:
+    """Return the topics that have a body's only odometry, and a watch on its twists for each."""
+    return [
+        (body.sources[0].topics[0].full_name, TwistAxes(body.body_name, known.p_FB_F))
+        for body, known in zip(parameters.sources, parameters.world.bodies, strict=True)
+        if [source.adapter for source in body.sources] == ["odometry"]
+    ]

@@ -125,6 +125,13 @@ class Situation(Enum):
         "{topic}: {publishers} publishers send states of one body",
         "test_diagnostics.py::test_a_second_publisher_of_a_body",
     )
+    TWIST_AXES = _Row(
+        Part.STATES,
+        Level.WARN,
+        "{topic}: the twist disagrees with the poses by {speed:.1f} m/s; in nav_msgs/Odometry it is in the "
+        "axes of child_frame_id",
+        "test_diagnostics.py::test_a_twist_in_the_axes_of_the_world",
+    )
     NO_CLOCK = _Row(
         Part.STATES,
         Level.WARN,

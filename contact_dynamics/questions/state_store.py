@@ -251,6 +251,32 @@ class StateStore:
             raise StaleStateError(message)
         return earlier, later
 
+    def pairs(
+        self, body_name: str, *, after_ns: int, apart: float, count: int
+    ) -> tuple[list[tuple[KnownState, KnownState]], int]:
+        """Return a few pairs of states, spread over those that came after a stamp, and the newest stamp.
+
+        No other states are read.
+
+        Args:
+            body_name: the body.
+            after_ns: the stamp, ns, which the first state of a pair may have too.
+            apart: s. The second state of a pair is the next one that is this much later.
+            count: how many pairs at most.
+        """
+        track = self._tracks.get(body_name, _Track())
+        stamps = track.stamps
+        begin = max(0, bisect_right(stamps, after_ns) - 1)
+        firsts = range(begin, len(stamps) - 1, max(1, (len(stamps) - 1 - begin) // count))[:count]
+        seconds = [bisect_left(stamps, stamps[first] + to_ns(apart)) for first in firsts]
+        found = [
+            (track.at(first), track.at(second))
+            for first, second in zip(firsts, seconds, strict=True)
+            if second < len(stamps)
+        ]
+        pairs = [(one, other) for one, other in found if one is not None and other is not None]
+        return pairs, stamps[-1] if stamps else 0
+
     def count(self, body_name: str, stamp_ns: int | None, seconds: float) -> int:
         """Return how many states a window has up to a stamp, or to the newest state; none of them is read."""
         stamps = self._tracks.get(body_name, _Track()).stamps
@@ -364,7 +390,7 @@ class _Track:
         """Return the last state before an index that can be read; forget those that cannot."""
         while end > 0:
             end -= 1
-            state = self._read(end)
+            state = self.at(end)
             if state is not None:
                 return state
             del self.stamps[end], self._states[end]
@@ -373,7 +399,7 @@ class _Track:
     def first(self, begin: int) -> KnownState | None:
         """Return the first state from an index on that can be read; forget those that cannot."""
         while begin < len(self.stamps):
-            state = self._read(begin)
+            state = self.at(begin)
             if state is not None:
                 return state
             del self.stamps[begin], self._states[begin]
@@ -382,7 +408,7 @@ class _Track:
     def between(self, first_ns: int, last_ns: int) -> list[KnownState]:
         """Return the states from one stamp to another, both included; forget those that cannot be read."""
         begin, end = bisect_left(self.stamps, first_ns), bisect_right(self.stamps, last_ns)
-        found = [self._read(index) for index in range(begin, end)]
+        found = [self.at(index) for index in range(begin, end)]
         readable = [state for state in found if state is not None]
         if len(readable) < len(found):
             self._states[begin:end] = readable
@@ -398,7 +424,8 @@ class _Track:
         kept = bisect_right(self.stamps, latest_ns)
         del self.stamps[kept:], self._states[kept:]
 
-    def _read(self, index: int) -> KnownState | None:
+    def at(self, index: int) -> KnownState | None:
+        """Return the state at an index, or None if it cannot be read."""
         state = self._states[index]
         if isinstance(state, (BodyState, UncertainState)):
             return state

@@ -21,7 +21,7 @@ from rosgraph_msgs.msg import Clock
 
 from contact_dynamics.nodes.situations import Part, Situation
 from contact_dynamics_interfaces.srv import PredictImpact, PredictTumbling
-from msg_adapters.stamps import stamp_to_msg
+from msg_adapters.stamps import stamp_ns_from_msg, stamp_to_msg
 from nodes.monitor import Monitor, monitored, odometry
 from running_server import ROOT, process
 
@@ -99,6 +99,23 @@ def test_states_that_are_rejected_now_and_then(monitor: Monitor, states: Any) ->
 def test_states_that_are_old_when_they_come(monitor: Monitor, states: Any) -> None:
     monitor.wait(Situation.OLD, "by 3600.", work=lambda: states.publish(odometry(ahead_ns=-HOUR_NS)))
     monitor.wait_until_over(Situation.OLD, "too old", work=lambda: states.publish(odometry()))
+
+
+def test_a_twist_in_the_axes_of_the_world(monitor: Monitor, states: Any) -> None:
+    """The body is turned by 90 degrees about z, and moves along x."""
+    begun_ns = time.time_ns()
+
+    def publish(*, is_right: bool) -> None:
+        msg = odometry()
+        turn, velocity = msg.pose.pose.orientation, msg.twist.twist.linear
+        turn.z = turn.w = math.sqrt(0.5)
+        msg.pose.pose.position.x = 3.0 * (stamp_ns_from_msg(msg.header.stamp) - begun_ns) / 1e9
+        velocity.x, velocity.y = (0.0, -3.0) if is_right else (3.0, 0.0)
+        states.publish(msg)
+
+    words = "/brick/odometry: the twist disagrees with the poses by 4.2 m/s"
+    monitor.wait(Situation.TWIST_AXES, words, work=lambda: publish(is_right=False))
+    monitor.wait_until_over(Situation.TWIST_AXES, "the twist disagrees", work=lambda: publish(is_right=True))
 
 
 def test_publishers_that_do_not_match(monitor: Monitor, states: Any) -> None:
