@@ -61,6 +61,8 @@ from contact_dynamics.validation import FloatArray, check_array, check_positive,
 from contact_dynamics.world import Body
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import ArrayLike
 
     from contact_dynamics.contact.noise import NoisyState
@@ -235,8 +237,8 @@ class ContactModeAnswer(Answer):
             plane.
         wrench_facets: Number of edges of each friction pyramid in the wrench sets in space, or zero if they
             were not asked for.
-        warnings: What makes the answer doubtful, in words: a contact outside of the body's shape, or
-            contacts that were taken as flush because the verdict is undecided otherwise.
+        warnings: What makes the answer doubtful, in words: a contact outside of the body's shape, contacts
+            that were taken as flush because the verdict is undecided otherwise, or margins that are NaN.
     """
 
     body_name: str
@@ -457,6 +459,15 @@ def _planar_answer(
     )
 
 
+def _unknown_margins(margins: Sequence[SpatialModeMargin]) -> list[str]:
+    """Return a warning if margins are NaN, since a NaN alone does not say why."""
+    modes = [each.mode for each in margins if math.isnan(each.margin)]
+    if not modes:
+        return []
+    why = "friction pyramids do not hold the mode, or it is open how long a contact slides that begins to"
+    return [f"the margin of {', '.join(modes)} is not known: {why}; more friction_facets may help"]
+
+
 def _spatial_answer(question: ContactModeQuestion, case: ModeCase, reason: str) -> ContactModeAnswer:
     subject, state, contacts = case.subject, case.subject.state, case.contacts
     asked = replace(case.in_space, uncertainty=question.uncertainty)
@@ -482,7 +493,10 @@ def _spatial_answer(question: ContactModeQuestion, case: ModeCase, reason: str) 
         verdict=found.verdict,
         undecided=found.undecided,
         undecided_modes=found.undecided_modes,
-        warnings=(_TAKEN_AS_FLUSH,) if found.flush_within > FLUSH else (),
+        warnings=(
+            *([_TAKEN_AS_FLUSH] if found.flush_within > FLUSH else []),
+            *_unknown_margins(margins or ()),
+        ),
         within=found.within,
         geometry_margins=geometry_margins(asked, found) if question.include_geometry_margins else None,
         modes=found.modes,

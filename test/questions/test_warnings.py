@@ -76,6 +76,34 @@ def test_two_feet_in_a_plane_two_bodies_and_strikes_in_time_warn_too() -> None:
     assert "does not decide their order" in warning
 
 
+def test_a_margin_that_is_not_known_is_a_warning() -> None:
+    """Of twelve feet that begin to slide, nobody knows how long each slides on."""
+    angles = 2.0 * np.pi * np.arange(12) / 12
+    feet = ContactSet(
+        p_WC_W=np.column_stack([0.04 * np.cos(angles), 0.04 * np.sin(angles), np.zeros(12)]),
+        normals_W=[0, 0, 1],
+        frictions=0.4,
+    )
+    state = replace(FLAT, v_WB_W=[0, 0, 0])
+    pushed = ContactModeQuestion(
+        body="cube",
+        state=state,
+        contacts=feet,
+        force_W=[10, 0, 0],
+        problem=Problem.SPATIAL,
+        include_margins=True,
+    )
+    answer = modes_questions.answer(pushed, KNOWN)
+    assert answer.margins is not None
+    assert np.isnan(answer.margins[0].margin)
+    (warning,) = answer.warnings
+    assert warning.startswith("the margin of cccccccccccc is not known: ")
+    held = modes_questions.answer(replace(pushed, force_W=[0, 0, 0]), KNOWN)
+    assert held.margins is not None
+    assert np.isfinite(held.margins[0].margin)
+    assert held.warnings == ()
+
+
 def test_orders_that_lead_to_one_outcome_are_no_warning() -> None:
     """A level elastic rod on its two ends rises level in every order (`test_level_rod_on_two_supports`)."""
     rod = Body(name="rod", mass_properties=MassProperties(mass=2.0, I_B=np.diag([1e-4, 2 / 3, 2 / 3])))
