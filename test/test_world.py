@@ -96,7 +96,7 @@ def test_the_tolerance_decides_what_touches(gap: float, tolerance: float) -> Non
     state = at((0.0, 0.0, 3.0 + gap))
     if height < -max(tolerance, DISTANCE_TOLERANCE):
         with pytest.raises(
-            InvalidFieldError, match=r"must be at most the distance_tolerance.*, got .*deep in 'floor'"
+            InvalidFieldError, match=r"must be at most .*\(distance_tolerance\), got .*deep in 'floor'"
         ):
             find_contacts(BOX, state, World(surfaces=(FLOOR,)), distance_tolerance=tolerance)
         return

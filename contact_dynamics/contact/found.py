@@ -86,7 +86,8 @@ def check_not_inside(
             raise InvalidFieldError(
                 "state",
                 f"{body.name!r} {-gap:.6g} m deep in {surface.name!r}",
-                f"at most the distance_tolerance of {allowed:g} m, which may be larger for measured poses",
+                f"at most {allowed:g} m deep in a surface (distance_tolerance)",
+                hint="measured poses need a larger distance_tolerance",
             )
 
 

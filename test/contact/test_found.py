@@ -142,7 +142,7 @@ def test_the_tolerance_decides_what_touches(gap: float, tolerance: float) -> Non
         state = at((0.0, 0.0, height + gap))
         if height - (height + gap) > max(tolerance, 1e-6):
             with pytest.raises(
-                InvalidFieldError, match=r"must be at most the distance_tol.*, got .*m deep in 'floor'"
+                InvalidFieldError, match=r"must be at most .*\(distance_tolerance\), got .*m deep in 'floor'"
             ):
                 find_contacts(body(shape), state, World(surfaces=(FLOOR,)), distance_tolerance=tolerance)
             continue

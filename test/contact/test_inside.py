@@ -83,7 +83,8 @@ FINDERS: dict[str, Callable[[float, float], object]] = {
 @pytest.mark.parametrize("name", FINDERS)
 def test_a_body_in_the_floor_is_an_error_that_names_the_depth(name: str) -> None:
     expected = (
-        r"^state must be at most the distance_tolerance of 0\.001 m.*, got 'cube' 0\.02 m deep in 'floor'"
+        r"^state must be at most 0\.001 m deep in a surface \(distance_tolerance\), "
+        r"got 'cube' 0\.02 m deep in 'floor' \(measured poses need a larger distance_tolerance\)$"
     )
     with pytest.raises(InvalidFieldError, match=expected):
         FINDERS[name](0.02, 0.001)
