@@ -267,7 +267,6 @@ def run_evidence() -> None:
             contacts=feet,
             force_W=WEIGHT * np.array([x, y, -1.0]),
             torque_W=WEIGHT * np.array(torque),
-            friction_facets=16,
         )
         ask = partial(mode_margins, problem)
         start = time.thread_time()  # once, because some take seconds

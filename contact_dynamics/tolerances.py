@@ -436,8 +436,19 @@ BEHIND_BOUNDARY: Final = 1e-5
 """Relative to the wrench. The search for neighbouring modes looks this far behind a boundary of a mode's
 wrenches, a thousand times `STRICT`."""
 
-ALONG_BOUNDARY: Final = 1e-3
-"""Relative to the wrench. The search for neighbouring modes keeps this far from the boundary's borders."""
+NEAREST_HELP: Final = 1e-14
+"""A cosine, between a force and the remainder of a sum that is nearest to a wrench. A smaller one counts as
+rounding. It is so small because forces may be many times the wrench in a metric that makes torques dear."""
+
+NEAREST_REACHED: Final = 1e-11
+"""Relative to the wrench. A sum this near to it counts as the wrench itself."""
+
+STEP_BEHIND: Final = 1e-3
+"""Relative to the wrench. A wrench this far behind a boundary is projected on a mode's wrenches, or as far as
+the boundary is if that is more. The nearer it is, the fewer steps lead to the nearest boundary."""
+
+MARGIN_SETTLED: Final = 1e-9
+"""Relative. Steps to a boundary end when they bring it nearer by less."""
 
 ON_BOUNDARY: Final = 10.0 * ROW_TOLERANCE
 """For unit rows. A wrench this far outside of a cone still counts as on its boundary."""

@@ -25,7 +25,8 @@ whole box, `excluded` that no other does, and `geometry_margins` searches for th
   sliding. With mechanics, all combinations of `options` are searched (`search`, `pyramid_programs`),
   and shown with exact friction (`exact_friction`) and shared forces (`least_forces`). `refusals` says why
   others are refused. The wrenches of a mode (`wrenches`, on a `cone`) come in ways of sliding
-  (`ways_of_sliding`), and so do margins (`margins_of_sliding`).
+  (`ways_of_sliding`). Margins are distances to sums of round cones (`round_sums`), also of modes in which
+  contacts begin to slide (`margins_of_sliding`).
 """
 
 from contact_dynamics.contact_modes.letters import Letter

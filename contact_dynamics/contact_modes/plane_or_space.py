@@ -90,9 +90,8 @@ def mode_margins(
     """Return how far the applied wrench is from leaving each of its consistent modes, in their order.
 
     The margin is the size of the least change of the wrench that leaves the mode, N, where the size is the
-    root of |f|^2 + |torque / length|^2. No margin is returned if a contact approaches. In space, the margins
-    of modes that stick leave out the part 1 - cos(pi / friction_facets) of friction. This is 8 % with the 8
-    facets that a problem has by default, and 2 % with 16.
+    root of |f|^2 + |torque / length|^2. No margin is returned if a contact approaches. In space, margins are
+    those of round cones, and NaN for some modes in which contacts begin to slide (`spatial_mode_margins`).
 
     Args:
         problem: The question.
@@ -102,7 +101,8 @@ def mode_margins(
 
     Raises:
         InvalidFieldError: ``answer`` is of another kind of problem, or the length is not > 0.
-        TooLargeError: as for `contact_modes`, or the friction pyramids in space have more than 128 edges.
+        UndecidedError: contacts in space are so nearly the same that rounding decides the boundaries.
+        TooLargeError: as for `contact_modes`.
     """
     if isinstance(problem, PlanarContactProblem) and not isinstance(answer, SpatialModeAnswer):
         return planar_mode_margins(problem, answer, margin_length=margin_length)

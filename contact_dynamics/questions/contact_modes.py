@@ -233,8 +233,7 @@ class ContactModeAnswer(Answer):
         velocity_tolerance: m/s, the tolerance that was used.
         acceleration_tolerance: m/s^2, the tolerance that was used, or NaN in space.
         distance_tolerance: m, the tolerance that was used.
-        friction_facets: Number of edges of each friction pyramid in margins and statics, or zero in the
-            plane.
+        friction_facets: Number of edges of each friction pyramid in statics, or zero in the plane.
         wrench_facets: Number of edges of each friction pyramid in the wrench sets in space, or zero if they
             were not asked for.
         warnings: What makes the answer doubtful, in words: a contact outside of the body's shape, contacts

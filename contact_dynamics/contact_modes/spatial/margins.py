@@ -1,43 +1,69 @@
 """How far an applied wrench in space is from leaving its contact modes, and into which ones it would.
 
-The applied wrenches of a mode (`wrenches`) are a polyhedron in R^6, and its facets are the extreme rays of
-the dual cone. The margin is the distance to the nearest facet in a stated metric, as in the plane.
+The applied wrenches of a mode are a convex set in R^6 if no contact at rest begins to slide, or if those that
+do can slide in one direction only. The margin is the distance to the nearest boundary in a stated metric, as
+in the plane. Where contacts stick, the boundaries of pyramids inside their round cones (`wrenches`) come
+first, which are the extreme rays of the dual cone. From the nearest of them, steps lead to boundaries of the
+round cones: a wrench behind the boundary is projected on the set (`round_sums`), which gives a boundary that
+is no farther. A nearer one would have to lie outside of the pyramids.
 
-Where contacts stick, pyramids inside the round cones replace these. So the margin is never larger than the
-true one, and falls short of it by what at most the part 1 - cos(pi / facets) of friction contributes. Where
-all contacts that stay slide already, the margin is exact. Where contacts at rest begin to slide, their
-directions depend on the wrench, and the wrenches of the mode are a union of polyhedra (`margins_of_sliding`).
-There the margin is right to that part of friction, and NaN where it is not known.
+Other modes in which contacts at rest begin to slide have the margins of `margins_of_sliding`.
 """
 
 from __future__ import annotations
 
+import copy
 import math
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final, cast
 
 import numpy as np
 
-from contact_dynamics.contact_modes.result import ModeVerdict, verdict_on
-from contact_dynamics.contact_modes.spatial.answer import Considered, considered, found_by
+from contact_dynamics.contact_modes.letters import STICKS
+from contact_dynamics.contact_modes.result import ModeVerdict
+from contact_dynamics.contact_modes.spatial.answer import modes_of_case, spatial_contact_modes
 from contact_dynamics.contact_modes.spatial.exact_modes import letters_of
-from contact_dynamics.contact_modes.spatial.margins_of_sliding import begin_to_slide, union_margin
+from contact_dynamics.contact_modes.spatial.margins_of_sliding import (
+    directions_of,
+    least_change,
+)
 from contact_dynamics.contact_modes.spatial.problem import (
+    FRICTION_FACETS,
+    MAX_EDGES,
     SpatialCase,
     search_of,
-    search_of_few_edges,
     spatial_case,
 )
-from contact_dynamics.contact_modes.spatial.wrenches import Way, supports, wrench_generators
+from contact_dynamics.contact_modes.spatial.wrenches import (
+    HEIGHT_WEIGHT,
+    Way,
+    supports,
+    with_round_cones,
+    wrench_generators,
+)
 from contact_dynamics.records import Record
-from contact_dynamics.tolerances import BEYOND_MARGIN, ON_BOUNDARY, ROW_TOLERANCE
+from contact_dynamics.tolerances import BEYOND_MARGIN, MARGIN_SETTLED, ON_BOUNDARY, ROW_TOLERANCE, STEP_BEHIND
 from contact_dynamics.validation import check_size
 
 if TYPE_CHECKING:
     from contact_dynamics.contact_modes.spatial.problem import SpatialContactProblem
     from contact_dynamics.contact_modes.spatial.result import SpatialModeAnswer
+    from contact_dynamics.contact_modes.spatial.round_sums import RoundSum
     from contact_dynamics.contact_modes.spatial.search import Search
     from contact_dynamics.validation import FloatArray
+
+_FEW_FACETS: Final = 4
+"""The number of edges of a pyramid where contacts are many."""
+
+_MAX_STARTS: Final = 4
+"""Boundaries of the pyramids from which steps to boundaries of the round cones start."""
+
+_MAX_STEPS: Final = 20
+"""Steps from one of them. Three are enough where the nearest boundary is not nearly a sphere about the
+wrench."""
+
+_APART: Final = 0.9
+"""The cosine above which two boundaries count as neighbours, so that steps from one of them are enough."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -47,11 +73,10 @@ class SpatialModeMargin(Record):
     Attributes:
         mode: One letter for each contact.
         margin: N, the size of the least change that leaves the mode, in |f|^2 + |torque / length|^2. It is
-            infinite where no change does that, and NaN where it is unknown.
+            infinite where no change does that, and NaN where it is unknown (`spatial_mode_margins`).
         length: m, the length in that metric.
         change_W: (6,), N and N m, the least change itself, world axes; zero where there is none.
         verdict_beyond: The verdict just behind the boundary, or the present one where there is no boundary.
-            It is that of friction pyramids, and may depend on the number of facets.
         modes_beyond: The letters of the consistent modes there, each once.
     """
 
@@ -71,102 +96,153 @@ def spatial_mode_margins(
 ) -> tuple[SpatialModeMargin, ...]:
     """Return the margin of the wrench in each of its consistent modes, in the order of their answer.
 
-    There are none where a contact approaches.
+    There are none where a contact approaches. They do not depend on the problem's ``friction_facets``.
+
+    A margin is exact where no contact sticks or begins to slide. Where contacts stick, a boundary is at the
+    margin, and none is nearer than it would be if friction were smaller by 1 - cos(pi / 8), or by
+    1 - cos(pi / 4) if more than 16 contacts have friction. Where contacts begin to slide in directions that
+    depend on the wrench, the margin is proven from both sides: no smaller change leaves the mode, and behind
+    the boundary it is not consistent. Otherwise it is NaN: if the body moves already, if other contacts
+    stick, if several modes are consistent and contacts share loads, if contacts on a plane have more than
+    `margins_of_sliding.MAX_CORNERS` corners, or if the mode goes on behind the boundary that was found.
 
     Args:
-        problem: The question. With more facets, a margin of sticking is closer to that of the round cones.
-        answer: The answer to that question, if it is known.
+        problem: The question.
+        answer: The answer to that question, if it is known. It saves a search.
         margin_length: m, > 0. A torque is divided by it to be comparable with a force. If it is None, the
             length is the radius of gyration, the root mean square over the axes.
 
     Raises:
         InvalidFieldError: the length is not > 0.
-        TooLargeError: as for `spatial_contact_modes`, or more than `MAX_EDGES` edges of all pyramids.
+        UndecidedError: the contacts are so nearly the same that rounding decides the boundaries.
+        TooLargeError: as for `spatial_contact_modes`.
     """
-    body, wrench, friction_facets = problem.body, problem.wrench_W, problem.friction_facets
-    own = body.mean_radius_of_gyration
+    own = problem.body.mean_radius_of_gyration
     length = own if margin_length is None else check_size("margin_length", margin_length)
-    one = considered(problem)
-    if not isinstance(one, Considered):
+    if answer is None or answer.problem is not problem:
+        answer = spatial_contact_modes(problem)
+    if answer.approaching:
         return ()
-    case, within = one.case, one.within
-    search = search_of_few_edges(case, friction_facets)
+    present = answer if problem.sharpen else spatial_contact_modes(replace(problem, sharpen=True))
+    case = cast("SpatialCase", spatial_case(problem, within=answer.flush_within))
+    few = np.count_nonzero(case.contacts.frictions[case.touching]) * FRICTION_FACETS <= MAX_EDGES
+    search = search_of(case, FRICTION_FACETS if few else _FEW_FACETS)
     metric = np.array([1.0, 1.0, 1.0, length, length, length])
-    present = None if answer is None or not problem.sharpen else tuple(one.mode for one in answer.modes)
+    size = float(np.linalg.norm(problem.wrench_W / metric))
     margins = []
-    for mode in one.found.modes:
-        letters, beyond = letters_of(mode, case, search), None
-        if begin_to_slide(search, letters):
-            margin, way, beyond = union_margin(case, search, letters, metric, friction_facets)
+    for mode in answer.modes:
+        letters = letters_of(mode, case, search)
+        known = directions_of(case, search, letters, mode.tangential_directions_W[case.touching])
+        beyond = present
+        if known is not None:
+            margin, way = _nearest(case, search, letters, metric, known)
         else:
-            margin, way = _nearest(case, search, letters, metric)
-        if beyond is None and math.isfinite(margin):
-            beyond = _beyond(problem, mode.mode, margin, way, metric, within=within)
-        if beyond is None:
-            beyond = _modes_under(problem, within, wrench) if present is None else present
+            regular = mode.forces_unique and mode.motion_unique
+            alone = present.verdict == ModeVerdict.UNIQUE
+            margin, way = least_change(case, search, letters, metric, alone=alone, regular=regular)
+        if math.isfinite(margin):
+            step = (margin + BEYOND_MARGIN * max(margin, size)) * way * metric
+            beyond = _answer_under(problem, answer.flush_within, problem.wrench_W + step)
+            undecided = beyond.verdict == ModeVerdict.UNDECIDED
+            if known is None and (undecided or mode.mode in [one.mode for one in beyond.modes]):
+                margin, beyond = math.nan, present
         margins.append(
             SpatialModeMargin(
                 mode=mode.mode,
                 margin=margin,
                 length=length,
                 change_W=margin * way * metric if math.isfinite(margin) else np.zeros(6),
-                verdict_beyond=verdict_on(beyond),
-                modes_beyond=tuple(dict.fromkeys(beyond)),
+                verdict_beyond=beyond.verdict,
+                modes_beyond=tuple(dict.fromkeys(one.mode for one in beyond.modes)),
             )
         )
     return tuple(margins)
 
 
-def _beyond(
-    problem: SpatialContactProblem,
-    mode: str,
-    margin: float,
-    way: FloatArray,
-    metric: FloatArray,
-    *,
-    within: float,
-) -> tuple[str, ...]:
-    """Return the modes just behind the boundary that lies ``margin``, N, away, ``way`` in the metric."""
-    size = float(np.linalg.norm(problem.wrench_W / metric))
-    # A pyramid that turns as the wrench changes may hold a little longer, up to what the round cone holds.
-    rest = (1.0 / math.cos(math.pi / problem.friction_facets) - 1.0) * size
-    found: tuple[str, ...] = ()
-    for further in (0.0, rest):
-        step = margin + further + BEYOND_MARGIN * max(margin, size)
-        found = _modes_under(problem, within, problem.wrench_W + step * way * metric)
-        if mode not in found:
-            break
-    return found
+def _answer_under(problem: SpatialContactProblem, within: float, wrench_W: FloatArray) -> SpatialModeAnswer:
+    """Return the modes that another wrench brings about."""
+    other = replace(problem, force_W=wrench_W[:3], torque_W=wrench_W[3:], sharpen=True)
+    case = cast("SpatialCase", spatial_case(other, within=within))
+    return modes_of_case(other, case, search_of(case, FRICTION_FACETS))
 
 
-def _modes_under(problem: SpatialContactProblem, within: float, wrench_W: FloatArray) -> tuple[str, ...]:
-    """Return the modes that another wrench brings about with friction pyramids, which the margin uses too."""
-    other = replace(problem, force_W=wrench_W[:3], torque_W=wrench_W[3:])
-    case = spatial_case(other, within=within)
-    if not isinstance(case, SpatialCase):
-        return ()
-    found = found_by(case, search_of(case, problem.friction_facets), sharpen=True)
-    return tuple(mode.mode for mode in found)
-
-
-def _nearest(case: SpatialCase, search: Search, letters: str, metric: FloatArray) -> tuple[float, FloatArray]:
+def _nearest(
+    case: SpatialCase, search: Search, letters: str, metric: FloatArray, known: dict[int, FloatArray]
+) -> tuple[float, FloatArray]:
     """Return the distance, N, to the mode's nearest boundary and the direction to it, (6,), in the metric.
 
-    The distance is NaN if the pyramids do not hold the mode.
+    The distance is NaN if the wrench is outside.
+
+    Args:
+        case: The body with its contacts.
+        search: The search of that case.
+        letters: Those of its touching contacts.
+        metric: (6,), m, by which a wrench is divided: ones, then the length that torques are divided by.
+        known: The directions, (3,), in which contacts begin to slide.
     """
+    search = copy.copy(search)
+    search.pyramids = [
+        one._replace(edges=(of.normal - of.friction * known[i])[None, :], frame=None) if i in known else one
+        for i, (one, of) in enumerate(zip(search.pyramids, search.touching, strict=True))
+    ]
     motion = case.motion
     unit = motion.mass * motion.scale  # N; wrenches are divided by it, and torques by the length
-    ways = [Way(letter, -1) for letter in letters]
-    positive, zero = supports(wrench_generators(case, search, ways, metric))
-    target = np.append(motion.wrench / metric / unit, 1.0)
+    along = np.array([way @ search.touching[i].point for i, way in known.items()]).reshape(-1, 7)
+    generators = wrench_generators(case, search, [Way(letter, -1) for letter in letters], metric, along)
+    positive, zero = supports(generators)
     zero, positive = (rows[np.linalg.norm(rows[:, :6], axis=1) > ROW_TOLERANCE] for rows in (zero, positive))
     if len(zero):
         return 0.0, zero[0, :6] / float(np.linalg.norm(zero[0, :6]))
     if len(positive) == 0:
         return math.inf, np.zeros(6)
-    sizes = np.linalg.norm(positive[:, :6], axis=1)
-    depths = positive @ target / sizes
-    nearest = int(depths.argmin())
-    if depths[nearest] < -ON_BOUNDARY:
+    target = np.append(motion.wrench / metric / unit, 1.0)
+    sides = positive / np.linalg.norm(positive[:, :6], axis=1)[:, None]
+    sides = sides[np.argsort(sides @ target, kind="stable")]
+    sticking = [k for k, letter in enumerate(letters) if letter == STICKS]
+    if sticking:
+        every = with_round_cones(case, search, generators, sticking, metric)
+        sides = _of_round_cones(every, generators.rays, sides, target)
+    depth = float(sides[0] @ target)
+    if depth < -ON_BOUNDARY:
         return math.nan, np.zeros(6)
-    return max(0.0, float(depths[nearest])) * unit, -positive[nearest, :6] / sizes[nearest]
+    return max(0.0, depth) * unit, -sides[0, :6]
+
+
+def _of_round_cones(every: RoundSum, rays: FloatArray, sides: FloatArray, target: FloatArray) -> FloatArray:
+    """Return the nearest boundary of round cones, (1, 7), that is found from boundaries of their pyramids.
+
+    Args:
+        every: The wrenches of the mode, with weighted heights.
+        rays: (m, 7), the rays of these, with their own.
+        sides: (k, 7), of the pyramids, the nearest first.
+        target: (7,), the applied wrench.
+    """
+    high = rays[rays[:, 6] > ROW_TOLERANCE]
+    height = HEIGHT_WEIGHT if every.rays[:, 6].any() else 0.0
+    least = STEP_BEHIND * float(np.linalg.norm(target[:6]))
+    found, nearest = sides[:1], math.inf
+    starts: list[FloatArray] = []
+    for start in sides:
+        if start @ target >= nearest or len(starts) == _MAX_STARTS:
+            break
+        if any(start[:6] @ other[:6] > _APART for other in starts):
+            continue
+        side, depth = start, math.inf
+        for _ in range(_MAX_STEPS):
+            inside = max(0.0, float(side @ target))
+            behind = target.copy()
+            behind[:6] -= (inside + max(inside, least)) * side[:6]
+            behind[6] = height
+            rest = every.rest(behind)[:6]
+            size = float(np.linalg.norm(rest))
+            if size == 0.0:
+                break
+            offset = float((high[:, :6] @ rest / high[:, 6]).max(initial=-math.inf)) / size
+            further = np.append(-rest / size, offset)
+            if not further @ target < depth * (1.0 - MARGIN_SETTLED):
+                break
+            side, depth = further, float(further @ target)
+        starts.append(side)
+        if depth < nearest:
+            found, nearest = side[None, :], depth
+    return found

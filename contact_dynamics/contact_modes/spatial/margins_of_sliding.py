@@ -1,256 +1,243 @@
-"""How far an applied wrench is from leaving a mode in which contacts at rest begin to slide.
+"""How far an applied wrench is from leaving a mode in which contacts at rest begin to slide in any direction.
 
-Each way in which they slide together has a convex cone of wrenches (`wrench_sets`), and the wrenches of the
-mode are the union of these cones. The search starts in a cone that contains the wrench, and crosses
-boundaries in the order of their distances. Just behind a boundary the mode either ends, or goes on in a cone
-to which the whole boundary belongs. The friction pyramids keep their orientation meanwhile.
+Their directions depend on the wrench, so that the wrenches of the mode are not convex. But the ways out of
+the mode are known: a contact that slides sticks (`_sticking`), the load leaves all contacts but those on one
+side (`_lifting`), or a contact that separates touches again (`_touching`). The wrenches of each are in a
+convex set, to which the distance is exact (`round_sums`). No wrench that is nearer than all these sets leaves
+the mode. For let a body at rest have no other mode. A body whose contacts give way a little always has a
+motion, and the number of its motions, those that turn back counted negative, is one whatever the wrench. The
+motions of the mode cannot vanish on the way to another wrench unless they meet those of another mode, which
+happens in these sets only.
 
-The margin is NaN where only a part of what lies behind a boundary belongs to the mode, which happens where
-loads are shared in many ways. It is NaN too where more than `MAX_BEGINNING` contacts begin to slide, and for
-contacts at rest of a body that turns.
+Contacts on a plane can share the load in many ways. Then the mode may go on where some of them end. So
+only some ways are followed: the plane's corners are parted into triangles, and the load is on the corners of
+one triangle at a time, as if the others were a little too short. Each parting gives a distance that is not
+too large, and the largest of them counts.
 """
 
 from __future__ import annotations
 
-import contextlib
-import copy
-import heapq
 import itertools
 import math
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from contact_dynamics.contact_modes.letters import STAYS
-from contact_dynamics.contact_modes.spatial.answer import found_by
-from contact_dynamics.contact_modes.spatial.cone import nearest_sum
-from contact_dynamics.contact_modes.spatial.problem import search_of
-from contact_dynamics.contact_modes.spatial.wrenches import Way, distinct, supports, wrench_generators
-from contact_dynamics.errors import TooLargeError
-from contact_dynamics.rigid_body.body import mean_radius_of_gyration
-from contact_dynamics.tolerances import ALONG_BOUNDARY, BEHIND_BOUNDARY, ON_BOUNDARY, ROW_TOLERANCE
+from contact_dynamics.contact_modes.letters import SEPARATES, STAYS, STICKS
+from contact_dynamics.contact_modes.spatial.kinematic import cone_faces
+from contact_dynamics.contact_modes.spatial.regions import flat_of, image_of
+from contact_dynamics.contact_modes.spatial.round_sums import RoundSum, unit_rows
+from contact_dynamics.contact_modes.spatial.wrenches import needed_wrenches
+from contact_dynamics.numerics.linear_spaces import row_space
+from contact_dynamics.tolerances import ROW_TOLERANCE
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
 
     from contact_dynamics.contact_modes.spatial.problem import SpatialCase
     from contact_dynamics.contact_modes.spatial.search import Search
     from contact_dynamics.validation import FloatArray
 
-MAX_PROBES: Final = 64
-"""So many boundaries are looked behind by a search for modes, of some 10 ms each, before the margin counts as
-unknown. Most lead to a cone that is known or next to one, which takes less."""
-
-MAX_BEGINNING: Final = 4
-"""The largest number of contacts that begin to slide. More of them have too many ways to go through."""
+MAX_CORNERS: Final = 8
+"""The largest number of corners of a plane that may share a load. Each of them gives one more parting, and
+each parting one more triangle, of five milliseconds."""
 
 
-class UnionMargin(NamedTuple):
-    """How far a wrench is from leaving a mode, and where it would.
-
-    Attributes:
-        margin: N, in the metric. It is infinite where no wrench leaves the mode, and NaN where it is unknown.
-        way: (6,), unit, the direction of the least change, in the metric.
-        beyond: The consistent modes just behind the boundary; None if there is none, or if it is unknown.
-    """
-
-    margin: float
-    way: FloatArray
-    beyond: tuple[str, ...] | None
+def begin_to_slide(search: Search, letters: str) -> list[int]:
+    """Return the contacts at rest that begin to slide with some letters."""
+    return [
+        i
+        for i, (letter, one) in enumerate(zip(letters, search.pyramids, strict=True))
+        if letter == STAYS and one.frame is not None
+    ]
 
 
-class _Cone(NamedTuple):
-    """The wrenches that bring about one way of sliding."""
-
-    ways: tuple[Way, ...]
-    spans: FloatArray  # (k, 6), unit, whose positive sums they are
-    sides: FloatArray  # (m, 6), unit, with which they have products >= 0
-
-    def contains(self, spans: FloatArray) -> bool:
-        """Return whether positive sums of (k, 6) unit wrenches are in the cone."""
-        return float((self.sides @ spans.T).min()) >= -ON_BOUNDARY
-
-
-class _Boundary(NamedTuple):
-    """A side of a cone, and how far away it is."""
-
-    distance: float  # in the margin's metric; a lower bound until the nearest point is known
-    number: int  # which decides the order of equal distances
-    ways: tuple[Way, ...]  # those of the cone
-    outward: FloatArray  # (6,), unit
-    spans: FloatArray  # (k, 6), whose positive sums make up the side
-    nearest: FloatArray | None  # (6,), the point of the side that is nearest to the wrench
-
-
-def union_margin(
-    case: SpatialCase, search: Search, letters: str, metric: FloatArray, facets: int
-) -> UnionMargin:
-    """Return the distance to the nearest wrench outside a mode.
+def directions_of(
+    case: SpatialCase, search: Search, letters: str, directions: FloatArray
+) -> dict[int, FloatArray] | None:
+    """Return in which directions contacts begin to slide, or None if that depends on the wrench.
 
     Args:
         case: The body with its contacts.
         search: The search of that case.
-        letters: Those of its touching contacts in a mode in which contacts at rest begin to slide.
-        metric: (6,), m, by which a wrench is divided: ones, then the length that torques are divided by.
-        facets: Edges of the friction pyramids.
+        letters: Those of its touching contacts in a mode.
+        directions: (n, 3), unit, in which they slide in it.
     """
-    beginning = begin_to_slide(search, letters)
-    if case.motion.at_rest and not np.any(case.motion.turning) and beginning <= MAX_BEGINNING:
-        union = _Union(case, search, letters, facets)
-        # Each way of sliding counts here, and there can be more of them than the search accepts.
-        with contextlib.suppress(TooLargeError):
-            return _gone_through(union, case.motion.wrench / union.own / union.unit, union.own / metric)
-    return UnionMargin(math.nan, np.zeros(6), None)
-
-
-def begin_to_slide(search: Search, letters: str) -> int:
-    """Return how many contacts at rest begin to slide with some letters."""
-    return sum(
-        letter == STAYS and one.frame is not None
-        for letter, one in zip(letters, search.pyramids, strict=True)
-    )
-
-
-def _gone_through(union: _Union, wrench: FloatArray, stretch: FloatArray) -> UnionMargin:
-    """Go outwards from a wrench, where ``stretch`` converts distances to the margin's metric."""
-    unknown = UnionMargin(math.nan, np.zeros(6), None)
-    numbers = itertools.count()
-    cone = next(union.cones_at(wrench), None)
-    if cone is None:
-        return unknown
-    heap = _boundaries(cone, wrench, stretch, numbers)
-    heapq.heapify(heap)
-    probes = 0
-    while probes < MAX_PROBES:
-        side = _next(heap, wrench, stretch)
-        if side is None or side.nearest is None:
-            return UnionMargin(math.inf, np.zeros(6), None)
-        inner = side.spans.mean(axis=0)
-        inner = inner / max(float(np.linalg.norm(inner)), ROW_TOLERANCE)
-        way = ALONG_BOUNDARY * inner + BEHIND_BOUNDARY * side.outward
-        behind = side.nearest + float(np.linalg.norm(wrench)) * way
-        if union.is_in_known(side, behind):
-            continue
-        cone = union.next_to(side, behind)
-        if cone is None:
-            probes += 1
-            holds, cone = union.searched(side, behind)
-            if not holds:
-                there = (side.nearest if side.distance > ROW_TOLERANCE else behind) - wrench
-                there = there * stretch / float(np.linalg.norm(there * stretch))
-                return UnionMargin(side.distance * union.unit, there, union.modes_at(behind))
-            if cone is None:
-                break
-        for further in _boundaries(cone, wrench, stretch, numbers):
-            heapq.heappush(heap, further)
-    return unknown
-
-
-class _Union:
-    """The wrenches of a mode in which contacts begin to slide, under friction pyramids that stay."""
-
-    def __init__(self, case: SpatialCase, search: Search, mode: str, facets: int) -> None:
-        motion = case.motion
-        gyration = mean_radius_of_gyration(motion.mass, motion.inertia)
-        # Cones are stated in the body's own metric, whatever the metric of the margin.
-        self.own = np.array([1.0, 1.0, 1.0, gyration, gyration, gyration])
-        self.unit = motion.mass * motion.scale  # N; wrenches are divided by it, and by the metric
-        self._case, self._search, self._mode, self._facets = case, search, mode, facets
-        self._cones: dict[tuple[Way, ...], _Cone | None] = {}  # those that are known
-
-    def cones_at(self, wrench: FloatArray) -> Iterator[_Cone | None]:
-        """Yield the mode's cones that contain a wrench, or None for one without inner points."""
-        for one in search_of(self._under(wrench), self._facets).ways_with(self._mode):
-            ways = tuple(Way(of.letter, of.item) for of in one.letters)
-            if "".join(of.letter for of in ways) == self._mode:
-                yield self._cone(ways)
-
-    def searched(self, side: _Boundary, behind: FloatArray) -> tuple[bool, _Cone | None]:
-        """Return whether a wrench behind a boundary is in the mode, and a cone beyond it if any."""
-        holds = False
-        for cone in self.cones_at(behind):
-            holds = True
-            if cone is not None and cone.contains(side.spans):
-                return True, cone
-        return holds, None
-
-    def is_in_known(self, side: _Boundary, behind: FloatArray) -> bool:
-        """Return whether a cone that is known has a boundary and what lies behind it."""
-        return any(
-            one is not None and float((one.sides @ behind).min()) >= 0.0 and one.contains(side.spans)
-            for one in self._cones.values()
+    turning = begin_to_slide(search, letters)
+    if turning:
+        if not _rests(case):
+            return None
+        rows = [
+            of.point[:, :6] if letter == STICKS else (of.normal @ of.point[:, :6])[None, :]
+            for of, letter in zip(search.touching, letters, strict=True)
+            if letter != SEPARATES
+        ]
+        frames = np.array(
+            [np.array(search.pyramids[i].frame) @ search.touching[i].point[:, :6] for i in turning]
         )
-
-    def next_to(self, side: _Boundary, behind: FloatArray) -> _Cone | None:
-        """Return a cone beyond a boundary, where one contact or two slide in the next sector, or None."""
-        search = search_of(self._under(behind), self._facets)
-        for ways in self._neighbours(side.ways):
-            if ways not in self._cones and search.allows(self._mode, [of.item for of in ways]):
-                cone = self._cone(ways)
-                if cone is not None and cone.contains(side.spans):
-                    return cone
-        return None
-
-    def _neighbours(self, ways: tuple[Way, ...]) -> Iterator[tuple[Way, ...]]:
-        begins = [i for i, of in enumerate(ways) if of.item >= 0]
-        for number in (1, 2):
-            for chosen in itertools.combinations(begins, number):
-                for steps in itertools.product((1, -1), repeat=number):
-                    beside = list(ways)
-                    for i, step in zip(chosen, steps, strict=True):
-                        item = (ways[i].item + step) % (2 * len(self._search.pyramids[i].edges))
-                        beside[i] = ways[i]._replace(item=item)
-                    yield tuple(beside)
-
-    def modes_at(self, wrench: FloatArray) -> tuple[str, ...]:
-        """Return the letters of all modes that a wrench brings about."""
-        case = self._under(wrench)
-        found = found_by(case, search_of(case, self._facets), sharpen=True)
-        return tuple(mode.mode for mode in found)
-
-    def _under(self, wrench: FloatArray) -> SpatialCase:
-        """Return the case under another wrench, with the friction pyramids that it has."""
-        motion = copy.copy(self._case.motion)
-        motion.wrench = wrench * self.own * self.unit
-        force, torque = motion.wrench[:3], motion.wrench[3:]
-        motion.free = np.concatenate([force / motion.mass, np.linalg.solve(motion.inertia, torque)])
-        return self._case._replace(motion=motion)
-
-    def _cone(self, ways: tuple[Way, ...]) -> _Cone | None:
-        """Return the wrenches of a way of sliding, or None if they have no inner points."""
-        if ways not in self._cones:
-            generators = wrench_generators(self._case, self._search, ways, self.own)
-            positive, zero = (_unit(of[:, :6]) for of in supports(generators))
-            rays, lines = _unit(generators.rays[:, :6]), generators.lines[:, :6]
-            spans = np.vstack([rays, lines, -lines])
-            self._cones[ways] = None if len(zero) else _Cone(ways, spans, distinct(positive))
-        return self._cones[ways]
+        if len(image_of(np.vstack(rows), frames).coordinates) > 1:
+            return None
+    return {i: directions[i] for i in turning}
 
 
-def _next(heap: list[_Boundary], wrench: FloatArray, stretch: FloatArray) -> _Boundary | None:
-    """Take the nearest boundary with its nearest point, or None if there are no more boundaries."""
-    while heap:
-        side = heapq.heappop(heap)
-        if side.nearest is not None:
-            return side
-        nearest = nearest_sum(side.spans * stretch, wrench * stretch)[0] @ side.spans
-        distance = float(np.linalg.norm((nearest - wrench) * stretch))
-        heapq.heappush(heap, side._replace(distance=distance, nearest=nearest))
-    return None
+def least_change(
+    case: SpatialCase, search: Search, letters: str, metric: FloatArray, *, alone: bool, regular: bool
+) -> tuple[float, FloatArray]:
+    """Return the least change of the wrench that may leave a mode, N, and its direction, (6,), in the metric.
+
+    The change is NaN if it is unknown.
+
+    Args:
+        case: The body with its contacts.
+        search: The search of that case.
+        letters: Those of its touching contacts in the mode.
+        metric: (6,), m, by which a wrench is divided: ones, then the length that torques are divided by.
+        alone: Whether it is the only mode.
+        regular: Whether its motion and its forces are unique.
+    """
+    found, least = np.zeros(6), 0.0
+    if _rests(case) and STICKS not in letters:
+        ways_out = _WaysOut(case, search, letters, metric)
+        for carriers in ways_out.partings() if alone or (regular and ways_out.is_determined) else ():
+            nearest, size = found, math.inf
+            for rest in ways_out.of(carriers):
+                left = float(np.linalg.norm(rest))
+                if left < size:
+                    nearest, size = rest, left
+                if size <= least:
+                    break
+            if least < size < math.inf:
+                found, least = -nearest, size
+    return (least, found / least) if least > 0.0 else (math.nan, found)
 
 
-def _boundaries(
-    cone: _Cone, wrench: FloatArray, stretch: FloatArray, numbers: itertools.count[int]
-) -> list[_Boundary]:
-    found = []
-    for inward in cone.sides:
-        tight = cone.spans[np.abs(cone.spans @ inward) <= ON_BOUNDARY]
-        distance = abs(float(inward @ wrench)) / float(np.linalg.norm(inward / stretch))
-        found.append(_Boundary(distance, next(numbers), cone.ways, -inward, tight, None))
-    return found
+def _rests(case: SpatialCase) -> bool:
+    return case.motion.at_rest and not np.any(case.motion.turning) and not np.any(case.sliding[case.touching])
 
 
-def _unit(rows: FloatArray) -> FloatArray:
-    sizes = np.linalg.norm(rows, axis=1)
-    found: FloatArray = rows[sizes > ROW_TOLERANCE] / sizes[sizes > ROW_TOLERANCE, None]
-    return found
+class _WaysOut:
+    """The ways out of a mode of a body at rest, and how far its wrench is from each."""
+
+    def __init__(self, case: SpatialCase, search: Search, letters: str, metric: FloatArray) -> None:
+        self._case, self._search, self._metric = case, search, metric
+        self._target = case.motion.wrench / metric
+        self._staying = [i for i, letter in enumerate(letters) if letter != SEPARATES]
+        self._leaving = [i for i, letter in enumerate(letters) if letter == SEPARATES]
+        self._turning = begin_to_slide(search, letters)
+        self._normals = np.array([one.normal @ one.point for one in search.touching]).reshape(-1, 7)
+        points = [-case.motion.points[3 * i : 3 * i + 3] / metric for i in case.touching.tolist()]
+        self._axes = np.array([of.normal @ p for of, p in zip(search.touching, points, strict=True)])
+        self._edges = np.array([one.edges[0] @ p for one, p in zip(search.pyramids, points, strict=True)])
+        self._leans = {
+            i: search.touching[i].friction * (np.array(search.pyramids[i].frame) @ points[i])
+            for i in self._turning
+        }
+        self._frames = {
+            i: np.array(search.pyramids[i].frame) @ search.touching[i].point for i in self._turning
+        }
+        rows = unit_rows(self._normals[self._staying, :6])
+        self._rank = len(row_space(rows))
+        every = (1 << len(self._staying)) - 1
+        proper = [face for face in cone_faces(rows) if face != every]
+        self._sides = [
+            frozenset(self._staying[k] for k in range(len(self._staying)) if face >> k & 1)
+            for face in proper
+            if not any(face != other and face & other == face for other in proper)
+        ]
+
+    @property
+    def is_determined(self) -> bool:
+        """Whether only one set of normal forces goes with each motion and wrench."""
+        return self._rank == len(self._staying)
+
+    def partings(self) -> Iterator[list[tuple[int, ...]]]:
+        """Yield sets of contacts one of which carries the load at a time."""
+        normals = np.array([self._search.touching[i].normal for i in self._staying])
+        if self.is_determined or float(np.abs(normals - normals[0]).max()) > ROW_TOLERANCE:
+            yield [tuple(self._staying)]
+        elif self._rank == 1:
+            yield [(self._staying[0],)]
+        elif self._rank == 2:
+            yield [tuple(min(side) for side in self._sides)]
+        else:
+            corners = self._corners(normals[0])
+            for turn in range(len(corners) if 4 < len(corners) <= MAX_CORNERS else min(2, len(corners))):
+                first, *others = corners[turn:] + corners[:turn]
+                yield [(first, one, other) for one, other in itertools.pairwise(others)]
+
+    def _corners(self, normal: FloatArray) -> list[int]:
+        """Return the corners of contacts on a plane, in their order around it; none if they are too many."""
+        met: dict[frozenset[int], int] = {}
+        for i in self._staying:
+            sides = frozenset(k for k, side in enumerate(self._sides) if i in side)
+            if len(sides) > 1:
+                met.setdefault(sides, i)
+        places = self._case.contacts.p_WC_W[self._case.touching]
+        middle = places[list(met.values())].mean(axis=0)
+        one = places[next(iter(met.values()))] - middle
+        other = np.cross(normal, one)
+        angles = {
+            i: math.atan2(other @ (places[i] - middle), one @ (places[i] - middle)) for i in met.values()
+        }
+        return sorted(angles, key=angles.__getitem__) if len(angles) <= MAX_CORNERS else []
+
+    def of(self, partings: Sequence[tuple[int, ...]]) -> Iterator[FloatArray]:
+        """Yield the wrench less the nearest one of each way out, (6,) each, if some contacts carry it."""
+        for carriers in partings:
+            yield from self._sticking(carriers)
+        carrying = {i for carriers in partings for i in carriers}
+        for side in self._sides:
+            yield self._rest([], self._normals[self._leaving], sorted(side & carrying), {})
+        for k in self._leaving:
+            leaving = self._normals[[i for i in self._leaving if i != k]]
+            yield self._rest([self._normals[[k]]], leaving, sorted(carrying), {})
+
+    def _sticking(self, carriers: tuple[int, ...]) -> Iterator[FloatArray]:
+        """Yield the wrench less the nearest one with which contacts that carry the load stick, (6,) each."""
+        slides = [i for i in carriers if i in self._frames]
+        leaving = self._normals[self._leaving]
+        yield self._rest([self._frames[i] for i in slides], leaving, carriers, {})
+        seen = {frozenset(range(len(slides)))}
+        normals = self._normals[self._staying, :6]
+        frames = np.array([self._frames[i][:, :6] for i in slides]).reshape(-1, 2, 6)
+        for k, i in enumerate(slides):
+            flat = flat_of(normals, frames, (k,))
+            if flat.stuck in seen:
+                continue
+            seen.add(flat.stuck)
+            if len(flat.image.coordinates) > 1:
+                yield self._rest([self._frames[i]], leaving, carriers, {})
+                continue
+            (along,) = np.column_stack([flat.image.coordinates, [0.0]])
+            others = [j for m, j in enumerate(slides) if m not in flat.stuck]
+            for sign in (1.0, -1.0):
+                ways = sign * flat.image.maps[:, :, 0]
+                sizes = np.sqrt((ways * ways).sum(axis=1))[:, None]
+                known = dict(zip(others, ways / sizes, strict=True))
+                yield self._rest([self._frames[i]], np.vstack([leaving, sign * along]), carriers, known)
+
+    def _rest(
+        self,
+        zero: list[FloatArray],
+        positive: FloatArray,
+        carriers: Sequence[int],
+        known: dict[int, FloatArray],
+    ) -> FloatArray:
+        """Return the wrench less the nearest one of some motions and of forces at some contacts, (6,).
+
+        Args:
+            zero: Rows, (k, 7) each, that vanish on the motions, besides those of the normals that stay.
+            positive: (k, 7), rows that are not negative on them.
+            carriers: The contacts.
+            known: The directions, (2,), in which contacts slide. Others have any force in their cones.
+        """
+        needed = needed_wrenches(
+            self._case, np.vstack([self._normals[self._staying], *zero]), positive, self._metric
+        )
+        lines = needed.lines[:, :6]
+        rays = [needed.rays[:, :6], lines, -lines]
+        rays += [self._edges[[i]] for i in carriers if i not in self._frames]
+        rays += [(self._axes[i] - way @ self._leans[i])[None, :] for i, way in known.items()]
+        round_ones = [i for i in carriers if i in self._frames and i not in known]
+        leans = np.array([self._leans[i] for i in round_ones]).reshape(-1, 2, 6)
+        return RoundSum(unit_rows(np.vstack(rays)), self._axes[round_ones], leans).rest(self._target)

@@ -60,12 +60,12 @@ class SpatialContactProblem(Record):
         problem = SpatialContactProblem.of(crate, state, world, force_W=[90, 0, 0], at_W=[-0.2, 0, 0.5])
         print(contact_modes(problem))
 
-    The modes are those of round cones, whatever the number of facets. In margins, statics and wrench sets,
-    friction cones of contacts at rest are pyramids, and 8 edges serve most questions. Margins of sticking are
-    short by the part 1 - cos(pi / facets) of friction, 8 % with 8 edges and 2 % with 16: state the problem
-    with more edges where that matters. The sets of wrenches grow as the square or cube of the
-    edges, some 200 to 350 for a box on four feet with 4 edges and 1300 with 8: state it with 4 for these
-    (`dataclasses.replace`). Statics take 128 edges in all.
+    The modes, their margins and the reasons of refused modes are those of round cones, whatever the number of
+    facets. In statics and wrench sets, friction cones of contacts at rest are pyramids, and 8 edges serve
+    most questions. The disturbance that a body can take is short by the part 1 - cos(pi / facets) of
+    friction, 8 % with 8 edges and 2 % with 16: state the problem with more edges where that matters. The sets
+    of wrenches grow as the square or cube of the edges, some 200 to 350 for a box on four feet with 4 edges
+    and 1300 with 8: state it with 4 for these (`dataclasses.replace`). Statics take 128 edges in all.
 
     Attributes:
         body: A `Body`, or its `MassProperties`, which are kept.
@@ -74,8 +74,8 @@ class SpatialContactProblem(Record):
         force_W: (3,), N, on the body besides its contact forces, gravity included, world axes.
         torque_W: (3,), N m, on the body besides that of its contact forces, about the centre of mass, world
             axes.
-        friction_facets: The number of edges of the pyramid that stands for a friction cone, >= 3, in margins,
-            statics and wrench sets, and in the modes if ``sharpen`` is false.
+        friction_facets: The number of edges of the pyramid that stands for a friction cone, >= 3, in statics
+            and wrench sets, and in the modes if ``sharpen`` is false.
         sharpen: Whether the modes are those of Coulomb's round cones, with friction exactly against the
             sliding. Then modes with the same letters are one mode if their motion is
             the same, or if one of them has no unique motion. Otherwise each sector of the pyramids is a mode

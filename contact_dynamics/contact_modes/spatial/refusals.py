@@ -3,8 +3,8 @@
 A string of letters s (separates) and c (stays, sticking or sliding) is refused if no mode of it is
 consistent. Where nothing that stays has friction to choose, the forces that it needs are known, and so is
 what contradicts it: a contact pulls, or one that should separate penetrates. Otherwise the reason is how far
-the applied wrench is from those under which some forces inside the friction pyramids let the contacts stay
-and separate like that: the least change in |f|^2 + |torque / length|^2. Which way friction acts is left open,
+the applied wrench is from those under which some forces inside the friction cones let the contacts stay and
+separate like that: the least change in |f|^2 + |torque / length|^2. Which way friction acts is left open,
 so that no smaller change brings the string about, and a larger one may be needed.
 
 Where a string is consistent, this file does not say why it sticks rather than slides, or slides one way
@@ -13,16 +13,25 @@ rather than another. Where loads are shared, the reason would differ from one sh
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from contact_dynamics.contact_modes.letters import STAYS, STICKS
 from contact_dynamics.contact_modes.result import Refusal, RefusedMode
-from contact_dynamics.contact_modes.spatial.cone import nearest_sum
 from contact_dynamics.contact_modes.spatial.kinematic import spatial_kinematic_modes
-from contact_dynamics.contact_modes.spatial.problem import SpatialCase, search_of, spatial_case
-from contact_dynamics.contact_modes.spatial.wrenches import Way, wrench_generators
+from contact_dynamics.contact_modes.spatial.problem import (
+    FRICTION_FACETS,
+    SpatialCase,
+    search_of,
+    spatial_case,
+)
+from contact_dynamics.contact_modes.spatial.wrenches import (
+    HEIGHT_WEIGHT,
+    Way,
+    with_round_cones,
+    wrench_generators,
+)
 from contact_dynamics.tolerances import NO_DISTANCE, ROW_TOLERANCE
 from contact_dynamics.validation import check_size
 
@@ -32,9 +41,6 @@ if TYPE_CHECKING:
     from contact_dynamics.contact_modes.spatial.search import Search
     from contact_dynamics.validation import FloatArray
 
-_EXACT: Final = 1e4
-"""The weight of the height of a wrench (`wrenches`), which must be met exactly, relative to its distance."""
-
 
 def spatial_refused_modes(
     problem: SpatialContactProblem, answer: SpatialModeAnswer, *, margin_length: float | None = None
@@ -43,8 +49,8 @@ def spatial_refused_modes(
 
     Where the forces are known, the refusal is `PENETRATES` or `PULLS` of a contact. Otherwise it is
     `NO_SOLUTION`, with the distance, N, of the applied wrench from those that can bring the string about. It
-    is `WRONG_MOTION` with amount 0 where forces in the friction pyramids could do so, but would not oppose
-    the sliding that they cause.
+    is `WRONG_MOTION` with amount 0 where forces in the friction cones could do so, but would not oppose the
+    sliding that they cause.
 
     There are none where a contact approaches. Each string takes a millisecond.
 
@@ -64,7 +70,7 @@ def spatial_refused_modes(
     case = spatial_case(problem)
     if not isinstance(case, SpatialCase):
         return ()
-    search = search_of(case, problem.friction_facets)
+    search = search_of(case, FRICTION_FACETS)
     possible = [*(mode.mode for mode in answer.modes), *answer.undecided_modes]
     consistent = {letters.replace(STICKS, STAYS) for letters in possible}
     metric = np.array([1.0, 1.0, 1.0, length, length, length])
@@ -113,9 +119,14 @@ def _short(case: SpatialCase, search: Search, string: str, metric: FloatArray) -
     generators = wrench_generators(case, search, ways, metric)
     unit = case.motion.mass * case.motion.scale  # N; wrenches are divided by it
     target = np.append(case.motion.wrench / metric / unit, 1.0)
-    spans = np.vstack([generators.rays, generators.lines, -generators.lines])
-    heights = np.append(np.ones(6), _EXACT)
-    left = nearest_sum(spans * heights, heights * target)[1]
+    round_ones = [
+        k
+        for k, (way, one) in enumerate(zip(ways, search.pyramids, strict=True))
+        if way.letter == STAYS and one.frame is not None
+    ]
+    every = with_round_cones(case, search, generators, round_ones, metric)
+    target[6] = HEIGHT_WEIGHT if every.rays[:, 6].any() else 0.0
+    left = float(np.linalg.norm(every.rest(target)))
     if left <= NO_DISTANCE * float(np.linalg.norm(target[:6])):
         return RefusedMode(mode=string, refusal=Refusal.WRONG_MOTION, contact=-1, amount=0.0)
     return RefusedMode(mode=string, refusal=Refusal.NO_SOLUTION, contact=-1, amount=left * unit)

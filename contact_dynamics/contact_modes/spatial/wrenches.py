@@ -14,8 +14,8 @@ import numpy as np
 
 from contact_dynamics.contact_modes.letters import SEPARATES, STICKS
 from contact_dynamics.contact_modes.spatial.cone import cone_of
+from contact_dynamics.contact_modes.spatial.round_sums import RoundSum, unit_rows
 from contact_dynamics.numerics.linear_spaces import null_space
-from contact_dynamics.tolerances import ROW_TOLERANCE
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -29,6 +29,10 @@ if TYPE_CHECKING:
 
 _ALIKE: Final = 7
 """Unit rows that agree to so many digits count as the same. Rounding reaches the eleventh digit."""
+
+
+HEIGHT_WEIGHT: Final = 1e4
+"""The weight of the height of a wrench, which must be met exactly, relative to its distance."""
 
 
 class Way(NamedTuple):
@@ -70,7 +74,11 @@ class _Conditions(NamedTuple):
 
 
 def wrench_generators(
-    case: SpatialCase, search: Search, ways: Sequence[Way], metric: FloatArray
+    case: SpatialCase,
+    search: Search,
+    ways: Sequence[Way],
+    metric: FloatArray,
+    further: FloatArray = np.zeros((0, 7)),  # noqa: B008 (it is not changed)
 ) -> Generators:
     """Return the wrenches under which touching contacts can do as stated.
 
@@ -79,12 +87,30 @@ def wrench_generators(
         search: The search of that case.
         ways: The way of each touching contact.
         metric: (6,), m, by which a wrench is divided: ones, then the length that torques are divided by.
+        further: (k, 7), further rows that are not negative on the motion.
     """
-    motion = case.motion
     asked = [_conditions(*of) for of in zip(search.touching, search.pyramids, ways, strict=True)]
-    free = null_space(_unit(np.vstack([np.zeros((0, 7)), *(one.zero for one in asked)])))  # (7, k)
-    positive = np.vstack([*(one.positive for one in asked), np.eye(1, 7, 6)])
-    inside = cone_of(_unit(positive @ free))
+    needed = needed_wrenches(
+        case,
+        np.vstack([np.zeros((0, 7)), *(one.zero for one in asked)]),
+        np.vstack([*(one.positive for one in asked), further]),
+        metric,
+    )
+    given = [np.zeros((0, 6))]
+    for i, one in zip(case.touching.tolist(), asked, strict=True):
+        given.append(-(one.acting @ case.motion.points[3 * i : 3 * i + 3]) / metric)
+    forces = np.vstack(given)
+    rays = np.vstack([needed.rays, np.column_stack([forces, np.zeros(len(forces))])])
+    return Generators(distinct(unit_rows(rays)), needed.lines)
+
+
+def needed_wrenches(
+    case: SpatialCase, zero: FloatArray, positive: FloatArray, metric: FloatArray
+) -> Generators:
+    """Return the wrenches that motions need on which rows, (k, 7), vanish or are not negative."""
+    motion = case.motion
+    free = null_space(unit_rows(zero))  # (7, k)
+    inside = cone_of(unit_rows(np.vstack([positive, np.eye(1, 7, 6)]) @ free))
     inertia = np.zeros((6, 6))
     inertia[:3, :3] = np.eye(3) * motion.mass
     inertia[3:, 3:] = motion.inertia
@@ -94,18 +120,36 @@ def wrench_generators(
         wrenches = accelerations[:, :6] / motion.lengths @ inertia / metric / motion.mass
         return np.column_stack([wrenches, accelerations[:, 6]])
 
-    given = [np.zeros((0, 6))]
-    for i, one in zip(case.touching.tolist(), asked, strict=True):
-        given.append(-(one.acting @ motion.points[3 * i : 3 * i + 3]) / metric)
-    forces = np.vstack(given)
-    rays = np.vstack([needed(inside.rays), np.column_stack([forces, np.zeros(len(forces))])])
-    return Generators(distinct(_unit(rays)), _unit(needed(inside.lines)))
+    return Generators(unit_rows(needed(inside.rays)), unit_rows(needed(inside.lines)))
+
+
+def with_round_cones(
+    case: SpatialCase, search: Search, generators: Generators, contacts: Sequence[int], metric: FloatArray
+) -> RoundSum:
+    """Return generated wrenches with those of round friction cones at some of the touching contacts.
+
+    Heights are weighted, so that the nearest sum has the height of its target: by `HEIGHT_WEIGHT`, or by zero
+    if nothing has a height but the motion that vanishes.
+    """
+    weights = np.append(np.ones(6), HEIGHT_WEIGHT if np.any(case.motion.turning) else 0.0)
+    points = [case.motion.points[3 * case.touching[k] :][:3] / metric for k in contacts]
+    axes = [-search.touching[k].normal @ point for k, point in zip(contacts, points, strict=True)]
+    leans = [
+        search.touching[k].friction * np.array(search.pyramids[k].frame) @ point
+        for k, point in zip(contacts, points, strict=True)
+    ]
+    rays = np.vstack([generators.rays, generators.lines, -generators.lines])
+    return RoundSum(
+        rays * weights,
+        np.pad(np.array(axes).reshape(-1, 6), ((0, 0), (0, 1))),
+        np.pad(np.array(leans).reshape(-1, 2, 6), ((0, 0), (0, 0), (0, 1))),
+    )
 
 
 def supports(generators: Generators) -> tuple[FloatArray, FloatArray]:
     """Return the rows, (k, 7) each, that are not negative on generated wrenches, and those that vanish."""
     across = null_space(generators.lines)
-    rows = _unit(generators.rays @ across)
+    rows = unit_rows(generators.rays @ across)
     if len(rows) == 0:
         return np.zeros((0, 7)), across.T
     dual = cone_of(rows)
@@ -137,9 +181,3 @@ def _conditions(contact: Touching, pyramid: Pyramid, way: Way) -> _Conditions:
 def distinct(rows: FloatArray) -> FloatArray:
     """Return unit rows, each once."""
     return rows[np.sort(np.unique(np.round(rows, _ALIKE), axis=0, return_index=True)[1])]
-
-
-def _unit(rows: FloatArray) -> FloatArray:
-    sizes = np.linalg.norm(rows, axis=1)
-    found: FloatArray = rows[sizes > ROW_TOLERANCE] / sizes[sizes > ROW_TOLERANCE, None]
-    return found

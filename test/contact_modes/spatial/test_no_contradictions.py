@@ -186,8 +186,8 @@ def check(draw: Draw, seed: int) -> str:
                 if held.stable_disturbance > 0.0:
                     assert depth == pytest.approx(held.stable_disturbance, rel=ALIKE, abs=ALIKE * load)
         for margin in margins:
-            if margin.mode == "f" * n and margin.margin > ALIKE * load:
-                assert margin.margin == pytest.approx(depth, rel=ALIKE, abs=ALIKE * load)
+            if margin.mode == "f" * n:  # in round cones, which reach further than pyramids inside them
+                assert margin.margin >= depth - ALIKE * load
     return ""
 
 

@@ -283,19 +283,28 @@ def test_one_foot_has_sets_all_around() -> None:
 
 
 @pytest.mark.parametrize("seed", range(6))
-def test_depths_are_the_margins(seed: int) -> None:
-    chance = np.random.default_rng(seed)
-    wrench = DOWN + chance.normal(size=6)
+def test_depths_in_pyramids_inside_and_around_the_cones_bound_the_margins(seed: int) -> None:
+    wrench = DOWN + np.random.default_rng(seed).normal(size=6)
+    wider = 1.0 / math.cos(math.pi / 8)
     for now in (state(), state(np.array([1.0, 2.0, 0.0]))):
-        asked = {"force_W": wrench[:3], "torque_W": wrench[3:], "friction_facets": 8}
-        (margin,) = mode_margins(
-            SpatialContactProblem(body=BODY, state=now, contacts=feet(0.2, 0.4), **asked),
-            margin_length=LENGTH,
+        inside, around = (
+            SpatialContactProblem(
+                body=BODY,
+                state=now,
+                contacts=feet(0.2, friction),
+                force_W=wrench[:3],
+                torque_W=wrench[3:],
+                friction_facets=8,
+            )
+            for friction in (0.4, 0.4 * wider)
         )
-        (one,) = wrench_sets(
-            SpatialContactProblem(body=BODY, state=now, contacts=feet(0.2, 0.4), **asked), modes=[margin.mode]
-        )
-        assert one.depth(wrench, LENGTH) == pytest.approx(margin.margin, rel=1e-9)
+        (margin,) = mode_margins(inside, margin_length=LENGTH)
+        ((low,), (high,)) = (wrench_sets(one, modes=[margin.mode]) for one in (inside, around))
+        if now.v_WB_W.any():  # friction is on an edge, and exact
+            assert low.depth(wrench, LENGTH) == pytest.approx(margin.margin, rel=1e-9)
+        else:
+            assert low.depth(wrench, LENGTH) <= margin.margin * (1.0 + 1e-9)
+            assert margin.margin <= high.depth(wrench, LENGTH) * (1.0 + 1e-9)
 
 
 def test_a_body_that_leaves_and_one_that_approaches() -> None:
