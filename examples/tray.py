@@ -16,11 +16,12 @@ from contact_dynamics import (
     PlanarWrench,
 )
 from contact_dynamics.contact_modes import PlanarContactProblem, contact_modes, mode_margins, wrench_sets
+from contact_dynamics.diagrams.force_dual import force_dual
+from contact_dynamics.diagrams.mode_map import mode_map, paint_of_modes
 from contact_dynamics.diagrams.palette import BACKGROUND
+from contact_dynamics.diagrams.planar_scene import planar_scene_of
 from contact_dynamics.diagrams.wrench_chart import DirectionChart, ForceDualChart
-from contact_dynamics.viewing.force_dual import draw_force_dual
-from contact_dynamics.viewing.mode_map import bounds, color_of_modes, draw_mode_map
-from contact_dynamics.viewing.planar_scene import draw_planar_scene
+from contact_dynamics.viewing.drawing import draw_diagram
 
 FLAT, TALL, BEND, THICK = 0.08, 0.06, 0.03, 0.012  # m: flush on the floor, on the wall; outer radius; bar
 
@@ -64,21 +65,23 @@ tray = np.array([[-0.16, 0.0], [0.0, 0.0], [0.0, 0.11]]) - mass_centre
 chosen = next(one for one in modes if one.mode == margin.mode)
 with rr.RecordingStream("contact_dynamics") as recording:
     recording.save(sys.argv[1] if len(sys.argv) > 1 else "tray.rrd")
-    draw_planar_scene(recording, outline, contacts, walls=[tray], mode=answer.modes[0])
+    title = f"{margin.mode}: contact forces, accelerations"
+    scene = planar_scene_of(outline, contacts, walls=[tray], mode=answer.modes[0], title=title)
+    draw_diagram(recording, scene, "planar_scene")
     chart = ForceDualChart(
         length=key.radius_of_gyration, half_side=0.13, centre=(-0.02, 0.05), resolution=700
     )
-    color = color_of_modes([margin.mode], [one.mode for one in modes])
-    draw_force_dual(recording, chosen, contacts, chart, outlines=[outline, tray], color=color)
+    color = paint_of_modes([margin.mode], sorted(one.mode for one in modes)).dark
+    dual = force_dual(chosen, contacts, chart, outlines=[outline, tray], color=color)
+    draw_diagram(recording, dual, "force_dual")
     discs = DirectionChart(length=key.radius_of_gyration, resolution=900)
-    draw_mode_map(recording, modes, discs, applied=applied, change=margin.change)
-    around = rrb.VisualBounds2D(x_range=(-0.12, 0.09), y_range=(-0.12, 0.09))
+    draw_diagram(recording, mode_map(modes, discs, applied=applied, change=margin.change), "mode_map")
     views = [
-        rrb.Spatial2DView(origin=origin, name=name, visual_bounds=shown, background=BACKGROUND)
-        for origin, name, shown in (
-            ("planar_scene", f"{margin.mode}: contact forces, accelerations", around),
-            ("force_dual", f"{margin.mode}: acceleration centres and force duals", bounds(chart)),
-            ("mode_map", "Which applied wrench brings about which mode", bounds(discs)),
+        rrb.Spatial2DView(origin=origin, name=name, background=BACKGROUND)
+        for origin, name in (
+            ("planar_scene", "Contact forces"),
+            ("force_dual", "Acceleration centres and force duals"),
+            ("mode_map", "Which applied wrench brings about which mode"),
         )
     ]
     rows = rrb.Vertical(rrb.Horizontal(*views[:2], column_shares=[1, 2]), views[2], row_shares=[2, 3])

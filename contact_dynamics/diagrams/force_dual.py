@@ -8,21 +8,22 @@ the other.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from contact_dynamics.diagrams.mode_map import NO_MODE, borders_of, mode_regions
+from contact_dynamics.diagrams import palette, paper
+from contact_dynamics.diagrams.marks import Diagram, Labels, Lines, Points, Regions
+from contact_dynamics.diagrams.mode_map import NO_MODE, borders_of, chart_frame, mode_regions
+from contact_dynamics.diagrams.palette import Paint
 from contact_dynamics.diagrams.wrench_chart import ANTICLOCKWISE, CLOCKWISE, HIDDEN
 from contact_dynamics.plane.force_dual import friction_cone
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from numpy.typing import NDArray
-
-    from contact_dynamics.contact_modes import PlanarWrenchSet
+    from contact_dynamics.contact_modes import PlanarMode, PlanarWrenchSet
+    from contact_dynamics.diagrams.marks import Mark
     from contact_dynamics.diagrams.wrench_chart import ForceDualChart
     from contact_dynamics.plane.types import PlanarContact, PlanarWrench
     from contact_dynamics.validation import FloatArray
@@ -30,45 +31,27 @@ if TYPE_CHECKING:
 _PARALLEL: Final = 1e-9
 """1 - cos of the angle below which a generator is a friction cone's edge."""
 
+_NEAR: Final = 0.02  # points nearer than this share a label, relative to a part's side
+_NAME: Final = np.array([0.03, 0.03])  # where a label is, beside its point, relative to a part's side
+_FILL: Final = 0.55  # share of the mode's colour in its region
+_REGION: Final = "#d9e8f5"  # the blue of a mode's wrenches, light enough for points and lines on it
 
-class Dots(NamedTuple):
-    """Dots with a label each. Those that the chart does not show are left out.
-
-    Attributes:
-        places: (k, 2), points.
-        labels: (k,), what each is.
-    """
-
-    places: FloatArray
-    labels: list[str]
+_BODY: Final = Paint(palette.MEASURED, paper.GREY)
+_CONE: Final = Paint(palette.FRICTION_CONE, paper.PURPLE)
+_CENTRE: Final = Paint(palette.PREDICTED, paper.ORANGE)
+_APPLIED: Final = Paint(palette.IMPACT, paper.MARK)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class ForceDual:
-    """The construction on a chart. Places are in points of the picture.
-
-    Attributes:
-        inside: (h, w), whether the wrench at each point can bring the mode about.
-        borders: Strips of places, (k, 2) each, around those points.
-        outlines: Strips of places, (k, 2) each, of the body and its walls, on both parts of the chart.
-        contact_forces: Force duals of the negated edges of friction cones, "-c" with the contact's number.
-        acceleration_centres: Centres of the mode's accelerations, "a".
-    """
-
-    inside: NDArray[np.bool_]
-    borders: list[FloatArray]
-    outlines: list[FloatArray]
-    contact_forces: Dots
-    acceleration_centres: Dots
-
-
-def force_dual_of(
+def force_dual(
     one: PlanarWrenchSet,
     contacts: Sequence[PlanarContact],
     chart: ForceDualChart,
     *,
     outlines: Sequence[FloatArray] = (),
-) -> ForceDual:
+    color: palette.Color = palette.SLIDE,
+    applied: PlanarWrench | None = None,
+    mode: PlanarMode | None = None,
+) -> Diagram:
     """Return the construction for one mode of a body at rest.
 
     Args:
@@ -76,18 +59,90 @@ def force_dual_of(
         contacts: All contacts, in the order of the mode's letters.
         chart: How much of the plane to show.
         outlines: Strips, (k, 2) each, m from the centre of mass: the body, walls.
+        color: The colour of the mode in the viewer, as in `mode_map.paint_of_modes`.
+        applied: A wrench to mark.
+        mode: The mode, whose acceleration is marked by its centre.
     """
-    forces, motions = split_generators(one, contacts)
-    return ForceDual(
-        inside=mode_regions([one], chart).classes > NO_MODE,
-        borders=borders_of(one, chart),
-        outlines=[
-            chart.place_points(strip, part) for strip in outlines for part in (ANTICLOCKWISE, CLOCKWISE)
-        ],
-        contact_forces=_dots(
-            chart, [wrench for _, wrench in forces], [f"-c{number}" for number, _ in forces]
+    inside = (mode_regions([one], chart).classes > NO_MODE).astype(np.int64)
+    fill = [round(_FILL * a + (1.0 - _FILL) * b) for a, b in zip(color, palette.BACKGROUND, strict=True)]
+    region = Paint((fill[0], fill[1], fill[2], 255), _REGION)
+    both = [chart.place_points(strip, part) for strip in outlines for part in (ANTICLOCKWISE, CLOCKWISE)]
+    marks: list[Mark] = [
+        Regions(
+            name="wrenches",
+            paint=region,
+            classes=inside,
+            paints=[Paint(palette.BACKGROUND, paper.SEVERAL), region],
+            legends=["", f"wrenches that can bring about {one.mode}"],
         ),
-        acceleration_centres=_dots(chart, motions, ["a"] * len(motions)),
+        Lines(name="outlines", paint=_BODY, strips=both, legend="the body, drawn in both halves"),
+        Lines(name="borders", paint=Paint(color, paper.BLUE), strips=borders_of(one, chart)),
+    ]
+    forces, motions = split_generators(one, contacts)
+    for name, paint, wrenches, labels, legend in (
+        (
+            "contact_forces",
+            _CONE,
+            [wrench for _, wrench in forces],
+            [f"-c{number}" for number, _ in forces],
+            "-c: edge of contact's cone, negated",
+        ),
+        ("acceleration_centres", _CENTRE, motions, ["a"] * len(motions), "a: centre of an acceleration"),
+    ):
+        rows = np.array([(*wrench.f, wrench.moment) for wrench in wrenches]).reshape(-1, 3)
+        places, part = chart.place(rows)
+        shown = np.flatnonzero(part != HIDDEN).tolist()
+        marks.append(Points(name=name, paint=paint, places=places[shown], legend=legend if shown else ""))
+        marks.append(_names(f"{name}_names", paint, places[shown], [labels[i] for i in shown], chart))
+    frame, axes = chart_frame(chart)
+    return Diagram(
+        marks=[*marks, *frame, *answer_marks(chart, applied=applied, mode=mode)],
+        axes=axes,
+        title=f"{one.mode}: acceleration centres and force duals",
+    )
+
+
+def answer_marks(
+    chart: ForceDualChart, *, applied: PlanarWrench | None, mode: PlanarMode | None
+) -> list[Mark]:
+    """Return the marks of a wrench, at its force dual, and of the centre of a mode's acceleration."""
+    told: list[tuple[str, Paint, tuple[float, ...]]] = []
+    if mode is not None:
+        turn = mode.angular_acceleration * chart.length**2
+        told.append(("acceleration centre", _CENTRE, (*mode.acceleration, turn)))
+    if applied is not None:
+        told.append(("applied wrench", _APPLIED, (*applied.f, applied.moment)))
+    marks: list[Mark] = []
+    for name, paint, wrench in told:
+        places, part = chart.place(np.array([wrench]))
+        marks.append(
+            Points(
+                name=f"answer/{name.replace(' ', '_')}",
+                paint=paint,
+                places=places[part != HIDDEN],
+                size=11.0,
+                legend=name,
+                is_noted=True,
+            )
+        )
+    return marks
+
+
+def _names(name: str, paint: Paint, places: FloatArray, labels: list[str], chart: ForceDualChart) -> Labels:
+    """Return the labels above points. Points at one place share a label."""
+    groups: list[list[int]] = []
+    for i, place in enumerate(places):
+        near = (g for g in groups if np.linalg.norm(places[g[0]] - place) < _NEAR * chart.resolution)
+        group = next(near, None)
+        if group is None:
+            groups.append([i])
+        else:
+            group.append(i)
+    return Labels(
+        name=name,
+        paint=Paint(paint.dark, paper.BLACK),
+        places=np.reshape([places[group[0]] + _NAME * chart.resolution for group in groups], (-1, 2)),
+        texts=[", ".join(dict.fromkeys(labels[i] for i in group)) for group in groups],
     )
 
 
@@ -110,13 +165,6 @@ def split_generators(
         else:
             forces.append((number, generator))
     return forces, motions
-
-
-def _dots(chart: ForceDualChart, wrenches: Sequence[PlanarWrench], labels: Sequence[str]) -> Dots:
-    rows = np.array([(*wrench.f, wrench.moment) for wrench in wrenches]).reshape(-1, 3)
-    places, part = chart.place(rows)
-    shown = np.flatnonzero(part != HIDDEN).tolist()
-    return Dots(places=places[shown], labels=[labels[i] for i in shown])
 
 
 def _opposes(edge: PlanarWrench, generator: PlanarWrench) -> bool:

@@ -299,6 +299,7 @@ def _path_marks(found: ContactImpulse, components: list[int], *, legend: str) ->
                 marker=marker,
                 hollow=True,
                 legend=f"{words}:\n({numbers}) N s",
+                is_noted=True,
             )
         )
     return marks

@@ -32,8 +32,7 @@ class Mark:
         name: The name of the mark: an entity in rerun, an id in SVG.
         paint: The colour, in the viewer and on paper.
         opacity: Its opacity, 0 to 1.
-        legend: What the mark means, for the legend, or an empty string. In the viewer, that of points stands
-            beside them.
+        legend: What the mark means, for the legend, or an empty string.
         on_paper: Whether Matplotlib draws it.
         in_viewer: Whether rerun draws it.
     """
@@ -73,6 +72,7 @@ class Points(Mark):
         hollow: Whether paper shows through.
         labels: (n,), or none.
         label_all: Whether all labels are shown. Otherwise, the viewer shows the one under the mouse.
+        is_noted: Whether the viewer writes the legend beside the diagram, with a line to the first point.
     """
 
     places: FloatArray
@@ -82,6 +82,7 @@ class Points(Mark):
     hollow: bool = False
     labels: Sequence[str] = ()
     label_all: bool = False
+    is_noted: bool = False
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -12,10 +12,14 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
+from contact_dynamics.diagrams import palette, paper
+from contact_dynamics.diagrams.marks import NO_PLACES, Axis, Diagram, Labels, Lines, Points, Regions
+from contact_dynamics.diagrams.palette import Paint
 from contact_dynamics.diagrams.wrench_chart import (
     HIDDEN,
     DirectionChart,
     ForceChart,
+    ForceDualChart,
     gap,
     part_centre,
     picture_size,
@@ -27,6 +31,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from contact_dynamics.contact_modes import PlanarWrenchSet
+    from contact_dynamics.diagrams.marks import Mark
     from contact_dynamics.diagrams.wrench_chart import WrenchChart
     from contact_dynamics.plane.types import PlanarWrench
     from contact_dynamics.validation import FloatArray
@@ -46,6 +51,16 @@ _SEEN: Final = 5e-3  # difference of unit normals that moves a border by one poi
 _COARSE: Final = 4  # a step of this many points finds where a region is widest
 _EDGE: Final = 1e-9  # relative: what is outside by less is on the boundary
 _WAY_POINTS: Final = 100  # number of points of the way of a wrench that changes
+_DIGITS: Final = 9  # after the point; what is smaller is rounding of forces that cancel
+_DIRECTIONS: Final = "direction from the middle: that of the force; middle: pure torque; rim: pure force"
+
+_WAY: Final = ";\nline: least way\nto another mode"
+
+_LINE: Final = Paint(palette.NORMAL, paper.BLACK)
+_GROUND: Final = Paint(palette.BACKGROUND, paper.SEVERAL)
+_BORDER: Final = Paint(palette.BACKGROUND, paper.BLACK)
+_NONE: Final = Paint(palette.NO_MODE, paper.NONE)
+_APPLIED: Final = Paint(palette.IMPACT, paper.MARK)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -168,7 +183,7 @@ def widest_places(regions: ModeRegions, chart: WrenchChart) -> list[WidestPlace]
             found.append(
                 WidestPlace(
                     region=index,
-                    place=_COARSE * np.array([begin + column + 0.5, row + 0.5]),
+                    place=_COARSE * np.array([begin + column + 0.5, -row - 0.5]),
                     has_room=bool(room[row, column] * _COARSE >= _NAMED_FROM * chart.resolution),
                 )
             )
@@ -190,58 +205,152 @@ def _shown_pieces(places: FloatArray, part: NDArray[np.int64]) -> list[FloatArra
     return [piece for piece, there in pieces if len(piece) > 1 and there[0] != HIDDEN]
 
 
-class Caption(NamedTuple):
-    """Words in a picture.
+def mode_map(
+    sets: Sequence[PlanarWrenchSet],
+    chart: WrenchChart,
+    *,
+    applied: PlanarWrench | None = None,
+    change: PlanarWrench | None = None,
+) -> Diagram:
+    """Return the map. Each region has the colour of the mode that its wrenches bring about.
 
-    Attributes:
-        place: (2,), points.
-        text: The words.
+    Args:
+        sets: The result of `contact_modes.wrench_sets`.
+        chart: How wrenches are laid out.
+        applied: A wrench to mark.
+        change: The least change of the wrench that brings about another mode, drawn as a path from it.
     """
+    regions = mode_regions(sets, chart)
+    names = ["", "no mode", *(" or ".join(modes) for modes in regions.modes[NO_MODE + 1 :])]
+    every = sorted(one.mode for one in sets)
+    paints = [_GROUND, *(paint_of_modes(modes, every) for modes in regions.modes[NO_MODE:])]
+    there = np.unique(regions.classes).tolist()
+    marks: list[Mark] = [
+        Regions(
+            name="regions",
+            paint=_LINE,
+            classes=regions.classes,
+            paints=paints,
+            legends=[name if i in there else "" for i, name in enumerate(names)],
+        ),
+        Lines(
+            name="borders",
+            paint=_BORDER,
+            strips=[s for one in sets for s in borders_of(one, chart)],
+            width=0.6,
+        ),
+    ]
+    widest = widest_places(regions, chart)
+    named = [one for one in widest if one.has_room]
+    kinds = [
+        "names_of_several"
+        if len(regions.modes[one.region]) != 1
+        else ("names_on_dark" if paints[one.region].paper in paper.DARK else "names")
+        for one in named
+    ]
+    for name, paint in (
+        ("names", _LINE),
+        ("names_on_dark", Paint(palette.NORMAL, paper.SEVERAL)),
+        ("names_of_several", _LINE),
+    ):
+        chosen = [one for one, kind in zip(named, kinds, strict=True) if kind == name]
+        marks.append(
+            Labels(
+                name=name,
+                paint=paint,
+                places=np.reshape([one.place for one in chosen], (-1, 2)),
+                texts=[names[one.region] for one in chosen],
+                on_paper=name != "names_of_several",
+            )
+        )
+    small = [one for one in widest if not one.has_room]
+    marks.append(
+        Points(
+            name="small_regions",
+            paint=_LINE,
+            places=np.reshape([one.place for one in small], (-1, 2)),
+            size=3.0,
+            labels=[names[one.region] for one in small],
+            on_paper=False,
+        )
+    )
+    notes = ["white: several are consistent"] * any(len(modes) > 1 for modes in regions.modes)
+    notes += ["black: none is"] * (NO_MODE in there)
+    frame, axes = chart_frame(chart)
+    return Diagram(
+        marks=[*marks, *frame, *applied_marks(chart, applied, change)],
+        axes=axes,
+        title="\n".join(
+            ["which applied wrench brings about which mode", *(["; ".join(notes)] if notes else [])]
+        ),
+    )
 
-    place: tuple[float, float]
-    text: str
+
+def paint_of_modes(consistent: Sequence[str], every: Sequence[str]) -> Paint:
+    """Return the colour of a region with these consistent modes, of ``every`` mode in alphabetical order."""
+    if len(consistent) != 1:
+        return Paint(palette.UNDECIDED, paper.SEVERAL) if consistent else _NONE
+    index = every.index(consistent[0])
+    return Paint(palette.mode_color(consistent[0], index), paper.MODES[index % len(paper.MODES)])
 
 
-def names_of(regions: ModeRegions) -> list[str]:
-    """Return the name of each class of regions: its modes, or that there is none."""
-    return ["", "no mode", *(" or ".join(modes) for modes in regions.modes[NO_MODE + 1 :])]
+def applied_marks(
+    chart: WrenchChart, applied: PlanarWrench | None, change: PlanarWrench | None
+) -> list[Mark]:
+    """Return the mark of a wrench, which a chart may not show, and its way to another mode."""
+    places = way = None
+    if applied is not None and any((*applied.f, applied.moment)):
+        start = np.array([*applied.f, applied.moment])
+        found, part = chart.place(start[None])
+        places = found[part != HIDDEN]
+        if change is not None:
+            steps = np.outer(np.linspace(0.0, 1.0, _WAY_POINTS), [*change.f, change.moment])
+            way = _shown_pieces(*chart.place(start + steps))
+    numbers = (0.0,) * 3 if applied is None else (*applied.f, applied.moment)
+    f_x, f_y, moment = (round(number, _DIGITS) + 0.0 for number in numbers)
+    return [
+        Lines(name="applied/way_out", paint=_APPLIED, strips=way or [], width=2.2),
+        Points(
+            name="applied",
+            paint=_APPLIED,
+            places=NO_PLACES if places is None else places,
+            legend=f"applied: ({f_x:.3g}, {f_y:.3g}) N,\n{moment:.3g} N m" + (_WAY if way else ""),
+            is_noted=True,
+        ),
+    ]
 
 
-def outlines_of(chart: WrenchChart) -> list[FloatArray]:
-    """Return the outline of each part of a chart as a closed strip of places, (k, 2)."""
-    half = 0.5 * chart.resolution
+def chart_frame(chart: WrenchChart) -> tuple[list[Mark], tuple[Axis, ...]]:
+    """Return the outlines of a chart's parts with their names, and its axes."""
+    width, height = picture_size(chart)
+    half, margin = 0.5 * chart.resolution, 0.5 * gap(chart.resolution)
+    centres = [part_centre(chart, part) for part in range(chart.parts)]
+    corners = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0]])
+    texts = ["torque anticlockwise", "torque clockwise"]
+    middle, side, names = (0.0, 0.0), 1.0, (_DIRECTIONS, "")
     if isinstance(chart, DirectionChart):
         angles = np.linspace(0.0, 2.0 * math.pi, 361)
-        outline = half * np.column_stack([np.cos(angles), np.sin(angles)])
-    else:
-        outline = half * np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0]])
-    return [np.array(part_centre(chart, part)) + outline for part in range(chart.parts)]
-
-
-def captions_of(chart: WrenchChart) -> list[Caption]:
-    """Return the name of each part of a chart, and its place below that part."""
-    _, height = picture_size(chart)
-    texts = ["torque anticlockwise", "torque clockwise"]
-    if isinstance(chart, ForceChart):
-        texts = [f"forces up to {chart.half_side:.3g} N, torque {chart.moment:.3g} N m"]
-    below = height - 0.75 * gap(chart.resolution)
-    return [Caption((part_centre(chart, part)[0], below), texts[part]) for part in range(chart.parts)]
-
-
-def place_of(chart: WrenchChart, applied: PlanarWrench | None) -> FloatArray | None:
-    """Return the places of a wrench, (k, 2), of which a chart may show none, or None without a wrench."""
-    start = np.zeros(3) if applied is None else np.array([*applied.f, applied.moment])
-    if not start.any():
-        return None
-    places, part = chart.place(start.reshape(1, 3))
-    shown: FloatArray = places[part != HIDDEN]
-    return shown
-
-
-def way_of(chart: WrenchChart, applied: PlanarWrench, change: PlanarWrench | None) -> list[FloatArray]:
-    """Return the strips of places, (k, 2) each, through which a wrench goes that changes by ``change``."""
-    if change is None:
-        return []
-    steps = np.outer(np.linspace(0.0, 1.0, _WAY_POINTS), [*change.f, change.moment])
-    places, part = chart.place(np.array([*applied.f, applied.moment]) + steps)
-    return _shown_pieces(places, part)
+        corners = np.column_stack([np.cos(angles), np.sin(angles)])
+    elif isinstance(chart, ForceChart):
+        side, names = chart.half_side, ("force to the right, N", "force up, N")
+        texts = [f"torque {chart.moment:.3g} N m"]
+    elif isinstance(chart, ForceDualChart):
+        middle, side = chart.centre, chart.half_side
+        names = ("right of the centre of mass, m", "above the centre of mass, m")
+    across, upward = (
+        tuple((x, text) for (x, _), text in zip(centres, texts, strict=False)),
+        tuple[tuple[float, str], ...](),
+    )
+    captions: list[Mark] = []
+    if not isinstance(chart, DirectionChart):
+        steps = (-0.75, 0.0, 0.75)
+        words = [(step * half, f"{middle[0] + step * side:.3g}") for step in steps]
+        across = tuple((x + place, text) for x, _ in centres for place, text in words)
+        upward = tuple((centres[0][1] + step * half, f"{middle[1] + step * side:.3g}") for step in steps)
+        above = np.array(centres) + np.array([0.0, half + 0.4 * margin])
+        captions = [Labels(name="captions", paint=_LINE, places=above, texts=texts)]
+    outlines = [np.array(centre) + half * corners for centre in centres]
+    return [Lines(name="outline", paint=_LINE, strips=outlines), *captions], (
+        Axis(names[0], margin, width - margin, across),
+        Axis(names[1], margin - height, -margin, upward),
+    )

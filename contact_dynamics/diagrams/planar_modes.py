@@ -22,7 +22,7 @@ from contact_dynamics.questions.planar_view import seen_contacts, seen_modes, se
 
 if TYPE_CHECKING:
     from contact_dynamics.contact_modes import PlanarMode, PlanarWrenchSet
-    from contact_dynamics.diagrams.planar_scene import PlanarScene
+    from contact_dynamics.diagrams.marks import Diagram
     from contact_dynamics.diagrams.wrench_chart import WrenchChart
     from contact_dynamics.plane.projection import PlaneOfMotion
     from contact_dynamics.plane.types import PlanarContact, PlanarWrench
@@ -64,10 +64,15 @@ class ModesSideBySide:
     low: FloatArray
     high: FloatArray
 
-    def scene(self, index: int) -> PlanarScene:
-        """Return the picture of that number, from 0."""
-        mode = self.modes[index] if self.modes else None
-        return planar_scene_of(self.outline, self.contacts, walls=self.walls, mode=mode, size=self.size)
+    @property
+    def scenes(self) -> list[Diagram]:
+        """The picture of each mode, or the one without a mode."""
+        return [
+            planar_scene_of(
+                self.outline, self.contacts, walls=self.walls, mode=mode, size=self.size, title=title
+            )
+            for mode, title in zip(self.modes or (None,), self.titles, strict=True)
+        ]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -100,7 +105,7 @@ def modes_side_by_side(
     modes = seen_modes(answer, plane)
     margins = [margin_in_words(margin) for margin in answer.margins or ()] or [""] * len(modes)
     titles = [
-        f"{mode.mode}: {mode_in_words(mode.mode)} {margin}".rstrip()
+        f"{mode.mode}: {mode_in_words(mode.mode)}\n{margin}".rstrip()
         for mode, margin in zip(modes, margins, strict=True)
     ]
     return side_by_side(

@@ -6,17 +6,20 @@ Coordinates are in metres from the centre of mass, x to the right, y up.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from contact_dynamics.diagrams import palette, paper
+from contact_dynamics.diagrams.marks import Arrows, Axis, Diagram, Labels, Lines, Points
+from contact_dynamics.diagrams.palette import Paint
 from contact_dynamics.diagrams.shape import FLAT
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from contact_dynamics.contact_modes import PlanarMode
+    from contact_dynamics.diagrams.marks import Mark
     from contact_dynamics.diagrams.shape import Shape
     from contact_dynamics.plane.types import PlanarContact
     from contact_dynamics.validation import FloatArray
@@ -33,65 +36,19 @@ LABEL_OFFSET: Final = 0.07
 _COVERED: Final = 0.13  # labels nearer than this would cover each other, relative to the body's size
 _ALIGNED: Final = 0.95  # length of the mean of unit normals that are taken for those of one surface
 _SHOWN: Final = 1e-6  # arrows shorter than this are left out, relative to the longest
+_AROUND: Final = 0.15  # room around body and contacts, relative to the body's size
 
-
-class Arrows(NamedTuple):
-    """The arrows of one kind. Those that are too short to see are left out.
-
-    Attributes:
-        contacts: (k,), the contact of each arrow, from 0.
-        origins: (k, 2), m.
-        vectors: (k, 2), m, as long as they are drawn.
-        sizes: (k,), what each stands for, in the unit.
-        unit: N or m/s².
-    """
-
-    contacts: list[int]
-    origins: FloatArray
-    vectors: FloatArray
-    sizes: FloatArray
-    unit: str
-
-
-class Label(NamedTuple):
-    """The label of a contact, or of several at one place.
-
-    Attributes:
-        contacts: The contacts, from 0.
-        place: (2,), m.
-        text: Their numbers from 1, each with its letter if there is a mode.
-    """
-
-    contacts: list[int]
-    place: FloatArray
-    text: str
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class PlanarScene:
-    """A body and its contacts, m from the centre of mass.
-
-    Attributes:
-        outline: (k, 2), of the body, whose last point is its first.
-        walls: Strips, (k, 2) each.
-        points: (n, 2), the contacts.
-        letters: The letter of each contact, or "?" without a mode.
-        cones: Friction cones, a strip (3, 2) each.
-        labels: The labels of the contacts.
-        forces: The contact forces, or None without a mode.
-        accelerations: The accelerations of the contacts, or None without a mode.
-        size: The size that arrows and cones suit.
-    """
-
-    outline: FloatArray
-    walls: tuple[FloatArray, ...]
-    points: FloatArray
-    letters: str
-    cones: list[FloatArray]
-    labels: list[Label]
-    forces: Arrows | None
-    accelerations: Arrows | None
-    size: float
+_WALL: Final = Paint(palette.NORMAL, paper.AXIS)
+_BODY: Final = Paint(palette.MEASURED, paper.GREY)
+_CONE: Final = Paint(palette.FRICTION_CONE, paper.PURPLE)
+_FORCE: Final = Paint(palette.IMPACT, paper.RED)
+_ACCELERATION: Final = Paint(palette.PREDICTED, paper.ORANGE)
+_LETTERS: Final = (
+    ("fixed", "f", Paint(palette.FIXED, paper.BLUE), "contact that stays fixed (f)"),
+    ("slides", "lr", Paint(palette.SLIDE, paper.YELLOW), "contact that slides left (l), right (r)"),
+    ("separates", "s", Paint(palette.SEPARATE, paper.SKY), "contact that separates (s)"),
+    ("undecided", "?", Paint(palette.UNDECIDED, paper.BLACK), "contact"),
+)
 
 
 def planar_scene_of(
@@ -101,8 +58,9 @@ def planar_scene_of(
     walls: Sequence[FloatArray] = (),
     mode: PlanarMode | None = None,
     size: float | None = None,
-) -> PlanarScene:
-    """Return a body and its contacts.
+    title: str = "",
+) -> Diagram:
+    """Return the diagram of a body and its contacts.
 
     Args:
         outline: (k, 2), m, outline of the body, whose last point is its first.
@@ -110,27 +68,50 @@ def planar_scene_of(
         walls: strips, (k, 2) each, m.
         mode: the mode whose letters, contact forces and accelerations are shown, if any.
         size: m, the size that arrows and cones suit. By default it is that of the outline.
+        title: the title.
     """
     if size is None:
         size = float(np.linalg.norm(np.ptp(outline, axis=0)))
     points = np.array([contact.r for contact in contacts]).reshape(-1, 2)
     normals = np.array([contact.normal for contact in contacts]).reshape(-1, 2)
     letters = mode.mode if mode else "?" * len(contacts)
+    cones = [cone_edges(contact, length=CONE_LENGTH * size) for contact in contacts]
+    arrows: list[Arrows] = []
+    if mode is not None:
+        arrows += _arrows("forces", _FORCE, mode.contact_forces, contacts, unit="N", size=size)
+        arrows += _arrows(
+            "accelerations", _ACCELERATION, mode.contact_accelerations, contacts, unit="m/s²", size=size
+        )
+    marks: list[Mark] = [
+        Lines(name="walls", paint=_WALL, strips=walls, width=5.0, legend="surface"),
+        Lines(name="body", paint=_BODY, strips=[outline], width=2.2, legend="body"),
+        Lines(name="cones", paint=_CONE, strips=cones, width=1.5, legend="friction cone"),
+        Points(
+            name="centre_of_mass", paint=_BODY, places=np.zeros((1, 2)), marker="+", legend="centre of mass"
+        ),
+    ]
     places = points - LABEL_OFFSET * size * normals
-    return PlanarScene(
-        outline=outline,
-        walls=tuple(walls),
-        points=points,
-        letters=letters,
-        cones=[cone_edges(contact, length=CONE_LENGTH * size) for contact in contacts],
-        labels=[
-            Label(same, _place_of(same, points, normals, size), _text_of(same, letters if mode else ""))
-            for same in _same_places(places, size)
-        ],
-        forces=_arrows(mode.contact_forces, contacts, "N", size) if mode else None,
-        accelerations=_arrows(mode.contact_accelerations, contacts, "m/s²", size) if mode else None,
-        size=size,
-    )
+    groups = _same_places(places, size)
+    for word, group, paint, meaning in _LETTERS:
+        chosen = [i for i, letter in enumerate(letters) if letter in group]
+        named = [same for same in groups if letters[same[0]] in group]
+        if chosen:
+            marks.append(
+                Points(name=f"contacts/{word}", paint=paint, places=points[chosen], size=6.5, legend=meaning)
+            )
+            middles = [_place_of(same, points, normals, size) for same in named]
+            texts = [_text_of(same, letters if mode else "") for same in named]
+            label = Paint(paint.dark, paper.BLACK)
+            marks.append(
+                Labels(name=f"letters/{word}", paint=label, places=np.reshape(middles, (-1, 2)), texts=texts)
+            )
+    marks += arrows
+    tips = [each.origins + each.vectors for each in arrows]
+    everything = np.vstack([outline, points, np.zeros((1, 2)), *tips])
+    low, high = everything.min(axis=0) - _AROUND * size, everything.max(axis=0) + _AROUND * size
+    names = ("right of the centre of mass, m", "above the centre of mass, m")
+    axes = tuple(Axis(*each) for each in zip(names, low.tolist(), high.tolist(), strict=True))
+    return Diagram(marks=marks, axes=axes, title=title)
 
 
 def cone_edges(contact: PlanarContact, *, length: float) -> FloatArray:
@@ -155,9 +136,15 @@ def silhouette(shape: Shape, axes_B: FloatArray) -> FloatArray:
 
 
 def _arrows(
-    pairs: Sequence[tuple[float, float]], contacts: Sequence[PlanarContact], unit: str, size: float
-) -> Arrows:
-    """Return arrows of vectors that are given along the tangent and the normal of each contact."""
+    name: str,
+    paint: Paint,
+    pairs: Sequence[tuple[float, float]],
+    contacts: Sequence[PlanarContact],
+    *,
+    unit: str,
+    size: float,
+) -> list[Arrows]:
+    """Return arrows of vectors along each contact's tangent and normal, without those too short to see."""
     rows = np.array(pairs).reshape(-1, 2)
     points = np.array([contact.r for contact in contacts]).reshape(-1, 2)
     normals = np.array([contact.normal for contact in contacts]).reshape(-1, 2)
@@ -165,15 +152,21 @@ def _arrows(
     vectors = rows[:, :1] * tangents + rows[:, 1:] * normals
     lengths = np.linalg.norm(vectors, axis=1)
     longest = float(lengths.max(initial=0.0))
-    chosen = lengths > _SHOWN * longest
-    scale = ARROW_LENGTH * size / longest if longest > 0.0 else 0.0
-    return Arrows(
-        contacts=np.flatnonzero(chosen).tolist(),
-        origins=points[chosen],
-        vectors=vectors[chosen] * scale,
-        sizes=lengths[chosen],
-        unit=unit,
-    )
+    chosen = np.flatnonzero(lengths > _SHOWN * longest)
+    if len(chosen) == 0:
+        return []
+    labels = [f"{length:.3g} {unit}" for length in lengths[chosen].tolist()]
+    numbered = "\n".join(f"  {i + 1}: {label}" for i, label in zip(chosen.tolist(), labels, strict=True))
+    return [
+        Arrows(
+            name=name,
+            paint=paint,
+            origins=points[chosen],
+            vectors=vectors[chosen] * (ARROW_LENGTH * size / longest),
+            labels=labels,
+            legend=f"{name.removesuffix('s')} at contact\n{numbered}",
+        )
+    ]
 
 
 def _text_of(contacts: list[int], letters: str) -> str:

@@ -11,7 +11,7 @@ at its force dual, which is the centre about which it would turn the free body. 
 `ForceChart` shows the forces at one torque. It is for moving bodies, whose modes depend on the size of the
 wrench too.
 
-Places are in points of the picture, x to the right, y down.
+Places are in points of the picture, from its upper left corner: to the right, and up, which is negative.
 """
 
 from __future__ import annotations
@@ -82,7 +82,7 @@ def part_centre(chart: WrenchChart, part: int) -> Vector2:
     """Return the centre of a part, in points."""
     between = gap(chart.resolution)
     half = 0.5 * chart.resolution
-    return (between + half + part * (chart.resolution + between), between + half)
+    return (between + half + part * (chart.resolution + between), -between - half)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -205,7 +205,7 @@ def _plane_grid(chart: WrenchChart) -> tuple[FloatArray, FloatArray, NDArray[np.
     for i in range(chart.parts):
         centre_x, centre_y = part_centre(chart, i)
         there_u = (x - centre_x) / (0.5 * chart.resolution)
-        there_v = (centre_y - y) / (0.5 * chart.resolution)
+        there_v = (-y - centre_y) / (0.5 * chart.resolution)
         inside = (np.abs(there_u) <= 1.0) & (np.abs(there_v) <= 1.0)
         part[inside] = i
         u[inside], v[inside] = there_u[inside], there_v[inside]
@@ -214,7 +214,7 @@ def _plane_grid(chart: WrenchChart) -> tuple[FloatArray, FloatArray, NDArray[np.
 
 def _on_parts(chart: WrenchChart, u: FloatArray, v: FloatArray, part: NDArray[np.int64] | int) -> FloatArray:
     centres = np.array([part_centre(chart, i) for i in range(chart.parts)])[np.maximum(part, 0)]
-    offset = 0.5 * chart.resolution * np.column_stack([u, -v])
+    offset = 0.5 * chart.resolution * np.column_stack([u, v])
     placed: FloatArray = centres + offset
     return placed
 

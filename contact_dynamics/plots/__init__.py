@@ -6,18 +6,21 @@ functions draws one diagram into the `Axes` that it is given. What it draws are 
 Matplotlib, which the extra ``[plot]`` brings.
 
 In reading order: how marks are drawn (`drawing`, `style`), the diagrams (`draw`), lecture 25's curves
-(`trajectory`) and rolling ellipsoid (`poinsot`), lecture 26's body with its contacts (`planar_scene`),
-contact forces in their cones (`contact_forces`) and charts of wrenches (`wrenches`), whole tosses
-(`tosses`), all diagrams of an answer as figures
-(`figures`), what the physics returns as figures (`results`), and the command `contact-dynamics plot`
+(`trajectory`) and rolling ellipsoid (`poinsot`), whole tosses (`tosses`), all diagrams of an answer as
+figures (`figures`), what the physics returns as figures (`results`), and the command `contact-dynamics plot`
 (`arguments`, `run`).
 """
 
-from contact_dynamics.plots.contact_forces import draw_contact_forces
-from contact_dynamics.plots.draw import draw_impulse_space, draw_impulse_space_in_3d
+from contact_dynamics.plots.draw import (
+    draw_contact_forces,
+    draw_force_dual,
+    draw_impulse_space,
+    draw_impulse_space_in_3d,
+    draw_mode_map,
+    draw_planar_scene,
+)
 from contact_dynamics.plots.figures import figures_of
 from contact_dynamics.plots.many_states import draw_many_states
-from contact_dynamics.plots.planar_scene import draw_planar_scene
 from contact_dynamics.plots.poinsot import draw_poinsot
 from contact_dynamics.plots.results import modes, toss
 from contact_dynamics.plots.style import save_figure
@@ -31,7 +34,6 @@ from contact_dynamics.plots.trajectory import (
     draw_position,
     draw_velocity,
 )
-from contact_dynamics.plots.wrenches import draw_force_dual, draw_mode_map
 
 __all__ = [
     "draw_angular_momentum",

@@ -4,14 +4,25 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from contact_dynamics.diagrams.contact_forces import contact_forces
+from contact_dynamics.diagrams.force_dual import force_dual
 from contact_dynamics.diagrams.impulse_space import impulse_space, impulse_space_in_3d
+from contact_dynamics.diagrams.mode_map import mode_map
 from contact_dynamics.plots.drawing import draw_diagram
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from matplotlib.axes import Axes
 
+    from contact_dynamics.contact.contact import ContactSet
+    from contact_dynamics.contact_modes import PlanarWrenchSet, SpatialMode
+    from contact_dynamics.diagrams.marks import Diagram
+    from contact_dynamics.diagrams.wrench_chart import ForceDualChart, WrenchChart
+    from contact_dynamics.plane.types import PlanarContact, PlanarWrench
     from contact_dynamics.questions.impact_answer import ImpactAnswer
     from contact_dynamics.rigid_body.body import HasMassProperties
+    from contact_dynamics.validation import FloatArray
 
 
 def draw_impulse_space(
@@ -52,3 +63,68 @@ def draw_impulse_space_in_3d(
         other: The body that is struck, or its mass properties. Without it both are missing for two bodies.
     """
     draw_diagram(axes, impulse_space_in_3d(body, answer, other=other))
+
+
+def draw_planar_scene(axes: Axes, scene: Diagram, *, title: str | None = None) -> None:
+    """Draw a planar body with its contacts, m from the centre of mass, and one mode's forces.
+
+    The sizes of forces and accelerations stand in the legend. The longest arrow of each kind suits the body.
+
+    Args:
+        axes: The axes to draw into.
+        scene: What `diagrams.planar_scene.planar_scene_of` made.
+        title: The title, which is the scene's own by default.
+    """
+    draw_diagram(axes, scene, title=title)
+
+
+def draw_contact_forces(axes: Axes, contacts: ContactSet, mode: SpatialMode, *, title: str = "") -> None:
+    """Draw the contact forces of a mode, N, with the friction cone of each different friction coefficient.
+
+    Args:
+        axes: The axes to draw into.
+        contacts: The contacts.
+        mode: The mode, whose forces may be one choice of many.
+        title: The title, which is the mode's letters by default.
+    """
+    draw_diagram(axes, contact_forces(contacts, mode, title=title))
+
+
+def draw_mode_map(
+    axes: Axes,
+    sets: Sequence[PlanarWrenchSet],
+    chart: WrenchChart,
+    *,
+    applied: PlanarWrench | None = None,
+    change: PlanarWrench | None = None,
+) -> None:
+    """Draw which applied wrench brings about which mode.
+
+    Args:
+        axes: The axes to draw into.
+        sets: The result of `contact_modes.wrench_sets`.
+        chart: How wrenches are laid out.
+        applied: A wrench to mark.
+        change: The least change of the wrench that brings about another mode, drawn as a path from it.
+    """
+    draw_diagram(axes, mode_map(sets, chart, applied=applied, change=change))
+
+
+def draw_force_dual(
+    axes: Axes,
+    one: PlanarWrenchSet,
+    contacts: Sequence[PlanarContact],
+    chart: ForceDualChart,
+    *,
+    outlines: Sequence[FloatArray] = (),
+) -> None:
+    """Draw lecture 26's construction for one mode of a body at rest: centres, force duals, what they span.
+
+    Args:
+        axes: The axes to draw into.
+        one: The mode's applied wrenches, of `contact_modes.wrench_sets`.
+        contacts: All contacts, in the order of the mode's letters.
+        chart: How much of the plane to show.
+        outlines: Strips, (k, 2) each, m from the centre of mass, drawn below: the body, walls.
+    """
+    draw_diagram(axes, force_dual(one, contacts, chart, outlines=outlines))

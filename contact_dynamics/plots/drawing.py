@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from contact_dynamics.diagrams.marks import Arrows, Faces, Labels, Lines, Points
+from contact_dynamics.diagrams.marks import Arrows, Faces, Labels, Lines, Points, Regions
 from contact_dynamics.diagrams.paper import AXIS, BLACK
 from contact_dynamics.plots.style import legend_beside
 
@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
 _ROOM: Final = 8.0  # points between the numbers of an axis in three dimensions and its name
 _TICKS: Final = 4  # numbers on each axis there, few enough not to cover each other
+_ROWS: Final = 18  # entries of a legend in one column
 _LIGHTER: Final = 0.8  # widths on paper, relative to those in the viewer
 
 
@@ -44,13 +45,16 @@ def draw_diagram(axes: Any, diagram: Diagram, *, title: str | None = None) -> No
             getattr(axes, f"set_{name}ticks")(
                 [x for x, _ in axis.ticks], labels=[text for _, text in axis.ticks]
             )
+    if any(axis.ticks is not None for axis in diagram.axes):  # a picture with a frame of its own
+        axes.set_frame_on(False)
+        axes.tick_params(length=0.0)
     if in_space:
         axes.locator_params(nbins=_TICKS)
         axes.view_init(elev=20.0, azim=-60.0)
     if diagram.is_equal:
         axes.set_aspect("equal")
     axes.set_title(diagram.title if title is None else title)
-    legend_beside(axes)
+    legend_beside(axes, columns=1 + (len(axes.get_legend_handles_labels()[0]) - 1) // _ROWS)
 
 
 def draw_marks(axes: Any, marks: Sequence[Mark]) -> None:
@@ -61,7 +65,7 @@ def draw_marks(axes: Any, marks: Sequence[Mark]) -> None:
             _draw(axes, mark, common)
 
 
-def _draw(axes: Any, mark: Mark, common: dict[str, Any]) -> None:
+def _draw(axes: Any, mark: Mark, common: dict[str, Any]) -> None:  # noqa: C901  one case for each kind
     color, options = mark.paint.paper, dict[str, Any]()
     match mark:
         case Lines() if len(mark.strips) > 0:
@@ -98,6 +102,19 @@ def _draw(axes: Any, mark: Mark, common: dict[str, Any]) -> None:
             from matplotlib.collections import PolyCollection
 
             axes.add_collection(PolyCollection(list(mark.corners[mark.fan]), **options, **common))
+        case Regions():
+            from matplotlib.colors import to_rgb
+            from matplotlib.patches import Rectangle
+
+            pixels = np.array([to_rgb(paint.paper) for paint in mark.paints])[mark.classes]
+            height, width = mark.classes.shape
+            axes.imshow(pixels, extent=(0.0, width, -height, 0.0), interpolation="nearest", zorder=0.0)
+            for paint, legend in zip(mark.paints, mark.legends, strict=True):
+                if legend:
+                    entry = Rectangle(
+                        (0, 0), 0, 0, facecolor=paint.paper, edgecolor=BLACK, linewidth=0.5, label=legend
+                    )
+                    axes.add_patch(entry)
         case Labels():
             for place, text in zip(mark.places.tolist(), mark.texts, strict=True):
                 axes.text(*place, text, color=color, ha="center", va="center", fontsize="small", zorder=4.0)

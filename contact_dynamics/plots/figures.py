@@ -7,10 +7,15 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 from contact_dynamics.diagrams.planar_modes import dual_chart_of, map_of_answer, modes_side_by_side
 from contact_dynamics.diagrams.planar_scene import silhouette
 from contact_dynamics.diagrams.shape import drawn_shape
-from contact_dynamics.plots.contact_forces import draw_contact_forces
-from contact_dynamics.plots.draw import draw_impulse_space, draw_impulse_space_in_3d
+from contact_dynamics.plots.draw import (
+    draw_contact_forces,
+    draw_force_dual,
+    draw_impulse_space,
+    draw_impulse_space_in_3d,
+    draw_mode_map,
+    draw_planar_scene,
+)
 from contact_dynamics.plots.many_states import draw_many_states
-from contact_dynamics.plots.planar_scene import draw_planar_scene
 from contact_dynamics.plots.poinsot import draw_poinsot
 from contact_dynamics.plots.tosses import draw_event_tree, draw_toss
 from contact_dynamics.plots.trajectory import (
@@ -22,7 +27,6 @@ from contact_dynamics.plots.trajectory import (
     draw_position,
     draw_velocity,
 )
-from contact_dynamics.plots.wrenches import draw_force_dual, draw_mode_map
 from contact_dynamics.questions.services import service_of
 from contact_dynamics.shapes.convex import NO_SHAPE
 from contact_dynamics.tumbling.regime import Regime
@@ -164,10 +168,10 @@ def figures_of_modes(
         return
     outline = silhouette(drawn_shape(shape), plane.axes_W @ answer.state.R_WB)
     view = modes_side_by_side(answer, plane, outline=outline)
-    for i, title in enumerate(view.titles[:MAX_MODES]):
+    for i, scene in enumerate(view.scenes[:MAX_MODES], start=1):
         figure = blank_figure(8.0, 4.6)
-        draw_planar_scene(figure.add_subplot(), view.scene(i), title=title)
-        yield NamedFigure(f"planar-scene-{i + 1}", figure)
+        draw_planar_scene(figure.add_subplot(), scene)
+        yield NamedFigure(f"planar-scene-{i}", figure)
     masses = None if body is None else body.mass_properties
     shown = map_of_answer(answer, plane, body=masses, resolution=_RESOLUTION)
     if shown is None:

@@ -15,9 +15,8 @@ from contact_dynamics.contact_modes import (
 from contact_dynamics.contact_modes.letters import mode_in_words
 from contact_dynamics.diagrams.planar_modes import side_by_side
 from contact_dynamics.diagrams.shape import drawn_shape
-from contact_dynamics.plots.contact_forces import draw_contact_forces
+from contact_dynamics.plots.draw import draw_contact_forces, draw_planar_scene
 from contact_dynamics.plots.figures import MAX_MODES, blank_figure
-from contact_dynamics.plots.planar_scene import draw_planar_scene
 from contact_dynamics.plots.tosses import draw_toss
 from contact_dynamics.shapes.convex import NO_SHAPE
 from contact_dynamics.validation_types import checks_types
@@ -69,8 +68,8 @@ def modes(answer: PlanarModeAnswer | SpatialModeAnswer) -> Figure:
             titles or [str(answer.verdict)],
             outline=np.zeros((0, 2)),
         )
-        for k, title in enumerate(view.titles):
-            draw_planar_scene(each[k], view.scene(k), title=title)
+        for axes, scene in zip(each, view.scenes, strict=True):
+            draw_planar_scene(axes, scene)
     elif isinstance(answer, SpatialModeAnswer) and isinstance(problem, SpatialContactProblem):
         for axes, mode, title in zip(each, answer.modes, titles, strict=False):
             draw_contact_forces(axes, problem.contacts, mode, title=title)

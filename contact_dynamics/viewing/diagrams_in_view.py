@@ -1,14 +1,35 @@
-"""Draws the diagrams of answers beside the scene, and remembers which of them are in view."""
+"""Draws the diagrams of answers beside the scene, and remembers which of them are in view.
+
+A planar answer about contact modes has its consistent modes side by side, seen against the plane's normal. If
+wrench sets were asked for, it has the map of modes over applied wrenches, and lecture 26's construction for
+the first mode. Both take long to draw: while they look the same, only the wrench in question moves in them.
+"""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from dataclasses import replace
+from typing import TYPE_CHECKING, NamedTuple
 
 import rerun as rr
 
+from contact_dynamics.diagrams.force_dual import answer_marks, force_dual
 from contact_dynamics.diagrams.impulse_space import impulse_space, impulse_space_in_3d
-from contact_dynamics.diagrams.planar_modes import applied_of
-from contact_dynamics.viewing.drawing import draw_diagram
+from contact_dynamics.diagrams.mode_map import (
+    LIVE_RESOLUTION,
+    applied_marks,
+    look_alike,
+    mode_map,
+    paint_of_modes,
+)
+from contact_dynamics.diagrams.planar_modes import (
+    applied_of,
+    dual_chart_of,
+    map_of_answer,
+    modes_side_by_side,
+)
+from contact_dynamics.diagrams.wrench_chart import DirectionChart
+from contact_dynamics.viewing.contact_modes import MAX_MODES
+from contact_dynamics.viewing.drawing import draw_diagram, draw_side_by_side, redraw
 from contact_dynamics.viewing.entities import (
     FORCE_DUAL,
     IMPULSE_SPACE,
@@ -16,17 +37,29 @@ from contact_dynamics.viewing.entities import (
     MODE_MAP,
     PLANAR_MODES,
 )
-from contact_dynamics.viewing.planar_dual import draw_planar_dual
-from contact_dynamics.viewing.planar_modes import draw_planar_map, draw_planar_modes
 
 if TYPE_CHECKING:
-    from contact_dynamics.diagrams.planar_modes import AnswersMap
+    from contact_dynamics.diagrams.marks import Diagram, Mark
+    from contact_dynamics.diagrams.planar_modes import AnswersMap, ModesSideBySide
+    from contact_dynamics.diagrams.wrench_chart import ForceDualChart
     from contact_dynamics.plane.projection import PlaneOfMotion
+    from contact_dynamics.plane.types import PlanarWrench
     from contact_dynamics.questions.contact_modes import ContactModeAnswer
     from contact_dynamics.questions.impact_answer import ImpactAnswer
     from contact_dynamics.rigid_body.body import MassProperties
     from contact_dynamics.validation import FloatArray
-    from contact_dynamics.viewing.planar_dual import DualInView
+
+
+class _MapInView(NamedTuple):
+    shown: AnswersMap
+    diagram: Diagram
+
+
+class _DualInView(NamedTuple):
+    of_map: AnswersMap
+    mode: str
+    chart: ForceDualChart
+    diagram: Diagram
 
 
 class DiagramsInView:
@@ -35,8 +68,8 @@ class DiagramsInView:
     def __init__(self, recording: rr.RecordingStream) -> None:
         """Begin without any."""
         self._recording = recording
-        self._map: AnswersMap | None = None
-        self._dual: DualInView | None = None
+        self._map: _MapInView | None = None
+        self._dual: _DualInView | None = None
         self._in_3d = False
 
     def draw_impact(
@@ -78,17 +111,58 @@ class DiagramsInView:
             outline: Outline of the body, a closed strip, (k, 2), m from the centre of mass. It may be empty.
             body: Mass properties of the body, or None if they are not known.
         """
-        draw_planar_modes(self._recording, answer, plane, outline=outline)
-        self._map = draw_planar_map(self._recording, answer, plane, self._map, body=body)
-        self._dual = draw_planar_dual(
-            self._recording,
-            answer,
-            plane,
-            self._dual,
-            shown=self._map,
-            applied=applied_of(answer, plane, body),
-            outline=outline,
+        view = modes_side_by_side(answer, plane, outline=outline)
+        draw_side_by_side(self._recording, view.scenes[:MAX_MODES], PLANAR_MODES, name="mode")
+        if not answer.wrench_sets:
+            return [PLANAR_MODES, *([] if self._dual is None else [FORCE_DUAL])]
+        self._draw_map(map_of_answer(answer, plane, body=body))
+        self._draw_dual(view, applied_of(answer, plane, body))
+        return [PLANAR_MODES, MODE_MAP, *([] if self._dual is None else [FORCE_DUAL])]
+
+    def _draw_map(self, new: AnswersMap | None) -> None:
+        before, self._map = self._map, None
+        if new is None:
+            self._recording.log(MODE_MAP, rr.Clear(recursive=True))
+        elif (
+            before is not None
+            and isinstance(new.chart, DirectionChart)
+            and isinstance(before.shown.chart, DirectionChart)
+            and look_alike(before.shown.sets, new.sets, length=new.chart.length)
+        ):
+            marks = applied_marks(before.shown.chart, new.applied, new.change)
+            self._map = before._replace(diagram=_replaced(before.diagram, "applied", marks))
+            redraw(self._recording, self._map.diagram, MODE_MAP, "applied")
+        else:
+            diagram = mode_map(new.sets, new.chart, applied=new.applied, change=new.change)
+            self._map = _MapInView(new, diagram)
+            draw_diagram(self._recording, diagram, MODE_MAP)
+
+    def _draw_dual(self, view: ModesSideBySide, applied: PlanarWrench | None) -> None:
+        """Draw the construction for the first mode, if the map has wrenches of it."""
+        before, self._dual = self._dual, None
+        shown = None if self._map is None else self._map.shown
+        chart = None if shown is None else dual_chart_of(view, shown, resolution=LIVE_RESOLUTION)
+        sets = () if shown is None or chart is None else shown.sets
+        one = next((one for one in sets if one.mode == view.modes[0].mode), None)
+        if shown is None or chart is None or one is None:
+            self._recording.log(FORCE_DUAL, rr.Clear(recursive=True))
+            return
+        mode = view.modes[0]
+        if before is not None and before.of_map is shown and before.mode == one.mode:
+            marks = answer_marks(before.chart, applied=applied, mode=mode)
+            self._dual = before._replace(diagram=_replaced(before.diagram, "answer", marks))
+            redraw(self._recording, self._dual.diagram, FORCE_DUAL, "answer")
+            return
+        color = paint_of_modes([one.mode], sorted(each.mode for each in sets)).dark
+        outlines = [view.outline, *view.walls]
+        diagram = force_dual(
+            one, view.contacts, chart, outlines=outlines, color=color, applied=applied, mode=mode
         )
-        maps = [MODE_MAP] if answer.wrench_sets else []
-        duals = [] if self._dual is None else [FORCE_DUAL]
-        return [PLANAR_MODES, *maps, *duals]
+        self._dual = _DualInView(shown, one.mode, chart, diagram)
+        draw_diagram(self._recording, diagram, FORCE_DUAL)
+
+
+def _replaced(diagram: Diagram, part: str, marks: list[Mark]) -> Diagram:
+    """Return a diagram with other marks in place of those whose names begin so."""
+    kept = [mark for mark in diagram.marks if not mark.name.startswith(part)]
+    return replace(diagram, marks=[*kept, *marks])

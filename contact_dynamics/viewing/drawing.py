@@ -8,6 +8,7 @@ to words: it is right for a panel that is 250 points high, and more than enough 
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import numpy as np
@@ -34,6 +35,7 @@ _PANEL: Final = (400.0, 150.0)  # points, the part of a panel that the axes fill
 _LETTER: Final = 6.4  # points, width of a letter
 _LINE: Final = 23.0  # points, from one word to the one below
 _DROP: Final = 12.0  # points that the middle of a word is below its place
+_FURTHER: Final = 7.5  # the same, for each further line of it
 
 EYE: Final = np.array([0.8, -1.7, 1.15])
 TARGET: Final = np.array([0.0, 0.0, 0.4])
@@ -42,7 +44,7 @@ _SPACE: Final = 115.0  # points, the height of a diagram in three dimensions
 _RIGHT: Final = np.array([0.906, 0.423, 0.0])  # on the screen, as seen from there
 
 
-def draw_diagram(recording: rr.RecordingStream, diagram: Diagram, entity: str, *, shift: float = 0.0) -> None:
+def draw_diagram(recording: rr.RecordingStream, diagram: Diagram, entity: str) -> None:
     """Draw a diagram in place of what was there.
 
     Args:
@@ -50,24 +52,71 @@ def draw_diagram(recording: rr.RecordingStream, diagram: Diagram, entity: str, *
         diagram: The diagram.
         entity: Where it is put. In three dimensions, it is put below, scaled so that its upright axis has
             length 1, since a view does not scale its origin.
-        shift: How far to the right it stands, in its units.
     """
     recording.log(entity, rr.Clear(recursive=True))
     if len(diagram.axes) == 3:
         entity = f"{entity}/contact"
         height = diagram.axes[2].high - diagram.axes[2].low
         recording.log(entity, rr.Transform3D(scale=1.0 / height))
-    draw_marks(recording, diagram.marks, entity, shift=shift)
-    draw_marks(recording, _frame_of(diagram), f"{entity}/frame", shift=shift)
+    _draw_all(recording, diagram.marks, diagram, entity)
+
+
+def draw_side_by_side(
+    recording: rr.RecordingStream, diagrams: Sequence[Diagram], entity: str, *, name: str
+) -> None:
+    """Draw flat diagrams side by side in one view, at `name_1` and so on, with the legend of the first."""
+    recording.log(entity, rr.Clear(recursive=True))
+    pages = [_page_of(diagram.axes) for diagram in diagrams]
+    point = max(sum(page.width for page in pages) / _PANEL[0], *(page.height / _PANEL[1] for page in pages))
+    shift = 0.0
+    for i, (diagram, page) in enumerate(zip(diagrams, pages, strict=True)):
+        here = f"{entity}/{name}_{i + 1}"
+        draw_marks(recording, diagram.marks, here, shift=shift, point=point)
+        frame = _frame_of(diagram, page._replace(point=point), has_legend=i == 0)
+        draw_marks(recording, frame, f"{here}/frame", shift=shift, point=point)
+        room = _LETTER * max(map(len, diagram.title.splitlines()), default=0)
+        shift += max(page.width, point * room) + point * 60.0
+
+
+def redraw(recording: rr.RecordingStream, diagram: Diagram, entity: str, part: str) -> None:
+    """Draw a part of a flat diagram anew, the marks whose names begin so, with what is about the diagram."""
+    for cleared in (f"{entity}/{part}", f"{entity}/frame"):
+        recording.log(cleared, rr.Clear(recursive=True))
+    _draw_all(recording, [mark for mark in diagram.marks if mark.name.startswith(part)], diagram, entity)
+
+
+def _draw_all(recording: rr.RecordingStream, marks: Sequence[Mark], diagram: Diagram, entity: str) -> None:
+    """Draw marks of a diagram, and what is about it."""
+    page = _page_of(diagram.axes)
+    draw_marks(recording, marks, entity, point=page.point)
+    draw_marks(recording, _frame_of(diagram, page), f"{entity}/frame", point=page.point)
 
 
 def draw_marks(
-    recording: rr.RecordingStream, marks: Iterable[Mark], entity: str, *, shift: float = 0.0
+    recording: rr.RecordingStream,
+    marks: Iterable[Mark],
+    entity: str,
+    *,
+    shift: float = 0.0,
+    point: float = 0.0,
 ) -> None:
-    """Draw marks, each below ``entity`` at its name, and clear what is at the names of empty ones."""
+    """Draw marks, each below ``entity`` at its name, and clear what is at the names of empty ones.
+
+    In the plane, they are drawn ``shift`` to the right. The viewer writes words below their places. If
+    ``point``, the size of a point of the screen, is given, labels are put that much higher.
+    """
     for mark in marks:
         if mark.in_viewer:
-            recording.log(f"{entity}/{mark.name}", _drawn(mark, shift) or rr.Clear(recursive=False))
+            drawn = _drawn(_lifted(mark, point), shift)
+            recording.log(f"{entity}/{mark.name}", drawn or rr.Clear(recursive=False))
+
+
+def _lifted(mark: Mark, point: float) -> Mark:
+    if not isinstance(mark, Labels) or len(mark.places) == 0:
+        return mark
+    lines = np.array([text.count("\n") for text in mark.texts])
+    up = np.eye(mark.places.shape[1])[-1]
+    return replace(mark, places=mark.places + point * np.outer(_DROP + _FURTHER * lines, up))
 
 
 def _drawn(mark: Mark, shift: float) -> rr.AsComponents | None:  # noqa: PLR0911  one for each kind
@@ -197,40 +246,40 @@ def _page_of(axes: tuple[Axis, ...]) -> _Page:
     return _Page(height / _SPACE, _RIGHT, np.array([0.0, 0.0, 1.0]), corner, 2.0 * half, height)
 
 
-def _frame_of(diagram: Diagram) -> list[Mark]:
+def _frame_of(diagram: Diagram, page: _Page, *, has_legend: bool = True) -> list[Mark]:
     """Return the axes with their numbers and names, the title, the legend, and the words about points."""
-    page = _page_of(diagram.axes)
     marks = _axes_of(diagram.axes, page)
-    left, top = page.at(0.0, 0.0), page.height / page.point
-    names = [axis.name for axis in diagram.axes]
-    across = page.width / page.point
-    room = [page.at(0.0, top + _DROP), page.at(0.0, -2.6 * _LINE), page.at(across, -2.6 * _LINE)]
-    title: list[tuple[float, float, str]] = []
-    if names[-1]:
-        title.append((0.0, top + _LINE, names[-1]))
-    if diagram.title and len(names) == 2:
-        title.append((0.5 * across, top + 2.0 * _LINE, diagram.title))
+    top, across = page.height / page.point, page.width / page.point
+    name = diagram.axes[-1].name
+    room = [page.at(0.0, top), page.at(0.0, -2.8 * _LINE), page.at(across, -2.8 * _LINE)]
+    title = [(0.0, top + _LINE, name)] if name else []
+    if diagram.title and len(diagram.axes) == 2:
+        lines = diagram.title.count("\n") + 1
+        title.append((0.5 * across, top + (0.5 + 0.5 * lines + len(title)) * _LINE, diagram.title))
+    places = [page.at(right, up) for right, up, _ in title]
     marks.append(
         Labels(
             name="title",
             paint=_WHITE,
-            places=np.array([page.at(right, up + _DROP) for right, up, _ in title]).reshape(-1, len(left)),
+            places=np.reshape(places, (-1, len(diagram.axes))),
             texts=[text for *_, text in title],
         )
     )
-    room += [page.at(right, up + _DROP) for right, up, _ in title]
-    legend = [
-        mark for mark in diagram.marks if mark.legend and mark.in_viewer and not isinstance(mark, Points)
-    ]
-    nearer = 0.16 * across if len(names) == 3 else 0.0  # the upright axis is, and so farther to the left
-    aside = -0.5 * _widest(legend) - 7.0 * _LETTER - 8.0 - nearer
-    for i, mark in enumerate(legend):
-        place = page.at(aside, top - i * _LINE)
+    room += [page.at(right, up + _LINE) for right, up, _ in title]
+    shown = [mark for mark in diagram.marks if has_legend and mark.legend and mark.in_viewer]
+    noted = [mark for mark in shown if isinstance(mark, Points) and mark.is_noted and len(mark.places) > 0]
+    legend = [mark for mark in shown if not (isinstance(mark, Points) and mark.is_noted)]
+    nearer = 0.16 * across if len(diagram.axes) == 3 else 0.0  # the upright axis is, and so farther left
+    aside, up = -0.5 * _widest(legend) - 7.0 * _LETTER - 8.0 - nearer, top
+    for mark in legend:
+        lines = mark.legend.count("\n")
+        place = page.at(aside, up - 0.4 * lines * _LINE)
         marks.append(
             Labels(name=f"legend/{mark.name}", paint=mark.paint, places=place[None], texts=[mark.legend])
         )
-        room.append(page.at(2.0 * aside, 0.0))
-    return [*marks, *_notes_of(diagram, page, room), _room(room)]
+        up -= (1.0 + 0.8 * lines) * _LINE
+        room += [page.at(aside - 0.5 * _widest(legend), 0.0), page.at(aside, up)]
+    return [*marks, *_notes_of(noted, page, room), _room(room)]
 
 
 _WHITE: Final = palette.Paint(palette.NORMAL, "")
@@ -249,30 +298,25 @@ def _room(places: Sequence[FloatArray]) -> Mark:
     return Lines(name="room", paint=palette.Paint(_NO_COLOR, ""), opacity=0.0, strips=strips, width=0.0)
 
 
-def _notes_of(diagram: Diagram, page: _Page, room: list[FloatArray]) -> list[Mark]:
+def _notes_of(noted: list[Points], page: _Page, room: list[FloatArray]) -> list[Mark]:
     """Return the legends of points on the right, each at the height of its point as far as they are apart."""
-    noted = [
-        mark
-        for mark in diagram.marks
-        if isinstance(mark, Points) and mark.legend and mark.in_viewer and len(mark.places) > 0
-    ]
-    if not noted:
-        return []
     noted.sort(key=lambda mark: page.height_of(mark.places[0]))
     left = page.width / page.point + 14.0
     middle = left + 0.5 * _widest(noted)
     marks: list[Mark] = []
     lines = [len(mark.legend.splitlines()) for mark in noted]
     rooms = [(0.4 + 0.7 * count) * _LINE for count in lines]
-    heights = [page.height_of(mark.places[0]) for mark in noted]
+    heights = [
+        max(page.height_of(mark.places[0]), 0.5 * space) for mark, space in zip(noted, rooms, strict=True)
+    ]
     for i in range(1, len(noted)):  # upwards, as far as needed
         heights[i] = max(heights[i], heights[i - 1] + 0.5 * (rooms[i - 1] + rooms[i]))
     above = page.height / page.point
     for i in reversed(range(len(noted))):  # and down again, to stay beside the diagram
         heights[i] = min(heights[i], above)
         above = heights[i] - 0.5 * (rooms[i] + rooms[max(i - 1, 0)])
-    for mark, count, up in zip(noted, lines, heights, strict=True):
-        place = page.at(middle, up + 0.7 * count * _DROP)
+    for mark, up in zip(noted, heights, strict=True):
+        place = page.at(middle, up)
         leader = np.array([mark.places[0], page.at(left, up)])
         marks += [
             Labels(name=f"notes/{mark.name}", paint=mark.paint, places=place[None], texts=[mark.legend]),
@@ -297,7 +341,8 @@ def _axes_of(axes: tuple[Axis, ...], page: _Page) -> list[Mark]:
     strips, places, texts = [], [], []
     for i, (axis, corner) in enumerate(zip(axes, corners, strict=True)):
         along = np.eye(len(axes))[i]
-        strips.append(np.array([corner, corner + (axis.high - axis.low) * along]))
+        if axis.ticks is None:  # others have a picture with a frame of its own
+            strips.append(np.array([corner, corner + (axis.high - axis.low) * along]))
         # Words are below the first axis, right of one that recedes, and left of the upright one.
         side = (0.0, 1.0, -1.0)[i] if len(axes) == 3 else (0.0, -1.0)[i]
         tick = side * page.right if side else -page.up
@@ -306,11 +351,11 @@ def _axes_of(axes: tuple[Axis, ...], page: _Page) -> list[Mark]:
         for number, text in (*ticks, *named):
             place = corner + (number - axis.low) * along
             beside = side * (0.5 * _LETTER * len(text) + 10.0)
-            below = -_DROP if side else 2.0
+            below = 0.0 if side else _DROP
             if text == axis.name:
-                beside, below = (beside + 40.0, below) if side else (-0.5 * _LETTER * len(text), 1.1 * _LINE)
+                beside, below = (beside + 40.0, below) if side else (-0.5 * _LETTER * len(text), 1.6 * _LINE)
                 beside = beside if len(axes) == 3 else 0.0
-            else:
+            elif axis.ticks is None:
                 strips.append(np.array([place, place + 4.0 * page.point * tick]))
             places.append(place + page.point * (beside * page.right - below * page.up))
             texts.append(text)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
@@ -26,6 +26,7 @@ from contact_dynamics.plane.projection import PlaneOfMotion
 from contact_dynamics.questions import ImpactAnswer, ImpactQuestion, StruckBody, ask
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.world import Body
+from diagrams.marks_of import marks_of
 from viewing.answers import impact_answer, of_two
 
 if TYPE_CHECKING:
@@ -82,11 +83,6 @@ def of_one(answer: ImpactAnswer, impact: SpatialImpact) -> ImpactAnswer:
         path_contacts=(0,) * len(impact.path_W),
     )
     return replace(answer, impact=resolved)
-
-
-def marks_of(diagram: Diagram) -> dict[str, Any]:
-    """The marks by their names."""
-    return {mark.name: mark for mark in diagram.marks}
 
 
 def events_of(diagram: Diagram) -> list[tuple[str, np.ndarray]]:

@@ -199,8 +199,7 @@ def test_the_map_has_the_colours_of_the_modes_and_marks_the_wrench() -> None:
     (margin,) = mode_margins(IN_TRAY, contact_modes(IN_TRAY))
     change = np.array([*margin.change.f, margin.change.moment])
     end = np.array([*APPLIED.f, APPLIED.moment]) + change
-    ways = [line for line in axes.lines if line.get_label() == "least way to another mode"]
-    np.testing.assert_allclose(np.column_stack(ways[-1].get_data())[-1], DIRECTIONS.place(end[None])[0][0])
+    np.testing.assert_allclose(curve(axes, "applied/way_out")[-1], DIRECTIONS.place(end[None])[0][0])
 
 
 def test_a_centre_of_acceleration_is_where_the_body_would_turn() -> None:

@@ -1,34 +1,26 @@
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 import pytest
 
 from contact_dynamics.contact_modes import PlanarContactProblem, PlanarWrenchSet, contact_modes, wrench_sets
 from contact_dynamics.diagrams import palette
-from contact_dynamics.diagrams.force_dual import split_generators
+from contact_dynamics.diagrams.force_dual import force_dual, split_generators
 from contact_dynamics.diagrams.mode_map import (
     NO_MODE,
     OUTSIDE,
     borders_of,
     chart_for,
     look_alike,
+    mode_map,
     mode_regions,
+    paint_of_modes,
     widest_places,
 )
 from contact_dynamics.diagrams.wrench_chart import DirectionChart, ForceChart, ForceDualChart, WrenchChart
 from contact_dynamics.plane.force_dual import acceleration_centre
 from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
-from contact_dynamics.viewing.force_dual import draw_force_dual
-from contact_dynamics.viewing.mode_map import color_of_modes, draw_mode_map
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    import rerun as rr
-
-    from viewing.drawn import Drawn
+from diagrams.marks_of import marks_of
 
 BODY = PlanarBody(mass=1.0, inertia=0.25)
 RHO = BODY.radius_of_gyration
@@ -113,7 +105,7 @@ def test_borders_lie_between_regions() -> None:
     for one in sets:
         strips = borders_of(one, chart)
         assert strips
-        for x, y in np.vstack(strips)[::50].round().astype(int):
+        for x, y in (np.vstack(strips)[::50] * (1.0, -1.0)).round().astype(int):
             assert len(np.unique(classes[y - 2 : y + 3, x - 2 : x + 3])) > 1
 
 
@@ -125,7 +117,7 @@ def test_a_name_stands_inside_its_region() -> None:
     widest = widest_places(regions, chart)
     assert {one.region for one in widest} == set(np.unique(regions.classes).tolist()) - {OUTSIDE}
     for one in widest:
-        column, row = one.place.astype(int)
+        column, row = (one.place * (1.0, -1.0)).astype(int)
         near = regions.classes[row - 3 : row + 4, column - 3 : column + 4]
         assert one.region in near
         if one.has_room:
@@ -134,10 +126,10 @@ def test_a_name_stands_inside_its_region() -> None:
 
 def test_colours_say_what_a_region_is() -> None:
     every = ["ff", "fs", "ls", "ss"]
-    assert color_of_modes(["ff"], every) == palette.FIXED
-    assert color_of_modes(["ss"], every) == palette.SEPARATE
-    assert color_of_modes(["ff", "ls"], every) == palette.UNDECIDED
-    assert color_of_modes([], every) == palette.NO_MODE
+    assert paint_of_modes(["ff"], every).dark == palette.FIXED
+    assert paint_of_modes(["ss"], every).dark == palette.SEPARATE
+    assert paint_of_modes(["ff", "ls"], every).dark == palette.UNDECIDED
+    assert paint_of_modes([], every).dark == palette.NO_MODE
     assert len({palette.mode_color("ls", i) for i in range(18)}) == 18
 
 
@@ -165,24 +157,34 @@ def test_the_chart_suits_the_motion() -> None:
     assert chart.half_side >= 10.0
 
 
-def test_the_map_is_drawn_with_the_wrench_and_its_way_out(
-    recording: rr.RecordingStream, read: Callable[[], Drawn]
-) -> None:
+def test_the_map_has_the_wrench_and_its_way_out() -> None:
     sets = wrench_sets(PlanarContactProblem(body=BODY, contacts=TRAY, wrench=PlanarWrench(f=(0.0, 0.0))))
     chart = DirectionChart(length=RHO, resolution=160)
     applied, change = PlanarWrench(f=(1.0, -3.0), moment=0.1), PlanarWrench(f=(-3.0, 0.5), moment=0.2)
-    draw_mode_map(recording, sets, chart, applied=applied, change=change)
-    drawn = read()
-    labels = drawn.last("/mode_map/names", "Points2D:labels")
-    assert {"ffff", "ssss", "lsss"} <= set(labels)
-    captions = drawn.last("/mode_map/captions", "LineStrips2D:labels")
-    assert captions == ["torque anticlockwise", "torque clockwise", "white: several modes are consistent"]
-    way = drawn.array("/mode_map/applied/way_out", "LineStrips2D:strips")[0]
+    diagram = mode_map(sets, chart, applied=applied, change=change)
+    marks = marks_of(diagram)
+    assert {"ffff", "ssss", "lsss"} <= {*marks["names"].texts, *marks["names_on_dark"].texts}
+    assert [text for _, text in diagram.axes[0].ticks] == ["torque anticlockwise", "torque clockwise"]
+    assert diagram.title.endswith("\nwhite: several are consistent")
+    (way,) = marks["applied/way_out"].strips
     ends = np.array([[1.0, -3.0, 0.1], [-2.0, -2.5, 0.3]])
-    np.testing.assert_allclose(way[[0, -1]], chart.place(ends)[0], atol=1e-3)
+    np.testing.assert_allclose(way[[0, -1]], chart.place(ends)[0])
+    np.testing.assert_allclose(marks["applied"].places, chart.place(ends[:1])[0])
+    assert marks["applied"].legend.startswith("applied: (1, -3) N,\n0.1 N m")
 
 
-def test_the_construction_of_rsrs(recording: rr.RecordingStream, read: Callable[[], Drawn]) -> None:
+def test_numbers_on_the_axes_of_a_square_are_where_they_belong() -> None:
+    chart = ForceChart(moment=0.7, half_side=30.0, resolution=64)
+    forces = np.array([[-22.5, 0.0, 0.7], [0.0, 22.5, 0.7]])
+    (left, _), (_, above) = chart.place(forces)[0]
+    always = PlanarWrenchSet(mode="f", vertices=(), generators=(), half_spaces=())
+    across, upward = mode_map([always], chart).axes
+    assert (across.name, upward.name) == ("force to the right, N", "force up, N")
+    assert (left, "-22.5") in across.ticks
+    assert (above, "22.5") in upward.ticks
+
+
+def test_the_construction_of_rsrs() -> None:
     rsrs = next(
         one
         for one in wrench_sets(
@@ -197,11 +199,10 @@ def test_the_construction_of_rsrs(recording: rr.RecordingStream, read: Callable[
     assert centre is not None
     np.testing.assert_allclose(centre.point, (-0.9, -0.1), atol=1e-12)  # above contact 1, beside contact 3
     chart = ForceDualChart(length=RHO, half_side=1.2, resolution=100)
-    draw_force_dual(recording, rsrs, TRAY, chart, outlines=[np.array([[-0.9, -0.4], [0.6, -0.4]])])
-    drawn = read()
-    place = drawn.array("/force_dual/acceleration_centres", "Points2D:positions")[0]
-    np.testing.assert_allclose(place, chart.place_points(np.array([centre.point]), 0)[0], atol=1e-4)
-    assert "-c1" in drawn.last("/force_dual/contact_forces", "Points2D:labels")
+    marks = marks_of(force_dual(rsrs, TRAY, chart, outlines=[np.array([[-0.9, -0.4], [0.6, -0.4]])]))
+    (place,) = marks["acceleration_centres"].places
+    np.testing.assert_allclose(place, chart.place_points(np.array([centre.point]), 0)[0])
+    assert "-c1" in marks["contact_forces_names"].texts
 
 
 def test_a_map_without_half_spaces_is_one_region() -> None:

@@ -14,10 +14,11 @@ from contact_dynamics.plane.projection import PlaneOfMotion
 from contact_dynamics.questions import ContactModeQuestion, Context, Problem
 from contact_dynamics.questions.contact_modes import answer
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
+from contact_dynamics.viewing.diagrams_in_view import DiagramsInView
+from contact_dynamics.viewing.entities import FORCE_DUAL, MODE_MAP, PLANAR_MODES
 from contact_dynamics.viewing.picture import Picture
-from contact_dynamics.viewing.planar_dual import draw_planar_dual
-from contact_dynamics.viewing.planar_modes import draw_planar_map, draw_planar_modes
 from contact_dynamics.world import Body, World, box_vertices
+from viewing.drawn import STAMP_NS
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -63,54 +64,82 @@ def answer_of(
     return answer(question)
 
 
+NO_OUTLINE = np.zeros((0, 2))
+
+
 def test_the_modes_of_the_indeterminate_rod_stand_side_by_side(
     recording: rr.RecordingStream, read: Callable[[], Drawn]
 ) -> None:
-    found = answer_of(force=ALONG)
-    draw_planar_modes(recording, found, PLANE, outline=np.array([TIP[[0, 2]], -TIP[[0, 2]]]))
+    outline = np.array([TIP[[0, 2]], -TIP[[0, 2]]])
+    shown = DiagramsInView(recording)
+    drawn_names = shown.draw_planar_modes(answer_of(force=ALONG), PLANE, outline=outline, body=ROD)
+    assert drawn_names == [PLANAR_MODES, MODE_MAP, FORCE_DUAL]
     drawn = read()
-    titles = [drawn.last(f"/planar_modes/mode_{i}/title", "LineStrips2D:labels")[0] for i in (1, 2)]
-    assert sorted(title[0] for title in titles) == ["f", "l"]
-    assert all(" N from " in title for title in titles)
-    assert {title.partition(" (")[0] for title in titles} == {"f: it stays fixed", "l: it slides left"}
-    places = [drawn.array(f"/planar_modes/mode_{i}/contacts", "Points2D:positions")[0] for i in (1, 2)]
-    assert places[1][0] - places[0][0] > 2.0 * abs(TIP[0]) + 1.0
-    assert places[1][1] == places[0][1]
-    assert drawn.last("/planar_modes/mode_3", "Clear:is_recursive") == [True]
+    titles = [
+        drawn.last(f"/planar_modes/mode_{i}/frame/title", "LineStrips2D:labels")[-1].splitlines()
+        for i in (1, 2)
+    ]
+    assert {first for first, _ in titles} == {"f: it stays fixed", "l: it slides left"}
+    assert all(" N from " in second for _, second in titles)
+    places = [
+        drawn.array(f"/planar_modes/mode_{i}/body", "LineStrips2D:strips").reshape(-1, 2) for i in (1, 2)
+    ]
+    assert places[1].min(axis=0)[0] - places[0].max(axis=0)[0] > 1.0
+    np.testing.assert_allclose(places[1][:, 1], places[0][:, 1])
 
 
-def test_the_inconsistent_rod_says_so(recording: rr.RecordingStream, read: Callable[[], Drawn]) -> None:
+def test_the_inconsistent_rod_says_so_and_has_no_force_dual(
+    recording: rr.RecordingStream, read: Callable[[], Drawn]
+) -> None:
+    shown = DiagramsInView(recording)
+    shown.draw_planar_modes(answer_of(force=ALONG), PLANE, outline=NO_OUTLINE, body=ROD)
     found = answer_of(force=(0.0, 0.0, -9.81), speed=-1.0)
-    draw_planar_modes(recording, found, PLANE, outline=np.zeros((0, 2)))
-    draw_planar_map(recording, found, PLANE, None, body=ROD)
+    names = shown.draw_planar_modes(found, PLANE, outline=NO_OUTLINE, body=ROD)
+    assert names == [PLANAR_MODES, MODE_MAP]
     drawn = read()
-    assert drawn.last("/planar_modes/mode_1/title", "LineStrips2D:labels") == ["no consistent mode"]
-    assert drawn.last("/planar_modes/mode_2", "Clear:is_recursive") == [True]
-    assert "black: none is" in drawn.last("/mode_map/captions", "LineStrips2D:labels")[-1]
+    title = drawn.last("/planar_modes/mode_1/frame/title", "LineStrips2D:labels")[-1]
+    assert title == "no consistent mode"
+    assert len(drawn.values["/planar_modes/mode_2/frame/title", "LineStrips2D:labels"]) == 1
+    assert drawn.values["/planar_modes", "Clear:is_recursive"] == [(STAMP_NS, [True])] * 2
+    assert "black: none is" in drawn.last("/mode_map/frame/title", "LineStrips2D:labels")[-1]
+    assert drawn.last("/force_dual", "Clear:is_recursive") == [True]
+    assert len(drawn.values["/force_dual/wrenches", "Image:buffer"]) == 1
 
 
 def test_a_map_that_looks_as_before_is_not_drawn_again(
     recording: rr.RecordingStream, read: Callable[[], Drawn]
 ) -> None:
+    shown = DiagramsInView(recording)
     found = answer_of(force=ALONG)
-    nearly = answer_of(force=DOWN, tip=TIP * (1.001, 1.0, 1.0))
-    drawn_map = draw_planar_map(recording, found, PLANE, None, body=ROD)
-    assert draw_planar_map(recording, nearly, PLANE, drawn_map, body=ROD) is drawn_map
-    other = draw_planar_map(recording, answer_of(force=ALONG, friction=0.9), PLANE, drawn_map, body=ROD)
-    assert other is not drawn_map
-    assert draw_planar_map(recording, replace(found, wrench_sets=None), PLANE, other, body=ROD) is other
+    for each in (
+        found,
+        answer_of(force=DOWN, tip=TIP * (1.001, 1.0, 1.0)),
+        answer_of(force=ALONG, friction=0.9),
+        replace(found, wrench_sets=None),
+    ):
+        shown.draw_planar_modes(each, PLANE, outline=NO_OUTLINE, body=ROD)
     drawn = read()
     assert len(drawn.values["/mode_map/regions", "Image:buffer"]) == 2
-    assert len(drawn.values["/mode_map/applied", "Points2D:positions"]) == 3
+    places = drawn.values["/mode_map/applied", "Points2D:positions"]
+    assert len(places) == 3
+    assert places[0][1] != places[1][1]
+    notes = [texts[0] for _, texts in drawn.values["/mode_map/frame/notes/applied", "LineStrips2D:labels"]]
+    assert [note.partition(" N,")[0] for note in notes] == [
+        "applied: (-1, 0)",
+        "applied: (0, -1)",
+        "applied: (-1, 0)",
+    ]
 
 
 def test_of_a_body_that_is_not_known_the_applied_wrench_is_not_drawn(
     recording: rr.RecordingStream, read: Callable[[], Drawn]
 ) -> None:
-    draw_planar_map(recording, answer_of(force=ALONG), PLANE, None)
+    shown = DiagramsInView(recording)
+    shown.draw_planar_modes(answer_of(force=ALONG), PLANE, outline=NO_OUTLINE, body=None)
     drawn = read()
     assert ("/mode_map/regions", "Image:buffer") in drawn.values
-    assert drawn.last("/mode_map/applied", "Clear:is_recursive") == [True]
+    assert ("/mode_map/applied", "Points2D:positions") not in drawn.values
+    assert "/mode_map/frame/notes/applied" not in drawn.entities
 
 
 def test_a_map_of_too_many_modes_is_left_out(
@@ -119,7 +148,7 @@ def test_a_map_of_too_many_modes_is_left_out(
     found = answer_of(force=ALONG)
     assert found.wrench_sets is not None
     many = replace(found, wrench_sets=found.wrench_sets[:1] * (MAX_SETS + 1))
-    assert draw_planar_map(recording, many, PLANE, None) is None
+    DiagramsInView(recording).draw_planar_modes(many, PLANE, outline=NO_OUTLINE, body=ROD)
     drawn = read()
     assert drawn.last("/mode_map", "Clear:is_recursive") == [True]
     assert "/mode_map/regions" not in drawn.entities
@@ -164,31 +193,21 @@ def test_the_force_dual_shows_the_wrench_in_question_and_the_acceleration_centre
         picture.show(found, now_ns=stamp_ns)
     drawn = read()
     assert len(drawn.values["/force_dual/wrenches", "Image:buffer"]) == 1  # the second is the same
-    labels = drawn.last("/force_dual/answer", "Points2D:labels")
-    places = dict(zip(labels, drawn.last("/force_dual/answer", "Points2D:positions"), strict=True))
+    places = {
+        name: drawn.array(f"/force_dual/answer/{name}", "Points2D:positions")[0]
+        for name in ("acceleration_centre", "applied_wrench")
+    }
     # Pictures of the body, below the construction, tell where its points are on the clockwise half.
-    strips = [np.array(strip) for strip in drawn.last("/force_dual/body", "LineStrips2D:strips")]
+    strips = [np.array(strip) for strip in drawn.last("/force_dual/outlines", "LineStrips2D:strips")]
     low, high = np.min(strips[1], axis=0), np.max(strips[1], axis=0)
     middle, scale = 0.5 * (low + high), float(high[0] - low[0]) / 0.15  # points, points per m
     np.testing.assert_allclose(
-        places["acceleration centre"], middle + scale * np.array([0.075, 0.025]), atol=0.1
+        places["acceleration_centre"], middle + scale * np.array([0.075, 0.025]), atol=0.1
     )
     rho_square = known.I_B[1, 1] / known.mass
     beside = -rho_square / 0.1  # m: the weight moves the body down, the torque moves points on the left up
-    np.testing.assert_allclose(places["applied wrench"], middle + scale * np.array([beside, 0.0]), atol=0.1)
-    words = np.array(drawn.last("/force_dual/words", "LineStrips2D:strips"))[:, 0]
-    frames = np.vstack(drawn.last("/force_dual/frame", "LineStrips2D:strips"))
-    assert (words[:, 0] > frames[:, 0].max()).all()  # beside the chart, where they cover nothing
-    assert abs(words[1, 1] - words[0, 1]) > 0.15 * np.ptp(frames[:, 1])
-
-
-def test_a_moving_body_and_one_without_a_mode_have_no_force_dual(
-    recording: rr.RecordingStream, read: Callable[[], Drawn]
-) -> None:
-    found = answer_of(force=(0.0, 0.0, -9.81), speed=-1.0)
-    shown = draw_planar_map(recording, found, PLANE, None, body=ROD)
-    outline = np.zeros((0, 2))
-    assert draw_planar_dual(recording, found, PLANE, None, shown=shown, applied=None, outline=outline) is None
-    drawn = read()
-    assert drawn.last("/force_dual", "Clear:is_recursive") == [True]
-    assert "/force_dual/wrenches" not in drawn.entities
+    np.testing.assert_allclose(places["applied_wrench"], middle + scale * np.array([beside, 0.0]), atol=0.1)
+    frames = np.vstack(drawn.last("/force_dual/outline", "LineStrips2D:strips"))
+    for name in ("acceleration_centre", "applied_wrench"):  # beside the chart, where they cover nothing
+        words = drawn.last(f"/force_dual/frame/notes/answer/{name}", "LineStrips2D:strips")
+        assert words[0][0][0] > frames[:, 0].max()
