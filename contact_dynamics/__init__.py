@@ -14,7 +14,8 @@ what is in it. All of it needs NumPy and SciPy, but no ROS.
 - `plane`: a `PlanarBody` and its kin, and the way from space to a plane of motion and back.
 - `landing`: where a flight ends (`next_landing`).
 - `contact_modes`: does each contact separate, slide or stay (lecture 26)? State a `PlanarContactProblem` or
-  a `SpatialContactProblem`, and ask it: ``contact_modes(problem)``, `mode_margins`, `statics`.
+  a `SpatialContactProblem`, and ask it: ``contact_modes(problem)``, `mode_margins`, `statics`,
+  `largest_load`.
 - `impact`: velocities after an impact (lecture 27): `planar_impact`, `spatial_impact`, several contacts at
   once (`several_impact`) or one after the other in time (`impact_sequence`).
 - `toss`: the whole motion of a body from a state in flight to rest: ``toss(body, state, world)``, and with
@@ -48,6 +49,7 @@ if TYPE_CHECKING:  # the same as `_HOMES`
         PlanarContactProblem,
         SpatialContactProblem,
         contact_modes,
+        largest_load,
         mode_margins,
         statics,
     )
@@ -74,6 +76,7 @@ _HOMES: Final = {
         "ModeVerdict",
         "PlanarContactProblem",
         "SpatialContactProblem",
+        "largest_load",
         "mode_margins",
         "statics",
     ),
@@ -144,6 +147,7 @@ __all__ = [
     "impact_sequence",
     "inertia",
     "landing",
+    "largest_load",
     "mode_margins",
     "motion",
     "motion_of",

@@ -51,6 +51,20 @@ SHOWN_AS_ZERO: Final = 1e-12
 FAR_CONTACT: Final = 0.01
 """Relative to the reach of a body's shape: a contact that is out of it by more is a mistake, not noise."""
 
+# the largest load
+
+SAME_FACTOR: Final = 1e-9
+"""Relative: factors of a load that differ by less are one."""
+
+NEXT_TO_A_LIMIT: Final = 1e-6
+"""Relative: this far from the largest factor of a load is what follows it, or goes before it."""
+
+ONLY_REST_WITHIN: Final = 0.01
+"""Relative: how exactly a smaller factor is found up to which rest is the only consistent mode."""
+
+ANY_LOAD: Final = 1e12
+"""A load this many times the wrench without it stands for any larger one."""
+
 # numerics
 
 SMALL_SHARE: Final = 1e-10

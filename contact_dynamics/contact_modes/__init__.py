@@ -2,9 +2,9 @@
 
 You state a `PlanarContactProblem` or a `SpatialContactProblem`, and pass it to the functions of
 `plane_or_space`. `contact_modes` finds every consistent mode. `mode_margins` says how far the wrench is from
-leaving each of them, `geometry_margins` how far contacts are from another verdict, and `refused_modes` says
-why the other modes are not consistent. `wrench_sets` returns the wrenches of each mode. `statics` says
-whether a body at rest stays at rest.
+leaving each of them, `largest_load` how large a push in space may become, `geometry_margins` how far contacts
+are from another verdict, and `refused_modes` says why the other modes are not consistent. `wrench_sets`
+returns the wrenches of each mode. `statics` says whether a body at rest stays at rest.
 
 A mode is a string with one of the `letters` for each contact. The plane and space share the types in
 `result`.
@@ -53,6 +53,7 @@ from contact_dynamics.contact_modes.result import (
     VerdictsWithin,
 )
 from contact_dynamics.contact_modes.spatial.kinematic import spatial_kinematic_modes
+from contact_dynamics.contact_modes.spatial.largest_load import LargestLoad, largest_load
 from contact_dynamics.contact_modes.spatial.margins import SpatialModeMargin
 from contact_dynamics.contact_modes.spatial.problem import SpatialContactProblem
 from contact_dynamics.contact_modes.spatial.result import SpatialMode, SpatialModeAnswer
@@ -64,6 +65,7 @@ __all__ = [
     "BodyStatics",
     "Certainty",
     "GeometryMargin",
+    "LargestLoad",
     "Letter",
     "ModeProbability",
     "ModeVerdict",
@@ -83,6 +85,7 @@ __all__ = [
     "WrenchHalfSpace",
     "contact_modes",
     "geometry_margins",
+    "largest_load",
     "mode_margins",
     "refused_modes",
     "spatial_kinematic_modes",

@@ -142,7 +142,7 @@ class BodyState(Record):
             q.flags.writeable = False
         else:
             found = "neither" if q_WB is None else "both"
-            raise InvalidFieldError("q_WB, quaternion_wxyz", found, "one of them")
+            raise InvalidFieldError("q_WB or quaternion_wxyz", found, "given, and not both")
         object.__setattr__(self, "p_WB_W", check_array("p_WB_W", p_WB_W, (3,)))
         object.__setattr__(self, "q_WB", q)
         object.__setattr__(self, "v_WB_W", check_array("v_WB_W", v_WB_W, (3,)))
