@@ -50,6 +50,15 @@ class When(NamedTuple):
         of_flags, of_numbers = ("true", "false"), ("not zero", "zero")
         return f"{self.field} is {(of_flags if isinstance(value, bool) else of_numbers)[self.is_zero]}"
 
+    def remedy(self, request: object) -> str:
+        """Return what to set so that a request meets the condition, or nothing if no one value does."""
+        if self.constants:
+            return f"set {self.field}: {getattr(request, self.constants[0])} to use it"
+        value: object = attrgetter(self.field)(request)
+        return (
+            f"set {self.field}: {str(not self.is_zero).lower()} to use it" if isinstance(value, bool) else ""
+        )
+
 
 class ReadIf(NamedTuple):
     """Fields of a request that are read only if it meets one of some conditions."""
@@ -70,7 +79,8 @@ def check_unread(request: object, table: Iterable[ReadIf]) -> None:
                     known = _either([condition.words(request) for condition in conditions])
                     allowed = f"left out unless {known}"
                     shown = found if isinstance(found, str) or not hasattr(found, "__iter__") else list(found)
-                    raise InvalidFieldError(leaf.path, shown, allowed)
+                    hint = conditions[0].remedy(request)
+                    raise InvalidFieldError(leaf.path, shown, allowed, hint)
 
 
 class _Leaf(NamedTuple):

@@ -174,8 +174,15 @@ def test_the_part_of_a_message_that_has_a_value_is_named(value: float) -> None:
     with pytest.raises(InvalidFieldError) as caught:
         tumbling_question_from_msg(request, world=WORLD, world_frame="world")
     assert str(caught.value) == (
-        f"state.pose.position.z must be left out unless state_source is STATE_EXPLICIT (1), got {value}"
+        f"state.pose.position.z must be left out unless state_source is STATE_EXPLICIT (1), got {value} "
+        "(set state_source: 1 to use it)"
     )
+
+
+def test_a_flag_that_would_make_a_field_count_is_named() -> None:
+    request = PredictContactMode.Request(body_name="cube", margin_length=0.1)
+    with pytest.raises(InvalidFieldError, match=r"got 0.1 \(set include_margins: true to use it\)$"):
+        contact_mode_question_from_msg(request, world=WORLD, world_frame="world")
 
 
 @pytest.mark.parametrize("field", ["state", "other_state"])
