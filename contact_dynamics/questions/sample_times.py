@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING, Final, TypeAlias
 import numpy as np
 
 from contact_dynamics.constants import seconds_between
+from contact_dynamics.contact.found import check_has_shape
 from contact_dynamics.errors import InvalidFieldError, TooLargeError
 from contact_dynamics.landing.earliest import next_landing
 from contact_dynamics.landing.plane_arrival import first_contact
 from contact_dynamics.landing.search_work import SearchWork
 from contact_dynamics.motion.integrated import ForcedMotion
 from contact_dynamics.questions.context import check_optional, or_default
-from contact_dynamics.questions.touching import check_has_shape
 from contact_dynamics.records import NamedInt, Record
 from contact_dynamics.validation import (
     FloatArray,

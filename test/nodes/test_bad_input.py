@@ -145,7 +145,11 @@ CONTACTS = [
     (put("contacts.kinds", [3]), "INVALID_FIELD", "contacts.kinds[0] must be ..., got 3"),
     (put("contacts.kinds", [2]), "INVALID_FIELD", "contacts.body_curvatures must be ..., got 0 numbers"),
     (put("contact_source", 9), "INVALID_FIELD", "contact_source must be ..., got 9"),
-    (from_geometry, "NO_CONTACT", "has no shape"),
+    (
+        from_geometry,
+        "NO_CONTACT",
+        "with contact_source: 1 ..., since body '' has no shape ... body.NAME.sphere",
+    ),
     (
         put("contact_source", 0),
         "INVALID_FIELD",
@@ -263,7 +267,12 @@ CASES = [
         "INVALID_FIELD",
         "linear_drag must be >= 0..., got -0.1",
     ),
-    (PredictTumbling, until_contact, "NO_CONTACT", "has no shape"),
+    (
+        PredictTumbling,
+        until_contact,
+        "NO_CONTACT",
+        "body '' must have ... body.NAME.inertia: [0.0] and body.NAME.sphere",
+    ),
     (
         PredictTumbling,
         put("sampling", 3),

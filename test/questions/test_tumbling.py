@@ -171,5 +171,5 @@ def test_what_is_not_allowed_is_named(question: TumblingQuestion, error: type[Ex
 
 def test_a_body_without_a_shape_meets_no_surface() -> None:
     bare = CUBE.__class__(name="bare", mass_properties=CUBE.mass_properties)
-    with pytest.raises(NoContactError, match="has no shape"):
+    with pytest.raises(NoContactError, match="must have `vertices_B` or a `shape`"):
         answer(TumblingQuestion(body=bare, state=TOSSED, sampling=UntilContact()))
