@@ -83,8 +83,8 @@ def asked_other(
 def _explicit(field: str, msg: BodyStateMsg, body: Body, world_frame: str) -> KnownState:
     """Return a state that a request has. If it names a body, that is the body of the request."""
     if body.name and msg.body_name not in {"", body.name}:
-        raise InvalidFieldError(f"{field}.body_name", msg.body_name, f"{body.name!r}, or left out")
-    return known_state_from_msg(msg, world_frame=world_frame, p_FB_F=body.p_FB_F)
+        raise InvalidFieldError(f"{field}.body_name", repr(msg.body_name), f"{body.name!r}, or left out")
+    return known_state_from_msg(msg, world_frame=world_frame, p_FB_F=body.p_FB_F, field=field)
 
 
 def asked_body(name: str, inertia: Inertia, world: World, *, field: str = "body_name") -> Body:

@@ -27,20 +27,33 @@ if TYPE_CHECKING:
 
 _COVARIANCE_LENGTH: Final = 144
 
+_FIELDS: Final = {
+    "p_WB_W": "pose.position",
+    "q_WB": "pose.orientation",
+    "v_WB_W": "linear_velocity",
+    "w_WB_W": "angular_velocity",
+}
 
-def body_state_from_msg(msg: BodyStateMsg, *, world_frame: str, p_FB_F: FloatArray) -> BodyState:
+
+def body_state_from_msg(
+    msg: BodyStateMsg, *, world_frame: str, p_FB_F: FloatArray, field: str = "state"
+) -> BodyState:
     """Return the state of the body whose centre of mass is at ``p_FB_F``, (3,), m, in its published frame.
+
+    Errors call the message ``field``.
 
     Raises:
         FrameMismatchError: `header.frame_id` is neither empty nor the world frame.
         InvalidFieldError: a number is not finite, or the quaternion is not unit.
     """
-    check_frame("state.header.frame_id", msg.header.frame_id or world_frame, world_frame)
+    check_frame(f"{field}.header.frame_id", msg.header.frame_id or world_frame, world_frame)
     p_WB_W, q_WB = vector_from_msg(msg.pose.position), quaternion_from_msg(msg.pose.orientation)
     if not q_WB.any():  # left out by a client whose messages begin with zeros
-        raise InvalidFieldError("state.pose.orientation", "zeros", "a unit quaternion (w: 1 is no rotation)")
+        raise InvalidFieldError(
+            f"{field}.pose.orientation", "zeros", "a unit quaternion (w: 1 is no rotation)"
+        )
     if p_FB_F.any():
-        q_WB = check_unit("state.pose.orientation", q_WB, 4)
+        q_WB = check_unit(f"{field}.pose.orientation", q_WB, 4)
         p_WB_W = p_WB_W + turned(q_WB, p_FB_F)
     try:
         return BodyState(
@@ -51,7 +64,7 @@ def body_state_from_msg(msg: BodyStateMsg, *, world_frame: str, p_FB_F: FloatArr
             stamp_ns=stamp_ns_from_msg(msg.header.stamp),
         )
     except InvalidFieldError as error:
-        raise renamed(error, {"q_WB": "state.pose.orientation"}) from None
+        raise renamed(error, {ours: f"{field}.{name}" for ours, name in _FIELDS.items()}) from None
 
 
 def body_state_to_msg(
@@ -86,7 +99,9 @@ def center_of_mass(body_name: str, world: World) -> FloatArray:
     return next(known, np.zeros(3))
 
 
-def known_state_from_msg(msg: BodyStateMsg, *, world_frame: str, p_FB_F: FloatArray) -> KnownState:
+def known_state_from_msg(
+    msg: BodyStateMsg, *, world_frame: str, p_FB_F: FloatArray, field: str = "state"
+) -> KnownState:
     """Return the state, with its covariance if the message has one.
 
     Raises:
@@ -94,12 +109,12 @@ def known_state_from_msg(msg: BodyStateMsg, *, world_frame: str, p_FB_F: FloatAr
             `UncertainState`.
         FrameMismatchError: as in `body_state_from_msg`.
     """
-    state = body_state_from_msg(msg, world_frame=world_frame, p_FB_F=p_FB_F)
+    state = body_state_from_msg(msg, world_frame=world_frame, p_FB_F=p_FB_F, field=field)
     if len(msg.covariance) == 0:
         return state
     if len(msg.covariance) != _COVARIANCE_LENGTH:
         raise InvalidFieldError(
-            "state.covariance", f"{len(msg.covariance)} numbers", f"none or {_COVARIANCE_LENGTH}"
+            f"{field}.covariance", f"{len(msg.covariance)} numbers", f"none or {_COVARIANCE_LENGTH}"
         )
     return UncertainState(state=state, covariance=np.array(msg.covariance).reshape(12, 12))
 

@@ -111,7 +111,12 @@ def _sampling(request: PredictTumbling.Request) -> Sampling:
     """Return the times that a request asks about, or raise `InvalidFieldError`."""
     if request.sampling == request.AT_TIMES:
         if len(request.times) == 0:
-            raise InvalidFieldError("times", "none", "at least one time, unless sampling is AT_RATE (2)")
+            raise InvalidFieldError(
+                "times",
+                "none",
+                "at least one time where sampling is AT_TIMES (0), the default",
+                hint="rate and duration need sampling: 2 (AT_RATE), 3 (UNTIL_CONTACT) or 4 (UNTIL_PLANE)",
+            )
         return AtTimes(times=request.times)
     if request.sampling == request.AT_STAMPS:
         return AtStamps(stamps_ns=request.stamps_ns)

@@ -194,5 +194,5 @@ def test_a_state_that_names_another_body_is_refused(field: str) -> None:
     state = request.state if field == "state" else request.other_state[0]
     impact_question_from_msg(request, world=WORLD, world_frame="world")
     state.body_name = "ball"
-    with pytest.raises(InvalidFieldError, match=r"body_name must be 'cube', or left out, got ball"):
+    with pytest.raises(InvalidFieldError, match=r"body_name must be 'cube', or left out, got 'ball'"):
         impact_question_from_msg(request, world=WORLD, world_frame="world")

@@ -106,9 +106,9 @@ EVERY_SERVICE = [
         "state.pose.orientation must be ..., got [0.0, 0.0, 0.0, 0.5] of norm 0.5",
     ),
     (put("state.pose.orientation.w", 0.0), "INVALID_FIELD", "must be a unit quaternion"),
-    (put("state.pose.position.x", math.nan), "INVALID_FIELD", "position must be finite"),
-    (put("state.linear_velocity.y", math.inf), "INVALID_FIELD", "linear_velocity must be finite"),
-    (put("state.angular_velocity.z", math.nan), "INVALID_FIELD", "angular_velocity must be finite"),
+    (put("state.pose.position.x", math.nan), "INVALID_FIELD", "state.pose.position must be"),
+    (put("state.linear_velocity.y", math.inf), "INVALID_FIELD", "state.linear_velocity must be"),
+    (put("state.angular_velocity.z", math.nan), "INVALID_FIELD", "state.angular_velocity must be"),
     (put("state.header.frame_id", "map"), "FRAME_MISMATCH", "must be 'world'..., got 'map'"),
     (
         put("state.covariance", [0.0] * 36),
@@ -173,6 +173,12 @@ def margin_length(request: Any) -> None:
     request.include_margins, request.margin_length = True, -2.0
 
 
+def far_other(request: Any) -> None:
+    """Strike a body whose velocity is infinite."""
+    request.other_body_name, request.other_state = "brick", [BodyState()]
+    request.other_state[0].linear_velocity.x = math.inf
+
+
 def crooked_plane(request: Any) -> None:
     """A plane of motion whose normal is not a unit vector."""
     request.problem = request.PLANAR
@@ -225,6 +231,12 @@ CASES = [
         put("other_body_name", "brick"),
         "NO_STATE",
         "none was published yet on /brick/odometry (0 pub",
+    ),
+    (
+        PredictImpact,
+        far_other,
+        "INVALID_FIELD",
+        "other_state[0].linear_velocity must be finite, got [inf 0. 0.]",
     ),
     (PredictImpact, put("other_body_name", "cat"), "UNKNOWN_BODY", "got 'cat'"),
     (PredictImpact, put("other_inertia.m", -1.0), "INVALID_FIELD", "other_inertia.m must be ..., got -1.0"),

@@ -60,7 +60,7 @@ def fill(msg: Any, fields: dict[str, Any]) -> Any:
         (
             PredictTumbling,
             "{body_name: brick}",
-            "times must be at least one time, unless sampling is AT_RATE (2)",
+            "AT_TIMES (0), the default, got none (rate and duration need sampling: 2 (AT_RATE)",
         ),
         (
             PredictImpact,
@@ -80,7 +80,7 @@ def fill(msg: Any, fields: dict[str, Any]) -> Any:
         (
             PredictImpact,
             "{body_name: brick, state_source: 1, state: {body_name: cup}}",
-            "state.body_name must be 'brick', or left out, got cup",
+            "state.body_name must be 'brick', or left out, got 'cup'",
         ),
         (PredictImpact, "{body_name: brick, state_source: 1, horizon: -5.0}", "horizon must be >= 0, got -5"),
     ],
