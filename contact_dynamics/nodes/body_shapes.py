@@ -127,8 +127,12 @@ class ShapeParameters:
         """
         name = self._name()
         if not name or self.rounding > 0.0:
-            found = "a rounded shape" if name else "no shape"
-            raise InvalidFieldError("inertia", f"[0.0], with {found}", "the six numbers, or a shape without")
+            if name:
+                raise InvalidFieldError(
+                    "inertia", "[0.0] of a rounded shape", "six numbers, unless the shape is not rounded"
+                )
+            shapes = ", ".join(_PRIMITIVES)
+            raise InvalidFieldError("inertia", "neither", f"six numbers, or the body have a shape ({shapes})")
         position, orientation = self._pose()
         return _PRIMITIVES[name].mass(self._values(name), mass).placed(p_GF_G=position, q_GF=orientation)
 

@@ -10,7 +10,7 @@ from contact_dynamics.nodes.run_record import NODE_NAME
 from contact_dynamics.nodes.unknown_parameters import likely_misspelling, qos_overrides_of, refuse_unknown
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping
+    from collections.abc import Callable, Collection, Iterable, Mapping
 
 
 class GivenParameters:
@@ -75,11 +75,11 @@ class GivenParameters:
         self._topics.add(resolved)
         return resolved
 
-    def refuse_unknown(self) -> None:
+    def refuse_unknown(self, early: Collection[str] | None = None) -> None:
         """Refuse parameters that nothing has read; see `ParameterSource`."""
         known = {*self.read, *self._also_known, *qos_overrides_of(self._topics)}
         try:
-            refuse_unknown(self.values, known, lambda name: self.values.get(name, []))
+            refuse_unknown(self.values, known, lambda name: self.values.get(name, []), early)
         except ConfigurationError as error:
             message = f"{self._before}{error}"
             raise ConfigurationError(message) from None

@@ -21,7 +21,7 @@ from contact_dynamics.nodes.parameter_sections import (
 from contact_dynamics.nodes.unknown_parameters import likely_misspelling, qos_overrides_of, refuse_unknown
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Collection, Iterable, Sequence
 
     from rclpy.node import Node
 
@@ -72,6 +72,9 @@ class NodeParameters:
         if bounds and type(number) is type(default) and not bounds[0] <= number <= bounds[1]:
             message = f"{name} must be in [{bounds[0]:g}, {bounds[1]:g}] ({description}), got {number!r}"
             raise ConfigurationError(message)
+        if (default is list or isinstance(default, list)) and isinstance(number, (bool, int, float, str)):
+            message = f"{name} must be a list, such as [{number}], got {number} ({description})"
+            raise ConfigurationError(message)
         try:
             value = self._node.declare_parameter(name, declared, descriptor).value
         except Exception as error:  # noqa: BLE001  rclpy raises several unrelated types for a wrong type or range
@@ -99,11 +102,11 @@ class NodeParameters:
         self.topics[name] = resolved
         return resolved
 
-    def refuse_unknown(self) -> None:
+    def refuse_unknown(self, early: Collection[str] | None = None) -> None:
         """Refuse parameters that are set and that the node lacks (see `ParameterSource`)."""
         # rclpy has no public way to ask what was given and not declared.
         known = {*self._node._parameters, *self._also_known, *qos_overrides_of(self.topics.values())}  # noqa: SLF001
-        refuse_unknown(self._node._parameter_overrides, known, self._listed)  # noqa: SLF001
+        refuse_unknown(self._node._parameter_overrides, known, self._listed, early)  # noqa: SLF001
 
     def _listed(self, name: str) -> list[str]:
         return [each for each in self._node.get_parameter(name).value if each]

@@ -14,7 +14,7 @@ from contact_dynamics.world import LONGEST_NAME
 from msg_adapters.field_names import renamed
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Collection, Mapping
 
 T = TypeVar("T")
 
@@ -64,8 +64,11 @@ class ParameterSource(Protocol):
             ConfigurationError: the name is not that of a topic.
         """
 
-    def refuse_unknown(self) -> None:
+    def refuse_unknown(self, early: Collection[str] | None = None) -> None:
         """Refuse parameters that are given and that nothing has read.
+
+        Args:
+            early: the names of all parameters, where an error has left some unread.
 
         Raises:
             ConfigurationError: there are such. The message names each, with the most similar known one.

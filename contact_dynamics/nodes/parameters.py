@@ -28,6 +28,8 @@ from contact_dynamics.recording.limits import (
 from contact_dynamics.world import World
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
     from contact_dynamics.nodes.parameter_reader import ConfiguredTopic, DeclaredParameter, ParameterSource
     from contact_dynamics.nodes.world_parameters import BodySources
 
@@ -83,15 +85,28 @@ def described_server_parameters() -> tuple[DeclaredParameter, ...]:
             "bodies": ["NAME"],
             "surfaces": ["NAME"],
             "body.NAME.mass": 1.0,
-            "body.NAME.inertia": [1.0, 1.0, 1.0, 0.0, 0.0, 0.0],
+            "body.NAME.sphere": [1.0],
             "surface.NAME.friction": 0.0,
             "surface.NAME.restitution": 0.0,
         }
     )
     read_server_parameters(source)
+    defaults = {"body.NAME.sphere": [0.0]}
     return tuple(
-        each._replace(value=None) if name in source.values else each for name, each in source.read.items()
+        each._replace(value=defaults.get(name)) if name in source.values else each
+        for name, each in source.read.items()
     )
+
+
+def _known_names(body_names: Iterable[str], surface_names: Iterable[str]) -> set[str]:
+    """Return the names of all parameters that a server with such bodies and surfaces has."""
+    named = {"body.NAME.": [f"body.{name}." for name in body_names]}
+    named["surface.NAME."] = [f"surface.{name}." for name in surface_names]
+    known = {each.name for each in described_server_parameters()}
+    for placeholder, prefixes in named.items():
+        leaves = {name.removeprefix(placeholder) for name in known if name.startswith(placeholder)}
+        known |= {prefix + leaf for prefix in prefixes for leaf in leaves}
+    return known
 
 
 def read_server_parameters(source: ParameterSource) -> ServerParameters:
@@ -104,6 +119,22 @@ def read_server_parameters(source: ParameterSource) -> ServerParameters:
     reader = ParameterReader(source)
     body_names = reader.names("bodies", "Names of the bodies that questions can name.")
     surface_names = reader.names("surfaces", "Names of the flats and obstacles of the world.")
+    try:
+        parameters = _read_parameters(reader, body_names, surface_names)
+    except ConfigurationError as error:  # whose cause may be a name that is not known
+        try:
+            source.refuse_unknown(_known_names(body_names, surface_names))
+        except ConfigurationError as unknown:
+            message = f"{unknown}\n{error}"
+            raise ConfigurationError(message) from None
+        raise
+    source.refuse_unknown()
+    return parameters
+
+
+def _read_parameters(
+    reader: ParameterReader, body_names: Sequence[str], surface_names: Sequence[str]
+) -> ServerParameters:
     bodies = [read_body(reader, name) for name in body_names]
     gravity = reader.read(
         "gravity", list(STANDARD_GRAVITY_W), "Acceleration of gravity, m/s^2, world axes: x, y, z."
@@ -119,7 +150,7 @@ def read_server_parameters(source: ParameterSource) -> ServerParameters:
         check_vector("gravity", world.gravity_W)
         return world
 
-    parameters = ServerParameters(
+    return ServerParameters(
         world=reader.build("", build_world),
         sources=tuple(sources for _, sources in bodies),
         static_topic=reader.topic(
@@ -190,8 +221,6 @@ def read_server_parameters(source: ParameterSource) -> ServerParameters:
             unit="s",
         ),
     )
-    source.refuse_unknown()
-    return parameters
 
 
 def _read_log_before_answer(reader: ParameterReader, *, is_logged: bool) -> bool:

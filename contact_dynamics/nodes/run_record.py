@@ -17,7 +17,7 @@ from contact_dynamics.nodes.parameter_reader import ConfigurationError
 from contact_dynamics.version import version_of_this_package
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Collection, Mapping
 
 PARAMETERS: Final = "parameters"
 """The key of the node's parameters, which are a JSON object by name."""
@@ -115,7 +115,7 @@ class LoggedParameters:
             return f"/{NODE_NAME}{topic[1:]}"
         return topic if topic.startswith("/") else f"/{topic}"
 
-    def refuse_unknown(self) -> None:
+    def refuse_unknown(self, early: Collection[str] | None = None) -> None:
         """Do nothing: another version of the server may have had other parameters (see `ParameterSource`)."""
 
 

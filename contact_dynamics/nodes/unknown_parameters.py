@@ -17,6 +17,8 @@ _POLICIES: Final = ("history", "depth", "reliability")
 """What ROS lets parameters override of a subscription, unless a node asks for more."""
 _LIKELY: Final = 0.7
 """Similarity from which on a name counts as a misspelled one, by `difflib`. One letter in four makes 0.75."""
+_MEANT: Final = {"radius": "sphere", "size": "box", "com": "center_of_mass", "mu": "friction"}
+"""Names that others have for a parameter, with ours."""
 _LISTED_BY: Final = {"body": "bodies", "surface": "surfaces"}
 
 
@@ -31,7 +33,10 @@ def qos_overrides_of(topics: Iterable[str]) -> set[str]:
 
 
 def refuse_unknown(
-    given: Iterable[str], known: Collection[str], listed: Callable[[str], Iterable[str]]
+    given: Iterable[str],
+    known: Collection[str],
+    listed: Callable[[str], Iterable[str]],
+    early: Collection[str] | None = None,
 ) -> None:
     """Refuse names of parameters that are not known.
 
@@ -39,11 +44,15 @@ def refuse_unknown(
         given: the names.
         known: those that somebody reads, with `qos_overrides_of` the topics.
         listed: returns what the parameter of a name lists, `bodies` or `surfaces`.
+        early: the names of all parameters, where an error has left some unread. Topics are not known then,
+            and overrides of their quality of service are not refused.
 
     Raises:
         ConfigurationError: some are unknown. The message names each, with the most similar known one.
     """
-    unknown = sorted(name for name in given if name not in known and not _OF_ROS.fullmatch(name))
+    is_allowed = _OF_ROS.fullmatch if early is None else is_of_ros
+    known = {*known, *(early or ())}
+    unknown = sorted(name for name in given if name not in known and not is_allowed(name))
     if unknown:
         raise ConfigurationError("\n".join(_unknown(name, known, listed) for name in unknown))
 
@@ -64,5 +73,7 @@ def _unknown(name: str, known: Collection[str], listed: Callable[[str], Iterable
         allowed = list(listed(listing))
         if own_name not in allowed:
             return f"{name} must be about one of the names in {listing} {allowed}, got {kind} {own_name!r}"
-    nearest = difflib.get_close_matches(name, known, n=1, cutoff=0.0)
-    return f"{name}: there is no such parameter; the nearest is {nearest[0]}"
+    group, _, last = name.rpartition(".")
+    meant = f"{group}.{_MEANT.get(last, '')}"
+    nearest = meant if meant in known else difflib.get_close_matches(name, known, n=1, cutoff=0.0)[0]
+    return f"{name}: there is no such parameter; the nearest is {nearest}"

@@ -65,7 +65,7 @@ def read_body(reader: ParameterReader, name: str) -> tuple[Body, BodySources]:
     mass = reader.read(f"{key}.mass", float, "Mass, kg.")
     inertia = reader.read(
         f"{key}.inertia",
-        list,
+        [0.0],
         "Angular inertia about the centre of mass, kg m^2, in the axes of the body's frame: "
         "ixx, iyy, izz, ixy, ixz, iyz. [0.0]: of a mass that fills the shape evenly.",
     )

@@ -13,7 +13,7 @@ from contact_dynamics.nodes.unknown_parameters import refuse_unknown
 from contact_dynamics.nodes.visualizer_parameters import VISUALIZER_PARAMETERS
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Collection, Mapping, Sequence
     from pathlib import Path
 
 
@@ -47,9 +47,9 @@ class Configuration:
         """Return the full name of a topic; see `ParameterSource`."""
         return self._file.resolved_topic(name, topic)
 
-    def refuse_unknown(self) -> None:
+    def refuse_unknown(self, early: Collection[str] | None = None) -> None:
         """Refuse parameters of the file that nothing has read; see `ParameterSource`."""
-        self._file.refuse_unknown()
+        self._file.refuse_unknown(early)
 
 
 class ChangedRun(LoggedParameters):
@@ -87,10 +87,10 @@ class ChangedRun(LoggedParameters):
             return GivenParameters({}).resolved_topic(name, topic)
         return super().resolved_topic(name, topic)
 
-    def refuse_unknown(self) -> None:
+    def refuse_unknown(self, early: Collection[str] | None = None) -> None:
         """Refuse values of parameters that the server does not have; see `ParameterSource`."""
         known = {*self._read, *VISUALIZER_PARAMETERS}
-        refuse_unknown(self._instead, known, lambda name: self._instead.get(name, []))
+        refuse_unknown(self._instead, known, lambda name: self._instead.get(name, []), early)
 
 
 def values_of(config: Path | None, settings: Sequence[str]) -> dict[str, Any]:

@@ -194,6 +194,12 @@ def two_bodies_on_one_topic(values: dict[str, Any]) -> None:
         values[f"body.plate.{name}"] = copy(values[f"body.brick.{name}"])  # YAML would write an alias
 
 
+def two_balls(values: dict[str, Any]) -> None:
+    """Describe a ball by names that are not ours."""
+    values["bodies"] = ["brick", "ball"]
+    values |= {"body.ball.mass": 0.1, "body.ball.radius": 0.03, "qos_overrides./x.subscription.depth": 5}
+
+
 def two_bodies_by_one_source(values: dict[str, Any]) -> None:
     two_bodies_on_one_topic(values)
     for name in ("brick", "plate"):
@@ -206,6 +212,11 @@ BRICK = [3.5e-4, 8.4e-4, 1.0e-3]
 WRONG = [
     (drop("body.brick.mass"), "body.brick.mass is required (Mass, kg.)"),
     (misspell("body.brick.mass", "body.brick.maas"), "Given is body.brick.maas, which may be misspelled."),
+    (
+        two_balls,
+        "body.ball.radius: there is no ... nearest is body.ball.sphere...body.ball.inertia must be six",
+    ),
+    (put(body__brick__sphere=0.03), "body.brick.sphere must be a list, such as [0.03], got 0.03"),
     (put(body__brick__mass="heavy"), "body.brick.mass"),
     (put(body__brick__mass=1), "body.brick.mass"),
     (put(body__brick__mass=NAN), "body.brick.mass must be ..., got nan"),
@@ -238,7 +249,7 @@ WRONG = [
     (put(body__brick__shape_orientation=[0.0] * 4), "body.brick.shape_orientation must be "),
     (
         put(body__brick__inertia=[0.0], body__brick__box=[0.0]),
-        "body.brick.inertia must be ..., got [0.0], with no",
+        "body.brick.inertia must be six numbers, or the body have a shape (box, sphere, ...), got neither",
     ),
     (
         put(body__brick__inertia=[0.0], body__brick__center_of_mass=[0.0, 0.0, 0.1]),
