@@ -203,7 +203,11 @@ def _remedy(verb: str, missing: list[str]) -> str:
 
 def _unknown(name: str) -> str:
     """Return an error with the verb that is probably meant, or with all of them."""
+    from contact_dynamics.replay.arguments import MODES
+
     near = difflib.get_close_matches(name.replace("-", "_"), VERBS, n=1)
+    if name in MODES:
+        near = [f"replay {name}"]
     listed = ", ".join(verb for verb in VERBS if VERBS[verb].is_listed)
     return f"there is no verb {name!r}; {f'did you mean {near[0]!r}?' if near else f'the verbs are {listed}'}"
 

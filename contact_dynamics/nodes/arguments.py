@@ -8,8 +8,10 @@ from __future__ import annotations
 import argparse
 import json
 import textwrap
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from contact_dynamics.nodes.parameter_sections import files_given
 from contact_dynamics.nodes.parameters import described_server_parameters
 from contact_dynamics.nodes.visualizer_parameters import VISUALIZER_PARAMETERS
 
@@ -51,6 +53,9 @@ def ros_arguments(parser: argparse.ArgumentParser, arguments: list[str]) -> list
     of_ros = arguments[split:]
     if mine.params_file:
         of_ros = ["--ros-args", "--params-file", mine.params_file, *of_ros[1:]]
+    for path in files_given(of_ros):  # of which ROS says where in its own sources it failed
+        if not Path(path).is_file():
+            parser.error(f"--params-file {path}: no such file")
     return of_ros
 
 

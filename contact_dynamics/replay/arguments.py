@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import argparse
+import difflib
 import math
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 if TYPE_CHECKING:
@@ -74,6 +76,10 @@ class _WithDefaultMode(argparse.ArgumentParser):
     def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
         given: Sequence[str] = args or ()
         names_mode = bool(given) and given[0] in {*MODES, "-h", "--help"}
+        if given and not names_mode and given[0].isalpha() and not Path(given[0]).exists():
+            near = difflib.get_close_matches(given[0], MODES, n=1)
+            meant = f"did you mean {near[0]!r}?" if near else f"the modes are {', '.join(MODES)}"
+            self.error(f"there is no mode and no log {given[0]!r}; {meant}")
         return super().parse_known_args([*given] if names_mode else [VERIFY, *given], namespace)
 
 

@@ -93,6 +93,9 @@ def test_help_names_the_options(without_ros: WithoutRos, verb: str) -> None:
     [
         (["relpay", "log"], "there is no verb 'relpay'; did you mean 'replay'?"),
         (["toss-publisher"], "there is no verb 'toss-publisher'; did you mean 'toss_publisher'?"),
+        (["table", "log"], "there is no verb 'table'; did you mean 'replay table'?"),
+        (["replay", "tabel", "log"], "there is no mode and no log 'tabel'; did you mean 'table'?"),
+        (["replay", "draw", "log"], "no log 'draw'; the modes are verify, table, view, publish"),
         (["xyz"], "there is no verb 'xyz'; the verbs are demo, server, visualizer, replay"),
         (
             ["server", "--horizon", "2.0"],
@@ -107,6 +110,8 @@ def test_help_names_the_options(without_ros: WithoutRos, verb: str) -> None:
             ["visualizer", "--spawn"],
             "spawn is a parameter of ROS, which is set by --ros-args -p spawn:=VALUE",
         ),
+        (["server", "--params-file", "nope.yaml"], "--params-file nope.yaml: no such file"),
+        (["server", "--ros-args", "--params-file", "nope.yaml"], "--params-file nope.yaml: no such file"),
         (["plot", "--rate", "5"], "unrecognized arguments: --rate"),
     ],
 )
