@@ -157,6 +157,8 @@ def _run(name: str, arguments: list[str]) -> int:
         print(_remedy(name, missing), file=sys.stderr)
         return 3
     _stay_on_this_machine()
+    if name == "server":  # whose imports take seconds where nothing of them is in memory
+        print("contact-dynamics server: starting", file=sys.stderr, flush=True)
     exit_code: int = _imported(verb.module).main(arguments)
     return exit_code
 

@@ -161,6 +161,8 @@ class Server(InboxNode, LifecycleNode):
         if self._serving is not None:
             self._serving.activate(is_active=True)
             self._says_ready = True
+            if not self._serving.is_ready:
+                self.get_logger().info(self._serving.preparations)
         returned: TransitionCallbackReturn = super().on_activate(state)
         return returned
 

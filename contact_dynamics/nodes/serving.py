@@ -109,7 +109,9 @@ class Serving:
             now_ns=lambda: self._asked_ns or None,  # zero before a simulation tells the time
         )
         # The log begins after this, so that a configuration with an unknown source leaves no log.
-        self._faults = TopicFaults(node.get_logger().warning, limits=parameters.fault_limits)
+        self._faults = TopicFaults(
+            node.get_logger().warning, inform=node.get_logger().info, limits=parameters.fault_limits
+        )
         self._topics = subscribe_to_states(
             node,
             state_sources(parameters, static=self._static),
@@ -175,6 +177,12 @@ class Serving:
     def is_ready(self) -> bool:
         """Whether all kinds of questions can be answered, for some of which workers have to be ready."""
         return self._workers is None or self._workers.ready == self._workers.count
+
+    @property
+    def preparations(self) -> str:
+        """In words, what is still made ready."""
+        count = 0 if self._workers is None else self._workers.count
+        return f"{count} workers start; quick questions are answered meanwhile"
 
     def activate(self, *, is_active: bool) -> None:
         """Answer questions from now on, or refuse them."""

@@ -34,10 +34,19 @@ class TopicFaults:
         self,
         tell: Callable[[str], object],
         *,
+        inform: Callable[[str], object] | None = None,
         limits: FaultLimits | None = None,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
-        """Count from zero. ``tell`` takes a warning, ``clock`` returns seconds."""
+        """Count from zero.
+
+        Args:
+            tell: takes a warning.
+            inform: takes what is no fault. By default, nobody is told of that.
+            limits: when faults are told.
+            clock: returns seconds.
+        """
+        self.inform: Callable[[str], object] = inform or (lambda _: None)
         self.limits = limits or FaultLimits()
         self._tell = tell
         self.clock = clock
@@ -140,7 +149,10 @@ class TopicTraffic:
         is_quiet = self.silence > self.faults.limits.silent_after
         was_silent, self.is_silent = self.is_silent, is_quiet and not self.may_rest
         if self.is_silent and not was_silent:
-            self.faults.add(self.topic, "silent", 1, f"nothing came for {self.silence:.1f} s")
+            if publishers:
+                self.faults.add(self.topic, "silent", 1, f"nothing came for {self.silence:.1f} s")
+            else:
+                self.faults.inform(f"{self.topic}: nobody publishes any more")
         if self.is_silent:
             present.append(Situation.SILENT.present(topic=self.topic))
         return present

@@ -233,9 +233,15 @@ def test_what_got_lost_fell_silent_and_has_two_publishers_is_told(tmp_path: Path
             assert received + counted(reports[-1], "lost") <= PUBLISHED + 1
             if "/brick/odometry: nothing came for " not in told:  # while DDS repeated what was not taken
                 wait_for(server, "/brick/odometry: nothing came for ")
-            client.publisher(Odometry, "/brick/odometry", SHALLOW)
+            second = client.publisher(Odometry, "/brick/odometry", SHALLOW)
             wait_for(server, "/brick/odometry: 2 publishers send states of one body")
             client.spin_until(lambda: "/brick/odometry is silent" in reports[-1].status[0].message)
+            states.publish(odometry("brick", time.time_ns()))
+            for each in (states, second):
+                client.node.destroy_publisher(each)
+            told = wait_for(server, "/brick/odometry: nobody publishes any more")
+            assert "nothing came for" not in told
+            assert "[INFO]" in told.splitlines()[-1]
         finally:
             client.close()
 

@@ -195,7 +195,10 @@ def test_a_server_is_ready_once_its_workers_are(tmp_path: Path) -> None:
         try:
             monitor.wait(Situation.WORKERS, "0 of 2 workers are ready")
             assert monitor.client.ask(quick()).status == 0
-            assert "ready" not in printed(server)
+            told = printed(server)
+            assert "ready" not in told
+            assert told.startswith("contact-dynamics server: starting")
+            assert "2 workers start; quick questions are answered meanwhile" in told
         finally:
             os.kill(fork_server, signal.SIGCONT)
         wait_for(server, "ready: bodies brick")
