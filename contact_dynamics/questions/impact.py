@@ -61,8 +61,8 @@ SAMPLES: Final = 2000
 ms, during which a server answers nobody else."""
 
 _OPEN_AT_AN_INSTANT: Final = (
-    "contacts approach at one instant, and rigid-body mechanics does not decide their order: the fastest "
-    "strikes first, and those that tie as one"
+    "contacts approach at one instant, and their order is open: the fastest strikes first, and those that "
+    "tie strike as one"
 )
 
 _NO_WRENCH: Final = np.zeros(3)

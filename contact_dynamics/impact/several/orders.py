@@ -189,10 +189,7 @@ def order_warning(
     first = np.flatnonzero(approach < -velocity_tolerance).tolist()
     named = f"{', '.join(map(str, first[:FIRST_TRIED]))}{', ...' if len(first) > FIRST_TRIED else ''}"
     if len(first) == 1:
-        return (
-            "after the first strike several contacts approach at once, whose order rigid-body mechanics does "
-            "not decide; include_orders lists the outcomes"
-        )
+        return "after the first strike several contacts approach, and their order is open (include_orders)"
     outcomes = [
         np.concatenate([_velocities(state) for state in turn.states]).reshape(-1, 6)
         for turn in (own, *(strike_in_turn(touching, states, first=i) for i in first[:FIRST_TRIED]))
@@ -201,11 +198,10 @@ def order_warning(
     scale = float(np.abs(outcomes).max())
     if max(linear, angular) <= SAME_IMPULSES * scale:
         return ""
-    how = "strike as one" if own.ties else "strike in turn, the fastest first"
+    how = "as one" if own.ties else "in turn, the fastest first"
     return (
-        f"contacts {named} approach at once and {how}, but rigid-body mechanics does not decide their order: "
-        f"with another one first, velocities differ by up to {linear:.3g} m/s and {angular:.3g} rad/s; "
-        "include_orders lists the outcomes"
+        f"contacts {named} strike {how}, and their order is open: "
+        f"other orders differ by up to {linear:.3g} m/s and {angular:.3g} rad/s (include_orders)"
     )
 
 
