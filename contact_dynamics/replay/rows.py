@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, Final, TypeAlias
 
 import numpy as np
 
+from contact_dynamics.contact_modes.letters import mode_in_words
 from contact_dynamics.contact_modes.result import ModeVerdict
 from contact_dynamics.impact import ImpactOutcome
 from contact_dynamics.replay.events import StateCame, WorldChanged
@@ -316,8 +317,8 @@ def _cells(says: str, surfaces: Iterable[str]) -> Cells:
 
 
 def _verdict(verdict: ModeVerdict, modes: Sequence[str]) -> str:
-    name = verdict.name.lower()
-    return f"{name}: {', '.join(modes)}" if modes else name
+    listed = ", ".join(f"{mode} ({mode_in_words(mode)})" for mode in modes)
+    return f"{verdict.name.lower()}: {listed}" if modes else verdict.name.lower()
 
 
 def _of_states(

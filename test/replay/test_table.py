@@ -13,6 +13,7 @@ import pytest
 from rosbags.rosbag2 import CompressionMode, StoragePlugin
 
 from contact_dynamics.contact_modes import ModeVerdict
+from contact_dynamics.contact_modes.letters import mode_in_words
 from contact_dynamics.recording import BagReader, decode_without_ros, service_calls
 from contact_dynamics.replay.rows import COLUMNS
 from contact_dynamics.replay.run import main
@@ -98,7 +99,7 @@ def test_a_question_about_many_candidates_has_a_row_for_each(asked: Asked, tmp_p
         modes = iter(response.modes)
         for row, verdict, count in zip(group, response.verdicts, response.mode_counts, strict=True):
             name = ModeVerdict(verdict).name.lower()
-            expected = [next(modes) for _ in range(count)]
+            expected = [f"{mode} ({mode_in_words(mode)})" for mode in (next(modes) for _ in range(count))]
             assert row["says"] == (f"{name}: {', '.join(expected)}" if expected else name)
             assert (row["body"], row["status"], row["states_fitted"]) == ("brick", "OK", "0")
     pushed, standing = rows[:MANY], rows[MANY : 2 * MANY]
@@ -108,6 +109,7 @@ def test_a_question_about_many_candidates_has_a_row_for_each(asked: Asked, tmp_p
         [9.0, 0.0, 0.0],
     ]
     assert len({row["says"] for row in pushed}) > 1
+    assert pushed[0]["says"] == "unique: ffff (it stays fixed)"
     assert [row["surface"] for row in standing] == ["floor", "table", "ramp"]
     asked_contacts = [json.loads(row["question"])["contacts"] for row in standing]
     assert [each["frictions"] for each in asked_contacts] == [[0.1, 0.2], [0.3], [0.4]]
