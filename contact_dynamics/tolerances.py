@@ -450,9 +450,8 @@ BEHIND_BOUNDARY: Final = 1e-5
 """Relative to the wrench. The search for neighbouring modes looks this far behind a boundary of a mode's
 wrenches, a thousand times `STRICT`."""
 
-NEAREST_HELP: Final = 1e-14
-"""A cosine, between a force and the remainder of a sum that is nearest to a wrench. A smaller one counts as
-rounding. It is so small because forces may be many times the wrench in a metric that makes torques dear."""
+NEAREST_GAIN: Final = 1e-10
+"""Relative to the distance of a wrench from a sum of round cones. The distance is exact to this."""
 
 NEAREST_REACHED: Final = 1e-11
 """Relative to the wrench. A sum this near to it counts as the wrench itself."""

@@ -36,6 +36,7 @@ if TYPE_CHECKING:
 
     from contact_dynamics.contact_modes.spatial.problem import SpatialCase
     from contact_dynamics.contact_modes.spatial.search import Search
+    from contact_dynamics.contact_modes.spatial.wrenches import Generators
     from contact_dynamics.validation import FloatArray
 
 MAX_CORNERS: Final = 8
@@ -137,6 +138,7 @@ class _WaysOut:
         }
         rows = unit_rows(self._normals[self._staying, :6])
         self._rank = len(row_space(rows))
+        self._needed: dict[tuple[bytes, bytes], Generators] = {}
         every = (1 << len(self._staying)) - 1
         proper = [face for face in cone_faces(rows) if face != every]
         self._sides = [
@@ -231,9 +233,11 @@ class _WaysOut:
             carriers: The contacts.
             known: The directions, (2,), in which contacts slide. Others have any force in their cones.
         """
-        needed = needed_wrenches(
-            self._case, np.vstack([self._normals[self._staying], *zero]), positive, self._metric
-        )
+        rows = np.vstack([self._normals[self._staying], *zero])
+        key = (rows.tobytes(), positive.tobytes())
+        if key not in self._needed:
+            self._needed[key] = needed_wrenches(self._case, rows, positive, self._metric)
+        needed = self._needed[key]
         lines = needed.lines[:, :6]
         rays = [needed.rays[:, :6], lines, -lines]
         rays += [self._edges[[i]] for i in carriers if i not in self._frames]

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import numpy as np
 
 from contact_dynamics.contact_modes.spatial.cone import nearest_sum
-from contact_dynamics.tolerances import NEAREST_HELP, NEAREST_REACHED, ROW_TOLERANCE
+from contact_dynamics.tolerances import NEAREST_GAIN, NEAREST_REACHED, ROW_TOLERANCE
 
 if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
@@ -55,9 +55,11 @@ class RoundSum(NamedTuple):
             along /= np.where(sizes > 0.0, sizes, 1.0)
             best = self.axes + (along[:, None, :] @ self.leans)[:, 0]
             best /= np.sqrt((best * best).sum(axis=1))[:, None]
-            helps = best @ rest > NEAREST_HELP * left
-            if not helps.any():
+            gains = best @ rest
+            # No sum is nearer by more than the gain of all forces together, were they along the best edge.
+            if float(gains.max()) * float(shares.sum()) <= NEAREST_GAIN * left * left:
                 break
+            helps = gains > 0.0
             shares[: len(rays)] = 1.0  # rays that do not act now may do so with further edges
             spans = np.concatenate([spans[shares > 0.0], best[helps]])
         return rest
