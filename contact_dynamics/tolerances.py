@@ -340,6 +340,10 @@ CLEAR_ROWS_OF_MANY: Final = 1e-6
 closer together without being degenerate. With it, 60 sets of 150 to 400 contacts next to degeneracy got the
 modes that decimals give."""
 
+ROUGH_ROWS: Final = 10.0 * SAME_ROWS
+"""Dimensionless, in the plane. Where decimals decide, floats still tell on which side of a row a ray is that
+is this far from it. Their rounding is some 1e-15."""
+
 SAME_SHARP_ROWS: Final = 1e-14
 """Sine. Rows that are known to more digits than floats have are one if they meet at a smaller sine. If
 friction never slips, a contact's normal is no more than 1e-10 of its tangent, and less if arms are short."""

@@ -33,7 +33,7 @@ from contact_dynamics.contact_modes.planar.exact_vectors import (
 )
 from contact_dynamics.numerics.arithmetic import DECIMALS, within
 from contact_dynamics.numerics.vectors import AXES, Vector3, array_of, cross, dot
-from contact_dynamics.tolerances import CLEAR_ROWS, CLEAR_ROWS_OF_MANY, SAME_ROWS, SAME_SHARP_ROWS
+from contact_dynamics.tolerances import CLEAR_ROWS, CLEAR_ROWS_OF_MANY, ROUGH_ROWS, SAME_ROWS, SAME_SHARP_ROWS
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -59,7 +59,7 @@ _MANY: Final = 150
 class ExtremeRays:
     """The lines and the extreme rays of the cone {x : row . x >= 0 for every row}."""
 
-    __slots__ = ("_clear", "_same", "exact", "lineality", "rays", "rows", "tight")
+    __slots__ = ("_clear", "_rough", "_same", "exact", "lineality", "rays", "rows", "tight")
 
     exact: bool
     """Whether the cone was built in decimals."""
@@ -109,8 +109,9 @@ class ExtremeRays:
         self.rays = []
         self.tight = []
         self.rows = rows
+        self._rough: FloatArray | None = None
         first = self._begin() if len(rows) > 1 else ()
-        if first and len(rows) > MANY and not self.exact:
+        if first and len(rows) > MANY:
             self._cut_many(first)
             return
         for index, row in enumerate(rows):
@@ -175,9 +176,12 @@ class ExtremeRays:
     def _cut_many(self, first: tuple[int, ...]) -> None:
         """Cut with all rows except the ``first``.
 
-        The rows with the extreme coordinates come next. After them, most of the others change nothing.
+        The rows with the extreme coordinates come next. After them, most of the others change nothing. Where
+        decimals decide, floats tell which rows do that, and those that they cannot tell come last.
         """
         matrix = array_of(self.rows)
+        if self.exact:
+            self._rough = array_of(self.rays)
         extreme = {*matrix.argmin(axis=0).tolist(), *matrix.argmax(axis=0).tolist()}.difference(first)
         for index in extreme:
             self._cut(self.rows[index], index)
@@ -186,16 +190,22 @@ class ExtremeRays:
         waiting = others.nonzero()[0]
         at_once = 4
         while len(waiting) > 0 and self.rays:
-            heights = matrix[waiting] @ array_of(self.rays).T
+            rays = array_of(self.rays) if self._rough is None else self._rough
+            heights = matrix[waiting] @ rays.T
             lowest = heights.min(axis=1)
-            self._touch(waiting, heights, lowest)
-            cutting = (lowest < -self._same).nonzero()[0]
-            if len(cutting) == 0:
-                return
+            unclear = waiting[:0]
+            if self.exact:
+                unclear = waiting[abs(lowest) <= ROUGH_ROWS]
+            else:
+                self._touch(waiting, heights, lowest)
+            cutting = (lowest < (-ROUGH_ROWS if self.exact else -self._same)).nonzero()[0]
             cutting = waiting[cutting[lowest[cutting].argsort()]]
+            if len(cutting) == 0:
+                cutting, at_once = unclear, len(unclear)
+                unclear = waiting[:0]
             for index in cutting[:at_once].tolist():
                 self._cut(self.rows[index], index)
-            waiting = cutting[at_once:]
+            waiting = np.concatenate([cutting[at_once:], unclear])
             at_once *= 2
 
     def _touch(self, indices: NDArray[np.int64], heights: FloatArray, lowest: FloatArray) -> None:
@@ -218,8 +228,7 @@ class ExtremeRays:
     def _cut(self, row: Vector3, index: int) -> None:
         if self.lineality and self._cut_lineality(row, index):
             return
-        x, y, z = row
-        heights = [x * ray[0] + y * ray[1] + z * ray[2] for ray in self.rays]
+        heights = self._heights(row)
         if not heights:
             return
         lowest = min(heights)
@@ -238,6 +247,17 @@ class ExtremeRays:
                     self.tight[i] |= bit
             return
         self._cut_rays(heights, index, touches=bool(near))
+
+    def _heights(self, row: Vector3) -> list[float]:
+        """Return how far each ray is above a row. Where decimals decide, clear heights are floats."""
+        x, y, z = row
+        if self._rough is None:
+            return [x * ray[0] + y * ray[1] + z * ray[2] for ray in self.rays]
+        rough = self._rough @ array_of([row])[0]
+        heights: list[float] = rough.tolist()
+        for i in (abs(rough) <= ROUGH_ROWS).nonzero()[0].tolist():
+            heights[i] = dot(row, self.rays[i])
+        return heights
 
     def _cut_lineality(self, row: Vector3, index: int) -> bool:
         """Cut with a row that does not vanish on all lines: one line becomes a ray.
@@ -288,6 +308,10 @@ class ExtremeRays:
             edges.append((last, after))
         crossings = [self._crossing(a, b, heights, index) for a, b in edges]
         common = [tight[a] & tight[b] | bit for a, b in edges]
+        if self._rough is not None:
+            rough = np.roll(self._rough, -top, axis=0)
+            between = array_of(crossings).reshape(-1, 3)
+            self._rough = np.concatenate([rough[:first], between, rough[last + 1 :]])
         self.rays = rays[:first] + crossings + rays[last + 1 :]
         self.tight = tight[:first] + common + tight[last + 1 :]
 
@@ -298,8 +322,10 @@ class ExtremeRays:
         the edge lies, since this has less rounding.
         """
         common = self.tight[i] & self.tight[j]
-        one, two = abs(heights[j]), abs(heights[i])
         a, b = self.rays[i], self.rays[j]
+        one, two = abs(heights[j]), abs(heights[i])
+        if self._rough is not None:
+            one, two = abs(dot(self.rows[index], b)), abs(dot(self.rows[index], a))
         rough = unit((one * a[0] + two * b[0], one * a[1] + two * b[1], one * a[2] + two * b[2]))
         if self.exact:
             return rough

@@ -29,8 +29,8 @@ def unit(vector: Whole) -> tuple[float, float, float]:
     return (vector[0] / length, vector[1] / length, vector[2] / length)
 
 
-def build(rows: list[Whole]) -> PolyhedralCone:
-    return PolyhedralCone([unit(row) for row in rows])
+def build(rows: list[Whole], *, exact: bool = False) -> PolyhedralCone:
+    return PolyhedralCone([unit(row) for row in rows], exact=exact)
 
 
 def rank(vectors: list) -> int:
@@ -49,8 +49,9 @@ def test_rays_of_drawn_cones(seed: int) -> None:
     check(rows)
 
 
+@pytest.mark.parametrize("exact", [False, True])
 @pytest.mark.parametrize("seed", range(60))
-def test_rays_of_cones_of_many_rows(seed: int) -> None:
+def test_rays_of_cones_of_many_rows(seed: int, *, exact: bool) -> None:
     chance = random.Random(seed)
     size, height = chance.choice([(2, 2), (3, 4), (9, 9), (9, 40)])
     kinds = {
@@ -63,11 +64,11 @@ def test_rays_of_cones_of_many_rows(seed: int) -> None:
     rows = [chance.choice(several)() for _ in range(chance.randint(25, 45))]
     if chance.random() < 0.2:
         rows[chance.randrange(len(rows))] = (0, 0, -1)
-    check(rows)
+    check(rows, exact=exact)
 
 
-def check(rows: list[Whole]) -> None:
-    cone = build(rows)
+def check(rows: list[Whole], *, exact: bool = False) -> None:
+    cone = build(rows, exact=exact)
     assert len(cone.lineality) == 3 - rank(rows)
     # Every candidate point of the cone is a combination of its lines and rays, and these are in it.
     for ray, tight in zip(cone.rays, cone.tight, strict=True):
