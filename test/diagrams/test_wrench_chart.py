@@ -34,7 +34,7 @@ def test_a_wrench_stands_where_the_chart_shows_it(chart: WrenchChart) -> None:
     assert shown.shape == (height, width)
     rows, columns = np.nonzero(shown)
     places, part = chart.place(wrenches[shown])
-    np.testing.assert_allclose(places, np.column_stack([columns, rows]) + 0.5, atol=1e-9)
+    np.testing.assert_allclose(places, np.column_stack([columns + 0.5, -rows - 0.5]), atol=1e-9)
     assert set(part.tolist()) == set(range(chart.parts))
     for i in range(chart.parts):
         assert np.all(np.abs(places[part == i] - part_centre(chart, i)) <= 0.5 * chart.resolution)
@@ -54,7 +54,7 @@ def test_a_disc_keeps_areas_and_directions() -> None:
     assert left[0] < centres[0][0]
     assert left[1] == pytest.approx(centres[0][1])
     assert up[0] == pytest.approx(centres[1][0])
-    assert up[1] < centres[1][1]  # the second coordinate is downwards
+    assert up[1] > centres[1][1]
     _, part = chart.place(np.array([[1.0, 0.0, 0.0], [1.0, 0.0, -1e-12]]))
     assert part.tolist() == [ANTICLOCKWISE, ANTICLOCKWISE]
 
