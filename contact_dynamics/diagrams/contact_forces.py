@@ -40,9 +40,9 @@ def contact_forces(contacts: ContactSet, mode: SpatialMode, *, title: str = "") 
         reach = min(top, coefficient * top)
         marks.append(
             Lines(
-                name=f"cone_{i + 1}",
-                paint=Paint(palette.FRICTION_CONE, paper.PURPLE),
-                strips=[np.array([(0.0, 0.0), (reach, reach / coefficient if coefficient > 0.0 else top)])],
+                f"cone_{i + 1}",
+                Paint(palette.FRICTION_CONE, paper.PURPLE),
+                [np.array([(0.0, 0.0), (reach, reach / coefficient if coefficient > 0.0 else top)])],
                 width=1.9,
                 dash=_DASHES[i % len(_DASHES)],
                 legend=f"edge of the friction cone, μ = {coefficient:.3g}",
@@ -52,9 +52,9 @@ def contact_forces(contacts: ContactSet, mode: SpatialMode, *, title: str = "") 
     for i, (x, y, letter) in enumerate(zip(friction.tolist(), normal.tolist(), mode.mode, strict=True)):
         marks.append(
             Points(
-                name=f"contact_{i + 1}",
-                paint=Paint(palette.LETTER_COLORS[letter], paper.LETTERS[letter]),
-                places=np.array([(x, y)]),
+                f"contact_{i + 1}",
+                Paint(palette.LETTER_COLORS[letter], paper.LETTERS[letter]),
+                np.array([(x, y)]),
                 marker=_MARKERS[i % len(_MARKERS)],
                 size=6.0 + 3.0 * (count - 1 - i) / max(count - 1, 1),
                 legend=f"contact {i + 1} {letter}: {x:.3g}, {y:.3g} N",

@@ -69,14 +69,14 @@ def force_dual(
     both = [chart.place_points(strip, part) for strip in outlines for part in (ANTICLOCKWISE, CLOCKWISE)]
     marks: list[Mark] = [
         Regions(
-            name="wrenches",
-            paint=region,
-            classes=inside,
+            "wrenches",
+            region,
+            inside,
             paints=[Paint(palette.BACKGROUND, paper.SEVERAL), region],
             legends=["", f"wrenches that can bring about {one.mode}"],
         ),
-        Lines(name="outlines", paint=_BODY, strips=both, legend="the body, drawn in both halves"),
-        Lines(name="borders", paint=Paint(color, paper.BLUE), strips=borders_of(one, chart)),
+        Lines("outlines", _BODY, both, legend="the body, drawn in both halves"),
+        Lines("borders", Paint(color, paper.BLUE), borders_of(one, chart)),
     ]
     forces, motions = split_generators(one, contacts)
     for name, paint, wrenches, labels, legend in (
@@ -92,7 +92,7 @@ def force_dual(
         rows = np.array([(*wrench.f, wrench.moment) for wrench in wrenches]).reshape(-1, 3)
         places, part = chart.place(rows)
         shown = np.flatnonzero(part != HIDDEN).tolist()
-        marks.append(Points(name=name, paint=paint, places=places[shown], legend=legend if shown else ""))
+        marks.append(Points(name, paint, places[shown], legend=legend if shown else ""))
         marks.append(_names(f"{name}_names", paint, places[shown], [labels[i] for i in shown], chart))
     frame, axes = chart_frame(chart)
     return Diagram(
@@ -117,9 +117,9 @@ def answer_marks(
         places, part = chart.place(np.array([wrench]))
         marks.append(
             Points(
-                name=f"answer/{name.replace(' ', '_')}",
-                paint=paint,
-                places=places[part != HIDDEN],
+                f"answer/{name.replace(' ', '_')}",
+                paint,
+                places[part != HIDDEN],
                 size=11.0,
                 legend=name,
                 is_noted=True,
@@ -139,10 +139,10 @@ def _names(name: str, paint: Paint, places: FloatArray, labels: list[str], chart
         else:
             group.append(i)
     return Labels(
-        name=name,
-        paint=Paint(paint.dark, paper.BLACK),
-        places=np.reshape([places[group[0]] + _NAME * chart.resolution for group in groups], (-1, 2)),
-        texts=[", ".join(dict.fromkeys(labels[i] for i in group)) for group in groups],
+        name,
+        Paint(paint.dark, paper.BLACK),
+        np.reshape([places[group[0]] + _NAME * chart.resolution for group in groups], (-1, 2)),
+        [", ".join(dict.fromkeys(labels[i] for i in group)) for group in groups],
     )
 
 

@@ -104,8 +104,8 @@ def impulse_space(
     reach = min(top, side / friction) if friction > 0.0 else top
     cone = np.array([(-friction * reach, reach), (0.0, 0.0), (friction * reach, reach)])
     marks: list[Mark] = [
-        Faces(name="cone", paint=_CONE, opacity=0.12, corners=cone),
-        Lines(name="friction_cone", paint=_CONE, strips=[cone], legend=f"friction cone, μ = {friction:.3g}"),
+        Faces("cone", _CONE, cone, opacity=0.12),
+        Lines("friction_cone", _CONE, [cone], legend=f"friction cone, μ = {friction:.3g}"),
     ]
     in_space = answer.plane is None
     if found.velocity is not None and found.response is not None:
@@ -152,10 +152,10 @@ def impulse_space_in_3d(
     found = contact_impulse(body, answer, other=other)
     friction, side, top = float(answer.contacts.frictions[found.contact]), found.side, found.top
     cone = Lines(
-        name="friction_cone",
-        paint=_CONE,
+        "friction_cone",
+        _CONE,
+        _round_cone(friction, min(top, side / friction) if friction > 0.0 else top),
         opacity=0.8,
-        strips=_round_cone(friction, min(top, side / friction) if friction > 0.0 else top),
         width=0.8,
         legend=f"friction cone, μ = {friction:.3g}",
     )
@@ -172,7 +172,7 @@ def impulse_space_in_3d(
         corners = part_above(corners, corners[:, 2])
         corners = part_above(corners, top - corners[:, 2])
         if len(corners) > 2:
-            plane = Faces(name="compression_plane", paint=_COMPRESSION, opacity=0.15, corners=corners)
+            plane = Faces("compression_plane", _COMPRESSION, corners, opacity=0.15)
             around = [np.vstack([corners, corners[:1]])]
             marks += [plane, *_line("compression_border", _COMPRESSION, "-.", "compression plane", around)]
     marks += _path_marks(found, [0, 1, 2], legend="impulse so far")
@@ -279,7 +279,7 @@ def _sticking_line(
 def _line(name: str, paint: Paint, dash: str, legend: str, strips: list[FloatArray]) -> list[Mark]:
     """Return the mark of lines, if any of them is in the diagram."""
     shown = [strip for strip in strips if len(strip) > 0]
-    return [Lines(name=name, paint=paint, strips=shown, dash=dash, legend=legend)] if shown else []
+    return [Lines(name, paint, shown, dash=dash, legend=legend)] if shown else []
 
 
 def _path_marks(found: ContactImpulse, components: list[int], *, legend: str) -> list[Mark]:
@@ -287,15 +287,15 @@ def _path_marks(found: ContactImpulse, components: list[int], *, legend: str) ->
     marks: list[Mark] = []
     if len(found.path) > 0:
         path = found.path[:, components]
-        marks.append(Lines(name="path", paint=_PATH, strips=[path], width=2.75, legend=legend))
+        marks.append(Lines("path", _PATH, [path], width=2.75, legend=legend))
     for i, (event, point) in enumerate(zip(found.events, found.points[:, components], strict=True)):
         words, marker = EVENTS[event]
         numbers = ", ".join(f"{round(x, decimals) + 0.0:.3g}" for x in point.tolist())
         marks.append(
             Points(
-                name=f"event_{i}",
-                paint=_PATH,
-                places=point[None],
+                f"event_{i}",
+                _PATH,
+                point[None],
                 marker=marker,
                 hollow=True,
                 legend=f"{words}:\n({numbers}) N s",

@@ -7,7 +7,7 @@ neither computes geometry. Places are rows with two or three coordinates, the se
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import KW_ONLY, dataclass, replace
 from typing import TYPE_CHECKING, Final, NamedTuple, TypeAlias
 
 import numpy as np
@@ -24,14 +24,14 @@ Triangles: TypeAlias = "NDArray[np.int64]"
 NO_PLACES: Final = np.zeros((0, 2))
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+@dataclass(frozen=True, slots=True, eq=False)
 class Mark:
     """The base of all marks.
 
     Attributes:
         name: The name of the mark: an entity in rerun, an id in SVG.
         paint: The colour, in the viewer and on paper.
-        opacity: Its opacity, 0 to 1.
+        opacity: Its opacity, 0 to 1. On paper, only faces are translucent.
         legend: What the mark means, for the legend, or an empty string.
         on_paper: Whether Matplotlib draws it.
         in_viewer: Whether rerun draws it.
@@ -39,13 +39,14 @@ class Mark:
 
     name: str
     paint: Paint
+    _: KW_ONLY
     opacity: float = 1.0
     legend: str = ""
     on_paper: bool = True
     in_viewer: bool = True
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+@dataclass(frozen=True, slots=True, eq=False)
 class Lines(Mark):
     """Line strips.
 
@@ -56,11 +57,12 @@ class Lines(Mark):
     """
 
     strips: Strips
+    _: KW_ONLY
     width: float = 1.2
     dash: str = "-"
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+@dataclass(frozen=True, slots=True, eq=False)
 class Points(Mark):
     """Points with a label each.
 
@@ -76,6 +78,7 @@ class Points(Mark):
     """
 
     places: FloatArray
+    _: KW_ONLY
     size: float = 8.0
     radius: float = 0.0
     marker: str = "o"
@@ -85,14 +88,14 @@ class Points(Mark):
     is_noted: bool = False
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+@dataclass(frozen=True, slots=True, eq=False)
 class Arrows(Mark):
     """Arrows with a label each.
 
     Attributes:
         origins: (n, d).
         vectors: (n, d).
-        width: Points of the screen.
+        width: Points of the screen or of paper.
         radius: The radius in the units of the diagram, which replaces the width in the viewer if it is not 0.
         labels: (n,), or none.
         label_all: Whether all labels are shown. Otherwise, the viewer shows the one under the mouse.
@@ -100,13 +103,14 @@ class Arrows(Mark):
 
     origins: FloatArray
     vectors: FloatArray
+    _: KW_ONLY
     width: float = 2.0
     radius: float = 0.0
     labels: Sequence[str] = ()
     label_all: bool = False
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+@dataclass(frozen=True, slots=True, eq=False)
 class Faces(Mark):
     """Triangles. The viewer draws them in three dimensions only.
 
@@ -117,6 +121,7 @@ class Faces(Mark):
     """
 
     corners: FloatArray
+    _: KW_ONLY
     triangles: Triangles | None = None
     normals: FloatArray | None = None
 
@@ -130,7 +135,7 @@ class Faces(Mark):
         )
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+@dataclass(frozen=True, slots=True, eq=False)
 class Labels(Mark):
     """Words at places.
 
@@ -143,7 +148,7 @@ class Labels(Mark):
     texts: Sequence[str]
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+@dataclass(frozen=True, slots=True, eq=False)
 class Ellipsoids(Mark):
     """Ellipsoids of uncertainty, in three dimensions.
 
@@ -155,10 +160,11 @@ class Ellipsoids(Mark):
 
     centers: FloatArray
     covariances: FloatArray
+    _: KW_ONLY
     deviations: FloatArray | float = 1.0
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+@dataclass(frozen=True, slots=True, eq=False)
 class Regions(Mark):
     """Regions of a flat diagram, as a picture of one pixel for each unit, whose rows go down from the top.
 
@@ -169,6 +175,7 @@ class Regions(Mark):
     """
 
     classes: NDArray[np.integer]
+    _: KW_ONLY
     paints: Sequence[Paint]
     legends: Sequence[str]
 
@@ -204,3 +211,20 @@ class Diagram:
     axes: tuple[Axis, ...]
     title: str = ""
     is_equal: bool = True
+
+
+def mapped(mark: Mark, matrix: FloatArray) -> Mark:
+    """Return a mark whose places, (n, d), a matrix, (e, d), has turned or projected.
+
+    Ellipsoids and regions stay as they are.
+    """
+    match mark:
+        case Lines():
+            return replace(mark, strips=[strip @ matrix.T for strip in mark.strips])
+        case Points() | Labels():
+            return replace(mark, places=mark.places @ matrix.T)
+        case Arrows():
+            return replace(mark, origins=mark.origins @ matrix.T, vectors=mark.vectors @ matrix.T)
+        case Faces():
+            return replace(mark, corners=mark.corners @ matrix.T)
+    return mark

@@ -227,18 +227,13 @@ def mode_map(
     there = np.unique(regions.classes).tolist()
     marks: list[Mark] = [
         Regions(
-            name="regions",
-            paint=_LINE,
-            classes=regions.classes,
+            "regions",
+            _LINE,
+            regions.classes,
             paints=paints,
             legends=[name if i in there else "" for i, name in enumerate(names)],
         ),
-        Lines(
-            name="borders",
-            paint=_BORDER,
-            strips=[s for one in sets for s in borders_of(one, chart)],
-            width=0.6,
-        ),
+        Lines("borders", _BORDER, [s for one in sets for s in borders_of(one, chart)], width=0.6),
     ]
     widest = widest_places(regions, chart)
     named = [one for one in widest if one.has_room]
@@ -256,19 +251,19 @@ def mode_map(
         chosen = [one for one, kind in zip(named, kinds, strict=True) if kind == name]
         marks.append(
             Labels(
-                name=name,
-                paint=paint,
-                places=np.reshape([one.place for one in chosen], (-1, 2)),
-                texts=[names[one.region] for one in chosen],
+                name,
+                paint,
+                np.reshape([one.place for one in chosen], (-1, 2)),
+                [names[one.region] for one in chosen],
                 on_paper=name != "names_of_several",
             )
         )
     small = [one for one in widest if not one.has_room]
     marks.append(
         Points(
-            name="small_regions",
-            paint=_LINE,
-            places=np.reshape([one.place for one in small], (-1, 2)),
+            "small_regions",
+            _LINE,
+            np.reshape([one.place for one in small], (-1, 2)),
             size=3.0,
             labels=[names[one.region] for one in small],
             on_paper=False,
@@ -309,11 +304,11 @@ def applied_marks(
     numbers = (0.0,) * 3 if applied is None else (*applied.f, applied.moment)
     f_x, f_y, moment = (round(number, _DIGITS) + 0.0 for number in numbers)
     return [
-        Lines(name="applied/way_out", paint=_APPLIED, strips=way or [], width=2.2),
+        Lines("applied/way_out", _APPLIED, way or [], width=2.2),
         Points(
-            name="applied",
-            paint=_APPLIED,
-            places=NO_PLACES if places is None else places,
+            "applied",
+            _APPLIED,
+            NO_PLACES if places is None else places,
             legend=f"applied: ({f_x:.3g}, {f_y:.3g}) N,\n{moment:.3g} N m" + (_WAY if way else ""),
             is_noted=True,
         ),
@@ -348,9 +343,9 @@ def chart_frame(chart: WrenchChart) -> tuple[list[Mark], tuple[Axis, ...]]:
         across = tuple((x + place, text) for x, _ in centres for place, text in words)
         upward = tuple((centres[0][1] + step * half, f"{middle[1] + step * side:.3g}") for step in steps)
         above = np.array(centres) + np.array([0.0, half + 0.4 * margin])
-        captions = [Labels(name="captions", paint=_LINE, places=above, texts=texts)]
+        captions = [Labels("captions", _LINE, above, texts)]
     outlines = [np.array(centre) + half * corners for centre in centres]
-    return [Lines(name="outline", paint=_LINE, strips=outlines), *captions], (
+    return [Lines("outline", _LINE, outlines), *captions], (
         Axis(names[0], margin, width - margin, across),
         Axis(names[1], margin - height, -margin, upward),
     )

@@ -83,12 +83,10 @@ def planar_scene_of(
             "accelerations", _ACCELERATION, mode.contact_accelerations, contacts, unit="m/s²", size=size
         )
     marks: list[Mark] = [
-        Lines(name="walls", paint=_WALL, strips=walls, width=5.0, legend="surface"),
-        Lines(name="body", paint=_BODY, strips=[outline], width=2.2, legend="body"),
-        Lines(name="cones", paint=_CONE, strips=cones, width=1.5, legend="friction cone"),
-        Points(
-            name="centre_of_mass", paint=_BODY, places=np.zeros((1, 2)), marker="+", legend="centre of mass"
-        ),
+        Lines("walls", _WALL, walls, width=5.0, legend="surface"),
+        Lines("body", _BODY, [outline], width=2.2, legend="body"),
+        Lines("cones", _CONE, cones, width=1.5, legend="friction cone"),
+        Points("centre_of_mass", _BODY, np.zeros((1, 2)), marker="+", legend="centre of mass"),
     ]
     places = points - LABEL_OFFSET * size * normals
     groups = _same_places(places, size)
@@ -96,15 +94,11 @@ def planar_scene_of(
         chosen = [i for i, letter in enumerate(letters) if letter in group]
         named = [same for same in groups if letters[same[0]] in group]
         if chosen:
-            marks.append(
-                Points(name=f"contacts/{word}", paint=paint, places=points[chosen], size=6.5, legend=meaning)
-            )
+            marks.append(Points(f"contacts/{word}", paint, points[chosen], size=6.5, legend=meaning))
             middles = [_place_of(same, points, normals, size) for same in named]
             texts = [_text_of(same, letters if mode else "") for same in named]
             label = Paint(paint.dark, paper.BLACK)
-            marks.append(
-                Labels(name=f"letters/{word}", paint=label, places=np.reshape(middles, (-1, 2)), texts=texts)
-            )
+            marks.append(Labels(f"letters/{word}", label, np.reshape(middles, (-1, 2)), texts))
     marks += arrows
     tips = [each.origins + each.vectors for each in arrows]
     everything = np.vstack([outline, points, np.zeros((1, 2)), *tips])
@@ -159,10 +153,10 @@ def _arrows(
     numbered = "\n".join(f"  {i + 1}: {label}" for i, label in zip(chosen.tolist(), labels, strict=True))
     return [
         Arrows(
-            name=name,
-            paint=paint,
-            origins=points[chosen],
-            vectors=vectors[chosen] * (ARROW_LENGTH * size / longest),
+            name,
+            paint,
+            points[chosen],
+            vectors[chosen] * (ARROW_LENGTH * size / longest),
             labels=labels,
             legend=f"{name.removesuffix('s')} at contact\n{numbered}",
         )

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from contact_dynamics.diagrams.marks import Faces
+from contact_dynamics.rotations.one import rotation_matrix
 from contact_dynamics.shapes.rim import radii_of
 
 if TYPE_CHECKING:
+    from contact_dynamics.diagrams.palette import Paint
     from contact_dynamics.shapes.convex import ConvexShape
     from contact_dynamics.shapes.rim import Radii
     from contact_dynamics.validation import FloatArray
@@ -66,11 +69,11 @@ def convex_shape(vertices_B: FloatArray, *, smooth: float = FLAT) -> Shape:
     There is an edge where 1 - cos of the angle between two facets exceeds ``smooth``.
     """
     if len(vertices_B) == 0:
-        return _skeleton(np.zeros((0, 2, 3)), NO_SIZE)
+        return NO_FACES
     center = vertices_B.mean(axis=0)
     size = float(np.linalg.norm(np.ptp(vertices_B, axis=0)))
     if size == 0.0:
-        return _skeleton(np.zeros((0, 2, 3)), NO_SIZE)
+        return NO_FACES
     _, spread, axes = np.linalg.svd(vertices_B - center, full_matrices=False)
     rank = int(np.sum(spread > FLAT * size))
     if rank == 1:
@@ -113,6 +116,9 @@ def _polyhedron(vertices_B: FloatArray, center: FloatArray, size: float, smooth:
     ends = vertices_B[np.array(edges, dtype=int).reshape(-1, 2)]
     return Shape(triangles_B=triangles, normals_B=normals, edges_B=ends, size=size)
 
+
+NO_FACES: Final = _skeleton(np.zeros((0, 2, 3)), NO_SIZE)
+"""The shape of a point."""
 
 _TURNS: Final = np.linspace(0.0, 2.0 * np.pi, ROUND_FACETS + 1)
 _PLANES: Final = np.eye(3)[[[0, 1], [1, 2], [2, 0]]]
@@ -163,3 +169,25 @@ def part_above(corners: FloatArray, gaps: FloatArray) -> FloatArray:
         if gap >= 0.0:
             kept.append(corners[i])
     return np.reshape(kept, (-1, corners.shape[1]))
+
+
+def outline(shape: Shape, p_WB_W: FloatArray, q_WB: FloatArray) -> FloatArray:
+    """Return the edges, (k, 2, 3), m, world, of a body at a pose."""
+    edges: FloatArray = p_WB_W + shape.edges_B @ rotation_matrix(q_WB).T
+    return edges
+
+
+def solid(
+    shape: Shape, name: str, paint: Paint, p_WB_W: FloatArray, q_WB: FloatArray, **options: Any
+) -> Faces:
+    """Return the faces of a body at a pose as a mark, which ``options`` are further fields of."""
+    R_WB = rotation_matrix(q_WB)
+    corners_W = p_WB_W + shape.triangles_B.reshape(-1, 3) @ R_WB.T
+    return Faces(
+        name,
+        paint,
+        corners_W,
+        triangles=np.arange(len(corners_W)).reshape(-1, 3),
+        normals=np.repeat(shape.normals_B, 3, axis=0) @ R_WB.T,
+        **options,
+    )

@@ -15,7 +15,7 @@ import numpy as np
 import rerun as rr
 
 from contact_dynamics.diagrams import palette
-from contact_dynamics.diagrams.shape import drawn_shape
+from contact_dynamics.diagrams.shape import drawn_shape, outline
 from contact_dynamics.evaluation.report import COLUMNS, UNITS
 from contact_dynamics.evaluation.settings import Method
 from contact_dynamics.measured.events import EventKind, find_events
@@ -24,7 +24,6 @@ from contact_dynamics.viewing.entities import entity
 from contact_dynamics.viewing.kept_recording import APPLICATION
 from contact_dynamics.viewing.scene import solid
 from contact_dynamics.viewing.side_by_side import EVENTS, MAX_DRAWN, TABLE, SideBySide
-from contact_dynamics.viewing.trajectory import outline
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence

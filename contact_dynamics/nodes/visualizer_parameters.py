@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final, NamedTuple
 
+from contact_dynamics.diagrams.flight import DEFAULT_PREDICTIONS
 from contact_dynamics.errors import ContactDynamicsError
 from contact_dynamics.nodes.parameter_reader import ConfigurationError, DeclaredParameter
 
@@ -50,7 +51,9 @@ _DECLARED: Final = (
     DeclaredParameter(
         "viewer_memory", "1GiB", "Memory limit of the viewer or of the served picture, such as 500MB."
     ),
-    DeclaredParameter("predictions", 4, "Number of newest predictions of a body to show.", (1, 100)),
+    DeclaredParameter(
+        "predictions", DEFAULT_PREDICTIONS, "Number of newest predictions of a body to show.", (1, 100)
+    ),
     DeclaredParameter("surface_side", 2.0, "Side of the square drawn for a surface, m.", (1e-3, 1e4)),
 )
 

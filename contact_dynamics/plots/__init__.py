@@ -6,25 +6,26 @@ functions draws one diagram into the `Axes` that it is given. What it draws are 
 Matplotlib, which the extra ``[plot]`` brings.
 
 In reading order: how marks are drawn (`drawing`, `style`), the diagrams (`draw`), lecture 25's curves
-(`trajectory`) and rolling ellipsoid (`poinsot`), whole tosses (`tosses`), all diagrams of an answer as
+(`trajectory`), all diagrams of an answer as
 figures (`figures`), what the physics returns as figures (`results`), and the command `contact-dynamics plot`
 (`arguments`, `run`).
 """
 
 from contact_dynamics.plots.draw import (
     draw_contact_forces,
+    draw_event_tree,
     draw_force_dual,
     draw_impulse_space,
     draw_impulse_space_in_3d,
+    draw_many_states,
     draw_mode_map,
     draw_planar_scene,
+    draw_poinsot,
+    draw_toss,
 )
 from contact_dynamics.plots.figures import figures_of
-from contact_dynamics.plots.many_states import draw_many_states
-from contact_dynamics.plots.poinsot import draw_poinsot
 from contact_dynamics.plots.results import modes, toss
 from contact_dynamics.plots.style import save_figure
-from contact_dynamics.plots.tosses import draw_event_tree, draw_toss
 from contact_dynamics.plots.trajectory import (
     draw_angular_momentum,
     draw_angular_velocity,

@@ -4,11 +4,18 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from contact_dynamics.diagrams.contact_forces import contact_forces
 from contact_dynamics.diagrams.force_dual import force_dual
 from contact_dynamics.diagrams.impulse_space import impulse_space, impulse_space_in_3d
+from contact_dynamics.diagrams.many_states import many_states_marks
 from contact_dynamics.diagrams.mode_map import mode_map
-from contact_dynamics.plots.drawing import draw_diagram
+from contact_dynamics.diagrams.poinsot import poinsot_diagram
+from contact_dynamics.diagrams.shape import NO_FACES
+from contact_dynamics.diagrams.toss_scene import toss_marks
+from contact_dynamics.diagrams.toss_tree import event_tree
+from contact_dynamics.plots.drawing import draw_diagram, draw_seen
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -18,10 +25,15 @@ if TYPE_CHECKING:
     from contact_dynamics.contact.contact import ContactSet
     from contact_dynamics.contact_modes import PlanarWrenchSet, SpatialMode
     from contact_dynamics.diagrams.marks import Diagram
+    from contact_dynamics.diagrams.shape import Shape
     from contact_dynamics.diagrams.wrench_chart import ForceDualChart, WrenchChart
     from contact_dynamics.plane.types import PlanarContact, PlanarWrench
     from contact_dynamics.questions.impact_answer import ImpactAnswer
-    from contact_dynamics.rigid_body.body import HasMassProperties
+    from contact_dynamics.questions.many import ManyImpactsAnswer, ManyTumblingsAnswer
+    from contact_dynamics.questions.toss import TossAnswer
+    from contact_dynamics.rigid_body.body import BodyState, HasMassProperties
+    from contact_dynamics.toss import Toss, TossDistribution
+    from contact_dynamics.tumbling.poinsot_construction import Poinsot, RollingCurves
     from contact_dynamics.validation import FloatArray
 
 
@@ -128,3 +140,49 @@ def draw_force_dual(
         outlines: Strips, (k, 2) each, m from the centre of mass, drawn below: the body, walls.
     """
     draw_diagram(axes, force_dual(one, contacts, chart, outlines=outlines))
+
+
+def draw_poinsot(axes: Any, picture: Poinsot, curves: RollingCurves, state: BodyState) -> None:
+    """Draw ellipsoid, plane, polhode and herpolhode of a body that rotates, rad/s.
+
+    Args:
+        axes: Axes in 3D, as ``figure.add_subplot(projection="3d")`` makes them. They have no type.
+        picture: The constants of the rotation.
+        curves: Polhode and herpolhode.
+        state: The state at which the ellipsoid is drawn.
+    """
+    draw_diagram(axes, poinsot_diagram(picture, curves, state))
+
+
+def draw_toss(axes: Axes, toss: Toss | TossAnswer, shape: Shape, *, across: str = "x", up: str = "z") -> None:
+    """Draw a toss seen along one of the world's axes: path, strikes, pose at the end, other ways, samples.
+
+    Args:
+        axes: where to draw.
+        toss: the toss, or the answer to a question about one.
+        shape: the body's shape, for its outline.
+        across: the world's axis, "x", "y" or "z", to the right.
+        up: the one upwards.
+    """
+    draw_seen(axes, toss_marks(shape, toss, up_W=np.array([0.0, 0.0, 1.0])), across=across, up=up)
+
+
+def draw_event_tree(axes: Axes, told: TossDistribution) -> None:
+    """Draw the tree of the next strikes over time: 50 and 90 % of the times of each, and its probability."""
+    draw_diagram(axes, event_tree(told))
+
+
+def draw_many_states(
+    axes: Axes, answer: ManyTumblingsAnswer | ManyImpactsAnswer, *, across: str = "x", up: str = "z"
+) -> None:
+    """Draw the position of each centre of mass, m, with an arrow along its velocity.
+
+    Impacts have a marker for each outcome.
+
+    Args:
+        axes: where to draw.
+        answer: the answer.
+        across: the world's axis, "x", "y" or "z", to the right.
+        up: the one upwards.
+    """
+    draw_seen(axes, many_states_marks(NO_FACES, answer), across=across, up=up)

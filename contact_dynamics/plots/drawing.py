@@ -6,12 +6,14 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from contact_dynamics.diagrams.marks import Arrows, Faces, Labels, Lines, Points, Regions
+from contact_dynamics.diagrams.marks import Arrows, Faces, Labels, Lines, Points, Regions, mapped
 from contact_dynamics.diagrams.paper import AXIS, BLACK
 from contact_dynamics.plots.style import legend_beside
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+
+    from matplotlib.axes import Axes
 
     from contact_dynamics.diagrams.marks import Diagram, Mark
     from contact_dynamics.validation import FloatArray
@@ -57,6 +59,17 @@ def draw_diagram(axes: Any, diagram: Diagram, *, title: str | None = None) -> No
     legend_beside(axes, columns=1 + (len(axes.get_legend_handles_labels()[0]) - 1) // _ROWS)
 
 
+def draw_seen(axes: Axes, marks: Sequence[Mark], *, across: str, up: str) -> None:
+    """Draw marks in space, m, seen along one of the world's axes: two others go to the right and up."""
+    matrix = np.eye(3)[["xyz".index(across), "xyz".index(up)]]
+    draw_marks(axes, [mapped(mark, matrix) for mark in marks])
+    axes.set_xlabel(f"{across}, m")
+    axes.set_ylabel(f"{up}, m")
+    axes.set_aspect("equal", adjustable="datalim")
+    axes.grid(visible=True, color=AXIS, linewidth=0.6)
+    legend_beside(axes)
+
+
 def draw_marks(axes: Any, marks: Sequence[Mark]) -> None:
     """Draw marks, later ones above earlier ones."""
     for i, mark in enumerate(marks):
@@ -72,7 +85,6 @@ def _draw(axes: Any, mark: Mark, common: dict[str, Any]) -> None:  # noqa: C901 
             axes.plot(
                 *_joined(mark.strips).T,
                 color=color,
-                alpha=mark.opacity,
                 linewidth=_LIGHTER * mark.width,
                 linestyle=mark.dash,
                 **common,
@@ -92,7 +104,7 @@ def _draw(axes: Any, mark: Mark, common: dict[str, Any]) -> None:  # noqa: C901 
         case Arrows() if len(mark.origins) > 0:
             options = {"arrow_length_ratio": 0.08, "linewidth": 1.8}
             if mark.origins.shape[1] == 2:
-                options = {"angles": "xy", "scale_units": "xy", "scale": 1.0, "width": 0.008}
+                options = {"angles": "xy", "scale_units": "xy", "scale": 1.0, "width": 0.004 * mark.width}
             axes.quiver(*mark.origins.T, *mark.vectors.T, color=color, **options, **common)
         case Faces() if len(mark.fan) > 0:
             options = {"color": color, "alpha": mark.opacity, "linewidth": 0.0}

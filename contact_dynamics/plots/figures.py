@@ -9,15 +9,16 @@ from contact_dynamics.diagrams.planar_scene import silhouette
 from contact_dynamics.diagrams.shape import drawn_shape
 from contact_dynamics.plots.draw import (
     draw_contact_forces,
+    draw_event_tree,
     draw_force_dual,
     draw_impulse_space,
     draw_impulse_space_in_3d,
+    draw_many_states,
     draw_mode_map,
     draw_planar_scene,
+    draw_poinsot,
+    draw_toss,
 )
-from contact_dynamics.plots.many_states import draw_many_states
-from contact_dynamics.plots.poinsot import draw_poinsot
-from contact_dynamics.plots.tosses import draw_event_tree, draw_toss
 from contact_dynamics.plots.trajectory import (
     draw_angular_momentum,
     draw_angular_velocity,

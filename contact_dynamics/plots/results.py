@@ -15,9 +15,8 @@ from contact_dynamics.contact_modes import (
 from contact_dynamics.contact_modes.letters import mode_in_words
 from contact_dynamics.diagrams.planar_modes import side_by_side
 from contact_dynamics.diagrams.shape import drawn_shape
-from contact_dynamics.plots.draw import draw_contact_forces, draw_planar_scene
+from contact_dynamics.plots.draw import draw_contact_forces, draw_planar_scene, draw_toss
 from contact_dynamics.plots.figures import MAX_MODES, blank_figure
-from contact_dynamics.plots.tosses import draw_toss
 from contact_dynamics.shapes.convex import NO_SHAPE
 from contact_dynamics.validation_types import checks_types
 

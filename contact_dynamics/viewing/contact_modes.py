@@ -13,12 +13,12 @@ import rerun as rr
 
 from contact_dynamics.contact_modes.spatial.applied_wrench import applied_wrench
 from contact_dynamics.diagrams import palette
+from contact_dynamics.diagrams.shape import outline
 from contact_dynamics.diagrams.words import contacts_in_words
 from contact_dynamics.questions.planar_view import beyond, sliding_directions
 from contact_dynamics.viewing.entities import contacts_entity
 from contact_dynamics.viewing.impact import friction_cones
 from contact_dynamics.viewing.strips import strips_3d
-from contact_dynamics.viewing.trajectory import outline
 
 if TYPE_CHECKING:
     from contact_dynamics.contact_modes import SpatialMode

@@ -258,12 +258,7 @@ def _frame_of(diagram: Diagram, page: _Page, *, has_legend: bool = True) -> list
         title.append((0.5 * across, top + (0.5 + 0.5 * lines + len(title)) * _LINE, diagram.title))
     places = [page.at(right, up) for right, up, _ in title]
     marks.append(
-        Labels(
-            name="title",
-            paint=_WHITE,
-            places=np.reshape(places, (-1, len(diagram.axes))),
-            texts=[text for *_, text in title],
-        )
+        Labels("title", _WHITE, np.reshape(places, (-1, len(diagram.axes))), [text for *_, text in title])
     )
     room += [page.at(right, up + _LINE) for right, up, _ in title]
     shown = [mark for mark in diagram.marks if has_legend and mark.legend and mark.in_viewer]
@@ -274,9 +269,7 @@ def _frame_of(diagram: Diagram, page: _Page, *, has_legend: bool = True) -> list
     for mark in legend:
         lines = mark.legend.count("\n")
         place = page.at(aside, up - 0.4 * lines * _LINE)
-        marks.append(
-            Labels(name=f"legend/{mark.name}", paint=mark.paint, places=place[None], texts=[mark.legend])
-        )
+        marks.append(Labels(f"legend/{mark.name}", mark.paint, place[None], [mark.legend]))
         up -= (1.0 + 0.8 * lines) * _LINE
         room += [page.at(aside - 0.5 * _widest(legend), 0.0), page.at(aside, up)]
     return [*marks, *_notes_of(noted, page, room), _room(room)]
@@ -295,7 +288,7 @@ def _widest(marks: Sequence[Mark]) -> float:
 def _room(places: Sequence[FloatArray]) -> Mark:
     """Return what keeps room for words in the view: lines without length or colour."""
     strips = [np.array([place, place]) for place in places]
-    return Lines(name="room", paint=palette.Paint(_NO_COLOR, ""), opacity=0.0, strips=strips, width=0.0)
+    return Lines("room", palette.Paint(_NO_COLOR, ""), strips, opacity=0.0, width=0.0)
 
 
 def _notes_of(noted: list[Points], page: _Page, room: list[FloatArray]) -> list[Mark]:
@@ -319,14 +312,8 @@ def _notes_of(noted: list[Points], page: _Page, room: list[FloatArray]) -> list[
         place = page.at(middle, up)
         leader = np.array([mark.places[0], page.at(left, up)])
         marks += [
-            Labels(name=f"notes/{mark.name}", paint=mark.paint, places=place[None], texts=[mark.legend]),
-            Lines(
-                name=f"leaders/{mark.name}",
-                paint=mark.paint,
-                opacity=0.5,
-                strips=[leader],
-                width=_LEADER_WIDTH,
-            ),
+            Labels(f"notes/{mark.name}", mark.paint, place[None], [mark.legend]),
+            Lines(f"leaders/{mark.name}", mark.paint, [leader], opacity=0.5, width=_LEADER_WIDTH),
         ]
         room.append(page.at(2.0 * middle - left, up + _LINE))
     return marks
@@ -360,8 +347,8 @@ def _axes_of(axes: tuple[Axis, ...], page: _Page) -> list[Mark]:
             places.append(place + page.point * (beside * page.right - below * page.up))
             texts.append(text)
     return [
-        Lines(name="axes", paint=_GREY, strips=strips, width=_FRAME_WIDTH),
-        Labels(name="numbers", paint=_WHITE, places=np.array(places).reshape(-1, len(axes)), texts=texts),
+        Lines("axes", _GREY, strips, width=_FRAME_WIDTH),
+        Labels("numbers", _WHITE, np.array(places).reshape(-1, len(axes)), texts),
     ]
 
 

@@ -15,10 +15,10 @@ import numpy as np
 import rerun as rr
 
 from contact_dynamics.diagrams import palette
+from contact_dynamics.diagrams.shape import outline
 from contact_dynamics.numerics.vectors import tangents_near_x
 from contact_dynamics.viewing.entities import impact_entity
 from contact_dynamics.viewing.strips import strips_3d
-from contact_dynamics.viewing.trajectory import outline
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

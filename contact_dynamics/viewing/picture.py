@@ -10,8 +10,11 @@ import rerun as rr
 
 from contact_dynamics.constants import ns_after, to_ns
 from contact_dynamics.diagrams.after_impact import AwaitedImpacts
+from contact_dynamics.diagrams.flight import DEFAULT_PREDICTIONS, EARLIER, flight_marks, path_mark
+from contact_dynamics.diagrams.many_states import many_states_marks
 from contact_dynamics.diagrams.outside import outside
 from contact_dynamics.diagrams.planar_scene import silhouette
+from contact_dynamics.diagrams.toss_scene import toss_marks
 from contact_dynamics.diagrams.words import (
     AFTER_IMPACT,
     after_impact_in_words,
@@ -24,6 +27,7 @@ from contact_dynamics.viewing.answers_in_words import AnswersInWords, sentence
 from contact_dynamics.viewing.blueprint import NO_TRAVEL, WINDOW_S, Framing, make_blueprint, near_most
 from contact_dynamics.viewing.contact_modes import draw_contact_modes
 from contact_dynamics.viewing.diagrams_in_view import DiagramsInView
+from contact_dynamics.viewing.drawing import draw_marks
 from contact_dynamics.viewing.entities import (
     ANSWERS,
     CONTACTS,
@@ -35,16 +39,16 @@ from contact_dynamics.viewing.entities import (
     POINSOT,
     PREDICTED,
     TOSSES,
+    many_entity,
+    predicted_entity,
+    toss_entity,
 )
 from contact_dynamics.viewing.impact import draw_impact
 from contact_dynamics.viewing.in_view import ImpactsInView, LettersInView
 from contact_dynamics.viewing.legend import LEGEND_TEXT
-from contact_dynamics.viewing.many_states import draw_many_states
 from contact_dynamics.viewing.measured import SET_BACK_S, set_time
 from contact_dynamics.viewing.poinsot import PoinsotInView
 from contact_dynamics.viewing.predictions_in_view import PredictionsInView
-from contact_dynamics.viewing.toss import draw_toss
-from contact_dynamics.viewing.trajectory import DEFAULT_PREDICTIONS, draw_earlier_path, draw_trajectory
 from contact_dynamics.viewing.world_in_view import WorldInView
 
 if TYPE_CHECKING:
@@ -169,11 +173,15 @@ class Picture:
         name, rotation = answer.body_name, answer.poinsot
         shape = self._bodies.shape(name)
         trajectory, in_the_way = outside(answer.trajectory, shape, self._world.surfaces)
-        draw_trajectory(self.recording, name, shape, trajectory, covariance=answer.covariance)
+        if len(trajectory) == 0:
+            self.recording.log(predicted_entity(name), rr.Clear(recursive=True))
+        else:
+            flight = flight_marks(shape, trajectory, covariance=answer.covariance)
+            draw_marks(self.recording, flight, predicted_entity(name))
         earlier = self._predictions.newest(name)
         if earlier is not None and len(earlier.trajectory) > 0 and self._earlier > 0:
-            place = earlier.number % self._earlier
-            draw_earlier_path(self.recording, name, earlier.trajectory, place=place)
+            path = path_mark(f"earlier/{earlier.number % self._earlier}", earlier.trajectory, **EARLIER)
+            draw_marks(self.recording, [path], predicted_entity(name))
         shown = [PREDICTED, *self._predict(name, trajectory, begin_ns=stamp_ns)]
         self._look_along(trajectory)
         if rotation is not None and answer.curves is not None and rotation.regime is not Regime.AT_REST:
@@ -211,7 +219,9 @@ class Picture:
 
     def draw_toss(self, answer: TossAnswer, stamp_ns: int) -> tuple[list[str], list[str]]:
         """Draw a whole toss with its other ways, and the fan of samples with the tree of their strikes."""
-        draw_toss(self.recording, self._bodies.shape(answer.body_name), answer, up_W=self._world.up_W)
+        shape, entity = self._bodies.shape(answer.body_name), toss_entity(answer.body_name)
+        self.recording.log(entity, rr.Clear(recursive=True))
+        draw_marks(self.recording, toss_marks(shape, answer, up_W=self._world.up_W), entity)
         curves = self._predict(answer.body_name, answer.toss.trajectory, begin_ns=stamp_ns)
         self._look_along(answer.toss.trajectory)
         return [TOSSES, *curves], []
@@ -222,7 +232,9 @@ class Picture:
         stamp_ns: int,  # noqa: ARG002  as all
     ) -> tuple[list[str], list[str]]:
         """Draw many states."""
-        draw_many_states(self.recording, self._bodies.shape(answer.body_name), answer)
+        shape, entity = self._bodies.shape(answer.body_name), many_entity(answer.body_name)
+        self.recording.log(entity, rr.Clear(recursive=True))
+        draw_marks(self.recording, many_states_marks(shape, answer), entity)
         return [MANY], []
 
     def tell(self, kind: str, text: str, *, stamp_ns: int, is_error: bool = False) -> None:

@@ -18,11 +18,11 @@ import numpy as np
 import rerun as rr
 
 from contact_dynamics.diagrams import palette
-from contact_dynamics.diagrams.poinsot import poinsot_figure
+from contact_dynamics.diagrams.poinsot import ARROW_RADIUS, poinsot_axes, poinsot_marks
 from contact_dynamics.rotations.one import rotation_matrix
+from contact_dynamics.viewing.drawing import draw_marks
 from contact_dynamics.viewing.entities import POINSOT_WORDS, poinsot_entity
 from contact_dynamics.viewing.measured import set_time, time_column
-from contact_dynamics.viewing.strips import strips_3d
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -35,9 +35,6 @@ SAME_MOMENTUM: Final = 0.2
 motion capture makes up to 0.08 of it, and impacts make more than 1."""
 
 _ABOVE: Final = (0.0, 0.0, 0.75)  # where words stand: the largest semi-axis has length 1
-_CURVE_WIDTH: Final = -1.2  # a negative size is in points of the screen
-_GRID_WIDTH: Final = -0.6
-_ARROW_WIDTH: Final = 0.02  # relative to the largest semi-axis
 
 
 def count_of_flight(picture: Poinsot, states: Sequence[BodyState]) -> int:
@@ -59,42 +56,13 @@ def draw_poinsot(
     The body must rotate, because there is no plane at rest.
     """
     path = poinsot_entity(body_name)
-    figure = poinsot_figure(picture, curves)
     _tell(recording, body_name or "the body")
-    unit = figure.unit
-    recording.log(path, rr.Transform3D(mat3x3=figure.axes_W / unit))
-    ellipsoid = rr.LineStrips3D(
-        strips_3d(figure.net_B), colors=palette.translucent(palette.MEASURED, 0.45), radii=_GRID_WIDTH
-    )
-    recording.log(f"{path}/body/ellipsoid", ellipsoid)
-    polhode = rr.LineStrips3D(strips_3d([curves.polhode_B]), colors=palette.POLHODE, radii=_CURVE_WIDTH)
-    recording.log(f"{path}/body/polhode", polhode)
-    herpolhode = rr.LineStrips3D(
-        strips_3d([curves.herpolhode_W]), colors=palette.HERPOLHODE, radii=_CURVE_WIDTH
-    )
-    recording.log(f"{path}/herpolhode", herpolhode)
-    recording.log(
-        f"{path}/plane/grid",
-        rr.LineStrips3D(strips_3d(figure.grid_W), colors=palette.SURFACE_GRID, radii=_GRID_WIDTH),
-    )
-    patch = rr.Mesh3D(
-        vertex_positions=figure.corners_W,
-        triangle_indices=[[0, 1, 2], [0, 2, 3]],
-        albedo_factor=palette.SURFACE,
-    )
-    recording.log(f"{path}/plane/patch", patch)
-    momentum = rr.Arrows3D(
-        origins=[[0.0, 0.0, 0.0]],
-        vectors=[figure.foot_W],
-        colors=palette.NORMAL,
-        radii=_ARROW_WIDTH * unit,
-        labels=["angular momentum"],
-        show_labels=False,
-    )
-    recording.log(f"{path}/momentum", momentum)
+    unit = float(picture.ellipsoid_semi_axes.max())
+    recording.log(path, rr.Transform3D(mat3x3=poinsot_axes(picture) / unit))
+    draw_marks(recording, poinsot_marks(picture, curves), path)
     style = rr.Arrows3D.from_fields(
         colors=palette.AFTER_IMPACT,
-        radii=_ARROW_WIDTH * unit,
+        radii=ARROW_RADIUS * unit,
         labels=["angular velocity"],
         show_labels=False,
     )

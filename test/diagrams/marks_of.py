@@ -4,10 +4,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from contact_dynamics.diagrams.marks import Diagram
+
 if TYPE_CHECKING:
-    from contact_dynamics.diagrams.marks import Diagram
+    from collections.abc import Iterable
+
+    from contact_dynamics.diagrams.marks import Mark
 
 
-def marks_of(diagram: Diagram) -> dict[str, Any]:
+def marks_of(diagram: Diagram | Iterable[Mark]) -> dict[str, Any]:
     """The marks by their names."""
-    return {mark.name: mark for mark in diagram.marks}
+    marks = diagram.marks if isinstance(diagram, Diagram) else diagram
+    return {mark.name: mark for mark in marks}

@@ -18,6 +18,7 @@ from contact_dynamics.contact_modes import PlanarContactProblem, contact_modes, 
 from contact_dynamics.diagrams import paper as colors
 from contact_dynamics.diagrams.force_dual import split_generators
 from contact_dynamics.diagrams.impulse_space import EVENTS, impulse_space_in_3d
+from contact_dynamics.diagrams.many_states import ARROW_SECONDS
 from contact_dynamics.impact.law import ImpactOutcome, PathEvent
 from contact_dynamics.plane.force_dual import acceleration_centre
 from contact_dynamics.plane.types import PlanarWrench
@@ -225,10 +226,11 @@ def test_the_herpolhode_lies_in_the_plane_and_the_polhode_touches_it_at_the_angu
     np.testing.assert_allclose(
         curves["herpolhode"][:, 2], -answer.poinsot.invariable_plane_distance, rtol=1e-9
     )
-    (arrow,) = (each for each in axes.collections if each.get_label() == "angular velocity")
+    (arrow,) = (each for each in axes.collections if each.get_gid() == "angular_velocity")
     ends = np.vstack(arrow._segments3d)
     tip = ends[np.linalg.norm(ends, axis=1).argmax()]
     assert np.linalg.norm(tip) == pytest.approx(np.linalg.norm(answer.state.w_WB_W))
+    curves["polhode"] = curves.pop("body/polhode")
     for name in ("polhode", "herpolhode"):  # it ends where both curves touch at this moment
         steps = np.linalg.norm(np.diff(curves[name], axis=0), axis=1)
         assert np.linalg.norm(curves[name] - tip, axis=1).min() <= steps.max(), name
@@ -258,12 +260,13 @@ def test_states_of_many_stand_where_they_are_and_in_the_group_of_their_outcome()
     answer = many_impacts()
     axes = Figure().add_subplot()
     draw_many_states(axes, answer)
-    groups = {each.get_gid(): np.array(each.get_offsets()) for each in axes.collections if each.get_label()}
+    groups = {each.get_gid(): np.column_stack(each.get_data()) for each in axes.lines}
     (arrows,) = (each for each in axes.collections if each.get_gid() == "velocities")
-    np.testing.assert_array_equal(np.column_stack([arrows.U, arrows.V]), answer.states.v_WB_W[:, [0, 2]])
+    expected = ARROW_SECONDS * answer.states.v_WB_W[:, [0, 2]]
+    np.testing.assert_array_equal(np.column_stack([arrows.U, arrows.V]), expected)
     np.testing.assert_array_equal(
-        groups["states_separates"], answer.states.p_WB_W[answer.separates][:, [0, 2]]
+        groups["states/separates"], answer.states.p_WB_W[answer.separates][:, [0, 2]]
     )
     slides = (answer.outcomes == ImpactOutcome.SLIDES) & ~answer.separates
     assert slides.any()
-    np.testing.assert_array_equal(groups["states_slides"], answer.states.p_WB_W[slides][:, [0, 2]])
+    np.testing.assert_array_equal(groups["states/slides"], answer.states.p_WB_W[slides][:, [0, 2]])

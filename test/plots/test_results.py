@@ -34,8 +34,8 @@ def test_a_toss_is_drawn_from_its_first_state_to_rest_and_saved(tmp_path: Path) 
     figure = plots.toss(went, CUBE)
     side, top = figure.axes
     lines = {line.get_gid(): line for line in side.lines}
-    assert {"path_0", "path_1"} <= lines.keys()  # the other way that was followed
-    across, up = lines["path_0"].get_xdata(), lines["path_0"].get_ydata()
+    assert {"path", "other_ways"} <= lines.keys()  # the other way that was followed
+    across, up = lines["path"].get_xdata(), lines["path"].get_ydata()
     assert (across[0], up[0]) == pytest.approx((0.0, 0.3))
     assert (across[-1], up[-1]) == pytest.approx(tuple(went.state.p_WB_W[[0, 2]]))
     assert (side.get_ylabel(), top.get_ylabel()) == ("z, m", "y, m")

@@ -45,7 +45,7 @@ def test_a_log_is_drawn_without_ros(asked: Asked, tmp_path: Path) -> None:
         for call in service_calls(BagReader(asked.log).messages())
         if call.service.endswith("predict_tumbling_batch") and call.response_event is not None
     )
-    points = drawn.array("/world/many/brick/states", "Points3D:positions")
+    points = drawn.array("/world/many/brick/states/state_then", "Points3D:positions")
     np.testing.assert_allclose(points, np.array(many.states.positions).reshape(-1, 3), atol=1e-6)
     assert (
         "Impacts of many**: brick has 3 states; 2 " in drawn.last("/answers/newest", "TextDocument:text")[0]

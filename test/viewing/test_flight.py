@@ -7,16 +7,15 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from contact_dynamics.diagrams import palette
+from contact_dynamics.diagrams.flight import DEVIATIONS, MAX_OUTLINES, MAX_PATH_POINTS, flight_marks
 from contact_dynamics.diagrams.shape import convex_shape
 from contact_dynamics.motion.covariance import CarriedCovariance, PropagationMethod, orientation_deviations
 from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.tumbling import free_motion
-from contact_dynamics.viewing.trajectory import (
-    DEVIATIONS,
-    MAX_OUTLINES,
-    MAX_PATH_POINTS,
-    draw_trajectory,
-)
+from contact_dynamics.viewing.drawing import draw_marks
+from contact_dynamics.viewing.picture import Picture
+from diagrams.marks_of import marks_of
+from viewing.answers import tumbling_answer
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -25,25 +24,20 @@ if TYPE_CHECKING:
 
     from contact_dynamics.tumbling import Trajectory
     from contact_dynamics.validation import FloatArray
-    from contact_dynamics.world import Body
+    from contact_dynamics.world import Body, World
     from viewing.drawn import Drawn
 
 PREDICTED = "/world/predicted/brick"
 
 
-def test_path_outlines_and_end_are_those_of_the_trajectory(
-    recording: rr.RecordingStream, read: Callable[[], Drawn], body: Body, trajectory: Trajectory
-) -> None:
-    draw_trajectory(recording, "brick", convex_shape(body.vertices_B), trajectory)
-    drawn = read()
-    path = drawn.array(f"{PREDICTED}/path", "LineStrips3D:strips")[0]
-    np.testing.assert_allclose(path, trajectory.p_WB_W, atol=1e-6)
-    end = drawn.array(f"{PREDICTED}/newest_end", "Transform3D:translation")[0]
-    np.testing.assert_allclose(end, trajectory.p_WB_W[-1], atol=1e-6)
-    turned = drawn.array(f"{PREDICTED}/newest_end", "Transform3D:quaternion")[0]
-    np.testing.assert_allclose(turned, trajectory.q_WB[-1], atol=1e-6)
-    outlines = drawn.array(f"{PREDICTED}/outlines", "LineStrips3D:strips").reshape(-1, 24, 3)
-    ends = drawn.array(f"{PREDICTED}/end", "LineStrips3D:strips").reshape(-1, 24, 3)
+def test_path_outlines_and_end_are_those_of_the_trajectory(body: Body, trajectory: Trajectory) -> None:
+    marks = marks_of(flight_marks(convex_shape(body.vertices_B), trajectory))
+    np.testing.assert_array_equal(marks["path"].strips[0], trajectory.p_WB_W)
+    outlines = np.reshape(marks["outlines"].strips, (-1, 24, 3))
+    ends = np.reshape(marks["end"].strips, (-1, 24, 3))
+    corners = Rotation.from_quat(trajectory.q_WB[-1]).apply(body.vertices_B.copy()) + trajectory.p_WB_W[-1]
+    faces = marks["newest_end/faces"].corners
+    np.testing.assert_allclose(np.linalg.norm(faces[:, None] - corners, axis=2).min(axis=1), 0.0, atol=1e-9)
     np.testing.assert_allclose(ends[0].mean(axis=0), trajectory.p_WB_W[-1], atol=1e-6)
     assert len(outlines) > 0
     for outline in (*outlines, *ends):
@@ -74,70 +68,63 @@ def test_ellipsoids_have_two_deviations_along_the_axes_of_the_covariance(
     growing[:, :3, :3] = covariance * np.linspace(0.0, 1.0, len(trajectory))[:, None, None]
     trusted = np.array([True] * (len(trajectory) - 1) + [False])
     carried = carried_along(trajectory, growing, trusted)
-    draw_trajectory(recording, "brick", convex_shape(body.vertices_B), trajectory, covariance=carried)
+    marks = marks_of(flight_marks(convex_shape(body.vertices_B), trajectory, covariance=carried))
+    (last,) = marks["uncertainty/other"].centers
+    np.testing.assert_array_equal(last, trajectory.p_WB_W[-1])
+    np.testing.assert_allclose(marks["uncertainty/other"].covariances[0], covariance, atol=1e-12)
+    assert len(marks["uncertainty/relied_on"].centers) > 0
+    colors = [marks[f"uncertainty/{name}"].paint.dark for name in ("relied_on", "other")]
+    assert colors == [palette.PREDICTED, palette.UNDECIDED]
+    draw_marks(recording, [marks["uncertainty/other"]], PREDICTED)
     drawn = read()
-    path = f"{PREDICTED}/uncertainty"
-    np.testing.assert_allclose(
-        drawn.array(path, "Ellipsoids3D:centers")[-1], trajectory.p_WB_W[-1], atol=1e-6
-    )
+    path = f"{PREDICTED}/uncertainty/other"
     half_axes = drawn.array(path, "Ellipsoids3D:half_sizes")[-1]
     np.testing.assert_allclose(np.sort(half_axes), DEVIATIONS * deviations, rtol=1e-5)
     R = Rotation.from_quat(drawn.array(path, "Ellipsoids3D:quaternions")[-1]).as_matrix()
     found = R @ np.diag((half_axes / DEVIATIONS) ** 2) @ R.T
     np.testing.assert_allclose(found, covariance, atol=1e-7)
-    first, *_, last = drawn.last(path, "Ellipsoids3D:colors")
-    assert (first.to_bytes(4, "big"), last.to_bytes(4, "big")) == (
-        bytes(palette.PREDICTED),
-        bytes(palette.UNDECIDED),
-    )
 
 
-def test_what_no_double_holds_is_not_drawn(
-    recording: rr.RecordingStream, read: Callable[[], Drawn], body: Body, trajectory: Trajectory
-) -> None:
+def test_what_no_double_holds_is_not_drawn(body: Body, trajectory: Trajectory) -> None:
     n = len(trajectory)
     unknown = carried_along(trajectory, np.full((n, 12, 12), np.nan), np.zeros(n, dtype=bool))
-    draw_trajectory(recording, "brick", convex_shape(body.vertices_B), trajectory, covariance=unknown)
-    assert read().last(f"{PREDICTED}/uncertainty", "Ellipsoids3D:centers") == []
+    marks = marks_of(flight_marks(convex_shape(body.vertices_B), trajectory, covariance=unknown))
+    assert len(marks["uncertainty/relied_on"].centers) == len(marks["uncertainty/other"].centers) == 0
 
 
 @pytest.mark.parametrize("samples", [1, 2, 3, 50 * MAX_PATH_POINTS + 7])
-def test_any_number_of_samples_keeps_both_ends(
-    recording: rr.RecordingStream, read: Callable[[], Drawn], body: Body, state: BodyState, samples: int
-) -> None:
+def test_any_number_of_samples_keeps_both_ends(body: Body, state: BodyState, samples: int) -> None:
     trajectory = free_motion(body.mass_properties, state).at(np.linspace(0.0, 0.5, samples))
-    draw_trajectory(recording, "brick", convex_shape(body.vertices_B), trajectory)
-    path = read().array(f"{PREDICTED}/path", "LineStrips3D:strips")[0]
+    (path,) = marks_of(flight_marks(convex_shape(body.vertices_B), trajectory))["path"].strips
     assert len(path) == min(samples, MAX_PATH_POINTS)
-    np.testing.assert_allclose(path[[0, -1]], trajectory.p_WB_W[[0, -1]], atol=1e-6)
+    np.testing.assert_array_equal(path[[0, -1]], trajectory.p_WB_W[[0, -1]])
 
 
 def test_an_empty_trajectory_takes_away_the_former(
     recording: rr.RecordingStream,
     read: Callable[[], Drawn],
+    *,
+    world: World,
     body: Body,
     state: BodyState,
     trajectory: Trajectory,
 ) -> None:
-    shape = convex_shape(body.vertices_B)
-    draw_trajectory(recording, "brick", shape, trajectory)
-    draw_trajectory(recording, "brick", shape, free_motion(body.mass_properties, state).at([]))
-    assert read().last(PREDICTED, "Clear:is_recursive") == [True]
-
-
-def test_a_body_without_shape_has_a_path_all_the_same(
-    recording: rr.RecordingStream, read: Callable[[], Drawn], trajectory: Trajectory
-) -> None:
-    draw_trajectory(recording, "brick", convex_shape(np.zeros((0, 3))), trajectory)
+    picture = Picture(recording, world, surface_side=1.0)
+    picture.show(tumbling_answer(state, trajectory))
+    picture.show(tumbling_answer(state, free_motion(body.mass_properties, state).at([])))
     drawn = read()
-    assert f"{PREDICTED}/path" in drawn.entities
-    assert drawn.last(f"{PREDICTED}/end", "LineStrips3D:strips") == []
+    assert len(drawn.values[f"{PREDICTED}/path", "LineStrips3D:strips"]) == 1
+    assert drawn.last(PREDICTED, "Clear:is_recursive") == [True]
+
+
+def test_a_body_without_shape_has_a_path_all_the_same(trajectory: Trajectory) -> None:
+    marks = marks_of(flight_marks(convex_shape(np.zeros((0, 3))), trajectory))
+    assert len(marks["path"].strips) == 1
+    assert len(marks["end"].strips) == 0
 
 
 @pytest.mark.parametrize(("speed", "count"), [(0.0, 0), (1.0, 0), (10.0, 2), (1000.0, MAX_OUTLINES)])
-def test_a_longer_path_has_more_outlines(
-    recording: rr.RecordingStream, read: Callable[[], Drawn], *, body: Body, speed: float, count: int
-) -> None:
+def test_a_longer_path_has_more_outlines(body: Body, speed: float, count: int) -> None:
     """The time is 0.05 s, and the box is 0.182 m from corner to corner."""
     start = BodyState(
         p_WB_W=np.zeros(3),
@@ -146,8 +133,7 @@ def test_a_longer_path_has_more_outlines(
         w_WB_W=np.zeros(3),
     )
     flight = free_motion(body.mass_properties, start, gravity_W=np.zeros(3)).at(np.linspace(0.0, 0.05, 50))
-    draw_trajectory(recording, "brick", convex_shape(body.vertices_B), flight)
-    drawn = read()
-    assert len(drawn.last(f"{PREDICTED}/outlines", "LineStrips3D:strips")) == 12 * count
-    assert len(drawn.last(f"{PREDICTED}/end", "LineStrips3D:strips")) == 12 * (speed > 0.0)
-    assert ((f"{PREDICTED}/newest_end/faces", "Mesh3D:vertex_positions") in drawn.values) == (speed > 0.0)
+    marks = marks_of(flight_marks(convex_shape(body.vertices_B), flight))
+    assert len(marks["outlines"].strips) == 12 * count
+    assert len(marks["end"].strips) == 12 * (speed > 0.0)
+    assert (len(marks["newest_end/faces"].corners) > 0) == (speed > 0.0)

@@ -9,12 +9,14 @@ import numpy as np
 import pytest
 
 from contact_dynamics.diagrams.shape import convex_shape
+from contact_dynamics.diagrams.toss_scene import MAX_STRIKING, toss_marks
 from contact_dynamics.diagrams.toss_tree import tree_of
 from contact_dynamics.diagrams.words import toss_in_words
 from contact_dynamics.questions import Context, TossQuestion, TossSampling, UncertainState, ask
 from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.toss import TossEventKind
-from contact_dynamics.viewing.toss import MAX_STRIKING, draw_toss
+from contact_dynamics.viewing.picture import Picture
+from diagrams.marks_of import marks_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -42,50 +44,45 @@ def thrown(world: World) -> TossAnswer:
     return ask(question, Context(world=world))
 
 
-def test_path_strikes_and_tree_are_those_of_the_answer(
-    recording: rr.RecordingStream, read: Callable[[], Drawn], body: Body, world: World
-) -> None:
+def test_path_strikes_and_tree_are_those_of_the_answer(body: Body, world: World) -> None:
     answer = thrown(world)
-    draw_toss(recording, convex_shape(body.vertices_B), answer, up_W=UP)
-    drawn = read()
-    path = drawn.array(f"{TOSS}/path", "LineStrips3D:strips")[0]
-    np.testing.assert_allclose(path, answer.toss.trajectory.p_WB_W, atol=1e-6)  # float32
+    marks = marks_of(toss_marks(convex_shape(body.vertices_B), answer, up_W=UP))
+    np.testing.assert_array_equal(marks["path"].strips[0], answer.toss.trajectory.p_WB_W)
     strikes = [event.p_WC_W[0] for event in answer.toss.events if event.kind == TossEventKind.STRIKES]
-    np.testing.assert_allclose(drawn.array(f"{TOSS}/strikes", "Points3D:positions"), strikes, atol=1e-6)
+    np.testing.assert_array_equal(marks["strikes"].places, strikes)
     told = answer.distribution
     assert told is not None
     nodes = tree_of(told)
     assert len(nodes) >= 2
     means = [node.regions.position.mean for node in nodes]
-    np.testing.assert_allclose(drawn.array(f"{TOSS}/tree/nodes", "Points3D:positions"), means, atol=1e-6)
-    assert drawn.last(f"{TOSS}/tree/labels", "Points3D:labels") == [node.text for node in nodes]
+    np.testing.assert_array_equal(marks["tree/nodes"].places, means)
+    assert list(marks["tree/labels"].texts) == [node.text for node in nodes]
     assert [node.text[:2] for node in nodes] == [
         f"{branch.strike}." for branch in told.branches if branch.regions is not None
     ]
-    raised = drawn.array(f"{TOSS}/tree/labels", "Points3D:positions")
-    for mean, label, leader in zip(
-        means, raised, drawn.array(f"{TOSS}/tree/leaders", "LineStrips3D:strips"), strict=True
+    for leader, ends in zip(
+        marks["tree/leaders"].strips, zip(means, marks["tree/labels"].places, strict=True), strict=True
     ):
-        np.testing.assert_allclose(leader, [mean, label], atol=1e-6)
-    begin = drawn.array(f"{TOSS}/begin", "LineStrips3D:strips")
-    assert np.mean(begin, axis=(0, 1)) == pytest.approx(answer.toss.trajectory.p_WB_W[0], abs=1e-6)
+        np.testing.assert_array_equal(leader, ends)
+    begin = np.mean(marks["begin"].strips, axis=(0, 1))
+    assert begin == pytest.approx(answer.toss.trajectory.p_WB_W[0])
     assert f"corner {answer.toss.events[0].corners[0]} strikes" in nodes[0].text
-    outlines = drawn.array(f"{TOSS}/samples/strikes", "LineStrips3D:strips")
     shown = (told.ghosts.strikes > 0) & (told.ghosts.samples < MAX_STRIKING)
-    assert len(outlines) == 12 * np.count_nonzero(shown)
+    assert len(marks["samples/strikes"].strips) == 12 * np.count_nonzero(shown)
 
 
 def test_a_later_toss_without_samples_has_no_fan(
-    recording: rr.RecordingStream, read: Callable[[], Drawn], body: Body, world: World
+    recording: rr.RecordingStream, read: Callable[[], Drawn], world: World
 ) -> None:
     answer = thrown(world)
-    shape = convex_shape(body.vertices_B)
-    draw_toss(recording, shape, answer, up_W=UP)
-    draw_toss(recording, shape, replace(answer, distribution=None, alternatives=()), up_W=UP)
+    picture = Picture(recording, world, surface_side=1.0)
+    picture.show(answer, now_ns=1)
+    picture.show(replace(answer, distribution=None, alternatives=()), now_ns=2)
     drawn = read()
-    assert drawn.last(f"{TOSS}/tree", "Clear:is_recursive") == [True]
-    assert drawn.last(f"{TOSS}/samples", "Clear:is_recursive") == [True]
-    assert drawn.last(f"{TOSS}/other_ways", "LineStrips3D:strips") == []
+    assert drawn.stamps(TOSS, "Clear:is_recursive") == [1, 2]
+    assert drawn.stamps(f"{TOSS}/path", "LineStrips3D:strips") == [1, 2]
+    assert drawn.stamps(f"{TOSS}/tree/nodes", "Points3D:positions") == [1]
+    assert drawn.stamps(f"{TOSS}/samples/ways", "LineStrips3D:strips") == [1]
 
 
 def test_the_words_say_where_it_rests_and_what_strikes_first(world: World) -> None:
