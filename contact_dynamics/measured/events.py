@@ -22,10 +22,10 @@ shorter than a window.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from enum import Enum
 from itertools import chain, pairwise
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
@@ -42,9 +42,8 @@ from contact_dynamics.measured.flights import (
     last_part,
     strike_between,
 )
-from contact_dynamics.records import Record
 from contact_dynamics.rigid_body.body import BodyState
-from contact_dynamics.rotations.many import rotation_vectors, turned
+from contact_dynamics.rotations.many import crosses, matrices_of, rotation_vectors, turned
 from contact_dynamics.tolerances import (
     IMPACT_SPAN,
     LANDING_GAP,
@@ -58,10 +57,14 @@ from contact_dynamics.world import Surface
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from contact_dynamics.contact.contact import ContactSet
+    from numpy.typing import NDArray
+
     from contact_dynamics.measured.motion import MeasuredMotion, MeasuredPoses
+    from contact_dynamics.shapes.convex import ConvexShape
     from contact_dynamics.validation import FloatArray
-    from contact_dynamics.world import Body, World
+
+    IntArray = NDArray[np.intp]
+    BoolArray = NDArray[np.bool_]
 
 REST_SPAN: Final = 0.05
 """s. A body that kept its pose for this time is at rest. It is short because the published recordings of
@@ -126,40 +129,6 @@ class FoundEvent(MeasuredState):
         return ns_after(self.time_ns, -horizon)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class Touch(Record):
-    """What a body touches.
-
-    Attributes:
-        surface: Name of the nearest surface.
-        gap: m, height of the body's lowest point above it, negative below. It is None at an obstacle, whose
-            contacts tell no height.
-        contacts: All contacts, with whichever surface.
-    """
-
-    surface: str
-    gap: float | None
-    contacts: ContactSet
-
-
-def touch_of(body: Body, state: BodyState, world: World, *, within: float) -> Touch | None:
-    """Return what a body touches within that gap, m. Without a shape or a surface it touches nothing."""
-    if body.shape.is_empty or not world.surfaces:
-        return None
-    contacts = contacts_within(body, state, world.surfaces, within)
-    if len(contacts) == 0:
-        return None
-    gaps = []
-    for surface in world.surfaces:
-        if isinstance(surface, Surface):
-            mine = [name == surface.name for name in contacts.surfaces]
-            gaps.append((float(surface.gaps(contacts.p_WC_W[mine]).min(initial=math.inf)), surface.name))
-    gap, name = min(gaps, default=(math.inf, ""))
-    if gap == math.inf:
-        return Touch(surface=contacts.surfaces[0], gap=None, contacts=contacts)
-    return Touch(surface=name, gap=gap, contacts=contacts)
-
-
 def find_events(motion: MeasuredMotion) -> list[FoundEvent]:
     """Return the flights, landings, impacts, rests and slides of a body; `docs/evaluate.md` has the criteria.
 
@@ -216,15 +185,18 @@ def _end(motion: MeasuredMotion, flight: slice, after: slice | None) -> Iterator
         last, following = float(motion.times[flight.stop - 1]), float(motion.times[flight.stop])
         fit = fit_flight(motion, last_part(motion, flight, flight.stop - 1))
         time_std, landing = (following - last) / math.sqrt(12.0), fit.at(0.5 * (last + following))
-    touch = touch_of(motion.body, landing.state, motion.world, within=LANDING_GAP)
-    if touch is None or (touch.gap is not None and touch.gap < -LANDING_GAP):
+    contacts = _contacts(motion, landing.state.p_WB_W[None], landing.state.q_WB[None], within=LANDING_GAP)
+    if not contacts.near.any():
+        return
+    surface, gap = contacts.nearest(0)
+    if gap is not None and gap < -LANDING_GAP:
         return
 
     def event(kind: EventKind, compared: MeasuredState) -> FoundEvent:
         return FoundEvent(
             kind=kind,
             body=motion.body.name,
-            surface=touch.surface,
+            surface=surface,
             since=float(motion.times[flight.start]),
             first_sample=flight.start,
             time=landing.time,
@@ -235,7 +207,7 @@ def _end(motion: MeasuredMotion, flight: slice, after: slice | None) -> Iterator
             orientation_std=compared.orientation_std,
             velocity_std=compared.velocity_std,
             angular_velocity_std=compared.angular_velocity_std,
-            gap=touch.gap,
+            gap=gap,
             duration=max(0.0, compared.time - landing.time),
         )
 
@@ -258,21 +230,95 @@ def _is_sharp(motion: MeasuredMotion, found: MeasuredState) -> bool:
     return max(found.velocity_std, gyration * spin_std) <= SHARP_VELOCITY
 
 
+class _Contacts(NamedTuple):
+    """The places where a body may touch in each of k poses, m at the most."""
+
+    surfaces: tuple[str, ...]  # names of the surfaces
+    numbers: IntArray  # (k, m), the surface of each
+    points_W: FloatArray  # (k, m, 3), m
+    normals_W: FloatArray  # (k, m, 3)
+    gaps: FloatArray  # (k, m), m, above a flat; infinite at an obstacle, whose contacts tell no height
+    near: BoolArray  # (k, m), whether it touches
+
+    def nearest(self, pose: int) -> tuple[str, float | None]:
+        """Return the surface that a body touches in a pose, and its lowest point's height above that, m."""
+        near = np.flatnonzero(self.near[pose])
+        lowest = near[self.gaps[pose, near].argmin()]
+        gap = float(self.gaps[pose, lowest])
+        return self.surfaces[self.numbers[pose, lowest]], gap if gap < math.inf else None
+
+
+def _contacts(motion: MeasuredMotion, p_WB_W: FloatArray, q_WB: FloatArray, *, within: float) -> _Contacts:
+    """Return what a body touches, in k poses, within that gap, m; nothing without a shape or a surface."""
+    shape, surfaces, count = motion.body.shape, motion.world.surfaces, len(p_WB_W)
+    names = tuple(surface.name for surface in surfaces)
+    if shape.is_polyhedron and len(motion.surfaces) == len(surfaces):  # so are most, and it takes a tenth
+        corners = p_WB_W[:, None] + shape.vertices @ matrices_of(q_WB).transpose(0, 2, 1)
+        numbers = np.repeat(np.arange(len(surfaces)), len(shape.vertices))
+        numbers = np.broadcast_to(numbers, (count, len(numbers)))
+        normals = np.array([surface.normal_W for surface in motion.surfaces]).reshape(-1, 3)
+        points = np.tile(corners, (1, len(surfaces), 1))
+        gaps = np.concatenate(
+            [np.zeros((count, 0)), *(flat.gaps(corners) for flat in motion.surfaces)], axis=1
+        )
+        return _Contacts(names, numbers, points, normals[numbers], gaps, gaps <= within)
+    found = [
+        contacts_within(
+            motion.body, BodyState(p_WB_W=p, q_WB=q, v_WB_W=[0, 0, 0], w_WB_W=[0, 0, 0]), surfaces, within
+        )
+        for p, q in zip(p_WB_W, q_WB, strict=True)
+        if not shape.is_empty
+    ]
+    most = max((len(each) for each in found), default=0)
+    contacts = _Contacts(
+        names,
+        np.zeros((count, most), dtype=np.intp),
+        np.zeros((count, most, 3)),
+        np.zeros((count, most, 3)),
+        np.full((count, most), math.inf),
+        np.zeros((count, most), dtype=bool),
+    )
+    for row, each in enumerate(found):
+        contacts.near[row, : len(each)] = True
+        contacts.points_W[row, : len(each)] = each.p_WC_W
+        contacts.normals_W[row, : len(each)] = each.normals_W
+        for k, name in enumerate(each.surfaces):
+            number = names.index(name)
+            contacts.numbers[row, k], surface = number, surfaces[number]
+            if isinstance(surface, Surface):
+                contacts.gaps[row, k] = surface.gaps(each.p_WC_W[k])
+    return contacts
+
+
+class _Window(NamedTuple):
+    """A window in which a body rests or slides."""
+
+    kind: EventKind
+    samples: IntArray  # (count,)
+    pose: FloatArray  # (6,), from the measured one at the middle, m and rad
+    rates: FloatArray  # (6,), m/s and rad/s
+    stds: FloatArray  # (2,), of rates
+    contacts: _Contacts
+    slide: BoolArray  # (k, m), of all windows in turn
+    row: int  # its own among them
+
+
 def _modes(motion: MeasuredMotion, firsts: range, count: int) -> Iterator[FoundEvent]:
     """Yield the rests and slides in windows of ``count`` samples that begin with ``firsts``."""
-    first: FoundEvent | None = None
-    last: FoundEvent | None = None
+    first: _Window | None = None
+    last: _Window | None = None
     for window in chain(_windows(motion, firsts, count), [None]):
         if first is not None and last is not None and (window is None or window.kind is not last.kind):
-            yield replace(last, since=first.since, first_sample=first.first_sample)
+            yield _mode_event(motion, first, last)
             first = None
         first, last = first or window, window
 
 
-def _windows(motion: MeasuredMotion, firsts: range, count: int) -> Iterator[FoundEvent | None]:
+def _windows(motion: MeasuredMotion, firsts: range, count: int) -> Iterator[_Window | None]:
     """Yield what each window of ``count`` samples shows: a rest or a slide at its middle, or neither."""
     noise = np.repeat([motion.position_noise, motion.orientation_noise], 3)
     allowed = DEVIATIONS * noise + np.repeat([POSITION_SLACK, ORIENTATION_SLACK], 3)
+    reach = _reach(motion.body.shape)
     for at in range(0, len(firsts), AT_ONCE):
         samples = np.array(firsts[at : at + AT_ONCE])[:, None] + np.arange(count)
         middles = samples[:, count // 2]
@@ -286,66 +332,68 @@ def _windows(motion: MeasuredMotion, firsts: range, count: int) -> Iterator[Foun
         orthogonal, triangle = np.linalg.qr(powers)
         fitted = np.linalg.solve(triangle, orthogonal.transpose(0, 2, 1) @ poses)
         fits = (np.abs(poses - powers @ fitted) <= allowed).all(axis=(1, 2))
-        q_WB = turned(motion.q_WB[middles], fitted[:, 0, 3:])
         spreads = np.sqrt(np.square(times - times.mean(axis=1, keepdims=True)).sum(axis=1))
-        for k, middle in enumerate(middles.tolist()):
-            if not fits[k]:
-                yield None
-                continue
-            state = BodyState(
-                p_WB_W=motion.p_WB_W[middle] + fitted[k, 0, :3],
-                q_WB=q_WB[k],
-                v_WB_W=fitted[k, 1, :3],
-                w_WB_W=fitted[k, 1, 3:],
-                stamp_ns=motion.stamp_ns(middle),
+        stds = noise[[0, 3]] / spreads[:, None]
+        p_WB_W = motion.p_WB_W[middles] + fitted[:, 0, :3]
+        contacts = _contacts(
+            motion, p_WB_W, turned(motion.q_WB[middles], fitted[:, 0, 3:]), within=TOUCHING_GAP
+        )
+        v, w = fitted[:, 1, :3], fitted[:, 1, 3:]
+        arms = contacts.points_W - p_WB_W[:, None]
+        velocities = v[:, None] + crosses(w[:, None], arms)
+        across = (velocities * contacts.normals_W).sum(axis=2)
+        along = np.linalg.norm(velocities - across[..., None] * contacts.normals_W, axis=2)
+        noises = np.hypot(stds[:, :1], np.linalg.norm(arms, axis=2) * stds[:, 1:])
+        leave = contacts.near & (np.abs(across) > MODE_SPEED + DEVIATIONS * noises)
+        slide = contacts.near & (along > MODE_SPEED + DEVIATIONS * noises)
+        speeds = np.maximum(np.linalg.norm(v, axis=1), reach * np.linalg.norm(w, axis=1))
+        slow = speeds <= MODE_SPEED + DEVIATIONS * (stds @ [1.0, reach])
+        slides = slide.any(axis=1)
+        # a contact that separates or approaches is neither; no more a body that rolls, or spins on a point
+        counts = fits & contacts.near.any(axis=1) & ~leave.any(axis=1) & (slides | slow)
+        for k in range(len(samples)):
+            kind = EventKind.SLIDING if slides[k] else EventKind.REST
+            yield (
+                _Window(kind, samples[k], fitted[k, 0], fitted[k, 1], stds[k], contacts, slide, k)
+                if counts[k]
+                else None
             )
-            yield _mode(motion, state, int(samples[k, 0]), middle, spread=float(spreads[k]))
 
 
-def _mode(
-    motion: MeasuredMotion, state: BodyState, first: int, middle: int, *, spread: float
-) -> FoundEvent | None:
-    """Return the rest or the slide of a window with that state at its middle, or None if it is neither.
-
-    ``spread`` is the root of the sum of the squares of its times from their mean, s.
-    """
-    touch = touch_of(motion.body, state, motion.world, within=TOUCHING_GAP)
-    if touch is None:
-        return None
-    velocity_std, angular_velocity_std = motion.position_noise / spread, motion.orientation_noise / spread
-    points, normals = touch.contacts.p_WC_W, touch.contacts.normals_W
-    velocities = state.velocity_of_point(points)
-    across = np.einsum("ij,ij->i", velocities, normals)
-    along = np.linalg.norm(velocities - across[:, None] * normals, axis=1)
-    arms = np.linalg.norm(points - state.p_WB_W, axis=1)
-    allowed = MODE_SPEED + DEVIATIONS * np.hypot(velocity_std, arms * angular_velocity_std)
-    if (np.abs(across) > allowed).any():  # a contact separates or approaches
-        return None
-    mode = "".join("c" if slides else "f" for slides in (along > allowed).tolist())
-    shape = motion.body.shape
+def _reach(shape: ConvexShape) -> float:
+    """Return how far from the mass centre a shape goes at most, m."""
     rims = [float(np.linalg.norm(rim.center)) + rim.radius for rim in shape.rims]
-    reach = max([*np.linalg.norm(shape.vertices, axis=1).tolist(), *rims]) + shape.rounding
-    is_slow = max(
-        np.linalg.norm(state.v_WB_W), reach * np.linalg.norm(state.w_WB_W)
-    ) <= MODE_SPEED + DEVIATIONS * (velocity_std + reach * angular_velocity_std)
-    if "c" not in mode and not is_slow:  # it rolls, or spins on a point
-        return None
+    corners = np.linalg.norm(shape.vertices, axis=1).tolist()
+    return max([*corners, *rims], default=0.0) + shape.rounding
+
+
+def _mode_event(motion: MeasuredMotion, first: _Window, last: _Window) -> FoundEvent:
+    begin, middle = int(first.samples[0]), int(last.samples[len(last.samples) // 2])
+    velocity_std, angular_velocity_std = last.stds.tolist()
+    surface, gap = last.contacts.nearest(last.row)
+    letters = np.where(last.slide[last.row], "c", "f")[last.contacts.near[last.row]]
     return FoundEvent(
-        kind=EventKind.SLIDING if "c" in mode else EventKind.REST,
+        kind=last.kind,
         body=motion.body.name,
-        surface=touch.surface,
-        since=float(motion.times[first]),
-        first_sample=first,
+        surface=surface,
+        since=float(motion.times[begin]),
+        first_sample=begin,
         time=float(motion.times[middle]),
-        time_ns=state.stamp_ns,
+        time_ns=motion.stamp_ns(middle),
         time_std=0.0,
-        state=state,
+        state=BodyState(
+            p_WB_W=motion.p_WB_W[middle] + last.pose[:3],
+            q_WB=turned(motion.q_WB[middle], last.pose[None, 3:])[0],
+            v_WB_W=last.rates[:3],
+            w_WB_W=last.rates[3:],
+            stamp_ns=motion.stamp_ns(middle),
+        ),
         position_std=motion.position_noise,
         orientation_std=np.full(3, motion.orientation_noise),
         velocity_std=velocity_std,
         angular_velocity_std=np.full(3, angular_velocity_std),
-        gap=touch.gap,
-        mode=mode,
+        gap=gap,
+        mode="".join(letters.tolist()),
     )
 
 
