@@ -68,9 +68,9 @@ ANY_LOAD: Final = 1e12
 # numerics
 
 SMALL_SHARE: Final = 1e-10
-"""Share of the sum of squares of a fit's residuals. A round that reduces the sum by less is the last. It
-changed the parameters by about 1e-5 of their standard deviations, and another round would change them by far
-less."""
+"""Share of the sum of squares of a fit's residuals. A round is the last if it reduces the sum by less, or if
+the next one would, since rounds explain less and less at a growing rate. Another round would change the
+parameters by about 1e-5 of their standard deviations at most."""
 
 NO_PIVOT: Final = 1e-11
 """Relative to the largest entry of a column in Lemke's method. A smaller entry is rounding and no pivot."""

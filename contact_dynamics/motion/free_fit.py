@@ -4,9 +4,9 @@ Model: a torque-free body in uniform gravity (`contact_dynamics.tumbling`) is se
 noise in position and orientation, and in the velocities if they are used. The path of the centre of mass is a
 linear least-squares problem. The rotation has six unknowns, attitude and angular velocity at the newest
 stamp. Gauss's and Newton's method finds them with the exact derivative of the motion (`free_derivative`). It
-starts from the angular momentum averaged over all neighbouring pairs of states, since L is constant, from the
-last turn, or from the published velocities, whichever fits best. `whole_turns` finds out whether the body
-made whole turns more or less between the states.
+starts from the angular momentum averaged over all neighbouring pairs of states, since L is constant. If that
+is far off, it starts from the last turn or from the published velocities, whichever fits best. `whole_turns`
+finds out whether the body made whole turns more or less between the states.
 
 Not covered: windows in which something touched the body, torque and drag (`integrated_fit`), outliers, noise
 that is correlated from state to state, unknown mass properties, and what `whole_turns` does not cover.
@@ -24,7 +24,12 @@ import numpy as np
 from contact_dynamics.constants import STANDARD_GRAVITY_W, seconds_since
 from contact_dynamics.errors import InvalidFieldError, TooLargeError
 from contact_dynamics.motion.free_derivative import rotation_derivatives
-from contact_dynamics.motion.whole_turns import MAX_NOISE_RATIO, chosen_motion, turns_near
+from contact_dynamics.motion.whole_turns import (
+    MAX_NOISE_RATIO,
+    MAX_ORIENTATION_RESIDUAL,
+    chosen_motion,
+    turns_near,
+)
 from contact_dynamics.numerics.gauss_newton import Fit, gauss_newton
 from contact_dynamics.records import Record
 from contact_dynamics.rigid_body.body import BodyState, HasMassProperties, MassProperties
@@ -34,7 +39,7 @@ from contact_dynamics.tumbling import FreeMotion, Precision, free_motion
 from contact_dynamics.validation import FloatArray, check_array, check_magnitude, check_positive
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
     from numpy.typing import ArrayLike
 
@@ -239,9 +244,7 @@ def _fit_rotation(
     body: MassProperties, states: Sequence[BodyState], seconds: FloatArray, noise: StateNoise | None
 ) -> _Rotation:
     window = _Turning(body, states, seconds, noise)
-    starts = window.starts()
-    start = min(starts, key=lambda motion: float(np.square(window.misses(motion, len(seconds))).sum()))
-    chosen = chosen_motion(window, start, starts)
+    chosen = chosen_motion(window, _start(window), window.starts())
     fit = chosen.fit
     attitudes = 3 * len(seconds)
     turns = fit.misses[:attitudes].reshape(-1, 3) / window.by_q
@@ -257,6 +260,20 @@ def _fit_rotation(
         turns_known=chosen.turns_known,
         alternatives=chosen.alternatives,
     )
+
+
+def _start(window: _Turning) -> FreeMotion:
+    """Return the first start so near all attitudes that any such one leads to the same fit, or the best."""
+    count, best, least = len(window.seconds), None, math.inf
+    for motion in window.starts():
+        misses = window.misses(motion, count)
+        if best is None or float(misses @ misses) < least:
+            best, least = motion, float(misses @ misses)
+        off = misses[: 3 * count] / window.by_q
+        if float(off @ off) <= MAX_ORIENTATION_RESIDUAL**2 * count:
+            return motion
+    assert best is not None  # noqa: S101  for the type checker: there is always a start
+    return best
 
 
 class _Turning:
@@ -323,8 +340,8 @@ class _Turning:
         state = BodyState(p_WB_W=np.zeros(3), q_WB=q_WB, v_WB_W=np.zeros(3), w_WB_W=w_WB_W)
         return free_motion(self.body, state, gravity_W=np.zeros(3), precision=Precision.DOUBLE)
 
-    def starts(self) -> list[FreeMotion]:
-        """Return motions from the newest attitude on, with angular velocities by several estimates.
+    def starts(self) -> Iterator[FreeMotion]:
+        """Yield motions from the newest attitude on, with angular velocities by several estimates.
 
         Between neighbours a body turns about almost one axis: w is the turn over the time, at the attitude
         halfway. That of L averaged over all neighbours, with the squares of the times as the weights for the
@@ -338,11 +355,12 @@ class _Turning:
         halfway = matrices_of(turned(q[:-1], 0.5 * turns))
         turns = turns + rest
         of_turns = self._momenta(halfway, turns * between[:, None]).sum(axis=0) / (between @ between)
-        rates = [self._rate(of_turns), turns[-1] / between[-1]]
+        yield self._motion(q[-1], self._rate(of_turns))
+        yield self._motion(q[-1], turns[-1] / between[-1])
         if self.w.any():
             momenta = self._momenta(matrices_of(q), self.w)
-            rates += [self._rate(momenta.mean(axis=0)), *map(self._rate, momenta[-4:])]
-        return [self._motion(q[-1], rate) for rate in rates]
+            for momentum in (momenta.mean(axis=0), *momenta[-4:]):
+                yield self._motion(q[-1], self._rate(momentum))
 
     def _momenta(self, R: FloatArray, w: FloatArray) -> FloatArray:
         momenta: FloatArray = np.einsum("nij,jk,nlk,nl->ni", R, self.body.I_B, R, w)

@@ -73,6 +73,7 @@ def gauss_newton(
     """
     misses = misses_of(model)
     rounds, converged = 0, False
+    before = 0.0  # what the round before explained of the sum of squares, if its step was a whole one
     while rounds < MAX_ROUNDS and not converged:
         rounds += 1
         design = derivatives_of(model)
@@ -87,15 +88,18 @@ def gauss_newton(
                 f"{len(misses)} numbers that leave a part of the motion open",
                 "more or other states",
             ) from None
-        cost = float(misses @ misses)
+        cost, part = float(misses @ misses), float(explained @ explained)
         small = bool((np.abs(design @ step) < negligible).all())
-        converged = small or float(explained @ explained) < SMALL_SHARE * cost
-        start = model
+        # what is explained shrinks ever faster, so that it shrinks in the next round at least as in this one
+        shrinks = part / before if part < before else 1.0
+        converged = small or shrinks * part < SMALL_SHARE * cost
+        start, before = model, part
         for _ in range(MAX_HALVINGS):
             model = moved(start, step)
             misses = misses_of(model)
             if converged or float(misses @ misses) <= cost:
                 break
             step *= 0.5
+            before = 0.0
     inverse = np.linalg.inv(triangle) / sizes[:, None]
     return Fit(model, misses, inverse, rounds, converged)
