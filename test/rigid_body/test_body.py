@@ -98,9 +98,7 @@ def test_an_attitude_may_be_given_with_w_first(q: np.ndarray) -> None:
     np.testing.assert_array_equal(state.q_WB, BodyState(q_WB=q, **moving).q_WB)
     assert not state.q_WB.flags.writeable
     np.testing.assert_array_equal(replace(state, stamp_ns=1).q_WB, state.q_WB)
-    with pytest.raises(
-        InvalidFieldError, match=r"q_WB or quaternion_wxyz must be given, and not both, got both"
-    ):
+    with pytest.raises(InvalidFieldError, match=r"q_WB or quaternion_wxyz must be given.*, got both"):
         BodyState(q_WB=q, quaternion_wxyz=q, **moving)
     with pytest.raises(InvalidFieldError, match=r"q_WB or quaternion_wxyz must be .*, got neither"):
         BodyState(**moving)
