@@ -60,15 +60,12 @@ NORMAL_HINT: Final = "does the normal point into the first body?"
 """What to ask of a contact that separates, and would strike if its normal were the opposite one."""
 
 
-SHAPE_HINT: Final = (
-    "over ROS, a body that a request describes has mass and inertia only; a configured one can have a shape: "
-    "body.NAME.mass, body.NAME.inertia: [0.0] and body.NAME.sphere: [0.03]"
-)
-"""What to do about a body without a shape."""
-
-
 class NoContactError(ContactDynamicsError):
     """A question was asked about contacts, but nothing touches or will touch."""
+
+
+class NoShapeError(NoContactError):
+    """A question needs the shape of a body that has none."""
 
 
 class UnknownBodyError(ContactDynamicsError):

@@ -31,6 +31,14 @@ MAX_SAID: Final = 2000
 """Letters of a message about an error. It quotes what was found, which may be a name of any length."""
 
 
+_SHAPE_HINT: Final = (
+    "a body that a request describes has mass and inertia only: give contacts, with contact_source: 1 "
+    "(CONTACTS_EXPLICIT), or configure a body with a shape: body.NAME.mass, body.NAME.inertia: [0.0] and "
+    "body.NAME.sphere: [0.03]"
+)
+"""What to do about a body without a shape."""
+
+
 class Response(Protocol):
     """The fields that every response has."""
 
@@ -73,7 +81,8 @@ def report_error(response: Response, error: Exception) -> None:
         code = getattr(response, code_name, None)
         if isinstance(error, error_type) and code is not None:
             response.status = code
-            response.message = short(str(error))
+            hint = f" ({_SHAPE_HINT})" if isinstance(error, errors.NoShapeError) else ""
+            response.message = short(f"{error}{hint}")
             return
     response.status = response.INTERNAL_ERROR  # type: ignore[attr-defined]
     response.message = short(f"{type(error).__name__}: {error}")

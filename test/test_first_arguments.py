@@ -41,6 +41,7 @@ FLOOR = Surface(name="floor", p_WS_W=[0, 0, 0], normal_W=[0, 0, 1], friction=0.3
 WORLD = World(bodies=(BRICK,), surfaces=(FLOOR,))
 FALLING = BodyState(p_WB_W=[0, 0, 0.3], q_WB=[0, 0, 0, 1], v_WB_W=[1.5, 0, -1.0], w_WB_W=[0, 2.0, 0])
 LANDED = BodyState(p_WB_W=[0, 0, 0.025], q_WB=[0, 0, 0, 1], v_WB_W=[0.5, 0, -1.0], w_WB_W=[0, 0, 0])
+BELOW = BodyState(p_WB_W=[0, 0, -0.025], q_WB=[0, 0, 0, 1], v_WB_W=[0, 0, 0], w_WB_W=[0, 0, 0])
 CONTACTS = find_contacts(BRICK, LANDED, WORLD)
 WEIGHT: dict[str, Any] = {"force_W": [0.0, 0.0, -3.9], "torque_W": [0.0, 0.0, 0.0]}
 LATER = BodyState(
@@ -81,7 +82,7 @@ CALLS: dict[str, Callable[[Any], Any]] = {
     ),
     "several_impact": lambda body: several_impact(body, LANDED, CONTACTS),
     "spatial_impact": lambda body: spatial_impact(body, LANDED, CONTACTS[0]),
-    "spatial_pair_impact": lambda body: impact.spatial_pair_impact(body, LANDED, body, FALLING, CONTACTS[0]),
+    "spatial_pair_impact": lambda body: impact.spatial_pair_impact(body, LANDED, body, BELOW, CONTACTS[0]),
     "spatial_impact_distribution": lambda body: impact.spatial_impact_distribution(
         body, LANDED, CONTACTS[0], covariance=1e-4 * np.eye(12), samples=4
     ),

@@ -23,7 +23,7 @@ from contact_dynamics.contact.contact import ContactSet
 from contact_dynamics.contact.curvature import Curvatures
 from contact_dynamics.contact.on_flats import flat_touches
 from contact_dynamics.contact.on_obstacles import lowest_along, site_of, touches_of
-from contact_dynamics.errors import SHAPE_HINT, InvalidFieldError, NoContactError
+from contact_dynamics.errors import InvalidFieldError, NoShapeError
 from contact_dynamics.tolerances import DISTANCE_TOLERANCE
 from contact_dynamics.validation import check_not_negative
 from contact_dynamics.world import Surface
@@ -144,10 +144,10 @@ def nearest_surface(
 
 
 def check_has_shape(body: Body) -> None:
-    """Raise `NoContactError` where a body has no shape that could touch anything."""
+    """Raise `NoShapeError` where a body has no shape that could touch anything."""
     if body.shape.is_empty:
-        message = f"body {body.name!r} must have `vertices_B` or a `shape`, got neither ({SHAPE_HINT})"
-        raise NoContactError(message)
+        message = f"body {body.name!r} must have `vertices_B` or a `shape`, got neither"
+        raise NoShapeError(message)
 
 
 def _sides(sides: list[Side]) -> Curvatures:

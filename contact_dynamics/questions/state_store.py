@@ -328,7 +328,7 @@ class StateStore:
         if now_ns is not None:
             if stamp_ns == 0 and now_ns > self._timeout_ns:
                 raise InvalidFieldError(
-                    "stamp", 0, "the time of the state", hint="fill in header.stamp, with the node's clock"
+                    "stamp", 0, "the time of the state", hint="it was left at zero: fill it in by the clock"
                 )
             ahead_ns = stamp_ns - now_ns
             if ahead_ns > self._future_tolerance_ns:

@@ -10,7 +10,7 @@ import numpy as np
 
 from contact_dynamics.contact.found import find_contacts, nearest_surface
 from contact_dynamics.contact.noise import NoisyState, resting, touching
-from contact_dynamics.errors import SHAPE_HINT, NoContactError
+from contact_dynamics.errors import NoContactError, NoShapeError
 from contact_dynamics.questions.extent import check_extent
 from contact_dynamics.shapes.hull_features import RIM_CORNERS, features_of
 from contact_dynamics.shapes.obstacle import closest_points
@@ -130,10 +130,9 @@ def outside_shape(
 
 
 def check_has_shape(body: Body) -> None:
-    """Raise `NoContactError` for a body without a shape that could touch anything."""
+    """Raise `NoShapeError` for a body without a shape that could touch anything."""
     if body.shape.is_empty:
         message = (
-            f"contacts must be given, with contact_source: 1 (CONTACTS_EXPLICIT), since body {body.name!r} "
-            f"has no shape to find them from ({SHAPE_HINT})"
+            f"contacts must be given explicitly, since body {body.name!r} has no shape to find them from"
         )
-        raise NoContactError(message)
+        raise NoShapeError(message)

@@ -64,7 +64,7 @@ def draw_diagram(recording: rr.RecordingStream, diagram: Diagram, entity: str) -
 def draw_side_by_side(
     recording: rr.RecordingStream, diagrams: Sequence[Diagram], entity: str, *, name: str
 ) -> None:
-    """Draw flat diagrams side by side in one view, at `name_1` and so on, with the legend of the first."""
+    """Draw flat diagrams side by side in one view, numbered from 1, with the legend of the first."""
     recording.log(entity, rr.Clear(recursive=True))
     pages = [_page_of(diagram.axes) for diagram in diagrams]
     point = max(sum(page.width for page in pages) / _PANEL[0], *(page.height / _PANEL[1] for page in pages))

@@ -74,7 +74,10 @@ def test_a_body_of_which_nothing_came(monitor: Monitor) -> None:
         ({"x": math.nan}, "nan"),
         ({"x": 2}, "pose.pose.position.x must be a number of normal size, got 5e-324 (rclpy"),
         ({"ahead_ns": HOUR_NS}, "ahead of the clock"),
-        ({"is_stamped": False}, "stamp must be the time of the state, got 0 (fill in header.stamp"),
+        (
+            {"is_stamped": False},
+            "stamp must be the time of the state, got 0 (it was left at zero",
+        ),
     ],
 )
 def test_states_that_are_all_rejected(
