@@ -11,7 +11,7 @@ from contact_dynamics.calibration.estimation import Data, Fitting, extra_spread
 from contact_dynamics.calibration.first_flights import RATIO_STEP, gravity_and_center, ratios_of_moments
 from contact_dynamics.calibration.free import STANDARD, Free
 from contact_dynamics.calibration.heights import at_rests, at_strikes
-from contact_dynamics.calibration.jumps import jump_covariances, jumps
+from contact_dynamics.calibration.impacts import jump_covariances, jumps
 from contact_dynamics.calibration.model import Model
 from contact_dynamics.calibration.observed import observe
 from contact_dynamics.calibration.paths import Paths

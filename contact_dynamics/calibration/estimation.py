@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from contact_dynamics.calibration.free import GEOMETRY, Free
-from contact_dynamics.calibration.jumps import jump_covariances, jumps
+from contact_dynamics.calibration.impacts import jump_covariances, jumps
 from contact_dynamics.numerics.clustered_fit import REJECTED, Group, fit_clustered
 from contact_dynamics.records import Record
 from contact_dynamics.tolerances import DERIVATIVE_STEP, SPREAD_FOUND

@@ -2,6 +2,10 @@
 
 One batch answers all of them. A derivative takes a dozen variations of each strike, and a large batch costs
 a tenth of small ones for each.
+
+The first way of calibration compares the velocities after each strike, as fitted and as predicted (`jumps`).
+Its residuals are whitened by the covariance of both sides' velocities, of which that before is carried
+through the impact, and by the law's own spread.
 """
 
 from __future__ import annotations
@@ -16,8 +20,9 @@ from contact_dynamics.rotations.many import matrices_of
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from contact_dynamics.calibration.first_flights import IntArray
-    from contact_dynamics.calibration.model import Described
+    from contact_dynamics.calibration.first_flights import Gravity, IntArray
+    from contact_dynamics.calibration.model import Described, Model
+    from contact_dynamics.calibration.strikes import Side, Strikes
     from contact_dynamics.validation import FloatArray
 
 
@@ -75,3 +80,59 @@ def _rows(values: FloatArray, whole: tuple[int, int]) -> FloatArray:
     """Return values of variations and strikes, (k or 1, n or 1, ...), as rows, (k n, ...)."""
     rows: FloatArray = np.broadcast_to(values, (*whole, *values.shape[2:])).reshape(-1, *values.shape[2:])
     return rows
+
+
+def velocities_before(
+    values: FloatArray, strikes: Strikes, gravity: Gravity
+) -> tuple[FloatArray, FloatArray]:
+    """Return the mass centres' velocities and the spins before the strikes, (k, n, 3) each, for (k, p)."""
+    return _velocities(values, strikes, strikes.before, gravity)
+
+
+def _velocities(
+    values: FloatArray, strikes: Strikes, side: Side, gravity: Gravity
+) -> tuple[FloatArray, FloatArray]:
+    linear = [side.velocities(row[:3], gravity.of(row[:3])[strikes.recordings]) for row in values]
+    return np.array(linear), np.array([side.spins(row[4:6]) for row in values])
+
+
+def jumps(model: Model, values: FloatArray, strikes: Strikes, gravity: Gravity) -> FloatArray:
+    """Return the predicted velocities after the strikes less the measured ones, (k, n, 6), m/s and rad/s.
+
+    Args:
+        model: Names the parameters.
+        values: (k, p), all parameters, k times.
+        strikes: The strikes.
+        gravity: Gravity of each recording.
+    """
+    before = _velocities(values, strikes, strikes.before, gravity)
+    after = _velocities(values, strikes, strikes.after, gravity)
+    return _predicted(model, values, strikes, *before) - np.concatenate(after, axis=2)
+
+
+def jump_covariances(model: Model, values: FloatArray, strikes: Strikes, gravity: Gravity) -> FloatArray:
+    """Return the covariances, (n, 6, 6), of `jumps` by the noise of measurement."""
+    v, w = velocities_before(values[None], strikes, gravity)
+    steps = np.hstack([np.repeat(strikes.before.velocity_stds[:, None], 3, axis=1), strikes.before.spin_stds])
+    halves = 0.5 * np.eye(6)[:, None] * steps
+    moves = np.concatenate([halves, -halves])
+    there = _predicted(model, values[None], strikes, v + moves[:, :, :3], w + moves[:, :, 3:])
+    through = (there[:6] - there[6:]).transpose(1, 2, 0)  # for one standard deviation
+    after = np.hstack([np.repeat(strikes.after.velocity_stds[:, None], 3, axis=1), strikes.after.spin_stds])
+    covariances: FloatArray = through @ through.transpose(0, 2, 1)
+    covariances[:, np.arange(6), np.arange(6)] += after**2
+    return covariances
+
+
+def _predicted(
+    model: Model, values: FloatArray, strikes: Strikes, v: FloatArray, w: FloatArray
+) -> FloatArray:
+    return velocities_after(
+        [model.describe(row) for row in values],
+        model.body.mass_properties.mass,
+        q_WB=strikes.q_WB[None],
+        velocities_W=v,
+        spins_W=w,
+        corners=strikes.corners,
+        surfaces=strikes.surfaces,
+    )

@@ -17,8 +17,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from contact_dynamics.calibration.impacts import velocities_after
-from contact_dynamics.calibration.jumps import velocities_before
+from contact_dynamics.calibration.impacts import velocities_after, velocities_before
 from contact_dynamics.numerics.clustered_fit import Group
 from contact_dynamics.numerics.linear_spaces import triangle_of
 from contact_dynamics.rotations.many import matrices_of, rotation_vectors, turned

@@ -4,7 +4,7 @@
 `sources`. `measured.events` finds what happened in it. `asking` asks, as `settings` say, and makes a
 `comparison` of each answer.
 
-At size, `job` is one recording's work, whose result is kept, `workers` share it, and `result` is the whole.
-`summary` and `significance` put it together. `report`, `plots` and `picture` show it. `arguments` and `run`
-are the command.
+At size, `jobs` are each recording's work, whose results are kept and which processes share, and `result` is
+the whole. `summary` and `significance` put it together. `report`, `plots` and `picture` show it. `arguments`
+and `run` are the command.
 """

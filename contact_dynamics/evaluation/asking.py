@@ -40,13 +40,14 @@ from contact_dynamics.tolerances import HOLD_STEP
 from contact_dynamics.tumbling import free_motion
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Iterator
 
     from contact_dynamics.evaluation.settings import Law, Settings
     from contact_dynamics.measured.events import FoundEvent
     from contact_dynamics.measured.motion import MeasuredMotion
     from contact_dynamics.questions.context import Defaults
     from contact_dynamics.questions.impact_answer import ImpactAnswer
+    from contact_dynamics.questions.tumbling import TumblingAnswer
     from contact_dynamics.tumbling import Trajectory
     from contact_dynamics.world import World
 
@@ -90,21 +91,36 @@ def compare_event(
             defaults=informed.defaults,
             now_ns=lambda asked_ns=asked_ns: asked_ns,  # type: ignore[misc]  # bound now, not when called
         )
-        row = Comparison(
-            event=number,
-            kind=event.kind,
-            body=event.body,
-            surface=event.surface,
-            time=event.time,
-            horizon=horizon,
-            method=Method.NEWEST,
-            measured_mode=event.mode,
-        )
-        yield from _ASKERS[event.kind](row, event, known, settings)
+        for method, law in _ways(event.kind, settings):
+            row = Comparison(
+                event=number,
+                kind=event.kind,
+                body=event.body,
+                surface=event.surface,
+                time=event.time,
+                horizon=horizon,
+                method=method,
+                law=law,
+                measured_mode=event.mode,
+            )
+            try:
+                yield _ANSWERS[event.kind](row, event, known, settings)
+            except ContactDynamicsError as error:
+                yield replace(row, refused=f"{type(error).__name__}: {error}")
 
 
-def _source(method: Method, settings: Settings) -> PublishedState:
-    return PublishedState(fit_window=0.0 if method is Method.NEWEST else settings.fit_window)
+def _ways(kind: EventKind, settings: Settings) -> list[tuple[Method, Law | None]]:
+    """Return what predictions of an event of this kind are made from, and under which law."""
+    if kind is EventKind.IMPACT:
+        fits = [(Method.FIT, law) for law in settings.laws]
+        return [*fits, (Method.NEWEST, settings.laws[0]), (Method.NO_IMPACT, None)]
+    if kind in {EventKind.REST, EventKind.SLIDING}:
+        return [(Method.NEWEST, None)]
+    return [(Method.FIT, None), (Method.NEWEST, None)]
+
+
+def _source(row: Comparison, settings: Settings) -> PublishedState:
+    return PublishedState(fit_window=0.0 if row.method is Method.NEWEST else settings.fit_window)
 
 
 def _has_covariance(row: Comparison, known: Context) -> bool:
@@ -114,24 +130,20 @@ def _has_covariance(row: Comparison, known: Context) -> bool:
     return row.method is Method.FIT
 
 
-def _flight(row: Comparison, event: FoundEvent, known: Context, settings: Settings) -> Iterator[Comparison]:
-    for method in (Method.FIT, Method.NEWEST):
-        yield _or_refusal(
-            replace(row, method=method),
-            lambda one: _pose_at_end(one, event, known, _source(one.method, settings)),
-        )
-
-
-def _pose_at_end(row: Comparison, event: FoundEvent, known: Context, source: PublishedState) -> Comparison:
-    answer = ask(
-        TumblingQuestion(
-            body=event.body,
-            state=source,
-            sampling=AtStamps(stamps_ns=[event.time_ns]),
-            include_covariance=_has_covariance(row, known),
-        ),
-        known,
+def _tumbling(
+    row: Comparison, known: Context, settings: Settings, sampling: AtStamps | UntilContact
+) -> TumblingAnswer:
+    question = TumblingQuestion(
+        body=row.body,
+        state=_source(row, settings),
+        sampling=sampling,
+        include_covariance=_has_covariance(row, known),
     )
+    return ask(question, known)
+
+
+def _flight(row: Comparison, event: FoundEvent, known: Context, settings: Settings) -> Comparison:
+    answer = _tumbling(row, known, settings, AtStamps(stamps_ns=[event.time_ns]))
     state = _sample(answer.trajectory, 0)
     pose, distance = pose_difference(state, event.state), None
     if answer.covariance is not None:
@@ -140,24 +152,8 @@ def _pose_at_end(row: Comparison, event: FoundEvent, known: Context, source: Pub
     return _with_state(row, state, event, distance=distance, degrees=6)
 
 
-def _landing(row: Comparison, event: FoundEvent, known: Context, settings: Settings) -> Iterator[Comparison]:
-    for method in (Method.FIT, Method.NEWEST):
-        yield _or_refusal(
-            replace(row, method=method),
-            lambda one: _first_contact(one, event, known, _source(one.method, settings)),
-        )
-
-
-def _first_contact(row: Comparison, event: FoundEvent, known: Context, source: PublishedState) -> Comparison:
-    answer = ask(
-        TumblingQuestion(
-            body=event.body,
-            state=source,
-            sampling=UntilContact(rate=_SPARSE),
-            include_covariance=_has_covariance(row, known),
-        ),
-        known,
-    )
+def _landing(row: Comparison, event: FoundEvent, known: Context, settings: Settings) -> Comparison:
+    answer = _tumbling(row, known, settings, UntilContact(rate=_SPARSE))
     if answer.event is None:
         return replace(row, refused="no contact within the horizon")
     state = _sample(answer.trajectory, len(answer.trajectory) - 1)
@@ -170,25 +166,12 @@ def _first_contact(row: Comparison, event: FoundEvent, known: Context, source: P
     return replace(_with_state(row, state, event, distance=distance, degrees=1), time_error=error)
 
 
-def _impact(row: Comparison, event: FoundEvent, known: Context, settings: Settings) -> Iterator[Comparison]:
-    for law in settings.laws:
-        yield _or_refusal(
-            replace(row, method=Method.FIT, law=law),
-            lambda one: _after(one, event, known, _asked_impact(one, event, known, settings)),
-        )
-    for method in (Method.NEWEST, Method.NO_IMPACT):
-        yield _or_refusal(
-            replace(row, method=method, law=settings.laws[0] if method is Method.NEWEST else None),
-            lambda one: _after(one, event, known, _asked_impact(one, event, known, settings)),
-        )
-
-
 def _asked_impact(row: Comparison, event: FoundEvent, known: Context, settings: Settings) -> ImpactAnswer:
     law: Law = row.law or settings.laws[0]
     several = law.several_contacts_law
     question = ImpactQuestion(
         body=event.body,
-        state=_source(row.method, settings),
+        state=_source(row, settings),
         restitution_law=law.restitution_law,
         several_contacts_law=several,
         include_covariance=row.law is settings.laws[0] and _has_covariance(row, known),
@@ -206,8 +189,9 @@ def _asked_impact(row: Comparison, event: FoundEvent, known: Context, settings: 
         return ask(replace(question, include_covariance=False), known)
 
 
-def _after(row: Comparison, event: FoundEvent, known: Context, answer: ImpactAnswer) -> Comparison:
+def _impact(row: Comparison, event: FoundEvent, known: Context, settings: Settings) -> Comparison:
     """Return the row with the state after the impact, flown on for as long as the measured one took."""
+    answer = _asked_impact(row, event, known, settings)
     state, covariance, lasted = answer.impact.state, answer.impact.covariance, 0.0
     if row.method is Method.NO_IMPACT:
         state, covariance = answer.state, None
@@ -223,16 +207,12 @@ def _after(row: Comparison, event: FoundEvent, known: Context, answer: ImpactAns
     return _with_state(row, state, event, distance=distance, degrees=6)
 
 
-def _modes(
+def _mode(
     row: Comparison,
     event: FoundEvent,
     known: Context,
-    settings: Settings,  # noqa: ARG001  as every asker
-) -> Iterator[Comparison]:
-    yield _or_refusal(row, lambda one: _mode(one, event, known))
-
-
-def _mode(row: Comparison, event: FoundEvent, known: Context) -> Comparison:
+    settings: Settings,  # noqa: ARG001  as all of them
+) -> Comparison:
     answer = ask(ContactModeQuestion(body=event.body), known)
     modes = [mode.mode for mode in answer.modes] if answer.verdict is not ModeVerdict.IMPACT else []
     return replace(
@@ -247,13 +227,6 @@ def _does(mode: str) -> EventKind | None:
     if set(mode) <= {"f"}:
         return EventKind.REST
     return None if "s" in mode else EventKind.SLIDING
-
-
-def _or_refusal(row: Comparison, answered: Callable[[Comparison], Comparison]) -> Comparison:
-    try:
-        return answered(row)
-    except ContactDynamicsError as error:
-        return replace(row, refused=f"{type(error).__name__}: {error}")
 
 
 def _sample(trajectory: Trajectory, i: int) -> BodyState:
@@ -281,10 +254,10 @@ def _with_state(
     )
 
 
-_ASKERS: Final = {
+_ANSWERS: Final = {
     EventKind.FLIGHT: _flight,
     EventKind.LANDING: _landing,
     EventKind.IMPACT: _impact,
-    EventKind.REST: _modes,
-    EventKind.SLIDING: _modes,
+    EventKind.REST: _mode,
+    EventKind.SLIDING: _mode,
 }

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 from contact_dynamics.evaluation.asking import Informed, compare_event
+from contact_dynamics.evaluation.result import SourceResult
 from contact_dynamics.measured.events import find_events
 from contact_dynamics.measured.motion import motions_of
 from contact_dynamics.questions.context import Defaults
@@ -39,28 +40,9 @@ class Recording(Record):
     damage: str = ""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class Evaluated(Record):
-    """What came of one recording.
-
-    Attributes:
-        events: The events that were found, in the order of bodies and time.
-        comparisons: A row for each question about each of them.
-        states: Number of measured states.
-        seconds: s of measured motion, over all bodies.
-        damage: What of the recording could not be read, in words; empty if all was whole.
-    """
-
-    events: tuple[FoundEvent, ...]
-    comparisons: tuple[Comparison, ...]
-    states: int
-    seconds: float
-    damage: str = ""
-
-
 def evaluate_recording(
     recording: Recording, settings: Settings, *, informed: Informed | None = None
-) -> Evaluated:
+) -> SourceResult:
     """Find the events of a recording, ask about each beforehand, and compare.
 
     Args:
@@ -74,7 +56,7 @@ def evaluate_recording(
         for event in find_events(motion):
             rows += compare_event(len(events), event, motion, informed or recording.informed, settings)
             events.append(event)
-    return Evaluated(
+    return SourceResult(
         events=tuple(events),
         comparisons=tuple(rows),
         states=sum(len(motion) for motion in recording.motions),

@@ -20,8 +20,6 @@ from contact_dynamics.rigid_body.body import BodyState
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from contact_dynamics.evaluation.recording import Evaluated
-
 FORMAT: Final = "contact_dynamics evaluation 1"
 """What the JSON of an evaluation says that it is."""
 
@@ -34,17 +32,17 @@ class SourceResult(Record):
     """What came of one recording.
 
     Attributes:
-        source: Its name.
-        digest: Hash of its content.
+        source: Its name; empty if it has none.
+        digest: Hash of its content; empty if it is not known.
         problem: Why it was not evaluated; empty if it was.
         damage: What of it could not be read; empty if all was whole.
         states: Number of measured states.
         seconds: s of measured motion, over all bodies.
-        events: The events that were found.
+        events: The events that were found, in the order of bodies and time.
         comparisons: A row for each question about each of them.
     """
 
-    source: str
+    source: str = ""
     digest: str = ""
     problem: str = ""
     damage: str = ""
@@ -76,19 +74,6 @@ class Evaluation(Record):
         """Write all of it; `read_evaluation` reads it back to the last bit."""
         content = {"format": FORMAT, **self.to_dict()}
         path.write_text(json.dumps(content) + "\n", encoding="utf-8")
-
-
-def result_of(source: str, digest: str, evaluated: Evaluated) -> SourceResult:
-    """Return what came of a recording under its name."""
-    return SourceResult(
-        source=source,
-        digest=digest,
-        damage=evaluated.damage,
-        states=evaluated.states,
-        seconds=evaluated.seconds,
-        events=evaluated.events,
-        comparisons=evaluated.comparisons,
-    )
 
 
 def read_evaluation(path: Path) -> Evaluation:

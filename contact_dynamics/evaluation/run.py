@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from contact_dynamics.evaluation.arguments import evaluate_parser
 from contact_dynamics.evaluation.command import NOTHING, check_writable, run_on_recordings
-from contact_dynamics.evaluation.job import Job, ResultsFolder, code_versions, failed
+from contact_dynamics.evaluation.jobs import Job, ResultsFolder, code_versions, failed, run_jobs
 from contact_dynamics.evaluation.log_states import parameters_of
 from contact_dynamics.evaluation.plots import write_plots
 from contact_dynamics.evaluation.report import report, report_changes
@@ -23,7 +23,6 @@ from contact_dynamics.evaluation.result import (
 from contact_dynamics.evaluation.settings import Law, Settings
 from contact_dynamics.evaluation.significance import changes
 from contact_dynamics.evaluation.sources import find_sources
-from contact_dynamics.evaluation.workers import run_jobs
 from contact_dynamics.nodes.parameter_file import ParameterFile
 from contact_dynamics.replay.progress import Progress
 

@@ -12,12 +12,11 @@ from typing import Any
 import pytest
 
 from contact_dynamics.errors import InvalidFieldError
-from contact_dynamics.evaluation.job import Job, run_job
+from contact_dynamics.evaluation.jobs import Job, run_job, run_jobs
 from contact_dynamics.evaluation.recording import Recording
 from contact_dynamics.evaluation.result import source_result
 from contact_dynamics.evaluation.settings import Law, Settings
 from contact_dynamics.evaluation.sources import Source
-from contact_dynamics.evaluation.workers import run_jobs
 from contact_dynamics.measured.read_toss import DEFAULT_RECORDING
 from evaluation.made_logs import BRIEF, write_log
 
