@@ -152,7 +152,7 @@ def considered(problem: SpatialContactProblem) -> Considered | tuple[int, ...]:
     tried: list[Considered] = []
     for case, within, hurried in _cases(problem, rough):
         search = search_of(case, facets)
-        found = _evidence(problem, case, search, hurried=hurried)
+        found = evidence_of(problem, case, search, hurried=hurried)
         tried.append(Considered(case, search, found, within))
         if not found.undecided:
             return tried[-1]
@@ -192,11 +192,11 @@ def modes_of_case(
     Raises:
         TooLargeError: the search takes more trials than `pyramid_programs.MAX_EXAMINED`.
     """
-    found = _evidence(problem, case, search, beside_rest=beside_rest)
+    found = evidence_of(problem, case, search, beside_rest=beside_rest)
     return _answered(problem, Considered(case, search, found, 0.0))
 
 
-def _evidence(
+def evidence_of(
     problem: SpatialContactProblem,
     case: SpatialCase,
     search: Search,
@@ -226,9 +226,8 @@ def _answered(problem: SpatialContactProblem, one: Considered) -> SpatialModeAns
 def _answer(
     problem: SpatialContactProblem, found: Evidence, *, examined: int = 0, approaching: tuple[int, ...] = ()
 ) -> SpatialModeAnswer:
-    verdict = ModeVerdict.UNDECIDED if found.undecided else verdict_on(found.modes)
     return SpatialModeAnswer(
-        verdict=ModeVerdict.IMPACT if approaching else verdict,
+        verdict=ModeVerdict.IMPACT if approaching else verdict_of(found),
         modes=tuple(found.modes),
         approaching=approaching,
         velocity_tolerance=problem.velocity_tolerance,
@@ -238,6 +237,11 @@ def _answer(
         undecided_modes=found.undecided_modes,
         problem=problem,
     )
+
+
+def verdict_of(found: Evidence) -> ModeVerdict:
+    """Return the verdict that follows from evidence about contacts that do not approach."""
+    return ModeVerdict.UNDECIDED if found.undecided else verdict_on(found.modes)
 
 
 def evidenced(

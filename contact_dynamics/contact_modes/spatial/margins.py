@@ -21,7 +21,7 @@ import numpy as np
 
 from contact_dynamics.contact_modes.letters import STICKS
 from contact_dynamics.contact_modes.result import ModeVerdict
-from contact_dynamics.contact_modes.spatial.answer import modes_of_case, spatial_contact_modes
+from contact_dynamics.contact_modes.spatial.answer import evidence_of, spatial_contact_modes, verdict_of
 from contact_dynamics.contact_modes.spatial.exact_modes import letters_of
 from contact_dynamics.contact_modes.spatial.margins_of_sliding import (
     directions_of,
@@ -46,8 +46,10 @@ from contact_dynamics.tolerances import BEYOND_MARGIN, MARGIN_SETTLED, ON_BOUNDA
 from contact_dynamics.validation import check_size
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from contact_dynamics.contact_modes.spatial.problem import SpatialContactProblem
-    from contact_dynamics.contact_modes.spatial.result import SpatialModeAnswer
+    from contact_dynamics.contact_modes.spatial.result import SpatialMode, SpatialModeAnswer
     from contact_dynamics.contact_modes.spatial.round_sums import RoundSum
     from contact_dynamics.contact_modes.spatial.search import Search
     from contact_dynamics.validation import FloatArray
@@ -133,7 +135,7 @@ def spatial_mode_margins(
     for mode in answer.modes:
         letters = letters_of(mode, case, search)
         known = directions_of(case, search, letters, mode.tangential_directions_W[case.touching])
-        beyond = present
+        verdict, beyond = present.verdict, _letters(present.modes)
         if known is not None:
             margin, way = _nearest(case, search, letters, metric, known)
         else:
@@ -142,28 +144,36 @@ def spatial_mode_margins(
             margin, way = least_change(case, search, letters, metric, alone=alone, regular=regular)
         if math.isfinite(margin):
             step = (margin + BEYOND_MARGIN * max(margin, size)) * way * metric
-            beyond = _answer_under(problem, answer.flush_within, problem.wrench_W + step)
-            undecided = beyond.verdict == ModeVerdict.UNDECIDED
-            if known is None and (undecided or mode.mode in [one.mode for one in beyond.modes]):
-                margin, beyond = math.nan, present
+            there = _under(problem, answer.flush_within, problem.wrench_W + step)
+            if known is None and (there[0] == ModeVerdict.UNDECIDED or mode.mode in there[1]):
+                margin = math.nan
+            else:
+                verdict, beyond = there
         margins.append(
             SpatialModeMargin(
                 mode=mode.mode,
                 margin=margin,
                 length=length,
                 change_W=margin * way * metric if math.isfinite(margin) else np.zeros(6),
-                verdict_beyond=beyond.verdict,
-                modes_beyond=tuple(dict.fromkeys(one.mode for one in beyond.modes)),
+                verdict_beyond=verdict,
+                modes_beyond=beyond,
             )
         )
     return tuple(margins)
 
 
-def _answer_under(problem: SpatialContactProblem, within: float, wrench_W: FloatArray) -> SpatialModeAnswer:
-    """Return the modes that another wrench brings about."""
+def _under(
+    problem: SpatialContactProblem, within: float, wrench_W: FloatArray
+) -> tuple[ModeVerdict, tuple[str, ...]]:
+    """Return the verdict under another wrench, and the letters of the modes that it brings about."""
     other = replace(problem, force_W=wrench_W[:3], torque_W=wrench_W[3:], sharpen=True)
     case = cast("SpatialCase", spatial_case(other, within=within))
-    return modes_of_case(other, case, search_of(case, FRICTION_FACETS))
+    found = evidence_of(other, case, search_of(case, FRICTION_FACETS))
+    return verdict_of(found), _letters(found.modes)
+
+
+def _letters(modes: Sequence[SpatialMode]) -> tuple[str, ...]:
+    return tuple(dict.fromkeys(mode.mode for mode in modes))
 
 
 def _nearest(

@@ -1,18 +1,20 @@
 """How far an applied wrench is from leaving a mode in which contacts at rest begin to slide in any direction.
 
 Their directions depend on the wrench, so that the wrenches of the mode are not convex. But the ways out of
-the mode are known: a contact that slides sticks (`_sticking`), the load leaves all contacts but those on one
-side (`_lifting`), or a contact that separates touches again (`_touching`). The wrenches of each are in a
-convex set, to which the distance is exact (`round_sums`). No wrench that is nearer than all these sets leaves
-the mode. For let a body at rest have no other mode. A body whose contacts give way a little always has a
-motion, and the number of its motions, those that turn back counted negative, is one whatever the wrench. The
-motions of the mode cannot vanish on the way to another wrench unless they meet those of another mode, which
-happens in these sets only.
+the mode are known: a contact that slides sticks, the load leaves all contacts but those on one side, or a
+contact that separates touches again. The wrenches of each way out lie in a convex set, and the distance to
+that is exact (`round_sums`).
 
-Contacts on a plane can share the load in many ways. Then the mode may go on where some of them end. So
-only some ways are followed: the plane's corners are parted into triangles, and the load is on the corners of
-one triangle at a time, as if the others were a little too short. Each parting gives a distance that is not
-too large, and the largest of them counts.
+No wrench nearer than all these sets leaves the mode, if the body is at rest and has no other mode. Consider
+contacts that give way a little. Whatever the wrench, the motions that solve the equations then add up to one,
+if those that turn back under a growing load count negative (the degree of the map from motions to wrenches).
+While the wrench changes, motions of the mode can be lost only where they meet motions of another mode, and
+that happens only in these sets.
+
+Contacts on a plane can share the load in many ways, and the mode may go on where some of them end. So only
+some ways of sharing are followed: the plane's corners are parted into triangles, and one triangle at a time
+carries the load, as if the other corners were a little too short. No parting gives a distance that is too
+large, and the largest one counts.
 """
 
 from __future__ import annotations
@@ -99,17 +101,22 @@ def least_change(
     found, least = np.zeros(6), 0.0
     if _rests(case) and STICKS not in letters:
         ways_out = _WaysOut(case, search, letters, metric)
-        for carriers in ways_out.partings() if alone or (regular and ways_out.is_determined) else ():
-            nearest, size = found, math.inf
-            for rest in ways_out.of(carriers):
-                left = float(np.linalg.norm(rest))
-                if left < size:
-                    nearest, size = rest, left
-                if size <= least:
+        known = alone or (regular and ways_out.is_determined)
+        partings = ways_out.partings() if known else []
+        stuck = [min((ways_out.sticking(one) for one in carriers), key=_size) for carriers in partings]
+        for k in sorted(range(len(partings)), key=lambda k: -_size(stuck[k])):
+            nearest = stuck[k]
+            for rest in ways_out.others(partings[k]):
+                nearest = min(nearest, rest, key=_size)
+                if _size(nearest) <= least:
                     break
-            if least < size < math.inf:
-                found, least = -nearest, size
+            if _size(nearest) > least:
+                found, least = -nearest, _size(nearest)
     return (least, found / least) if least > 0.0 else (math.nan, found)
+
+
+def _size(vector: FloatArray) -> float:
+    return math.sqrt(vector @ vector)
 
 
 def _rests(case: SpatialCase) -> bool:
@@ -136,7 +143,10 @@ class _WaysOut:
         self._frames = {
             i: np.array(search.pyramids[i].frame) @ search.touching[i].point for i in self._turning
         }
-        rows = unit_rows(self._normals[self._staying, :6])
+        frames = np.array([self._frames[i][:, :6] for i in self._turning])
+        staying = self._normals[self._staying, :6]
+        self._flats = {i: flat_of(staying, frames, (k,)) for k, i in enumerate(self._turning)}
+        rows = unit_rows(staying)
         self._rank = len(row_space(rows))
         self._needed: dict[tuple[bytes, bytes], Generators] = {}
         every = (1 << len(self._staying)) - 1
@@ -152,20 +162,21 @@ class _WaysOut:
         """Whether only one set of normal forces goes with each motion and wrench."""
         return self._rank == len(self._staying)
 
-    def partings(self) -> Iterator[list[tuple[int, ...]]]:
-        """Yield sets of contacts one of which carries the load at a time."""
+    def partings(self) -> list[list[tuple[int, ...]]]:
+        """Return partings: sets of contacts one of which carries the load at a time."""
         normals = np.array([self._search.touching[i].normal for i in self._staying])
         if self.is_determined or float(np.abs(normals - normals[0]).max()) > ROW_TOLERANCE:
-            yield [tuple(self._staying)]
-        elif self._rank == 1:
-            yield [(self._staying[0],)]
-        elif self._rank == 2:
-            yield [tuple(min(side) for side in self._sides)]
-        else:
-            corners = self._corners(normals[0])
-            for turn in range(len(corners) if 4 < len(corners) <= MAX_CORNERS else min(2, len(corners))):
-                first, *others = corners[turn:] + corners[:turn]
-                yield [(first, one, other) for one, other in itertools.pairwise(others)]
+            return [[tuple(self._staying)]]
+        if self._rank == 1:
+            return [[(self._staying[0],)]]
+        if self._rank == 2:
+            return [[tuple(min(side) for side in self._sides)]]
+        corners = self._corners(normals[0])
+        found: list[list[tuple[int, ...]]] = []
+        for turn in range(2 if len(corners) == 4 else len(corners)):  # four have two diagonals
+            first, *others = corners[turn:] + corners[:turn]
+            found.append([(first, one, other) for one, other in itertools.pairwise(others)])
+        return found
 
     def _corners(self, normal: FloatArray) -> list[int]:
         """Return the corners of contacts on a plane, in their order around it; none if they are too many."""
@@ -183,10 +194,15 @@ class _WaysOut:
         }
         return sorted(angles, key=angles.__getitem__) if len(angles) <= MAX_CORNERS else []
 
-    def of(self, partings: Sequence[tuple[int, ...]]) -> Iterator[FloatArray]:
-        """Yield the wrench less the nearest one of each way out, (6,) each, if some contacts carry it."""
+    def sticking(self, carriers: tuple[int, ...]) -> FloatArray:
+        """Return the wrench less the nearest one with which all contacts that carry the load stick, (6,)."""
+        frames = [self._frames[i] for i in carriers if i in self._frames]
+        return self._rest(frames, self._normals[self._leaving], carriers, {})
+
+    def others(self, partings: Sequence[tuple[int, ...]]) -> Iterator[FloatArray]:
+        """Yield the wrench less the nearest one of each other way out, (6,) each."""
         for carriers in partings:
-            yield from self._sticking(carriers)
+            yield from self._one_sticks(carriers)
         carrying = {i for carriers in partings for i in carriers}
         for side in self._sides:
             yield self._rest([], self._normals[self._leaving], sorted(side & carrying), {})
@@ -194,28 +210,25 @@ class _WaysOut:
             leaving = self._normals[[i for i in self._leaving if i != k]]
             yield self._rest([self._normals[[k]]], leaving, sorted(carrying), {})
 
-    def _sticking(self, carriers: tuple[int, ...]) -> Iterator[FloatArray]:
-        """Yield the wrench less the nearest one with which contacts that carry the load stick, (6,) each."""
-        slides = [i for i in carriers if i in self._frames]
+    def _one_sticks(self, carriers: tuple[int, ...]) -> Iterator[FloatArray]:
+        """Yield the wrench less the nearest one with which one sticks and others slide, (6,) each."""
+        slides = {i for i in carriers if i in self._frames}
         leaving = self._normals[self._leaving]
-        yield self._rest([self._frames[i] for i in slides], leaving, carriers, {})
-        seen = {frozenset(range(len(slides)))}
-        normals = self._normals[self._staying, :6]
-        frames = np.array([self._frames[i][:, :6] for i in slides]).reshape(-1, 2, 6)
-        for k, i in enumerate(slides):
-            flat = flat_of(normals, frames, (k,))
-            if flat.stuck in seen:
+        seen = {frozenset(slides)}
+        for i in sorted(slides):
+            flat = self._flats[i]
+            moving = [j for k, j in enumerate(self._turning) if k not in flat.stuck]
+            stuck = frozenset(slides.difference(moving))
+            if stuck in seen:
                 continue
-            seen.add(flat.stuck)
+            seen.add(stuck)
             if len(flat.image.coordinates) > 1:
                 yield self._rest([self._frames[i]], leaving, carriers, {})
                 continue
             (along,) = np.column_stack([flat.image.coordinates, [0.0]])
-            others = [j for m, j in enumerate(slides) if m not in flat.stuck]
             for sign in (1.0, -1.0):
-                ways = sign * flat.image.maps[:, :, 0]
-                sizes = np.sqrt((ways * ways).sum(axis=1))[:, None]
-                known = dict(zip(others, ways / sizes, strict=True))
+                ways = unit_rows(sign * flat.image.maps[:, :, 0])
+                known = {j: way for j, way in zip(moving, ways, strict=True) if j in slides}
                 yield self._rest([self._frames[i]], np.vstack([leaving, sign * along]), carriers, known)
 
     def _rest(
