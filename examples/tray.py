@@ -84,5 +84,5 @@ with rr.RecordingStream("contact_dynamics") as recording:
             ("mode_map", "Which applied wrench brings about which mode"),
         )
     ]
-    rows = rrb.Vertical(rrb.Horizontal(*views[:2], column_shares=[1, 2]), views[2], row_shares=[2, 3])
+    rows = rrb.Vertical(rrb.Horizontal(*views[:2], column_shares=[2, 3]), views[2], row_shares=[2, 3])
     recording.send_blueprint(rrb.Blueprint(rows, collapse_panels=True))

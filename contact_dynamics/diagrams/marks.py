@@ -33,6 +33,7 @@ class Mark:
         paint: The colour, in the viewer and on paper.
         opacity: Its opacity, 0 to 1. On paper, only faces are translucent.
         legend: What the mark means, for the legend, or an empty string.
+        is_obvious: Whether the viewer's legend leaves it out, since its form says what it is.
         on_paper: Whether Matplotlib draws it.
         in_viewer: Whether rerun draws it.
     """
@@ -42,6 +43,7 @@ class Mark:
     _: KW_ONLY
     opacity: float = 1.0
     legend: str = ""
+    is_obvious: bool = False
     on_paper: bool = True
     in_viewer: bool = True
 

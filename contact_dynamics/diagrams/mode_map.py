@@ -52,7 +52,7 @@ _COARSE: Final = 4  # a step of this many points finds where a region is widest
 _EDGE: Final = 1e-9  # relative: what is outside by less is on the boundary
 _WAY_POINTS: Final = 100  # number of points of the way of a wrench that changes
 _DIGITS: Final = 9  # after the point; what is smaller is rounding of forces that cancel
-_DIRECTIONS: Final = "direction from the middle: that of the force; middle: pure torque; rim: pure force"
+_DIRECTIONS: Final = "angle: direction of the force; middle: pure torque"
 
 _WAY: Final = ";\nline: least way\nto another mode"
 
@@ -269,16 +269,11 @@ def mode_map(
             on_paper=False,
         )
     )
-    notes = ["white: several are consistent"] * any(len(modes) > 1 for modes in regions.modes)
-    notes += ["black: none is"] * (NO_MODE in there)
+    title = "which applied wrench brings about which mode"
+    title += "; white: several" * any(len(modes) > 1 for modes in regions.modes)
+    title += "; black: none" * (NO_MODE in there)
     frame, axes = chart_frame(chart)
-    return Diagram(
-        marks=[*marks, *frame, *applied_marks(chart, applied, change)],
-        axes=axes,
-        title="\n".join(
-            ["which applied wrench brings about which mode", *(["; ".join(notes)] if notes else [])]
-        ),
-    )
+    return Diagram(marks=[*marks, *frame, *applied_marks(chart, applied, change)], axes=axes, title=title)
 
 
 def paint_of_modes(consistent: Sequence[str], every: Sequence[str]) -> Paint:

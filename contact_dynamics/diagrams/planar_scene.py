@@ -83,10 +83,12 @@ def planar_scene_of(
             "accelerations", _ACCELERATION, mode.contact_accelerations, contacts, unit="m/s²", size=size
         )
     marks: list[Mark] = [
-        Lines("walls", _WALL, walls, width=5.0, legend="surface"),
-        Lines("body", _BODY, [outline], width=2.2, legend="body"),
+        Lines("walls", _WALL, walls, width=5.0, legend="surface", is_obvious=True),
+        Lines("body", _BODY, [outline], width=2.2, legend="body", is_obvious=True),
         Lines("cones", _CONE, cones, width=1.5, legend="friction cone"),
-        Points("centre_of_mass", _BODY, np.zeros((1, 2)), marker="+", legend="centre of mass"),
+        Points(
+            "centre_of_mass", _BODY, np.zeros((1, 2)), marker="+", legend="centre of mass", is_obvious=True
+        ),
     ]
     places = points - LABEL_OFFSET * size * normals
     groups = _same_places(places, size)

@@ -15,7 +15,7 @@ import numpy as np
 import rerun as rr
 
 from contact_dynamics.diagrams import palette
-from contact_dynamics.diagrams.marks import Arrows, Ellipsoids, Faces, Labels, Lines, Points, Regions
+from contact_dynamics.diagrams.marks import Arrows, Ellipsoids, Faces, Labels, Lines, Points, Regions, mapped
 from contact_dynamics.viewing.strips import strips_2d, strips_3d
 
 if TYPE_CHECKING:
@@ -50,14 +50,9 @@ def draw_diagram(recording: rr.RecordingStream, diagram: Diagram, entity: str) -
     Args:
         recording: To draw into.
         diagram: The diagram.
-        entity: Where it is put. In three dimensions, it is put below, scaled so that its upright axis has
-            length 1, since a view does not scale its origin.
+        entity: Where it is put.
     """
     recording.log(entity, rr.Clear(recursive=True))
-    if len(diagram.axes) == 3:
-        entity = f"{entity}/contact"
-        height = diagram.axes[2].high - diagram.axes[2].low
-        recording.log(entity, rr.Transform3D(scale=1.0 / height))
     _draw_all(recording, diagram.marks, diagram, entity)
 
 
@@ -86,10 +81,18 @@ def redraw(recording: rr.RecordingStream, diagram: Diagram, entity: str, part: s
 
 
 def _draw_all(recording: rr.RecordingStream, marks: Sequence[Mark], diagram: Diagram, entity: str) -> None:
-    """Draw marks of a diagram, and what is about it."""
+    """Draw marks of a diagram, and what is about it.
+
+    In three dimensions, the upright axis is drawn with length 1, so that the same eye suits every diagram.
+    rerun's viewer would not take a transform at the time at which the one before it is cleared.
+    """
     page = _page_of(diagram.axes)
-    draw_marks(recording, marks, entity, point=page.point)
-    draw_marks(recording, _frame_of(diagram, page), f"{entity}/frame", point=page.point)
+    frame, point = _frame_of(diagram, page), page.point
+    if len(diagram.axes) == 3:
+        scaled, point = np.eye(3) / page.height, point / page.height
+        marks, frame = ([mapped(mark, scaled) for mark in each] for each in (marks, frame))
+    draw_marks(recording, marks, entity, point=point)
+    draw_marks(recording, frame, f"{entity}/frame", point=point)
 
 
 def draw_marks(
@@ -263,7 +266,7 @@ def _frame_of(diagram: Diagram, page: _Page, *, has_legend: bool = True) -> list
     room += [page.at(right, up + _LINE) for right, up, _ in title]
     shown = [mark for mark in diagram.marks if has_legend and mark.legend and mark.in_viewer]
     noted = [mark for mark in shown if isinstance(mark, Points) and mark.is_noted and len(mark.places) > 0]
-    legend = [mark for mark in shown if not (isinstance(mark, Points) and mark.is_noted)]
+    legend = [mark for mark in shown if not (mark.is_obvious or (isinstance(mark, Points) and mark.is_noted))]
     nearer = 0.16 * across if len(diagram.axes) == 3 else 0.0  # the upright axis is, and so farther left
     aside, up = -0.5 * _widest(legend) - 7.0 * _LETTER - 8.0 - nearer, top
     for mark in legend:
@@ -294,7 +297,8 @@ def _room(places: Sequence[FloatArray]) -> Mark:
 def _notes_of(noted: list[Points], page: _Page, room: list[FloatArray]) -> list[Mark]:
     """Return the legends of points on the right, each at the height of its point as far as they are apart."""
     noted.sort(key=lambda mark: page.height_of(mark.places[0]))
-    left = page.width / page.point + 14.0
+    across = page.width / page.point
+    left = across + 14.0 + (0.1 * across if len(page.low) == 3 else 0.0)
     middle = left + 0.5 * _widest(noted)
     marks: list[Mark] = []
     lines = [len(mark.legend.splitlines()) for mark in noted]

@@ -165,7 +165,7 @@ def test_the_map_has_the_wrench_and_its_way_out() -> None:
     marks = marks_of(diagram)
     assert {"ffff", "ssss", "lsss"} <= {*marks["names"].texts, *marks["names_on_dark"].texts}
     assert [text for _, text in diagram.axes[0].ticks] == ["torque anticlockwise", "torque clockwise"]
-    assert diagram.title.endswith("\nwhite: several are consistent")
+    assert diagram.title.endswith("; white: several")
     (way,) = marks["applied/way_out"].strips
     ends = np.array([[1.0, -3.0, 0.1], [-2.0, -2.5, 0.3]])
     np.testing.assert_allclose(way[[0, -1]], chart.place(ends)[0])

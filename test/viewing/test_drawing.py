@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from viewing.drawn import Drawn
 
 ROD = Body(name="rod", mass_properties=MassProperties(mass=1.0, I_B=np.diag([0.2, 0.5, 0.6])))
-ORIGIN = "/impulse_space_in_3d"  # of the view, which shows what is below it to scale
+ORIGIN = "/impulse_space_in_3d"
 LETTER, LINE = 6.2, 18.0  # points of the screen, measured in pictures of the viewer
 FIELD_OF_VIEW = np.radians(55.0)
 
@@ -50,12 +50,11 @@ def words_on_screen(drawn: Drawn, *, in_space: bool, height: float) -> list[tupl
             ]
             found += zip(drawn.last(entity, name), places, strict=True)
     if in_space:
-        scale = drawn.array(f"{ORIGIN}/contact", "Transform3D:scale")[0][0]
         ahead = (TARGET - EYE) / np.linalg.norm(TARGET - EYE)
         right = np.cross(ahead, [0.0, 0.0, 1.0])
         right /= np.linalg.norm(right)
         screen = 0.5 * height / np.tan(0.5 * FIELD_OF_VIEW) * np.array([right, np.cross(ahead, right)])
-        seen = [scale * place - EYE for _, place in found]
+        seen = [place - EYE for _, place in found]
         seen = [screen @ place / (place @ ahead) for place in seen]
     else:
         strips = [drawn.last(*key) for key in drawn.values if key[1] == "LineStrips2D:strips"]
@@ -83,6 +82,21 @@ def test_words_of_impulse_space_do_not_cover_each_other(
     for (one, a), (other, b) in combinations(words, 2):
         wide, high = np.minimum(a[2:], b[2:]) - np.maximum(a[:2], b[:2])
         assert wide <= 1.0 or high <= 1.0, f"{one!r} covers {other!r}"
+
+
+def test_every_diagram_in_space_is_equally_high(
+    recording: rr.RecordingStream, read: Callable[[], Drawn]
+) -> None:
+    heights = []
+    for name, speed in (("slow", -0.1), ("fast", -30.0)):
+        diagram = impulse_space_in_3d(ROD, an_impact(speed))
+        draw_diagram(recording, diagram, name)
+        heights.append(diagram.axes[2].high)
+    assert heights[1] != pytest.approx(heights[0], rel=0.3)
+    drawn = read()
+    for name in ("slow", "fast"):
+        axes = drawn.last(f"/{name}/frame/axes", "LineStrips3D:strips")
+        assert max(np.ptp(np.array(axis)[:, 2]) for axis in axes) == pytest.approx(1.0)
 
 
 def test_a_diagram_is_drawn_with_its_numbers_in_place_of_the_one_before(
