@@ -1,21 +1,33 @@
-"""This file finds energies and momenta over a trajectory, from its states and the body's mass properties."""
+"""Quantities over a trajectory: energies and momenta from the body's mass properties, and their diagrams."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from contact_dynamics.constants import seconds_since
+from contact_dynamics.diagrams import palette, paper
+from contact_dynamics.diagrams.marks import Axis, Diagram, Faces, Lines, Points
+from contact_dynamics.diagrams.palette import Paint
 from contact_dynamics.rotations.many import matrices_of
 from contact_dynamics.tumbling import Trajectory
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from contact_dynamics.diagrams.marks import Mark
     from contact_dynamics.rigid_body.body import BodyState, MassProperties
     from contact_dynamics.validation import FloatArray
+
+
+DEVIATIONS: Final = 2.0
+"""Half of the width of the bands of uncertainty, in standard deviations."""
+
+_DASHES: Final = ("-", "--", "-.", ":")  # beside the colours, for print in grey
+_MARGIN: Final = 0.05  # room about the curves, relative to their extent
+_ROUNDING: Final = 1e-9  # relative: what differs by less is rounding
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -71,3 +83,50 @@ def energies_of(body: MassProperties, trajectory: Trajectory, *, gravity_W: Floa
         rotational=0.5 * np.einsum("ni,ni->n", trajectory.w_WB_W, L_W),
         potential=-body.mass * trajectory.p_WB_W @ gravity_W,
     )
+
+
+def over_time(
+    trajectory: Trajectory,
+    rows: FloatArray,
+    quantity: str,
+    names: Sequence[str] = ("x", "y", "z"),
+    *,
+    deviations: FloatArray | None = None,
+) -> Diagram:
+    """Return the diagram of a quantity over a trajectory.
+
+    Args:
+        trajectory: The trajectory, which has a sample.
+        rows: (n, k), the values.
+        quantity: What they are, with the unit.
+        names: (k,), what each column is.
+        deviations: (n, k), standard deviations, for bands of `DEVIATIONS` to each side, or None.
+    """
+    half = DEVIATIONS * (np.zeros_like(rows) if deviations is None else deviations)
+    marks: list[Mark] = []
+    for i, name in enumerate(names):
+        paint = Paint(palette.BODIES[i], paper.SERIES[i])
+        places = np.column_stack([trajectory.seconds, rows[:, i]])
+        gid = f"{quantity.partition(',')[0].replace(' ', '_')}_{name}"
+        if len(trajectory) == 1:  # a line through one point is not seen
+            marks.append(Points(gid, paint, places, legend=name))
+        else:
+            marks.append(Lines(gid, paint, [places], width=1.9, dash=_DASHES[i], legend=name))
+        if deviations is not None:
+            low, high = places - [0.0, 1.0] * half[:, i, None], places + [0.0, 1.0] * half[:, i, None]
+            legend = f"{name} ± {DEVIATIONS:g} deviations"
+            band = np.vstack([low, high[::-1]])
+            marks.append(Faces(f"{gid}_band", paint, band, opacity=0.25, legend=legend))
+    everything = np.concatenate([rows, rows - half, rows + half])
+    axes = (
+        _axis("time after the state, s", trajectory.seconds),
+        _axis(quantity, everything[np.isfinite(everything)]),
+    )
+    return Diagram(marks=marks, axes=axes, is_equal=False)
+
+
+def _axis(name: str, values: FloatArray) -> Axis:
+    """Return an axis that has room about values. It does not magnify rounding."""
+    low, high = float(values.min()), float(values.max())
+    margin = max(_MARGIN * (high - low), _ROUNDING * max(abs(low), abs(high))) or 1.0
+    return Axis(name, low - margin, high + margin)

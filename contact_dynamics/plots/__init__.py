@@ -5,36 +5,33 @@ functions draws one diagram into the `Axes` that it is given. What it draws are 
 `contact_dynamics.diagrams`, which the viewer draws too. `contact_dynamics.plots` can be imported without
 Matplotlib, which the extra ``[plot]`` brings.
 
-In reading order: how marks are drawn (`drawing`, `style`), the diagrams (`draw`), lecture 25's curves
-(`trajectory`), all diagrams of an answer as
-figures (`figures`), what the physics returns as figures (`results`), and the command `contact-dynamics plot`
+In reading order: how marks are drawn (`drawing`), the diagrams (`draw`), all diagrams of an answer as figures
+(`figures`), what the physics returns as figures (`results`), and the command `contact-dynamics plot`
 (`arguments`, `run`).
 """
 
 from contact_dynamics.plots.draw import (
+    draw_angular_momentum,
+    draw_angular_velocity,
+    draw_attitude,
     draw_contact_forces,
+    draw_energy,
     draw_event_tree,
     draw_force_dual,
     draw_impulse_space,
     draw_impulse_space_in_3d,
     draw_many_states,
     draw_mode_map,
+    draw_momentum,
     draw_planar_scene,
     draw_poinsot,
-    draw_toss,
-)
-from contact_dynamics.plots.figures import figures_of
-from contact_dynamics.plots.results import modes, toss
-from contact_dynamics.plots.style import save_figure
-from contact_dynamics.plots.trajectory import (
-    draw_angular_momentum,
-    draw_angular_velocity,
-    draw_attitude,
-    draw_energy,
-    draw_momentum,
     draw_position,
+    draw_toss,
     draw_velocity,
 )
+from contact_dynamics.plots.drawing import save_figure
+from contact_dynamics.plots.figures import figures_of
+from contact_dynamics.plots.results import modes, toss
 
 __all__ = [
     "draw_angular_momentum",

@@ -15,6 +15,12 @@ from contact_dynamics.diagrams.poinsot import poinsot_diagram
 from contact_dynamics.diagrams.shape import NO_FACES
 from contact_dynamics.diagrams.toss_scene import toss_marks
 from contact_dynamics.diagrams.toss_tree import event_tree
+from contact_dynamics.diagrams.trajectory_curves import (
+    angular_momenta_of,
+    energies_of,
+    momenta_of,
+    over_time,
+)
 from contact_dynamics.plots.drawing import draw_diagram, draw_seen
 
 if TYPE_CHECKING:
@@ -27,12 +33,14 @@ if TYPE_CHECKING:
     from contact_dynamics.diagrams.marks import Diagram
     from contact_dynamics.diagrams.shape import Shape
     from contact_dynamics.diagrams.wrench_chart import ForceDualChart, WrenchChart
+    from contact_dynamics.motion.covariance import CarriedCovariance
     from contact_dynamics.plane.types import PlanarContact, PlanarWrench
     from contact_dynamics.questions.impact_answer import ImpactAnswer
     from contact_dynamics.questions.many import ManyImpactsAnswer, ManyTumblingsAnswer
     from contact_dynamics.questions.toss import TossAnswer
     from contact_dynamics.rigid_body.body import BodyState, HasMassProperties
     from contact_dynamics.toss import Toss, TossDistribution
+    from contact_dynamics.tumbling import Trajectory
     from contact_dynamics.tumbling.poinsot_construction import Poinsot, RollingCurves
     from contact_dynamics.validation import FloatArray
 
@@ -186,3 +194,52 @@ def draw_many_states(
         up: the one upwards.
     """
     draw_seen(axes, many_states_marks(NO_FACES, answer), across=across, up=up)
+
+
+def draw_position(axes: Axes, trajectory: Trajectory, *, covariance: CarriedCovariance | None = None) -> None:
+    """Draw the position of the centre of mass, m, with bands of two deviations if there is a covariance."""
+    deviations = None
+    if covariance is not None:
+        variances = np.diagonal(covariance.covariances[:, :3, :3], axis1=1, axis2=2)
+        deviations = np.sqrt(np.maximum(variances, 0.0))
+    draw_diagram(axes, over_time(trajectory, trajectory.p_WB_W, "position, m", deviations=deviations))
+
+
+def draw_attitude(axes: Axes, trajectory: Trajectory) -> None:
+    """Draw the orientation as the components of its unit quaternion, body to world."""
+    draw_diagram(axes, over_time(trajectory, trajectory.q_WB, "orientation, unit quaternion", "xyzw"))
+
+
+def draw_velocity(axes: Axes, trajectory: Trajectory) -> None:
+    """Draw the velocity of the centre of mass, m/s."""
+    draw_diagram(axes, over_time(trajectory, trajectory.v_WB_W, "velocity, m/s"))
+
+
+def draw_angular_velocity(axes: Axes, trajectory: Trajectory) -> None:
+    """Draw the angular velocity, rad/s."""
+    draw_diagram(axes, over_time(trajectory, trajectory.w_WB_W, "angular velocity, rad/s"))
+
+
+def draw_momentum(axes: Axes, trajectory: Trajectory, body: HasMassProperties) -> None:
+    """Draw the momentum, kg m/s."""
+    momenta = momenta_of(body.mass_properties, trajectory)
+    draw_diagram(axes, over_time(trajectory, momenta, "momentum, kg m/s"))
+
+
+def draw_angular_momentum(axes: Axes, trajectory: Trajectory, body: HasMassProperties) -> None:
+    """Draw the angular momentum about the centre of mass, kg m²/s."""
+    momenta = angular_momenta_of(body.mass_properties, trajectory)
+    draw_diagram(axes, over_time(trajectory, momenta, "angular momentum, kg m²/s"))
+
+
+def draw_energy(
+    axes: Axes, trajectory: Trajectory, body: HasMassProperties, *, gravity_W: FloatArray
+) -> None:
+    """Draw the kinetic energies, the potential energy and their sum, J.
+
+    ``gravity_W`` is (3,), m/s^2. The potential energy is zero at the origin of the world.
+    """
+    energies = energies_of(body.mass_properties, trajectory, gravity_W=gravity_W)
+    rows = np.column_stack([energies.translational, energies.rotational, energies.potential, energies.total])
+    names = ("translation", "rotation", "potential", "sum")
+    draw_diagram(axes, over_time(trajectory, rows, "energy, J", names))

@@ -1,22 +1,26 @@
-"""Draws diagrams and their marks with Matplotlib."""
+"""Draws diagrams and their marks with Matplotlib, and writes figures into files."""
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
 from contact_dynamics.diagrams.marks import Arrows, Faces, Labels, Lines, Points, Regions, mapped
 from contact_dynamics.diagrams.paper import AXIS, BLACK
-from contact_dynamics.plots.style import legend_beside
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
     from contact_dynamics.diagrams.marks import Diagram, Mark
     from contact_dynamics.validation import FloatArray
+
+DOTS_PER_INCH: Final = 130
+"""The resolution of PNG files."""
 
 _ROOM: Final = 8.0  # points between the numbers of an axis in three dimensions and its name
 _TICKS: Final = 4  # numbers on each axis there, few enough not to cover each other
@@ -37,7 +41,7 @@ def draw_diagram(axes: Any, diagram: Diagram, *, title: str | None = None) -> No
     if not in_space:
         for name, line in zip(names, (axes.axvline, axes.axhline), strict=True):
             axis = diagram.axes["xy".index(name)]
-            if axis.ticks is None and axis.low < 0.0 < axis.high:
+            if diagram.is_equal and axis.ticks is None and axis.low < 0.0 < axis.high:
                 line(0.0, color=AXIS, linewidth=1.0, zorder=0.5)
     draw_marks(axes, diagram.marks)
     for name, axis in zip(names, diagram.axes, strict=True):
@@ -55,8 +59,10 @@ def draw_diagram(axes: Any, diagram: Diagram, *, title: str | None = None) -> No
         axes.view_init(elev=20.0, azim=-60.0)
     if diagram.is_equal:
         axes.set_aspect("equal")
+    else:
+        axes.grid(visible=True, color=AXIS, linewidth=0.6)
     axes.set_title(diagram.title if title is None else title)
-    legend_beside(axes, columns=1 + (len(axes.get_legend_handles_labels()[0]) - 1) // _ROWS)
+    _legend_beside(axes)
 
 
 def draw_seen(axes: Axes, marks: Sequence[Mark], *, across: str, up: str) -> None:
@@ -67,7 +73,37 @@ def draw_seen(axes: Axes, marks: Sequence[Mark], *, across: str, up: str) -> Non
     axes.set_ylabel(f"{up}, m")
     axes.set_aspect("equal", adjustable="datalim")
     axes.grid(visible=True, color=AXIS, linewidth=0.6)
-    legend_beside(axes)
+    _legend_beside(axes)
+
+
+def _legend_beside(axes: Axes) -> None:
+    """Put the legend to the right of the diagram, where it covers nothing.
+
+    Figures with ``layout="compressed"`` leave room for it.
+    """
+    entries = len(axes.get_legend_handles_labels()[0])
+    axes.legend(
+        loc="upper left",
+        bbox_to_anchor=(1.12 if axes.name == "3d" else 1.02, 1.0),
+        borderaxespad=0.0,
+        frameon=False,
+        fontsize="small",
+        ncols=1 + (entries - 1) // _ROWS,
+    )
+
+
+def save_figure(figure: Figure, path: Path | str) -> None:
+    """Write a figure into a file, in the format that its name ends with.
+
+    Words stay words in SVG, so that they can be searched and read aloud, and the same figure gives the same
+    file.
+    """
+    from matplotlib import rc_context
+
+    path = Path(path)
+    options = {"metadata": {"Date": None}} if path.suffix == ".svg" else {"dpi": DOTS_PER_INCH}
+    with rc_context({"svg.fonttype": "none", "svg.hashsalt": path.name}):
+        figure.savefig(path, **options)
 
 
 def draw_marks(axes: Any, marks: Sequence[Mark]) -> None:
@@ -113,7 +149,8 @@ def _draw(axes: Any, mark: Mark, common: dict[str, Any]) -> None:  # noqa: C901 
                 return
             from matplotlib.collections import PolyCollection
 
-            axes.add_collection(PolyCollection(list(mark.corners[mark.fan]), **options, **common))
+            polygons = [mark.corners] if mark.triangles is None else list(mark.corners[mark.fan])
+            axes.add_collection(PolyCollection(polygons, **options, **common))
         case Regions():
             from matplotlib.colors import to_rgb
             from matplotlib.patches import Rectangle

@@ -8,24 +8,22 @@ from contact_dynamics.diagrams.planar_modes import dual_chart_of, map_of_answer,
 from contact_dynamics.diagrams.planar_scene import silhouette
 from contact_dynamics.diagrams.shape import drawn_shape
 from contact_dynamics.plots.draw import (
+    draw_angular_momentum,
+    draw_angular_velocity,
+    draw_attitude,
     draw_contact_forces,
+    draw_energy,
     draw_event_tree,
     draw_force_dual,
     draw_impulse_space,
     draw_impulse_space_in_3d,
     draw_many_states,
     draw_mode_map,
+    draw_momentum,
     draw_planar_scene,
     draw_poinsot,
-    draw_toss,
-)
-from contact_dynamics.plots.trajectory import (
-    draw_angular_momentum,
-    draw_angular_velocity,
-    draw_attitude,
-    draw_energy,
-    draw_momentum,
     draw_position,
+    draw_toss,
     draw_velocity,
 )
 from contact_dynamics.questions.services import service_of

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Final
 
 from contact_dynamics.errors import ContactDynamicsError
 from contact_dynamics.plots.arguments import plot_parser
+from contact_dynamics.plots.drawing import save_figure
 from contact_dynamics.plots.figures import figures_of
-from contact_dynamics.plots.style import save_figure
 from contact_dynamics.replay.events import OK, UNREADABLE, StateCame, WorldChanged
 from contact_dynamics.replay.logged import LoggedEvents
 from contact_dynamics.shapes.convex import NO_SHAPE

@@ -10,7 +10,7 @@ import pytest
 
 pytest.importorskip("matplotlib", reason="matplotlib of requirements/test.txt is not installed")
 
-from matplotlib.collections import FillBetweenPolyCollection
+from matplotlib.collections import PolyCollection
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 
@@ -141,7 +141,7 @@ def test_bands_are_two_deviations_wide() -> None:
     answer = tumbling()
     assert answer.covariance is not None
     _, axes = drawn("position")
-    bands = [each for each in axes.collections if isinstance(each, FillBetweenPolyCollection)]
+    bands = [each for each in axes.collections if isinstance(each, PolyCollection)]
     assert len(bands) == 3
     for i, band in enumerate(bands):
         heights = band.get_paths()[0].vertices[:, 1]
