@@ -10,20 +10,31 @@ keeps what happens, and `result` has what is returned.
   and without restitution, as where contacts jam.
 - `mode_choice` chooses the next contact mode. It tries the present one first, corrects it, seeks pushes in
   friction cones (`cone_forces`), and asks `contact_modes` where there may be several modes.
-- `forces` has the accelerations in a mode, `flush` those of a body that slides on a face, and `phase`
-  integrates them (`phase_step`) until the mode ends. `holding` keeps contacts where they are, and the body
-  out of the flats.
+- `forces` has the accelerations in a mode, and keeps contacts where they are, and the body out of the flats.
+  `phase` integrates the accelerations until the mode ends.
 - Where strikes and modes lead to one another at one instant, a `short_step` passes over that.
 
 What is not known exactly (`uncertainty`) is sampled: `sampled` is the call, and `distribution` has what it
 returns. `next_strikes` has the next strikes of all samples at once, and `law_spread` what the law of impact
 leaves open. `to_rest` has samples on their way to rest, each as a toss of its own, which several processes
 can share. `laid_flat` ends their rattling on a face.
+
+The modules with a `.pxd` are parts of the compiled core, which has `vectors` of its own.
 """
 
-from contact_dynamics.toss.distribution import TossDistribution
-from contact_dynamics.toss.one_toss import toss
-from contact_dynamics.toss.result import (
+from contact_dynamics.numerics.compiled import import_core
+
+import_core(
+    "contact_dynamics.toss.vectors",
+    "contact_dynamics.toss.solid",
+    "contact_dynamics.toss.forces",
+    "contact_dynamics.toss.cone_forces",
+    "contact_dynamics.toss.phase",
+)
+
+from contact_dynamics.toss.distribution import TossDistribution  # noqa: E402  after the core
+from contact_dynamics.toss.one_toss import toss  # noqa: E402  after the core
+from contact_dynamics.toss.result import (  # noqa: E402  after the core
     Toss,
     TossEnd,
     TossEnergy,
@@ -32,9 +43,9 @@ from contact_dynamics.toss.result import (
     Undecided,
     UndecidedReason,
 )
-from contact_dynamics.toss.sampled import sampled_toss
-from contact_dynamics.toss.uncertainty import TossUncertainty
-from contact_dynamics.validation_types import check_types_of
+from contact_dynamics.toss.sampled import sampled_toss  # noqa: E402  after the core
+from contact_dynamics.toss.uncertainty import TossUncertainty  # noqa: E402  after the core
+from contact_dynamics.validation_types import check_types_of  # noqa: E402  after the core
 
 __all__ = [
     "Toss",

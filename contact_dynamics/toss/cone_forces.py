@@ -9,23 +9,25 @@ and f_t is against m_t with mu f_n where m_t is not zero. A contact that slides 
 known direction. The method is block Gauss-Seidel: the problem of one contact is solved exactly, in turn,
 until no push changes (Moreau 1988). It does not find all solutions; `contact_modes` does. Where contacts jam,
 pushes of contacts against each other take ten thousands of sweeps, and their limit is sought (Anderson 1965).
+
+`cone_forces.pxd` gives the C types with which this file compiles.
 """
 
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Final, NamedTuple
+from array import array
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from contact_dynamics.numerics.vectors import Vector3, cross, norm
 from contact_dynamics.tolerances import CONE_SWEEPS_CONVERGED, FORCE_ROUNDING, SWEEPS_CHANGE_ALIKE
-from contact_dynamics.toss.solid import as_rows, responses, times
+from contact_dynamics.toss import vectors as vec
+from contact_dynamics.toss.forces import Equations
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from contact_dynamics.toss.solid import Matrix3
+    from contact_dynamics.numerics.vectors import Vector3
+    from contact_dynamics.toss.solid import Flat, Pose
 
 MAX_SWEEPS: Final = 400
 """Sweeps over all contacts after which the problem counts as not solved. Four corners need some fifty."""
@@ -46,193 +48,240 @@ _DIRECTIONS: Final = 48
 """Directions that are tried where these steps do not find it."""
 
 
-class Site(NamedTuple):
-    """A contact in one such problem, in contact axes: two tangents and the normal.
-
-    Attributes:
-        arm: m, world axes, from the centre of mass.
-        axes: The two tangents and the normal, unit, world axes.
-        friction: Coulomb's mu.
-        motion: The contact's velocity or acceleration without any push, contact axes.
-        sliding: The unit direction in which it slides already, by the two tangents, or None.
-    """
-
-    arm: Vector3
-    axes: Matrix3
-    friction: float
-    motion: Vector3
-    sliding: tuple[float, float] | None
+_WIDTH: Final = 10  # numbers of a contact in `ConeForces`
 
 
-def cone_forces(
-    per_mass: float, inverse: Matrix3, sites: list[Site], *, enough: float = 0.0
-) -> tuple[list[Vector3], list[Vector3]] | None:
-    """Return the pushes and the contacts' motions with them, in contact axes, or None if none were found.
+class ConeForces:
+    """Contacts in one such problem, in contact axes: two tangents and the normal."""
 
-    Args:
-        per_mass: 1/kg.
-        inverse: (3, 3), 1/(kg m^2), the inverse inertia in world axes.
-        sites: The contacts.
-        enough: Relative to the largest motion. If it is not 0, the limit of many sweeps is sought, as where
-            contacts jam. A sweep that changes less is the last then, where pushes of contacts against each
-            other creep on. The limit need not be one that sweeps would come to by themselves.
-    """
-    n = len(sites)
-    rows = [[(axis, cross(site.arm, axis)) for axis in site.axes] for site in sites]
-    turning = [[(axis, times(inverse, moment)) for axis, moment in row] for row in rows]
-    response = [[as_rows(responses(per_mass, row, turned)) for turned in turning] for row in rows]
-    pushes: list[Vector3] = [(0.0, 0.0, 0.0)] * n
-    motions: list[Vector3] = [site.motion for site in sites]
-    scale = max(map(norm, motions), default=0.0)
-    if scale == 0.0:
-        return pushes, motions
-    seen: list[list[Vector3]] = []
-    for sweep in range(_MAX_FURTHER_SWEEPS if enough > 0.0 else MAX_SWEEPS):
-        change = _sweep(response, sites, pushes, motions)
-        if change <= CONE_SWEEPS_CONVERGED * scale:
-            return (pushes, motions) if _lowest(motions) >= -FORCE_ROUNDING * scale else None
-        if sweep < PLAIN_SWEEPS or enough == 0.0:
-            continue
-        seen.append(list(pushes))
-        if len(seen) > FURTHER_SWEEPS:
-            if max(change, -_lowest(motions)) <= enough * scale:
-                return pushes, motions
-            pushes = _limit(seen)
-            motions = _moved(response, pushes, sites)
-            seen = [pushes]
-    return None
+    def __init__(self, most: int) -> None:
+        self.count = 0
+        self.equations = Equations(3 * most)
+        # Each contact has ten numbers: its friction, the direction in which it slides already, by the two
+        # tangents, whether it does, its motion without any push, and its push.
+        self.numbers = array("d", bytes(8 * _WIDTH * most))
+        self.motions = array("d", bytes(8 * 3 * most))
 
+    def add(self, pose: Pose, arm: Vector3, flat: Flat, velocity: Vector3, rise: float) -> None:
+        """Add a contact.
 
-def _sweep(
-    response: list[list[Matrix3]], sites: list[Site], pushes: list[Vector3], motions: list[Vector3]
-) -> float:
-    """Solve the problem of each contact in turn, and return the largest change of a contact's own motion."""
-    change = 0.0
-    for i, site in enumerate(sites):
-        own = response[i][i]
-        back = times(own, pushes[i])
-        m = motions[i]
-        alone = (m[0] - back[0], m[1] - back[1], m[2] - back[2])
-        push = _one(own, alone, site)
-        old = pushes[i]
-        step = (push[0] - old[0], push[1] - old[1], push[2] - old[2])
-        if step == (0.0, 0.0, 0.0):
-            continue
-        pushes[i] = push
-        for j in range(len(sites)):
-            x, y, z = times(response[j][i], step)
-            u, v, w = motions[j]
-            motions[j] = (u + x, v + y, w + z)
-            if j == i:
-                change = max(change, abs(x), abs(y), abs(z))
-    return change
+        Args:
+            pose: The body's pose.
+            arm: m, world axes, from the centre of mass.
+            flat: What it touches.
+            velocity: The contact's velocity or acceleration without any push, world axes.
+            rise: What is added to its normal component.
+        """
+        t1, t2 = flat.tangents
+        n, x, k = flat.normal, self.numbers, _WIDTH * self.count
+        self.equations.add(pose, arm, t1, t1, 0.0)
+        self.equations.add(pose, arm, t2, t2, 0.0)
+        self.equations.add(pose, arm, n, n, 0.0)
+        x[k], x[k + 1], x[k + 2], x[k + 3] = flat.friction, 0.0, 0.0, 0.0
+        x[k + 4], x[k + 5], x[k + 6] = (
+            vec.dot(velocity, t1),
+            vec.dot(velocity, t2),
+            vec.dot(velocity, n) + rise,
+        )
+        x[k + 7] = x[k + 8] = x[k + 9] = 0.0
+        self.count += 1
 
+    def slide(self, x: float, y: float) -> None:
+        """Have the contact that was added last slide in a unit direction, by the two tangents."""
+        k = _WIDTH * (self.count - 1)
+        self.numbers[k + 1], self.numbers[k + 2], self.numbers[k + 3] = x, y, 1.0
 
-def _lowest(motions: list[Vector3]) -> float:
-    return min(motion[2] for motion in motions)
+    def push(self, i: int) -> Vector3:
+        """Return the push of a contact, contact axes."""
+        k = _WIDTH * i + 7
+        return (self.numbers[k], self.numbers[k + 1], self.numbers[k + 2])
 
+    def motion(self, i: int) -> Vector3:
+        """Return the motion of a contact with all pushes, contact axes."""
+        return (self.motions[3 * i], self.motions[3 * i + 1], self.motions[3 * i + 2])
 
-def _limit(seen: list[list[Vector3]]) -> list[Vector3]:
-    """Return the limit of sweeps from the pushes after each of them (Anderson 1965)."""
-    after = np.array(seen).reshape(len(seen), -1)
-    changes = np.diff(after, axis=0)
-    last, turns = changes[-1], np.diff(changes, axis=0)
-    shares = np.linalg.lstsq(turns.T, last, rcond=SWEEPS_CHANGE_ALIKE)[0]
-    found = after[-1] - shares @ changes[1:]
-    return [(x, y, z) for x, y, z in found.reshape(-1, 3).tolist()]
+    def alone(self, i: int) -> Vector3:
+        """Return the motion of a contact without any push, contact axes."""
+        k = _WIDTH * i + 4
+        return (self.numbers[k], self.numbers[k + 1], self.numbers[k + 2])
 
+    def solve(self, per_mass: float, enough: float) -> bool:
+        """Find the pushes and the contacts' motions with them, and return whether they were found.
 
-def _moved(response: list[list[Matrix3]], pushes: list[Vector3], sites: list[Site]) -> list[Vector3]:
-    """Return the motions of contacts with these pushes."""
-    moved = []
-    for row, site in zip(response, sites, strict=True):
-        u, v, w = site.motion
-        for block, push in zip(row, pushes, strict=True):
-            x, y, z = times(block, push)
-            u, v, w = u + x, v + y, w + z
-        moved.append((u, v, w))
-    return moved
+        Args:
+            per_mass: 1/kg.
+            enough: Relative to the largest motion. If it is not 0, the limit of many sweeps is sought, as
+                where contacts jam. A sweep that changes less is the last then, where pushes of contacts
+                against each other creep on. The limit need not be one that sweeps would come to by
+                themselves.
+        """
+        self.equations.respond(per_mass)
+        scale = 0.0
+        for i in range(self.count):
+            scale = max(scale, vec.norm(self.alone(i)))
+        self._move()
+        if scale == 0.0:
+            return True
+        seen: list[list[float]] = []
+        for sweep in range(_MAX_FURTHER_SWEEPS if enough > 0.0 else MAX_SWEEPS):
+            change = self._sweep()
+            if change <= CONE_SWEEPS_CONVERGED * scale:
+                return self._lowest() >= -FORCE_ROUNDING * scale
+            if sweep < PLAIN_SWEEPS or enough == 0.0:
+                continue
+            seen.append([x for i in range(self.count) for x in self.push(i)])
+            if len(seen) > FURTHER_SWEEPS:
+                if max(change, -self._lowest()) <= enough * scale:
+                    return True
+                seen = [self._go_to_limit(seen)]
+        return False
 
+    def _sweep(self) -> float:
+        """Solve the problem of each contact in turn, and return the largest change of its own motion."""
+        change, n, m = 0.0, 3 * self.count, self.equations.matrix
+        for i in range(self.count):
+            old, now = self.push(i), self.motion(i)
+            k = 3 * i * n + 3 * i
+            x = m[k] * old[0] + m[k + 1] * old[1] + m[k + 2] * old[2]
+            y = m[k + n] * old[0] + m[k + n + 1] * old[1] + m[k + n + 2] * old[2]
+            z = m[k + 2 * n] * old[0] + m[k + 2 * n + 1] * old[1] + m[k + 2 * n + 2] * old[2]
+            push = self._one(i, (now[0] - x, now[1] - y, now[2] - z))
+            u, v, w = push[0] - old[0], push[1] - old[1], push[2] - old[2]
+            if u == 0.0 and v == 0.0 and w == 0.0:
+                continue
+            k = _WIDTH * i + 7
+            self.numbers[k], self.numbers[k + 1], self.numbers[k + 2] = push[0], push[1], push[2]
+            for j in range(n):
+                k = j * n + 3 * i
+                moved = m[k] * u + m[k + 1] * v + m[k + 2] * w
+                self.motions[j] += moved
+                if 3 * i <= j < 3 * i + 3:
+                    change = max(change, abs(moved))
+        return change
 
-def _one(own: Matrix3, m: Vector3, site: Site) -> Vector3:
-    """Return the push of one contact that has the motion ``m`` without it."""
-    if m[2] >= 0.0:
-        return (0.0, 0.0, 0.0)
-    mu = site.friction
-    (a, b, c), (_, d, e), (_, _, f) = own
-    if site.sliding is not None:
-        x, y = site.sliding
-        rate = f - mu * (c * x + e * y)
-        p = -m[2] / rate if rate > 0.0 else 0.0
-        return (-mu * p * x, -mu * p * y, p)
-    # Does it stick?  The block is symmetric and positive definite.
-    A, B, C = d * f - e * e, c * e - b * f, b * e - c * d
-    D, E, F = a * f - c * c, b * c - a * e, a * d - b * b
-    det = a * A + b * B + c * C
-    x = -(A * m[0] + B * m[1] + C * m[2]) / det
-    y = -(B * m[0] + D * m[1] + E * m[2]) / det
-    z = -(C * m[0] + E * m[1] + F * m[2]) / det
-    if z > 0.0 and math.hypot(x, y) <= mu * z:
-        return (x, y, z)
-    if mu == 0.0:
-        return (0.0, 0.0, -m[2] / f)
-    return _sliding(own, m, mu, (x, y))
+    def _lowest(self) -> float:
+        least = self.motions[2]
+        for i in range(self.count):
+            least = min(least, self.motions[3 * i + 2])
+        return least
 
+    def _go_to_limit(self, seen: list[list[float]]) -> list[float]:
+        """Go to the limit of sweeps, from the pushes after each of them (Anderson 1965), and return it."""
+        after = np.array(seen)
+        changes = np.diff(after, axis=0)
+        last, turns = changes[-1], np.diff(changes, axis=0)
+        shares = np.linalg.lstsq(turns.T, last, rcond=SWEEPS_CHANGE_ALIKE)[0]
+        found: list[float] = (after[-1] - shares @ changes[1:]).tolist()
+        for j in range(3 * self.count):
+            self.numbers[_WIDTH * (j // 3) + 7 + j % 3] = found[j]
+        self._move()
+        return found
 
-def _sliding(own: Matrix3, m: Vector3, mu: float, hold: tuple[float, float]) -> Vector3:
-    """Return the push of one contact that friction does not hold: a direction that its motion keeps.
+    def _move(self) -> None:
+        """Find the motions of contacts with their pushes."""
+        n, m = 3 * self.count, self.equations.matrix
+        for j in range(n):
+            motion = self.numbers[_WIDTH * (j // 3) + 4 + j % 3]
+            for i in range(self.count):
+                push, k = self.push(i), j * n + 3 * i
+                motion += m[k] * push[0] + m[k + 1] * push[1] + m[k + 2] * push[2]
+            self.motions[j] = motion
 
-    The direction d solves: the tangential motion with the push p (n - mu d) is along d. Newton's steps on the
-    angle start from the motion against the force that would hold it.
-    """
-    (a, b, c), (_, d, e), (_, _, f) = own
+    def _block(self, i: int) -> tuple[float, float, float, float, float, float]:
+        """Return the response of a contact to its own push: the entries from the diagonal on, by rows."""
+        n, m = 3 * self.count, self.equations.matrix
+        k = 3 * i * n + 3 * i
+        return (m[k], m[k + 1], m[k + 2], m[k + n + 1], m[k + n + 2], m[k + 2 * n + 2])
 
-    def pushed(x: float, y: float) -> tuple[float, float, float]:
-        """Return the normal push with friction against a direction, or 0, and the motion with it."""
-        rate = f - mu * (c * x + e * y)
-        p = -m[2] / rate if rate > 0.0 else 0.0
-        return p, m[0] + p * (c - mu * (a * x + b * y)), m[1] + p * (e - mu * (b * x + d * y))
-
-    angle = math.atan2(-hold[1], -hold[0]) if hold != (0.0, 0.0) else math.atan2(m[1], m[0])
-    for _ in range(_MAX_TURNS):
-        x, y = math.cos(angle), math.sin(angle)
-        p, u, v = pushed(x, y)
-        if p == 0.0:
-            break
-        turn = math.atan2(x * v - y * u, x * u + y * v)
-        if abs(turn) <= CONE_SWEEPS_CONVERGED:
+    def _one(self, i: int, m: Vector3) -> Vector3:
+        """Return the push of one contact that has the motion ``m`` without it."""
+        if m[2] >= 0.0:
+            return (0.0, 0.0, 0.0)
+        k = _WIDTH * i
+        mu = self.numbers[k]
+        a, b, c, d, e, f = self._block(i)
+        if self.numbers[k + 3] != 0.0:
+            x, y = self.numbers[k + 1], self.numbers[k + 2]
+            rate = f - mu * (c * x + e * y)
+            p = -m[2] / rate if rate > 0.0 else 0.0
             return (-mu * p * x, -mu * p * y, p)
-        # The derivative of u, v and of p by the angle.
-        rate = -m[2] / p
-        p_turn = p * mu * (e * x - c * y) / rate
-        u_turn = p_turn * (c - mu * (a * x + b * y)) + p * mu * (a * y - b * x)
-        v_turn = p_turn * (e - mu * (b * x + d * y)) + p * mu * (b * y - d * x)
-        size = u * u + v * v
-        slope = (u * v_turn - v * u_turn) / size - 1.0 if size > 0.0 else -1.0
-        step = -turn / slope if slope < 0.0 else turn
-        angle += max(-1.0, min(1.0, step))
-    return _sliding_by_halves(pushed, mu) or (0.0, 0.0, -m[2] / f)
+        # Does it stick?  The block is symmetric and positive definite.
+        A, B, C = d * f - e * e, c * e - b * f, b * e - c * d
+        D, E, F = a * f - c * c, b * c - a * e, a * d - b * b
+        det = a * A + b * B + c * C
+        x = -(A * m[0] + B * m[1] + C * m[2]) / det
+        y = -(B * m[0] + D * m[1] + E * m[2]) / det
+        z = -(C * m[0] + E * m[1] + F * m[2]) / det
+        if z > 0.0 and math.sqrt(x * x + y * y) <= mu * z:
+            return (x, y, z)
+        if mu == 0.0:
+            return (0.0, 0.0, -m[2] / f)
+        return self._slide(i, m, x, y)
 
+    def _against(self, i: int, m: Vector3, x: float, y: float) -> Vector3:
+        """Return the normal push with friction against a direction, or 0, and the tangential motion."""
+        a, b, c, d, e, f = self._block(i)
+        mu = self.numbers[_WIDTH * i]
+        rate = f - mu * (c * x + e * y)
+        p = -m[2] / rate if rate > 0.0 else 0.0
+        return (p, m[0] + p * (c - mu * (a * x + b * y)), m[1] + p * (e - mu * (b * x + d * y)))
 
-def _sliding_by_halves(
-    pushed: Callable[[float, float], tuple[float, float, float]], mu: float
-) -> Vector3 | None:
-    """Return the push with friction against a direction that the motion keeps, from directions all around."""
+    def _slide(self, i: int, m: Vector3, hold_x: float, hold_y: float) -> Vector3:
+        """Return the push of one contact that friction does not hold: a direction that its motion keeps.
 
-    def across(angle: float) -> tuple[float, float, Vector3]:
-        x, y = math.cos(angle), math.sin(angle)
-        p, u, v = pushed(x, y)
-        return x * v - y * u, (x * u + y * v if p > 0.0 else -1.0), (-mu * p * x, -mu * p * y, p)
-
-    found = [across(2.0 * math.pi * k / _DIRECTIONS) for k in range(_DIRECTIONS + 1)]
-    for k in range(_DIRECTIONS):
-        (left, ahead, push), (right, further, _) = found[k], found[k + 1]
-        if left * right > 0.0 or ahead < 0.0 or further < 0.0:
-            continue
-        low, high = 2.0 * math.pi * k / _DIRECTIONS, 2.0 * math.pi * (k + 1) / _DIRECTIONS
+        The direction d solves: the tangential motion with the push p (n - mu d) is along d. Newton's steps on
+        the angle start from the motion against the force that would hold it.
+        """
+        a, b, c, d, e, _ = self._block(i)
+        mu = self.numbers[_WIDTH * i]
+        angle = math.atan2(m[1], m[0])
+        if hold_x != 0.0 or hold_y != 0.0:
+            angle = math.atan2(-hold_y, -hold_x)
         for _ in range(_MAX_TURNS):
-            middle = 0.5 * (low + high)
-            value, _, push = across(middle)
-            low, high = (middle, high) if value * left > 0.0 else (low, middle)
-        return push
-    return None
+            x, y = math.cos(angle), math.sin(angle)
+            p, u, v = self._against(i, m, x, y)
+            if p == 0.0:
+                break
+            turn = math.atan2(x * v - y * u, x * u + y * v)
+            if abs(turn) <= CONE_SWEEPS_CONVERGED:
+                return (-mu * p * x, -mu * p * y, p)
+            # The derivative of u, v and of p by the angle.
+            rate = -m[2] / p
+            p_turn = p * mu * (e * x - c * y) / rate
+            u_turn = p_turn * (c - mu * (a * x + b * y)) + p * mu * (a * y - b * x)
+            v_turn = p_turn * (e - mu * (b * x + d * y)) + p * mu * (b * y - d * x)
+            size = u * u + v * v
+            slope = (u * v_turn - v * u_turn) / size - 1.0 if size > 0.0 else -1.0
+            step = -turn / slope if slope < 0.0 else turn
+            angle += max(-1.0, min(1.0, step))
+        return self._slide_by_halves(i, m)
+
+    def _across(self, i: int, m: Vector3, angle: float) -> Vector3:
+        """Return how far the motion is to the left of a direction, and along it, and the normal push."""
+        x, y = math.cos(angle), math.sin(angle)
+        p, u, v = self._against(i, m, x, y)
+        return (x * v - y * u, x * u + y * v if p > 0.0 else -1.0, p)
+
+    def _slide_by_halves(self, i: int, m: Vector3) -> Vector3:
+        """Return the push with friction against a direction that the motion keeps, or without friction.
+
+        Directions all around are tried.
+        """
+        turn = 2.0 * math.pi / _DIRECTIONS
+        mu = self.numbers[_WIDTH * i]
+        found = self._across(i, m, 0.0)
+        for k in range(_DIRECTIONS):
+            before, found = found, self._across(i, m, (k + 1) * turn)
+            if before[0] * found[0] > 0.0 or before[1] < 0.0 or found[1] < 0.0:
+                continue
+            low, high, middle = k * turn, (k + 1) * turn, k * turn
+            p = before[2]
+            for _ in range(_MAX_TURNS):
+                middle = 0.5 * (low + high)
+                value, _, p = self._across(i, m, middle)
+                if value * before[0] > 0.0:
+                    low = middle
+                else:
+                    high = middle
+            return (-mu * p * math.cos(middle), -mu * p * math.sin(middle), p)
+        return (0.0, 0.0, -m[2] / self._block(i)[5])

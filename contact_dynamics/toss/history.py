@@ -9,6 +9,7 @@ import numpy as np
 
 from contact_dynamics.constants import ns_after
 from contact_dynamics.tolerances import DISTANCE_TOLERANCE
+from contact_dynamics.toss import vectors as vec
 from contact_dynamics.toss.result import (
     Piece,
     Toss,
@@ -25,9 +26,8 @@ from contact_dynamics.toss.solid import (
     kinetic_energy_of,
     numbers_of,
     points_of,
-    rows_at,
+    pose_of,
     state_of,
-    transposed_times,
 )
 
 if TYPE_CHECKING:
@@ -109,7 +109,8 @@ class History:
         """Return the normal of the flat on which the body rests, body axes, or zero if it moves."""
         if not self.resting:
             return (0.0, 0.0, 0.0)
-        return transposed_times(rows_at(self.y), self.solid.flats[self.resting[0][0]].normal)
+        rows = pose_of(self.solid, self.y).rows
+        return vec.transposed_times(rows, self.solid.flats[self.resting[0][0]].normal)
 
     def touching_now(self, leaving: float) -> list[Touch]:
         """Return the contacts that touch and do not leave faster than ``leaving``, m/s."""

@@ -23,18 +23,10 @@ from contact_dynamics.impact.several.result import SeveralContactsLaw, SeveralVe
 from contact_dynamics.impact.several.tied import next_to_strike, strike_as_one
 from contact_dynamics.impact.spatial.path import OUTCOMES
 from contact_dynamics.impact.spatial.response import Strike, refuse
-from contact_dynamics.numerics.vectors import cross, dot, norm
 from contact_dynamics.tolerances import CONE_CREEPS, STRIKES, TIED_APPROACH
-from contact_dynamics.toss.cone_forces import Site, cone_forces
-from contact_dynamics.toss.solid import (
-    arm_of,
-    contacts_of,
-    pose_of,
-    properties_of,
-    state_of,
-    times,
-    velocity_of,
-)
+from contact_dynamics.toss import vectors as vec
+from contact_dynamics.toss.cone_forces import ConeForces
+from contact_dynamics.toss.solid import contacts_of, pose_of, properties_of, state_of
 
 if TYPE_CHECKING:
     from contact_dynamics.contact.contact import ContactSet
@@ -65,10 +57,9 @@ def routh(
 ) -> tuple[Numbers, Struck]:
     """Return the state after the impact at one contact, which approaches or jams (lecture 27)."""
     pose, flat = pose_of(solid, y), solid.flats[touch[0]]
-    (a, b, c), (d, e, f), (g, h, i) = solid.inertia
-    inertia, arm = (a, b, c, d, e, f, g, h, i), arm_of(solid, pose, touch)
+    arm = pose.arm(*touch)
     one = Strike(law)
-    one.body.take(solid.mass, inertia, (y[3], y[4], y[5], y[6]), arm, pose.v, pose.w)
+    one.body.take(solid.mass, solid.inertia, (y[3], y[4], y[5], y[6]), arm, pose.v, pose.w)
     outcome = one.strike(flat.normal, friction, flat.restitution, False, STRIKES)  # noqa: FBT003  as compiled
     if outcome < 0:
         refuse(one, STRIKES)
@@ -88,7 +79,7 @@ def next_in_turn(solid: Solid, y: Numbers, touching: list[Touch], rates: list[fl
     ``rates`` are the normal velocities, m/s, and some contact approaches.
     """
     fastest = min(rates)
-    tie = TIED_APPROACH * (norm((y[7], y[8], y[9])) + solid.reach * norm((y[10], y[11], y[12])))
+    tie = TIED_APPROACH * (vec.norm((y[7], y[8], y[9])) + solid.reach * vec.norm((y[10], y[11], y[12])))
     if sum(rate <= fastest + tie for rate in rates) < 2:
         return [touching[rates.index(fastest)]]
     contacts = _striking(solid, y, touching)
@@ -175,33 +166,28 @@ def inelastic_impact(
     ``room`` has the speeds, m/s, with which contacts may approach, as those do that are not down yet. Motions
     are relative to that.
     """
-    pose = pose_of(solid, y)
-    sites = []
-    for k, touch in enumerate(touching):
-        flat, arm = solid.flats[touch[0]], arm_of(solid, pose, touch)
-        velocity, axes = velocity_of(pose, arm), (*flat.tangents, flat.normal)
-        normal = dot(velocity, axes[2]) + (0.0 if room is None else room[k])
-        sites.append(
-            Site(arm, axes, flat.friction, (dot(velocity, axes[0]), dot(velocity, axes[1]), normal), None)
-        )
-    found = cone_forces(1.0 / solid.mass, pose.inverse, sites, enough=CONE_CREEPS)
-    if found is None:
+    pose, cones = pose_of(solid, y), ConeForces(len(touching))
+    for k, (surface, corner) in enumerate(touching):
+        arm = pose.arm(surface, corner)
+        rise = 0.0 if room is None else room[k]
+        cones.add(pose, arm, solid.flats[surface], pose.velocity(arm), rise)
+    if not cones.solve(1.0 / solid.mass, CONE_CREEPS):
         return None
-    pushes, motions = found
     after, impulses = list(y), []
-    for site, (p, q, r) in zip(sites, pushes, strict=True):
-        t1, t2, n = site.axes
+    for i, (surface, corner) in enumerate(touching):
+        p, q, r = cones.push(i)
+        n, (t1, t2) = solid.flats[surface].normal, solid.flats[surface].tangents
         impulse = (
             p * t1[0] + q * t2[0] + r * n[0],
             p * t1[1] + q * t2[1] + r * n[1],
             p * t1[2] + q * t2[2] + r * n[2],
         )
-        turning = times(pose.inverse, cross(site.arm, impulse))
+        turning = vec.times(pose.inverse, vec.cross(pose.arm(surface, corner), impulse))
         for k in range(3):
             after[7 + k] += impulse[k] / solid.mass
             after[10 + k] += turning[k]
         impulses.append(impulse)
-    return Inelastic(after, impulses, motions)
+    return Inelastic(after, impulses, [cones.motion(i) for i in range(len(touching))])
 
 
 def sure_impact(
@@ -210,7 +196,7 @@ def sure_impact(
     """Return the impact without restitution. Where none is found, friction is left out, or the body stops."""
     impact = inelastic_impact(solid, y, touching, room=room)
     if impact is None:
-        smooth = solid._replace(flats=tuple(flat._replace(friction=0.0) for flat in solid.flats))
+        smooth = solid.among(tuple([flat.with_frictions(0.0, 0.0, 0.0) for flat in solid.flats]))
         impact = inelastic_impact(smooth, y, touching, room=room)
     if impact is None:
         none = [(0.0, 0.0, 0.0)] * len(touching)

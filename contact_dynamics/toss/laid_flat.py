@@ -18,12 +18,8 @@ from typing import TYPE_CHECKING, Final, NamedTuple, TypeAlias
 from contact_dynamics.numerics.vectors import cross, dot, norm, tangents
 from contact_dynamics.rotations.one import normalised, product
 from contact_dynamics.tolerances import FACE_ROUNDING
-from contact_dynamics.toss.solid import (
-    heights_and_rates,
-    kinetic_energy_of,
-    rows_at,
-    transposed_times,
-)
+from contact_dynamics.toss import vectors as vec
+from contact_dynamics.toss.solid import heights_and_rates, kinetic_energy_of, pose_of
 
 if TYPE_CHECKING:
     from contact_dynamics.numerics.vectors import Vector3
@@ -75,7 +71,7 @@ def laid_flat(solid: Solid, y: Numbers, faces: Faces) -> Numbers | None:
     n, pressing = flat.normal, -dot(solid.gravity, flat.normal)
     if pressing <= 0.0:
         return None
-    rows = rows_at(y)
+    rows = pose_of(solid, y).rows
     v_n, w_n = dot(n, (y[7], y[8], y[9])), dot(n, (y[10], y[11], y[12]))
     along = (y[7] - v_n * n[0], y[8] - v_n * n[1], y[9] - v_n * n[2])
     turning = (w_n * n[0], w_n * n[1], w_n * n[2])
@@ -84,8 +80,8 @@ def laid_flat(solid: Solid, y: Numbers, faces: Faces) -> Numbers | None:
     # Friction at the ground moves the place where the weight is borne ahead of the mass centre.
     rests = (share * speed) ** 2 <= 2.0 * pressing * flat.friction * solid.settling
     ahead = 0.0 if rests else flat.friction / speed
-    lean = transposed_times(rows, (ahead * along[0], ahead * along[1], ahead * along[2]))
-    face = _face_below(solid, transposed_times(rows, n), lean, [corner for _, corner in near], faces)
+    lean = vec.transposed_times(rows, (ahead * along[0], ahead * along[1], ahead * along[2]))
+    face = _face_below(solid, vec.transposed_times(rows, n), lean, [corner for _, corner in near], faces)
     if face is None:
         return None
     stands = flat.level + face.high + solid.rounding
@@ -93,9 +89,7 @@ def laid_flat(solid: Solid, y: Numbers, faces: Faces) -> Numbers | None:
     rise = dot(n, (y[0], y[1], y[2])) - stands
     if max(rise, 0.0) + rattles / (solid.mass * pressing) > RATTLING * face.tipping:
         return None
-    (a, b, c), (d, e, f), (g, h, i) = rows
-    u, v, w = face.up
-    up = (a * u + b * v + c * w, d * u + e * v + f * w, g * u + h * v + i * w)
+    up = vec.times(rows, face.up)
     x, yy, z = cross(up, n)
     q = product(normalised((x, yy, z, 1.0 + dot(up, n))), normalised(y[3:7]))
     return [

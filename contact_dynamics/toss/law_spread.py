@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from contact_dynamics.numerics.vectors import cross, dot
-from contact_dynamics.toss.solid import arm_of, pose_of, times, velocity_of
+from contact_dynamics.toss import vectors as vec
+from contact_dynamics.toss.solid import pose_of
 
 if TYPE_CHECKING:
     from numpy.random import Generator
@@ -132,9 +132,9 @@ def _tails(chance: Generator, count: int) -> FloatArray:
 def _turning(solid: Solid, y: Numbers, touch: Touch) -> FloatArray:
     """Return by how much an impulse at a contact changes the spin, for that of the velocity, (3, 3), 1/m."""
     pose = pose_of(solid, y)
-    arm = arm_of(solid, pose, touch)
+    arm = pose.arm(*touch)
     units = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
-    columns = [times(pose.inverse, cross(arm, unit)) for unit in units]
+    columns = [vec.times(pose.inverse, vec.cross(arm, unit)) for unit in units]
     turning: FloatArray = solid.mass * np.array(columns).T
     return turning
 
@@ -142,13 +142,13 @@ def _turning(solid: Solid, y: Numbers, touch: Touch) -> FloatArray:
 def _turned_back(solid: Solid, y: Numbers, touch: Touch) -> Numbers:
     """Return a state whose corner does not go on into the flat: an impulse along the normal turns it back."""
     pose = pose_of(solid, y)
-    arm, n = arm_of(solid, pose, touch), solid.flats[touch[0]].normal
-    rebound = dot(velocity_of(pose, arm), n)
+    arm, n = pose.arm(*touch), solid.flats[touch[0]].normal
+    rebound = vec.dot(pose.velocity(arm), n)
     if rebound >= 0.0:
         return y
-    moment = cross(arm, n)
-    turn = times(pose.inverse, moment)
-    impulse = -2.0 * rebound / (1.0 / solid.mass + dot(moment, turn))
+    moment = vec.cross(arm, n)
+    turn = vec.times(pose.inverse, moment)
+    impulse = -2.0 * rebound / (1.0 / solid.mass + vec.dot(moment, turn))
     return [
         *y[:7],
         *(x + impulse / solid.mass * each for x, each in zip(y[7:10], n, strict=True)),

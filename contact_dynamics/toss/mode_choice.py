@@ -20,7 +20,6 @@ from contact_dynamics.contact_modes.letters import SEPARATES, STICKS
 from contact_dynamics.contact_modes.result import ModeVerdict
 from contact_dynamics.contact_modes.spatial.answer import spatial_contact_modes
 from contact_dynamics.contact_modes.spatial.problem import SpatialContactProblem
-from contact_dynamics.numerics.vectors import cross, dot, norm, normalised, opposite, without
 from contact_dynamics.tolerances import (
     BEGINNING_ROUNDING,
     BEGINNING_TURN,
@@ -28,30 +27,14 @@ from contact_dynamics.tolerances import (
     SAME_FORCES,
     SLIDING_STOPPED,
 )
-from contact_dynamics.toss.cone_forces import Site, cone_forces
-from contact_dynamics.toss.forces import (
-    Free,
-    Pushed,
-    force_rounding,
-    free_accelerations,
-    least_left,
-    pushed_by_contacts,
-)
-from contact_dynamics.toss.solid import (
-    Held,
-    arm_of,
-    contacts_of,
-    pose_of,
-    properties_of,
-    sliding_direction,
-    state_of,
-    times,
-    velocity_of,
-)
+from contact_dynamics.toss import vectors as vec
+from contact_dynamics.toss.cone_forces import ConeForces
+from contact_dynamics.toss.forces import HeldContacts, force_rounding, pushed_by_contacts
+from contact_dynamics.toss.solid import Held, contacts_of, pose_of, properties_of, state_of
 
 if TYPE_CHECKING:
     from contact_dynamics.numerics.vectors import Vector3
-    from contact_dynamics.toss.solid import Flat, Numbers, Solid, Touch
+    from contact_dynamics.toss.solid import Flat, Numbers, Pose, Solid, Touch
     from contact_dynamics.validation import FloatArray
 
 Mode = tuple[Held, ...]
@@ -87,9 +70,9 @@ class Choice(NamedTuple):
 
     verdict: ModeVerdict
     modes: list[Mode]
-    pushed: Pushed | None = None
+    pushed: HeldContacts | None = None
 
-    def pushed_in(self, way: int, solid: Solid, y: Numbers) -> Pushed:
+    def pushed_in(self, way: int, solid: Solid, y: Numbers) -> HeldContacts:
         """Return the rates and forces in a mode, for the state that modes were looked for in."""
         if way == 0 and self.pushed is not None:
             return self.pushed
@@ -103,33 +86,36 @@ def choose_mode(solid: Solid, y: Numbers, touching: list[Touch], *, thorough: bo
     """
     if not touching:
         return Choice(ModeVerdict.UNIQUE, [()])
-    free = free_accelerations(solid, y)
-    sites, guess, paradox = [], [], False
+    pose = pose_of(solid, y)
+    guess, paradox, cones = [], False, ConeForces(len(touching))
     choice = Choice(ModeVerdict.UNDECIDED, [])
     for touch in touching:
-        flat, arm = solid.flats[touch[0]], arm_of(solid, free.pose, touch)
+        flat, arm = solid.flats[touch[0]], pose.arm(*touch)
         n, (t1, t2) = flat.normal, flat.tangents
-        velocity, acceleration = velocity_of(free.pose, arm), free.at(solid, touch, arm)
-        along = dot(velocity, t1), dot(velocity, t2)
-        speed = math.hypot(*along)
+        velocity, acceleration = (
+            pose.velocity(arm),
+            pose.acceleration(touch[0], arm, solid.gravity, pose.alpha),
+        )
+        along = vec.dot(velocity, t1), vec.dot(velocity, t2)
+        speed = math.sqrt(along[0] * along[0] + along[1] * along[1])
         moves = speed > SLIDING_STOPPED
         slides = moves or flat.friction == 0.0  # nothing makes it stick
-        d = sliding_direction(velocity, n, n) if slides else (0.0, 0.0, 0.0)
+        d = pose.sliding(arm, n, n) if slides else (0.0, 0.0, 0.0)
         guess.append(Held(touch, slides, d))
-        motion = (dot(acceleration, t1), dot(acceleration, t2), dot(acceleration, n))
+        cones.add(pose, arm, flat, acceleration, 0.0)
         at_rest = (0.0, 0.0) if slides else None
         sliding = (along[0] / speed, along[1] / speed) if moves else at_rest
-        sites.append(Site(arm, (t1, t2, n), flat.friction, motion, sliding))
-        turning = times(free.pose.inverse, cross(arm, n))
-        normal = 1.0 / solid.mass + dot(cross(arm, n), turning)
-        coupling = cross(turning, arm)
-        coupled = dot(coupling, t1), dot(coupling, t2)
-        across = math.hypot(*coupled)
+        turning = vec.times(pose.inverse, vec.cross(arm, n))
+        normal = 1.0 / solid.mass + vec.dot(vec.cross(arm, n), turning)
+        coupling = vec.cross(turning, arm)
+        coupled = vec.dot(coupling, t1), vec.dot(coupling, t2)
+        across = math.sqrt(coupled[0] * coupled[0] + coupled[1] * coupled[1])
         if sliding is not None:
+            cones.slide(*sliding)
             across = coupled[0] * sliding[0] + coupled[1] * sliding[1]
         paradox = paradox or flat.friction * across >= normal
     if paradox or (
-        len(guess) > 1 and all(one.slides for one in guess) and _several_forces(solid, free, guess)
+        len(guess) > 1 and all(one.slides for one in guess) and _several_forces(solid, pose, guess)
     ):
         paradox = True
         choice = _all_modes(solid, y, touching)
@@ -138,12 +124,11 @@ def choose_mode(solid: Solid, y: Numbers, touching: list[Touch], *, thorough: bo
             going_on = [(one.touch, one.slides) for one in guess]
             choice.modes.sort(key=lambda mode: [(one.touch, one.slides) for one in mode] != going_on)
             return choice
-    mode, pushed = corrected(solid, y, tuple(guess), free)
+    mode, pushed = corrected(solid, y, tuple(guess))
     if mode is None:
-        found = cone_forces(1.0 / solid.mass, free.pose.inverse, sites)
-        if found is None:
+        if not cones.solve(1.0 / solid.mass, 0.0):
             return choice if paradox else _all_modes(solid, y, touching)
-        mode = _read_off(solid, y, guess, sites, pushes=found[0], motions=found[1])
+        mode = _read_off(solid, y, guess, cones)
     others, verdict = [], ModeVerdict.UNIQUE
     if thorough and not paradox and may_be_wedged(solid, touching):
         known = _all_modes(solid, y, touching)
@@ -156,7 +141,7 @@ def _letters(mode: Mode) -> set[tuple[Touch, bool]]:
     return {(one.touch, one.slides) for one in mode}
 
 
-def _several_forces(solid: Solid, free: Free, sliding: list[Held]) -> bool:
+def _several_forces(solid: Solid, pose: Pose, sliding: list[Held]) -> bool:
     """Return whether contacts that all slide may have several forces that mechanics allows, or none.
 
     Normal forces f >= 0 and normal accelerations b + M f >= 0, of which one is zero at each contact, are
@@ -164,16 +149,16 @@ def _several_forces(solid: Solid, free: Free, sliding: list[Held]) -> bool:
     Complementarity Problem, 3.3.7). Those of two and three contacts are looked at here, those of one by the
     caller. Flush contacts have minors of zero, which change forces, but hardly the motion.
     """
-    per_mass, inverse = 1.0 / solid.mass, free.pose.inverse
+    per_mass, inverse = 1.0 / solid.mass, pose.inverse
     moments, forces = [], []
     for one in sliding:
-        flat, arm = solid.flats[one.touch[0]], arm_of(solid, free.pose, one.touch)
+        flat, arm = solid.flats[one.flat], pose.arm(one.flat, one.corner)
         n, d, mu = flat.normal, one.towards, flat.friction
         force = (n[0] - mu * d[0], n[1] - mu * d[1], n[2] - mu * d[2])
-        moments.append((n, cross(arm, n)))
-        forces.append((force, times(inverse, cross(arm, force))))
+        moments.append((n, vec.cross(arm, n)))
+        forces.append((force, vec.times(inverse, vec.cross(arm, force))))
     M = [
-        [per_mass * dot(n, force) + dot(moment, turning) for force, turning in forces]
+        [per_mass * vec.dot(n, force) + vec.dot(moment, turning) for force, turning in forces]
         for n, moment in moments
     ]
     sizes = [sum(map(abs, row)) for row in M]
@@ -181,9 +166,9 @@ def _several_forces(solid: Solid, free: Free, sliding: list[Held]) -> bool:
         if M[i][i] * M[j][j] - M[i][j] * M[j][i] < -SAME_FORCES * sizes[i] * sizes[j]:
             return True
     for i, j, k in combinations(range(len(M)), 3):
-        volume = dot(
+        volume = vec.dot(
             (M[i][i], M[i][j], M[i][k]),
-            cross((M[j][i], M[j][j], M[j][k]), (M[k][i], M[k][j], M[k][k])),
+            vec.cross((M[j][i], M[j][j], M[j][k]), (M[k][i], M[k][j], M[k][k])),
         )
         if volume < -SAME_FORCES * sizes[i] * sizes[j] * sizes[k]:
             return True
@@ -194,7 +179,7 @@ def _beginning(touch: Touch, towards: Vector3) -> Held:
     return Held(touch=touch, slides=True, towards=towards, begins=True)
 
 
-def corrected(solid: Solid, y: Numbers, guess: Mode, free: Free) -> tuple[Mode, Pushed] | tuple[None, None]:
+def corrected(solid: Solid, y: Numbers, guess: Mode) -> tuple[Mode, HeldContacts] | tuple[None, None]:
     """Return a consistent mode near a guess and what it does, or None if corrections do not lead to one.
 
     In each round, a contact that pulls separates, one that approaches is held again, one that friction does
@@ -209,11 +194,9 @@ def corrected(solid: Solid, y: Numbers, guess: Mode, free: Free) -> tuple[Mode, 
             mode = _turned_along_accelerations(solid, y, mode)
             held = {one.touch: one for one in mode}
         pushed = pushed_by_contacts(solid, y, mode)
-        rates = pushed.rates
-        moved = Free(free.pose, (rates[7], rates[8], rates[9]), (rates[10], rates[11], rates[12]))
         forces = dict(zip(held, pushed.forces, strict=True))
         corrections = [
-            _correction(solid, first, held.get(touch), forces.get(touch), moved)
+            _correction(solid, first, held.get(touch), forces.get(touch), pushed)
             for touch, first in starts.items()
         ]
         after = {one.touch: one for one in corrections if one is not None}
@@ -224,7 +207,7 @@ def corrected(solid: Solid, y: Numbers, guess: Mode, free: Free) -> tuple[Mode, 
 
 
 def _correction(
-    solid: Solid, first: Held, one: Held | None, force: Vector3 | None, moved: Free
+    solid: Solid, first: Held, one: Held | None, force: Vector3 | None, pushed: HeldContacts
 ) -> Held | None:
     """Return how a contact is held in the next round of corrections, or None if it separates.
 
@@ -233,59 +216,52 @@ def _correction(
         first: How the contact was held at first: whether it slides already.
         one: How the contact is held, or None if it separates.
         force: N, the force there, or None.
-        moved: The accelerations.
+        pushed: The contacts that were held, with the accelerations.
     """
-    flat = solid.flats[first.touch[0]]
+    flat = solid.flats[first.flat]
     n = flat.normal
     least = -force_rounding(solid)
-    slowest = BEGINNING_ROUNDING * (1.0 + norm(solid.gravity))
+    slowest = BEGINNING_ROUNDING * (1.0 + vec.norm(solid.gravity))
     if one is None or force is None:
-        acceleration = moved.at(solid, first.touch, arm_of(solid, moved.pose, first.touch))
-        return first if dot(n, acceleration) < -slowest else None
-    pressing = dot(force, n)
+        acceleration = pushed.accelerated(first.flat, first.corner)
+        return first if vec.dot(n, acceleration) < -slowest else None
+    pressing = vec.dot(force, n)
     if pressing < least:
         return None
     if not one.slides:
-        across = without(force, n)
-        holds = flat.friction * pressing - norm(across) >= least
-        return one if holds else _beginning(one.touch, opposite(normalised(across)))
+        across = vec.without(force, n)
+        holds = flat.friction * pressing - vec.norm(across) >= least
+        return one if holds else _beginning(one.touch, vec.opposite(vec.normalised(across)))
     if not first.slides:
-        begins = without(moved.at(solid, first.touch, arm_of(solid, moved.pose, first.touch)), n)
-        if dot(begins, one.towards) < -slowest:
+        begins = vec.without(pushed.accelerated(first.flat, first.corner), n)
+        if vec.dot(begins, one.towards) < -slowest:
             return first
-        if norm(cross(begins, one.towards)) > slowest:
-            return _beginning(one.touch, normalised(begins))
+        if vec.norm(vec.cross(begins, one.towards)) > slowest:
+            return _beginning(one.touch, vec.normalised(begins))
     return one
 
 
-def _read_off(
-    solid: Solid,
-    y: Numbers,
-    guess: list[Held],
-    sites: list[Site],
-    *,
-    pushes: list[Vector3],
-    motions: list[Vector3],
-) -> Mode:
+def _read_off(solid: Solid, y: Numbers, guess: list[Held], cones: ConeForces) -> Mode:
     """Return the mode of pushes and motions that solve the contacts' problem."""
-    size = max(norm(site.motion) for site in sites)
-    most = max(norm(push) for push in pushes)
+    size = max([vec.norm(cones.alone(i)) for i in range(len(guess))])
+    most = max([vec.norm(cones.push(i)) for i in range(len(guess))])
     idle: list[Held] = []
     held: list[Held] = []
-    for one, site, push, motion in zip(guess, sites, pushes, motions, strict=True):
-        pressing = push[2] > FORCE_ROUNDING * most
+    for i, one in enumerate(guess):
+        motion = cones.motion(i)
+        pressing = cones.push(i)[2] > FORCE_ROUNDING * most
         if not pressing and motion[2] > FORCE_ROUNDING * size:
             continue
         kept = one
-        speed = math.hypot(motion[0], motion[1])
+        speed = math.sqrt(motion[0] * motion[0] + motion[1] * motion[1])
         if not one.slides and speed > FORCE_ROUNDING * size:
-            t1, t2, _ = site.axes
+            t1, t2 = solid.flats[one.flat].tangents
             u, v = motion[0] / speed, motion[1] / speed
             d = (u * t1[0] + v * t2[0], u * t1[1] + v * t2[1], u * t1[2] + v * t2[2])
             kept = _beginning(one.touch, d)
         (held if pressing else idle).append(kept)
     everything = tuple(held + idle)
-    if idle and least_left(solid, everything, pushed_by_contacts(solid, y, everything).forces) >= 0.0:
+    if idle and pushed_by_contacts(solid, y, everything).least_left() >= 0.0:
         return everything
     return tuple(held)
 
@@ -309,14 +285,15 @@ def _all_modes(solid: Solid, y: Numbers, touching: list[Touch]) -> Choice:
             letter = one.mode[k]
             if letter == SEPARATES:
                 continue
-            velocity = velocity_of(pose, arm_of(solid, pose, touch))
+            arm = pose.arm(*touch)
+            velocity = pose.velocity(arm)
             n = solid.flats[touch[0]].normal
             x, yy, z = one.tangential_directions_W[k].tolist()
             direction = (x, yy, z)
-            v_n = dot(velocity, n)
-            speed = math.sqrt(max(dot(velocity, velocity) - v_n * v_n, 0.0))
+            v_n = vec.dot(velocity, n)
+            speed = math.sqrt(max(vec.dot(velocity, velocity) - v_n * v_n, 0.0))
             if speed > SLIDING_STOPPED:
-                direction = sliding_direction(velocity, n, n)
+                direction = pose.sliding(arm, n, n)
             slides = letter != STICKS and direction != (0.0, 0.0, 0.0)
             begins = slides and speed <= SLIDING_STOPPED
             slides = slides or solid.flats[touch[0]].friction == 0.0
@@ -336,18 +313,15 @@ def _turned_along_accelerations(solid: Solid, y: Numbers, mode: tuple[Held, ...]
     which = [k for k, one in enumerate(mode) if one.begins]
     if not which:
         return mode
-    enough = 0.1 * BEGINNING_ROUNDING * (1.0 + math.hypot(*solid.gravity))
-    pose = pose_of(solid, y)
+    enough = 0.1 * BEGINNING_ROUNDING * (1.0 + vec.norm(solid.gravity))
 
     def sideways(tried: tuple[Held, ...]) -> FloatArray:
         """Return the accelerations across the directions of sliding, m/s^2."""
-        rates = pushed_by_contacts(solid, y, tried).rates
-        moved = Free(pose, (rates[7], rates[8], rates[9]), (rates[10], rates[11], rates[12]))
-        found = []
+        pushed, found = pushed_by_contacts(solid, y, tried), []
         for k in which:
-            touch, n = tried[k].touch, solid.flats[tried[k].touch[0]].normal
-            across = cross(n, tried[k].towards)
-            found.append(dot(across, moved.at(solid, touch, arm_of(solid, pose, touch))))
+            one = tried[k]
+            across = vec.cross(solid.flats[one.flat].normal, one.towards)
+            found.append(vec.dot(across, pushed.accelerated(one.flat, one.corner)))
         return np.array(found)
 
     for _ in range(_MAX_TURNS):
@@ -366,7 +340,7 @@ def _turned_along_accelerations(solid: Solid, y: Numbers, mode: tuple[Held, ...]
 def _turned(solid: Solid, mode: tuple[Held, ...], turns: dict[int, float]) -> tuple[Held, ...]:
     """Return a mode with some directions of sliding turned about their normals, rad."""
     return tuple(
-        one._replace(towards=_about(solid.flats[one.touch[0]].normal, one.towards, turns[k]))
+        Held(one.touch, one.slides, _about(solid.flats[one.flat].normal, one.towards, turns[k]), one.begins)
         if k in turns
         else one
         for k, one in enumerate(mode)
@@ -374,7 +348,7 @@ def _turned(solid: Solid, mode: tuple[Held, ...], turns: dict[int, float]) -> tu
 
 
 def _about(n: Vector3, d: Vector3, angle: float) -> Vector3:
-    e, c, s = cross(n, d), math.cos(angle), math.sin(angle)
+    e, c, s = vec.cross(n, d), math.cos(angle), math.sin(angle)
     return (c * d[0] + s * e[0], c * d[1] + s * e[1], c * d[2] + s * e[2])
 
 
@@ -390,7 +364,7 @@ def may_be_wedged(solid: Solid, touching: list[Touch]) -> bool:
 
 
 def _cones_may_meet(one: Flat, other: Flat) -> bool:
-    turned = opposite(other.normal)
-    between = math.atan2(norm(cross(one.normal, turned)), dot(one.normal, turned))
+    turned = vec.opposite(other.normal)
+    between = math.atan2(vec.norm(vec.cross(one.normal, turned)), vec.dot(one.normal, turned))
     friction = math.atan(one.friction) + math.atan(other.friction)
     return friction > 0.0 and friction >= _WEDGED_FROM * between

@@ -13,7 +13,7 @@ from contact_dynamics.impact.law import ImpactOutcome, RestitutionLaw
 from contact_dynamics.records import NamedInt, Record
 from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.rotations.many import make_continuous
-from contact_dynamics.toss.phase_step import PhaseStep
+from contact_dynamics.toss.phase import PhaseStep
 from contact_dynamics.tumbling import FreeMotion, Trajectory
 from contact_dynamics.validation import FloatArray, check_array
 

@@ -11,15 +11,12 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, NamedTuple
 
-import numpy as np
-
-from contact_dynamics.numerics.vectors import norm
 from contact_dynamics.rotations.one import normalised
 from contact_dynamics.tolerances import DISTANCE_TOLERANCE, SHORTEST_SHORT_STEP, SLIDING_STOPPED
-from contact_dynamics.toss.forces import free_accelerations, rates_of
-from contact_dynamics.toss.holding import out_of_flats
+from contact_dynamics.toss import vectors as vec
+from contact_dynamics.toss.forces import out_of_flats, pushed_by_contacts
 from contact_dynamics.toss.impacts import sure_impact
-from contact_dynamics.toss.phase_step import PhaseStep
+from contact_dynamics.toss.phase import PhaseStep, straight_step
 from contact_dynamics.toss.solid import Held, energy_of, heights_and_rates, kinetic_energy_of
 
 if TYPE_CHECKING:
@@ -53,14 +50,15 @@ def short_step(solid: Solid, y: Numbers, *, start: float, span: float) -> ShortS
     for height, rate, _ in listed:
         if height > DISTANCE_TOLERANCE and rate < 0.0:
             span = min(span, max(-height / rate, SHORTEST_SHORT_STEP))
-    free = free_accelerations(solid, y)
-    pushed = [*y[:7], *(a + span * b for a, b in zip(y[7:], (*free.a, *free.alpha), strict=True))]
-    reached = DISTANCE_TOLERANCE + 2.0 * span * (norm(free.pose.v) + solid.reach * norm(free.pose.w))
+    free = pushed_by_contacts(solid, y, ())
+    pushed = [*y[:7], *(a + span * b for a, b in zip(y[7:], free.rates[7:], strict=True))]
+    pose = free.pose
+    reached = DISTANCE_TOLERANCE + 2.0 * span * (vec.norm(pose.v) + solid.reach * vec.norm(pose.w))
     near = [(max(height, 0.0) / span, touch) for height, _, touch in listed if height <= reached]
     touching = [touch for _, touch in near]
     impact = sure_impact(solid, pushed, touching, room=[room for room, _ in near])
     v, w = impact.y[7:10], impact.y[10:]
-    rates = rates_of(impact.y, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+    rates = [*pushed_by_contacts(solid, impact.y, ()).rates[:7], *[0.0] * 6]
     after = [a + span * b for a, b in zip(impact.y, rates, strict=True)]
     after = out_of_flats(solid, [*after[:3], *normalised(after[3:7]), *v, *w])
     gained = energy_of(solid, after) - energy_of(solid, y)
@@ -71,13 +69,11 @@ def short_step(solid: Solid, y: Numbers, *, start: float, span: float) -> ShortS
     # Where the body falls or rises within the step, its velocities change such that energy stays.
     fallen = energy_of(solid, [*after[:3], *impact.y[3:]]) - energy_of(solid, impact.y)
     begun = math.sqrt(max(1.0 + fallen / kinetic, 0.0)) if kinetic > 0.0 else 1.0
-    first = np.array([*y[:7], *(begun * each for each in after[7:])])
-    slopes = np.zeros((13, 4))
-    slopes[:7, 0] = rates[:7]
-    slopes[7:, 0] = (np.array(after[7:]) - first[7:]) / span
+    first = [*y[:7], *(begun * each for each in after[7:])]
+    slopes = [*rates[:7], *((a - b) / span for a, b in zip(after[7:], first[7:], strict=True))]
     mode = tuple(
-        Held(touch, math.hypot(*motion[:2]) > SLIDING_STOPPED)
+        Held(touch, math.hypot(motion[0], motion[1]) > SLIDING_STOPPED)
         for touch, motion, impulse in zip(touching, impact.motions, impact.impulses, strict=True)
         if impulse != (0.0, 0.0, 0.0)
     )
-    return ShortStep(after, PhaseStep(solid, start, span, first, slopes, span), mode)
+    return ShortStep(after, straight_step(solid, start, span, first, slopes), mode)

@@ -25,9 +25,8 @@ from contact_dynamics.tolerances import (
     STRIKES,
 )
 from contact_dynamics.toss.flight import flight
-from contact_dynamics.toss.forces import least_left, pushed_by_contacts
+from contact_dynamics.toss.forces import held_in_place, out_of_flats, pushed_by_contacts
 from contact_dynamics.toss.history import History
-from contact_dynamics.toss.holding import held_in_place, out_of_flats
 from contact_dynamics.toss.impacts import routh
 from contact_dynamics.toss.laid_flat import laid_flat
 from contact_dynamics.toss.mode_choice import choose_mode, may_be_wedged
@@ -48,7 +47,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from contact_dynamics.rigid_body.body import BodyState
-    from contact_dynamics.toss.forces import Pushed
+    from contact_dynamics.toss.forces import HeldContacts
     from contact_dynamics.toss.laid_flat import Faces
     from contact_dynamics.toss.mode_choice import Choice, Mode
     from contact_dynamics.toss.solid import Held, Numbers, Solid, Touch
@@ -173,7 +172,7 @@ class Simulation(History):
         if not mode:
             self.note(TossEventKind.LIFTS_OFF, touching)
             return self._fly(LIFT_OFF_PAUSE)
-        if least_left(self.solid, mode, pushed.forces) < 0.0:
+        if pushed.least_left() < 0.0:
             return self._pass_over()
         return self._follow(mode)
 
@@ -290,7 +289,7 @@ class Simulation(History):
 
     # Contact
 
-    def _next_mode(self, touching: list[Touch]) -> tuple[Mode, Pushed] | None:
+    def _next_mode(self, touching: list[Touch]) -> tuple[Mode, HeldContacts] | None:
         """Return the consistent mode that is taken, with its rates and forces, or None if there is none."""
         if self.way_on is not None:
             mode, self.way_on = self.way_on, None
@@ -328,10 +327,10 @@ class Simulation(History):
             until=self.settings.horizon,
             slow=min(self.slow, self._slow([one.touch for one in mode])),
             error=self.settings.error,
+            has_steps=self.settings.has_pieces,
         )
-        if self.settings.has_pieces:
-            self.pieces += went.steps
-        self.steps += len(went.steps)
+        self.pieces += went.steps
+        self.steps += went.step_count
         self.now, self.y = went.seconds, went.y
         self.lost_in_contact += before - energy_of(self.solid, self.y)
         held = [one.touch for one in mode]
@@ -417,7 +416,7 @@ class Simulation(History):
         rates = pushed.rates[7:]
         fastest = max(map(abs, rates[:3])) + self.solid.reach * max(map(abs, rates[3:]))
         # A mode of nearly flush contacts may be still by forces that pull, because they are not quite flush.
-        is_held = least_left(self.solid, modes[0], pushed.forces) >= 0.0
+        is_held = pushed.least_left() >= 0.0
         if not is_held or fastest > RESTING_ACCELERATION * norm(self.solid.gravity):
             self.slow = _SLOWER * energy
             return False

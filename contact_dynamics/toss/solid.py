@@ -1,5 +1,7 @@
 """A body and the world's flats in plain floats, as a whole toss needs them, and the points that touch.
 
+`solid.pxd` gives the C types with which this file compiles.
+
 A *touch* is a corner of the body and a flat. If the shape is rounded, a ball rolls over the corner, and the
 point that touches is below the ball's centre. The arm from the centre of mass to that point is R c - r n,
 with the corner c, the radius r and the flat's normal n. It changes with w x R c alone, so the point's
@@ -9,7 +11,8 @@ acceleration is a + alpha x arm + w x (w x R c).
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, NamedTuple, TypeAlias
+from array import array
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
@@ -17,18 +20,21 @@ from contact_dynamics.contact.contact import ContactSet
 from contact_dynamics.contact.curvature import alike
 from contact_dynamics.contact.found import check_has_shape
 from contact_dynamics.errors import InvalidFieldError, NotSupportedError
-from contact_dynamics.numerics.vectors import Vector3, cross, dot, norm, tangents
+from contact_dynamics.numerics.vectors import norm, tangents
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.tolerances import SETTLING_HEIGHT, SLIDING_DIRECTION_SPEED
+from contact_dynamics.toss import vectors as vec
 from contact_dynamics.world import Surface
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from numpy.typing import NDArray
+
+    from contact_dynamics.numerics.vectors import Vector3
+    from contact_dynamics.toss.vectors import Matrix3
     from contact_dynamics.validation import FloatArray
     from contact_dynamics.world import Body, World
-
-Matrix3: TypeAlias = tuple[Vector3, Vector3, Vector3]
 
 Touch: TypeAlias = tuple[int, int]
 """The index of a flat among the world's surfaces, and the index of a corner of the body's shape."""
@@ -37,7 +43,7 @@ Numbers: TypeAlias = "list[float]"
 """A state of 13 numbers: position, quaternion x y z w, velocity and angular velocity, world axes, SI."""
 
 
-class Flat(NamedTuple):
+class Flat:
     """A flat of the world.
 
     Attributes:
@@ -50,21 +56,36 @@ class Flat(NamedTuple):
         strike_friction: Coulomb's mu in a strike.
     """
 
-    name: str
-    normal: Vector3
-    tangents: tuple[Vector3, Vector3]
-    level: float
-    friction: float
-    restitution: float
-    strike_friction: float
+    def __init__(  # noqa: PLR0917
+        self,
+        name: str,
+        normal: Vector3,
+        level: float,
+        friction: float,
+        restitution: float,
+        strike_friction: float,
+    ) -> None:
+        self.name, self.normal, self.level = name, normal, level
+        self.tangents: tuple[Vector3, Vector3] = tangents(normal)
+        self.friction, self.restitution, self.strike_friction = friction, restitution, strike_friction
+
+    def __reduce__(self) -> tuple[object, ...]:
+        return (
+            Flat,
+            (self.name, self.normal, self.level, self.friction, self.restitution, self.strike_friction),
+        )
+
+    def with_frictions(self, friction: float, restitution: float, strike_friction: float) -> Flat:
+        """Return the same flat with other coefficients."""
+        return Flat(self.name, self.normal, self.level, friction, restitution, strike_friction)
 
 
-class Solid(NamedTuple):
+class Solid:
     """A body in a world.
 
     Attributes:
         mass: kg.
-        inertia: (3, 3), kg m^2, body axes.
+        inertia: (3, 3) row by row, kg m^2, body axes.
         inverse: Its inverse.
         corners: m, body axes.
         indices: Those of the corners among the vertices of the body's shape.
@@ -75,19 +96,42 @@ class Solid(NamedTuple):
         settling: m, the height of rebounds that are not followed.
     """
 
-    mass: float
-    inertia: Matrix3
-    inverse: Matrix3
-    corners: tuple[Vector3, ...]
-    indices: tuple[int, ...]
-    rounding: float
-    reach: float
-    gravity: Vector3
-    flats: tuple[Flat, ...]
-    settling: float
+    def __init__(  # noqa: PLR0917
+        self,
+        mass: float,
+        inertia: Matrix3,
+        inverse: Matrix3,
+        corners: tuple[Vector3, ...],
+        indices: tuple[int, ...],
+        rounding: float,
+        gravity: Vector3,
+        flats: tuple[Flat, ...],
+        settling: float,
+    ) -> None:
+        self.mass, self.inertia, self.inverse = mass, inertia, inverse
+        self.corners, self.indices, self.rounding = corners, indices, rounding
+        self.gravity, self.flats, self.settling = gravity, flats, settling
+        self.reach = max(map(norm, corners)) + rounding
+        self.count = len(corners)
+        self.points = array("d", [x for corner in corners for x in corner])
+
+    def __reduce__(self) -> tuple[object, ...]:
+        return Solid, self._parts(self.flats)
+
+    def among(self, flats: tuple[Flat, ...]) -> Solid:
+        """Return the same body among other flats."""
+        return Solid(*self._parts(flats))
+
+    def _parts(self, flats: tuple[Flat, ...]) -> Any:
+        body = [self.mass, self.inertia, self.inverse, self.corners, self.indices, self.rounding]
+        return (*body, self.gravity, flats, self.settling)
+
+    def corner(self, k: int) -> Vector3:
+        """Return a corner, m, body axes."""
+        return (self.points[3 * k], self.points[3 * k + 1], self.points[3 * k + 2])
 
 
-class Held(NamedTuple):
+class Held:
     """A contact that stays.
 
     Attributes:
@@ -98,28 +142,135 @@ class Held(NamedTuple):
             no sure direction yet, and friction against it would turn in no time.
     """
 
-    touch: Touch
-    slides: bool = False
-    towards: Vector3 = (0.0, 0.0, 0.0)
-    begins: bool = False
+    def __init__(
+        self,
+        touch: Touch,
+        slides: bool = False,  # noqa: FBT001, FBT002  C has no keywords
+        towards: Vector3 = (0.0, 0.0, 0.0),
+        begins: bool = False,  # noqa: FBT001, FBT002  C has no keywords
+    ) -> None:
+        self.touch, self.slides, self.towards, self.begins = touch, slides, towards, begins
+        self.flat, self.corner = touch
+
+    def __reduce__(self) -> tuple[object, ...]:
+        return Held, (self.touch, self.slides, self.towards, self.begins)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Held) and self.__reduce__() == other.__reduce__()
+
+    def __hash__(self) -> int:
+        return hash((self.touch, self.slides, self.towards, self.begins))
 
 
-class Pose(NamedTuple):
-    """What follows from 13 numbers alone.
+class Pose:
+    """What follows from 13 numbers alone, whose quaternion need not be unit.
 
     Attributes:
+        solid: The body.
         position: m, the centre of mass.
-        rows: The rows of R_WB.
-        inverse: (3, 3), 1/(kg m^2), the inverse inertia in world axes.
+        rows: R_WB, row by row.
+        inverse: (3, 3) row by row, 1/(kg m^2), the inverse inertia in world axes.
         v: m/s.
         w: rad/s.
+        alpha: rad/s^2, the angular acceleration in free flight (Euler's equations; lecture 25).
     """
 
-    position: Vector3
-    rows: Matrix3
-    inverse: Matrix3
-    v: Vector3
-    w: Vector3
+    def __init__(self, solid: Solid) -> None:
+        self.solid, self.y = solid, [0.0] * 13
+        self.position = self.v = self.w = self.alpha = (0.0, 0.0, 0.0)
+        self.rows: Matrix3 = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+        self.inverse: Matrix3 = self.rows
+
+    def take(self, y: Numbers) -> None:
+        """Take 13 numbers."""
+        solid = self.solid
+        self.position, self.v, self.w = (y[0], y[1], y[2]), (y[7], y[8], y[9]), (y[10], y[11], y[12])
+        self.rows = rows_of(y[3], y[4], y[5], y[6])
+        a, b, c, d, e, f, g, h, i = self.rows
+        j_xx, j_xy, j_xz, _, j_yy, j_yz, _, _, j_zz = solid.inverse
+        # R J R^T, by its six different entries.
+        a1, a2, a3 = (
+            a * j_xx + b * j_xy + c * j_xz,
+            a * j_xy + b * j_yy + c * j_yz,
+            a * j_xz + b * j_yz + c * j_zz,
+        )
+        d1, d2, d3 = (
+            d * j_xx + e * j_xy + f * j_xz,
+            d * j_xy + e * j_yy + f * j_yz,
+            d * j_xz + e * j_yz + f * j_zz,
+        )
+        g1, g2, g3 = (
+            g * j_xx + h * j_xy + i * j_xz,
+            g * j_xy + h * j_yy + i * j_yz,
+            g * j_xz + h * j_yz + i * j_zz,
+        )
+        xy, xz, yz = a1 * d + a2 * e + a3 * f, a1 * g + a2 * h + a3 * i, d1 * g + d2 * h + d3 * i
+        xx, yy, zz = a1 * a + a2 * b + a3 * c, d1 * d + d2 * e + d3 * f, g1 * g + g2 * h + g3 * i
+        self.inverse = (xx, xy, xz, xy, yy, yz, xz, yz, zz)
+        w_B = vec.transposed_times(self.rows, self.w)
+        torque_B = vec.cross(vec.times(solid.inertia, w_B), w_B)
+        self.alpha = vec.times(self.rows, vec.times(solid.inverse, torque_B))
+
+    def arm(self, flat: int, corner: int) -> Vector3:
+        """Return the arm, m, from the centre of mass to the point that touches or would touch, world axes."""
+        solid = self.solid
+        x, y, z = vec.times(self.rows, solid.corner(corner))
+        touched = solid.flats[flat]
+        a, b, c = touched.normal
+        r = solid.rounding
+        return (x - r * a, y - r * b, z - r * c)
+
+    def velocity(self, arm: Vector3) -> Vector3:
+        """Return the velocity, m/s, world axes, of the body's point at an arm."""
+        turning = vec.cross(self.w, arm)
+        return (self.v[0] + turning[0], self.v[1] + turning[1], self.v[2] + turning[2])
+
+    def sliding(self, arm: Vector3, normal: Vector3, towards: Vector3) -> Vector3:
+        """Return the unit direction in which the contact at an arm slides, or begins to."""
+        velocity = self.velocity(arm)
+        v_n = vec.dot(velocity, normal)
+        e = SLIDING_DIRECTION_SPEED
+        x = velocity[0] - v_n * normal[0] + e * towards[0]
+        y = velocity[1] - v_n * normal[1] + e * towards[1]
+        z = velocity[2] - v_n * normal[2] + e * towards[2]
+        size = math.sqrt(x * x + y * y + z * z)
+        if size == 0.0:
+            return towards
+        return (x / size, y / size, z / size)
+
+    def acceleration(self, flat: int, arm: Vector3, a: Vector3, alpha: Vector3) -> Vector3:
+        """Return the acceleration, m/s^2, of the body's point at an arm; a ball's point rolls meanwhile.
+
+        The mass centre has the acceleration ``a``, m/s^2, and the body ``alpha``, rad/s^2.
+        """
+        touched = self.solid.flats[flat]
+        n_x, n_y, n_z = touched.normal
+        w_x, w_y, w_z = self.w
+        a_x, a_y, a_z = a
+        t_x, t_y, t_z = alpha
+        x, y, z = arm
+        r = self.solid.rounding
+        # alpha x arm and w x (w x corner), with u = w x corner, by component.
+        p, q, s = x + r * n_x, y + r * n_y, z + r * n_z
+        u_x, u_y, u_z = w_y * s - w_z * q, w_z * p - w_x * s, w_x * q - w_y * p
+        return (
+            a_x + (t_y * z - t_z * y) + (w_y * u_z - w_z * u_y),
+            a_y + (t_z * x - t_x * z) + (w_z * u_x - w_x * u_z),
+            a_z + (t_x * y - t_y * x) + (w_x * u_y - w_y * u_x),
+        )
+
+    def height(self, flat: int, corner: int) -> float:
+        """Return the height, m, of a corner above a flat, of its ball's lowest point if it is rounded."""
+        touched = self.solid.flats[flat]
+        n, arm = touched.normal, self.arm(flat, corner)
+        return vec.dot(self.position, n) + vec.dot(arm, n) - touched.level
+
+    def kinetic_energy(self) -> float:
+        """Return the kinetic energy, J."""
+        solid, v_x, v_y, v_z = self.solid, self.v[0], self.v[1], self.v[2]
+        w_B = vec.transposed_times(self.rows, self.w)
+        turning = vec.dot(w_B, vec.times(solid.inertia, w_B))
+        return 0.5 * (solid.mass * (v_x * v_x + v_y * v_y + v_z * v_z) + turning)
 
 
 def solid_of(
@@ -162,28 +313,18 @@ def solid_of(
         x, y, z = surface.normal_W.tolist()
         normal = (x, y, z)
         level = float(surface.p_WS_W @ surface.normal_W)
-        flats.append(
-            Flat(
-                name=surface.name,
-                normal=normal,
-                tangents=tangents(normal),
-                level=level,
-                friction=factor * surface.friction,
-                restitution=surface.restitution,
-                strike_friction=surface.friction,
-            )
-        )
+        lasting = factor * surface.friction
+        flats.append(Flat(surface.name, normal, level, lasting, surface.restitution, surface.friction))
     I_B = body.mass_properties.I_B
     corners = tuple((x, y, z) for x, y, z in body.shape.vertices.tolist())
     g_x, g_y, g_z = world.gravity_W.tolist()
     return Solid(
         mass=body.mass_properties.mass,
-        inertia=as_rows(I_B.tolist()),
-        inverse=as_rows(np.linalg.inv(I_B).tolist()),
+        inertia=matrix_of(I_B),
+        inverse=matrix_of(np.linalg.inv(I_B)),
         corners=corners,
         indices=tuple(range(len(corners))) if indices is None else indices,
         rounding=body.shape.rounding,
-        reach=max(map(norm, corners)) + body.shape.rounding,
         gravity=(g_x, g_y, g_z),
         flats=tuple(flats),
         settling=settling,
@@ -204,10 +345,10 @@ def factors_of(lasting_factors: FloatArray | None, surfaces: Sequence[Surface]) 
     return lasting_factors
 
 
-def as_rows(matrix: list[list[float]]) -> Matrix3:
-    """Return the rows of a matrix (3, 3)."""
-    (a, b, c), (d, e, f), (g, h, i) = matrix
-    return ((a, b, c), (d, e, f), (g, h, i))
+def matrix_of(array: NDArray[np.floating[Any]]) -> Matrix3:
+    """Return an array (3, 3) row by row."""
+    a, b, c, d, e, f, g, h, i = array.ravel().tolist()
+    return (a, b, c, d, e, f, g, h, i)
 
 
 def numbers_of(state: BodyState) -> Numbers:
@@ -221,145 +362,94 @@ def numbers_of(state: BodyState) -> Numbers:
     return numbers
 
 
-def rows_at(y: Numbers) -> Matrix3:
-    """Return the rows of R_WB from 13 numbers, whose quaternion need not be unit."""
-    x, yy, z, w = y[3], y[4], y[5], y[6]
+def rows_of(x: float, yy: float, z: float, w: float) -> Matrix3:
+    """Return R_WB, row by row, of a quaternion that need not be unit."""
     twice = 2.0 / (x * x + yy * yy + z * z + w * w)
     a, b, c = twice * x, twice * yy, twice * z
     xx, xy, xz, xw = a * x, a * yy, a * z, a * w
     sq, yz, yw = b * yy, b * z, b * w
     zz, zw = c * z, c * w
     return (
-        (1.0 - (sq + zz), xy - zw, xz + yw),
-        (xy + zw, 1.0 - (xx + zz), yz - xw),
-        (xz - yw, yz + xw, 1.0 - (xx + sq)),
-    )
+        1.0 - (sq + zz), xy - zw, xz + yw,
+        xy + zw, 1.0 - (xx + zz), yz - xw,
+        xz - yw, yz + xw, 1.0 - (xx + sq),
+    )  # fmt: skip
 
 
 def pose_of(solid: Solid, y: Numbers) -> Pose:
     """Return the pose of 13 numbers, whose quaternion need not be unit."""
-    p_x, p_y, p_z, _, _, _, _, v_x, v_y, v_z, w_x, w_y, w_z = y
-    rows = rows_at(y)
-    (a, b, c), (d, e, f), (g, h, i) = rows
-    (j_xx, j_xy, j_xz), (_, j_yy, j_yz), (_, _, j_zz) = solid.inverse
-    # R J R^T, by its six different entries.
-    a1, a2, a3 = (
-        a * j_xx + b * j_xy + c * j_xz,
-        a * j_xy + b * j_yy + c * j_yz,
-        a * j_xz + b * j_yz + c * j_zz,
-    )
-    d1, d2, d3 = (
-        d * j_xx + e * j_xy + f * j_xz,
-        d * j_xy + e * j_yy + f * j_yz,
-        d * j_xz + e * j_yz + f * j_zz,
-    )
-    g1, g2, g3 = (
-        g * j_xx + h * j_xy + i * j_xz,
-        g * j_xy + h * j_yy + i * j_yz,
-        g * j_xz + h * j_yz + i * j_zz,
-    )
-    xy, xz, yz = a1 * d + a2 * e + a3 * f, a1 * g + a2 * h + a3 * i, d1 * g + d2 * h + d3 * i
-    inverse = (
-        (a1 * a + a2 * b + a3 * c, xy, xz),
-        (xy, d1 * d + d2 * e + d3 * f, yz),
-        (xz, yz, g1 * g + g2 * h + g3 * i),
-    )
-    return Pose((p_x, p_y, p_z), rows, inverse, (v_x, v_y, v_z), (w_x, w_y, w_z))
-
-
-def times(matrix: Matrix3, vector: Vector3) -> Vector3:
-    """Return the product of a matrix, by rows, and a vector."""
-    (a, b, c), (d, e, f), (g, h, i) = matrix
-    x, y, z = vector
-    return (a * x + b * y + c * z, d * x + e * y + f * z, g * x + h * y + i * z)
-
-
-def transposed_times(matrix: Matrix3, vector: Vector3) -> Vector3:
-    """Return the product of a matrix's transpose and a vector."""
-    (a, b, c), (d, e, f), (g, h, i) = matrix
-    x, y, z = vector
-    return (a * x + d * y + g * z, b * x + e * y + h * z, c * x + f * y + i * z)
-
-
-def responses(
-    per_mass: float, rows: list[tuple[Vector3, Vector3]], pushes: list[tuple[Vector3, Vector3]]
-) -> list[list[float]]:
-    """Return how much of each row's motion each push makes.
-
-    Rows have a direction and its moment about the centre of mass, and pushes have a force and the angular
-    acceleration that it causes, or an impulse and the change of angular velocity.
-    """
-    return [
-        [per_mass * (a * x + b * y + c * z) + (d * u + e * v + f * w) for (x, y, z), (u, v, w) in pushes]
-        for (a, b, c), (d, e, f) in rows
-    ]
-
-
-def arm_of(solid: Solid, pose: Pose, touch: Touch) -> Vector3:
-    """Return the arm, m, from the centre of mass to the point that touches or would touch, world axes."""
-    x, y, z = times(pose.rows, solid.corners[touch[1]])
-    r, (a, b, c) = solid.rounding, solid.flats[touch[0]].normal
-    return (x - r * a, y - r * b, z - r * c)
-
-
-def velocity_of(pose: Pose, arm: Vector3) -> Vector3:
-    """Return the velocity, m/s, world axes, of the body's point at an arm."""
-    (v_x, v_y, v_z), (x, y, z) = pose.v, cross(pose.w, arm)
-    return (v_x + x, v_y + y, v_z + z)
-
-
-def sliding_direction(velocity: Vector3, normal: Vector3, towards: Vector3) -> Vector3:
-    """Return the unit direction in which a contact slides, from its velocity, m/s."""
-    v_n = dot(velocity, normal)
-    e = SLIDING_DIRECTION_SPEED
-    x = velocity[0] - v_n * normal[0] + e * towards[0]
-    y = velocity[1] - v_n * normal[1] + e * towards[1]
-    z = velocity[2] - v_n * normal[2] + e * towards[2]
-    size = math.sqrt(x * x + y * y + z * z)
-    return (x / size, y / size, z / size) if size > 0.0 else towards
-
-
-def height_of(solid: Solid, pose: Pose, touch: Touch) -> float:
-    """Return the height, m, of a corner above a flat, of its ball's lowest point if it is rounded."""
-    flat, arm = solid.flats[touch[0]], arm_of(solid, pose, touch)
-    return dot(pose.position, flat.normal) + dot(arm, flat.normal) - flat.level
+    pose = Pose(solid)
+    for k in range(13):
+        pose.y[k] = y[k]
+    pose.take(pose.y)
+    return pose
 
 
 def heights_and_rates(solid: Solid, y: Numbers) -> list[tuple[float, float, Touch]]:
     """Return the height, m, and its rate, m/s, of every corner above every flat."""
-    (a, b, c), (d, e, f), (g, h, i) = rows_at(y)
-    w_x, w_y, w_z = y[10], y[11], y[12]
-    found = []
-    for s, flat in enumerate(solid.flats):
-        n_x, n_y, n_z = flat.normal
-        # The normal n in body axes, and n x w there, since n . (w x r) = r . (n x w).
-        u, v, w = a * n_x + d * n_y + g * n_z, b * n_x + e * n_y + h * n_z, c * n_x + f * n_y + i * n_z
-        m_x, m_y, m_z = n_y * w_z - n_z * w_y, n_z * w_x - n_x * w_z, n_x * w_y - n_y * w_x
-        p, q, r = a * m_x + d * m_y + g * m_z, b * m_x + e * m_y + h * m_z, c * m_x + f * m_y + i * m_z
-        height = y[0] * n_x + y[1] * n_y + y[2] * n_z - flat.level - solid.rounding
-        rate = y[7] * n_x + y[8] * n_y + y[9] * n_z
-        found += [
-            (height + u * j + v * k + w * m, rate + p * j + q * k + r * m, (s, corner))
-            for corner, (j, k, m) in enumerate(solid.corners)
-        ]
-    return found
+    above = Above(solid)
+    for k in range(13):
+        above.y[k] = y[k]
+    above.take(above.y)
+    n = solid.count
+    touches = [(flat, corner) for flat in range(len(solid.flats)) for corner in range(n)]
+    return [(above.heights[k], above.rates[k], touches[k]) for k in range(len(touches))]
+
+
+class Above:
+    """The heights of all corners above all flats, flat after flat, and their rates.
+
+    Attributes:
+        heights: m.
+        rates: m/s.
+        least: m, the least height.
+    """
+
+    def __init__(self, solid: Solid) -> None:
+        self.solid = solid
+        self.count = solid.count * len(solid.flats)
+        self.heights = array("d", bytes(8 * self.count))
+        self.rates = array("d", bytes(8 * self.count))
+        self.least = math.inf
+        self.y = [0.0] * 13
+
+    def take(self, y: Numbers) -> None:
+        """Take 13 numbers, whose quaternion need not be unit."""
+        solid = self.solid
+        a, b, c, d, e, f, g, h, i = rows_of(y[3], y[4], y[5], y[6])
+        w_x, w_y, w_z = y[10], y[11], y[12]
+        k, least = 0, math.inf
+        for s in range(len(solid.flats)):
+            flat = solid.flats[s]
+            n_x, n_y, n_z = flat.normal
+            # The normal n in body axes, and n x w there, since n . (w x r) = r . (n x w).
+            u, v, w = a * n_x + d * n_y + g * n_z, b * n_x + e * n_y + h * n_z, c * n_x + f * n_y + i * n_z
+            m_x, m_y, m_z = n_y * w_z - n_z * w_y, n_z * w_x - n_x * w_z, n_x * w_y - n_y * w_x
+            p, q, r = a * m_x + d * m_y + g * m_z, b * m_x + e * m_y + h * m_z, c * m_x + f * m_y + i * m_z
+            height = y[0] * n_x + y[1] * n_y + y[2] * n_z - flat.level - solid.rounding
+            rate = y[7] * n_x + y[8] * n_y + y[9] * n_z
+            for corner in range(solid.count):
+                c_x, c_y, c_z = solid.corner(corner)
+                self.heights[k] = height + u * c_x + v * c_y + w * c_z
+                self.rates[k] = rate + p * c_x + q * c_y + r * c_z
+                least = min(least, self.heights[k])
+                k += 1
+        self.least = least
 
 
 def energy_of(solid: Solid, y: Numbers) -> float:
     """Return the kinetic energy and that in uniform gravity together, J. It is zero at rest at the origin."""
-    return kinetic_energy_of(solid, y) - solid.mass * dot(solid.gravity, (y[0], y[1], y[2]))
+    return kinetic_energy_of(solid, y) - solid.mass * vec.dot(solid.gravity, (y[0], y[1], y[2]))
 
 
 def kinetic_energy_of(solid: Solid, y: Numbers) -> float:
     """Return the kinetic energy, J."""
-    v_x, v_y, v_z = y[7], y[8], y[9]
-    w_B = transposed_times(rows_at(y), (y[10], y[11], y[12]))
-    return 0.5 * (solid.mass * (v_x * v_x + v_y * v_y + v_z * v_z) + dot(w_B, times(solid.inertia, w_B)))
+    return pose_of(solid, y).kinetic_energy()
 
 
 def properties_of(solid: Solid) -> MassProperties:
     """Return mass and inertia as questions take them."""
-    return MassProperties(mass=solid.mass, I_B=solid.inertia)
+    return MassProperties(mass=solid.mass, I_B=np.array(solid.inertia).reshape(3, 3))
 
 
 def state_of(y: Numbers, stamp_ns: int = 0) -> BodyState:
@@ -373,7 +463,7 @@ def state_of(y: Numbers, stamp_ns: int = 0) -> BodyState:
 def points_of(solid: Solid, y: Numbers, touching: list[Touch]) -> FloatArray:
     """Return where contacts are, (n, 3), m, world."""
     pose = pose_of(solid, y)
-    arms = [arm_of(solid, pose, touch) for touch in touching]
+    arms = [pose.arm(flat, corner) for flat, corner in touching]
     points: FloatArray = np.array(arms) + np.array(pose.position)
     return points
 

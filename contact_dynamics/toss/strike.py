@@ -16,9 +16,9 @@ import math
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 from contact_dynamics.impact.several.result import SeveralContactsLaw
-from contact_dynamics.numerics.vectors import cross, dot, norm
 from contact_dynamics.tolerances import STILL_TOUCHING, STRIKES
-from contact_dynamics.toss.holding import heights_held, held_in_place, without_rebounds
+from contact_dynamics.toss import vectors as vec
+from contact_dynamics.toss.forces import held_as_they_are, without_rebounds
 from contact_dynamics.toss.impacts import (
     Struck,
     inelastic_impact,
@@ -29,7 +29,7 @@ from contact_dynamics.toss.impacts import (
     tied_strike,
 )
 from contact_dynamics.toss.mode_choice import choose_mode
-from contact_dynamics.toss.solid import Held, arm_of, pose_of, times, velocity_of
+from contact_dynamics.toss.solid import Held, pose_of
 
 if TYPE_CHECKING:
     from contact_dynamics.impact.law import RestitutionLaw
@@ -68,7 +68,7 @@ def approaches(solid: Solid, y: Numbers, touching: list[Touch]) -> list[float]:
     """Return the normal velocities, m/s, of contacts, negative if they approach."""
     pose = pose_of(solid, y)
     return [
-        dot(velocity_of(pose, arm_of(solid, pose, touch)), solid.flats[touch[0]].normal) for touch in touching
+        vec.dot(pose.velocity(pose.arm(flat, corner)), solid.flats[flat].normal) for flat, corner in touching
     ]
 
 
@@ -146,12 +146,12 @@ def low_rebounds_ended(solid: Solid, y: Numbers, touching: list[Touch]) -> Strik
 
 def _slow(solid: Solid) -> float:
     """Return the speed, m/s, with which a contact rises by the solid's `settling`."""
-    return math.sqrt(2.0 * solid.settling * norm(solid.gravity))
+    return math.sqrt(2.0 * solid.settling * vec.norm(solid.gravity))
 
 
 def _settled(solid: Solid, y: Numbers, touching: list[Touch], rates: list[float]) -> Strikes | None:
     """Return the state in which all slow rebounds have ended, or None if a contact still rebounds."""
-    fast = 2.0 * solid.settling * norm(solid.gravity)
+    fast = 2.0 * solid.settling * vec.norm(solid.gravity)
     for rate in rates:
         if rate < 0.0 and rate * rate > fast:
             return None
@@ -160,7 +160,7 @@ def _settled(solid: Solid, y: Numbers, touching: list[Touch], rates: list[float]
         return None
     motions = impact.motions
     slow = [
-        Held(touch, math.hypot(*motion[:2]) ** 2 > fast * solid.flats[touch[0]].friction)
+        Held(touch, motion[0] * motion[0] + motion[1] * motion[1] > fast * solid.flats[touch[0]].friction)
         for touch, motion in zip(touching, motions, strict=True)
         if motion[2] * motion[2] <= fast
     ]
@@ -183,7 +183,7 @@ def _settled(solid: Solid, y: Numbers, touching: list[Touch], rates: list[float]
 def _held(solid: Solid, y: Numbers, slow: list[Held], touching: list[Touch]) -> Numbers | None:
     """Return the state with slow contacts held, or None if contacts approach then."""
     mode = tuple(slow)
-    held = held_in_place(solid, y, mode, heights_held(solid, y, mode))
+    held = held_as_they_are(solid, y, mode)
     return held if min(approaches(solid, held, touching)) >= -STRIKES else None
 
 
@@ -230,13 +230,13 @@ def _pressed(
     pose = pose_of(solid, y)
     staying = []
     for touch, rate, motion in zip(touching, before, motions, strict=True):
-        flat, arm = solid.flats[touch[0]], arm_of(solid, pose, touch)
+        flat, arm = solid.flats[touch[0]], pose.arm(*touch)
         rebound = max(motion[2], -flat.restitution * rate)
-        moment = cross(arm, flat.normal)
+        moment = vec.cross(arm, flat.normal)
         pull = 0.0
         if touch in forces:
-            response = 1.0 / solid.mass + dot(moment, times(pose.inverse, moment))
-            pull = response * max(dot(forces[touch], flat.normal), 0.0)
+            response = 1.0 / solid.mass + vec.dot(moment, vec.times(pose.inverse, moment))
+            pull = response * max(vec.dot(forces[touch], flat.normal), 0.0)
         if motion[2] <= STILL_TOUCHING or rebound * rebound <= 2.0 * solid.settling * pull:
             staying.append(touch)
         elif rate < -STRIKES:

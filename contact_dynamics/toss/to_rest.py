@@ -7,11 +7,10 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 import numpy as np
 
 from contact_dynamics.errors import InvalidFieldError
-from contact_dynamics.numerics.vectors import norm
 from contact_dynamics.tolerances import SAMPLED_PHASE_ERROR
 from contact_dynamics.toss.result import TossEnd, TossEventKind
 from contact_dynamics.toss.simulation import Simulation, TossSettings
-from contact_dynamics.toss.solid import as_rows, state_of
+from contact_dynamics.toss.solid import Solid, matrix_of, state_of
 from contact_dynamics.validation import check_whole
 
 if TYPE_CHECKING:
@@ -23,7 +22,7 @@ if TYPE_CHECKING:
     from contact_dynamics.numerics.vectors import Vector3
     from contact_dynamics.toss.law_spread import LawSpread
     from contact_dynamics.toss.next_strikes import ManyStrikes
-    from contact_dynamics.toss.solid import Numbers, Solid, Touch
+    from contact_dynamics.toss.solid import Numbers, Touch
     from contact_dynamics.toss.uncertainty import Samples
 
 PART: Final = 100
@@ -156,9 +155,8 @@ def _followed(one: _Going) -> Followed:
 def _solid_of(solid: Solid, samples: Samples, i: int) -> Solid:
     """Return the body and the flats of one sample."""
     inertia = samples.inertias_B[i]
-    corners = tuple((x, y, z) for x, y, z in samples.corners_B[i].tolist())
     flats = tuple(
-        flat._replace(friction=mu, restitution=e, strike_friction=struck)
+        flat.with_frictions(mu, e, struck)
         for flat, mu, e, struck in zip(
             solid.flats,
             samples.lasting_frictions[i].tolist(),
@@ -167,10 +165,14 @@ def _solid_of(solid: Solid, samples: Samples, i: int) -> Solid:
             strict=True,
         )
     )
-    return solid._replace(
-        inertia=as_rows(inertia.tolist()),
-        inverse=as_rows(np.linalg.inv(inertia).tolist()),
-        corners=corners,
-        reach=max(map(norm, corners)) + solid.rounding,
+    return Solid(
+        mass=solid.mass,
+        inertia=matrix_of(inertia),
+        inverse=matrix_of(np.linalg.inv(inertia)),
+        corners=tuple((x, y, z) for x, y, z in samples.corners_B[i].tolist()),
+        indices=solid.indices,
+        rounding=solid.rounding,
+        gravity=solid.gravity,
         flats=flats,
+        settling=solid.settling,
     )

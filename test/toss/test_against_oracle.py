@@ -11,7 +11,7 @@ from contact_dynamics.rotations.one import rotation_matrix
 from contact_dynamics.shapes import box
 from contact_dynamics.tolerances import GRAZING_DEPTH, PHASE_ERROR, SAMPLED_PHASE_ERROR
 from contact_dynamics.toss import Toss, TossEventKind, toss
-from contact_dynamics.toss.phase_step import PhaseStep
+from contact_dynamics.toss.phase import PhaseStep
 from contact_dynamics.toss.solid import heights_and_rates, solid_of
 from contact_dynamics.world import Body, Surface, World
 from oracles.held_motion import HeldBody, accelerations, held_motion

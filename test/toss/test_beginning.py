@@ -14,7 +14,7 @@ from contact_dynamics.rigid_body import inertia
 from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.shapes import box
 from contact_dynamics.tolerances import BEGINNING_ROUNDING
-from contact_dynamics.toss.forces import free_accelerations, pushed_by_contacts
+from contact_dynamics.toss.forces import pushed_by_contacts
 from contact_dynamics.toss.mode_choice import Mode, corrected
 from contact_dynamics.toss.solid import Held, Touch, numbers_of, solid_of
 from contact_dynamics.world import Body, Surface, World
@@ -39,7 +39,7 @@ class OnEdge(NamedTuple):
             self.body, World(surfaces=(replace(self.ramp, friction=friction),), gravity_W=GRAVITY)
         )
         y = numbers_of(self.state)
-        return corrected(solid, y, tuple(map(Held, self.touching)), free_accelerations(solid, y))[0]
+        return corrected(solid, y, tuple(map(Held, self.touching)))[0]
 
 
 def on_edge(seed: int) -> OnEdge:

@@ -116,7 +116,7 @@ def check_impact(seed: int) -> bool:
             against = -flat.friction * pressing * sliding / np.linalg.norm(sliding)
             np.testing.assert_allclose(friction, against, atol=1e-3 * pressing)
     np.testing.assert_allclose(solid.mass * (v - y[7:10]), total, atol=1e-12)
-    turned = R @ np.array(solid.inertia) @ R.T @ (w - y[10:])
+    turned = R @ np.array(solid.inertia).reshape(3, 3) @ R.T @ (w - y[10:])
     np.testing.assert_allclose(turned, moment, atol=1e-12)
     assert energy_of(solid, impact.y) <= energy_of(solid, y) + 1e-9
     return True

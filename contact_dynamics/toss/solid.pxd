@@ -1,0 +1,77 @@
+# The types with which solid.py compiles.
+
+cimport cython
+cimport libc.math as math
+
+from contact_dynamics.toss cimport vectors as vec
+
+cdef extern from *:
+    # A checksum of solid.py and this file, which setup.py defines (see numerics/compiled.py).
+    cpdef enum:
+        SOURCE_CRC
+
+cdef double SLIDING_DIRECTION_SPEED
+
+
+@cython.final
+cdef class Flat:
+    cdef readonly str name
+    cdef readonly (double, double, double) normal
+    cdef readonly ((double, double, double), (double, double, double)) tangents
+    cdef readonly double level, friction, restitution, strike_friction
+
+
+@cython.final
+cdef class Solid:
+    cdef readonly double mass, rounding, reach, settling
+    cdef readonly (double, double, double, double, double, double, double, double, double) inertia, inverse
+    cdef readonly tuple corners, indices, flats
+    cdef readonly (double, double, double) gravity
+    cdef readonly int count
+    cdef double[::1] points
+
+    cdef (double, double, double) corner(self, int k) noexcept
+
+
+@cython.final
+cdef class Held:
+    cdef readonly tuple touch
+    cdef readonly bint slides, begins
+    cdef readonly (double, double, double) towards
+    cdef readonly int flat, corner
+
+
+@cython.final
+cdef class Pose:
+    cdef readonly Solid solid
+    cdef double[13] y
+    cdef readonly (double, double, double) position, v, w, alpha
+    cdef readonly (double, double, double, double, double, double, double, double, double) rows, inverse
+
+    cdef void take(self, double* y) noexcept
+    @cython.locals(touched=Flat)
+    cpdef (double, double, double) arm(self, int flat, int corner) noexcept
+    cpdef (double, double, double) velocity(self, (double, double, double) arm) noexcept
+    cpdef (double, double, double) sliding(self, (double, double, double) arm, (double, double, double) normal, (double, double, double) towards) noexcept
+    @cython.locals(touched=Flat)
+    cpdef (double, double, double) acceleration(self, int flat, (double, double, double) arm, (double, double, double) a, (double, double, double) alpha) noexcept
+    @cython.locals(touched=Flat)
+    cpdef double height(self, int flat, int corner) noexcept
+    cpdef double kinetic_energy(self) noexcept
+
+
+@cython.final
+cdef class Above:
+    cdef Solid solid
+    cdef readonly int count
+    cdef double[::1] heights, rates
+    cdef readonly double least
+    cdef double[13] y
+
+    @cython.locals(flat=Flat, least=cython.double)
+    cdef void take(self, double* y) noexcept
+
+
+cdef (double, double, double, double, double, double, double, double, double) rows_of(double x, double yy, double z, double w) noexcept nogil
+cpdef Pose pose_of(Solid solid, list y)
+cpdef list heights_and_rates(Solid solid, list y)
