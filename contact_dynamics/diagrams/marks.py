@@ -70,6 +70,7 @@ class Points(Mark):
 
     Attributes:
         places: (n, d).
+        paints: Their colours in the viewer, (n,), if each has its own.
         size: The diameter, in points of the screen or of paper.
         radius: The radius in the units of the diagram, which replaces the size in the viewer if it is not 0.
         marker: The form, as Matplotlib writes it.
@@ -81,6 +82,7 @@ class Points(Mark):
 
     places: FloatArray
     _: KW_ONLY
+    paints: Sequence[Paint] = ()
     size: float = 8.0
     radius: float = 0.0
     marker: str = "o"
@@ -97,6 +99,7 @@ class Arrows(Mark):
     Attributes:
         origins: (n, d).
         vectors: (n, d).
+        paints: Their colours in the viewer, (n,), if each has its own.
         width: Points of the screen or of paper.
         radius: The radius in the units of the diagram, which replaces the width in the viewer if it is not 0.
         labels: (n,), or none.
@@ -106,6 +109,7 @@ class Arrows(Mark):
     origins: FloatArray
     vectors: FloatArray
     _: KW_ONLY
+    paints: Sequence[Paint] = ()
     width: float = 2.0
     radius: float = 0.0
     labels: Sequence[str] = ()
@@ -144,10 +148,13 @@ class Labels(Mark):
     Attributes:
         places: (n, d), of the middle of each.
         texts: (n,).
+        paints: Their colours in the viewer, (n,), if each has its own.
     """
 
     places: FloatArray
     texts: Sequence[str]
+    _: KW_ONLY
+    paints: Sequence[Paint] = ()
 
 
 @dataclass(frozen=True, slots=True, eq=False)

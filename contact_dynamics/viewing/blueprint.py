@@ -9,8 +9,8 @@ import numpy as np
 import rerun.blueprint as rrb
 
 from contact_dynamics.diagrams import palette
+from contact_dynamics.diagrams.contact_scene import mode_names
 from contact_dynamics.numerics.vectors import tangents_near_x
-from contact_dynamics.viewing import contact_modes
 from contact_dynamics.viewing.drawing import EYE, TARGET
 from contact_dynamics.viewing.entities import (
     ANGULAR_MOMENTUM,
@@ -225,7 +225,7 @@ def _scene(
             **{
                 f"{contacts_entity(name)}/{mode}": rrb.EntityBehavior(visible=False)
                 for name in body_names
-                for mode in contact_modes.mode_names()[1:]
+                for mode in mode_names()[1:]
                 if CONTACTS not in without  # each costs 3 kB, in every arrangement that is sent
             },
         },

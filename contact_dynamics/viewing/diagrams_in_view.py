@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import rerun as rr
 
+from contact_dynamics.diagrams.contact_scene import MAX_MODES
 from contact_dynamics.diagrams.force_dual import answer_marks, force_dual
 from contact_dynamics.diagrams.impulse_space import impulse_space, impulse_space_in_3d
 from contact_dynamics.diagrams.mode_map import (
@@ -28,7 +29,6 @@ from contact_dynamics.diagrams.planar_modes import (
     modes_side_by_side,
 )
 from contact_dynamics.diagrams.wrench_chart import DirectionChart
-from contact_dynamics.viewing.contact_modes import MAX_MODES
 from contact_dynamics.viewing.drawing import draw_diagram, draw_side_by_side, redraw
 from contact_dynamics.viewing.entities import (
     FORCE_DUAL,

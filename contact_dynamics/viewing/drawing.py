@@ -125,13 +125,15 @@ def _lifted(mark: Mark, point: float) -> Mark:
 def _drawn(mark: Mark, shift: float) -> rr.AsComponents | None:  # noqa: PLR0911  one for each kind
     """Return what rerun draws, or None for nothing."""
     color = palette.translucent(mark.paint.dark, mark.opacity)
+    paints = mark.paints if isinstance(mark, Points | Arrows | Labels) else ()
+    colors = [palette.translucent(paint.dark, mark.opacity) for paint in paints] or color
     match mark:
         case Lines():
             strips = [_on_screen(strip, shift) for strip in mark.strips if len(strip) > 0]
             return _strips(strips, color, -_THICK * mark.width)
         case Points() if len(mark.places) > 0:
             options: dict[str, Any] = {
-                "colors": color,
+                "colors": colors,
                 "radii": mark.radius or -_LARGE * mark.size,
                 "labels": list(mark.labels) or None,
                 "show_labels": mark.label_all if mark.labels else None,
@@ -142,7 +144,7 @@ def _drawn(mark: Mark, shift: float) -> rr.AsComponents | None:  # noqa: PLR0911
             options = {
                 "vectors": _on_screen(mark.vectors),
                 "origins": _on_screen(mark.origins, shift),
-                "colors": color,
+                "colors": colors,
                 "radii": mark.radius or -_THICK * mark.width,
                 "labels": list(mark.labels) or None,
                 "show_labels": mark.label_all if mark.labels else None,
@@ -156,7 +158,8 @@ def _drawn(mark: Mark, shift: float) -> rr.AsComponents | None:  # noqa: PLR0911
                 albedo_factor=color,
             )
         case Labels() if len(mark.texts) > 0:
-            return words(_on_screen(mark.places, shift), mark.texts, mark.paint.dark)
+            darks = [paint.dark for paint in paints] or [mark.paint.dark] * len(mark.texts)
+            return words(_on_screen(mark.places, shift), mark.texts, darks)
         case Ellipsoids() if len(mark.centers) > 0:
             from scipy.spatial.transform import Rotation
 
@@ -186,13 +189,13 @@ def _strips(strips: Sequence[FloatArray], color: palette.Color, radius: float) -
     return rr.LineStrips3D(strips_3d(strips), colors=color, radii=radius)
 
 
-def words(places: FloatArray, texts: Sequence[str], color: palette.Color) -> rr.AsComponents:
+def words(places: FloatArray, texts: Sequence[str], colors: Sequence[palette.Color]) -> rr.AsComponents:
     """Return words at places, (n, d), as rerun's views have them.
 
     In the plane they stand at lines without length. The viewer allows for more room about points, which would
     make the picture small.
     """
-    readable = palette.readable(color)
+    readable = [palette.readable(color) for color in colors]
     if places.shape[1] == 3:
         return rr.Points3D(places, colors=readable, radii=0.0, labels=list(texts), show_labels=True)
     strips = strips_2d([np.array([place, place]) for place in places])

@@ -7,7 +7,6 @@ impulses are drawn, and the largest have their number, their time, and the body 
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Final
 
@@ -15,8 +14,9 @@ import numpy as np
 import rerun as rr
 
 from contact_dynamics.diagrams import palette
+from contact_dynamics.diagrams.contact_scene import friction_cones
 from contact_dynamics.diagrams.shape import outline
-from contact_dynamics.numerics.vectors import tangents_near_x
+from contact_dynamics.viewing.drawing import draw_marks
 from contact_dynamics.viewing.entities import impact_entity
 from contact_dynamics.viewing.strips import strips_3d
 
@@ -54,7 +54,6 @@ CONE_HEIGHT: Final = 0.35
 MAX_STRIKES: Final = 5
 """This many strikes of a sequence, those with the largest impulses, have a label and the body drawn."""
 
-_CONE_FACETS: Final = 32
 _POINT_SIZE: Final = 0.02  # radius of points, relative to the body's size
 _OUTLINE_WIDTH: Final = -1.2  # a negative size is in points of the screen
 
@@ -145,8 +144,7 @@ def draw_impact(
     recording.log(f"{path}/normal", arrows)
     spheres = rr.Points3D(points, radii=_POINT_SIZE * size, colors=palette.IMPACT)
     recording.log(f"{path}/point", spheres)
-    cones = friction_cones(points, normals, frictions, height=height)
-    recording.log(f"{path}/cone", rr.Clear(recursive=False) if cones is None else cones)
+    draw_marks(recording, [friction_cones("cone", points, normals, frictions, height=height)], path)
     bodies = [(shape, answer.state), *((shape, impact.strikes[i].state_before) for i in main)]
     if other is not None and other_shape is not None:
         bodies.append((other_shape, other.state))
@@ -230,30 +228,3 @@ def _paths(answer: ImpactAnswer, *, scale: float) -> list[FloatArray]:
         answer.contacts.p_WC_W[contact] + scale * answer.impact.path_W[owners == contact]
         for contact in np.unique(owners).tolist()
     ]
-
-
-def friction_cones(
-    points_W: FloatArray, normals_W: FloatArray, frictions: FloatArray, *, height: float
-) -> rr.Mesh3D | None:
-    """Return friction cones at points, with sides of length ``height``, m, or None without friction."""
-    angles = np.linspace(0.0, 2.0 * math.pi, _CONE_FACETS, endpoint=False)
-    rim_index = 1 + np.arange(_CONE_FACETS)
-    facets = np.stack([np.zeros_like(rim_index), rim_index, np.roll(rim_index, -1)], axis=1)
-    vertices: list[FloatArray] = []
-    triangles: list[NDArray[np.int64]] = []
-    for p_W, normal_W, friction in zip(points_W, normals_W, frictions.tolist(), strict=True):
-        if friction == 0.0:
-            continue
-        u_W, v_W = tangents_near_x(normal_W)
-        half_angle = math.atan(friction)
-        around = np.outer(np.cos(angles), u_W) + np.outer(np.sin(angles), v_W)
-        rim = p_W + height * (math.cos(half_angle) * normal_W + math.sin(half_angle) * around)
-        triangles.append(facets + len(vertices) * (1 + _CONE_FACETS))
-        vertices.append(np.vstack([p_W, rim]))
-    if not vertices:
-        return None
-    return rr.Mesh3D(
-        vertex_positions=np.vstack(vertices),
-        triangle_indices=np.vstack(triangles),
-        albedo_factor=palette.FRICTION_CONE,
-    )

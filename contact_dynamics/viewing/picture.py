@@ -10,6 +10,7 @@ import rerun as rr
 
 from contact_dynamics.constants import ns_after, to_ns
 from contact_dynamics.diagrams.after_impact import AwaitedImpacts
+from contact_dynamics.diagrams.contact_scene import contact_marks
 from contact_dynamics.diagrams.flight import DEFAULT_PREDICTIONS, EARLIER, flight_marks, path_mark
 from contact_dynamics.diagrams.many_states import many_states_marks
 from contact_dynamics.diagrams.outside import outside
@@ -25,7 +26,6 @@ from contact_dynamics.tumbling.regime import Regime
 from contact_dynamics.viewing.after_impact import draw_after_impact
 from contact_dynamics.viewing.answers_in_words import AnswersInWords, sentence
 from contact_dynamics.viewing.blueprint import NO_TRAVEL, WINDOW_S, Framing, make_blueprint, near_most
-from contact_dynamics.viewing.contact_modes import draw_contact_modes
 from contact_dynamics.viewing.diagrams_in_view import DiagramsInView
 from contact_dynamics.viewing.drawing import draw_marks
 from contact_dynamics.viewing.entities import (
@@ -39,6 +39,7 @@ from contact_dynamics.viewing.entities import (
     POINSOT,
     PREDICTED,
     TOSSES,
+    contacts_entity,
     many_entity,
     predicted_entity,
     toss_entity,
@@ -209,7 +210,8 @@ class Picture:
         name, plane = answer.body_name, answer.plane
         shape, body = self._bodies.shape(name), self._bodies.mass_properties(name)
         self._letters.come(name, stamp_ns)
-        draw_contact_modes(self.recording, shape, answer, body=body)
+        self.recording.log(contacts_entity(name), rr.Clear(recursive=True))
+        draw_marks(self.recording, contact_marks(shape, answer, body=body), contacts_entity(name))
         if self._eye is None:
             self._look_at(self._across_from(answer))
         if plane is None:

@@ -7,17 +7,18 @@ import pytest
 
 from contact_dynamics.contact_modes import SpatialMode
 from contact_dynamics.diagrams import palette
+from contact_dynamics.diagrams.contact_scene import (
+    LABEL_DEPTH,
+    MAX_MODES,
+    contact_marks,
+    letters_of_contacts,
+    mode_names,
+    paint_of_letters,
+)
 from contact_dynamics.diagrams.shape import convex_shape
 from contact_dynamics.plane.projection import PlaneOfMotion
 from contact_dynamics.rigid_body.body import BodyState
-from contact_dynamics.viewing.contact_modes import (
-    LABEL_DEPTH,
-    MAX_MODES,
-    color_of_letters,
-    draw_contact_modes,
-    letters_of_contacts,
-    mode_names,
-)
+from contact_dynamics.viewing.drawing import draw_marks
 from viewing.answers import contact_mode_answer
 
 if TYPE_CHECKING:
@@ -26,6 +27,9 @@ if TYPE_CHECKING:
     import rerun as rr
 
     from contact_dynamics.contact.contact import ContactSet
+    from contact_dynamics.diagrams.shape import Shape
+    from contact_dynamics.questions import ContactModeAnswer
+    from contact_dynamics.rigid_body.body import MassProperties
     from contact_dynamics.validation import FloatArray
     from contact_dynamics.world import Body
     from viewing.drawn import Drawn
@@ -47,10 +51,15 @@ def test_a_contact_carries_its_letter_in_every_mode(modes: tuple[str, ...], lett
 
 
 def test_every_letter_has_a_colour_and_a_doubtful_contact_its_own() -> None:
-    assert color_of_letters("l") == color_of_letters("r") == color_of_letters("c") == palette.SLIDE
-    assert color_of_letters("f") == palette.FIXED
-    assert color_of_letters("s") == palette.SEPARATE
-    assert color_of_letters("l|f") == color_of_letters("?") == palette.UNDECIDED
+    assert (
+        paint_of_letters("l").dark
+        == paint_of_letters("r").dark
+        == paint_of_letters("c").dark
+        == palette.SLIDE
+    )
+    assert paint_of_letters("f").dark == palette.FIXED
+    assert paint_of_letters("s").dark == palette.SEPARATE
+    assert paint_of_letters("l|f").dark == paint_of_letters("?").dark == palette.UNDECIDED
 
 
 AT_REST = BodyState(
@@ -59,6 +68,12 @@ AT_REST = BodyState(
     v_WB_W=np.zeros(3),
     w_WB_W=np.zeros(3),
 )
+
+
+def draw(
+    recording: rr.RecordingStream, shape: Shape, answer: ContactModeAnswer, body: MassProperties | None = None
+) -> None:
+    draw_marks(recording, contact_marks(shape, answer, body=body), CONTACTS)
 
 
 def mode_of(mode: str, forces: FloatArray, *, slides: FloatArray | None = None) -> SpatialMode:
@@ -81,7 +96,7 @@ def test_points_carry_letters_and_forces_their_direction(
     forces = np.array([[0.0, 0.0, 0.0], [-0.3, 0.0, 0.4]])
     slides = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]])
     answer = contact_mode_answer(AT_REST, two_contacts, mode_of("sr", forces, slides=slides))
-    draw_contact_modes(recording, convex_shape(body.vertices_B), answer)
+    draw(recording, convex_shape(body.vertices_B), answer)
     drawn = read()
     assert drawn.last(f"{CONTACTS}/letters", "Points3D:labels") == ["separates", "slides right"]
     colors = [color.to_bytes(4, "big") for color in drawn.last(f"{CONTACTS}/points", "Points3D:colors")]
@@ -103,7 +118,7 @@ def test_contacts_that_do_the_same_have_one_label_below_them(
     up = np.array([[0.0, 0.0, 1.0], [0.0, 0.0, 1.0]])
     answer = contact_mode_answer(AT_REST, two_contacts, mode_of("ff", up), mode_of("rr", up))
     shape = convex_shape(body.vertices_B)
-    draw_contact_modes(recording, shape, answer)
+    draw(recording, shape, answer)
     drawn = read()
     assert drawn.last(f"{CONTACTS}/letters", "Points3D:labels") == ["2 contacts stay fixed or slide right"]
     (place,) = drawn.array(f"{CONTACTS}/letters", "Points3D:positions")
@@ -117,7 +132,7 @@ def test_what_acts_besides_the_contacts_is_an_arrow(
     """What the mode of 2 m/s^2 downwards has from its two contacts of 1 N upwards, and from this force."""
     up = np.array([[0.0, 0.0, 1.0], [0.0, 0.0, 1.0]])
     answer = contact_mode_answer(AT_REST, two_contacts, mode_of("ff", up))
-    draw_contact_modes(recording, convex_shape(body.vertices_B), answer, body=body.mass_properties)
+    draw(recording, convex_shape(body.vertices_B), answer, body=body.mass_properties)
     drawn = read()
     amount = 2.0 * body.mass_properties.mass + 2.0
     assert drawn.last(f"{CONTACTS}/applied", "Arrows3D:labels") == [f"gravity and load: {amount:.3g} N"]
@@ -131,7 +146,7 @@ def test_each_mode_is_an_entity_of_its_own(
     up = np.array([[0.0, 0.0, 1.0], [0.0, 0.0, 1.0]])
     many = [mode_of("ff", up * (i + 1)) for i in range(MAX_MODES + 2)]
     answer = contact_mode_answer(AT_REST, two_contacts, *many)
-    draw_contact_modes(recording, convex_shape(body.vertices_B), answer)
+    draw(recording, convex_shape(body.vertices_B), answer)
     drawn = read()
     forces = [f"{CONTACTS}/{name}/forces" for name in mode_names()]
     assert [drawn.last(path, "Arrows3D:labels")[0] for path in forces] == [
@@ -148,10 +163,10 @@ def test_each_mode_is_an_entity_of_its_own(
 def test_no_consistent_mode_is_drawn_as_a_question(
     recording: rr.RecordingStream, read: Callable[[], Drawn], body: Body, two_contacts: ContactSet
 ) -> None:
-    draw_contact_modes(recording, convex_shape(body.vertices_B), contact_mode_answer(AT_REST, two_contacts))
+    draw(recording, convex_shape(body.vertices_B), contact_mode_answer(AT_REST, two_contacts))
     drawn = read()
     assert drawn.last(f"{CONTACTS}/letters", "Points3D:labels") == ["no mode"]
-    assert drawn.last(f"{CONTACTS}/mode_1", "Clear:is_recursive") == [True]
+    assert not any("mode_1" in entity for entity in drawn.entities)
 
 
 def test_in_a_plane_the_letters_say_which_way_a_contact_slides(
@@ -161,7 +176,7 @@ def test_in_a_plane_the_letters_say_which_way_a_contact_slides(
     plane = PlaneOfMotion(normal_W=np.array([0.0, -1.0, 0.0]))
     mode = mode_of("lr", np.zeros((2, 3)), slides=np.zeros((0, 3)))
     answer = contact_mode_answer(AT_REST, two_contacts, mode, plane=plane)
-    draw_contact_modes(recording, convex_shape(body.vertices_B), answer)
+    draw(recording, convex_shape(body.vertices_B), answer)
     slides = read().array(f"{CONTACTS}/mode_1/sliding", "Arrows3D:vectors")
     directions = slides / np.linalg.norm(slides, axis=1, keepdims=True)
     np.testing.assert_allclose(directions, [[-1.0, 0.0, 0.0], [1.0, 0.0, 0.0]], atol=1e-6)

@@ -7,11 +7,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
+from contact_dynamics.diagrams.contact_scene import friction_cones
 from contact_dynamics.diagrams.impulse_space import main_contact
 from contact_dynamics.diagrams.shape import convex_shape
 from contact_dynamics.impact import ImpactOutcome, PathEvent
 from contact_dynamics.questions import SequenceStrike, StruckBody
-from contact_dynamics.viewing.impact import LABEL_DEPTH, draw_impact, friction_cones, main_strikes
+from contact_dynamics.viewing.impact import LABEL_DEPTH, draw_impact, main_strikes
 from viewing.answers import impact_answer, of_two
 
 if TYPE_CHECKING:
@@ -167,29 +168,25 @@ def test_of_strikes_in_sequence_the_largest_are_numbered(
 @pytest.mark.parametrize("friction", [1e-3, 0.3, 1.0, 50.0])
 def test_a_friction_cone_opens_by_the_friction_angle(friction: float) -> None:
     normal = np.array([0.6, 0.0, 0.8])
-    cones = friction_cones(np.array([[1.0, 2.0, 3.0]]), normal[None], np.array([friction]), height=0.1)
-    assert cones is not None
-    assert cones.vertex_positions is not None
-    vertices = np.array(cones.vertex_positions.as_arrow_array().to_pylist())
-    apex, rim = vertices[0], vertices[1:]
+    cones = friction_cones(
+        "cones", np.array([[1.0, 2.0, 3.0]]), normal[None], np.array([friction]), height=0.1
+    )
+    apex, rim = cones.corners[0], cones.corners[1:]
     np.testing.assert_allclose(apex, [1.0, 2.0, 3.0])
     along = (rim - apex) @ normal
     across = np.linalg.norm(rim - apex - np.outer(along, normal), axis=1)
-    # float32 positions of size 3 carry 2e-7 m
-    np.testing.assert_allclose(np.arctan2(across, along), math.atan(friction), atol=1e-5)
+    np.testing.assert_allclose(np.arctan2(across, along), math.atan(friction), atol=1e-12)
 
 
 def test_cones_of_several_contacts_do_not_share_triangles() -> None:
     points = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [2.0, 0.0, 0.0]])
-    cones = friction_cones(points, np.tile([0.0, 0.0, 1.0], (3, 1)), np.array([0.5, 0.0, 0.5]), height=0.1)
-    assert cones is not None
-    assert cones.vertex_positions is not None
-    assert cones.triangle_indices is not None
-    vertices = np.array(cones.vertex_positions.as_arrow_array().to_pylist())
-    triangles = vertices[np.array(cones.triangle_indices.as_arrow_array().to_pylist())]
+    normals, frictions = np.tile([0.0, 0.0, 1.0], (3, 1)), np.array([0.5, 0.0, 0.5])
+    cones = friction_cones("cones", points, normals, frictions, height=0.1)
+    triangles = cones.corners[cones.fan]
     assert np.ptp(triangles[..., 0], axis=1).max() < 0.2
     assert {round(x) for x in triangles[..., 0].ravel().tolist()} == {0, 2}
 
 
 def test_without_friction_there_is_no_cone() -> None:
-    assert friction_cones(np.zeros((1, 3)), np.array([[0.0, 0.0, 1.0]]), np.zeros(1), height=0.1) is None
+    up = np.array([[0.0, 0.0, 1.0]])
+    assert len(friction_cones("cones", np.zeros((1, 3)), up, np.zeros(1), height=0.1).fan) == 0
