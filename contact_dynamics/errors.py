@@ -65,7 +65,7 @@ class NoContactError(ContactDynamicsError):
 
 
 class NoShapeError(NoContactError):
-    """A question needs the shape of a body that has none."""
+    """The body that was asked about has no shape that could touch anything."""
 
 
 class UnknownBodyError(ContactDynamicsError):

@@ -42,11 +42,16 @@ def check_numbers(message: object) -> None:
 
 
 def in_fields(error: Refused) -> Refused:
-    """Return an error in the words of messages: by their fields, and with a hint if NaN was found."""
+    """Return an error in the words of messages: by their fields, and with a hint where one helps."""
     told = renamed(error, FIELDS)
-    if isinstance(told, InvalidFieldError) and not told.hint and _NAN.search(str(told.found)):
-        return type(told)(told.field, told.found, told.allowed, hint=HINT)
-    return told
+    if not isinstance(told, InvalidFieldError) or told.hint:
+        return told
+    hint = ""
+    if _NAN.search(str(told.found)):
+        hint = HINT
+    elif (told.field, told.found) == ("stamp", 0):
+        hint = "fill in header.stamp, with the node's clock"
+    return type(told)(told.field, told.found, told.allowed, hint=hint) if hint else told
 
 
 def _mangled(message: object) -> Iterator[tuple[str, float]]:

@@ -32,11 +32,10 @@ MAX_SAID: Final = 2000
 
 
 _SHAPE_HINT: Final = (
-    "a body that a request describes has mass and inertia only: give contacts, with contact_source: 1 "
-    "(CONTACTS_EXPLICIT), or configure a body with a shape: body.NAME.mass, body.NAME.inertia: [0.0] and "
-    "body.NAME.sphere: [0.03]"
+    "a body that a request describes has mass and inertia only: name a configured one with a shape, such as "
+    "body.NAME.mass, body.NAME.inertia: [0.0] and body.NAME.sphere: [0.03], or give contacts, with "
+    "contact_source: 1, where the request has them"
 )
-"""What to do about a body without a shape."""
 
 
 class Response(Protocol):
@@ -77,6 +76,8 @@ def code_name(error: Exception) -> str:
 def report_error(response: Response, error: Exception) -> None:
     """Write an error into a response, as its code and a message with what was found and what is allowed."""
     error = in_fields(error)
+    if isinstance(error, errors.NoShapeError):
+        error = errors.NoShapeError(f"{error} ({_SHAPE_HINT})")
     for error_type, code_name in _CODE_NAMES:
         code = getattr(response, code_name, None)
         if isinstance(error, error_type) and code is not None:

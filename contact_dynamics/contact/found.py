@@ -72,7 +72,7 @@ def check_not_inside(
 ) -> None:
     """Raise `InvalidFieldError` where a body is deeper in a surface than a tolerance, m, or the default one.
 
-    It raises `NoContactError` where the body has no shape.
+    It raises `NoShapeError` where the body has no shape.
     """
     check_has_shape(body)
     allowed = max(check_not_negative("distance_tolerance", distance_tolerance), DISTANCE_TOLERANCE)

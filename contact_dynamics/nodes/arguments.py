@@ -53,7 +53,7 @@ def ros_arguments(parser: argparse.ArgumentParser, arguments: list[str]) -> list
     of_ros = arguments[split:]
     if mine.params_file:
         of_ros = ["--ros-args", "--params-file", mine.params_file, *of_ros[1:]]
-    for path in files_given(of_ros):  # ROS would say where in its own sources it failed
+    for path in files_given(of_ros):  # otherwise the error is one of rcl, with a line of its source
         if not Path(path).is_file():
             parser.error(f"--params-file {path}: no such file")
     return of_ros

@@ -11,7 +11,8 @@ body will be (lectures 24, 25). `impact` says which velocities follow (lecture 2
 `contact_modes` says which contacts separate, slide or stay (lecture 26). `toss` says where all that ends.
 
 The kinds share these files: `context` (the world, defaults, and in a `state_store` what was published),
-`subject` (which body, in which state, which may be an `uncertain_state`), `sample_times` (when), `touching`
+`subject` (which body, in which state, which may be an `uncertain_state`), `twist_axes` (whether published
+velocities are in the right axes), `sample_times` (when), `touching`
 (which contacts), `extent` (how large numbers may be) and `problem` (in a plane or in space). Answers describe
 every impact in the same way (`resolved_impact`, `resolving`). They give modes of a plane in world axes
 (`lifted_modes`), and `planar_view` leads back. `settled_impact` has the impact that follows an inconsistency.

@@ -148,7 +148,7 @@ CONTACTS = [
     (
         from_geometry,
         "NO_CONTACT",
-        "with contact_source: 1 ..., since body '' has no shape ... body.NAME.sphere",
+        "since body '' has no shape ... body.NAME.sphere: [0.03], or give contacts",
     ),
     (
         put("contact_source", 0),

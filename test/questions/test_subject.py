@@ -271,7 +271,7 @@ def test_a_state_from_the_future_never_becomes_the_newest() -> None:
 def test_a_state_that_nobody_has_stamped_is_rejected_unless_the_clock_has_only_begun() -> None:
     states = StateStore(history=10.0, timeout=0.5)
     states.add("cube", rising(0), now_ns=500 * MS)
-    with pytest.raises(InvalidFieldError, match=r"stamp must be the time of the state, got 0 \(fill in"):
+    with pytest.raises(InvalidFieldError, match=r"stamp must be the time of the state, got 0$"):
         states.add("cube", rising(0), now_ns=501 * MS)
 
 
