@@ -82,8 +82,7 @@ def report_error(response: Response, error: Exception) -> None:
         code = getattr(response, code_name, None)
         if isinstance(error, error_type) and code is not None:
             response.status = code
-            hint = f" ({_SHAPE_HINT})" if isinstance(error, errors.NoShapeError) else ""
-            response.message = short(f"{error}{hint}")
+            response.message = short(str(error))
             return
     response.status = response.INTERNAL_ERROR  # type: ignore[attr-defined]
     response.message = short(f"{type(error).__name__}: {error}")

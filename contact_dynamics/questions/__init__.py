@@ -19,8 +19,7 @@ every impact in the same way (`resolved_impact`, `resolving`). They give modes o
 `many` asks about many states at once, and `many_contact_modes` about many wrenches or sets of contacts.
 
 `effort` determines whether a question is quick, and `workers` are processes that answer those that are not.
-They and the server leave out `numpy_warnings`. `twist_axes` finds velocities that are in other axes than
-they should be.
+They and the server leave out `numpy_warnings`.
 """
 
 from contact_dynamics.questions.contact_modes import ContactModeAnswer, ContactModeQuestion

@@ -76,7 +76,7 @@ def test_a_body_of_which_nothing_came(monitor: Monitor) -> None:
         ({"ahead_ns": HOUR_NS}, "ahead of the clock"),
         (
             {"is_stamped": False},
-            "stamp must be the time of the state, got 0 (it was left at zero",
+            "stamp must be the time of the state, got 0 (fill in header.stamp",
         ),
     ],
 )
