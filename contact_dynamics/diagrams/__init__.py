@@ -9,6 +9,6 @@ body with its contacts (`planar_scene`, `planar_modes`) and their forces (`conta
 wrenches (`wrench_chart`) and the map of modes on them (`mode_map`), lecture 26's construction for one mode
 (`force_dual`), lecture 25's rolling ellipsoid (`poinsot`), energies and momenta over a trajectory
 (`trajectory_curves`), predicted flights (`flight`) and how far they go until a surface is in their way
-(`outside`), contact modes in space (`contact_scene`), whole tosses (`toss_scene`, `toss_tree`), many states
-(`many_states`), and answers in words (`words`).
+(`outside`), contact modes and impacts in space (`contact_scene`, `impact_scene`), whole tosses (`toss_scene`,
+`toss_tree`), many states (`many_states`), and answers in words (`words`).
 """

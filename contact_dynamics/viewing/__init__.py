@@ -4,7 +4,7 @@ It draws the answers of `contact_dynamics.questions` and their parts. They may c
 Python, from a live server, or from its log.
 
 In reading order: how diagrams are drawn (`drawing`), what colours mean in words (`legend`), names of what is
-drawn (`entities`), bodies and surfaces (`scene`), what was measured (`measured`), impacts (`impact`), lecture
+drawn (`entities`), bodies and surfaces (`scene`), what was measured (`measured`, `after_impact`), lecture
 25's picture of rotations (`poinsot`), the diagrams of answers (`diagrams_in_view`), the arrangement of the
 views and where they look (`blueprint`), all of it together (`picture`), and where it goes (`sinks`): files
 (`rrd_files`), a viewer that is drawn to (`live_viewer`) or started (`viewer_process`), a browser

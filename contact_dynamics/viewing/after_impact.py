@@ -1,21 +1,20 @@
 """Draws the velocity that a body has after an impact beside the one that was predicted.
 
 Among the curves of the body's speed there is one of each, over the time from which the measured one is found.
-In the scene an arrow beside those of the impact shows the measured velocity, to their scale. It has a label
-together with that of the predicted one, since the better the prediction, the more they would overlap.
+In the scene an arrow beside those of the impact shows the measured velocity.
 """
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
-import numpy as np
 import rerun as rr
 
 from contact_dynamics.constants import to_ns
 from contact_dynamics.diagrams import palette
+from contact_dynamics.diagrams.impact_scene import measured_marks
+from contact_dynamics.viewing.drawing import draw_marks
 from contact_dynamics.viewing.entities import SPEED, entity, impact_entity
-from contact_dynamics.viewing.impact import ARROW_WIDTH, velocity_arrows, velocity_labels
 from contact_dynamics.viewing.measured import set_time, time_column
 
 if TYPE_CHECKING:
@@ -54,10 +53,5 @@ def draw_after_impact(
         set_time(recording, end_ns + to_ns(_GAP_S))
         recording.log(path, rr.Clear(recursive=False))
     set_time(recording, end_ns)
-    predicted = velocity_arrows(found.answer)
-    begin_W = found.answer.state.p_WB_W
-    vector_W = found.v_WB_W * predicted.scale(shape.size)
-    arrow = rr.Arrows3D(origins=[begin_W], vectors=[vector_W], colors=color, radii=ARROW_WIDTH * shape.size)
-    recording.log(f"{impact_entity(name)}/measured_velocity", arrow)
-    label = f"measured after {np.linalg.norm(found.v_WB_W):.3g} m/s"
-    recording.log(f"{impact_entity(name)}/velocity_label", velocity_labels(found.answer, shape.size, label))
+    measured = measured_marks(found.answer, found.v_WB_W, size=shape.size, color=color)
+    draw_marks(recording, measured, impact_entity(name))

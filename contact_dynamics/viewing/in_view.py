@@ -12,8 +12,8 @@ import rerun as rr
 
 from contact_dynamics.constants import ns_after
 from contact_dynamics.diagrams.contact_scene import LETTERS
+from contact_dynamics.diagrams.impact_scene import LABELS
 from contact_dynamics.viewing.entities import WHOSE, contacts_entity, entity, impact_entity
-from contact_dynamics.viewing.impact import LABELS
 from contact_dynamics.viewing.measured import OF_ONE_BODY, set_time
 
 if TYPE_CHECKING:

@@ -12,6 +12,7 @@ from contact_dynamics.constants import ns_after, to_ns
 from contact_dynamics.diagrams.after_impact import AwaitedImpacts
 from contact_dynamics.diagrams.contact_scene import contact_marks
 from contact_dynamics.diagrams.flight import DEFAULT_PREDICTIONS, EARLIER, flight_marks, path_mark
+from contact_dynamics.diagrams.impact_scene import impact_marks
 from contact_dynamics.diagrams.many_states import many_states_marks
 from contact_dynamics.diagrams.outside import outside
 from contact_dynamics.diagrams.planar_scene import silhouette
@@ -40,11 +41,11 @@ from contact_dynamics.viewing.entities import (
     PREDICTED,
     TOSSES,
     contacts_entity,
+    impact_entity,
     many_entity,
     predicted_entity,
     toss_entity,
 )
-from contact_dynamics.viewing.impact import draw_impact
 from contact_dynamics.viewing.in_view import ImpactsInView, LettersInView
 from contact_dynamics.viewing.legend import LEGEND_TEXT
 from contact_dynamics.viewing.measured import SET_BACK_S, set_time
@@ -196,7 +197,8 @@ class Picture:
         other_shape = self._bodies.shape(other.name) if other is not None and other.name else None
         strike_ns = ns_after(stamp_ns, answer.seconds_to_contact)
         self._impacts.come(name, stamp_ns=stamp_ns, strike_ns=strike_ns)
-        draw_impact(self.recording, self._bodies.shape(name), answer, other_shape=other_shape)
+        impact = impact_marks(self._bodies.shape(name), answer, other_shape=other_shape)
+        draw_marks(self.recording, impact, impact_entity(name))
         self._awaited.expect(answer, now_ns=stamp_ns)
         drawn = self._diagrams.draw_impact(
             answer,

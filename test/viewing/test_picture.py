@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 
 from contact_dynamics.constants import to_ns
+from contact_dynamics.diagrams.impact_scene import LABELS
 from contact_dynamics.impact import PathEvent
 from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.tumbling import free_motion
 from contact_dynamics.viewing.entities import ERROR
-from contact_dynamics.viewing.impact import LABELS
 from contact_dynamics.viewing.in_view import LABELS_S
 from contact_dynamics.viewing.picture import Picture
 from contact_dynamics.world import World
