@@ -19,6 +19,7 @@ from contact_dynamics_interfaces.msg import BodyState, BodyStates, ContactSet
 from contact_dynamics_interfaces.srv import (
     PredictContactMode,
     PredictImpact,
+    PredictToss,
     PredictTumbling,
     PredictTumblingBatch,
 )
@@ -301,6 +302,18 @@ CASES = [
 ]
 
 
+def says_nothing(answer: Any) -> bool:
+    """Whether no field of a response whose status is not OK reads as an answer, as some of zero would."""
+    if isinstance(answer, PredictContactMode.Response):
+        return {answer.verdict, answer.verdict_after_impact} == {answer.NO_ANSWER}
+    if isinstance(answer, PredictImpact.Response):
+        impact = answer.impact
+        return {impact.outcome, impact.sequence_end} == {impact.NO_ANSWER} and answer.time_to_contact == -1.0
+    if isinstance(answer, PredictToss.Response):
+        return (answer.toss.end, answer.toss.end_time) == (answer.toss.NO_ANSWER, -1.0)
+    return True
+
+
 @pytest.mark.parametrize(
     ("service", "change", "code", "words"), CASES, ids=lambda value: getattr(value, "__name__", None)
 )
@@ -312,6 +325,7 @@ def test_bad_input_is_named_and_the_next_good_request_answered(
     answer = client.ask(request)
     assert answer.status == getattr(answer, code), answer.message
     assert says(answer.message, words)
+    assert says_nothing(answer)
     after = client.ask(good(service))
     assert (after.status, after.message) == (after.OK, "")
 
@@ -393,7 +407,7 @@ def test_what_was_found_is_quoted_in_part_if_it_is_long(client: Client, service:
     assert len(response.message) < 2100
 
 
-@pytest.mark.parametrize("service", SERVICES)
+@pytest.mark.parametrize("service", [*SERVICES, PredictToss])
 def test_no_state_published_yet(client: Client, service: Any) -> None:
     request = service.Request(body_name="brick")
     if service is PredictTumbling:
@@ -401,6 +415,7 @@ def test_no_state_published_yet(client: Client, service: Any) -> None:
     answer = client.ask(request)
     assert answer.status == answer.NO_STATE
     assert "state of 'brick': none was published yet on /brick/odometry (0 publishers)" in answer.message
+    assert says_nothing(answer)
 
 
 @pytest.fixture
