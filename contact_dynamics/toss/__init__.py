@@ -30,6 +30,7 @@ import_core(
     "contact_dynamics.toss.forces",
     "contact_dynamics.toss.cone_forces",
     "contact_dynamics.toss.phase",
+    "contact_dynamics.toss.flight",
 )
 
 from contact_dynamics.toss.distribution import TossDistribution  # noqa: E402  after the core

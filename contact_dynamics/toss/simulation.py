@@ -12,7 +12,6 @@ from contact_dynamics.impact.law import ImpactOutcome, RestitutionLaw
 from contact_dynamics.impact.several.result import SeveralContactsLaw, SeveralVerdict
 from contact_dynamics.impact.several.settling import settling_impact
 from contact_dynamics.numerics.vectors import norm
-from contact_dynamics.shapes.convex import ConvexShape
 from contact_dynamics.tolerances import (
     BUSY,
     LIFT_OFF_PAUSE,
@@ -125,7 +124,6 @@ class Simulation(History):
         super().__init__(settings.solid, state, ways)
         self.settings = settings
         self.properties = properties_of(self.solid)
-        self.shape = ConvexShape(vertices=np.array(self.solid.corners), rounding=self.solid.rounding)
         self.slow = math.inf  # J, rest is tried where the kinetic energy is below this
         self.struck = self.laid = self.steps = 0  # strikes, how often it was laid flat, steps in contact
         self.mark, self.rounds = 0.0, 0  # a time, s, and the rounds since then
@@ -188,7 +186,6 @@ class Simulation(History):
         flown = flight(
             self.solid,
             self.properties,
-            self.shape,
             self.y,
             stamp_ns=self.stamp_ns(),
             longest=left,

@@ -13,7 +13,7 @@ import numpy as np
 from contact_dynamics import Body, BodyState, Surface, World, inertia
 from contact_dynamics.shapes import box
 from contact_dynamics.shapes.convex import ConvexShape
-from contact_dynamics.toss import Toss, cone_forces, forces, phase, solid, toss, vectors
+from contact_dynamics.toss import Toss, cone_forces, flight, forces, phase, solid, toss, vectors
 
 SIZE = (0.15, 0.1, 0.06)
 FLOOR = Surface(name="floor", p_WS_W=[0, 0, 0], normal_W=[0, 0, 1], friction=0.3, restitution=0.3)
@@ -51,7 +51,7 @@ def drawn() -> list[object]:
 
 
 def test_tosses_run_with_the_compiled_core() -> None:
-    for module in (vectors, solid, forces, cone_forces, phase):
+    for module in (vectors, solid, forces, cone_forces, phase, flight):
         assert (module.__file__ or "").endswith(EXTENSION_SUFFIXES[0])
 
 
