@@ -93,6 +93,7 @@ def contact_mode_question_from_msg(
             read_if=CONTACT_MODE,
             force_W=vector_from_msg(request.applied_wrench.force),
             torque_W=vector_from_msg(request.applied_wrench.torque),
+            friction_facets=optional(request.friction_facets),
             include_wrenches=request.include_wrenches,
             include_statics=request.include_statics,
             include_impact=request.include_impact,
@@ -112,6 +113,7 @@ def asked_contact_modes(
     read_if: Iterable[ReadIf],
     force_W: FloatArray = NOTHING,
     torque_W: FloatArray = NOTHING,
+    friction_facets: int | None = None,
     include_wrenches: bool = False,
     include_statics: bool = False,
     include_impact: bool = False,
@@ -128,6 +130,7 @@ def asked_contact_modes(
         read_if: The fields of it that are not always read.
         force_W: The question's own, as what follows.
         torque_W: As the question's.
+        friction_facets: As the question's.
         include_wrenches: As the question's.
         include_statics: As the question's.
         include_impact: As the question's.
@@ -155,7 +158,7 @@ def asked_contact_modes(
         out_of_plane_tolerance=optional(request.out_of_plane_tolerance),
         velocity_tolerance=optional(request.velocity_tolerance),
         distance_tolerance=optional(request.distance_tolerance),
-        friction_facets=optional(request.friction_facets),
+        friction_facets=friction_facets,
         margin_length=optional(request.margin_length),
         force_W=force_W,
         torque_W=torque_W,
@@ -175,6 +178,7 @@ def contact_mode_question_to_msg(
     """Return the request of a question about contact modes, as in `tumbling_question_to_msg`."""
     msg = PredictContactMode.Request()
     write_contact_modes(msg, question, world, world_frame)
+    write_given(msg, friction_facets=question.friction_facets)
     msg.applied_wrench = wrench_to_msg(question.force_W, question.torque_W)
     msg.include_wrenches = question.include_wrenches
     msg.include_statics = question.include_statics
@@ -199,7 +203,7 @@ def write_contact_modes(
     write_contacts(msg, question.contacts)
     write_gravity(msg, question.gravity_W)
     write_problem(msg, question)
-    write_given(msg, friction_facets=question.friction_facets, margin_length=question.margin_length)
+    write_given(msg, margin_length=question.margin_length)
     msg.include_margins = question.include_margins
 
 

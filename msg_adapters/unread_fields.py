@@ -150,11 +150,11 @@ _CONTACT_MODES: Final = (
     _CONTACTS,
     ReadIf(_PLANE, (_MAY_BE_PLANAR,)),
     ReadIf(("distance_tolerance",), (_FOUND, _MAY_BE_PLANAR)),
-    ReadIf(("friction_facets",), (When("problem", ("AUTOMATIC", "SPATIAL")),)),
 )
 
 CONTACT_MODE: Final = (
     *_CONTACT_MODES,
+    ReadIf(("friction_facets",), (When("problem", ("AUTOMATIC", "SPATIAL")),)),
     # AUTOMATIC solves these in space, because no plane holds uncertain contacts.
     ReadIf(_PLANE, (_IN_PLANE, When("include_geometry_margins", is_zero=True))),
     ReadIf(_PLANE, (_IN_PLANE, When("uncertainty_points", is_zero=True))),

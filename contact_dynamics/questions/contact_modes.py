@@ -463,8 +463,8 @@ def _unknown_margins(margins: Sequence[SpatialModeMargin]) -> list[str]:
     modes = [each.mode for each in margins if math.isnan(each.margin)]
     if not modes:
         return []
-    why = "friction pyramids do not hold the mode, or it is open how long a contact slides that begins to"
-    return [f"the margin of {', '.join(modes)} is not known: {why}; more friction_facets may help"]
+    why = "whether a smaller change leaves the mode could not be made out"
+    return [f"the margin of {', '.join(modes)} is not known: {why}"]
 
 
 def _spatial_answer(question: ContactModeQuestion, case: ModeCase, reason: str) -> ContactModeAnswer:

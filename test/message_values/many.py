@@ -97,6 +97,7 @@ def many_contact_modes_questions(draw: st.DrawFn) -> ManyContactModesQuestion:
         draw(contact_mode_questions()),
         force_W=np.zeros(3),
         torque_W=np.zeros(3),
+        friction_facets=None,
         include_wrenches=False,
         include_statics=False,
         include_impact=False,
