@@ -14,6 +14,7 @@ from contact_dynamics import (
     World,
     find_contacts,
     free_motion,
+    largest_load,
     next_landing,
     shapes,
 )
@@ -32,6 +33,7 @@ from hostile_values.shared import (
     CONTACTS,
     CORNERS,
     FLOOR,
+    HELD,
     LEAN,
     LYING,
     RESTING,
@@ -105,6 +107,10 @@ CALLS_WITH_CONTACTS: Calls = {
             "torque_W": [0.0, 0.1, 0.0],
             "at_W": [0.0, 0.0, 0.1],
         },
+    ),
+    "largest_load": (
+        largest_load,
+        {"problem": HELD, "force_W": [1.0, 0.0, 0.0], "torque_W": [0.0, 0.1, 0.0], "at_W": [0.0, 0.0, 0.1]},
     ),
     "ContactUncertainty": (ContactUncertainty, {"points": 1e-3, "normals": 1e-3, "frictions": 0.1}),
     "ContactSet.of": (ContactSet.of, {"contacts": [CONTACT]}),

@@ -44,6 +44,7 @@ FLOOR = {"name": "floor", "p_WS_W": [0, 0, 0], "normal_W": [0, 0, 1], "friction"
 BOX = Body(name="box", mass_properties=BALL, vertices_B=shapes.box_vertices((0.2, 0.2, 0.2)))
 LYING = BodyState(p_WB_W=[0, 0, 0.1], q_WB=[0, 0, 0, 1], v_WB_W=[0, 0, 0], w_WB_W=[0, 0, 0])
 WORLD = World(bodies=(BOX,), surfaces=(Surface(**FLOOR),))
+HELD = SpatialContactProblem.of(BOX, LYING, WORLD)
 ROD, LEAN = PlanarBody(mass=1.0, inertia=0.5), {"v": (0.3, -1.0), "w": 0.5}
 TIP = {"r": (0.2, -0.5), "normal": (0.0, 1.0), "friction": 0.5, "restitution": 0.5}
 PUSH = PlanarWrench(f=(0.3, -9.8), moment=0.1)

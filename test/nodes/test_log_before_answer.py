@@ -52,7 +52,7 @@ def hard() -> Any:
 
 def last_answer(directory: Path) -> str:
     (folder,) = directory.iterdir()
-    with pytest.warns(match="cut short"):
+    with pytest.warns(match="its writer was killed"):
         calls = list(service_calls(BagReader(folder).messages()))
     return str(calls[-1].response())
 

@@ -117,7 +117,9 @@ def test_covariances_are_drawn_where_the_answer_carries_them(bench: Bench) -> No
     answer.trajectory.covariances = [*covariance.ravel(), *(4.0 * covariance).ravel()]
     answer.trajectory.covariances_trusted = [True, True]
     bench.answer("predict_tumbling", answer)
-    half_sizes = bench.drawn().array("/world/predicted/brick/uncertainty", "Ellipsoids3D:half_sizes")
+    half_sizes = bench.drawn().array(
+        "/world/predicted/brick/uncertainty/relied_on", "Ellipsoids3D:half_sizes"
+    )
     np.testing.assert_allclose(np.sort(half_sizes[-1]), [0.04, 0.08, 0.12], rtol=1e-5)
 
 
@@ -217,6 +219,7 @@ def test_the_impact_that_settles_a_case_is_told_with_what_follows(bench: Bench) 
     answer = contact_mode_answer(approaching_contacts=[1], impact=[impact_answer(two_contacts()).impact])
     answer.verdict, answer.modes = answer.IMPACT, []
     answer.contact_velocities = [0.0, 0.0, 0.0, 0.0, 0.0, -0.5]
+    answer.verdict_after_impact = answer.UNIQUE
     answer.modes_after_impact = [ContactMode(mode="fs", forces_unique=True)]
     bench.answer("predict_contact_mode", answer)
     text = bench.drawn().last("/answers/newest", "TextDocument:text")[0]
@@ -233,9 +236,8 @@ def test_a_planar_answer_is_drawn_in_its_plane_with_the_map(bench: Bench) -> Non
         answer.wrench_sets.append(ModeWrenches(mode=mode, vertices=[0.0] * 6, half_spaces=a))
     bench.answer("predict_contact_mode", answer)
     drawn = bench.drawn()
-    assert drawn.last("/planar_modes/mode_1/title", "LineStrips2D:labels") == [
-        "fl: 1 contact slides left, 1 stays fixed (0.25 N from ff)"
-    ]
+    titles = drawn.last("/planar_modes/mode_1/frame/title", "LineStrips2D:labels")
+    assert "fl: 1 contact slides left, 1 stays fixed\n(0.25 N from ff)" in titles
     center = center_of_mass([0.5, 0.0, 1.0], TURNED)
     first = drawn.array("/planar_modes/mode_1/contacts", "Points2D:positions")[0]
     np.testing.assert_allclose(first, [0.1 - center[0], center[2]], atol=1e-6)  # the second axis down

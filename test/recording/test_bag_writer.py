@@ -266,7 +266,7 @@ def test_full_disk_leaves_the_log_whole_up_to_the_last_flush(tmp_path: Path) -> 
     assert (kind, refused) == ("OSError", "refused")
     assert 0 < int(safe) < int(given)
     reader = BagReader(tmp_path / "log")
-    with pytest.warns(UserWarning, match="cut short"):
+    with pytest.warns(UserWarning, match="its writer was killed"):
         messages = list(reader.messages())
     assert [message.log_time_ns for message in messages] == list(range(int(safe)))
     assert metadata_of(tmp_path / "log")["message_count"] == int(safe)

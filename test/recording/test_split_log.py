@@ -227,7 +227,7 @@ def test_what_was_settled_survives_a_kill_and_finished_files_are_whole(tmp_path:
         writing.send_signal(signal.SIGKILL)
     assert settled == "True"
     reader = BagReader(tmp_path / "log")
-    with pytest.warns(UserWarning, match="cut short"):
+    with pytest.warns(UserWarning, match="its writer was killed"):
         times = [message.log_time_ns for message in reader.messages()]
     assert times == [1_000_000 * number for number in range(len(times))]
     assert len(times) >= int(number)
