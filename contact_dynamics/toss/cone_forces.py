@@ -169,9 +169,10 @@ class ConeForces:
         """Go to the limit of sweeps, from the pushes after each of them (Anderson 1965), and return it."""
         after = np.array(seen)
         changes = np.diff(after, axis=0)
-        last, turns = changes[-1], np.diff(changes, axis=0)
+        # Counted from the front: compiled for some Pythons, -1 is counted from the end twice.
+        last, turns = changes[len(changes) - 1], np.diff(changes, axis=0)
         shares = np.linalg.lstsq(turns.T, last, rcond=SWEEPS_CHANGE_ALIKE)[0]
-        found: list[float] = (after[-1] - shares @ changes[1:]).tolist()
+        found: list[float] = (after[len(after) - 1] - shares @ changes[1:]).tolist()
         for j in range(3 * self.count):
             self.numbers[_WIDTH * (j // 3) + 7 + j % 3] = found[j]
         self._move()

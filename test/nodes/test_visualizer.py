@@ -239,12 +239,12 @@ def test_a_planar_answer_is_drawn_in_its_plane_with_the_map(bench: Bench) -> Non
     titles = drawn.last("/planar_modes/mode_1/frame/title", "LineStrips2D:labels")
     assert "fl: 1 contact slides left, 1 stays fixed\n(0.25 N from ff)" in titles
     center = center_of_mass([0.5, 0.0, 1.0], TURNED)
-    first = drawn.array("/planar_modes/mode_1/contacts", "Points2D:positions")[0]
+    first = drawn.array("/planar_modes/mode_1/contacts/fixed", "Points2D:positions")[0]
     np.testing.assert_allclose(first, [0.1 - center[0], center[2]], atol=1e-6)  # the second axis down
     outline = drawn.array("/planar_modes/mode_2/body", "LineStrips2D:strips")[0]
     sides = np.linalg.norm(np.diff(outline, axis=0), axis=1)
     np.testing.assert_allclose(np.sort(sides), [0.09, 0.09, 0.15, 0.15], atol=1e-6)  # as turned, along its z
-    assert set(drawn.last("/mode_map/names", "Points2D:labels")) == {"ff", "ss"}
+    assert set(drawn.last("/mode_map/names", "LineStrips2D:labels")) == {"ff", "ss"}
     assert ("/mode_map/applied", "Points2D:positions") in drawn.values
 
 
