@@ -105,7 +105,7 @@ class ConcaveShapeWarning(UserWarning):
 
 
 class FarContactWarning(UserWarning):
-    """A contact is farther from a body than its shape reaches, so that its state or the contact is wrong."""
+    """A contact is farther from a body than its shape reaches: the state or the contact is wrong."""
 
 
 def frames_to_caller() -> int:

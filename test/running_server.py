@@ -11,7 +11,7 @@ import sys
 import tempfile
 import time
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
@@ -111,11 +111,19 @@ def wait_for(started: subprocess.Popen[str], text: str) -> str:
         readable, _, _ = select.select([started.stdout], [], [], max(0.0, deadline - time.monotonic()))
         line = started.stdout.readline() if readable else ""
         if not line:
-            started.send_signal(signal.SIGABRT)
+            for pid in [*_children_of(started.pid), started.pid]:
+                with suppress(ProcessLookupError):
+                    os.kill(pid, signal.SIGABRT)
             last, _ = started.communicate(timeout=PATIENCE_S)
             pytest.fail(f"{started.args} did not print {text!r}:\n{printed}{last}")
         printed += line
     return printed
+
+
+def _children_of(pid: int) -> list[int]:
+    """The processes that a process has started, such as what starts the workers of a server."""
+    tasks = Path(f"/proc/{pid}/task").glob("*/children")
+    return [int(child) for task in tasks for child in task.read_text(encoding="ascii").split()]
 
 
 class Client:

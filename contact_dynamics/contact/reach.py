@@ -1,4 +1,4 @@
-"""Tells of contacts that are farther from a body than its shape reaches.
+"""Warns of contacts that are farther from a body than its shape reaches.
 
 Mostly the state is of another time than the contacts: that of the throw with those of the landing.
 """

@@ -17,12 +17,12 @@ RECENT_S: Final = 3.0
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FaultLimits:
-    """When faults are told.
+    """When faults are reported.
 
     Attributes:
-        warn_every: s. Time between two warnings of one kind about one topic. Another topic or another fault
-            has a warning at once.
-        silent_after: s without a message, from which on a topic that was heard of counts as silent.
+        warn_every: s, between two warnings of one kind about one topic. A fault of another kind or topic is
+            reported at once.
+        silent_after: s without a message, after which a topic counts as silent.
     """
 
     warn_every: float = 5.0

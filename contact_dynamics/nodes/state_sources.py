@@ -91,7 +91,7 @@ def no_message(data: bytes, type_name: str) -> InvalidFieldError:
 
 
 def expected(body: BodySources, publishers: int | None = None) -> str:
-    """Return what whoever asks about a body is told before any state of it came.
+    """Return the text of NO_STATE for a body: where its states are expected, and what else to do.
 
     Args:
         body: the sources of its states.

@@ -41,9 +41,9 @@ class TopicFaults:
         """Count from zero.
 
         Args:
-            tell: takes a warning.
-            inform: takes what is no fault. By default, nobody is told of that.
-            limits: when faults are told.
+            tell: logs a warning.
+            inform: logs what is not a fault. By default it is not logged.
+            limits: when faults are reported.
             clock: returns seconds.
         """
         self.inform: Callable[[str], object] = inform or (lambda _: None)

@@ -90,7 +90,7 @@ def gauss_newton(
             ) from None
         cost, part = float(misses @ misses), float(explained @ explained)
         small = bool((np.abs(design @ step) < negligible).all())
-        # what is explained shrinks ever faster, so that it shrinks in the next round at least as in this one
+        # The rounds converge ever faster, so the next one explains at most its part of this one.
         shrinks = part / before if part < before else 1.0
         converged = small or shrinks * part < SMALL_SHARE * cost
         start, before = model, part

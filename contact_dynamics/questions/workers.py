@@ -19,7 +19,7 @@ import traceback
 from dataclasses import dataclass
 from multiprocessing import forkserver, resource_tracker
 from pathlib import Path
-from typing import TYPE_CHECKING, Final, TypeVar
+from typing import TYPE_CHECKING, Any, Final, TypeVar
 
 from contact_dynamics.errors import BusyError, ContactDynamicsError, TookTooLongError, TooLargeError
 from contact_dynamics.questions.numpy_warnings import leave_out_numpy_warnings
@@ -46,6 +46,10 @@ _NEEDED: Final = (
 _NICER: Final = 5
 _LOOKS_EVERY_S: Final = 0.05  # whether a worker is ready, and whether there is a question for it
 _TRIES_EVERY_S: Final = 1.0  # to start a worker that ended before it was ready
+_BEGUN_WITHIN_S: Final = 30.0
+"""Time for a worker to begin. Then the process that starts the workers counts as hung, and is replaced. Each
+further try has twice the time of the one before, since the machine may only be busy."""
+
 _SPARE_S: Final = 1.0  # that a worker has to send its answer before it ends by itself
 _MEGABYTE: Final = 1_000_000
 
@@ -202,6 +206,14 @@ def _start_fork_server() -> None:
         forkserver.ensure_running()
 
 
+def _kill_fork_server() -> None:
+    server: Any = forkserver._forkserver  # noqa: SLF001  there is no public way to it
+    pid = server._forkserver_pid  # noqa: SLF001
+    if pid is not None:
+        with contextlib.suppress(OSError):
+            os.kill(pid, signal.SIGKILL)
+
+
 class _Worker:
     """A process, and the pipe to it.
 
@@ -213,6 +225,7 @@ class _Worker:
     def __init__(self, memory: int) -> None:
         self.is_ready = False
         self._memory = memory  # MB
+        self._patience = _BEGUN_WITHIN_S
         self._context = multiprocessing.get_context("forkserver")
         self._context.set_forkserver_preload(list(_NEEDED))
         self._process: BaseProcess | None = None
@@ -224,13 +237,19 @@ class _Worker:
         priority = min(os.getpriority(os.PRIO_PROCESS, os.getpid()) + _NICER, 19)
         arguments = (self._its_end, self._memory * _MEGABYTE, priority)
         process = self._context.Process(target=_answer_questions, args=arguments, daemon=True)
+        watch = threading.Timer(self._patience, _kill_fork_server)
+        watch.daemon = True
+        watch.start()
+        self._patience *= 2.0
         try:
             process.start()
         except (EOFError, OSError):  # the machine has no room for it, or what starts it was killed
             self._process, self.is_killed = None, True
             return
         finally:
+            watch.cancel()
             self._its_end.close()
+        self._patience = _BEGUN_WITHIN_S
         self._process = process
         if self._is_closed:
             process.kill()

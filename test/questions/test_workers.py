@@ -7,9 +7,11 @@ import os
 import pickle
 import queue
 import resource
+import signal
 import time
 from collections.abc import Callable, Iterator
 from multiprocessing import active_children
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -162,6 +164,25 @@ def test_a_worker_that_ends_before_it_is_ready_is_started_again_without_a_questi
             time.sleep(0.05)
         assert workers.ready == 1
         assert outcome(workers, pow, 2, 5) == 32
+    finally:
+        workers.close()
+
+
+def test_what_starts_the_workers_is_replaced_if_it_hangs(monkeypatch: pytest.MonkeyPatch) -> None:
+    """It is stopped here, and then has to start a worker in the place of one that was killed."""
+    monkeypatch.setattr("contact_dynamics.questions.workers._BEGUN_WITHIN_S", 1.0)
+    others = active_children()
+    workers = Workers(WorkerLimits(count=1, deadline=PATIENCE_S, memory=300, max_waiting=1))
+    try:
+        assert outcome(workers, pow, 2, 5) == 32
+        (process,) = set(active_children()) - set(others)
+        starter = int(Path(f"/proc/{process.pid}/stat").read_text().rpartition(")")[2].split()[1])
+        process.kill()
+        process.join(PATIENCE_S)
+        os.kill(starter, signal.SIGSTOP)
+        deadline = time.monotonic() + PATIENCE_S
+        while outcome(workers, pow, 2, 5) != 32:  # the question that waited for it has a fault
+            assert time.monotonic() < deadline
     finally:
         workers.close()
 

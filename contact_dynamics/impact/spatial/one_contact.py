@@ -47,7 +47,7 @@ def spatial_impact(
 ) -> SpatialImpact:
     """Return what the impact of ``body`` does; `impact.spatial_impacts` does it for many at once.
 
-    A contact out of reach of the body's shape, if it has one, is told by a `FarContactWarning`.
+    A `FarContactWarning` reports a contact that is out of reach of the body's shape.
 
     Args:
         body: A `Body`, or its `MassProperties`.
