@@ -19,7 +19,7 @@ import traceback
 from dataclasses import dataclass
 from multiprocessing import forkserver, resource_tracker
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final, TypeVar
+from typing import TYPE_CHECKING, Final, TypeVar
 
 from contact_dynamics.errors import BusyError, ContactDynamicsError, TookTooLongError, TooLargeError
 from contact_dynamics.questions.numpy_warnings import leave_out_numpy_warnings
@@ -207,8 +207,8 @@ def _start_fork_server() -> None:
 
 
 def _kill_fork_server() -> None:
-    server: Any = forkserver._forkserver  # noqa: SLF001  there is no public way to it
-    pid = server._forkserver_pid  # noqa: SLF001
+    server = forkserver._forkserver  # noqa: SLF001  there is no public way to it
+    pid: int | None = getattr(server, "_forkserver_pid", None)
     if pid is not None:
         with contextlib.suppress(OSError):
             os.kill(pid, signal.SIGKILL)

@@ -93,7 +93,7 @@ def test_a_client_that_leaves_with_requests_pending_freezes_nobody(client: Clien
     begun = time.monotonic()
     answer = client.ask(quick())
     assert answer.status == answer.OK, answer.message
-    assert time.monotonic() - begun < 5.0  # of the 20 s that it took to send to who is gone
+    assert time.monotonic() - begun < 15.0  # of the 20 s that it took to send to who is gone
 
 
 def test_a_server_that_a_busy_machine_stops_answers_all_the_same() -> None:

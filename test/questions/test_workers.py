@@ -214,7 +214,7 @@ def test_when_all_work_and_the_queue_is_full_a_question_is_refused_at_once() -> 
         workers.ask(pow, 3, FOR_EVER, lambda _: None)  # type: ignore[arg-type]
     begun = time.monotonic()
     workers.close()
-    assert time.monotonic() - begun < 10.0  # it takes milliseconds, and the powers would take years
+    assert time.monotonic() - begun < 100.0  # it takes milliseconds, and the powers would take years
 
 
 def at_rest(stamp_ns: int) -> BodyState:
