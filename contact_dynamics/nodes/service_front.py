@@ -41,9 +41,10 @@ if TYPE_CHECKING:
     from msg_adapters.status import Response
 
 _EVENT_PATIENCE_S: Final = 0.1
-_TELL_EVERY_S: Final = 5.0  # an answer that did not reach its client
 """s for which the event of a request is waited for, where the answer is logged before it leaves. DDS hands it
 over with the request, and another DDS may be later."""
+
+_TELL_EVERY_S: Final = 5.0  # an answer that did not reach its client
 
 _EVENT_POLL_S: Final = 0.001
 

@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from contact_dynamics.contact.uncertainty import EXACT_CONTACTS
 from contact_dynamics.errors import ContactDynamicsError, InvalidFieldError, TooLargeError
 from contact_dynamics.questions import contact_modes
 from contact_dynamics.questions.contact_modes import ContactModeQuestion
@@ -37,6 +36,18 @@ if TYPE_CHECKING:
 MAX_CANDIDATES: Final = 1000
 """Most candidates in one question. In the plane so many take about a second, with four contacts."""
 
+_PLAIN: Final = ContactModeQuestion(body="")
+
+_ONLY_OF_ONE: Final = (
+    "friction_facets",
+    "include_wrenches",
+    "include_statics",
+    "include_impact",
+    "uncertainty",
+    "include_geometry_margins",
+    "include_probabilities",
+)
+
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class ManyContactModesQuestion(Question["ManyContactModesAnswer"]):
@@ -46,13 +57,14 @@ class ManyContactModesQuestion(Question["ManyContactModesAnswer"]):
 
     Attributes:
         asked: What is the same for all candidates. Its contacts are those of all sets, one after the other.
-            Its wrench is not used, and of what it wants only the margins are worked out.
+            It has no wrench of its own, and of its optional results only margins.
         forces_W: (n, 3), N, applied besides gravity and contact forces, world axes.
         torques_W: (n, 3), N m, applied about the centre of mass, world axes.
         contact_counts: How many contacts each set has. Without any, all contacts are one set.
 
     Raises:
-        InvalidFieldError: the arrays have different lengths, or a number is not finite.
+        InvalidFieldError: the arrays have different lengths, a number is not finite, or ``asked`` has a
+            wrench or an option that this question does not support.
         TooLargeError: more than `MAX_CANDIDATES` candidates.
     """
 
@@ -75,6 +87,7 @@ class ManyContactModesQuestion(Question["ManyContactModesAnswer"]):
 
     def __post_init__(self) -> None:
         """Check the arrays, and repeat what holds for all."""
+        _check_supported(self.asked)
         forces = check_rows("forces_W", self.forces_W, (3,))
         counts = _counts(self.contact_counts)
         most = max(len(forces), len(counts))
@@ -103,6 +116,18 @@ class ManyContactModesQuestion(Question["ManyContactModesAnswer"]):
     def about(self) -> ContactModeQuestion:
         """What is the same for all candidates: the body, its state, gravity."""
         return self.asked
+
+
+def _check_supported(asked: ContactModeQuestion) -> None:
+    for name, of_many in (("force_W", "forces_W"), ("torque_W", "torques_W")):
+        if (value := getattr(asked, name)).any():
+            raise InvalidFieldError(f"asked.{name}", value, f"zero: {of_many} has the wrenches")
+    for name in _ONLY_OF_ONE:
+        value = getattr(asked, name)
+        if value is not getattr(_PLAIN, name) and value:
+            raise InvalidFieldError(f"asked.{name}", value, "its default: it is for single questions only")
+    if asked.margin_length is not None and not asked.include_margins:
+        raise InvalidFieldError("asked.margin_length", asked.margin_length, "None without include_margins")
 
 
 def _counts(value: Sequence[int]) -> tuple[int, ...]:
@@ -185,17 +210,7 @@ def answer(question: ManyContactModesQuestion, context: Context | None = None) -
         contacts if len(counts) == 1 else contacts.subset(range(end - count, end))
         for count, end in zip(counts, ends, strict=True)
     ]
-    shared = replace(
-        asked,
-        body=subject.body,
-        state=state,
-        include_wrenches=False,
-        include_statics=False,
-        include_impact=False,
-        include_probabilities=False,
-        uncertainty=EXACT_CONTACTS,
-        include_geometry_margins=False,
-    )
+    shared = replace(asked, body=subject.body, state=state)
     found = [_candidate(i, question, shared, sets[i % len(sets)], known) for i in range(len(question))]
     modes = [mode for each in found for mode in each.modes]
     margins = [margin.margin for each in found for margin in each.margins or ()]

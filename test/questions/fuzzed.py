@@ -292,7 +292,17 @@ def contact_mode_questions(draw: st.DrawFn) -> ContactModeQuestion:
 
 @st.composite
 def many_contact_modes_questions(draw: st.DrawFn) -> ManyContactModesQuestion:
-    asked = draw(contact_mode_questions())
+    asked = replace(
+        draw(contact_mode_questions()),
+        force_W=np.zeros(3),
+        torque_W=np.zeros(3),
+        friction_facets=None,
+        include_wrenches=False,
+        include_statics=False,
+        include_impact=False,
+    )
+    if not asked.include_margins:
+        asked = replace(asked, margin_length=None)
     count = 0 if asked.contacts is None else len(asked.contacts)
     candidates = draw(st.integers(1, 3))
     return ManyContactModesQuestion(

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
 
 from contact_dynamics import Body, BodyState, ContactSet
+from contact_dynamics.contact.uncertainty import ContactUncertainty
 from contact_dynamics.contact_modes import ModeVerdict
 from contact_dynamics.errors import ContactDynamicsError, InvalidFieldError, NoContactError, TooLargeError
 from contact_dynamics.questions import ContactModeQuestion, Context, ask
@@ -122,6 +124,30 @@ def test_counts_that_do_not_fit_are_refused(counts: tuple[int, ...], rows: int, 
     zeros = np.zeros((rows, 3))
     with pytest.raises(InvalidFieldError, match=words):
         ManyContactModesQuestion(asked=asked, forces_W=zeros, torques_W=zeros, contact_counts=counts)
+
+
+@pytest.mark.parametrize(
+    "option",
+    [
+        {"force_W": [1.0, 0.0, 0.0]},
+        {"torque_W": [0.0, 0.0, 1.0]},
+        {"friction_facets": 16},
+        {"include_wrenches": True},
+        {"include_statics": True},
+        {"include_impact": True},
+        {"include_probabilities": True},
+        {"include_geometry_margins": True},
+        {"uncertainty": ContactUncertainty(points=1e-3)},
+        {"margin_length": 0.1},
+    ],
+    ids=lambda option: next(iter(option)),
+)
+def test_an_option_that_would_be_ignored_is_an_error_that_names_it(option: dict[str, Any]) -> None:
+    (name,) = option
+    with pytest.raises(InvalidFieldError, match=rf"asked\.{name} must be"):
+        ManyContactModesQuestion(
+            asked=replace(ON_FLOOR, **option), forces_W=[[1, 0, 0]], torques_W=[[0, 0, 0]]
+        )
 
 
 def test_arrays_that_do_not_fit_are_refused() -> None:
