@@ -28,8 +28,9 @@ PAGE = ROOT / "docs" / "cases.md"
 HEAD = """\
 # Cases with exact answers, compared with MuJoCo
 
-Users of physics engines asked the questions on this page in public because the engine's answer was an artefact of time steps and softened
-contacts. Each has an exact answer in closed form. This command solves all of them with this package and, if it is installed, with MuJoCo:
+This page compares this package with MuJoCo on problems that have an exact solution in closed form. Users of physics engines posted them,
+because the engine's result was an artefact of time steps and softened contacts. This command solves all of them with this package and, if
+it is installed, with MuJoCo:
 
 ```sh
 contact-dynamics cases
@@ -38,14 +39,14 @@ contact-dynamics cases
 `contact-dynamics cases NAME` solves one case, and `--list` prints the names. `--without-mujoco` skips the simulations, which take most of
 the time.
 
-**How to read the table.** Each row is one setting of a case; its section has the quantity and its unit. MuJoCo's numbers come from
-simulations with its default settings and time step, unless the code of the case says otherwise. For cases with a restitution, its contact is a
-spring and damper made for that value, resolved by ten steps.
+Each row of the table is one setting of a case, and its section defines the quantity and its unit. MuJoCo's numbers are from simulations
+with its default settings and time step, unless the code of the case sets others. For cases with a restitution, its contact is a spring and
+damper designed for that value and resolved by ten steps.
 
-The numbers show how large an artefact can be with default settings; they do not judge MuJoCo, which simulates whole robots with contacts that are soft on
-purpose, and comes closer with smaller steps and other settings. [When to use a simulator](when-to-use-what.md) compares the two approaches. The
-package's answers are exact for rigid bodies with Coulomb friction; how well a real system matches that model, and its coefficients, is up to
-you.
+The numbers show how large an artefact can be with default settings; they are not a verdict on MuJoCo, which simulates whole robots with
+deliberately soft contacts, and is more accurate with smaller steps and other settings. [When to use a simulator](when-to-use-what.md)
+compares the two approaches. The package's answers are exact for rigid bodies with Coulomb friction; whether a real system matches that
+model and its coefficients has to be checked separately.
 
 """
 
@@ -163,8 +164,8 @@ def published() -> str:
     return f"""\
 ## Published numbers
 
-This command compares the package with published numbers, and prints for each the source, the published and the computed number, the tolerance and
-the verdict:
+This command compares the package with published numbers, and prints the source, the published and the computed number, the tolerance and
+the verdict for each:
 
 ```sh
 contact-dynamics cases --published
@@ -172,8 +173,8 @@ contact-dynamics cases --published
 
 {listed}
 
-{counts[PublishedVerdict.RIGHT]} agree within half of the last published digit or, if they were derived here, to rounding. {counts[PublishedVerdict.WRONG]} disagree
-without explanation. {counts[PublishedVerdict.EXPLAINED]} differ because the published number is inaccurate, for the reason printed below each:
+{counts[PublishedVerdict.RIGHT]} agree within half of the last published digit or, if they were derived here, up to rounding error. {counts[PublishedVerdict.WRONG]}
+disagree without explanation. {counts[PublishedVerdict.EXPLAINED]} differ because the published number is inaccurate, for the reason printed below each:
 
 ```text
      published           ours  tolerance

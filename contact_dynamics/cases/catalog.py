@@ -169,7 +169,7 @@ CASES: Final = {
     "ladder": Case(
         title="A ladder against a smooth wall",
         story="The foot holds if tan(angle) is at least 1 / (2 μ). Errors of approximate friction show at "
-        "such thresholds: bodies move before they should.",
+        "such thresholds: bodies move too early.",
         discussed="raisimTech/raisimLib/issues/55 google-deepmind/mujoco/pull/3349",
         setting="angle below the limit, rad",
         settings=(-0.01, 0.01),
@@ -272,7 +272,7 @@ CASES: Final = {
         title="A bowling ball that slides and then rolls",
         story="Users ask why a ball never stops, and engines add damping to stop it. A rigid ball "
         "decelerates while it slides, and then rolls at 5/7 of its initial speed. Rolling resistance is a "
-        "different model, which this package does not have.",
+        "different model, which this package does not include.",
         discussed="schteppe/cannon.js/issues/345 lo-th/Oimo.js/issues/64",
         setting="initial speed, m/s",
         settings=(7.0,),
@@ -310,7 +310,7 @@ CASES: Final = {
     "bounce": Case(
         title="A ball with a given restitution",
         story="In engines with spring-damper contacts, restitution follows from stiffness, damping and time "
-        "step, and only approximates the intended value. In this package, e is the value you state.",
+        "step, and only approximates the intended value. In this package, e is the value you set.",
         discussed="google-deepmind/mujoco/issues/2080 NVIDIAGameWorks/PhysX/issues/351",
         setting="e",
         settings=(0.75, 0.3),
@@ -367,7 +367,7 @@ CASES: Final = {
     "two_balls": Case(
         title="An elastic collision of two balls",
         story="Users set the restitution to 1 and saw an inelastic collision, or an increase of energy. "
-        "Conservation of momentum and energy leaves one answer.",
+        "Conservation of momentum and energy admits only one solution.",
         discussed="DanielChappuis/reactphysics3d/issues/96 erincatto/solver2d/issues/19 "
         "keenon/nimblephysics/issues/143",
         setting="mass of the first ball, kg",
@@ -387,7 +387,7 @@ CASES: Final = {
         title="Newton's cradle, sequential law",
         story="Rigid-body mechanics does not determine the motion of three balls in contact. If the pairs "
         "strike one after another, at e = 1 the last ball takes all the momentum, as steel balls nearly do. "
-        "The question names this law.",
+        "This case uses that law.",
         discussed="liabru/matter-js/issues/361 ekiefl/pooltool/pull/257",
         setting="e",
         settings=(1.0, 0.8),
@@ -472,7 +472,7 @@ CASES: Final = {
         title="Energy after an hour of free spin",
         story="Users report engines that gain or lose energy in free spin, or drift to another axis. The "
         "closed form conserves energy and angular momentum at any time. (MuJoCo's default integrator is "
-        "stopped once the energy has doubled; its Runge-Kutta integrator does far better.)",
+        "stopped once the energy has doubled; its Runge-Kutta integrator is far more accurate.)",
         discussed="avianphysics/avian/pull/993 jrouwe/JoltPhysics/issues/803",
         setting="time, s",
         settings=(60.0, 3600.0),
