@@ -36,7 +36,7 @@ WORDS: dict[str, Any] = {
     "empty": "",
     "false": False,
     "none": [""],
-    "not at all": [0.0, 0.0, 0.0, 1.0],
+    "no rotation": [0.0, 0.0, 0.0, 1.0],
     "the body's name": "brick",
     "the origin": [0.0, 0.0, 0.0],
     "true": True,
