@@ -214,7 +214,7 @@ def _probes(motion: FreeMotion | ForcedMotion, seconds: FloatArray) -> FloatArra
     period = polhode_period(motion.rotation)
     longest = period if math.isfinite(period) else math.inf
     ends = min(ends[0], longest), max(ends[1], -longest)
-    return np.concatenate([np.linspace(0.0, end, PROBES) for end in ends])
+    return np.concatenate([np.zeros(1), *(np.linspace(0.0, end, PROBES) for end in ends if end)])
 
 
 def orientation_deviations(covariances: FloatArray) -> FloatArray:
