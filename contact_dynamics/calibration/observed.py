@@ -12,7 +12,7 @@ some frames too.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -136,7 +136,7 @@ def tosses_in(motion: MeasuredMotion) -> list[tuple[MeasuredMotion, tuple[slice,
         end = groups[i + 1][0].start if i + 1 < len(groups) else len(motion)
         stop = _rests_by(motion, flights[-1].stop, end)
         shifted = tuple(slice(flight.start - begin, flight.stop - begin) for flight in flights)
-        found.append((part_of(motion, begin, stop), shifted))
+        found.append((motion.part(begin, stop), shifted))
     return found
 
 
@@ -155,22 +155,10 @@ def _thrown_again(motion: MeasuredMotion, last: slice, flight: slice) -> bool:
     return float(lowest.max()) > LIFTED * _reach(motion)
 
 
-def part_of(motion: MeasuredMotion, begin: int, stop: int) -> MeasuredMotion:
-    """Return the states from one number up to another, with the times that they had."""
-    return replace(
-        motion,
-        published=motion.published[begin:stop],
-        arrivals_ns=motion.arrivals_ns[begin:stop],
-        times=motion.times[begin:stop],
-        p_WB_W=motion.p_WB_W[begin:stop],
-        q_WB=motion.q_WB[begin:stop],
-    )
-
-
 def _rests_by(motion: MeasuredMotion, begin: int, end: int) -> int:
     """Return the frame up to which a toss goes that may come to rest before it is picked up."""
     count = LONGEST_REST * max(FEWEST_FRAMES, round(REST_SPAN * motion.rate))
     for stop in np.arange(begin + count, end + 1, max(1, count // 4)).tolist():
-        if find_rest(part_of(motion, stop - count, stop)) is not None:
+        if find_rest(motion.part(stop - count, stop)) is not None:
             return int(stop)
     return end

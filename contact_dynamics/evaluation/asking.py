@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from contact_dynamics.constants import ns_after, seconds_between
+from contact_dynamics.constants import ns_after, seconds_between, to_ns
 from contact_dynamics.contact_modes.result import ModeVerdict
 from contact_dynamics.errors import (
     ContactDynamicsError,
@@ -40,7 +40,7 @@ from contact_dynamics.tolerances import HOLD_STEP
 from contact_dynamics.tumbling import free_motion
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Mapping
 
     from contact_dynamics.evaluation.settings import Law, Settings
     from contact_dynamics.measured.events import FoundEvent
@@ -73,24 +73,34 @@ class Informed(Record):
     state_timeout: float
 
 
-def compare_event(
-    number: int, event: FoundEvent, motion: MeasuredMotion, informed: Informed, settings: Settings
-) -> Iterator[Comparison]:
-    """Yield a row for each question about an event; none where too few states were known before it."""
+def asked_before(
+    event: FoundEvent, motion: MeasuredMotion, informed: Informed, settings: Settings
+) -> dict[float, Context]:
+    """Return what is known at each horizon, s, before an event, where enough states were known by then."""
+    found: dict[float, Context] = {}
     for horizon in settings.horizons:
         asked_ns = event.asked_ns(horizon)
-        states = motion.known_by(asked_ns, since=event.first_sample)
-        if len(states) < (1 if event.mode else FEWEST_ASKED):
+        samples = motion.known_by(asked_ns, since=event.first_sample)
+        if len(samples) < (1 if event.mode else FEWEST_ASKED):
             continue
+        stamps_ns = motion.stamps_ns[samples]
         store = StateStore(history=settings.fit_window, timeout=informed.state_timeout)
-        for state in states:
-            store.add(event.body, state)
-        known = Context(
+        for sample in samples[stamps_ns >= stamps_ns[-1] - to_ns(settings.fit_window)].tolist():
+            store.add(event.body, motion.state(sample))
+        found[horizon] = Context(
             world=informed.world,
             states=store,
             defaults=informed.defaults,
             now_ns=lambda asked_ns=asked_ns: asked_ns,  # type: ignore[misc]  # bound now, not when called
         )
+    return found
+
+
+def compare_event(
+    number: int, event: FoundEvent, asked: Mapping[float, Context], settings: Settings
+) -> Iterator[Comparison]:
+    """Yield a row for each question about an event, with what is known at each horizon before it."""
+    for horizon, known in asked.items():
         for method, law in _ways(event.kind, settings):
             row = Comparison(
                 event=number,

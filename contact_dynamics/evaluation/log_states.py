@@ -12,7 +12,7 @@ from contact_dynamics.constants import to_ns
 from contact_dynamics.errors import ContactDynamicsError, InvalidFieldError
 from contact_dynamics.evaluation.asking import Informed
 from contact_dynamics.evaluation.recording import Recording
-from contact_dynamics.measured.motion import motions_of
+from contact_dynamics.measured.motion import StateColumns, motions_of
 from contact_dynamics.nodes.parameter_file import ParameterFile
 from contact_dynamics.nodes.parameters import ServerParameters, read_server_parameters
 from contact_dynamics.nodes.run_record import PARAMETERS, LoggedParameters
@@ -22,11 +22,9 @@ from contact_dynamics.recording.errors import DamagedLogWarning, NotALogError
 from contact_dynamics.replay.stand_ins import stand_in
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
     from pathlib import Path
 
     from contact_dynamics.nodes.parameter_reader import ParameterSource
-    from contact_dynamics.questions.uncertain_state import KnownState
 
 _OURS: Final = "contact_dynamics_interfaces/"
 
@@ -76,17 +74,9 @@ def recording_of_log(path: Path, *, config: Path | None = None) -> Recording:
             source = LoggedParameters(run)
         parameters, informed = parameters_of(source)
         found = _states(log, parameters)
-    motions = [
-        motion
-        for body in parameters.world.bodies
-        for motion in motions_of(
-            body,
-            parameters.world,
-            [state for state, _ in found[body.name]],
-            arrivals_ns=_on_stamps_clock(found[body.name]),
-        )
-    ]
-    if not any(found.values()):
+    world = parameters.world
+    motions = [motion for body in world.bodies for motion in motions_of(body, world, found[body.name])]
+    if not any(map(len, found.values())):
         bodies = ", ".join(found) or "none"
         raise InvalidFieldError(
             str(path), "no state of a configured body", f"states of one of them: {bodies}"
@@ -94,29 +84,25 @@ def recording_of_log(path: Path, *, config: Path | None = None) -> Recording:
     return Recording(motions=tuple(motions), informed=informed, damage=log.damage or "")
 
 
-def _states(log: BagReader, parameters: ServerParameters) -> dict[str, list[tuple[KnownState, int]]]:
-    """Return the states by body, in the order in which they came, with the log_time of each, ns."""
+def _states(log: BagReader, parameters: ServerParameters) -> dict[str, StateColumns]:
+    """Return the states by body, and when each was known, ns on the clock of the stamps.
+
+    Where the log was written by another clock, as in simulated time, each state counts as known at its stamp.
+    """
     stand_in((name, text) for name, text in log.definitions().items() if not name.startswith(_OURS))
     from contact_dynamics.nodes.state_sources import state_sources  # imports what now stands in for ROS
     from msg_adapters.transforms import TransformTree
 
-    found: dict[str, list[tuple[KnownState, int]]] = {body.name: [] for body in parameters.world.bodies}
+    found = {body.name: StateColumns() for body in parameters.world.bodies}
     sources = {each.full_name: each for each in state_sources(parameters, static=TransformTree())}
     for message in log.messages(sources.keys()):
         for body_name, state_from in sources[message.topic].readers:
             with suppress(ContactDynamicsError):  # the server refused it too
                 known = state_from(decode_without_ros(message))
                 if known is not None:
-                    found[body_name].append((known, message.log_time_ns))
+                    found[body_name].add(known, message.log_time_ns)
+    for states in filter(len, found.values()):
+        delays_ns = states.arrivals_ns - states.stamps_ns.astype(np.float64)
+        if abs(float(np.median(delays_ns))) > to_ns(ONE_CLOCK_S):
+            states.know_at_stamps()
     return found
-
-
-def _on_stamps_clock(found: Sequence[tuple[KnownState, int]]) -> list[int]:
-    """Return when the states were known, ns on the clock of their stamps.
-
-    Where the log was written by another clock, as in simulated time, each state counts as known at its stamp.
-    """
-    delays = [log_time_ns - state.stamp_ns for state, log_time_ns in found]
-    if not delays or abs(float(np.median(delays))) > to_ns(ONE_CLOCK_S):
-        return [state.stamp_ns for state, _ in found]
-    return [log_time_ns for _, log_time_ns in found]

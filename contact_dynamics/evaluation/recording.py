@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import groupby
 from typing import TYPE_CHECKING, Final
 
-from contact_dynamics.evaluation.asking import Informed, compare_event
+from contact_dynamics.evaluation.asking import Informed, asked_before, compare_event
 from contact_dynamics.evaluation.result import SourceResult
 from contact_dynamics.measured.events import find_events
-from contact_dynamics.measured.motion import motions_of
+from contact_dynamics.measured.motion import StateColumns, motions_of
 from contact_dynamics.questions.context import Defaults
 from contact_dynamics.records import Record
 from contact_dynamics.tolerances import TOUCHING_GAP
@@ -53,14 +54,21 @@ def evaluate_recording(
     events: list[FoundEvent] = []
     rows: list[Comparison] = []
     for motion in recording.motions:
-        for event in find_events(motion):
-            rows += compare_event(len(events), event, motion, informed or recording.informed, settings)
-            events.append(event)
+        # an impact is asked about with the states that its landing was asked about with
+        for _, at_once in groupby(find_events(motion), key=lambda event: (event.first_sample, event.time_ns)):
+            found = list(at_once)
+            known = asked_before(found[0], motion, informed or recording.informed, settings)
+            for event in found:
+                rows += compare_event(len(events), event, known, settings)
+                events.append(event)
     return SourceResult(
         events=tuple(events),
         comparisons=tuple(rows),
         states=sum(len(motion) for motion in recording.motions),
-        seconds=sum(float(motion.times[-1] - motion.times[0]) for motion in recording.motions),
+        seconds=sum(  # by body, as bodies that are evaluated apart are joined
+            sum(float(motion.times[-1] - motion.times[0]) for motion in motions)
+            for _, motions in groupby(recording.motions, key=lambda motion: motion.body.name)
+        ),
         damage=recording.damage,
     )
 
@@ -80,8 +88,7 @@ def recording_of_toss(toss: Toss) -> Recording:
             motions_of(
                 toss.body,
                 world,
-                states,
-                arrivals_ns=[state.stamp_ns for state in states],
+                StateColumns(states, [state.stamp_ns for state in states]),
                 noise=(toss.position_noise, toss.orientation_noise),
             )
         ),

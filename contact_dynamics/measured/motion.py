@@ -10,25 +10,30 @@ from __future__ import annotations
 
 import itertools
 import math
-from bisect import bisect_right
-from dataclasses import dataclass
+from array import array
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Final, Protocol
 
 import numpy as np
 
 from contact_dynamics.constants import seconds_since, to_seconds
-from contact_dynamics.questions.uncertain_state import state_of
+from contact_dynamics.questions.uncertain_state import UncertainState, state_of
 from contact_dynamics.records import Record
+from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.rotations.many import rotation_vectors
 from contact_dynamics.tolerances import LEAST_ORIENTATION_NOISE, LEAST_POSITION_NOISE
 from contact_dynamics.world import Surface
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Sequence
+
+    from numpy.typing import NDArray
 
     from contact_dynamics.questions.uncertain_state import KnownState
     from contact_dynamics.validation import FloatArray
     from contact_dynamics.world import Body, World
+
+    IntArray = NDArray[np.int64]
 
 FEWEST_STATES: Final = 12
 """Shorter stretches hold no flight that could be asked about, and too few differences for their noise."""
@@ -88,30 +93,34 @@ class MeasuredMotion(Record):
     """One body's states without gaps; sample k is row k of each array.
 
     Attributes:
-        body: The body, with its shape. world: The world that the body moves in. published: The states in the
-        order of their stamps, which differ, with covariances where they had some. arrivals_ns: When each
-        state was known, ns, on the clock of the stamps. epoch_ns: The stamp from which times count, ns.
-        times: (n,), s after the epoch. p_WB_W: (n, 3), m, centre of mass in the world. q_WB: (n, 4), unit
-        quaternions x, y, z, w: body coordinates into world coordinates. rate: Rate of the states, Hz.
-        position_noise: Standard deviation of each coordinate of a position, m. orientation_noise: Standard
-        deviation of each component of an orientation's rotation error, rad.
+        body: The body, with its shape. world: The world that the body moves in. epoch_ns: The stamp from
+        which times count, ns. stamps_ns: (n,), ns, ascending. arrivals_ns: (n,), when each state was known,
+        ns, on the clock of the stamps. times: (n,), s after the epoch. p_WB_W: (n, 3), m, centre of mass in
+        the world. q_WB: (n, 4), unit quaternions x, y, z, w: body coordinates into world coordinates.
+        v_WB_W: (n, 3), m/s, and w_WB_W: (n, 3), rad/s, velocities as published, world axes. covariances:
+        (n, 12, 12), in the order of `UncertainState`, NaN where a state had none; empty if none had one.
+        rate: Rate of the states, Hz. position_noise: Standard deviation of each coordinate of a position, m.
+        orientation_noise: Standard deviation of each component of an orientation's rotation error, rad.
     """
 
     body: Body
     world: World
-    published: tuple[KnownState, ...]
-    arrivals_ns: tuple[int, ...]
     epoch_ns: int
+    stamps_ns: IntArray
+    arrivals_ns: IntArray
     times: FloatArray
     p_WB_W: FloatArray
     q_WB: FloatArray
+    v_WB_W: FloatArray
+    w_WB_W: FloatArray
+    covariances: FloatArray
     rate: float
     position_noise: float
     orientation_noise: float
 
     def __len__(self) -> int:
         """Return the number of states."""
-        return len(self.published)
+        return len(self.times)
 
     @property
     def gravity_W(self) -> FloatArray:
@@ -125,21 +134,95 @@ class MeasuredMotion(Record):
 
     def stamp_ns(self, sample: int) -> int:
         """Return the stamp of a state, ns."""
-        return self.published[sample].stamp_ns
+        return int(self.stamps_ns[sample])
 
-    def known_by(self, asked_ns: int, *, since: int = 0) -> list[KnownState]:
-        """Return the states from sample ``since`` on that had been stamped and had arrived by then."""
-        end = bisect_right(self.published, asked_ns, key=lambda state: state.stamp_ns)
-        stamped = zip(self.published[since:end], self.arrivals_ns[since:end], strict=True)
-        return [state for state, arrival in stamped if arrival <= asked_ns]
+    def state(self, sample: int) -> KnownState:
+        """Return a state as it was published, with its covariance if it had one."""
+        state = BodyState(
+            p_WB_W=self.p_WB_W[sample],
+            q_WB=self.q_WB[sample],
+            v_WB_W=self.v_WB_W[sample],
+            w_WB_W=self.w_WB_W[sample],
+            stamp_ns=self.stamp_ns(sample),
+        )
+        if len(self.covariances) == 0 or math.isnan(self.covariances[sample, 0, 0]):
+            return state
+        return UncertainState(state=state, covariance=self.covariances[sample])
+
+    def known_by(self, asked_ns: int, *, since: int = 0) -> IntArray:
+        """Return the samples from ``since`` on that had been stamped and had arrived by then."""
+        end = int(np.searchsorted(self.stamps_ns, asked_ns, side="right"))
+        return since + np.flatnonzero(self.arrivals_ns[since:end] <= asked_ns)
+
+    def part(self, begin: int, stop: int) -> MeasuredMotion:
+        """Return the states from one number up to another, with the times that they had."""
+        return replace(self, **{name: getattr(self, name)[begin:stop] for name in COLUMNS})
+
+
+COLUMNS: Final = ("stamps_ns", "arrivals_ns", "times", "p_WB_W", "q_WB", "v_WB_W", "w_WB_W", "covariances")
+"""The fields of a motion that have a row for each state."""
+
+_STATE: Final = 13  # numbers: position, quaternion, linear and angular velocity
+_LATEST_NS: Final = 2**63 - 1  # which a damaged log may exceed
+
+
+class StateColumns:
+    """States of one body in the order in which they came. A number takes eight bytes, and no object."""
+
+    def __init__(self, states: Iterable[KnownState] = (), arrivals_ns: Iterable[int] = ()) -> None:
+        """Begin with states, and when each of them was known, ns, on the clock of the stamps."""
+        self._numbers, self._stamps_ns, self._arrivals_ns = array("d"), array("q"), array("q")
+        self._covariances: dict[int, FloatArray] = {}
+        for state, arrival_ns in zip(states, arrivals_ns, strict=True):
+            self.add(state, arrival_ns)
+
+    def __len__(self) -> int:
+        """Return the number of states."""
+        return len(self._stamps_ns)
+
+    def add(self, known: KnownState, arrival_ns: int) -> None:
+        """Add a state, and when it was known, ns."""
+        state = state_of(known)
+        if isinstance(known, UncertainState):
+            self._covariances[len(self)] = known.covariance
+        self._stamps_ns.append(state.stamp_ns)
+        self._arrivals_ns.append(min(arrival_ns, _LATEST_NS))
+        for part in (state.p_WB_W, state.q_WB, state.v_WB_W, state.w_WB_W):
+            self._numbers.frombytes(part.tobytes())
+
+    def know_at_stamps(self) -> None:
+        """Count each state as known at its stamp."""
+        self._arrivals_ns = self._stamps_ns[:]
+
+    @property
+    def stamps_ns(self) -> IntArray:
+        """The stamps, (n,), ns."""
+        return np.array(self._stamps_ns, dtype=np.int64)
+
+    @property
+    def arrivals_ns(self) -> IntArray:
+        """When each state was known, (n,), ns."""
+        return np.array(self._arrivals_ns, dtype=np.int64)
+
+    @property
+    def numbers(self) -> FloatArray:
+        """The states, (n, 13): position, quaternion, linear and angular velocity."""
+        return np.frombuffer(self._numbers).reshape(-1, _STATE)
+
+    @property
+    def covariances(self) -> FloatArray:
+        """The covariances, (n, 12, 12), NaN where a state has none, or (0, 12, 12) if none has one."""
+        found = np.full((len(self) if self._covariances else 0, 12, 12), math.nan)
+        for row, covariance in self._covariances.items():
+            found[row] = covariance
+        return found
 
 
 def motions_of(
     body: Body,
     world: World,
-    states: Sequence[KnownState],
+    states: StateColumns,
     *,
-    arrivals_ns: Sequence[int],
     noise: tuple[float, float] | None = None,
 ) -> list[MeasuredMotion]:
     """Return a body's states in stretches without gaps.
@@ -148,41 +231,40 @@ def motions_of(
         body: The body.
         world: The world that it moves in.
         states: Its states in any order. Of several with one stamp, the last one counts.
-        arrivals_ns: When each of them was known, ns, on the clock of the stamps.
         noise: Standard deviations of a position's coordinates, m, and of an orientation's components, rad.
             If it is None, they are estimated.
     """
-    by_stamp = {state.stamp_ns: (state, arrival) for state, arrival in zip(states, arrivals_ns, strict=True)}
-    ordered = [by_stamp[stamp] for stamp in sorted(by_stamp)]
-    if len(ordered) < FEWEST_STATES:
+    stamps_ns, reverse = np.unique(states.stamps_ns[::-1], return_index=True)
+    if len(stamps_ns) < FEWEST_STATES:
         return []
-    stamps = [state.stamp_ns for state, _ in ordered]
-    steps_ns = [later - earlier for earlier, later in itertools.pairwise(stamps)]
+    order = len(states) - 1 - reverse
+    numbers, covariances = states.numbers[order], states.covariances
+    steps_ns = np.diff(stamps_ns)
     spacing_ns = float(np.median(steps_ns))
-    breaks = [i + 1 for i, step in enumerate(steps_ns) if step > GAP * spacing_ns]
+    epoch_ns = int(stamps_ns[0])
+    whole = MeasuredMotion(
+        body=body,
+        world=world,
+        epoch_ns=epoch_ns,
+        stamps_ns=stamps_ns,
+        arrivals_ns=states.arrivals_ns[order],
+        times=seconds_since(epoch_ns, stamps_ns.tolist()),
+        p_WB_W=numbers[:, :3],
+        q_WB=numbers[:, 3:7],
+        v_WB_W=numbers[:, 7:10],
+        w_WB_W=numbers[:, 10:],
+        covariances=covariances[order] if len(covariances) else covariances,
+        rate=1.0 / to_seconds(round(spacing_ns)),
+        position_noise=math.nan,
+        orientation_noise=math.nan,
+    )
+    breaks = np.flatnonzero(steps_ns > GAP * spacing_ns) + 1
     motions = []
-    for begin, end in itertools.pairwise([0, *breaks, len(ordered)]):
-        if end - begin < FEWEST_STATES:
-            continue
-        stretch = ordered[begin:end]
-        p_WB_W = np.array([state_of(state).p_WB_W for state, _ in stretch])
-        q_WB = np.array([state_of(state).q_WB for state, _ in stretch])
-        position_noise, orientation_noise = noise or estimated_noise(p_WB_W, q_WB)
-        motions.append(
-            MeasuredMotion(
-                body=body,
-                world=world,
-                published=tuple(state for state, _ in stretch),
-                arrivals_ns=tuple(arrival for _, arrival in stretch),
-                epoch_ns=stamps[0],
-                times=seconds_since(stamps[0], stamps[begin:end]),
-                p_WB_W=p_WB_W,
-                q_WB=q_WB,
-                rate=1.0 / to_seconds(round(spacing_ns)),
-                position_noise=position_noise,
-                orientation_noise=orientation_noise,
-            )
-        )
+    for begin, end in itertools.pairwise([0, *breaks.tolist(), len(whole)]):
+        if end - begin >= FEWEST_STATES:
+            part = whole.part(begin, end)
+            position, orientation = noise or estimated_noise(part.p_WB_W, part.q_WB)
+            motions.append(replace(part, position_noise=position, orientation_noise=orientation))
     return motions
 
 

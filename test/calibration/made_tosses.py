@@ -8,7 +8,7 @@ import numpy as np
 
 from contact_dynamics.contact.contact import Contact
 from contact_dynamics.impact import spatial_impact
-from contact_dynamics.measured.motion import MeasuredMotion, motions_of
+from contact_dynamics.measured.motion import MeasuredMotion, StateColumns, motions_of
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.rotations.many import turned
 from contact_dynamics.shapes import box
@@ -120,8 +120,7 @@ def _measured(
     (motion,) = motions_of(
         BRICK,
         WORLD,
-        states,
-        arrivals_ns=[state.stamp_ns for state in states],
+        StateColumns(states, [state.stamp_ns for state in states]),
         noise=(truth.p_noise, truth.q_noise),
     )
     return motion

@@ -11,9 +11,10 @@ import pytest
 from calibration.made_tosses import BRICK, FLOOR, RATE, Truth, made_tosses
 from contact_dynamics.calibration import Calibration, calibrate
 from contact_dynamics.calibration.model import Model
-from contact_dynamics.calibration.observed import observe, part_of
+from contact_dynamics.calibration.observed import observe
 from contact_dynamics.calibration.toss_uncertainty import toss_uncertainty
 from contact_dynamics.errors import InvalidFieldError, NotSupportedError
+from contact_dynamics.measured.motion import COLUMNS
 from contact_dynamics.shapes import cylinder
 
 TRUTH = Truth()
@@ -143,7 +144,7 @@ def test_a_body_that_never_flies_is_refused() -> None:
 
 
 def test_flights_without_a_strike_leave_friction_undetermined_and_say_so() -> None:
-    motions = [part_of(motion, 0, 30) for motion in made_tosses(TRUTH, 6, 4)]
+    motions = [motion.part(0, 30) for motion in made_tosses(TRUTH, 6, 4)]
     found = calibrate(motions)
     assert any(
         "No strike of a single corner was found in 6 tosses with 6 flights" in text for text in found.problems
@@ -199,12 +200,9 @@ def test_a_long_recording_is_cut_into_its_tosses() -> None:
     later = second.times + first.times[-1] + 2.0
     joined = replace(
         first,
-        published=first.published + second.published,
-        arrivals_ns=first.arrivals_ns + second.arrivals_ns,
-        times=np.concatenate([first.times, later]),
-        p_WB_W=np.concatenate([first.p_WB_W, second.p_WB_W]),
-        q_WB=np.concatenate([first.q_WB, second.q_WB]),
+        **{name: np.concatenate([getattr(first, name), getattr(second, name)]) for name in COLUMNS},
     )
+    joined = replace(joined, times=np.concatenate([first.times, later]))
     names = [each.name for each in observe("log", joined)]
     assert names == ["log, toss 0", "log, toss 1"]
 
@@ -216,8 +214,10 @@ def test_a_body_that_tips_over_long_after_its_last_flight_is_not_thrown_again() 
     fall = np.array([0.0, 0.0, 0.05]) - 0.5 * 9.7 * since[:, None] ** 2 * [0.0, 0.0, 1.0]
     joined = replace(
         motion,
-        published=motion.published + motion.published[:20],
-        arrivals_ns=motion.arrivals_ns + motion.arrivals_ns[:20],
+        **{name: np.concatenate([getattr(motion, name), getattr(motion, name)[:20]]) for name in COLUMNS},
+    )
+    joined = replace(
+        joined,
         times=np.concatenate([motion.times, motion.times[-1] + 0.6 + since]),
         p_WB_W=np.concatenate([motion.p_WB_W, fall]),
         q_WB=np.concatenate([motion.q_WB, np.tile(motion.q_WB[-1:], (20, 1))]),

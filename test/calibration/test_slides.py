@@ -12,7 +12,7 @@ from calibration.made_tosses import BRICK, FLOOR, WORLD
 from contact_dynamics.calibration import Calibration, calibrate
 from contact_dynamics.calibration.report import content_of, report
 from contact_dynamics.calibration.toss_uncertainty import toss_uncertainty
-from contact_dynamics.measured.motion import MeasuredMotion, motions_of
+from contact_dynamics.measured.motion import MeasuredMotion, StateColumns, motions_of
 from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.rotations.many import turned
 from contact_dynamics.toss import TossEnd, toss
@@ -50,7 +50,7 @@ def whole_toss(
         for i, t in enumerate(times.tolist())
     ]
     stamps = [each.stamp_ns for each in states]
-    (motion,) = motions_of(BRICK, WORLD, states, arrivals_ns=stamps, noise=noise)
+    (motion,) = motions_of(BRICK, WORLD, StateColumns(states, stamps), noise=noise)
     return motion
 
 

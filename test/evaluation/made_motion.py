@@ -8,7 +8,7 @@ import numpy as np
 
 from contact_dynamics.evaluation.asking import Informed
 from contact_dynamics.evaluation.recording import Recording
-from contact_dynamics.measured.motion import MeasuredMotion, motions_of
+from contact_dynamics.measured.motion import MeasuredMotion, StateColumns, motions_of
 from contact_dynamics.questions.context import Defaults
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.shapes import box, sphere
@@ -67,7 +67,7 @@ def recording_of(
     ]
     arrivals = [state.stamp_ns + round(1e9 * delay) for state in states]
     return Recording(
-        motions=tuple(motions_of(body, world, states, arrivals_ns=arrivals, noise=noise)),
+        motions=tuple(motions_of(body, world, StateColumns(states, arrivals), noise=noise)),
         informed=Informed(
             world=world,
             defaults=Defaults(velocity_tolerance=0.1, distance_tolerance=0.003, out_of_plane_tolerance=0.1),

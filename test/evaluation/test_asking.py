@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from contact_dynamics.evaluation.asking import compare_event
+from contact_dynamics.evaluation.asking import asked_before, compare_event
 from contact_dynamics.evaluation.comparison import Comparison
 from contact_dynamics.evaluation.recording import Recording, evaluate_recording, recording_of_toss
 from contact_dynamics.evaluation.settings import Law, Method, Settings
@@ -15,8 +15,6 @@ from contact_dynamics.evaluation.summary import is_inside
 from contact_dynamics.measured.events import EventKind, FoundEvent, find_events
 from contact_dynamics.measured.motion import MeasuredMotion
 from contact_dynamics.measured.read_toss import read_toss
-from contact_dynamics.questions.uncertain_state import UncertainState, state_of
-from contact_dynamics.rigid_body.body import BodyState
 from evaluation.made_motion import bounces, only_motion
 from oracles.bouncing_toss import RATE
 
@@ -36,20 +34,19 @@ def events(brick: Recording) -> list[FoundEvent]:
 def rows_of(
     event: FoundEvent, motion: MeasuredMotion, brick: Recording, settings: Settings
 ) -> list[Comparison]:
-    return list(compare_event(0, event, motion, brick.informed, settings))
+    return list(compare_event(0, event, asked_before(event, motion, brick.informed, settings), settings))
 
 
 def changed_after(motion: MeasuredMotion, stamp_ns: int, *, by_arrival: bool) -> MeasuredMotion:
     """The same states, but those after a time are nonsense."""
-    nonsense = BodyState(
-        p_WB_W=[9.0, 9.0, 9.0], q_WB=[1.0, 0.0, 0.0, 0.0], v_WB_W=[9.0] * 3, w_WB_W=[9.0] * 3
+    stays = ((motion.arrivals_ns if by_arrival else motion.stamps_ns) <= stamp_ns)[:, None]
+    return replace(
+        motion,
+        p_WB_W=np.where(stays, motion.p_WB_W, 9.0),
+        q_WB=np.where(stays, motion.q_WB, [1.0, 0.0, 0.0, 0.0]),
+        v_WB_W=np.where(stays, motion.v_WB_W, 9.0),
+        w_WB_W=np.where(stays, motion.w_WB_W, 9.0),
     )
-    times = motion.arrivals_ns if by_arrival else [state.stamp_ns for state in motion.published]
-    states = [
-        state if time <= stamp_ns else replace(nonsense, stamp_ns=state.stamp_ns)
-        for state, time in zip(motion.published, times, strict=True)
-    ]
-    return replace(motion, published=tuple(states))
 
 
 # The brick slides for too short a time to ask before; rests and slides are asked alike.
@@ -74,7 +71,7 @@ def test_no_state_after_the_question_plays_a_part(
 
 def test_a_state_that_had_not_arrived_plays_no_part(brick: Recording, events: list[FoundEvent]) -> None:
     on_time = only_motion(brick)
-    late = replace(on_time, arrivals_ns=tuple(stamp + 30_000_000 for stamp in on_time.arrivals_ns))
+    late = replace(on_time, arrivals_ns=on_time.arrivals_ns + 30_000_000)
     event = next(each for each in events if each.kind is EventKind.LANDING)
     rows = rows_of(event, late, brick, QUICK)
     later = changed_after(late, event.asked_ns(0.05), by_arrival=True)
@@ -114,7 +111,8 @@ def test_the_fit_beats_both_baselines_on_the_brick(brick: Recording) -> None:
 def test_what_is_refused_is_said_in_the_row(brick: Recording, events: list[FoundEvent]) -> None:
     event = next(each for each in events if each.kind is EventKind.LANDING)
     nobody = replace(brick.informed.world, bodies=())
-    rows = list(compare_event(0, event, only_motion(brick), replace(brick.informed, world=nobody), QUICK))
+    unknown = replace(brick, informed=replace(brick.informed, world=nobody))
+    rows = rows_of(event, only_motion(brick), unknown, QUICK)
     assert len(rows) == 2
     assert all("'brick'" in row.refused and row.time_error is None for row in rows)
 
@@ -123,8 +121,8 @@ def test_a_published_covariance_is_held_against_what_came(brick: Recording) -> N
     """A state without a fit has none of its own; one that is published far too wide covers all there is."""
     motion = only_motion(brick)
     wide = np.diag(np.repeat([0.1, 0.1, 1.0, 1.0], 3) ** 2)
-    published = [UncertainState(state=state_of(state), covariance=wide) for state in motion.published]
-    uncertain = replace(brick, motions=(replace(motion, published=tuple(published)),))
+    covariances = np.tile(wide, (len(motion), 1, 1))
+    uncertain = replace(brick, motions=(replace(motion, covariances=covariances),))
     settings = replace(QUICK, horizons=(0.02,))
     for recording, has_covariances in ((brick, False), (uncertain, True)):
         rows = [

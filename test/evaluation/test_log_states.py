@@ -15,7 +15,6 @@ from contact_dynamics.evaluation.sources import find_sources
 from contact_dynamics.measured.events import find_events
 from contact_dynamics.measured.read_toss import read_toss
 from contact_dynamics.nodes.parameter_reader import ConfigurationError
-from contact_dynamics.questions.uncertain_state import state_of
 from contact_dynamics.recording import BagReader
 from contact_dynamics.recording.errors import NotALogError
 from evaluation.made_logs import EPOCH_NS, parameters_of_toss, write_log
@@ -39,8 +38,8 @@ def test_a_log_has_the_events_of_the_toss_that_it_holds(tmp_path: Path) -> None:
     motion = only_motion(found)
     assert len(motion) == len(toss)
     assert motion.p_WB_W == pytest.approx(toss.p_WB_W, abs=1e-12)
-    assert state_of(motion.published[100]).v_WB_W == pytest.approx(toss.v_WB_W[100], abs=1e-12)
-    assert state_of(motion.published[100]).w_WB_W == pytest.approx(toss.w_WB_W[100], abs=1e-12)
+    assert motion.v_WB_W[100] == pytest.approx(toss.v_WB_W[100], abs=1e-12)
+    assert motion.w_WB_W[100] == pytest.approx(toss.w_WB_W[100], abs=1e-12)
     assert motion.position_noise == pytest.approx(toss.position_noise, rel=0.1)
     assert motion.orientation_noise == pytest.approx(toss.orientation_noise, rel=0.1)
     assert_same_events(found, recording_of_toss(toss))
@@ -48,16 +47,14 @@ def test_a_log_has_the_events_of_the_toss_that_it_holds(tmp_path: Path) -> None:
 
 def test_a_state_is_known_when_it_arrived(tmp_path: Path) -> None:
     motion = only_motion(recording_of_log(write_log(tmp_path / "log", delay_ns=12_000_000)))
-    assert {
-        arrival - state.stamp_ns for arrival, state in zip(motion.arrivals_ns, motion.published, strict=True)
-    } == {12_000_000}
+    assert set((motion.arrivals_ns - motion.stamps_ns).tolist()) == {12_000_000}
 
 
 def test_under_another_clock_a_state_is_known_at_its_stamp(tmp_path: Path) -> None:
     """In simulated time stamps are seconds from 0, and log_time is the machine's."""
     motion = only_motion(recording_of_log(write_log(tmp_path / "log", clock_offset_ns=EPOCH_NS - 10**9)))
-    assert motion.published[0].stamp_ns < 2 * 10**9
-    assert list(motion.arrivals_ns) == [state.stamp_ns for state in motion.published]
+    assert motion.stamps_ns[0] < 2 * 10**9
+    assert motion.arrivals_ns.tolist() == motion.stamps_ns.tolist()
 
 
 def test_a_configuration_beside_the_log_is_used_instead_of_its_own(tmp_path: Path) -> None:

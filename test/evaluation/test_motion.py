@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from contact_dynamics.measured.motion import estimated_noise, motions_of
+from contact_dynamics.measured.motion import StateColumns, estimated_noise, motions_of
 from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.tolerances import LEAST_ORIENTATION_NOISE, LEAST_POSITION_NOISE
 from evaluation.made_motion import BRICK, P_NOISE, Q_NOISE, bounces, only_motion, world_of
@@ -27,8 +27,8 @@ def test_states_come_in_order_of_their_stamps_and_of_two_the_last_counts() -> No
     states = states_at(stamps)
     mixed = [*states[10:], *states[:10], states_at([stamps[5]])[0]]
     arrivals = list(range(len(mixed)))
-    (motion,) = motions_of(BRICK, world_of(BRICK), mixed, arrivals_ns=arrivals)
-    assert [state.stamp_ns for state in motion.published] == stamps
+    (motion,) = motions_of(BRICK, world_of(BRICK), StateColumns(mixed, arrivals))
+    assert motion.stamps_ns.tolist() == stamps
     assert motion.arrivals_ns[5] == 20
     assert motion.rate == pytest.approx(100.0)
     assert motion.times == pytest.approx(1e-9 * np.array(stamps))
@@ -39,12 +39,12 @@ def test_a_gap_ends_a_stretch_and_short_ones_are_left_out() -> None:
     short = [first[-1] + 60_000_000 + 10_000_000 * i for i in range(8)]
     last = [short[-1] + 60_000_000 + 10_000_000 * i for i in range(20)]
     states = states_at([*first, *short, *last])
-    motions = motions_of(BRICK, world_of(BRICK), states, arrivals_ns=[0] * len(states))
+    motions = motions_of(BRICK, world_of(BRICK), StateColumns(states, [0] * len(states)))
     assert [len(motion) for motion in motions] == [30, 20]
     assert motions[1].epoch_ns == 0  # times of all stretches count from the first state
     assert motions[1].times[0] == pytest.approx(1e-9 * last[0])
     some_missing = states_at([stamp for i, stamp in enumerate(first) if i % 4])
-    assert len(motions_of(BRICK, world_of(BRICK), some_missing, arrivals_ns=[0] * len(some_missing))) == 1
+    assert len(motions_of(BRICK, world_of(BRICK), StateColumns(some_missing, [0] * len(some_missing)))) == 1
 
 
 @pytest.mark.parametrize("seed", range(3))
@@ -66,8 +66,15 @@ def test_poses_without_scatter_have_the_least_noise() -> None:
 def test_what_was_known_by_a_time_was_stamped_and_had_arrived() -> None:
     stamps = [10_000_000 * i for i in range(20)]
     arrivals = [stamp + (100_000_000 if i == 7 else 1_000_000) for i, stamp in enumerate(stamps)]
-    (motion,) = motions_of(BRICK, world_of(BRICK), states_at(stamps), arrivals_ns=arrivals)
-    known = [state.stamp_ns // 10_000_000 for state in motion.known_by(100_500_000, since=2)]
-    assert known == [2, 3, 4, 5, 6, 8, 9]  # 7 is late, and 10 is half a millisecond from arriving
+    (motion,) = motions_of(BRICK, world_of(BRICK), StateColumns(states_at(stamps), arrivals))
+    assert motion.known_by(100_500_000, since=2).tolist() == [
+        2,
+        3,
+        4,
+        5,
+        6,
+        8,
+        9,
+    ]  # 7 is late, and 10 is half a millisecond from arriving
     counts = [len(motion.known_by(time)) for time in range(0, 300_000_000, 1_000_000)]
     assert all(earlier <= later for earlier, later in pairwise(counts))

@@ -10,7 +10,7 @@ import numpy as np
 from benchmarks._toss_strikes import second_arrival
 from contact_dynamics.calibration.observed import observe
 from contact_dynamics.impact import RestitutionLaw
-from contact_dynamics.measured.motion import motions_of
+from contact_dynamics.measured.motion import StateColumns, motions_of
 from contact_dynamics.rigid_body import inertia
 from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.rotations.many import quaternions_of, rotation_vectors, turned
@@ -165,7 +165,7 @@ def recorded(state: BodyState, seconds: float, chance: np.random.Generator) -> O
         )
         for each, t in zip([went.state_at(t) for t in times.tolist()], times.tolist(), strict=True)
     ]
-    (motion,) = motions_of(CUBE, WORLD, states, arrivals_ns=[each.stamp_ns for each in states], noise=NOISE)
+    (motion,) = motions_of(CUBE, WORLD, StateColumns(states, [each.stamp_ns for each in states]), noise=NOISE)
     found = observe("made", motion)
     return found[0] if found and found[0].strikes else None
 
