@@ -92,7 +92,11 @@ def _add_what_is_asked(parser: argparse.ArgumentParser) -> None:
 def _add_who_does_it(parser: argparse.ArgumentParser) -> None:
     work = parser.add_argument_group("who does it")
     work.add_argument(
-        "--jobs", type=_count, default=1, metavar="N", help="processes of this machine (default: 1)"
+        "--jobs",
+        type=_count,
+        default=1,
+        metavar="N",
+        help="processes of this machine, which share the recordings, or the bodies of few logs (default: 1)",
     )
     work.add_argument(
         "--dask",

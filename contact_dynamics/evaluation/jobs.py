@@ -27,7 +27,7 @@ import contact_dynamics.version as version_file
 from contact_dynamics.errors import InvalidFieldError, NotSupportedError
 from contact_dynamics.evaluation.log_states import parameters_of
 from contact_dynamics.evaluation.recording import evaluate_recording
-from contact_dynamics.evaluation.result import SourceResult, source_result
+from contact_dynamics.evaluation.result import SourceResult, joined, source_result
 from contact_dynamics.nodes.parameter_file import ParameterFile
 from contact_dynamics.nodes.run_record import versions_here
 from contact_dynamics.records import Record
@@ -189,10 +189,33 @@ def run_jobs(jobs: Sequence[Job], *, processes: int = 1, dask: str = "") -> Iter
     """
     if dask:
         yield from _on_dask(jobs, dask)
-    elif processes == 1 or len(jobs) < 2:
+    elif processes == 1:
         yield from ((number, run_job(job)) for number, job in enumerate(jobs))
     else:
-        yield from _in_processes(jobs, processes)
+        yield from _in_parts(jobs, processes)
+
+
+def _in_parts(jobs: Sequence[Job], processes: int) -> Iterator[Done]:
+    """Share the jobs among processes; where these are more, the bodies of each log too."""
+    share = processes // len(jobs) if jobs else 1
+    parts = [
+        [replace(job, source=each) for each in job.source.parts(share, config=job.config)] for job in jobs
+    ]
+    places = [(number, place) for number, each in enumerate(parts) for place in range(len(each))]
+    tasks = [part for each in parts for part in each]
+    found: list[list[dict[str, Any]]] = [[{}] * len(each) for each in parts]
+    left = [len(each) for each in parts]
+    done = _in_processes(tasks, processes) if len(tasks) > 1 else run_jobs(tasks)
+    for task, content in done:
+        number, place = places[task]
+        found[number][place] = content
+        left[number] -= 1
+        if left[number] == 0:
+            whole = joined(found[number])
+            found[number] = []
+            if len(parts[number]) > 1 and (whole["problem"] or not whole["states"]):  # all at once tells why
+                ((_, whole),) = _in_processes([jobs[number]], 1)
+            yield number, whole
 
 
 def _in_processes(jobs: Sequence[Job], processes: int) -> Iterator[Done]:

@@ -22,6 +22,7 @@ from contact_dynamics.recording.errors import DamagedLogWarning, NotALogError
 from contact_dynamics.replay.stand_ins import stand_in
 
 if TYPE_CHECKING:
+    from collections.abc import Collection
     from pathlib import Path
 
     from contact_dynamics.nodes.parameter_reader import ParameterSource
@@ -46,12 +47,13 @@ def parameters_of(source: ParameterSource) -> tuple[ServerParameters, Informed]:
     return parameters, informed
 
 
-def recording_of_log(path: Path, *, config: Path | None = None) -> Recording:
+def recording_of_log(path: Path, *, config: Path | None = None, only: Collection[str] = ()) -> Recording:
     """Return the states of a log's bodies, and what its server was configured with.
 
     Args:
         path: A bag folder, or one file of a bag.
         config: File of the server's parameters, instead of the log's own record.
+        only: Names of those whose states are read, if they have any. If it is empty, all are read.
 
     Raises:
         NotALogError: it is no log, or there are neither a record of its configuration nor ``config``.
@@ -61,22 +63,11 @@ def recording_of_log(path: Path, *, config: Path | None = None) -> Recording:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", DamagedLogWarning)  # told in the result
         log = BagReader(path)
-        source: ParameterSource
-        if config is not None:
-            source = ParameterFile(config)
-        else:
-            run = log.run()
-            if PARAMETERS not in run and "world_frame" not in run:
-                raise NotALogError(
-                    f"{path}: --config is required, since the log has no record of its run's configuration"
-                    f"{f' ({log.damage})' if log.damage else ''}"
-                )
-            source = LoggedParameters(run)
-        parameters, informed = parameters_of(source)
-        found = _states(log, parameters)
+        parameters, informed = parameters_of(_configuration(log, path, config))
+        found = _states(log, parameters, only)
     world = parameters.world
-    motions = [motion for body in world.bodies for motion in motions_of(body, world, found[body.name])]
-    if not any(map(len, found.values())):
+    motions = [motion for each in world.bodies for motion in motions_of(each, world, found[each.name])]
+    if not only and not any(map(len, found.values())):
         bodies = ", ".join(found) or "none"
         raise InvalidFieldError(
             str(path), "no state of a configured body", f"states of one of them: {bodies}"
@@ -84,8 +75,33 @@ def recording_of_log(path: Path, *, config: Path | None = None) -> Recording:
     return Recording(motions=tuple(motions), informed=informed, damage=log.damage or "")
 
 
-def _states(log: BagReader, parameters: ServerParameters) -> dict[str, StateColumns]:
-    """Return the states by body, and when each was known, ns on the clock of the stamps.
+def bodies_of_log(path: Path, *, config: Path | None = None) -> list[str]:
+    """Return the names of the bodies that a log, or ``config`` in its stead, describes.
+
+    Raises:
+        NotALogError: it is no log, or there are neither a record of its configuration nor ``config``.
+        ConfigurationError: a parameter is missing, or has a value that is not allowed.
+    """
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", DamagedLogWarning)
+        parameters, _ = parameters_of(_configuration(BagReader(path), path, config))
+    return [body.name for body in parameters.world.bodies]
+
+
+def _configuration(log: BagReader, path: Path, config: Path | None) -> ParameterSource:
+    if config is not None:
+        return ParameterFile(config)
+    run = log.run()
+    if PARAMETERS not in run and "world_frame" not in run:
+        raise NotALogError(
+            f"{path}: --config is required, since the log has no record of its run's configuration"
+            f"{f' ({log.damage})' if log.damage else ''}"
+        )
+    return LoggedParameters(run)
+
+
+def _states(log: BagReader, parameters: ServerParameters, only: Collection[str]) -> dict[str, StateColumns]:
+    """Return the states by body, or of some alone, and when each was known, ns on the clock of the stamps.
 
     Where the log was written by another clock, as in simulated time, each state counts as known at its stamp.
     """
@@ -94,9 +110,13 @@ def _states(log: BagReader, parameters: ServerParameters) -> dict[str, StateColu
     from msg_adapters.transforms import TransformTree
 
     found = {body.name: StateColumns() for body in parameters.world.bodies}
-    sources = {each.full_name: each for each in state_sources(parameters, static=TransformTree())}
-    for message in log.messages(sources.keys()):
-        for body_name, state_from in sources[message.topic].readers:
+    readers = {
+        each.full_name: wanted
+        for each in state_sources(parameters, static=TransformTree())
+        if (wanted := [one for one in each.readers if not only or one.body_name in {*only, ""}])
+    }
+    for message in log.messages(readers.keys()):
+        for body_name, state_from in readers[message.topic]:
             with suppress(ContactDynamicsError):  # the server refused it too
                 known = state_from(decode_without_ros(message))
                 if known is not None:

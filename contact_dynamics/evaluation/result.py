@@ -18,6 +18,7 @@ from contact_dynamics.records import Record
 from contact_dynamics.rigid_body.body import BodyState
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
     from pathlib import Path
 
 FORMAT: Final = "contact_dynamics evaluation 1"
@@ -105,6 +106,23 @@ def source_result(content: dict[str, Any]) -> SourceResult:
     plain["events"] = tuple(FoundEvent(**_typed(FoundEvent, each)) for each in plain["events"])
     plain["comparisons"] = tuple(Comparison(**_typed(Comparison, each)) for each in plain["comparisons"])
     return SourceResult(**plain)
+
+
+def joined(parts: Sequence[dict[str, Any]]) -> dict[str, Any]:
+    """Return what came of a recording of which each part has some bodies, as `SourceResult.to_dict` does."""
+    events: list[Any] = []
+    rows: list[Any] = []
+    for part in parts:
+        rows += ({**row, "event": row["event"] + len(events)} for row in part["comparisons"])
+        events += part["events"]
+    return {
+        **parts[0],
+        "problem": next((part["problem"] for part in parts if part["problem"]), ""),
+        "states": sum(part["states"] for part in parts),
+        "seconds": sum(part["seconds"] for part in parts),
+        "events": events,
+        "comparisons": rows,
+    }
 
 
 def _typed(kind: type[FoundEvent | Comparison], content: dict[str, Any]) -> dict[str, Any]:

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import hashlib
 import re
-from dataclasses import dataclass
+from contextlib import suppress
+from dataclasses import dataclass, replace
 from functools import lru_cache
+from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from contact_dynamics.errors import ContactDynamicsError, InvalidFieldError
-from contact_dynamics.evaluation.log_states import recording_of_log
+from contact_dynamics.evaluation.log_states import bodies_of_log, recording_of_log
 from contact_dynamics.evaluation.recording import recording_of_toss
 from contact_dynamics.measured.cube_tosses import count_cube_tosses
 from contact_dynamics.measured.read_toss import read_toss
@@ -40,10 +42,13 @@ class Source(Record):
     Attributes:
         path: A log's folder or a file of one, or a file of tosses.
         index: Number of the toss in an ``.npz``, or None where the file is one recording.
+        bodies: Names of the bodies of a log that count, which play no part in its name and digest. If there
+            are none, all count.
     """
 
     path: Path
     index: int | None = None
+    bodies: tuple[str, ...] = ()
 
     @property
     def name(self) -> str:
@@ -79,7 +84,17 @@ class Source(Record):
         """
         if self.is_toss:
             return recording_of_toss(read_toss(self.path, index=self.index))
-        return recording_of_log(self.path, config=config)
+        return recording_of_log(self.path, config=config, only=self.bodies)
+
+    def parts(self, most: int, *, config: Path | None = None) -> list[Source]:
+        """Return at most so many parts of a log, each with some of its bodies; or itself as the only one."""
+        names: list[str] = []
+        if most > 1 and not self.is_toss:
+            with suppress(ContactDynamicsError, OSError):  # whoever reads it tells what is wrong
+                names = bodies_of_log(self.path, config=config)
+        count = min(most, len(names))
+        ends = [len(names) * k // count for k in range(count + 1)] if count > 1 else []
+        return [replace(self, bodies=tuple(names[a:b])) for a, b in pairwise(ends)] or [self]
 
 
 def find_sources(paths: Iterable[str]) -> tuple[list[Source], list[tuple[str, str]]]:

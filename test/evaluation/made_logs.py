@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -42,6 +43,7 @@ def write_log(
     clock_offset_ns: int = 0,
     with_run: bool = True,
     until: float = math.inf,
+    names: Sequence[str] = (),
 ) -> Path:
     """A log of a toss.
 
@@ -53,18 +55,30 @@ def write_log(
         clock_offset_ns: what the clock of the stamps lacks.
         until: s, the end of what is logged. `BRIEF` has a flight, an impact and the next flight.
         with_run: whether the log says how its server was configured.
+        names: of bodies that move as the toss's, instead of it; that of the name "silent" has no states.
     """
     toss = toss or read_toss()
     parameters = parameters_of_toss(folder.parent / f"{folder.name}.parameters", toss)
-    topic = topic_of(toss)
+    topics = {toss.body.name: topic_of(toss)}
+    if names:
+        own = [key for key in parameters if key.startswith(f"body.{toss.body.name}.")]
+        of_toss = {key.removeprefix(f"body.{toss.body.name}."): parameters.pop(key) for key in own}
+        topics = {name: f"/{name}/odometry" for name in names}
+        for name, topic in topics.items():
+            parameters |= {f"body.{name}.{key}": value for key, value in of_toss.items()}
+            parameters[f"body.{name}.odometry_topic"] = topic
+        parameters["bodies"] = list(names)
     p, q, v, w = shaken(toss, seed)
     body_axes = q * [-1.0, -1.0, -1.0, 1.0]
-    run = run_record(parameters, {f"body.{toss.body.name}.odometry_topic": topic}) if with_run else {}
+    resolved = {f"body.{name}.odometry_topic": topic for name, topic in topics.items()}
+    run = run_record(parameters, resolved) if with_run else {}
+    topics.pop("silent", None)
     with BagWriter(folder, run=run) as writer:
-        writer.add_topic(topic, "nav_msgs/msg/Odometry")
+        for topic in topics.values():
+            writer.add_topic(topic, "nav_msgs/msg/Odometry")
         for i, time in enumerate(toss.times[toss.times <= until].tolist()):
             stamp_ns = EPOCH_NS + round(1e9 * time) - clock_offset_ns
-            msg = Odometry(child_frame_id=toss.body.name)
+            msg = Odometry()
             msg.header.frame_id = "world"
             msg.header.stamp.sec, msg.header.stamp.nanosec = divmod(stamp_ns, 10**9)
             linear = rotated(body_axes[i : i + 1], v[i])[0]
@@ -76,8 +90,10 @@ def write_log(
                     setattr(msg.twist.twist.linear, part, float(linear[k]))
                     setattr(msg.twist.twist.angular, part, float(angular[k]))
             arrival = stamp_ns + clock_offset_ns + delay_ns
-            data = bytes(serialize_message(msg))
-            writer.write(topic, data, log_time_ns=arrival, publish_time_ns=stamp_ns)
+            for name, topic in topics.items():
+                msg.child_frame_id = name
+                data = bytes(serialize_message(msg))
+                writer.write(topic, data, log_time_ns=arrival, publish_time_ns=stamp_ns)
     return folder
 
 

@@ -65,6 +65,23 @@ def test_two_processes_give_the_numbers_of_one(jobs: list[Job], alone: list[dict
     assert [shared[i] for i in range(len(jobs))] == alone
 
 
+def test_two_processes_share_the_bodies_of_one_log(tmp_path: Path) -> None:
+    log = write_log(tmp_path / "log", names=("one", "silent", "two"), until=BRIEF)
+    jobs = [Job(source=Source(path=log), settings=QUICK)]
+    ((_, alone),), ((_, shared),) = run_jobs(jobs), run_jobs(jobs, processes=2)
+    bodies = [event["body"] for event in alone["events"]]
+    assert bodies == ["one"] * (len(bodies) // 2) + ["two"] * (len(bodies) // 2)
+    assert shared == alone
+
+
+def test_a_log_without_states_is_told_as_by_one_process(tmp_path: Path) -> None:
+    log = write_log(tmp_path / "log", names=("one", "two"), until=-1.0)
+    jobs = [Job(source=Source(path=log), settings=QUICK)]
+    ((_, alone),), ((_, shared),) = run_jobs(jobs), run_jobs(jobs, processes=2)
+    assert "no state of a configured body" in alone["problem"]
+    assert shared == alone
+
+
 def test_a_recording_that_kills_its_process_is_named_and_the_rest_are_done(
     jobs: list[Job], alone: list[dict[str, Any]]
 ) -> None:
