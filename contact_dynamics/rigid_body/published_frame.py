@@ -44,15 +44,11 @@ def state_of_center_of_mass(
     Raises:
         InvalidFieldError: a number is not finite, or the quaternion is not unit.
     """
-    q_WB = check_unit("q_WF", q_WF, 4)
-    p_FB_W = turned(q_WB, p_FB_F)
-    return BodyState(
-        p_WB_W=p_WF_W + p_FB_W,
-        q_WB=q_WB,
-        v_WB_W=v_WF_W + cross_matrix(w_WF_W) @ p_FB_W,
-        w_WB_W=w_WF_W,
-        stamp_ns=stamp_ns,
-    )
+    p_WB_W, v_WB_W = p_WF_W, v_WF_W
+    if p_FB_F.any():
+        p_FB_W = rotation_matrix(check_unit("q_WF", q_WF, 4)) @ p_FB_F
+        p_WB_W, v_WB_W = p_WF_W + p_FB_W, v_WF_W + cross_matrix(w_WF_W) @ p_FB_W
+    return BodyState(p_WB_W=p_WB_W, q_WB=q_WF, v_WB_W=v_WB_W, w_WB_W=w_WF_W, stamp_ns=stamp_ns)
 
 
 def origin_of_published_frame(state: BodyState, p_FB_F: FloatArray) -> FloatArray:
