@@ -11,13 +11,13 @@ from rosbags.typesys import Stores, get_typestore
 
 from contact_dynamics.evaluation.log_states import recording_of_log
 from contact_dynamics.evaluation.recording import Recording, recording_of_toss
-from contact_dynamics.evaluation.sources import find_sources
+from contact_dynamics.evaluation.sources import Source, find_sources
 from contact_dynamics.measured.events import find_events
 from contact_dynamics.measured.read_toss import read_toss
 from contact_dynamics.nodes.parameter_reader import ConfigurationError
 from contact_dynamics.recording import BagReader
 from contact_dynamics.recording.errors import NotALogError
-from evaluation.made_logs import EPOCH_NS, parameters_of_toss, write_log
+from evaluation.made_logs import BRIEF, EPOCH_NS, parameters_of_toss, write_log
 from evaluation.made_motion import only_motion
 
 
@@ -123,3 +123,13 @@ def test_a_wrong_parameter_is_named(tmp_path: Path) -> None:
     config.write_text(json.dumps({"/**": {"ros__parameters": parameters}}), encoding="utf-8")
     with pytest.raises(ConfigurationError, match=f"body.{name}.mass"):
         recording_of_log(log, config=config)
+
+
+def test_a_log_is_read_in_parts_by_body(tmp_path: Path) -> None:
+    log = Source(path=write_log(tmp_path / "log", names=("one", "two", "three"), until=BRIEF))
+    parts = log.parts(2)
+    assert [part.bodies for part in parts] == [("one",), ("two", "three")]
+    found = [[motion.body.name for motion in part.read().motions] for part in parts]
+    assert found == [["one"], ["two", "three"]]
+    assert {part.name for part in parts} == {log.name}
+    assert log.parts(1) == [log]

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from contact_dynamics.measured.motion import StateColumns, estimated_noise, motions_of
+from contact_dynamics.questions.uncertain_state import UncertainState
 from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.tolerances import LEAST_ORIENTATION_NOISE, LEAST_POSITION_NOISE
 from evaluation.made_motion import BRICK, P_NOISE, Q_NOISE, bounces, only_motion, world_of
@@ -78,3 +79,15 @@ def test_what_was_known_by_a_time_was_stamped_and_had_arrived() -> None:
     ]  # 7 is late, and 10 is half a millisecond from arriving
     counts = [len(motion.known_by(time)) for time in range(0, 300_000_000, 1_000_000)]
     assert all(earlier <= later for earlier, later in pairwise(counts))
+
+
+def test_a_state_comes_back_to_the_bit_with_its_covariance_if_it_had_one() -> None:
+    covariance = np.diag(np.arange(1.0, 13.0))
+    states = states_at([10_000_000 * i for i in range(20)])
+    known = [
+        UncertainState(state=states[i], covariance=covariance) if i % 2 else states[i] for i in range(20)
+    ]
+    (motion,) = motions_of(BRICK, world_of(BRICK), StateColumns(known[::-1], range(20)))
+    assert motion.state(4).to_dict() == states[4].to_dict()
+    assert motion.state(5).to_dict() == known[5].to_dict()
+    assert motion.part(5, 8).state(0).to_dict() == known[5].to_dict()
