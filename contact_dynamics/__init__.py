@@ -116,7 +116,7 @@ def _meant(name: str) -> str:
         return ""
     for chapter in _CHAPTERS:
         if name in getattr(import_module(f"{__name__}.{chapter}"), "__all__", ()):
-            return f", did you mean {__name__}.{chapter}.{name}?"
+            return f": it is {__name__}.{chapter}.{name}"
     near = difflib.get_close_matches(name, __all__, n=1)
     return f", did you mean {near[0]}?" if near else ""
 

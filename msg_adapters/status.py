@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Final, Protocol
 
 from contact_dynamics import errors
@@ -76,6 +77,8 @@ def code_name(error: Exception) -> str:
 def report_error(response: Response, error: Exception) -> None:
     """Write an error into a response, as its code and a message with what was found and what is allowed."""
     error = in_fields(error)
+    if hasattr(response, "event_time"):
+        response.event_time = math.nan  # there is no event; interfaces cannot have it as a default
     if isinstance(error, errors.NoShapeError):
         error = errors.NoShapeError(f"{error} ({_SHAPE_HINT})")
     for error_type, code_name in _CODE_NAMES:

@@ -37,6 +37,7 @@ from msg_adapters.contacts import flat, rows
 from msg_adapters.field_names import WRENCH_FIELDS, renamed
 from msg_adapters.geometry import point_to_msg, vector_from_msg, vector_to_msg, wrench_to_msg
 from msg_adapters.stamps import stamp_to_msg
+from msg_adapters.status import with_warnings, without_warnings
 from msg_adapters.unread_fields import TUMBLING, check_unread
 
 if TYPE_CHECKING:
@@ -203,6 +204,7 @@ def tumbling_answer_to_msg(
         write_covariances(msg.trajectory, answer.covariance)
     write_fit(msg, answer.fit)
     msg.method = int(answer.method)
+    msg.message = with_warnings("", answer.warnings)
     event = answer.event
     msg.event = msg.NONE if event is None else int(event.kind)
     msg.event_time = math.nan
@@ -240,6 +242,7 @@ def tumbling_answer_from_msg(msg: PredictTumbling.Response, *, world: World) -> 
         poinsot=poinsot_from_msg(msg.poinsot),
         flips=flips_from_msg(msg.poinsot),
         curves=curves_from_msg(msg.poinsot),
+        warnings=without_warnings(msg.message)[1],
     )
 
 

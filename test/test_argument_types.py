@@ -192,7 +192,7 @@ def test_a_guessed_attribute_is_an_error_that_names_the_right_one(
 
 
 def test_a_guessed_name_of_a_chapter_or_a_member_is_an_error_that_names_the_right_one() -> None:
-    with pytest.raises(AttributeError, match=r"did you mean contact_dynamics\.toss\.TossUncertainty\?"):
+    with pytest.raises(AttributeError, match=r": it is contact_dynamics\.toss\.TossUncertainty"):
         _ = contact_dynamics.TossUncertainty
     with pytest.raises(AttributeError, match=r"did you mean Body\?"):
         _ = contact_dynamics.Bodi

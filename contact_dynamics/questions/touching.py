@@ -26,7 +26,7 @@ _PAIRS_AT_ONCE: Final = 100_000
 """Points times triangles whose distances are worked out together, in some 50 MB."""
 
 _MOST_TOLD: Final = 4
-"""Contacts outside of the shape that have a warning each. More are counted in one."""
+"""Contacts off the shape's surface that have a warning each. More are counted in one."""
 
 
 def contacts_of(
@@ -94,7 +94,7 @@ def outside_shape(
     R_WB: FloatArray,
     distance_tolerance: float = DISTANCE_TOLERANCE,
 ) -> tuple[str, ...]:
-    """Return warnings of stated contact points that are outside of the body's known shape.
+    """Return warnings of explicit contact points that are outside of the body's shape, or inside it.
 
     A rim counts as the hull of some of its points, widened by what these leave out.
 
@@ -111,22 +111,30 @@ def outside_shape(
     features = features_of(shape)
     points_B = np.einsum("...j,...jk->...k", points_W - p_WB_W, R_WB)
     away = np.arange(len(points_B))
+    gaps = np.zeros(len(points_B))  # negative inside the shape
     if len(features.triangles) > 0:
         levels = (features.normals @ features.corners.T).max(axis=1)
-        away = away[(points_B @ features.normals.T > levels).any(axis=1)]
-    gaps = np.zeros(len(points_B))
+        gaps = (points_B @ features.normals.T - levels).max(axis=1)
+        away = away[gaps > 0.0]
     step = max(1, _PAIRS_AT_ONCE // max(1, len(features.triangles)))
     for rows in (away[start : start + step] for start in range(0, len(away), step)):
         gaps[rows] = np.linalg.norm(points_B[rows] - closest_points(features, points_B[rows]), axis=1)
     largest = max((rim.radius for rim in shape.rims), default=0.0)
     left_out = largest * (1.0 - math.cos(math.pi / RIM_CORNERS))
     gaps -= shape.rounding
-    outside = np.flatnonzero(gaps > max(distance_tolerance, DISTANCE_TOLERANCE) + left_out).tolist()
-    if len(outside) > _MOST_TOLD:
-        farthest = int(gaps.argmax())
-        most = f"the farthest by {gaps[farthest]:.6g} m: contact {farthest}"
-        return (f"{len(outside)} of {len(gaps)} contacts are outside of the shape of {body.name!r}, {most}",)
-    return tuple(f"contact {i} is {gaps[i]:.6g} m outside of the shape of {body.name!r}" for i in outside)
+    tolerance = max(distance_tolerance, DISTANCE_TOLERANCE) + left_out
+    warnings: list[str] = []
+    for where, off in (("outside of", gaps), ("inside", -gaps)):
+        found = np.flatnonzero(off > tolerance).tolist()
+        if len(found) > _MOST_TOLD:
+            farthest = int(off.argmax())
+            most = f"the farthest by {off[farthest]:.6g} m: contact {farthest}"
+            warnings.append(
+                f"{len(found)} of {len(off)} contacts are {where} the shape of {body.name!r}, {most}"
+            )
+        else:
+            warnings += (f"contact {i} is {off[i]:.6g} m {where} the shape of {body.name!r}" for i in found)
+    return tuple(warnings)
 
 
 def check_has_shape(body: Body) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final
 
+from contact_dynamics.contact.on_flats import lowest_of_many
 from contact_dynamics.errors import TooLargeError
 from contact_dynamics.motion.covariance import CarriedCovariance, covariance_along
 from contact_dynamics.motion.forces import NO_DRAG, NO_WRENCH, ConstantWrench, Drag
@@ -30,11 +31,12 @@ from contact_dynamics.questions.subject import (
     subject_of,
 )
 from contact_dynamics.rigid_body.body import BodyState
+from contact_dynamics.rotations.many import matrices_of
 from contact_dynamics.tumbling import FreeMotion, Trajectory, free_motion
 from contact_dynamics.tumbling.flips import Flips, next_flips
 from contact_dynamics.tumbling.poinsot_construction import Poinsot, RollingCurves, poinsot, rolling_curves
 from contact_dynamics.validation import FloatArray, check_array, check_whole
-from contact_dynamics.world import Body
+from contact_dynamics.world import Body, Surface
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -129,6 +131,7 @@ class TumblingAnswer(Answer):
         poinsot: Poinsot's picture of the rotation, or None if a torque acts, so that it does not apply.
         flips: The next flips of the middle axis, or None if a torque acts.
         curves: Polhode and herpolhode, or None if they were not asked for or a torque acts.
+        warnings: The flat surfaces that the body would be in at some of the times, since nothing stops it.
     """
 
     body_name: str
@@ -142,6 +145,7 @@ class TumblingAnswer(Answer):
     poinsot: Poinsot | None
     flips: Flips | None
     curves: RollingCurves | None
+    warnings: tuple[str, ...] = ()
 
     @property
     def predicted_motion(self) -> Trajectory:
@@ -165,19 +169,39 @@ def answer(question: TumblingQuestion, context: Context | None = None) -> Tumbli
     motion, method = forces.motion(subject.body.mass_properties, subject.state)
     times, event = times_of(question.sampling, subject, motion, known)
     picture, flips, curves = _rotation(question, subject, motion)
+    trajectory = motion.at(times)
     return TumblingAnswer(
         body_name=subject.body.name,
         p_FB_F=subject.body.p_FB_F,
         state=subject.state,
         fit=subject.fit,
-        trajectory=motion.at(times),
+        trajectory=trajectory,
         covariance=_covariance(subject, motion, times) if question.include_covariance else None,
         method=method,
         event=event,
         poinsot=picture,
         flips=flips,
         curves=curves,
+        warnings=_passed(subject.body, trajectory, known),
     )
+
+
+def _passed(body: Body, trajectory: Trajectory, known: Context) -> tuple[str, ...]:
+    """Return a warning for each flat surface that the body would be in at some time."""
+    if body.shape.is_empty:
+        return ()
+    found = []
+    for surface in known.world.surfaces:
+        if isinstance(surface, Surface):
+            gaps = lowest_of_many(body.shape, trajectory.p_WB_W, matrices_of(trajectory.q_WB), surface)
+            deep = gaps < -known.defaults.distance_tolerance
+            if deep.any():
+                first = int(deep.argmax())
+                found.append(
+                    f"free flight ignores surfaces: at sample {first} {body.name!r} would be "
+                    f"{-gaps[first]:.3g} m deep in {surface.name!r}"
+                )
+    return tuple(found)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

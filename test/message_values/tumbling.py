@@ -44,6 +44,7 @@ from message_values.shared import (
     trajectories,
     tuples_of,
     unit_vectors,
+    warnings,
 )
 
 
@@ -116,6 +117,7 @@ def tumbling_answers(draw: st.DrawFn, p_FB_F: np.ndarray = NO_OFFSET) -> Tumblin
         poinsot=picture,
         flips=flips,
         curves=curves,
+        warnings=draw(warnings),
     )
 
 

@@ -309,6 +309,8 @@ def says_nothing(answer: Any) -> bool:
     if isinstance(answer, PredictImpact.Response):
         impact = answer.impact
         return {impact.outcome, impact.sequence_end} == {impact.NO_ANSWER} and answer.time_to_contact == -1.0
+    if isinstance(answer, PredictTumbling.Response):
+        return math.isnan(answer.event_time)
     if isinstance(answer, PredictToss.Response):
         return (answer.toss.end, answer.toss.end_time) == (answer.toss.NO_ANSWER, -1.0)
     return True

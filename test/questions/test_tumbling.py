@@ -51,6 +51,22 @@ def test_a_body_and_a_state_are_enough() -> None:
     assert (found.body_name, found.state) == ("cube", TOSSED)
 
 
+def test_a_flight_through_the_floor_is_a_warning_that_names_the_first_sample_in_it() -> None:
+    """The cube of 0.2 m falls level, so it touches the floor when its centre is 0.1 m above."""
+    falling = state(0.5)
+    touches = math.sqrt(2.0 * (0.5 - 0.5 * SIDE) / GRAVITY)
+    for times, warned in (([0.0, 0.99 * touches], False), ([0.0, 0.99 * touches, 1.01 * touches, 1.0], True)):
+        found = answer(TumblingQuestion(body="cube", state=falling, sampling=AtTimes(times=times)), CONTEXT)
+        if warned:
+            deep = 0.5 * GRAVITY * (1.01**2 - 1.0) * touches**2
+            (warning,) = found.warnings
+            assert warning == (
+                f"free flight ignores surfaces: at sample 2 'cube' would be {deep:.3g} m deep in 'floor'"
+            )
+        else:
+            assert found.warnings == ()
+
+
 def test_stamps_reach_into_the_past() -> None:
     found = answer(
         TumblingQuestion(body=CUBE, state=TOSSED, sampling=AtStamps(stamps_ns=[4_900_000_000, 5_000_000_000]))

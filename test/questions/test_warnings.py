@@ -1,4 +1,4 @@
-"""Answers that hold and are doubtful say so: an open order of strikes, a contact outside of the shape."""
+"""Answers that hold and are doubtful say so: an open order of strikes, a contact off the shape's surface."""
 
 from __future__ import annotations
 
@@ -123,12 +123,13 @@ def test_orders_that_lead_to_one_outcome_are_no_warning() -> None:
     ],
 )
 @pytest.mark.parametrize("turn", [[0, 0, 0, 1], [0.5, -0.5, 0.5, -0.5]])
-def test_a_contact_outside_of_the_shape_is_a_warning(
+def test_a_contact_outside_or_inside_the_shape_is_a_warning(
     shape: ConvexShape, on: list[float], off: list[float], gap: float, turn: list[float]
 ) -> None:
     body = Body(name="it", mass_properties=MASS, shape=shape)
     state = BodyState(p_WB_W=[1, 2, 3], q_WB=turn, v_WB_W=[0, 0, 0], w_WB_W=[0, 0, 0])
-    for point, warned in ((on, False), (off, True), ([0.0, 0.0, 0.0], False)):
+    depth = min(on[0] or 0.1, 0.1)  # of the centre
+    for point, where, size in ((on, "", 0.0), (off, "outside of", gap), ([0.0] * 3, "inside", depth)):
         place = state.p_WB_W + state.R_WB @ np.array(point)
         contacts = ContactSet(p_WC_W=[place], normals_W=[0, 0, 1], frictions=0.3, restitutions=0.5)
         falling = replace(state, v_WB_W=[0, 0, -1])
@@ -137,13 +138,14 @@ def test_a_contact_outside_of_the_shape_is_a_warning(
             impact_questions.answer(ImpactQuestion(body=body, state=falling, contacts=contacts)),
         )
         for answer in answers:
-            if not warned:
+            if not where:
                 assert answer.warnings == ()
                 continue
             (warning,) = answer.warnings
-            found = re.fullmatch(r"contact 0 is ([\d.]+) m outside of the shape of 'it'", warning)
+            found = re.fullmatch(rf"contact 0 is ([\d.]+) m {where} the shape of 'it'", warning)
             assert found is not None
-            assert float(found[1]) == pytest.approx(gap, abs=1e-6)
+            inscribed = 5e-3 * size if where == "inside" else 1e-6  # a rim is inside by corners on it
+            assert float(found[1]) == pytest.approx(size, abs=inscribed)
 
 
 def test_a_body_without_a_shape_has_no_outside() -> None:

@@ -6,10 +6,12 @@ types, so that a caller with one body does not take it out of a tuple.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 
+from contact_dynamics.impact.energy import energy_change
 from contact_dynamics.impact.law import RestitutionLaw
 from contact_dynamics.impact.spatial.result import SpatialImpact
 from contact_dynamics.records import NamedInt, Record
@@ -63,6 +65,11 @@ class SeveralImpact(Record):
     order_is_open: bool = False
 
     @property
+    def energy_change(self) -> float:
+        """Return the change of kinetic energy, J: the impulses times the contacts' mean velocities."""
+        return _energy_change(self)
+
+    @property
     def order(self) -> tuple[int, ...]:
         """Return the contacts that were struck, in order. SIMULTANEOUS strikes none in turn."""
         return tuple(contact for contact, _ in self.strikes)
@@ -98,9 +105,26 @@ class BodiesImpact(Record):
     order_is_open: bool = False
 
     @property
+    def energy_change(self) -> float:
+        """Return the change of kinetic energy, J: the impulses times the contacts' mean velocities."""
+        return _energy_change(self)
+
+    @property
     def order(self) -> tuple[int, ...]:
         """Return the contacts that were struck, in order. SIMULTANEOUS strikes none in turn."""
         return tuple(contact for contact, _ in self.strikes)
+
+
+def _energy_change(impact: SeveralImpact | BodiesImpact) -> float:
+    return math.fsum(
+        energy_change(*of_contact)
+        for of_contact in zip(
+            impact.impulses_W.tolist(),
+            impact.velocities_before_W.tolist(),
+            impact.velocities_after_W.tolist(),
+            strict=True,
+        )
+    )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)

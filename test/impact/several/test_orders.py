@@ -73,6 +73,7 @@ def test_cube_on_its_face_at_once(restitution: float, law: RestitutionLaw) -> No
         restitution_law=law,
     )
     assert answer.verdict is SeveralVerdict.RESOLVED
+    assert answer.energy_change == pytest.approx(0.5 * 0.5 * 4.0 * (restitution**2 - 1.0), abs=1e-12)
     assert answer.state.v_WB_W == pytest.approx([0.0, 0.0, 2.0 * restitution], abs=1e-12)
     assert answer.state.w_WB_W == pytest.approx([0.0, 0.0, 0.0], abs=1e-11)
     assert answer.impulses_W.sum(axis=0) == pytest.approx(
