@@ -1,8 +1,9 @@
-"""A flight of a toss, in closed form, up to its first contact.
+"""A flight of a toss, up to its first contact.
 
 The search is that of `landing.plane_arrival`: a corner's height, its rate and a bound on its acceleration
-give a time before which it cannot arrive, and crossings are found to rounding. Meanwhile the flat's normal in
-body axes is a Taylor series, which begins anew from the closed form after about a radian.
+give a time before which it cannot arrive, and crossings are found to rounding. Meanwhile attitude and angular
+velocity are Taylor series, which begin anew after a radian or two. They are as exact as the closed form in
+doubles, and begin from that where nothing can arrive for many turns.
 
 `flight.pxd` gives the C types with which this file compiles.
 """
@@ -11,150 +12,199 @@ from __future__ import annotations
 
 import math
 from array import array
-from typing import TYPE_CHECKING, Any, Final, NamedTuple
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
-from contact_dynamics.landing.acceleration_bounds import bounds_of
 from contact_dynamics.landing.search_work import SEARCH_BEGUN, SearchWork
 from contact_dynamics.tolerances import GRAZING_DEPTH, NEGLIGIBLE_TERM
 from contact_dynamics.toss import vectors as vec
-from contact_dynamics.toss.solid import pose_of, state_of
-from contact_dynamics.tumbling import FreeMotion, Precision, free_motion
+from contact_dynamics.toss.solid import Above, pose_of, properties_of, rows_of, state_of
+from contact_dynamics.tumbling import Precision, free_motion
 
 if TYPE_CHECKING:
     from contact_dynamics.numerics.vectors import Vector3
-    from contact_dynamics.rigid_body.body import MassProperties
+    from contact_dynamics.rotations.one import Quaternion
     from contact_dynamics.toss.solid import Numbers, Solid
+    from contact_dynamics.toss.vectors import Matrix3
 
 _ORDER: Final = 20
-"""Order of the series. A body turns by about a radian while they hold."""
+"""Order of the series. A body turns by one or two radians while they hold."""
+
+_MANY: Final = 30.0
+"""Series that are begun one after the other. Beyond them the closed form costs less."""
 
 _MAX_ROOT_STEPS: Final = 100
+_GYROSCOPIC: Final = 1.0 / math.sqrt(3.0)
 _INFINITE: Final = math.inf
 
 
 class Flight(NamedTuple):
-    """A flight.
+    """A flight: how long it lasts, s, and the state at its end."""
 
-    Attributes:
-        motion: The motion, which does not end by itself.
-        seconds: s, how long the flight lasts.
-        after: The state at its end.
-    """
-
-    motion: FreeMotion
     seconds: float
     after: Numbers
 
 
-def flight(
-    solid: Solid, properties: MassProperties, y: Numbers, *, stamp_ns: int, longest: float, pause: float
-) -> Flight:
+def flight(solid: Solid, y: Numbers, *, longest: float, pause: float) -> Flight:
     """Return the flight from a state to the first contact with a flat.
 
     Args:
         solid: The body and the flats.
-        properties: Mass and inertia of the solid.
         y: The state at the beginning.
-        stamp_ns: Its stamp.
         longest: s, after which the flight ends anyway.
         pause: s, after which arrivals are looked for.
 
     Raises:
         TooLargeError: the search for the end takes too many steps.
     """
-    gravity, work = np.array(solid.gravity), SearchWork()
-    motion = free_motion(properties, state_of(y, stamp_ns), gravity_W=gravity, precision=Precision.DOUBLE)
-    first = longest
-    for k, flat in enumerate(solid.flats):
-        bound = bounds_of(motion, np.array(flat.normal))(0.0)
-        first = Descent(solid, k, motion, bound.fall, bound.turning).run(min(pause, first), first, work)
-    return Flight(motion, first, _numbers(motion, first))
+    descent = Descent(solid, y)
+    seconds = descent.run(min(pause, longest), longest, SearchWork())
+    descent.look(seconds)
+    return Flight(seconds, descent.state())
 
 
-def _numbers(motion: FreeMotion, seconds: float) -> Numbers:
+def _closed_form(solid: Solid, y: Numbers, seconds: float) -> Numbers:
+    """Return the state at a time, s, of a flight from another one."""
+    gravity = np.array(solid.gravity)
+    motion = free_motion(properties_of(solid), state_of(y), gravity_W=gravity, precision=Precision.DOUBLE)
     sample = motion.sample(seconds)
     return [*sample.p_WB_W, *sample.q_WB, *sample.v_WB_W, *sample.w_WB_W]
 
 
 class Descent:
-    """The heights of corners above one flat over time, and the search for the first contact."""
+    """The heights of corners above flats over time, and the search for the first contact."""
 
-    def __init__(self, solid: Solid, flat: int, motion: Any, fall: float, turning: float) -> None:
-        self.solid, self.motion = solid, motion
-        self.normal: Vector3 = solid.flats[flat].normal
-        self.level = solid.flats[flat].level + solid.rounding
-        self.fall, self.turning = fall, turning
-        self.farthest = solid.reach - solid.rounding
-        self.begin = self.end = 0.0  # s, between which the series holds
-        self.w, self.momentum = [0.0] * 63, [0.0] * 63  # rad/s, kg m^2/s, body axes: their series
-        self.n = [0.0] * 63  # that of the normal, body axes
-        self.high = self.rise = 0.0  # m, m/s, of the mass centre when the series begins
-        self.centre = self.centre_rate = 0.0  # the same at the time that was looked at last
-        # m, m/s, of corners then; heights before that
-        self.heights = array("d", bytes(8 * solid.count))
-        self.rates = array("d", bytes(8 * solid.count))
-        self.before = array("d", bytes(8 * solid.count))
-
-    def expand(self, seconds: float) -> None:
-        """Begin the series at a time, s."""
-        pose = pose_of(self.solid, _numbers(self.motion, seconds))
-        inertia, inverse = self.solid.inertia, self.solid.inverse
-        self.high = vec.dot(pose.position, self.normal) - self.level
-        self.rise = vec.dot(pose.v, self.normal)
+    def __init__(self, solid: Solid, y: Numbers) -> None:
+        self.solid = solid
+        self.start = [0.0] * 13
+        for k in range(13):
+            self.start[k] = y[k]
+        pose = pose_of(solid, y)
         w = vec.transposed_times(pose.rows, pose.w)
-        self.put(0, w, vec.times(inertia, w), vec.transposed_times(pose.rows, self.normal))
-        for k in range(_ORDER):
-            x = y = z = a = b = c = 0.0
-            for i in range(k + 1):
-                h, j = 3 * i, 3 * (k - i)
-                u, v, t = self.w[j], self.w[j + 1], self.w[j + 2]
-                x += self.momentum[h + 1] * t - self.momentum[h + 2] * v
-                y += self.momentum[h + 2] * u - self.momentum[h] * t
-                z += self.momentum[h] * v - self.momentum[h + 1] * u
-                a += self.n[h + 1] * t - self.n[h + 2] * v
-                b += self.n[h + 2] * u - self.n[h] * t
-                c += self.n[h] * v - self.n[h + 1] * u
-            share = 1.0 / (k + 1.0)
-            w = vec.times(inverse, (share * x, share * y, share * z))
-            self.put(k + 1, w, vec.times(inertia, w), (share * a, share * b, share * c))
-        self.begin = seconds
-        self.end = seconds + min(self.reach(_ORDER), self.reach(_ORDER - 1))
+        # Energy bounds the angular velocity, and the angular acceleration is at most a share of its square.
+        stiffest = _row_sum(solid.inverse)
+        apart = min(_row_sum(solid.inertia) * stiffest - 1.0, 1.0)
+        turning = vec.dot(w, vec.times(solid.inertia, w)) * stiffest * (1.0 + _GYROSCOPIC * apart)
+        # Least accelerations of the mass centre and of corners towards each flat, m/s^2.
+        self.falls = array("d", [-vec.dot(flat.normal, solid.gravity) for flat in solid.flats])
+        self.pulls = array("d", [vec.norm(corner) * turning for corner in solid.corners])
+        self.farthest = solid.reach - solid.rounding
+        self.above = Above(solid)  # at the time that was looked at last
+        self.before = array("d", bytes(8 * self.above.count))  # m, heights at another time
+        self.q, self.w, self.momentum = [0.0] * 84, [0.0] * 63, [0.0] * 63  # series, in body axes
+        self.begin = self.end = 0.0  # s, between which they hold
+        self._expand_from(0.0, y)
 
-    def put(self, k: int, w: Vector3, momentum: Vector3, n: Vector3) -> None:
-        """Note a term of the series."""
+    def _expand(self, seconds: float, q: Quaternion, w: Vector3) -> None:
+        """Begin the series at a time, s, with a quaternion and an angular velocity, body axes."""
+        inertia, inverse = self.solid.inertia, self.solid.inverse
+        x, y, z, s = q
+        scale = 1.0 / math.sqrt(x * x + y * y + z * z + s * s)
+        self._put_q(0, scale * x, scale * y, scale * z, scale * s)
+        self._put_w(0, w, vec.times(inertia, w))
+        for k in range(_ORDER):
+            x = y = z = s = a = b = c = 0.0
+            for i in range(k + 1):
+                g, h, j = 4 * i, 3 * i, 3 * (k - i)
+                u, v, t = self.w[j], self.w[j + 1], self.w[j + 2]
+                a += self.momentum[h + 1] * t - self.momentum[h + 2] * v
+                b += self.momentum[h + 2] * u - self.momentum[h] * t
+                c += self.momentum[h] * v - self.momentum[h + 1] * u
+                x += self.q[g + 3] * u + self.q[g + 1] * t - self.q[g + 2] * v
+                y += self.q[g + 3] * v + self.q[g + 2] * u - self.q[g] * t
+                z += self.q[g + 3] * t + self.q[g] * v - self.q[g + 1] * u
+                s -= self.q[g] * u + self.q[g + 1] * v + self.q[g + 2] * t
+            share = 1.0 / (k + 1.0)
+            half = 0.5 * share
+            self._put_q(k + 1, half * x, half * y, half * z, half * s)
+            w = vec.times(inverse, (share * a, share * b, share * c))
+            self._put_w(k + 1, w, vec.times(inertia, w))
+        self.begin = seconds
+        self.end = seconds + min(self._reach(_ORDER), self._reach(_ORDER - 1))
+
+    def _expand_from(self, seconds: float, y: Numbers) -> None:
+        """Begin the series at a time, s, with the state then."""
+        pose = pose_of(self.solid, y)
+        self._expand(seconds, (y[3], y[4], y[5], y[6]), vec.transposed_times(pose.rows, pose.w))
+
+    def _put_q(self, k: int, x: float, y: float, z: float, s: float) -> None:
+        k *= 4
+        self.q[k], self.q[k + 1], self.q[k + 2], self.q[k + 3] = x, y, z, s
+
+    def _put_w(self, k: int, w: Vector3, momentum: Vector3) -> None:
         k *= 3
         self.w[k], self.w[k + 1], self.w[k + 2] = w[0], w[1], w[2]
         self.momentum[k], self.momentum[k + 1], self.momentum[k + 2] = momentum[0], momentum[1], momentum[2]
-        self.n[k], self.n[k + 1], self.n[k + 2] = n[0], n[1], n[2]
 
-    def reach(self, k: int) -> float:
-        """Return for how long, s, a term is less than counts."""
-        size = abs(self.n[3 * k]) + abs(self.n[3 * k + 1]) + abs(self.n[3 * k + 2])
+    def _reach(self, k: int) -> float:
+        """Return for how long, s, terms are less than counts."""
+        size = abs(self.q[4 * k]) + abs(self.q[4 * k + 1]) + abs(self.q[4 * k + 2]) + abs(self.q[4 * k + 3])
+        rate = abs(self.w[0]) + abs(self.w[1]) + abs(self.w[2])
+        if rate > 0.0:
+            change = abs(self.w[3 * k]) + abs(self.w[3 * k + 1]) + abs(self.w[3 * k + 2])
+            size = max(size, change / rate)
         return (NEGLIGIBLE_TERM / size) ** (1.0 / k) if size > 0.0 else _INFINITE
 
     def look(self, seconds: float) -> None:
-        """Find heights and rates at a time while the series holds."""
-        t = seconds - self.begin
-        x = y = z = u = v = w = 0.0
-        for k in range(_ORDER, -1, -1):
-            u, v, w = u * t + x, v * t + y, w * t + z
-            x, y, z = x * t + self.n[3 * k], y * t + self.n[3 * k + 1], z * t + self.n[3 * k + 2]
-        self.centre = self.high + t * (self.rise - 0.5 * t * self.fall)
-        self.centre_rate = self.rise - t * self.fall
-        for k in range(self.solid.count):
-            corner = self.solid.corner(k)
-            self.heights[k] = x * corner[0] + y * corner[1] + z * corner[2] + self.centre
-            self.rates[k] = u * corner[0] + v * corner[1] + w * corner[2] + self.centre_rate
+        """Find heights and rates at a time."""
+        if seconds < self.begin:  # as where a corner grazes a flat just before a series begins
+            self._expand_from(0.0, [self.start[k] for k in range(13)])
+        if not seconds - self.begin <= _MANY * (self.end - self.begin):
+            start = [self.start[k] for k in range(13)]
+            self._expand_from(seconds, _closed_form(self.solid, start, seconds))
+        while seconds > self.end:
+            t = self.end - self.begin
+            self._expand(self.end, self._turned(t), self._turning(t))
+        self._set_state(seconds)
+        self.above.take(self.above.y)
+
+    def _turned(self, t: float) -> Quaternion:
+        """Return the quaternion of the series at a time after its beginning, s."""
+        x = y = z = s = 0.0
+        for i in range(_ORDER + 1):
+            k = 4 * (_ORDER - i)
+            x, y, z, s = (
+                x * t + self.q[k],
+                y * t + self.q[k + 1],
+                z * t + self.q[k + 2],
+                s * t + self.q[k + 3],
+            )
+        return (x, y, z, s)
+
+    def _turning(self, t: float) -> Vector3:
+        """Return the angular velocity of the series, rad/s, body axes, at a time after its beginning, s."""
+        u = v = w = 0.0
+        for i in range(_ORDER + 1):
+            k = 3 * (_ORDER - i)
+            u, v, w = u * t + self.w[k], v * t + self.w[k + 1], w * t + self.w[k + 2]
+        return (u, v, w)
+
+    def _set_state(self, seconds: float) -> None:
+        """Find the 13 numbers at a time at which the series holds."""
+        y = self.above.y  # C copies arrays that are assigned in parallel
+        first = self.start
+        a, b, c = self.solid.gravity
+        half = 0.5 * seconds
+        y[0] = first[0] + seconds * (first[7] + half * a)
+        y[1] = first[1] + seconds * (first[8] + half * b)
+        y[2] = first[2] + seconds * (first[9] + half * c)
+        y[7], y[8], y[9] = first[7] + seconds * a, first[8] + seconds * b, first[9] + seconds * c
+        x, yy, z, s = self._turned(seconds - self.begin)
+        scale = 1.0 / math.sqrt(x * x + yy * yy + z * z + s * s)
+        y[3], y[4], y[5], y[6] = scale * x, scale * yy, scale * z, scale * s
+        w = vec.times(rows_of(x, yy, z, s), self._turning(seconds - self.begin))
+        y[10], y[11], y[12] = w[0], w[1], w[2]
+
+    def state(self) -> Numbers:
+        """Return the 13 numbers at the time that was looked at last."""
+        return [self.above.y[k] for k in range(13)]
 
     def run(self, start: float, longest: float, work: SearchWork) -> float:
         """Return the time, s, of the first contact from a time on, or the longest that is searched."""
-        solid = self.solid
         now = start
         last, found = -1.0, 0.0  # the time of the heights before, s
         work.spend(SEARCH_BEGUN, now)
-        self.expand(now)
         while True:
             work.spend(1, now)
             self.look(now)
@@ -163,38 +213,37 @@ class Descent:
                 return found
             if now >= longest:
                 return longest
-            if now >= self.end:
-                self.expand(now)
-            step = self._free()
-            far = 0.0
-            if self.centre > self.farthest:
-                far = free_for(self.centre - self.farthest, self.centre_rate, self.fall)
-            for k in range(solid.count):
-                self.before[k] = self.heights[k]
+            for k in range(self.above.count):
+                self.before[k] = self.above.heights[k]
             last = now
-            if far > step and now + far > self.end:  # where nothing can arrive the series need not hold
-                now = min(now + far, longest)
-                self.expand(now)
-            else:
-                now = min(now + max(step, far), self.end, longest)
+            now = min(now + self._free(), longest)
 
     def _free(self) -> float:
         """Return for how long, s, no corner can arrive."""
-        least = _INFINITE
-        for k in range(self.solid.count):
-            pull = self.fall + vec.norm(self.solid.corner(k)) * self.turning
-            least = min(least, free_for(self.heights[k], self.rates[k], pull))
+        solid, y = self.solid, self.above.y
+        least, k = _INFINITE, 0
+        p, v = (y[0], y[1], y[2]), (y[7], y[8], y[9])
+        for s in range(len(solid.flats)):
+            flat, fall, first = solid.flats[s], self.falls[s], _INFINITE
+            for corner in range(solid.count):
+                free = free_for(self.above.heights[k], self.above.rates[k], fall + self.pulls[corner])
+                first = min(first, free)
+                k += 1
+            room = vec.dot(p, flat.normal) - flat.level - solid.rounding - self.farthest
+            if room > 0.0:
+                first = max(first, free_for(room, vec.dot(v, flat.normal), fall))
+            least = min(least, first)
         return least
 
     def _arrival(self, last: float, now: float) -> float:
         """Return when a corner has come down since the last look, or sinks now, s, or -1."""
         part, least = -1, 0.0
         sinks = False
-        for k in range(self.solid.count):
-            if self.heights[k] <= 0.0:
-                sinks = sinks or self.rates[k] <= 0.0
-                if last >= 0.0 and self.before[k] > 0.0 and (part < 0 or self.heights[k] < least):
-                    part, least = k, self.heights[k]
+        for k in range(self.above.count):
+            if self.above.heights[k] <= 0.0:
+                sinks = sinks or self.above.rates[k] <= 0.0
+                if last >= 0.0 and self.before[k] > 0.0 and (part < 0 or self.above.heights[k] < least):
+                    part, least = k, self.above.heights[k]
         if part >= 0:
             return self._crossing(part, last, now)
         return now if sinks else -1.0
@@ -206,9 +255,9 @@ class Descent:
             self.look(high)
             self.before[part] = -1.0
             part, least = -1, 0.0
-            for k in range(self.solid.count):
-                if self.before[k] > 0.0 and self.heights[k] < least:
-                    part, least = k, self.heights[k]
+            for k in range(self.above.count):
+                if self.before[k] > 0.0 and self.above.heights[k] < least:
+                    part, least = k, self.above.heights[k]
             if part < 0:
                 return high
 
@@ -217,7 +266,7 @@ class Descent:
         now = high
         for _ in range(_MAX_ROOT_STEPS):
             self.look(now)
-            height, rate = self.heights[part], self.rates[part]
+            height, rate = self.above.heights[part], self.above.rates[part]
             if height > 0.0:
                 low = now
             else:
@@ -250,3 +299,9 @@ def free_for(height: float, rate: float, pull: float) -> float:
 def ulp(x: float) -> float:
     """Return the distance to the next double away from zero, for x >= 0."""
     return math.nextafter(x, _INFINITE) - x
+
+
+def _row_sum(matrix: Matrix3) -> float:
+    """Return the largest sum of a row's magnitudes, which is at least the largest eigenvalue."""
+    a, b, c, d, e, f, g, h, i = matrix
+    return max(abs(a) + abs(b) + abs(c), abs(d) + abs(e) + abs(f), abs(g) + abs(h) + abs(i))

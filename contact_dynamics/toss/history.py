@@ -158,10 +158,6 @@ class History:
         """Return the state now, with its stamp."""
         return self._state(self.now, self.y)
 
-    def stamp_ns(self) -> int:
-        """Return the stamp of the state now."""
-        return ns_after(self._began_ns, self.now)
-
     def _state(self, seconds: float, y: Numbers) -> BodyState:
         return state_of(y, ns_after(self._began_ns, seconds))
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -14,11 +14,16 @@ from contact_dynamics.records import NamedInt, Record
 from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.rotations.many import make_continuous
 from contact_dynamics.toss.phase import PhaseStep
-from contact_dynamics.tumbling import FreeMotion, Trajectory
+from contact_dynamics.toss.solid import state_of
+from contact_dynamics.tumbling import FreeMotion, Precision, Trajectory, free_motion
 from contact_dynamics.validation import FloatArray, check_array
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
+
+    from contact_dynamics.numerics.vectors import Vector3
+    from contact_dynamics.rigid_body.body import MassProperties
+    from contact_dynamics.toss.solid import Numbers
 
 
 _TIMES = 3
@@ -126,17 +131,26 @@ class Undecided(Record):
     taken: int
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class FlightPiece:
+class FlightPiece(NamedTuple):
     """A free flight.
 
     Attributes:
         start: s, when it begins.
-        motion: The motion, from the state at that time.
+        body: Mass and inertia.
+        y: The 13 numbers of the state at that time.
+        gravity: m/s^2, world axes.
     """
 
     start: float
-    motion: FreeMotion
+    body: MassProperties
+    y: Numbers
+    gravity: Vector3
+
+    @property
+    def motion(self) -> FreeMotion:
+        """The motion, from the state at that time."""
+        gravity = np.array(self.gravity)
+        return free_motion(self.body, state_of(self.y), gravity_W=gravity, precision=Precision.DOUBLE)
 
 
 Piece: TypeAlias = "FlightPiece | PhaseStep"

@@ -183,16 +183,9 @@ class Simulation(History):
         """
         left = self.settings.horizon - self.now
         self.y = out_of_flats(self.solid, self.y)
-        flown = flight(
-            self.solid,
-            self.properties,
-            self.y,
-            stamp_ns=self.stamp_ns(),
-            longest=left,
-            pause=pause,
-        )
+        flown = flight(self.solid, self.y, longest=left, pause=pause)
         if self.settings.has_pieces:
-            self.pieces.append(FlightPiece(self.now, flown.motion))
+            self.pieces.append(FlightPiece(self.now, self.properties, self.y, self.solid.gravity))
             self._forget_instant()
         self.y = flown.after
         self.now += flown.seconds

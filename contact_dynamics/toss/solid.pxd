@@ -72,6 +72,6 @@ cdef class Above:
     cdef void take(self, double* y) noexcept
 
 
-cdef (double, double, double, double, double, double, double, double, double) rows_of(double x, double yy, double z, double w) noexcept nogil
+cpdef (double, double, double, double, double, double, double, double, double) rows_of(double x, double yy, double z, double w) noexcept nogil
 cpdef Pose pose_of(Solid solid, list y)
 cpdef list heights_and_rates(Solid solid, list y)
