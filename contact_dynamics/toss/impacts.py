@@ -20,13 +20,13 @@ from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.impact.law import RestitutionLaw
 from contact_dynamics.impact.several.orders import several_impact
 from contact_dynamics.impact.several.result import SeveralContactsLaw, SeveralVerdict
-from contact_dynamics.impact.several.tied import next_to_strike, strike_as_one
+from contact_dynamics.impact.several.tied import impulses_of, next_to_strike, pushed, response_of, shared_path
 from contact_dynamics.impact.spatial.path import OUTCOMES
 from contact_dynamics.impact.spatial.response import Strike, refuse
 from contact_dynamics.tolerances import CONE_CREEPS, STRIKES, TIED_APPROACH
 from contact_dynamics.toss import vectors as vec
 from contact_dynamics.toss.cone_forces import ConeForces
-from contact_dynamics.toss.solid import contacts_of, pose_of, properties_of, state_of
+from contact_dynamics.toss.solid import contacts_of, points_of, pose_of, properties_of, state_of
 
 if TYPE_CHECKING:
     from contact_dynamics.contact.contact import ContactSet
@@ -82,26 +82,27 @@ def next_in_turn(solid: Solid, y: Numbers, touching: list[Touch], rates: list[fl
     tie = TIED_APPROACH * (vec.norm((y[7], y[8], y[9])) + solid.reach * vec.norm((y[10], y[11], y[12])))
     if sum(rate <= fastest + tie for rate in rates) < 2:
         return [touching[rates.index(fastest)]]
-    contacts = _striking(solid, y, touching)
-    group = next_to_strike(np.array(rates), contacts, tolerance=STRIKES, tie=tie)
-    return [touching[k] for k in group]
+    flats = [solid.flats[flat] for flat, _ in touching]
+    materials = [(flat.restitution, flat.strike_friction) for flat in flats]
+    return [touching[k] for k in next_to_strike(rates, materials, tolerance=STRIKES, tie=tie)]
 
 
 def tied_strike(
     solid: Solid, y: Numbers, group: list[Touch], law: RestitutionLaw
 ) -> tuple[Numbers, list[Struck]]:
     """Return the state after the impact of contacts that strike as one, and the share of each."""
-    shares, (after,) = strike_as_one(
-        [properties_of(solid)],
-        [state_of(y)],
-        _striking(solid, y, group),
-        [(0, None)] * len(group),
-        law=law,
-        tolerance=STRIKES,
+    state, body = state_of(y), properties_of(solid)
+    response = response_of([body], [state], np.array(points_of(solid, y, group)), [(0, None)] * len(group))
+    flats = [solid.flats[flat] for flat, _ in group]
+    normals = np.array([flat.normal for flat in flats])
+    path, axes = shared_path(
+        response, normals, flats[0].restitution, flats[0].strike_friction, law=law, tolerance=STRIKES
     )
+    impulses = impulses_of(path, axes)
+    (after,) = pushed(response, [state], impulses)
     struck = [
-        Struck(touch, _vector(share.impulse_W.tolist()), share.outcome)
-        for touch, share in zip(group, shares, strict=True)
+        Struck(touch, _vector(impulse), path.outcome)
+        for touch, impulse in zip(group, impulses.tolist(), strict=True)
     ]
     return _after(y, after), struck
 

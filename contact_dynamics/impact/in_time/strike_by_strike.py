@@ -10,7 +10,7 @@ import numpy as np
 
 from contact_dynamics.contact.kinds import velocity_accelerations
 from contact_dynamics.impact.in_time.result import ImpactSequence, SequenceEnd, TimedStrike
-from contact_dynamics.impact.several.tied import next_to_strike, strike_as_one
+from contact_dynamics.impact.several.tied import materials_of, next_to_strike, strike_as_one
 from contact_dynamics.impact.spatial.one_contact import spatial_impact
 from contact_dynamics.rotations.one import cross_matrix
 from contact_dynamics.tolerances import CHATTER_HEIGHT, CHATTER_PAUSE, HELD_STILL, TIED_APPROACH
@@ -193,7 +193,8 @@ class StrikeByStrike:
         approach = _normal_parts(landing.velocities_W, landing.contacts)
         self.order_is_open = self.order_is_open or int((approach < -self.tolerance).sum()) > 1
         tie = TIED_APPROACH * float(np.abs(landing.velocities_W).max())
-        return next_to_strike(approach, landing.contacts, tolerance=self.tolerance, tie=tie)
+        materials = materials_of(landing.contacts)
+        return next_to_strike(approach.tolist(), materials, tolerance=self.tolerance, tie=tie)
 
     def _impacts(self, landing: Landing, rows: list[int], *, held: bool) -> Sequence[SpatialImpact]:
         """Return the impact at each of these contacts, which strike as one, without restitution if held."""

@@ -23,7 +23,13 @@ from contact_dynamics.errors import NORMAL_HINT, InvalidFieldError, SeparatingCo
 from contact_dynamics.impact.law import RestitutionLaw
 from contact_dynamics.impact.several.result import BodiesImpact, SeveralContactsLaw, SeveralVerdict
 from contact_dynamics.impact.several.simultaneous import simultaneous_impulses
-from contact_dynamics.impact.several.tied import next_to_strike, pushed, response_of, strike_as_one
+from contact_dynamics.impact.several.tied import (
+    materials_of,
+    next_to_strike,
+    pushed,
+    response_of,
+    strike_as_one,
+)
 from contact_dynamics.impact.spatial.one_contact import check_striking, spatial_impact, spatial_pair_impact
 from contact_dynamics.tolerances import TIED_APPROACH, VELOCITY_TOLERANCE
 from contact_dynamics.validation import check_positive
@@ -273,7 +279,8 @@ def _next_contacts(
     """Return the contacts that strike next, several if they tie, or none if none approaches."""
     if priority is not None:
         return [i for i in priority if approach[i] < -touching.tolerance][:1]
-    return next_to_strike(approach, touching.contacts, tolerance=touching.tolerance, tie=tie)
+    materials = materials_of(touching.contacts)
+    return next_to_strike(approach.tolist(), materials, tolerance=touching.tolerance, tie=tie)
 
 
 def _check_pairs(

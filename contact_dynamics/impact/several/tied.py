@@ -24,7 +24,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from contact_dynamics.impact.law import RestitutionLaw
-from contact_dynamics.impact.spatial.path import SlidingLaw, trace
+from contact_dynamics.impact.spatial.path import SlidingLaw, SpatialPath, trace
 from contact_dynamics.impact.spatial.result import SpatialImpact
 from contact_dynamics.numerics.vectors import point_jacobians, tangents_by_sign
 from contact_dynamics.rigid_body.body import inverse_mass_matrix
@@ -83,22 +83,29 @@ def pushed(response: Response, states: Sequence[BodyState], impulses_W: FloatArr
     ]
 
 
-def next_to_strike(approach: FloatArray, contacts: ContactSet, *, tolerance: float, tie: float) -> list[int]:
+def materials_of(contacts: ContactSet) -> list[tuple[float, float]]:
+    """Return the restitution and the friction of each contact."""
+    return list(zip(contacts.impact_restitutions.tolist(), contacts.frictions.tolist(), strict=True))
+
+
+def next_to_strike(
+    approach: Sequence[float], materials: Sequence[tuple[float, float]], *, tolerance: float, tie: float
+) -> list[int]:
     """Return the contact that approaches fastest with those that strike as one with it, or none.
 
     Args:
-        approach: (n,), m/s, normal velocities, negative where contacts approach.
-        contacts: The contacts. Of tied ones that differ, those with the least restitution, then the least
-            friction, come first.
+        approach: n normal velocities, m/s, negative where contacts approach.
+        materials: Restitution and friction of each contact. Of tied ones that differ, those with the least
+            restitution, then the least friction, come first.
         tolerance: m/s. A contact that approaches less fast does not strike.
         tie: m/s. Contacts approach equally fast if their speeds differ by no more.
     """
-    tied = np.flatnonzero(approach <= min(float(approach.min()) + tie, -tolerance)).tolist()
+    fast = min(min(approach) + tie, -tolerance)
+    tied = [i for i, rate in enumerate(approach) if rate <= fast]
     if len(tied) < 2:
         return tied
-    materials = [(float(contacts.impact_restitutions[i]), float(contacts.frictions[i])) for i in tied]
-    first = min(materials)
-    return [i for i, material in zip(tied, materials, strict=True) if material == first]
+    first = min(materials[i] for i in tied)
+    return [i for i in tied if materials[i] == first]
 
 
 def strike_as_one(
@@ -120,41 +127,20 @@ def strike_as_one(
         law: What the coefficient of restitution means.
         tolerance: m/s. A contact that slides less fast does not slide.
     """
-    k = len(contacts)
     response = response_of(bodies, states, contacts.p_WC_W, pairs)
-    velocities = response.jacobian @ response.twist
-    axes = _axes(response, velocities, contacts.normals_W, tolerance)
-    shared = np.einsum("kaj,kjl->al", axes, response.jacobian) / k  # the mean velocity, in these axes
-    whole = shared @ response.inverse_mass @ shared.T
-    # The path needs tangents along which the response is diagonal.
-    _, turn = np.linalg.eigh(whole[:2, :2])
-    axes[:, :2] = np.einsum("ba,kbj->kaj", turn, axes[:, :2])
-    shared[:2] = turn.T @ shared[:2]
-    whole = shared @ response.inverse_mass @ shared.T
-    l1, l2, kn = float(whole[0, 0]), float(whole[1, 1]), float(whole[2, 2])
-    k1, k2 = float(whole[0, 2]), float(whole[1, 2])
-    u1, u2, v_n = (shared @ response.twist).tolist()
-    if l1 <= NO_SHARED_RESPONSE * kn:
-        l1, k1, u1 = kn, 0.0, 0.0  # equal impulses along this tangent move nothing
-    if l2 <= NO_SHARED_RESPONSE * kn:
-        l2, k2, u2 = kn, 0.0, 0.0
-    if float(np.hypot(u1, u2)) <= tolerance:
-        u1 = u2 = 0.0
-    friction, ends_by = float(contacts.frictions[0]), law
-    sticking = kn - k1 * k1 / l1 - k2 * k2 / l2
-    if sticking <= NO_SHARED_RESPONSE * kn:  # in a groove, equal impulses at contacts that stick move nothing
-        kn += NO_SHARED_RESPONSE * kn - sticking
-        if float(np.hypot(k1 / l1, k2 / l2)) <= friction * (1.0 + NO_SHARED_RESPONSE):
-            ends_by = RestitutionLaw.POISSON  # no impulse ends restitution by a velocity or by work
-    sliding = SlidingLaw(l1, l2, k1, k2, kn, friction)
-    path = trace(sliding, (u1, u2), v_n, restitution=float(contacts.impact_restitutions[0]), law=ends_by)
-    impulses = np.einsum("a,kaj->kj", np.array(path.impulse), axes) / k
+    (restitution, friction), *_ = materials_of(contacts)
+    path, axes = shared_path(
+        response, contacts.normals_W, restitution, friction, law=law, tolerance=tolerance
+    )
+    impulses = impulses_of(path, axes)
     after = pushed(response, states, impulses)
+    velocities = response.jacobian @ response.twist
     velocities_after = velocities + response.jacobian @ response.inverse_mass @ np.einsum(
         "ijk,ij->k", response.jacobian, impulses
     )
     vertices = np.array([vertex for _, vertex in path.vertices])
     own = np.einsum("kil,lm,kjm->kij", response.jacobian, response.inverse_mass, response.jacobian)
+    k = len(contacts)
     shares = [
         SpatialImpact(
             restitution_law=law,
@@ -173,6 +159,50 @@ def strike_as_one(
         for i, (first, second) in enumerate(pairs)
     ]
     return shares, after
+
+
+def impulses_of(path: SpatialPath, axes: FloatArray) -> FloatArray:
+    """Return the share of each contact in the impulse of a path, (n, 3), N s, world axes."""
+    impulses: FloatArray = np.einsum("a,kaj->kj", np.array(path.impulse), axes) / len(axes)
+    return impulses
+
+
+def shared_path(
+    response: Response,
+    normals_W: FloatArray,
+    restitution: float,
+    friction: float,
+    *,
+    law: RestitutionLaw,
+    tolerance: float,
+) -> tuple[SpatialPath, FloatArray]:
+    """Return the path of the impulse of contacts that strike as one, and the axes of each, (n, 3, 3)."""
+    k = len(normals_W)
+    axes = _axes(response, response.jacobian @ response.twist, normals_W, tolerance)
+    shared = np.einsum("kaj,kjl->al", axes, response.jacobian) / k  # the mean velocity, in these axes
+    whole = shared @ response.inverse_mass @ shared.T
+    # The path needs tangents along which the response is diagonal.
+    _, turn = np.linalg.eigh(whole[:2, :2])
+    axes[:, :2] = np.einsum("ba,kbj->kaj", turn, axes[:, :2])
+    shared[:2] = turn.T @ shared[:2]
+    whole = shared @ response.inverse_mass @ shared.T
+    l1, l2, kn = float(whole[0, 0]), float(whole[1, 1]), float(whole[2, 2])
+    k1, k2 = float(whole[0, 2]), float(whole[1, 2])
+    u1, u2, v_n = (shared @ response.twist).tolist()
+    if l1 <= NO_SHARED_RESPONSE * kn:
+        l1, k1, u1 = kn, 0.0, 0.0  # equal impulses along this tangent move nothing
+    if l2 <= NO_SHARED_RESPONSE * kn:
+        l2, k2, u2 = kn, 0.0, 0.0
+    if float(np.hypot(u1, u2)) <= tolerance:
+        u1 = u2 = 0.0
+    ends_by = law
+    sticking = kn - k1 * k1 / l1 - k2 * k2 / l2
+    if sticking <= NO_SHARED_RESPONSE * kn:  # in a groove, equal impulses at contacts that stick move nothing
+        kn += NO_SHARED_RESPONSE * kn - sticking
+        if float(np.hypot(k1 / l1, k2 / l2)) <= friction * (1.0 + NO_SHARED_RESPONSE):
+            ends_by = RestitutionLaw.POISSON  # no impulse ends restitution by a velocity or by work
+    sliding = SlidingLaw(l1, l2, k1, k2, kn, friction)
+    return trace(sliding, (u1, u2), v_n, restitution=restitution, law=ends_by), axes
 
 
 def _axes(response: Response, velocities: FloatArray, normals: FloatArray, tolerance: float) -> FloatArray:
