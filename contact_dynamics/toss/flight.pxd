@@ -19,6 +19,7 @@ cdef int _MAX_ROOT_STEPS, _ORDER
 cdef class Descent:
     cdef Solid solid
     cdef Above above
+    cdef (double, double, double) gravity
     cdef double farthest, begin, end
     cdef double[13] start
     cdef double[84] q
@@ -42,6 +43,8 @@ cdef class Descent:
     @cython.locals(y=cython.p_double, first=cython.p_double, k=cython.int)
     cdef void _set_state(self, double seconds) noexcept
     cpdef list state(self)
+    @cython.locals(rate=cython.double)
+    cpdef int striking(self, double near) noexcept
     @cython.locals(now=cython.double, last=cython.double, found=cython.double)
     cpdef double run(self, double start, double longest, work) except -1.0
     @cython.locals(y=cython.p_double, flat=Flat, fall=cython.double, first=cython.double, least=cython.double,

@@ -58,16 +58,16 @@ def flight(solid: Solid, y: Numbers, *, longest: float, pause: float) -> Flight:
     Raises:
         TooLargeError: the search for the end takes too many steps.
     """
-    descent = Descent(solid, y)
+    descent = Descent(solid, solid.gravity, y)
     seconds = descent.run(min(pause, longest), longest, SearchWork())
     descent.look(seconds)
     return Flight(seconds, descent.state())
 
 
-def _closed_form(solid: Solid, y: Numbers, seconds: float) -> Numbers:
+def _closed_form(solid: Solid, gravity: Vector3, y: Numbers, seconds: float) -> Numbers:
     """Return the state at a time, s, of a flight from another one."""
-    gravity = np.array(solid.gravity)
-    motion = free_motion(properties_of(solid), state_of(y), gravity_W=gravity, precision=Precision.DOUBLE)
+    gravity_W, body = np.array(gravity), properties_of(solid)
+    motion = free_motion(body, state_of(y), gravity_W=gravity_W, precision=Precision.DOUBLE)
     sample = motion.sample(seconds)
     return [*sample.p_WB_W, *sample.q_WB, *sample.v_WB_W, *sample.w_WB_W]
 
@@ -75,8 +75,8 @@ def _closed_form(solid: Solid, y: Numbers, seconds: float) -> Numbers:
 class Descent:
     """The heights of corners above flats over time, and the search for the first contact."""
 
-    def __init__(self, solid: Solid, y: Numbers) -> None:
-        self.solid = solid
+    def __init__(self, solid: Solid, gravity: Vector3, y: Numbers) -> None:
+        self.solid, self.gravity = solid, gravity
         self.start = [0.0] * 13
         for k in range(13):
             self.start[k] = y[k]
@@ -87,7 +87,7 @@ class Descent:
         apart = min(_row_sum(solid.inertia) * stiffest - 1.0, 1.0)
         turning = vec.dot(w, vec.times(solid.inertia, w)) * stiffest * (1.0 + _GYROSCOPIC * apart)
         # Least accelerations of the mass centre and of corners towards each flat, m/s^2.
-        self.falls = array("d", [-vec.dot(flat.normal, solid.gravity) for flat in solid.flats])
+        self.falls = array("d", [-vec.dot(flat.normal, gravity) for flat in solid.flats])
         self.pulls = array("d", [vec.norm(corner) * turning for corner in solid.corners])
         self.farthest = solid.reach - solid.rounding
         self.above = Above(solid)  # at the time that was looked at last
@@ -152,7 +152,7 @@ class Descent:
             self._expand_from(0.0, [self.start[k] for k in range(13)])
         if not seconds - self.begin <= _MANY * (self.end - self.begin):
             start = [self.start[k] for k in range(13)]
-            self._expand_from(seconds, _closed_form(self.solid, start, seconds))
+            self._expand_from(seconds, _closed_form(self.solid, self.gravity, start, seconds))
         while seconds > self.end:
             t = self.end - self.begin
             self._expand(self.end, self._turned(t), self._turning(t))
@@ -184,7 +184,7 @@ class Descent:
         """Find the 13 numbers at a time at which the series holds."""
         y = self.above.y  # C copies arrays that are assigned in parallel
         first = self.start
-        a, b, c = self.solid.gravity
+        a, b, c = self.gravity
         half = 0.5 * seconds
         y[0] = first[0] + seconds * (first[7] + half * a)
         y[1] = first[1] + seconds * (first[8] + half * b)
@@ -199,6 +199,14 @@ class Descent:
     def state(self) -> Numbers:
         """Return the 13 numbers at the time that was looked at last."""
         return [self.above.y[k] for k in range(13)]
+
+    def striking(self, near: float) -> int:
+        """Return the corner nearer to a flat than this, m, that approaches fastest, or -1."""
+        fastest, rate = -1, 0.0
+        for k in range(self.above.count):
+            if self.above.heights[k] <= near and self.above.rates[k] <= rate:
+                fastest, rate = k, self.above.rates[k]
+        return fastest
 
     def run(self, start: float, longest: float, work: SearchWork) -> float:
         """Return the time, s, of the first contact from a time on, or the longest that is searched."""

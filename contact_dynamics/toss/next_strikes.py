@@ -1,12 +1,8 @@
-"""The next strikes of many samples of a toss at once: flight in closed form, Routh's impact, and so on.
+"""The next strikes of samples of a toss: flight, Routh's impact, and so on.
 
-A flight ends where the first corner reaches a flat. All samples step towards that together. A step is as long
-as no corner can arrive earlier, since the acceleration of each is bounded along the flight (as in
-`landing.acceleration_bounds`). Steps shrink to the arrival as Newton's do. Then every sample has its own
-impact (`impact.spatial.batch`), and the law's own spread is added to the velocities after it.
-
-A single toss computes its strikes in `flight` and `strike`. This second program exists because it is about
-twenty times faster for 1000 samples over two strikes.
+Each sample flies by itself (`flight`). Then all of them have their impacts (`impact.spatial.batch`), and the
+law's own spread is added to the velocities after them. A sample that rebounds too little goes on as a toss
+does (`to_rest`), where several corners may strike or stay.
 """
 
 from __future__ import annotations
@@ -16,10 +12,12 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import numpy as np
 
 from contact_dynamics.impact.spatial.batch import StrikingBodies, spatial_impacts
+from contact_dynamics.landing.search_work import SearchWork
 from contact_dynamics.records import NamedInt
 from contact_dynamics.rotations.many import crosses, matrices_of
 from contact_dynamics.tolerances import SAMPLED_ARRIVAL, SAMPLED_SETTLING_HEIGHT
-from contact_dynamics.tumbling.many import motions_of_many
+from contact_dynamics.toss.flight import Descent
+from contact_dynamics.toss.solid import Solid, matrix_of
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -27,18 +25,13 @@ if TYPE_CHECKING:
     from contact_dynamics.impact.law import RestitutionLaw
     from contact_dynamics.numerics.arithmetic import FloatArray
     from contact_dynamics.toss.law_spread import LawSpread
-    from contact_dynamics.toss.solid import Solid
     from contact_dynamics.toss.uncertainty import Samples
 
 FEWEST_AT_ONCE: Final = 32
-"""Samples below which one after the other is faster than all at once."""
+"""Samples below which impacts one after the other are faster than all at once."""
 
 MAX_FURTHER: Final = 50
 """Strikes that are followed beyond those returned. A body that still bounces then goes on by itself."""
-
-
-_MAX_STEPS: Final = 200
-"""Steps towards one arrival, after which a sample counts as one that never arrives. Ten are usual."""
 
 
 class SampleEnd(NamedInt):
@@ -68,6 +61,7 @@ class ManyStrikes(NamedTuple):
         ends: (n,), values of `SampleEnd`.
         now: (n,), s, the time of the last state.
         last: The last states: positions, quaternions, velocities and angular velocities, a row a sample.
+        solids: The body and the flats of each sample.
     """
 
     seconds: FloatArray
@@ -80,6 +74,7 @@ class ManyStrikes(NamedTuple):
     ends: NDArray[np.int64]
     now: FloatArray
     last: tuple[FloatArray, FloatArray, FloatArray, FloatArray]
+    solids: list[Solid]
 
 
 class _Arrivals(NamedTuple):
@@ -128,15 +123,17 @@ def next_strikes(
         ends=ends,
         now=now,
         last=(state[0], state[1], state[2], state[3]),
+        solids=solids_of(solid, samples),
     )
     going = np.arange(n)
     for k in range(depth + (MAX_FURTHER if further else 0)):
         if len(going) < (FEWEST_AT_ONCE if k >= depth else 1):
             break
+        if len(going) == 0:
+            break
         found = _arrivals(
-            solid,
-            samples.inertias_B[going],
-            samples.corners_B[going],
+            many.solids,
+            going,
             samples.gravities_W[going],
             [each[going] for each in state],
             longest=horizon - now[going],
@@ -209,9 +206,8 @@ def _strike(
 
 
 def _arrivals(
-    solid: Solid,
-    inertias: FloatArray,
-    corners: FloatArray,
+    solids: list[Solid],
+    which: NDArray[np.intp],
     gravities: FloatArray,
     state: list[FloatArray],
     *,
@@ -220,89 +216,50 @@ def _arrivals(
     """Return where flights of n samples end.
 
     Args:
-        solid: What samples have in common: where the flats are, and by how much corners are rounded.
-        inertias: (n, 3, 3), kg m^2, body axes.
-        corners: (n, k, 3), m, body axes.
+        solids: The body and the flats of each sample.
+        which: (n,), the samples that fly.
         gravities: (n, 3), m/s^2.
         state: Positions, quaternions, velocities and angular velocities, a row a sample.
         longest: (n,), s, after which flights end anyway.
-    """
-    n = len(inertias)
-    normals = np.array([flat.normal for flat in solid.flats])
-    levels = np.array([flat.level for flat in solid.flats]) + solid.rounding
-    reaches = np.linalg.norm(corners, axis=2)
-    pulls = np.maximum(
-        -(gravities @ normals.T)[:, :, None]
-        + _turning(inertias, state[1], state[3])[:, None, None] * reaches[:, None, :],
-        0.0,
-    )
-    t = np.zeros(n)
-    surface, corner = np.full(n, -1, dtype=np.int64), np.full(n, -1, dtype=np.int64)
-    then = [each.copy() for each in state]
 
-    motions = motions_of_many(
-        inertias,
-        p_WB_W=state[0],
-        q_WB=state[1],
-        v_WB_W=state[2],
-        w_WB_W=state[3],
-        gravities_W=gravities,
+    Raises:
+        TooLargeError: the search for an end takes too many steps.
+    """
+    seconds, parts, then = [], [], []
+    rows = np.hstack(state).tolist()
+    for i, gravity, row, most in zip(which.tolist(), gravities.tolist(), rows, longest.tolist(), strict=True):
+        descent = Descent(solids[i], tuple(gravity), row)
+        arrival = descent.run(0.0, most, SearchWork())
+        descent.look(arrival)
+        seconds.append(arrival)
+        parts.append(descent.striking(SAMPLED_ARRIVAL))
+        then.append(descent.state())
+    after = np.array(then).reshape(-1, 13)
+    surfaces, corners = np.divmod(np.array(parts, dtype=np.int64), solids[0].count)
+    corners[surfaces < 0] = -1
+    return _Arrivals(
+        np.array(seconds), surfaces, corners, [after[:, :3], after[:, 3:7], after[:, 7:10], after[:, 10:]]
     )
 
-    def move(some: NDArray[np.intp]) -> None:
-        moved = (motions.of(some) if len(some) < n else motions).at(t[some])
-        for each, rows in zip(then, (moved.p_WB_W, moved.q_WB, moved.v_WB_W, moved.w_WB_W), strict=True):
-            each[some] = rows
 
-    active = np.arange(n)
-    for _ in range(_MAX_STEPS):
-        heights, rates = _heights(normals, levels, corners[active], [each[active] for each in then])
-        # What arrives is as near as counts, and still comes nearer. Of several, the fastest strikes first.
-        speeds = np.where(heights <= SAMPLED_ARRIVAL, rates, np.inf).reshape(len(active), -1)
-        first = speeds.argmin(axis=1)
-        arrived = speeds[np.arange(len(active)), first] < 0.0
-        surface[active[arrived]], corner[active[arrived]] = np.divmod(first[arrived], corners.shape[1])
-        steps = _free_for(heights, rates, pulls[active]).reshape(len(active), -1).min(axis=1)
-        over = ~arrived & (t[active] >= longest[active])
-        active, steps = active[~arrived & ~over], steps[~arrived & ~over]
-        if len(active) == 0:
-            break
-        t[active] = np.minimum(t[active] + steps, longest[active])
-        move(active)
-    return _Arrivals(t, surface, corner, then)
-
-
-def _turning(inertias: FloatArray, q: FloatArray, w: FloatArray) -> FloatArray:
-    """Return bounds on the accelerations of points by rotation, for each metre of distance, (n,), 1/s^2.
-
-    Energy bounds the angular velocity by 2 T / I1. The angular acceleration is at most a share of its square,
-    which is zero for a ball, and 1/sqrt(3) for any body.
-    """
-    w_B = np.einsum("nij,ni->nj", matrices_of(q), w)
-    moments = np.linalg.eigvalsh(inertias)
-    squares = np.einsum("ni,nij,nj->n", w_B, inertias, w_B) / moments[:, 0]
-    apart = (moments[:, 2] - moments[:, 0]) / moments[:, 0]
-    bounds: FloatArray = squares * (1.0 + np.minimum(apart, 1.0) / np.sqrt(3.0))
-    return bounds
-
-
-def _heights(
-    normals: FloatArray, levels: FloatArray, corners: FloatArray, state: list[FloatArray]
-) -> tuple[FloatArray, FloatArray]:
-    """Return the heights, m, and rates, m/s, (n, s, k), of corners above flats."""
-    p, q, v, w = state
-    arms = corners @ matrices_of(q).transpose(0, 2, 1)
-    heights = np.einsum("nkj,sj->nsk", arms + p[:, None, :], normals) - levels[None, :, None]
-    rates = np.einsum("nkj,sj->nsk", v[:, None, :] + np.cross(w[:, None, :], arms), normals)
-    return heights, rates
-
-
-def _free_for(heights: FloatArray, rates: FloatArray, pulls: FloatArray) -> FloatArray:
-    """Return for how long, s, points cannot arrive, if ``pulls`` are their largest accelerations, m/s^2."""
-    allowed = np.maximum(heights, 0.0) + 0.5 * SAMPLED_ARRIVAL
-    roots = np.sqrt(rates * rates + 2.0 * pulls * allowed)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        falling = 2.0 * allowed / (roots - rates)
-        rising = np.where(pulls > 0.0, (rates + roots) / pulls, np.inf)
-    times: FloatArray = np.where(rates < 0.0, falling, rising)
-    return times
+def solids_of(solid: Solid, samples: Samples) -> list[Solid]:
+    """Return the body and the flats of each sample."""
+    inertias, inverses = samples.inertias_B, np.linalg.inv(samples.inertias_B)
+    corners = samples.corners_B.tolist()
+    materials = np.stack(
+        [samples.lasting_frictions, samples.restitutions, samples.frictions], axis=2
+    ).tolist()
+    return [
+        Solid(
+            solid.mass,
+            matrix_of(inertias[i]),
+            matrix_of(inverses[i]),
+            tuple(map(tuple, corners[i])),
+            solid.indices,
+            solid.rounding,
+            solid.gravity,
+            tuple([flat.with_frictions(*own) for flat, own in zip(solid.flats, materials[i], strict=True)]),
+            solid.settling,
+        )
+        for i in range(len(corners))
+    ]

@@ -1,6 +1,6 @@
 """A whole toss: free flight, strikes, contact phases and rest, one after the other.
 
-Flights are in closed form and end at the first contact, found to rounding (`landing`). Strikes follow Routh's
+Flights end at the first contact, found to rounding (`flight`). Strikes follow Routh's
 impact (`strike`). A body whose contacts stay goes on in a contact mode (`mode_choice`), which is integrated
 until it ends (`phase`). The toss is over where the kinetic energy has fallen so low that the body could rise
 or slide by `SETTLING_HEIGHT` at most, and friction and contacts hold it there.

@@ -1,6 +1,6 @@
 """Samples of a toss that is not known exactly, followed through the next strikes or to rest.
 
-The next strikes of all samples are found together (`next_strikes`), in a tenth of a millisecond each. If
+The next strikes of all samples are found first (`next_strikes`), in a tenth of a millisecond each. If
 rest is asked for, each sample goes on from there as a toss does (`to_rest`). That takes far longer, and
 several processes can share it. It is done less exactly than a single toss: rebounds below
 `SAMPLED_SETTLING_HEIGHT` are not followed, and neither is a body that only rattles on a face until it rests
@@ -119,7 +119,8 @@ def sampled_toss(
     Raises:
         NoContactError: the body has no shape that could touch anything.
         NotSupportedError: the shape has rims, or a surface is an obstacle.
-        TooLargeError: there are more samples than `MAX_SAMPLES`.
+        TooLargeError: there are more samples than `MAX_SAMPLES`, or a flight takes too many steps of the
+            search for its end.
         InvalidFieldError: a number is out of its range, the state's covariance is not positive semidefinite
             or is larger than `MAX_SPREAD` squared, the parameters' covariance has another size than the
             world's surfaces ask for, there are not as many factors as surfaces, or ``processes`` is neither a
@@ -156,8 +157,6 @@ def sampled_toss(
     rests: dict[int, Followed] = {}
     if to_rest:
         followed = followed_to_rest(
-            solid,
-            samples,
             many,
             spread,
             law=restitution_law,

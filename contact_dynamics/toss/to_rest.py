@@ -10,7 +10,7 @@ from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.tolerances import SAMPLED_PHASE_ERROR
 from contact_dynamics.toss.result import TossEnd, TossEventKind
 from contact_dynamics.toss.simulation import Simulation, TossSettings
-from contact_dynamics.toss.solid import Solid, matrix_of, state_of
+from contact_dynamics.toss.solid import state_of
 from contact_dynamics.validation import check_whole
 
 if TYPE_CHECKING:
@@ -23,7 +23,6 @@ if TYPE_CHECKING:
     from contact_dynamics.toss.law_spread import LawSpread
     from contact_dynamics.toss.next_strikes import ManyStrikes
     from contact_dynamics.toss.solid import Numbers, Touch
-    from contact_dynamics.toss.uncertainty import Samples
 
 PART: Final = 100
 """Samples that a process takes at a time. They take about as long as a process does to start."""
@@ -78,8 +77,6 @@ def check_processes(processes: Any) -> int | Executor:
 
 
 def followed_to_rest(
-    solid: Solid,
-    samples: Samples,
     many: ManyStrikes,
     spread: LawSpread,
     *,
@@ -91,9 +88,7 @@ def followed_to_rest(
     """Return how samples go on after their strikes in arrays, by their numbers, if they are not over.
 
     Args:
-        solid: The body and the flats.
-        samples: What differs between samples.
-        many: The strikes up to where they go on.
+        many: The strikes up to where they go on, and the samples.
         spread: The law's own spread.
         law: What the coefficients of restitution mean.
         several_contacts_law: The law for several contacts that strike at one instant.
@@ -106,7 +101,7 @@ def followed_to_rest(
     tosses = []
     for i in going:
         settings = TossSettings(
-            _solid_of(solid, samples, i),
+            many.solids[i],
             law,
             several_contacts_law=several_contacts_law,
             horizon=horizon - began[i],
@@ -149,30 +144,4 @@ def _followed(one: _Going) -> Followed:
             (one.began + event.seconds, event.touching[0], event.y)
             for event in struck[: one.settings.flat_after]
         ],
-    )
-
-
-def _solid_of(solid: Solid, samples: Samples, i: int) -> Solid:
-    """Return the body and the flats of one sample."""
-    inertia = samples.inertias_B[i]
-    flats = tuple(
-        flat.with_frictions(mu, e, struck)
-        for flat, mu, e, struck in zip(
-            solid.flats,
-            samples.lasting_frictions[i].tolist(),
-            samples.restitutions[i].tolist(),
-            samples.frictions[i].tolist(),
-            strict=True,
-        )
-    )
-    return Solid(
-        mass=solid.mass,
-        inertia=matrix_of(inertia),
-        inverse=matrix_of(np.linalg.inv(inertia)),
-        corners=tuple((x, y, z) for x, y, z in samples.corners_B[i].tolist()),
-        indices=solid.indices,
-        rounding=solid.rounding,
-        gravity=solid.gravity,
-        flats=flats,
-        settling=solid.settling,
     )

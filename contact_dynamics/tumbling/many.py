@@ -20,12 +20,12 @@ from contact_dynamics.tolerances import (
     TRIANGLE_TOLERANCE,
     UNIT_LENGTH_TOLERANCE,
 )
-from contact_dynamics.tumbling.many_turns import Turns, tumbles_of_many, turns_of_many
+from contact_dynamics.tumbling.many_turns import tumbles_of_many, turns_of_many
 from contact_dynamics.tumbling.motion import Trajectory
 from contact_dynamics.validation import check_array, check_magnitude
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
 
 CHUNK: Final = 4096
@@ -67,46 +67,6 @@ def states_of_many(
     n = len(start.p)
     times = np.broadcast_to(_times(seconds, n), (n,))
     return start.after(times, *rotations_of_many(start.moments, start.w_P, times))
-
-
-class ManyMotions(NamedTuple):
-    """Free motions of n bodies, set up by `motions_of_many` to be asked for several times.
-
-    Attributes:
-        start: Their states at time 0.
-        turns: Their rotations.
-    """
-
-    start: _Start
-    turns: Turns
-
-    def of(self, which: NDArray[np.intp]) -> ManyMotions:
-        """Return some of the motions, by their numbers."""
-        return ManyMotions(_Start(*(rows[which] for rows in self.start)), self.turns.of(which))
-
-    def at(self, times: FloatArray) -> Trajectory:
-        """Return the state of each body at its time, (n,), s."""
-        with np.errstate(**_IN_STEADY_SPIN):
-            turned = self.turns.at(times)
-        return self.start.after(times, *turned)
-
-
-def motions_of_many(
-    inertias_B: ArrayLike,
-    *,
-    p_WB_W: ArrayLike,
-    q_WB: ArrayLike,
-    v_WB_W: ArrayLike,
-    w_WB_W: ArrayLike,
-    gravities_W: ArrayLike,
-) -> ManyMotions:
-    """Return the motions of n bodies, to be asked for several times: those of `states_of_many`.
-
-    Arguments and errors are those of `states_of_many`, with inertias (n, 3, 3) and gravities (n, 3).
-    """
-    start = _start(inertias_B, p_WB_W=p_WB_W, q_WB=q_WB, v_WB_W=v_WB_W, w_WB_W=w_WB_W, gravity_W=gravities_W)
-    with np.errstate(**_IN_STEADY_SPIN):
-        return ManyMotions(start, turns_of_many(start.moments, start.w_P))
 
 
 class _Start(NamedTuple):

@@ -6,8 +6,8 @@ times of the same rotations sets them up once.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields, replace
-from typing import TYPE_CHECKING, Any, TypeVar
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -20,8 +20,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from contact_dynamics.tumbling.theta import Bumps, Harmonics
-
-Constants = TypeVar("Constants", "Tumbles", "Harmonics", "Bumps")
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,21 +108,6 @@ class Turns:
     forms: tuple[Harmonics | None, Bumps | None]
     begin: FloatArray
 
-    def of(self, which: NDArray[np.intp]) -> Turns:
-        """Return some of the rotations, by their numbers."""
-        (first, second), kept = self.forms, (self.rows[0][which], self.rows[1][which])
-        places = [np.cumsum(rows)[which[some]] - 1 for rows, some in zip(self.rows, kept, strict=True)]
-        return Turns(
-            w_P=self.w_P[which],
-            tumbles=_some(self.tumbles, which),
-            rows=kept,
-            forms=(
-                None if first is None else _some(first, places[0]),
-                None if second is None else _some(second, places[1]),
-            ),
-            begin=self.begin[:, which],
-        )
-
     def at(self, times: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return quaternions, (n, 4), and angular velocities, (n, 3), rad/s, at times (n,), s."""
         r, w_P = self.tumbles, self.w_P
@@ -202,15 +185,3 @@ def _attitudes(values: FloatArray) -> FloatArray:
     return np.stack(
         (B_im + tangent * B_re, tangent * B_im - B_re, A_im + tangent * A_re, A_re - tangent * A_im)
     )
-
-
-def _some(constants: Constants, which: NDArray[np.intp]) -> Constants:
-    """Return constants of some rows. A number instead of an array is that of all rows."""
-    picked = {field.name: _picked(getattr(constants, field.name), which) for field in fields(constants)}
-    return replace(constants, **picked)
-
-
-def _picked(value: Any, which: NDArray[np.intp]) -> Any:
-    if isinstance(value, tuple):
-        return tuple(_picked(each, which) for each in value)
-    return value[which] if isinstance(value, np.ndarray) else value

@@ -11,7 +11,6 @@ from scipy.spatial.transform import Rotation
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.tumbling import FreeMotion, free_motion, rotations_of_many, states_of_many
-from contact_dynamics.tumbling.many import motions_of_many
 from contact_dynamics.tumbling.poinsot_construction import sensitivity
 from oracles.tumbling_draws import draw
 
@@ -127,28 +126,6 @@ def test_each_body_may_have_a_gravity_of_its_own() -> None:
         np.testing.assert_array_equal(together.v_WB_W[i], alone.v_WB_W[0])
     with pytest.raises(InvalidFieldError, match="gravity_W"):
         states_of_many(**bodies, seconds=0.3, gravity_W=pulls[:4])
-
-
-@pytest.mark.parametrize("spin", ["any", "near the middle axis"])
-def test_motions_that_are_set_up_once_are_the_same_bit_for_bit(spin: str) -> None:
-    """All of them, and then some: tumbles of both forms, symmetric bodies, steady spins, and rest."""
-    bodies = many(60, 11)
-    I_B, pulls = bodies.pop("I_B"), np.random.default_rng(12).normal(0.0, 10.0, (60, 3))
-    if spin != "any":
-        I_B[::2] = np.diag([1.0, 1.4, 1.9])
-        bodies["q_WB"][::2] = UPRIGHT
-        bodies["w_WB_W"][::2] = [1e-4, 2.0, 3e-5]
-    bodies["w_WB_W"][::7] = 0.0
-    motions = motions_of_many(I_B, **bodies, gravities_W=pulls)
-    some = np.array([2, 3, 5, 7, 14, 20, 41, 58])
-    for seconds in np.random.default_rng(13).uniform(-1.0, 1.0, (2, 60)):
-        expected = states_of_many(I_B, **bodies, seconds=seconds, gravity_W=pulls)
-        found, few = motions.at(seconds), motions.of(some).at(seconds[some])
-        for name in ("seconds", "p_WB_W", "q_WB", "v_WB_W", "w_WB_W"):
-            np.testing.assert_array_equal(getattr(found, name), getattr(expected, name))
-            np.testing.assert_array_equal(getattr(few, name), getattr(expected, name)[some])
-    nobody = motions.of(some[:0]).at(np.zeros(0))
-    assert nobody.q_WB.shape == (0, 4)
 
 
 def test_one_body_in_many_states() -> None:
