@@ -15,7 +15,7 @@ keeps what happens, and `result` has what is returned.
 - Where strikes and modes lead to one another at one instant, a `short_step` passes over that.
 
 What is not known exactly (`uncertainty`) is sampled: `sampled` is the call, and `distribution` has what it
-returns. `next_strikes` has the next strikes of all samples at once, and `law_spread` what the law of impact
+returns. `next_strikes` has the next strikes of samples, and `law_spread` what the law of impact
 leaves open. `to_rest` has samples on their way to rest, each as a toss of its own, which several processes
 can share. `laid_flat` ends their rattling on a face.
 
@@ -29,8 +29,14 @@ import_core(
     "contact_dynamics.toss.solid",
     "contact_dynamics.toss.forces",
     "contact_dynamics.toss.cone_forces",
+    "contact_dynamics.toss.mode_choice",
     "contact_dynamics.toss.phase",
     "contact_dynamics.toss.flight",
+    "contact_dynamics.toss.impacts",
+    "contact_dynamics.toss.strike",
+    "contact_dynamics.toss.laid_flat",
+    "contact_dynamics.toss.history",
+    "contact_dynamics.toss.simulation",
 )
 
 from contact_dynamics.toss.distribution import TossDistribution  # noqa: E402  after the core

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import numpy as np
 
 from contact_dynamics.constants import ns_after
+from contact_dynamics.rigid_body.body import states_of_rows
 from contact_dynamics.tolerances import DISTANCE_TOLERANCE
 from contact_dynamics.toss import vectors as vec
 from contact_dynamics.toss.result import (
@@ -22,8 +23,8 @@ from contact_dynamics.toss.result import (
 )
 from contact_dynamics.toss.solid import (
     energy_of,
-    heights_and_rates,
     kinetic_energy_of,
+    low_corners,
     numbers_of,
     points_of,
     pose_of,
@@ -37,6 +38,7 @@ if TYPE_CHECKING:
     from contact_dynamics.numerics.vectors import Vector3
     from contact_dynamics.rigid_body.body import BodyState
     from contact_dynamics.toss.solid import Numbers, Solid, Touch
+    from contact_dynamics.validation import FloatArray
 
 
 NEAR_CORNERS: Final = 0.1
@@ -94,7 +96,7 @@ class History:
             restitution_law=law,
             end=end,
             seconds=self.now,
-            state=self.present(),
+            state=state_of(self.y, ns_after(self._began_ns, self.now)),
             events=tuple(self._toss_events()),
             resting_corners=tuple(sorted({self.solid.indices[corner] for _, corner in self.resting})),
             resting_normal_B=np.array(self.resting_normal_B()),
@@ -114,11 +116,7 @@ class History:
 
     def touching_now(self, leaving: float) -> list[Touch]:
         """Return the contacts that touch and do not leave faster than ``leaving``, m/s."""
-        listed = [
-            (height, touch)
-            for height, rate, touch in heights_and_rates(self.solid, self.y)
-            if height <= DISTANCE_TOLERANCE and rate <= leaving
-        ]
+        listed = low_corners(self.solid, self.y, DISTANCE_TOLERANCE, leaving)
         return [touch for _, touch in listed] if len(listed) < 2 else self._touching_together(listed)
 
     def _touching_together(self, listed: list[tuple[float, Touch]]) -> list[Touch]:
@@ -154,33 +152,33 @@ class History:
         """Tell of an event at contacts that touch now."""
         self.events.append(Noted(self.now, kind, touching, impulse, outcome, mode, self.y))
 
-    def present(self) -> BodyState:
-        """Return the state now, with its stamp."""
-        return self._state(self.now, self.y)
-
-    def _state(self, seconds: float, y: Numbers) -> BodyState:
-        return state_of(y, ns_after(self._began_ns, seconds))
-
     def _toss_events(self) -> Iterator[TossEvent]:
-        """Return the events for users. Those that leave one state share it."""
-        last: Noted | None = None
-        state = None
-        for noted in self.events:
-            if state is None or last is None or noted.y is not last.y or noted.seconds != last.seconds:
-                state = self._state(noted.seconds, noted.y)
-            last = noted
-            yield self._toss_event(noted, state)
-
-    def _toss_event(self, noted: Noted, state: BodyState) -> TossEvent:
-        touching, y = noted.touching, noted.y
-        return TossEvent(
-            seconds=noted.seconds,
-            kind=noted.kind,
-            surfaces=tuple(self.solid.flats[surface].name for surface, _ in touching),
-            corners=tuple(self.solid.indices[corner] for _, corner in touching),
-            p_WC_W=points_of(self.solid, y, touching),
-            impulse_W=np.array(noted.impulse),
-            outcome=noted.outcome,
-            mode=noted.mode,
-            state=state,
+        """Return the events for users. Their arrays are made together, as NumPy's calls cost most of it."""
+        solid, events = self.solid, self.events
+        states = states_of_rows(
+            [noted.y for noted in events], [ns_after(self._began_ns, noted.seconds) for noted in events]
         )
+        points = _rows([point for noted in events for point in points_of(solid, noted.y, noted.touching)])
+        impulses = _rows([noted.impulse for noted in events])
+        begin = 0
+        for noted, state, impulse in zip(events, states, impulses, strict=True):
+            end = begin + len(noted.touching)
+            yield TossEvent(
+                seconds=noted.seconds,
+                kind=noted.kind,
+                surfaces=tuple([solid.flats[surface].name for surface, _ in noted.touching]),
+                corners=tuple([solid.indices[corner] for _, corner in noted.touching]),
+                p_WC_W=points[begin:end],
+                impulse_W=impulse,
+                outcome=noted.outcome,
+                mode=noted.mode,
+                state=state,
+            )
+            begin = end
+
+
+def _rows(vectors: list[Vector3]) -> FloatArray:
+    """Return vectors as rows, (n, 3), that nobody can change, since others may see the same array."""
+    rows = np.array(vectors).reshape(-1, 3)
+    rows.flags.writeable = False
+    return rows

@@ -15,11 +15,11 @@ import math
 from itertools import combinations
 from typing import TYPE_CHECKING, Final, NamedTuple, TypeAlias
 
-from contact_dynamics.numerics.vectors import cross, dot, norm, tangents
+from contact_dynamics.numerics.vectors import tangents
 from contact_dynamics.rotations.one import normalised, product
 from contact_dynamics.tolerances import FACE_ROUNDING
 from contact_dynamics.toss import vectors as vec
-from contact_dynamics.toss.solid import heights_and_rates, kinetic_energy_of, pose_of
+from contact_dynamics.toss.solid import kinetic_energy_of, low_corners, pose_of
 
 if TYPE_CHECKING:
     from contact_dynamics.numerics.vectors import Vector3
@@ -64,18 +64,18 @@ def laid_flat(solid: Solid, y: Numbers, faces: Faces) -> Numbers | None:
     those of this body that are known, and gets others that are looked for.
     """
     low = NEARLY_FLUSH * solid.reach
-    near = [touch for height, _, touch in heights_and_rates(solid, y) if height < low]
-    if not 3 <= len(near) <= MAX_CORNERS or any(surface != near[0][0] for surface, _ in near):
+    near = [touch for _, touch in low_corners(solid, y, low, math.inf)]
+    if not 3 <= len(near) <= MAX_CORNERS or len({surface for surface, _ in near}) > 1:
         return None
     flat = solid.flats[near[0][0]]
-    n, pressing = flat.normal, -dot(solid.gravity, flat.normal)
+    n, pressing = flat.normal, -vec.dot(solid.gravity, flat.normal)
     if pressing <= 0.0:
         return None
     rows = pose_of(solid, y).rows
-    v_n, w_n = dot(n, (y[7], y[8], y[9])), dot(n, (y[10], y[11], y[12]))
+    v_n, w_n = vec.dot(n, (y[7], y[8], y[9])), vec.dot(n, (y[10], y[11], y[12]))
     along = (y[7] - v_n * n[0], y[8] - v_n * n[1], y[9] - v_n * n[2])
     turning = (w_n * n[0], w_n * n[1], w_n * n[2])
-    speed = norm(along)
+    speed = vec.norm(along)
     share = max(1.0 + flat.friction * v_n / speed, 0.0) if speed > 0.0 else 0.0
     # Friction at the ground moves the place where the weight is borne ahead of the mass centre.
     rests = (share * speed) ** 2 <= 2.0 * pressing * flat.friction * solid.settling
@@ -85,18 +85,23 @@ def laid_flat(solid: Solid, y: Numbers, faces: Faces) -> Numbers | None:
     if face is None:
         return None
     stands = flat.level + face.high + solid.rounding
-    rattles = kinetic_energy_of(solid, y) - kinetic_energy_of(solid, [*y[:7], *along, *turning])
-    rise = dot(n, (y[0], y[1], y[2])) - stands
+    flush = [*y[:7], along[0], along[1], along[2], turning[0], turning[1], turning[2]]
+    rattles = kinetic_energy_of(solid, y) - kinetic_energy_of(solid, flush)
+    rise = vec.dot(n, (y[0], y[1], y[2])) - stands
     if max(rise, 0.0) + rattles / (solid.mass * pressing) > RATTLING * face.tipping:
         return None
     up = vec.times(rows, face.up)
-    x, yy, z = cross(up, n)
-    q = product(normalised((x, yy, z, 1.0 + dot(up, n))), normalised(y[3:7]))
+    x, yy, z = vec.cross(up, n)
+    q = product(normalised((x, yy, z, 1.0 + vec.dot(up, n))), normalised(y[3:7]))
     return [
-        *(y[k] - rise * n[k] for k in range(3)),
+        y[0] - rise * n[0],
+        y[1] - rise * n[1],
+        y[2] - rise * n[2],
         *q,
-        *(share * each for each in along),
-        *turning,
+        share * along[0],
+        share * along[1],
+        share * along[2],
+        *flush[10:],
     ]
 
 
@@ -109,48 +114,57 @@ def _face_below(solid: Solid, n_B: Vector3, lean: Vector3, near: list[int], face
         if three not in faces:
             faces[three] = _face_of(solid, three)
         face = faces[three]
-        if face is None or dot(face.up, n_B) < 0.0:
+        if face is None or vec.dot(face.up, n_B) < 0.0:
             continue
-        x, y, z = face.high * lean[0], face.high * lean[1], face.high * lean[2]
-        triangle = [(p - x, q - y, r - z) for p, q, r in (solid.corners[corner] for corner in three)]
-        if _stands(face.up, triangle):
+        high = face.high
+        shift = (high * lean[0], high * lean[1], high * lean[2])
+        i, j, k = three
+        if _stands(
+            face.up,
+            _less(solid.corner(i), shift),
+            _less(solid.corner(j), shift),
+            _less(solid.corner(k), shift),
+        ):
             return face
     return None
+
+
+def _less(a: Vector3, b: Vector3) -> Vector3:
+    return (a[0] - b[0], a[1] - b[1], a[2] - b[2])
 
 
 def _face_of(solid: Solid, three: tuple[int, ...]) -> _Face | None:
     """Return the face of the body on which three corners are, or None if they are not on one."""
     p, q, r = (solid.corners[corner] for corner in three)
-    first = (q[0] - p[0], q[1] - p[1], q[2] - p[2])
-    second = (r[0] - p[0], r[1] - p[1], r[2] - p[2])
-    up = cross(first, second)
-    size = math.copysign(norm(up), -dot(up, p))
+    up = vec.cross(_less(q, p), _less(r, p))
+    size = math.copysign(vec.norm(up), -vec.dot(up, p))
     if size == 0.0:
         return None
     up = (up[0] / size, up[1] / size, up[2] / size)
-    high = -dot(up, p)
-    if high <= 0.0 or any(dot(up, corner) < -high - FACE_ROUNDING * solid.reach for corner in solid.corners):
+    high = -vec.dot(up, p)
+    if high <= 0.0 or any(
+        vec.dot(up, corner) < -high - FACE_ROUNDING * solid.reach for corner in solid.corners
+    ):
         return None
-    face = [corner for corner in solid.corners if dot(up, corner) < SAME_FACE * solid.reach - high]
+    face = [corner for corner in solid.corners if vec.dot(up, corner) < SAME_FACE * solid.reach - high]
     return _Face(up, high, _tipping(up, high, face))
 
 
-def _stands(up: Vector3, triangle: list[Vector3]) -> bool:
+def _stands(up: Vector3, p: Vector3, q: Vector3, r: Vector3) -> bool:
     """Return whether the origin is above a triangle."""
-    p, q, r = triangle
-    sides = [dot(up, cross(a, b)) for a, b in ((p, q), (q, r), (r, p))]
-    least = FACE_ROUNDING * max(map(abs, sides))
-    return min(sides) >= -least or max(sides) <= least
+    a, b, c = vec.dot(up, vec.cross(p, q)), vec.dot(up, vec.cross(q, r)), vec.dot(up, vec.cross(r, p))
+    least = FACE_ROUNDING * max(abs(a), abs(b), abs(c))
+    return min(a, b, c) >= -least or max(a, b, c) <= least
 
 
 def _tipping(up: Vector3, high: float, face: list[Vector3]) -> float:
     """Return by how much the mass centre rises at least, m, when the body tips over an edge of a face."""
     one, other = tangents(up)
-    turn = sorted(face, key=lambda corner: math.atan2(dot(corner, other), dot(corner, one)))
+    turn = sorted(face, key=lambda corner: math.atan2(vec.dot(corner, other), vec.dot(corner, one)))
     least = math.inf
     for a, b in zip(turn, [*turn[1:], turn[0]], strict=True):
-        side = norm((b[0] - a[0], b[1] - a[1], b[2] - a[2]))
+        side = vec.norm(_less(b, a))
         # The distance of the edge from below the mass centre, seen along the normal.
         if side > 0.0:
-            least = min(least, abs(dot(up, cross(a, b))) / side)
+            least = min(least, abs(vec.dot(up, vec.cross(a, b))) / side)
     return math.sqrt(high * high + least * least) - high

@@ -33,6 +33,7 @@ from contact_dynamics.toss.phase import PhaseEnd, phase
 from contact_dynamics.toss.result import FlightPiece, Toss, TossEnd, TossEventKind, UndecidedReason
 from contact_dynamics.toss.short_step import short_step
 from contact_dynamics.toss.solid import (
+    approaches,
     contacts_of,
     energy_of,
     kinetic_energy_of,
@@ -40,7 +41,7 @@ from contact_dynamics.toss.solid import (
     properties_of,
     state_of,
 )
-from contact_dynamics.toss.strike import approaches, low_rebounds_ended, strike
+from contact_dynamics.toss.strike import low_rebounds_ended, strike
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -193,8 +194,9 @@ class Simulation(History):
 
     def _forget_instant(self) -> None:
         """Drop pieces of no length, so that a time belongs to one piece."""
-        if len(self.pieces) > 1 and self.pieces[-2].start == self.pieces[-1].start:
-            del self.pieces[-2]
+        last = len(self.pieces) - 1
+        if last > 0 and self.pieces[last - 1].start == self.pieces[last].start:
+            del self.pieces[last - 1]
 
     # Strikes
 

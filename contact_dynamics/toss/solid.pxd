@@ -75,3 +75,7 @@ cdef class Above:
 cpdef (double, double, double, double, double, double, double, double, double) rows_of(double x, double yy, double z, double w) noexcept nogil
 cpdef Pose pose_of(Solid solid, list y)
 cpdef list heights_and_rates(Solid solid, list y)
+@cython.locals(flat=cython.int, corner=cython.int)
+cpdef list low_corners(Solid solid, list y, double high, double leaving)
+@cython.locals(flat=cython.int, corner=cython.int, touched=Flat, pose=Pose)
+cpdef list approaches(Solid solid, list y, list touching)

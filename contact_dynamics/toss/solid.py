@@ -396,6 +396,31 @@ def heights_and_rates(solid: Solid, y: Numbers) -> list[tuple[float, float, Touc
     return [(above.heights[k], above.rates[k], touches[k]) for k in range(len(touches))]
 
 
+def low_corners(solid: Solid, y: Numbers, high: float, leaving: float) -> list[tuple[float, Touch]]:
+    """Return corners that are at most so high above flats, m, and do not leave faster, m/s, with heights."""
+    above = Above(solid)
+    for k in range(13):
+        above.y[k] = y[k]
+    above.take(above.y)
+    n = solid.count
+    return [
+        (above.heights[n * flat + corner], (flat, corner))
+        for flat in range(len(solid.flats))
+        for corner in range(n)
+        if above.heights[n * flat + corner] <= high and above.rates[n * flat + corner] <= leaving
+    ]
+
+
+def approaches(solid: Solid, y: Numbers, touching: list[Touch]) -> list[float]:
+    """Return the normal velocities, m/s, of contacts, negative if they approach."""
+    pose = pose_of(solid, y)
+    rates = []
+    for flat, corner in touching:
+        touched = solid.flats[flat]
+        rates.append(vec.dot(pose.velocity(pose.arm(flat, corner)), touched.normal))
+    return rates
+
+
 class Above:
     """The heights of all corners above all flats, flat after flat, and their rates.
 
@@ -460,19 +485,18 @@ def state_of(y: Numbers, stamp_ns: int = 0) -> BodyState:
     return BodyState(p_WB_W=numbers[:3], q_WB=q, v_WB_W=numbers[7:10], w_WB_W=numbers[10:], stamp_ns=stamp_ns)
 
 
-def points_of(solid: Solid, y: Numbers, touching: list[Touch]) -> FloatArray:
-    """Return where contacts are, (n, 3), m, world."""
+def points_of(solid: Solid, y: Numbers, touching: list[Touch]) -> list[Vector3]:
+    """Return where contacts are, m, world."""
     pose = pose_of(solid, y)
-    arms = [pose.arm(flat, corner) for flat, corner in touching]
-    points: FloatArray = np.array(arms) + np.array(pose.position)
-    return points
+    p_x, p_y, p_z = pose.position
+    return [(p_x + x, p_y + y, p_z + z) for x, y, z in [pose.arm(*touch) for touch in touching]]
 
 
 def contacts_of(solid: Solid, y: Numbers, touching: list[Touch]) -> ContactSet:
     """Return touching contacts as questions take them."""
     flats = [solid.flats[touch[0]] for touch in touching]
     return ContactSet(
-        p_WC_W=points_of(solid, y, touching),
+        p_WC_W=np.array(points_of(solid, y, touching)),
         normals_W=np.array([flat.normal for flat in flats]),
         frictions=np.array([flat.friction for flat in flats]),
         restitutions=np.array([flat.restitution for flat in flats]),

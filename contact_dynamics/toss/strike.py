@@ -29,7 +29,7 @@ from contact_dynamics.toss.impacts import (
     tied_strike,
 )
 from contact_dynamics.toss.mode_choice import choose_mode
-from contact_dynamics.toss.solid import Held, pose_of
+from contact_dynamics.toss.solid import Held, approaches, pose_of
 
 if TYPE_CHECKING:
     from contact_dynamics.impact.law import RestitutionLaw
@@ -62,14 +62,6 @@ class Strikes(NamedTuple):
     staying: list[Touch]
     settled: bool
     choice: Choice | None = None
-
-
-def approaches(solid: Solid, y: Numbers, touching: list[Touch]) -> list[float]:
-    """Return the normal velocities, m/s, of contacts, negative if they approach."""
-    pose = pose_of(solid, y)
-    return [
-        vec.dot(pose.velocity(pose.arm(flat, corner)), solid.flats[flat].normal) for flat, corner in touching
-    ]
 
 
 def strike(

@@ -13,7 +13,7 @@ import numpy as np
 from contact_dynamics import Body, BodyState, Surface, World, inertia
 from contact_dynamics.shapes import box
 from contact_dynamics.shapes.convex import ConvexShape
-from contact_dynamics.toss import Toss, cone_forces, flight, forces, phase, solid, toss, vectors
+from contact_dynamics.toss import Toss, TossUncertainty, sampled_toss, solid, toss
 
 SIZE = (0.15, 0.1, 0.06)
 FLOOR = Surface(name="floor", p_WS_W=[0, 0, 0], normal_W=[0, 0, 1], friction=0.3, restitution=0.3)
@@ -47,11 +47,22 @@ def drawn() -> list[object]:
             )
             body = Body(name="box", mass_properties=mass, shape=shape)
             found += bits(toss(body, state, World(surfaces=surfaces, gravity_W=[0, 0, -9.81])))
-    return found
+    return [*found, sampled_bits(body, state)]
+
+
+def sampled_bits(body: Body, state: BodyState) -> object:
+    """Return the bits of samples that are followed to rest, and laid flat on the way."""
+    world, covariance = World(surfaces=(FLOOR,), gravity_W=[0, 0, -9.81]), np.diag([1e-4] * 12)
+    spread = TossUncertainty(velocity=0.05, spin=0.5)
+    found = sampled_toss(
+        body, state, world, covariance=covariance, uncertainty=spread, count=20, to_rest=True
+    )
+    return found.to_dict()
 
 
 def test_tosses_run_with_the_compiled_core() -> None:
-    for module in (vectors, solid, forces, cone_forces, phase, flight):
+    for source in Path(solid.__file__ or "").parent.glob("*.pxd"):
+        module = sys.modules[f"contact_dynamics.toss.{source.stem}"]
         assert (module.__file__ or "").endswith(EXTENSION_SUFFIXES[0])
 
 

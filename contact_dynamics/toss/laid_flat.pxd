@@ -1,0 +1,22 @@
+# The types with which laid_flat.py compiles.
+
+cimport cython
+cimport libc.math as math
+
+from contact_dynamics.toss cimport vectors as vec
+from contact_dynamics.toss.solid cimport Flat, Pose, Solid
+
+cdef extern from *:
+    # A checksum of laid_flat.py and this file, which setup.py defines (see numerics/compiled.py).
+    cpdef enum:
+        SOURCE_CRC
+
+cdef double FACE_ROUNDING
+
+
+@cython.locals(flat=Flat, pose=Pose, low=cython.double, rise=cython.double)
+cpdef laid_flat(Solid solid, list y, dict faces)
+@cython.locals(i=cython.int, j=cython.int, k=cython.int, high=cython.double)
+cdef _face_below(Solid solid, (double, double, double) n_B, (double, double, double) lean, list near, dict faces)
+cdef (double, double, double) _less((double, double, double) a, (double, double, double) b) noexcept
+cdef bint _stands((double, double, double) up, (double, double, double) p, (double, double, double) q, (double, double, double) r) noexcept
