@@ -9,6 +9,8 @@ from __future__ import annotations
 
 import re
 import runpy
+import subprocess
+import sys
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
@@ -56,7 +58,7 @@ def core() -> list[Extension]:
             define_macros=[("SOURCE_CRC", str(compiled["checksum"](HERE / source)))],
             # A fused multiply-add would round once where Python rounds twice. GCC 12 makes some of
             # pairs of operations all the same, unless it leaves these alone.
-            extra_compile_args=["-O2", "-ffp-contract=off", "-fno-tree-slp-vectorize"],
+            extra_compile_args=["-O2", "-g0", "-ffp-contract=off", "-fno-tree-slp-vectorize"],
             optional=True,
         )
         for source in sources
@@ -66,10 +68,13 @@ def core() -> list[Extension]:
 class BuildCore(build_ext):
     """Translates modules to C when they are built, and not each time that this file is read."""
 
+    def finalize_options(self) -> None:
+        """Build as many modules at once as there are processors, unless `--parallel` says how many."""
+        super().finalize_options()
+        self.parallel = self.parallel or True
+
     def build_extension(self, ext: Any) -> None:
         """Build one module, always anew: the time of a file does not tell what it was built from."""
-        from Cython.Build import cythonize
-
         directives = {
             "annotation_typing": False,  # a float in Python's annotations may be an integer
             "boundscheck": False,
@@ -79,15 +84,14 @@ class BuildCore(build_ext):
             "initializedcheck": False,
             "wraparound": False,
         }
-        (translated,) = cythonize(
-            [ext],
-            build_dir=self.build_temp,
-            compiler_directives=directives,
-            force=True,
-            language_level=3,
-            quiet=True,
-        )
-        ext.sources = translated.sources
+        (source,) = ext.sources
+        translated = Path(self.build_temp, source).with_suffix(".c")
+        translated.parent.mkdir(parents=True, exist_ok=True)
+        # A process of its own, since threads of one would translate one after the other.
+        command = [sys.executable, "-m", "cython", "-3", "--module-name", ext.name, "-o", str(translated)]
+        options = [option for name, value in directives.items() for option in ("-X", f"{name}={value}")]
+        subprocess.run([*command, *options, source], check=True)  # noqa: S603  our own
+        ext.sources = [str(translated)]
         self.force = True
         super().build_extension(ext)
 

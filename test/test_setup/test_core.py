@@ -6,6 +6,7 @@ once where Python rounds twice, must stay off even where the compiler is told to
 
 from __future__ import annotations
 
+import ast
 import importlib
 import os
 import re
@@ -27,9 +28,11 @@ from contact_dynamics.numerics.compiled import import_core
 from impact.spatial.test_to_rounding import SLENDER, beside_an_invariant_direction, drawn
 
 ROOT = Path(__file__).parents[2]
-IMPACT = ROOT / "contact_dynamics" / "impact"
+NAME = "contact_dynamics"
+IMPACT = ROOT / NAME / "impact"
 SOURCE = IMPACT / "spatial" / "path.py"
 COUNT = 300
+SOURCES = sorted(types.with_suffix(".py") for types in (ROOT / NAME).rglob("*.pxd"))
 SUFFIX = EXTENSION_SUFFIXES[0]
 
 
@@ -126,8 +129,8 @@ def test_a_build_for_a_processor_that_fuses_gives_the_same_bits(tmp_path: Path) 
     shutil.copytree(IMPACT, sources / IMPACT.relative_to(ROOT), ignore=shutil.ignore_patterns(f"*{SUFFIX}"))
     for name in ("contact_dynamics/numerics", "requirements"):
         shutil.copytree(ROOT / name, sources / name)
-    for name in ("README.md", "package.xml", "setup.py"):
-        shutil.copy(ROOT / name, sources)
+    for name in ("README.md", "package.xml", "setup.py", f"{NAME}/__init__.py"):
+        shutil.copy(ROOT / name, sources / name)
     command = [sys.executable, "setup.py", "-q", "build_ext", "-b", tmp_path / "lib", "-t", tmp_path / "temp"]
     subprocess.run(
         command, cwd=sources, env={**os.environ, "CFLAGS": "-O3 -mfma"}, capture_output=True, check=True
@@ -146,6 +149,15 @@ def test_lists_in_python_are_as_long_as_arrays_in_c() -> None:
     assert lengths == {int(length) for length in re.findall(r"\[0\.0\] \* (\d+)", SOURCE.read_text("utf-8"))}
     plain = loaded(SOURCE)
     assert lengths == {plain.ORDER + 1, plain.ORDER + 2, plain.TERMS + 1, plain.SLOW_TERMS + 1}
+
+
+@pytest.mark.parametrize("source", SOURCES, ids=lambda each: each.stem)
+def test_no_index_is_counted_from_the_end(source: Path) -> None:
+    """In compiled code such an index reads what is before the first element, or fails, as Pythons differ."""
+    tree = ast.parse(source.read_text(encoding="utf-8"))
+    indices = [each for each in ast.walk(tree) if isinstance(each, ast.Subscript)]
+    signs = [sign for each in indices for sign in ast.walk(each.slice) if isinstance(sign, ast.UnaryOp)]
+    assert [ast.unparse(sign) for sign in signs if isinstance(sign.op, ast.USub)] == []
 
 
 @pytest.fixture
