@@ -46,9 +46,9 @@ _NEEDED: Final = (
 _NICER: Final = 5
 _LOOKS_EVERY_S: Final = 0.05  # whether a worker is ready, and whether there is a question for it
 _TRIES_EVERY_S: Final = 1.0  # to start a worker that ended before it was ready
-_BEGUN_WITHIN_S: Final = 30.0
-"""Time for a worker to begin. Then the process that starts the workers counts as hung, and is replaced. Each
-further try has twice the time of the one before, since the machine may only be busy."""
+_HUNG_AFTER_S: Final = 10.0
+"""Time in which the process that starts the workers uses no processor although a worker waits for it. Then it
+counts as hung, and is replaced. One that imports slowly on a busy machine is left alone."""
 
 _SPARE_S: Final = 1.0  # that a worker has to send its answer before it ends by itself
 _MEGABYTE: Final = 1_000_000
@@ -206,12 +206,27 @@ def _start_fork_server() -> None:
         forkserver.ensure_running()
 
 
-def _kill_fork_server() -> None:
-    server = forkserver._forkserver  # noqa: SLF001  there is no public way to it
-    pid: int | None = getattr(server, "_forkserver_pid", None)
-    if pid is not None:
-        with contextlib.suppress(OSError):
-            os.kill(pid, signal.SIGKILL)
+def _kill_fork_server_if_it_hangs(done: threading.Event) -> None:
+    used = None
+    while not done.wait(_HUNG_AFTER_S):
+        server = forkserver._forkserver  # noqa: SLF001  there is no public way to it
+        pid: int | None = getattr(server, "_forkserver_pid", None)
+        if pid is None:
+            continue
+        before, used = used, _processor_time(pid)
+        if used == before:
+            with contextlib.suppress(OSError):
+                os.kill(pid, signal.SIGKILL)
+            return
+
+
+def _processor_time(pid: int) -> int:
+    """Return the processor time that a process has used, in ticks of the kernel, or 0 if it has ended."""
+    try:
+        fields = Path(f"/proc/{pid}/stat").read_text(encoding="utf-8").rpartition(")")[2].split()
+    except OSError:
+        return 0
+    return int(fields[11]) + int(fields[12])
 
 
 class _Worker:
@@ -225,7 +240,6 @@ class _Worker:
     def __init__(self, memory: int) -> None:
         self.is_ready = False
         self._memory = memory  # MB
-        self._patience = _BEGUN_WITHIN_S
         self._context = multiprocessing.get_context("forkserver")
         self._context.set_forkserver_preload(list(_NEEDED))
         self._process: BaseProcess | None = None
@@ -237,19 +251,16 @@ class _Worker:
         priority = min(os.getpriority(os.PRIO_PROCESS, os.getpid()) + _NICER, 19)
         arguments = (self._its_end, self._memory * _MEGABYTE, priority)
         process = self._context.Process(target=_answer_questions, args=arguments, daemon=True)
-        watch = threading.Timer(self._patience, _kill_fork_server)
-        watch.daemon = True
-        watch.start()
-        self._patience *= 2.0
+        done = threading.Event()
+        threading.Thread(target=_kill_fork_server_if_it_hangs, args=(done,), daemon=True).start()
         try:
             process.start()
         except (EOFError, OSError):  # the machine has no room for it, or what starts it was killed
             self._process, self.is_killed = None, True
             return
         finally:
-            watch.cancel()
+            done.set()
             self._its_end.close()
-        self._patience = _BEGUN_WITHIN_S
         self._process = process
         if self._is_closed:
             process.kill()

@@ -84,7 +84,7 @@ EVERY_SERVICE = [
     (
         put("state.pose.position", unchecked(2)),
         "INVALID_FIELD",
-        "state.pose.position.z must be a number of normal size, got 5e-324 (rclpy sends this for an int",
+        "state.pose.position.z must be a number of normal size, got ... (rclpy sends this for an int",
     ),
     (
         put("state.pose.position", unchecked(np.float32(0.5))),

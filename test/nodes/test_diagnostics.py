@@ -72,7 +72,7 @@ def test_a_body_of_which_nothing_came(monitor: Monitor) -> None:
         ({"frame": "map"}, "got 'map'"),
         ({"child": "cat"}, "got 'cat'"),
         ({"x": math.nan}, "nan"),
-        ({"x": 2}, "pose.pose.position.x must be a number of normal size, got 5e-324 (rclpy"),
+        ({"x": 2}, "(rclpy sends this for an int"),
         ({"ahead_ns": HOUR_NS}, "ahead of the clock"),
         (
             {"is_stamped": False},

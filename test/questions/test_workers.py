@@ -170,7 +170,7 @@ def test_a_worker_that_ends_before_it_is_ready_is_started_again_without_a_questi
 
 def test_what_starts_the_workers_is_replaced_if_it_hangs(monkeypatch: pytest.MonkeyPatch) -> None:
     """It is stopped here, and then has to start a worker in the place of one that was killed."""
-    monkeypatch.setattr("contact_dynamics.questions.workers._BEGUN_WITHIN_S", 1.0)
+    monkeypatch.setattr("contact_dynamics.questions.workers._HUNG_AFTER_S", 1.0)
     others = active_children()
     workers = Workers(WorkerLimits(count=1, deadline=PATIENCE_S, memory=300, max_waiting=1))
     try:
