@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from math import dist
 from typing import TYPE_CHECKING, Final, NamedTuple
 
@@ -11,6 +12,7 @@ from contact_dynamics.constants import ns_after
 from contact_dynamics.rigid_body.body import states_of_rows
 from contact_dynamics.tolerances import DISTANCE_TOLERANCE
 from contact_dynamics.toss import vectors as vec
+from contact_dynamics.toss.forces import out_of_flats
 from contact_dynamics.toss.result import (
     Piece,
     Toss,
@@ -46,6 +48,10 @@ NEAR_CORNERS: Final = 0.1
 more closely."""
 
 
+_MOST_LIFTS: Final = 20
+"""Lifts of a body that begins inside flats. Each leaves an error of second order, so two or three do."""
+
+
 class Noted(NamedTuple):
     """An event, as `TossEvent` has it, with the contacts and the 13 numbers of the state after it."""
 
@@ -74,7 +80,7 @@ class History:
 
     def __init__(self, solid: Solid, state: BodyState, ways: tuple[int, ...]) -> None:
         self.solid = solid
-        self.now, self.y = 0.0, numbers_of(state)
+        self.now, self.y = 0.0, _just_above(solid, numbers_of(state))
         self.pieces: list[Piece] = []
         self.events: list[Noted] = []
         self.lost_in_strikes = self.lost_in_contact = 0.0
@@ -175,6 +181,18 @@ class History:
                 state=state,
             )
             begin = end
+
+
+def _just_above(solid: Solid, y: Numbers) -> Numbers:
+    """Return the first state, taken out of flats that it is deeper in than a contact may be.
+
+    So contacts are those of the pose that the toss goes on from: large turns move corners beside the others.
+    """
+    for _ in range(_MOST_LIFTS):
+        if not low_corners(solid, y, -DISTANCE_TOLERANCE, math.inf):
+            break
+        y = out_of_flats(solid, y)
+    return y
 
 
 def _rows(vectors: list[Vector3]) -> FloatArray:
