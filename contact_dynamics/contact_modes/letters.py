@@ -51,7 +51,13 @@ def words_of(mode: str) -> tuple[str, ...]:
 
 
 def mode_in_words(mode: str) -> str:
-    """Return words for a mode with forces, one letter for each contact: what the body does, or each kind."""
+    """Return words for a mode with forces, one letter for each contact: what the body does, or each kind.
+
+    Raises:
+        InvalidFieldError: a letter is none of a contact mode.
+    """
+    if set(mode) - set(LETTERS):
+        raise InvalidFieldError("mode", mode, f"letters of {', '.join(LETTERS)}")
     kinds = {letter: mode.count(letter) for letter in LETTERS if letter in mode}
     if len(kinds) <= 1:
         return next((f"it {_ALTOGETHER.get(kind, LETTERS[kind][0])}" for kind in kinds), "nothing touches it")

@@ -143,7 +143,11 @@ def _body(name: str, mass: float, inertia: list[float], offset: list[float], sha
     if inertia == [0.0]:
         uniform = shape.uniform(check_positive("mass", mass))
         if center_of_mass.any():
-            raise InvalidFieldError("center_of_mass", offset, "the origin, where the inertia is the shape's")
+            raise InvalidFieldError(
+                "center_of_mass",
+                offset,
+                "the origin, unless the inertia is given too (the default is the uniform shape's)",
+            )
         center_of_mass, mass_properties = uniform.p_FB_F, uniform.mass_properties
     elif len(inertia) == 6:
         ixx, iyy, izz, ixy, ixz, iyz = inertia

@@ -296,7 +296,10 @@ class _Worker:
                 received = self._received()
                 if not isinstance(received, _Ready):
                     return received
-            message = f"no answer within {job.seconds:g} s, which is all that one may take (answer_deadline)"
+            message = (
+                f"no answer within {job.seconds:g} s: ask for less (samples, candidates, margins), "
+                "or allow more time (answer_deadline)"
+            )
             outcome: Exception = TookTooLongError(message)
         except (EOFError, OSError):
             outcome = WorkerFault("the process that computed the answer ended")

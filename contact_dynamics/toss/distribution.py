@@ -178,6 +178,12 @@ class TossDistribution(Record):
     rest: RestSpread | None
     ghosts: Ghosts
 
+    def in_short(self) -> str:
+        """Return the number of samples, and the share of them that did not come to rest if they could."""
+        moving = 0.0 if self.rest is None else 1.0 - float(np.sum(self.face_probabilities))
+        rest = f", {moving:.1%} of which did not come to rest" if moving > 0.5 / self.samples else ""
+        return f"TossDistribution of {self.samples} samples{rest}"
+
     @overload
     def standard_error(self, probability: float) -> float: ...
 

@@ -9,6 +9,8 @@ import pytest
 
 import contact_dynamics as cd
 from contact_dynamics.contact_modes import Certainty
+from contact_dynamics.contact_modes.letters import mode_in_words
+from contact_dynamics.errors import InvalidFieldError
 
 CRATE = cd.Body.box((0.4, 0.3, 0.3), mass=5.0)
 RESTING = cd.BodyState(p_WB_W=[0, 0, 0.15], q_WB=[0, 0, 0, 1], v_WB_W=[0, 0, 0], w_WB_W=[0, 0, 0])
@@ -65,3 +67,9 @@ def test_help_lists_every_member_with_its_text(kind: type) -> None:
         for member in kind:  # type: ignore[attr-defined]
             assert f"{member.name}: " in text
     assert "UNIQUE: One mode is consistent." in (inspect.getdoc(cd.ModeVerdict) or "")
+
+
+@pytest.mark.parametrize("mode", ["xx", "FFFF", "ff "])
+def test_letters_that_there_are_not_are_an_error(mode: str) -> None:
+    with pytest.raises(InvalidFieldError, match="mode must be letters of s, l, r, f, c, got"):
+        mode_in_words(mode)

@@ -51,7 +51,11 @@ class LargestLoad(Record):
         if math.isinf(self.factor):
             return "LargestLoad: it stays fixed under any"
         then = " or ".join(map(mode_in_words, self.modes_beyond)) or "no mode is consistent"
-        return f"LargestLoad: it stays fixed up to {self.factor:.6g} of the load, then {then}"
+        fixed = f"it stays fixed up to {self.factor:.6g} of the load"
+        if self.only_rest < self.factor:  # beyond it another mode is consistent too
+            surely = f"it surely stays fixed up to {self.only_rest:.3g}"
+            fixed = f"{surely} and may up to {self.factor:.6g} of the load"
+        return f"LargestLoad: {fixed}, then {then}"
 
 
 def largest_load(
