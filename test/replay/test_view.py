@@ -82,6 +82,11 @@ def test_a_viewer_that_does_not_open_ends_with_the_reason(
     assert (tmp_path / "drawn.rrd").stat().st_size > 0
 
 
+def _heed_ctrl_c() -> None:
+    """A shell that starts the tests in the background has SIGINT ignored."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
 def test_what_is_served_stays_until_it_is_stopped(tmp_path: Path) -> None:
     """It prints the address, which can be connected to after all is drawn, and ends with Ctrl-C."""
     write_flight(tmp_path / "bag")
@@ -91,7 +96,13 @@ def test_what_is_served_stays_until_it_is_stopped(tmp_path: Path) -> None:
         port = probe.getsockname()[1]
     command = [sys.executable, "-m", "contact_dynamics", "replay", "view", tmp_path / "bag", "--serve"]
     command += ["--port", str(port), "--config", tmp_path / "server.yaml", "--topics", "ball=/tracker/ball"]
-    with subprocess.Popen(command, cwd=ROOT, stderr=subprocess.PIPE, text=True) as started:
+    with subprocess.Popen(
+        command,
+        cwd=ROOT,
+        stderr=subprocess.PIPE,
+        text=True,
+        preexec_fn=_heed_ctrl_c,  # noqa: PLW1509
+    ) as started:
         assert started.stderr is not None
         line = started.stderr.readline()
         assert f"served at rerun+http://127.0.0.1:{port}/proxy; Ctrl-C ends it" in line
@@ -102,7 +113,7 @@ def test_what_is_served_stays_until_it_is_stopped(tmp_path: Path) -> None:
         try:
             assert "drew 188 states" in started.communicate(timeout=60.0)[1]
         finally:
-            started.kill()  # where the shell that started the tests has SIGINT ignored
+            started.kill()
         assert started.returncode == 0
 
 
