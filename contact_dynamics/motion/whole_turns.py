@@ -166,7 +166,7 @@ def chosen_motion(window: Window[Model], start: Model, others: Iterable[Model]) 
             every += _searched(window, model, every)
     if failure is not None and not every:
         raise failure
-    for model in _with_more_turns(window, min(every, key=_goodness).fit.model):
+    for model in _with_more_turns(window, min(every, key=_goodness)):
         every += _searched(window, model, every)
     best = min(every, key=_goodness)
     alike = _distinct(window, [each for each in every if _evidence(window, best, each) < MIN_EVIDENCE])
@@ -265,13 +265,18 @@ def _searched(window: Window[Model], model: Model, found: list[_Found[Model]]) -
         return []
 
 
-def _with_more_turns(window: Window[Model], model: Model) -> Iterator[Model]:
+def _with_more_turns(window: Window[Model], nearest: _Found[Model]) -> Iterator[Model]:
     """Return motions that have nearly the same attitudes one interval of the usual length on.
+
+    There is none where published velocities confirm the number of turns, which they would miss by one.
 
     A body with an axis of symmetry precesses about L and spins about this axis, both steadily. Whole turns
     more of either do not change its attitudes. Such a motion obeys the laws of rotation if its own L points
     the same way.
     """
+    if window.w.any() and _confirmed(window, nearest):
+        return
+    model = nearest.fit.model
     R, w = model.state.R_WB, model.state.w_WB_W
     moments, axes = np.linalg.eigh(window.body.I_B)
     axes_W = R @ axes
