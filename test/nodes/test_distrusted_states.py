@@ -236,7 +236,9 @@ def test_what_got_lost_fell_silent_and_has_two_publishers_is_told(tmp_path: Path
             second = client.publisher(Odometry, "/brick/odometry", SHALLOW)
             wait_for(server, "/brick/odometry: 2 publishers send states of one body")
             client.spin_until(lambda: "/brick/odometry is silent" in reports[-1].status[0].message)
-            states.publish(odometry("brick", time.time_ns()))
+            stamp_ns = time.time_ns()
+            states.publish(odometry("brick", stamp_ns))
+            client.spin_until(lambda: newest_ns(client, "brick") >= stamp_ns)  # else it may leave unsent
             for each in (states, second):
                 client.node.destroy_publisher(each)
             told = wait_for(server, "/brick/odometry: nobody publishes any more")
