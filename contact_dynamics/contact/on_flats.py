@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     from contact_dynamics.shapes.convex import ConvexShape
     from contact_dynamics.shapes.rim import Radii
     from contact_dynamics.validation import FloatArray
-    from contact_dynamics.world import Surface
 
     Side: TypeAlias = tuple[float, float, FloatArray]
 
@@ -64,24 +63,6 @@ def flat_touches(
     for rim in shape.rims:
         turned = _turned(radii_of(rim), p_WB_W, R_WB)
         yield from _of_rim(turned, n_W, level, rounding=shape.rounding, tolerance=tolerance)
-
-
-def lowest_of_many(shape: ConvexShape, p_WB_W: FloatArray, R_WB: FloatArray, surface: Surface) -> FloatArray:
-    """Return the height, (n,), m, of a body's lowest point above a plane at each pose, negative below it.
-
-    Args:
-        shape: A shape that is not empty.
-        p_WB_W: (n, 3), m, positions of the centre of mass.
-        R_WB: (n, 3, 3), rotations, body to world.
-        surface: The plane.
-    """
-    up_B = surface.normal_W @ R_WB  # (n, 3)
-    parts = [up_B @ shape.vertices.T]
-    for rim in shape.rims:
-        leaning = np.sqrt(np.maximum(1.0 - (up_B @ rim.axis) ** 2, 0.0))
-        parts.append((up_B @ rim.center - rim.radius * leaning)[:, None])
-    lowest: FloatArray = np.concatenate(parts, axis=1).min(axis=1)
-    return surface.gaps(p_WB_W) + lowest - shape.rounding
 
 
 class _RimW(NamedTuple):

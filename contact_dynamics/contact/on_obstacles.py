@@ -97,13 +97,20 @@ def _axes(
 
 
 def lowest_along(shape: ConvexShape, p_WB_W: FloatArray, R_WB: FloatArray, axes: FloatArray) -> FloatArray:
-    """Return how far down, (n,), m, a body reaches along directions, (n, 3): minus its support function."""
-    parts = [(p_WB_W + shape.vertices @ R_WB.T) @ axes.T]
+    """Return how far down, (n,), m, a body reaches along directions: minus its support function.
+
+    Args:
+        shape: A shape that is not empty.
+        p_WB_W: (3,), m, place of the centre of mass, or (n, 3) for many poses and one direction.
+        R_WB: (3, 3), rotation, body to world, or (n, 3, 3).
+        axes: (n, 3), unit, the directions, or (3,) for many poses.
+    """
+    axes_B = axes @ R_WB
+    parts = [axes_B @ shape.vertices.T]
     for rim in shape.rims:
-        along = axes @ (R_WB @ rim.axis)
-        level = np.sqrt(np.maximum(1.0 - along * along, 0.0))
-        parts.append((axes @ (p_WB_W + R_WB @ rim.center) - rim.radius * level)[None])
-    lowest: FloatArray = np.concatenate(parts).min(axis=0) - shape.rounding
+        level = np.sqrt(np.maximum(1.0 - (axes_B @ rim.axis) ** 2, 0.0))
+        parts.append((axes_B @ rim.center - rim.radius * level)[:, None])
+    lowest: FloatArray = np.concatenate(parts, axis=1).min(axis=1) + p_WB_W @ axes.T - shape.rounding
     return lowest
 
 

@@ -101,7 +101,7 @@ def _configuration(log: BagReader, path: Path, config: Path | None) -> Parameter
 
 
 def _states(log: BagReader, parameters: ServerParameters, only: Collection[str]) -> dict[str, StateColumns]:
-    """Return the states by body, or of some alone, and when each was known, ns on the clock of the stamps.
+    """Return the states of all or some bodies, and when each was known, ns on the clock of the stamps.
 
     Where the log was written by another clock, as in simulated time, each state counts as known at its stamp.
     """

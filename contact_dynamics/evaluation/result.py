@@ -109,7 +109,7 @@ def source_result(content: dict[str, Any]) -> SourceResult:
 
 
 def joined(parts: Sequence[dict[str, Any]]) -> dict[str, Any]:
-    """Return what came of a recording of which each part has some bodies, as `SourceResult.to_dict` does."""
+    """Join the results of groups of a recording's bodies, as `SourceResult.to_dict` has them."""
     events: list[Any] = []
     rows: list[Any] = []
     for part in parts:

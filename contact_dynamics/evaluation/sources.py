@@ -87,7 +87,7 @@ class Source(Record):
         return recording_of_log(self.path, config=config, only=self.bodies)
 
     def parts(self, most: int, *, config: Path | None = None) -> list[Source]:
-        """Return at most so many parts of a log, each with some of its bodies; or itself as the only one."""
+        """Return a log as at most ``most`` sources with some of its bodies each. Other sources stay whole."""
         names: list[str] = []
         if most > 1 and not self.is_toss:
             with suppress(ContactDynamicsError, OSError):  # whoever reads it tells what is wrong

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final
 
-from contact_dynamics.contact.on_flats import lowest_of_many
+from contact_dynamics.contact.on_obstacles import lowest_along
 from contact_dynamics.errors import TooLargeError
 from contact_dynamics.motion.covariance import CarriedCovariance, covariance_along
 from contact_dynamics.motion.forces import NO_DRAG, NO_WRENCH, ConstantWrench, Drag
@@ -193,7 +193,8 @@ def _passed(body: Body, trajectory: Trajectory, known: Context) -> tuple[str, ..
     found = []
     for surface in known.world.surfaces:
         if isinstance(surface, Surface):
-            gaps = lowest_of_many(body.shape, trajectory.p_WB_W, matrices_of(trajectory.q_WB), surface)
+            normal_W, R_WB = surface.normal_W, matrices_of(trajectory.q_WB)
+            gaps = lowest_along(body.shape, trajectory.p_WB_W, R_WB, normal_W) - normal_W @ surface.p_WS_W
             deep = gaps < -known.defaults.distance_tolerance
             if deep.any():
                 first = int(deep.argmax())

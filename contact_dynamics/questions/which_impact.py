@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Final
 
 from contact_dynamics.contact.contact import ContactSet
 from contact_dynamics.errors import NoContactError, NotSupportedError
-from contact_dynamics.landing.earliest import Landing, next_landing
+from contact_dynamics.landing.earliest import next_landing
 from contact_dynamics.questions.context import Context, or_default
 from contact_dynamics.questions.extent import check_contacts, check_extent
 from contact_dynamics.questions.impact_question import ImpactQuestion, InTime
@@ -18,7 +17,9 @@ from contact_dynamics.questions.subject import Subject, subject_of
 from contact_dynamics.questions.touching import check_has_shape, contacts_of
 from contact_dynamics.records import Record
 from contact_dynamics.rigid_body.body import BodyState
-from contact_dynamics.world import Body, World
+
+_kept_landing = lru_cache(maxsize=4)(next_landing)
+"""`next_landing`, for the several questions about one landing, each with another law."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -146,26 +147,3 @@ def _landing(
             f"than {velocity_tolerance:g} m/s (a question about contact modes says what follows)"
         )
     return landing.seconds, landing.state, landing.contacts
-
-
-_KEPT: Final = 4
-
-
-@lru_cache(maxsize=_KEPT)  # several questions are asked about one landing, each with another law
-def _kept_landing(
-    body: Body,
-    state: BodyState,
-    world: World,
-    *,
-    horizon: float,
-    distance_tolerance: float,
-    velocity_tolerance: float,
-) -> Landing | None:
-    return next_landing(
-        body,
-        state,
-        world,
-        horizon=horizon,
-        distance_tolerance=distance_tolerance,
-        velocity_tolerance=velocity_tolerance,
-    )

@@ -184,9 +184,9 @@ class History:
 
 
 def _just_above(solid: Solid, y: Numbers) -> Numbers:
-    """Return the first state, taken out of flats that it is deeper in than a contact may be.
+    """Return the first state, moved out of planes that it penetrates deeper than a contact may.
 
-    So contacts are those of the pose that the toss goes on from: large turns move corners beside the others.
+    Contacts are found after this. The move may turn the body, so that fewer corners touch than penetrated.
     """
     for _ in range(_MOST_LIFTS):
         if not low_corners(solid, y, -DISTANCE_TOLERANCE, math.inf):

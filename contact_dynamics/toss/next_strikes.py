@@ -1,8 +1,8 @@
 """The next strikes of samples of a toss: flight, Routh's impact, and so on.
 
-Each sample flies by itself (`flight`). Then all of them have their impacts (`impact.spatial.batch`), and the
-law's own spread is added to the velocities after them. A sample that rebounds too little goes on as a toss
-does (`to_rest`), where several corners may strike or stay.
+The flight of each sample is computed separately (`flight`). The impacts of all samples then form a batch
+(`impact.spatial.batch`), and the spread of the impact law is added to the velocities after them. A sample
+with a low rebound continues as a single toss (`to_rest`), since several corners may strike or stay.
 """
 
 from __future__ import annotations

@@ -12,6 +12,7 @@ from contact_dynamics.impact import (
     ImpactOutcome,
     RestitutionLaw,
 )
+from contact_dynamics.questions import ContactModeQuestion
 from contact_dynamics.questions.many import (
     ManyImpactsAnswer,
     ManyImpactsQuestion,
@@ -90,14 +91,14 @@ def many_impacts_answers(draw: st.DrawFn) -> ManyImpactsAnswer:
     )
 
 
-@st.composite
-def many_contact_modes_questions(draw: st.DrawFn) -> ManyContactModesQuestion:
-    """Up to three candidates, with sets of contacts or without, and nothing that is not asked for many."""
-    asked = replace(
-        draw(contact_mode_questions()),
+def asked_of_many(question: ContactModeQuestion) -> ContactModeQuestion:
+    """Return a question without what is not asked for many candidates."""
+    return replace(
+        question,
         force_W=np.zeros(3),
         torque_W=np.zeros(3),
         friction_facets=None,
+        margin_length=question.margin_length if question.include_margins else None,
         include_wrenches=False,
         include_statics=False,
         include_impact=False,
@@ -105,8 +106,12 @@ def many_contact_modes_questions(draw: st.DrawFn) -> ManyContactModesQuestion:
         include_geometry_margins=False,
         include_probabilities=False,
     )
-    if not asked.include_margins:
-        asked = replace(asked, margin_length=None)
+
+
+@st.composite
+def many_contact_modes_questions(draw: st.DrawFn) -> ManyContactModesQuestion:
+    """Up to three candidates, with sets of contacts or without, and nothing that is not asked for many."""
+    asked = asked_of_many(draw(contact_mode_questions()))
     given = 0 if asked.contacts is None else len(asked.contacts)
     counts = draw(st.sampled_from([(), (given,), (1,) * given] if given else [()]))
     n = len(counts) if len(counts) > 1 else draw(st.integers(1, 3))

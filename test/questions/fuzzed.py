@@ -37,6 +37,7 @@ from contact_dynamics.shapes.convex import ConvexShape
 from contact_dynamics.shapes.obstacle import Obstacle
 from contact_dynamics.toss import TossUncertainty
 from contact_dynamics.world import Body, Surface, World, box_vertices
+from message_values.many import asked_of_many
 from questions.known_world import CUBE, FLOOR, SIDE, state
 
 BALL = Body(
@@ -292,17 +293,7 @@ def contact_mode_questions(draw: st.DrawFn) -> ContactModeQuestion:
 
 @st.composite
 def many_contact_modes_questions(draw: st.DrawFn) -> ManyContactModesQuestion:
-    asked = replace(
-        draw(contact_mode_questions()),
-        force_W=np.zeros(3),
-        torque_W=np.zeros(3),
-        friction_facets=None,
-        include_wrenches=False,
-        include_statics=False,
-        include_impact=False,
-    )
-    if not asked.include_margins:
-        asked = replace(asked, margin_length=None)
+    asked = asked_of_many(draw(contact_mode_questions()))
     count = 0 if asked.contacts is None else len(asked.contacts)
     candidates = draw(st.integers(1, 3))
     return ManyContactModesQuestion(
