@@ -86,29 +86,15 @@ class Search(PyramidPrograms):
             grouped: Whether one mode represents all with the same letters, whatever their sectors, where the
                 motion of one of them is not unique. Otherwise each of them is found.
         """
-        self._begin(grouped=grouped)
+        self._ways: dict[tuple[int, tuple[int, int] | None], tuple[Option, ...]] = {}
+        self._found: dict[tuple[tuple[str, int], ...], Found] = {}
+        self._grouped = grouped
+        self._goal = ""  # the letters that are sought, where all are known
+        self._settled: set[str] = set()  # letters that need no further mode
         self.decide_who_stays()
         if not self._found and isinstance(self._root, Program):
             self._root = self._careful_root
             self.decide_who_stays()
-        return list(self._found.values())
-
-    def _begin(self, *, grouped: bool) -> None:
-        self._ways: dict[tuple[int, tuple[int, int] | None], tuple[Option, ...]] = {}
-        self._found: dict[tuple[tuple[str, int], ...], Found] = {}
-        self._grouped = grouped
-        self._only = ""  # the only letters that are sought, or empty if all are
-        self._goal = ""  # the letters that are sought, where all are known
-        self._settled: set[str] = set()  # letters that need no further mode
-
-    def ways_with(self, letters: str) -> list[Found]:
-        """Return all modes with some letters, in which contacts at rest begin to slide."""
-        self._begin(grouped=False)
-        self._only = letters
-        parts = [of.parts[letter != SEPARATES] for of, letter in zip(self._trials, letters, strict=True)]
-        root = self._solved(self._with_all(self._root, parts))
-        if root is not None:
-            self._decide_staying(root, parts)
         return list(self._found.values())
 
     def loaded(self, free: FloatArray) -> Search:
@@ -136,7 +122,7 @@ class Search(PyramidPrograms):
         staying = [i for i, letters in enumerate(trials) if letters.letter != SEPARATES]
         normals, frames = self._normals[staying, :-1], frames[:, :, :-1]
         at_rest = flat_of(normals, frames, tuple(range(len(open_ones))))
-        if not self._only and self._solved(self._within(program, at_rest)) is not None:
+        if self._solved(self._within(program, at_rest)) is not None:
             self._note([letters.parts[0] if letters.parts else letters for letters in trials])
         flats = [flat_of(normals, frames, ())]
         seen = {at_rest.stuck, flats[0].stuck}
@@ -166,8 +152,6 @@ class Search(PyramidPrograms):
             return False
         trials = [letters._replace(letter=STAYS) if letters.parts else letters for letters in trials]
         self._goal = "".join(letters.letter for letters in trials)
-        if self._only and self._goal != self._only:
-            return True
         common = self._common(image, open_ones)
         may_hold = False
         for region in whole(len(image.coordinates)):
