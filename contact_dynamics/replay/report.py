@@ -87,7 +87,7 @@ def _gaps(found: Verification) -> list[str]:
     unanswered = sum(tally.unanswered for tally in found.services.values())
     unreadable = sum(tally.unreadable for tally in found.services.values())
     if unanswered:
-        lines.append(f"  not asked, because the log has no answer: {unanswered}")
+        lines.append(f"  not asked, because the log has no answer, or BUSY or TIMEOUT: {unanswered}")
     if unreadable:
         lines.append(f"  {unreadable} calls could not be read; the first: {found.unreadable}")
     if found.damage is not None:

@@ -25,6 +25,9 @@ if TYPE_CHECKING:
 MAX_TOLD: Final = 10
 """The differences of this many questions are kept, those of the largest ones."""
 
+BY_LOAD: Final = ("BUSY", "TIMEOUT")
+"""The status codes of responses that depend on the load of the machine."""
+
 MAX_FIELDS_TOLD: Final = 5
 """This many fields of one answer are kept, those that differ most."""
 
@@ -40,7 +43,8 @@ class ServiceTally:
         different: Answers that differ by more than the tolerance.
         other_state: Answers that used other states than the logged ones, and are not compared. There are none
             where the states of the log are at hand, as here.
-        unanswered: Questions without an answer in the log, which were not asked.
+        unanswered: Questions without an answer in the log, or with BUSY or TIMEOUT, which depend on the load
+            of the machine. They were not asked again.
         unreadable: Calls whose question is missing, or that cannot be decoded.
     """
 
@@ -173,6 +177,9 @@ def _ask(call: ServiceCall, server: ServerAgain, found: Verification) -> None:
         make_response = type(logged)
     except InvalidFieldError as error:
         _unreadable(found, tally, str(error))
+        return
+    if logged.status in {getattr(logged, name, None) for name in BY_LOAD}:
+        tally.unanswered += 1
         return
     tally.questions += 1
     # The node's clock told this time when the question came.

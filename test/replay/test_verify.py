@@ -14,7 +14,7 @@ import pytest
 from mcap.reader import make_reader
 from mcap.writer import Writer
 from rcl_interfaces.msg import ParameterEvent
-from rclpy.serialization import serialize_message
+from rclpy.serialization import deserialize_message, serialize_message
 
 from contact_dynamics.questions.services import SERVICES
 from contact_dynamics.recording import BagReader, BagWriter, LoggedMessage, NotALogError, service_calls
@@ -23,6 +23,7 @@ from contact_dynamics.recording.errors import DamagedLogWarning
 from contact_dynamics.replay.of_log import digest
 from contact_dynamics.replay.run import main
 from contact_dynamics.replay.verify import Verification, verify_log
+from contact_dynamics_interfaces.srv import PredictImpact
 from message_words import says
 from replay.asked_log import Asked, configured, without_ros
 from replay.flights import CONFIGURATION, write_flight
@@ -392,3 +393,25 @@ def test_questions_without_an_answer_are_told(asked: Asked, tmp_path: Path) -> N
     found = verify_log(tmp_path / "short")
     assert found.agrees
     assert sum(tally.unanswered for tally in found.services.values()) == 1
+
+
+@pytest.mark.parametrize("code", ["BUSY", "TIMEOUT"])
+def test_responses_that_depend_on_the_load_are_not_compared(asked: Asked, tmp_path: Path, code: str) -> None:
+    reader = BagReader(asked.log)
+    messages: list[LoggedMessage] = list(reader.messages())
+    *_, last = (i for i, each in enumerate(messages) if each.topic.endswith("predict_impact/_service_event"))
+    event = deserialize_message(messages[last].data, PredictImpact.Event)
+    event.response[0].status = getattr(PredictImpact.Response, code)
+    with BagWriter(tmp_path / "busy", run=reader.run()) as writer:
+        for topic, type_name in sorted({(message.topic, message.type_name) for message in messages}):
+            writer.add_topic(topic, type_name)
+        for i, message in enumerate(messages):
+            writer.write(
+                message.topic,
+                serialize_message(event) if i == last else message.data,
+                log_time_ns=message.log_time_ns,
+                publish_time_ns=message.publish_time_ns,
+            )
+    found = verify_log(tmp_path / "busy")
+    assert found.agrees
+    assert [tally.unanswered for tally in found.services.values() if tally.unanswered] == [1]
