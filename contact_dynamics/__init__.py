@@ -64,7 +64,7 @@ if TYPE_CHECKING:  # the same as `_HOMES`
     from contact_dynamics.landing import next_landing
     from contact_dynamics.motion import motion_of
     from contact_dynamics.plane import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
-    from contact_dynamics.rigid_body import BodyState, MassProperties, inertia
+    from contact_dynamics.rigid_body import BodyState, MassProperties, inertia, state_covariance
     from contact_dynamics.shapes import Obstacle
     from contact_dynamics.toss import sampled_toss, toss
     from contact_dynamics.tumbling import free_motion
@@ -85,7 +85,7 @@ _HOMES: Final = {
     "landing": ("next_landing",),
     "motion": ("motion_of",),
     "plane": ("PlanarBody", "PlanarContact", "PlanarVelocity", "PlanarWrench"),
-    "rigid_body": ("BodyState", "MassProperties", "inertia"),
+    "rigid_body": ("BodyState", "MassProperties", "inertia", "state_covariance"),
     "shapes": ("Obstacle",),
     "toss": ("sampled_toss",),
     "tumbling": ("free_motion",),
@@ -160,6 +160,7 @@ __all__ = [
     "several_impact",
     "shapes",
     "spatial_impact",
+    "state_covariance",
     "statics",
     "toss",
     "tumbling",
