@@ -200,7 +200,7 @@ def covariance_of(subject: Subject) -> FloatArray:
         raise InvalidFieldError(
             "state.covariance",
             "none",
-            "144 numbers of an explicit state, or a fit_window",
+            "144 numbers of an explicit or a published state, or a fit_window",
         )
     return subject.covariance
 
