@@ -56,7 +56,7 @@ def draw(
         events: the recording.
         sinks: where to draw to.
         surface_side: m, the side of the squares that stand for surfaces.
-        on_open: a function that is told, in words, where to it is drawn.
+        on_open: a function that is told, in words, where to it is drawn, and when what is served is complete.
         on_problem: a function that is told, in words, what cannot be drawn, each kind once.
         on_progress: a function that is told the stamp of what is drawn, ns.
 
@@ -78,6 +78,7 @@ def draw(
                 on_progress(event.state.stamp_ns)
         drawing.finish(look_at_all=sinks.viewer is ViewerMode.NONE)
         if sinks.viewer is ViewerMode.SERVE and not recording.viewer_failed:
+            on_open(f"all {drawing.states} states and {drawing.answers} answers are drawn")
             _serve(recording)
     finally:  # also if the user stops it: what is drawn so far can be opened
         took_all = recording.close()

@@ -106,8 +106,9 @@ def test_what_is_served_stays_until_it_is_stopped(tmp_path: Path) -> None:
         assert started.stderr is not None
         line = started.stderr.readline()
         assert f"served at rerun+http://127.0.0.1:{port}/proxy; Ctrl-C ends it" in line
+        assert "all 188 states and 0 answers are drawn" in started.stderr.readline()
         with pytest.raises(subprocess.TimeoutExpired):
-            started.wait(6.0)  # to draw it takes less than one
+            started.wait(1.0)
         socket.create_connection(("127.0.0.1", port), timeout=10.0).close()
         started.send_signal(signal.SIGINT)
         try:
