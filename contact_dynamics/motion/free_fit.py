@@ -6,9 +6,10 @@ linear least-squares problem. The rotation has six unknowns, attitude and angula
 stamp. Gauss's and Newton's method finds them with the exact derivative of the motion (`free_derivative`). It
 starts from the angular momentum averaged over all neighbouring pairs of states, since L is constant. If that
 is far off, it starts from the last turn or from the published velocities, whichever fits best. `whole_turns`
-finds out whether the body made whole turns more or less between the states.
+finds out whether the body made whole turns more or less between the states. `velocity_jump` finds an impact
+within the window, which no free motion fits.
 
-Not covered: windows in which something touched the body, torque and drag (`integrated_fit`), outliers, noise
+Not covered: contacts that change the velocity slowly, torque and drag (`integrated_fit`), outliers, noise
 that is correlated from state to state, unknown mass properties, and what `whole_turns` does not cover.
 """
 
@@ -24,9 +25,11 @@ import numpy as np
 from contact_dynamics.constants import STANDARD_GRAVITY_W, seconds_since
 from contact_dynamics.errors import InvalidFieldError, TooLargeError
 from contact_dynamics.motion.free_derivative import rotation_derivatives
+from contact_dynamics.motion.velocity_jump import velocity_jump
 from contact_dynamics.motion.whole_turns import (
     MAX_NOISE_RATIO,
     MAX_ORIENTATION_RESIDUAL,
+    Chosen,
     chosen_motion,
     turns_near,
 )
@@ -90,7 +93,7 @@ class FitResult(Record):
         rounds: Number of rounds of Gauss's and Newton's method.
         converged: Whether the last round changed next to nothing, and the residuals fit the noise: their root
             mean square is at most three of the given deviations or, if no noise is given, the orientations
-            miss by at most 0.1 rad.
+            miss by at most 0.1 rad. Never where the velocity jumps.
         position_misses_W: (count, 3), m, the positions less the fitted ones, world axes.
         orientation_misses_W: (count, 3), rad, rotation vectors from the fitted attitudes to those of the
             states, world axes.
@@ -103,6 +106,8 @@ class FitResult(Record):
             the fewest turns that fit, and other numbers of turns are possible.
         alternatives: Other states at the newest stamp whose motions were found to fit as well. ``state`` and
             its covariance are worth nothing where one of them may be true.
+        velocity_jump: s, < 0, from the newest stamp: when the velocity jumps, as in an impact. It is None if
+            the positions show no jump.
     """
 
     state: BodyState
@@ -117,6 +122,7 @@ class FitResult(Record):
     by_gravity: tuple[float, float] | None = None
     turns_known: bool = True
     alternatives: tuple[BodyState, ...] = ()
+    velocity_jump: float | None = None
 
 
 def fit_free_motion(
@@ -152,7 +158,8 @@ def fit_free_motion(
     seconds = seconds_since(0, since_newest)
     gravity = check_magnitude("gravity_W", check_array("gravity_W", gravity_W, (3,)))
     place = _fit_place(states, seconds, gravity, noise)
-    spin = _fit_rotation(body, states, seconds, noise)
+    jump = velocity_jump(seconds, place.misses_W)
+    spin = _fit_rotation(body, states, seconds, noise, search=jump is None)
     covariance = np.zeros((12, 12))
     at_place, at_spin = np.r_[0:3, 6:9], np.r_[3:6, 9:12]
     covariance[np.ix_(at_place, at_place)] = np.kron(place.covariance, np.eye(3))
@@ -169,7 +176,8 @@ def fit_free_motion(
         orientation_residual=spin.residual,
         count=len(states),
         rounds=spin.rounds,
-        converged=spin.converged and place.fits_noise,
+        converged=spin.converged and place.fits_noise and jump is None,
+        velocity_jump=jump,
         turns_known=spin.turns_known,
         alternatives=tuple(alternatives),
         position_misses_W=place.misses_W,
@@ -241,10 +249,20 @@ class _Rotation:
 
 
 def _fit_rotation(
-    body: MassProperties, states: Sequence[BodyState], seconds: FloatArray, noise: StateNoise | None
+    body: MassProperties,
+    states: Sequence[BodyState],
+    seconds: FloatArray,
+    noise: StateNoise | None,
+    *,
+    search: bool,
 ) -> _Rotation:
+    """Fit the rotation. Without a search no other numbers of turns are tried, which takes long in vain."""
     window = _Turning(body, states, seconds, noise)
-    chosen = chosen_motion(window, _start(window), window.starts())
+    if search:
+        chosen = chosen_motion(window, _start(window), window.starts())
+    else:
+        only = window.fitted(_start(window), len(seconds))
+        chosen = Chosen(only, converged=False, turns_known=False, alternatives=())
     fit = chosen.fit
     attitudes = 3 * len(seconds)
     turns = fit.misses[:attitudes].reshape(-1, 3) / window.by_q

@@ -7,8 +7,8 @@ derivative of the integrated motion (`contact_dynamics.motion.integrated_derivat
 motion that fits best. `whole_turns` finds out whether the body made whole turns more or less between the
 states.
 
-Not covered: forces that are not known, outliers, correlated noise, contacts within the window, unknown mass
-properties, and what `whole_turns` does not cover.
+Not covered: forces that are not known, outliers, correlated noise, contacts that change the velocity slowly,
+unknown mass properties, and what `whole_turns` does not cover.
 """
 
 from __future__ import annotations
@@ -24,6 +24,7 @@ from contact_dynamics.motion.forces import NO_DRAG, NO_WRENCH, ConstantWrench, D
 from contact_dynamics.motion.free_fit import MAX_STATES, FitResult, StateNoise, fit_free_motion
 from contact_dynamics.motion.integrated import MAX_STEPS, ForcedMotion, forced_motion, turns_or_drags
 from contact_dynamics.motion.integrated_derivative import forced_state_derivatives
+from contact_dynamics.motion.velocity_jump import velocity_jump
 from contact_dynamics.motion.whole_turns import chosen_motion
 from contact_dynamics.numerics.gauss_newton import Fit, gauss_newton
 from contact_dynamics.rigid_body.body import BodyState, HasMassProperties, MassProperties
@@ -94,6 +95,7 @@ def fit_motion(
         converged = converged and fit.converged
     position, orientation = window.residuals(fit.model)
     misses = window.misses(fit.model)
+    jump = velocity_jump(window.seconds, misses[:, :3])
     return FitResult(
         state=fit.model.state,
         covariance=fit.inverse @ fit.inverse.T,
@@ -101,7 +103,8 @@ def fit_motion(
         orientation_residual=orientation,
         count=len(states),
         rounds=fit.rounds,
-        converged=converged,
+        converged=converged and jump is None,
+        velocity_jump=jump,
         turns_known=chosen.turns_known,
         alternatives=chosen.alternatives,
         position_misses_W=misses[:, :3],

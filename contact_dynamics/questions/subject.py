@@ -173,6 +173,12 @@ def _check_fit(fit: FitResult, states: Sequence[BodyState]) -> None:
     Without published angular velocities a body is taken to turn by less than half a turn from state to state,
     if it is seen to turn by less than a third.
     """
+    if fit.velocity_jump is not None:
+        raise InvalidFieldError(
+            "fit_window",
+            f"a window whose velocity jumps as in an impact, {-fit.velocity_jump:.3g} s before its end",
+            "a window that begins after the impact",
+        )
     if not fit.converged:
         raise InvalidFieldError(
             "fit_window",

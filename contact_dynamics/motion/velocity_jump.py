@@ -1,0 +1,85 @@
+"""This file finds an impact among positions that should belong to one smooth motion.
+
+Model: what the fitted motion misses the positions by is white noise and, if an impact lies among them, two
+straight lines with a break. A wrong force bends one line instead. Two lines are therefore compared with one
+parabola, by their likelihoods with noise of unknown size. They need to be far better, since noise of trackers
+is correlated. The search begins with the last few states and takes twice as many in each round, so that it
+finds the latest of several impacts.
+
+Not covered: an impact with fewer than two states after it or before it, one whose change of velocity is
+hidden by the noise, and contacts that act slowly. A jump of the positions themselves counts as an impact.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from contact_dynamics.tolerances import LEAST_NOISE
+
+if TYPE_CHECKING:
+    from contact_dynamics.validation import FloatArray
+
+MIN_VARIANCE_RATIO: Final = 9.0
+"""Least ratio of the variances about a parabola and about two lines with an impact between them."""
+
+MIN_EVIDENCE: Final = 32.0
+"""Least difference of twice the logarithms of the likelihoods. It matters for fewer than a dozen states, of
+which noise alone reaches it about once in a million windows."""
+
+_FIRST: Final = 6  # states of the first round
+_LEAST: Final = 2  # states of a line
+
+
+def velocity_jump(seconds: FloatArray, misses_W: FloatArray) -> float | None:
+    """Return when, s, the velocity of a body jumps, or None if the positions show no jump.
+
+    Args:
+        seconds: (n,), s, ascending, times of the positions.
+        misses_W: (n, 3), m, the positions less those of a smooth motion.
+    """
+    total, count, after = len(seconds), _FIRST, 0
+    while count <= total:
+        found = _states_after(seconds[-count:], misses_W[-count:])
+        if after and not found:  # an earlier impact is among the states, too
+            break
+        after = found
+        if after and 2 * after <= count:  # otherwise, more states before it show better where it is
+            break
+        count = total if count < total < 2 * count else 2 * count
+    return 0.5 * float(seconds[-after - 1] + seconds[-after]) if after else None
+
+
+def _states_after(t: FloatArray, x: FloatArray) -> int:
+    """Return how many of the states come after a break, or zero if there is none."""
+    n = len(t)
+    s = (t - t[0]) / (t[-1] - t[0])
+    x = x - x.mean(axis=0)
+    curved = np.column_stack([np.ones(n), s, np.square(s)])
+    bent = x - curved @ np.linalg.lstsq(curved, x, rcond=None)[0]
+    smooth = float(np.square(bent).sum())
+    sums = _squares_about_lines(s, x)[_LEAST - 1 : -_LEAST]
+    sums = sums + _squares_about_lines(s[::-1], x[::-1])[::-1][_LEAST : 1 - _LEAST]
+    best = int(sums.argmin())
+    broken = max(float(sums[best]), 0.0)
+    free_smooth, free_broken = 3 * n - 9, 3 * n - 13
+    least = n * LEAST_NOISE**2
+    ratio = (smooth + least) / (broken + least)
+    if ratio * free_broken < MIN_VARIANCE_RATIO * free_smooth or free_broken * math.log(ratio) < MIN_EVIDENCE:
+        return 0
+    return n - best - _LEAST
+
+
+def _squares_about_lines(s: FloatArray, x: FloatArray) -> FloatArray:
+    """Return the sums of squares of the first 1, 2, …, n points about the line that fits them best, (n,)."""
+    count = np.arange(1.0, len(s) + 1.0)
+    mean_s, mean_x = np.cumsum(s) / count, np.cumsum(x, axis=0) / count[:, None]
+    ss = np.cumsum(s * s) - count * mean_s**2
+    sx = np.cumsum(s[:, None] * x, axis=0) - (count * mean_s)[:, None] * mean_x
+    xx = np.cumsum(x * x, axis=0) - count[:, None] * mean_x**2
+    with np.errstate(invalid="ignore", divide="ignore"):
+        explained = np.where(ss[:, None] > 0.0, sx**2 / ss[:, None], 0.0)
+    squares: FloatArray = np.maximum(xx - explained, 0.0).sum(axis=1)
+    return squares

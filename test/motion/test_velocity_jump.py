@@ -1,0 +1,168 @@
+"""Fits to windows that contain an impact, and to windows that contain none."""
+
+from __future__ import annotations
+
+import itertools
+from functools import partial
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pytest
+
+from contact_dynamics import Body, BodyState, World
+from contact_dynamics.errors import InvalidFieldError
+from contact_dynamics.motion import Drag, FitResult, fit_free_motion, fit_motion
+from contact_dynamics.motion.integrated import ForcedMotion, forced_motion
+from contact_dynamics.questions import Context, PublishedState, TumblingQuestion, ask
+from contact_dynamics.questions.state_store import StateStore
+from contact_dynamics.tumbling import FreeMotion, free_motion
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+BALL = Body.sphere(name="ball", radius=0.03, mass=0.1)
+BRICK = Body.box(name="brick", size=[0.2, 0.1, 0.05], mass=1.0)
+G = 9.81
+RATE = 120.0
+
+
+def bouncing(
+    count: int, after: float, *, noise: float, seed: int = 0, fall: float = -2.0, e: float = 0.6
+) -> list[BodyState]:
+    """States of a ball that does not spin and bounces once, ``after`` intervals after the first."""
+    rng = np.random.default_rng(seed)
+    at = after / RATE
+    strike = fall - G * at
+    states = []
+    for t in np.arange(count) / RATE:
+        since = t - at
+        velocity = strike if since < 0.0 else -e * strike
+        height = velocity * since - 0.5 * G * since**2
+        states.append(
+            BodyState(
+                p_WB_W=np.array([0.3 * t, 0.0, height]) + rng.normal(0.0, noise, 3)
+                if noise
+                else [0.3 * t, 0, height],
+                q_WB=[0, 0, 0, 1],
+                v_WB_W=[0.3, 0.0, velocity - G * since],
+                w_WB_W=[0, 0, 0],
+                stamp_ns=round(1e9 * t),
+            )
+        )
+    return states
+
+
+@pytest.mark.parametrize("noise", [0.0, 1e-6, 1e-4, 1e-3])
+def test_a_fit_across_an_impact_has_not_converged(noise: float) -> None:
+    least = 1.5 if noise < 1e-3 else 2.5  # intervals on each side, with two and three states
+    for count, seed in itertools.product((8, 12, 20, 60) if noise < 1e-3 else (12, 20, 60), range(5)):
+        for after in (least, 0.5 * count, count - 1.0 - least):
+            states = bouncing(count, after, noise=noise, seed=seed)
+            fit = fit_free_motion(BALL, states)
+            assert not fit.converged
+            assert fit.velocity_jump is not None
+            at = after / RATE - 1e-9 * states[-1].stamp_ns
+            assert fit.velocity_jump == pytest.approx(at, abs=1.01 / RATE)
+
+
+def test_of_several_impacts_the_latest_is_found() -> None:
+    first = bouncing(30, 14.5, noise=1e-4, e=0.5)
+    again = bouncing(20, 10.5, noise=1e-4, seed=1, fall=-1.0)
+    start = first[-1]
+    later = [
+        BodyState(
+            p_WB_W=state.p_WB_W - again[0].p_WB_W + start.p_WB_W,
+            q_WB=state.q_WB,
+            v_WB_W=state.v_WB_W,
+            w_WB_W=state.w_WB_W,
+            stamp_ns=start.stamp_ns + state.stamp_ns,
+        )
+        for state in again[1:]
+    ]
+    fit = fit_free_motion(BALL, first + later)
+    assert fit.velocity_jump == pytest.approx(-8.5 / RATE, abs=1.01 / RATE)
+
+
+def noisy(
+    motion: FreeMotion | ForcedMotion, times: np.ndarray, rng: np.random.Generator, noise: float
+) -> list[BodyState]:
+    states = []
+    for t in times:
+        state = motion.state_at(t)
+        states.append(
+            BodyState(
+                p_WB_W=state.p_WB_W + noise * rng.standard_normal(3),
+                q_WB=state.q_WB,
+                v_WB_W=state.v_WB_W,
+                w_WB_W=state.w_WB_W,
+                stamp_ns=round(1e9 * t),
+            )
+        )
+    return states
+
+
+def test_no_impact_is_found_in_a_flight() -> None:
+    """White noise of every size, gravity that leans, and drag that is not known or is: none is an impact."""
+    for seed in range(300):
+        rng = np.random.default_rng(seed)
+        start = BodyState(
+            p_WB_W=rng.normal(size=3), q_WB=[0, 0, 0, 1], v_WB_W=rng.normal(size=3), w_WB_W=rng.normal(size=3)
+        )
+        times = np.arange(int(rng.integers(3, 80))) / RATE
+        noise = float(10.0 ** rng.uniform(-12, -2)) if seed % 10 else 0.0
+        leaning = [0.2 * rng.normal(), 0.2 * rng.normal(), -G + 0.2 * rng.normal()]
+        states = noisy(free_motion(BRICK, start, gravity_W=leaning), times, rng, noise)
+        assert fit_free_motion(BRICK, states).velocity_jump is None
+    drag = Drag(linear=0.4)
+    for seed in range(10):
+        rng = np.random.default_rng(seed)
+        start = BodyState(p_WB_W=[0, 0, 1], q_WB=[0, 0, 0, 1], v_WB_W=[4, 0, 3], w_WB_W=[0, 0.5, 0])
+        states = noisy(
+            forced_motion(BRICK, start, drag=drag), np.arange(40) / RATE, rng, 10.0 ** -(seed + 3.0)
+        )
+        assert fit_free_motion(BRICK, states).velocity_jump is None
+        known = fit_motion(BRICK, states, drag=drag)
+        assert known.velocity_jump is None
+        assert known.converged
+
+
+@pytest.mark.parametrize("fit", [fit_free_motion, partial(fit_motion, drag=Drag(linear=0.05))])
+def test_a_tumbling_body_that_bounces_names_the_impact_too(fit: Callable[..., FitResult]) -> None:
+    rng = np.random.default_rng(3)
+    before = free_motion(
+        BRICK,
+        BodyState(p_WB_W=[0, 0, 0.1], q_WB=[0, 0, 0, 1], v_WB_W=[0.5, 0, -2], w_WB_W=[3, 4, 1]),
+    )
+    struck = before.state_at(0.1)
+    bounced = free_motion(
+        BRICK,
+        BodyState(p_WB_W=struck.p_WB_W, q_WB=struck.q_WB, v_WB_W=[0.3, 0.1, 1.2], w_WB_W=[-5, 2, 6]),
+    )
+    states = noisy(before, np.arange(0.004, 0.1, 1 / RATE), rng, 1e-4)
+    for state in noisy(bounced, np.arange(0.004, 0.1, 1 / RATE), rng, 1e-4):
+        states.append(
+            BodyState(
+                p_WB_W=state.p_WB_W,
+                q_WB=state.q_WB,
+                v_WB_W=state.v_WB_W,
+                w_WB_W=state.w_WB_W,
+                stamp_ns=state.stamp_ns + 100_000_000,
+            )
+        )
+    found = fit(BRICK, states)
+    assert not found.converged
+    assert found.velocity_jump == pytest.approx(0.1 - 1e-9 * states[-1].stamp_ns, abs=1.01 / RATE)
+
+
+def test_a_question_with_a_window_across_an_impact_is_an_error_that_says_when_it_was() -> None:
+    store = StateStore(history=1.0, timeout=1e9)
+    for state in bouncing(20, 14.5, noise=1e-4):
+        store.add("ball", state)
+    context = Context(world=World(bodies=[BALL]), states=store)
+    question = TumblingQuestion(body="ball", state=PublishedState(fit_window=0.5))
+    with pytest.raises(
+        InvalidFieldError, match=r"fit_window must be a window that begins after the impact.*0\.03"
+    ):
+        ask(question, context)
+    after = TumblingQuestion(body="ball", state=PublishedState(fit_window=0.034))
+    assert ask(after, context).state.v_WB_W[2] > 0.0
