@@ -31,7 +31,7 @@ NOT_MEASURED: dict[
     "docs/diagnostics.md": ["present for 3 s", "answers are sent for 10 s"],
     "docs/performance.md": ["100 s at 1 kHz", "RK4 at 1 ms"],
     "docs/architecture.md": ["it takes 0.1 s"],  # how long DDS waits, which is set there
-    "docs/calibrate.md": ["the truth in 85 to 95 %"],  # test_calibrate, whose slow part counts
+    "docs/calibrate.md": ["the true values in 85 to 95 %"],  # test_calibrate, whose slow part counts
     "docs/cases.md": ["distance after 10 s", "half of (10 s)²"],  # what is asked
     "docs/contact-modes.md": [
         "−90°",
@@ -46,7 +46,7 @@ NOT_MEASURED: dict[
     "docs/faq.md": ["1e-6 m"],
     "docs/limits.md": [
         "and 1e-6 m is rejected",
-        "for dead after 4 s",
+        "the server dead after 4 s",
         "at least 92 %",
         "1e16 rad",
         "8 % of friction",
@@ -89,7 +89,7 @@ NOT_MEASURED: dict[
         "0.05 s unless",
     ],
     "docs/tumbling.md": [
-        "turns by 190° from one state to the next looks as if it turned 170°",
+        "turns by 190° from one state to the next appears to turn by 170°",
         "a tenth of a second ahead",
         "1e8 rad/s",  # questions/test_bounds
         "5e-15 rad",  # tumbling/test_accuracy
