@@ -12,7 +12,7 @@ cdef extern from *:
         SOURCE_CRC
 
 cdef double GRAZING_DEPTH, NEGLIGIBLE_TERM, _GYROSCOPIC, _INFINITE, _MANY
-cdef int _MAX_ROOT_STEPS, _ORDER
+cdef int MAX_SEARCH_STEPS, SEARCH_BEGUN, _MAX_ROOT_STEPS, _ORDER
 
 
 @cython.final
@@ -20,12 +20,14 @@ cdef class Descent:
     cdef Solid solid
     cdef Above above
     cdef (double, double, double) gravity
-    cdef double farthest, begin, end
+    cdef double begin, end
     cdef double[13] start
     cdef double[84] q
     cdef double[63] w, momentum
-    cdef double[::1] falls, pulls, before
+    cdef double[::1] pulls, before
 
+    @cython.locals(pose=Pose, corner=cython.int)
+    cdef void _set_out(self, list y) except *
     @cython.locals(x=cython.double, y=cython.double, z=cython.double, s=cython.double, u=cython.double,
                    v=cython.double, t=cython.double, g=cython.int, h=cython.int, j=cython.int, k=cython.int)
     cdef void _expand(self, double seconds, (double, double, double, double) q, (double, double, double) w) noexcept
@@ -45,8 +47,8 @@ cdef class Descent:
     cpdef list state(self)
     @cython.locals(rate=cython.double)
     cpdef int striking(self, double near) noexcept
-    @cython.locals(now=cython.double, last=cython.double, found=cython.double)
-    cpdef double run(self, double start, double longest, work) except -1.0
+    @cython.locals(now=cython.double, steps=cython.int, last=cython.double, found=cython.double)
+    cpdef double run(self, double start, double longest) except -1.0
     @cython.locals(y=cython.p_double, flat=Flat, fall=cython.double, first=cython.double, least=cython.double,
                    k=cython.int)
     cdef double _free(self) noexcept

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
-from contact_dynamics.landing.search_work import SEARCH_BEGUN, SearchWork
+from contact_dynamics.landing.search_work import MAX_SEARCH_STEPS, SEARCH_BEGUN, SearchWork
 from contact_dynamics.tolerances import GRAZING_DEPTH, NEGLIGIBLE_TERM
 from contact_dynamics.toss import vectors as vec
 from contact_dynamics.toss.solid import Above, pose_of, properties_of, rows_of, state_of
@@ -59,7 +59,7 @@ def flight(solid: Solid, y: Numbers, *, longest: float, pause: float) -> Flight:
         TooLargeError: the search for the end takes too many steps.
     """
     descent = Descent(solid, solid.gravity, y)
-    seconds = descent.run(min(pause, longest), longest, SearchWork())
+    seconds = descent.run(min(pause, longest), longest)
     descent.look(seconds)
     return Flight(seconds, descent.state())
 
@@ -78,6 +78,17 @@ class Descent:
     def __init__(self, solid: Solid, gravity: Vector3, y: Numbers) -> None:
         self.solid, self.gravity = solid, gravity
         self.start = [0.0] * 13
+        self.above = Above(solid)  # at the time that was looked at last
+        # Heights of corners at another time, m; then a share of each one's acceleration, m/s^2.
+        self.before = array("d", bytes(8 * (self.above.count + solid.count)))
+        self.pulls = self.before[self.above.count :]
+        self.q, self.w, self.momentum = [0.0] * 84, [0.0] * 63, [0.0] * 63  # series, in body axes
+        self.begin = self.end = 0.0  # s, between which they hold
+        self._set_out(y)
+
+    def _set_out(self, y: Numbers) -> None:
+        """Begin with a state, and bound the accelerations of corners by their turning."""
+        solid = self.solid
         for k in range(13):
             self.start[k] = y[k]
         pose = pose_of(solid, y)
@@ -86,15 +97,9 @@ class Descent:
         stiffest = _row_sum(solid.inverse)
         apart = min(_row_sum(solid.inertia) * stiffest - 1.0, 1.0)
         turning = vec.dot(w, vec.times(solid.inertia, w)) * stiffest * (1.0 + _GYROSCOPIC * apart)
-        # Least accelerations of the mass centre and of corners towards each flat, m/s^2.
-        self.falls = array("d", [-vec.dot(flat.normal, gravity) for flat in solid.flats])
-        self.pulls = array("d", [vec.norm(corner) * turning for corner in solid.corners])
-        self.farthest = solid.reach - solid.rounding
-        self.above = Above(solid)  # at the time that was looked at last
-        self.before = array("d", bytes(8 * self.above.count))  # m, heights at another time
-        self.q, self.w, self.momentum = [0.0] * 84, [0.0] * 63, [0.0] * 63  # series, in body axes
-        self.begin = self.end = 0.0  # s, between which they hold
-        self._expand_from(0.0, y)
+        for corner in range(solid.count):
+            self.pulls[corner] = vec.norm(solid.corner(corner)) * turning
+        self._expand(0.0, (y[3], y[4], y[5], y[6]), w)
 
     def _expand(self, seconds: float, q: Quaternion, w: Vector3) -> None:
         """Begin the series at a time, s, with a quaternion and an angular velocity, body axes."""
@@ -208,13 +213,14 @@ class Descent:
                 fastest, rate = k, self.above.rates[k]
         return fastest
 
-    def run(self, start: float, longest: float, work: SearchWork) -> float:
+    def run(self, start: float, longest: float) -> float:
         """Return the time, s, of the first contact from a time on, or the longest that is searched."""
-        now = start
+        now, steps = start, SEARCH_BEGUN
         last, found = -1.0, 0.0  # the time of the heights before, s
-        work.spend(SEARCH_BEGUN, now)
         while True:
-            work.spend(1, now)
+            steps += 1
+            if steps > MAX_SEARCH_STEPS:
+                SearchWork().spend(steps, now)
             self.look(now)
             found = self._arrival(last, now)
             if found >= 0.0:
@@ -232,12 +238,13 @@ class Descent:
         least, k = _INFINITE, 0
         p, v = (y[0], y[1], y[2]), (y[7], y[8], y[9])
         for s in range(len(solid.flats)):
-            flat, fall, first = solid.flats[s], self.falls[s], _INFINITE
+            flat, first = solid.flats[s], _INFINITE
+            fall = -vec.dot(flat.normal, self.gravity)  # the acceleration of the mass centre towards it
             for corner in range(solid.count):
                 free = free_for(self.above.heights[k], self.above.rates[k], fall + self.pulls[corner])
                 first = min(first, free)
                 k += 1
-            room = vec.dot(p, flat.normal) - flat.level - solid.rounding - self.farthest
+            room = vec.dot(p, flat.normal) - flat.level - solid.rounding - (solid.reach - solid.rounding)
             if room > 0.0:
                 first = max(first, free_for(room, vec.dot(v, flat.normal), fall))
             least = min(least, first)

@@ -7,17 +7,16 @@ with a low rebound continues as a single toss (`to_rest`), since several corners
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import numpy as np
 
 from contact_dynamics.impact.spatial.batch import StrikingBodies, spatial_impacts
-from contact_dynamics.landing.search_work import SearchWork
 from contact_dynamics.records import NamedInt
 from contact_dynamics.rotations.many import crosses, matrices_of
 from contact_dynamics.tolerances import SAMPLED_ARRIVAL, SAMPLED_SETTLING_HEIGHT
 from contact_dynamics.toss.flight import Descent
-from contact_dynamics.toss.solid import Solid, matrix_of
+from contact_dynamics.toss.solid import Solid
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -26,6 +25,7 @@ if TYPE_CHECKING:
     from contact_dynamics.numerics.arithmetic import FloatArray
     from contact_dynamics.toss.law_spread import LawSpread
     from contact_dynamics.toss.uncertainty import Samples
+    from contact_dynamics.toss.vectors import Matrix3
 
 FEWEST_AT_ONCE: Final = 32
 """Samples below which impacts one after the other are faster than all at once."""
@@ -229,7 +229,7 @@ def _arrivals(
     rows = np.hstack(state).tolist()
     for i, gravity, row, most in zip(which.tolist(), gravities.tolist(), rows, longest.tolist(), strict=True):
         descent = Descent(solids[i], tuple(gravity), row)
-        arrival = descent.run(0.0, most, SearchWork())
+        arrival = descent.run(0.0, most)
         descent.look(arrival)
         seconds.append(arrival)
         parts.append(descent.striking(SAMPLED_ARRIVAL))
@@ -244,7 +244,7 @@ def _arrivals(
 
 def solids_of(solid: Solid, samples: Samples) -> list[Solid]:
     """Return the body and the flats of each sample."""
-    inertias, inverses = samples.inertias_B, np.linalg.inv(samples.inertias_B)
+    inertias, inverses = _matrices(samples.inertias_B), _matrices(np.linalg.inv(samples.inertias_B))
     corners = samples.corners_B.tolist()
     materials = np.stack(
         [samples.lasting_frictions, samples.restitutions, samples.frictions], axis=2
@@ -252,8 +252,8 @@ def solids_of(solid: Solid, samples: Samples) -> list[Solid]:
     return [
         Solid(
             solid.mass,
-            matrix_of(inertias[i]),
-            matrix_of(inverses[i]),
+            inertias[i],
+            inverses[i],
             tuple(map(tuple, corners[i])),
             solid.indices,
             solid.rounding,
@@ -263,3 +263,8 @@ def solids_of(solid: Solid, samples: Samples) -> list[Solid]:
         )
         for i in range(len(corners))
     ]
+
+
+def _matrices(arrays: NDArray[np.floating[Any]]) -> list[Matrix3]:
+    """Return arrays (n, 3, 3) row by row."""
+    return [(a, b, c, d, e, f, g, h, i) for a, b, c, d, e, f, g, h, i in arrays.reshape(-1, 9).tolist()]

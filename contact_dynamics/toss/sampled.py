@@ -10,7 +10,6 @@ before leaves no trace, and the scatter of friction that lasts holds what slides
 
 from __future__ import annotations
 
-from collections import Counter
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -222,25 +221,25 @@ def _branches(solid: Solid, many: ManyStrikes, count: int) -> list[Branch]:
     level = [(-1, np.arange(count))]
     for k in range(len(many.seconds)):
         after = []
+        # What happens next, as a number: the contact that strikes, or below zero why there is none.
+        contacts = many.surfaces[k] * solid.count + many.corners[k]
+        keys = np.where(many.corners[k] >= 0, contacts, -1 - many.ends)
         for parent, members in level:
-            keys = [
-                (int(many.surfaces[k, i]), int(many.corners[k, i]))
-                if many.corners[k, i] >= 0
-                else (-1, -int(many.ends[i]))
-                for i in members
-            ]
-            for key, number in Counter(keys).most_common():
-                which = members[[each == key for each in keys]]
-                strikes = key[0] >= 0
+            found = np.unique(keys[members], return_index=True, return_counts=True)
+            ways = zip(*(each.tolist() for each in found), strict=True)
+            for key, _, number in sorted(ways, key=lambda way: (-way[2], way[1])):
+                which = members[keys[members] == key]
+                strikes = key >= 0
+                surface, corner = divmod(key, solid.count)
                 if strikes:
                     after.append((len(branches), which))
                 branches.append(
                     Branch(
                         parent=parent,
                         strike=k + 1,
-                        kind=BranchKind.STRIKES if strikes else BranchKind(-key[1]),
-                        surface=solid.flats[key[0]].name if strikes else "",
-                        corner=solid.indices[key[1]] if strikes else -1,
+                        kind=BranchKind.STRIKES if strikes else BranchKind(-1 - key),
+                        surface=solid.flats[surface].name if strikes else "",
+                        corner=solid.indices[corner] if strikes else -1,
                         probability=number / count,
                         regions=_regions(many, k, which, count) if strikes and number >= FEWEST else None,
                     )

@@ -20,7 +20,7 @@ from contact_dynamics.contact.contact import ContactSet
 from contact_dynamics.contact.curvature import alike
 from contact_dynamics.contact.found import check_has_shape
 from contact_dynamics.errors import InvalidFieldError, NotSupportedError
-from contact_dynamics.numerics.vectors import norm, tangents
+from contact_dynamics.numerics.vectors import tangents
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.tolerances import SETTLING_HEIGHT, SLIDING_DIRECTION_SPEED
 from contact_dynamics.toss import vectors as vec
@@ -64,20 +64,20 @@ class Flat:
         friction: float,
         restitution: float,
         strike_friction: float,
+        tangents: tuple[Vector3, Vector3],
     ) -> None:
-        self.name, self.normal, self.level = name, normal, level
-        self.tangents: tuple[Vector3, Vector3] = tangents(normal)
+        self.name, self.normal, self.level, self.tangents = name, normal, level, tangents
         self.friction, self.restitution, self.strike_friction = friction, restitution, strike_friction
 
     def __reduce__(self) -> tuple[object, ...]:
-        return (
-            Flat,
-            (self.name, self.normal, self.level, self.friction, self.restitution, self.strike_friction),
-        )
+        return Flat, self._parts(self.friction, self.restitution, self.strike_friction)
 
     def with_frictions(self, friction: float, restitution: float, strike_friction: float) -> Flat:
         """Return the same flat with other coefficients."""
-        return Flat(self.name, self.normal, self.level, friction, restitution, strike_friction)
+        return Flat(*self._parts(friction, restitution, strike_friction))
+
+    def _parts(self, friction: float, restitution: float, strike_friction: float) -> Any:
+        return self.name, self.normal, self.level, friction, restitution, strike_friction, self.tangents
 
 
 class Solid:
@@ -111,7 +111,7 @@ class Solid:
         self.mass, self.inertia, self.inverse = mass, inertia, inverse
         self.corners, self.indices, self.rounding = corners, indices, rounding
         self.gravity, self.flats, self.settling = gravity, flats, settling
-        self.reach = max(map(norm, corners)) + rounding
+        self.reach = max([vec.norm(corner) for corner in corners]) + rounding
         self.count = len(corners)
         self.points = array("d", [x for corner in corners for x in corner])
 
@@ -314,7 +314,8 @@ def solid_of(
         normal = (x, y, z)
         level = float(surface.p_WS_W @ surface.normal_W)
         lasting = factor * surface.friction
-        flats.append(Flat(surface.name, normal, level, lasting, surface.restitution, surface.friction))
+        e, mu = surface.restitution, surface.friction
+        flats.append(Flat(surface.name, normal, level, lasting, e, mu, tangents(normal)))
     I_B = body.mass_properties.I_B
     corners = tuple((x, y, z) for x, y, z in body.shape.vertices.tolist())
     g_x, g_y, g_z = world.gravity_W.tolist()
