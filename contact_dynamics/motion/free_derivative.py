@@ -41,12 +41,12 @@ from contact_dynamics.rotations.one import cross_matrix
 from contact_dynamics.tolerances import GROWTH_ROUNDING, LARGEST_DERIVATIVE_ERROR, SMALL_TURN
 from contact_dynamics.tumbling.poinsot_construction import polhode_period
 from contact_dynamics.tumbling.polhode import Spin, largest_rate
-from contact_dynamics.validation import FloatArray, check_array, check_magnitude
+from contact_dynamics.validation import FloatArray, check_array
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from contact_dynamics.tumbling import FreeMotion
+    from contact_dynamics.tumbling import FreeMotion, Trajectory
 
 GAUSS: Final = Collocation(12)
 
@@ -67,19 +67,25 @@ def state_derivatives(motion: FreeMotion, seconds: ArrayLike) -> FloatArray:
     Raises:
         InvalidFieldError: the times are not a flat list of finite numbers.
     """
-    times = check_magnitude("seconds", check_array("seconds", seconds, (None,)), motion.farthest)
+    then = motion.at(seconds)
+    times = then.seconds
     derivatives = np.zeros((len(times), 12, 12))
     i = np.arange(3)
     derivatives[:, i, i] = derivatives[:, i + 6, i + 6] = 1.0
     derivatives[:, i, i + 6] = times[:, None]
     rows = np.r_[3:6, 9:12]
-    derivatives[:, rows[:, None], rows] = rotation_derivatives(motion, times)
+    derivatives[:, rows[:, None], rows] = derivatives_along(motion, then)
     return derivatives
 
 
 def rotation_derivatives(motion: FreeMotion, times: ArrayLike) -> FloatArray:
     """Return the part of `state_derivatives` for rotation vector and angular velocity, (n, 6, 6)."""
-    times = check_magnitude("times", check_array("times", times, (None,)), motion.farthest)
+    return derivatives_along(motion, motion.at(check_array("times", times, (None,))))
+
+
+def derivatives_along(motion: FreeMotion, then: Trajectory) -> FloatArray:
+    """Return `rotation_derivatives` at the times of a trajectory, which is that of the motion."""
+    times = then.seconds
     if len(times) == 0:
         return np.zeros((0, 6, 6))
     state, body = motion.state, motion.body
@@ -87,7 +93,6 @@ def rotation_derivatives(motion: FreeMotion, times: ArrayLike) -> FloatArray:
     L_cross = cross_matrix(L)
     by_w = body.inertia_in_world(state.R_WB)
     by_theta = by_w @ cross_matrix(state.w_WB_W) - L_cross  # dL = I dw + theta x L - I (theta x w)
-    then = motion.at(times)
     R = matrices_of(then.q_WB)
     if largest_rate(motion.rotation) * float(np.abs(times).max()) < SMALL_TURN:
         homogeneous, by_L = _slowly(motion, times)

@@ -24,12 +24,13 @@ import numpy as np
 
 from contact_dynamics.constants import STANDARD_GRAVITY_W, seconds_since
 from contact_dynamics.errors import InvalidFieldError, TooLargeError
-from contact_dynamics.motion.free_derivative import rotation_derivatives
+from contact_dynamics.motion.free_derivative import derivatives_along
 from contact_dynamics.motion.velocity_jump import velocity_jump
 from contact_dynamics.motion.whole_turns import (
     MAX_NOISE_RATIO,
     MAX_ORIENTATION_RESIDUAL,
     Chosen,
+    Stamps,
     chosen_motion,
     turns_near,
 )
@@ -294,7 +295,7 @@ def _start(window: _Turning) -> FreeMotion:
     return best
 
 
-class _Turning:
+class _Turning(Stamps[FreeMotion]):
     """Published attitudes and angular velocities, with the methods that fit a rotation to them."""
 
     unknowns = 6
@@ -307,7 +308,7 @@ class _Turning:
         noise: StateNoise | None,
     ) -> None:
         self.body = body
-        self.seconds = seconds
+        super().__init__(seconds)
         self.q = np.array([state.q_WB for state in states])
         self.w = np.array([state.w_WB_W for state in states])
         self.by_q = 1.0 if noise is None else 1.0 / noise.orientation
@@ -317,7 +318,7 @@ class _Turning:
 
     def misses(self, motion: FreeMotion, count: int) -> FloatArray:
         """Return the weighted residuals of the last ``count`` states: of all attitudes, and then of rates."""
-        then = motion.at(self.seconds[-count:])
+        then = self.at(motion, count)
         weighted = (self.by_q * rotation_vectors(self.q[-count:], then.q_WB)).ravel()
         if not self.by_w:
             return weighted
@@ -325,7 +326,7 @@ class _Turning:
 
     def derivatives(self, motion: FreeMotion, count: int) -> FloatArray:
         """Return the derivatives of what the residuals compare, (m, 6)."""
-        each = rotation_derivatives(motion, self.seconds[-count:])
+        each = derivatives_along(motion, self.at(motion, count))
         if not np.isfinite(each).all():
             raise InvalidFieldError(
                 "states", f"{-self.seconds[-count]:g} s", "a window over which the motion is predictable"

@@ -25,7 +25,7 @@ from contact_dynamics.motion.free_fit import MAX_STATES, FitResult, StateNoise, 
 from contact_dynamics.motion.integrated import MAX_STEPS, ForcedMotion, forced_motion, turns_or_drags
 from contact_dynamics.motion.integrated_derivative import forced_state_derivatives
 from contact_dynamics.motion.velocity_jump import velocity_jump
-from contact_dynamics.motion.whole_turns import chosen_motion
+from contact_dynamics.motion.whole_turns import Stamps, chosen_motion
 from contact_dynamics.numerics.gauss_newton import Fit, gauss_newton
 from contact_dynamics.rigid_body.body import BodyState, HasMassProperties, MassProperties
 from contact_dynamics.rotations.many import rotation_vectors, turned
@@ -122,7 +122,7 @@ def _noise_of(position_residual: float, orientation_residual: float, count: int)
     )
 
 
-class _Seen:
+class _Seen(Stamps[ForcedMotion]):
     """The published states, as arrays, with the methods that fit a motion to them."""
 
     unknowns = 12
@@ -132,7 +132,7 @@ class _Seen:
     ) -> None:
         self.body = body
         newest = states[-1].stamp_ns
-        self.seconds = seconds_since(newest, [state.stamp_ns for state in states])
+        super().__init__(seconds_since(newest, [state.stamp_ns for state in states]))
         self.p = np.array([state.p_WB_W for state in states])
         self.q = np.array([state.q_WB for state in states])
         self.v = np.array([state.v_WB_W for state in states])
@@ -147,7 +147,7 @@ class _Seen:
 
     def misses(self, motion: ForcedMotion, count: int = MAX_STATES) -> FloatArray:
         """Return the seen states less the computed ones, (n, 12), of the last ``count`` states."""
-        then = motion.at(self.seconds[-count:])
+        then = self.at(motion, min(count, len(self.seconds)))
         return np.hstack(
             [
                 self.p[-count:] - then.p_WB_W,

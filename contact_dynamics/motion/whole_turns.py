@@ -95,6 +95,10 @@ class Window(Protocol[Model]):
     noise_is_known: bool
     rates_weigh: bool  # angular velocities are among the residuals
 
+    def at(self, model: Model, count: int) -> Trajectory:
+        """Return a motion at the last ``count`` stamps."""
+        ...
+
     def fitted(self, start: Model, count: int) -> Fit[Model]:
         """Return the fit to the last ``count`` states."""
         ...
@@ -129,6 +133,21 @@ class _Found(Generic[Model]):
     orientation_residual: float  # rad
     spin_miss: float  # rad/s, rms of the published angular velocities less its own
     converged: bool
+
+
+class Stamps(Generic[Model]):
+    """The stamps of a window's states. The last motion at them is kept: many parts of a fit look at it."""
+
+    def __init__(self, seconds: FloatArray) -> None:
+        """Take the stamps, (n,), s, from the newest."""
+        self.seconds = seconds
+        self._last: tuple[Model, int, Trajectory] | None = None
+
+    def at(self, model: Model, count: int) -> Trajectory:
+        """Return a motion at the last ``count`` stamps."""
+        if self._last is None or self._last[0] is not model or self._last[1] != count:
+            self._last = model, count, model.at(self.seconds[-count:])
+        return self._last[2]
 
 
 def turns_near(q: FloatArray, q_from: FloatArray, expected: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -193,7 +212,7 @@ def _goodness(found: _Found[Model]) -> tuple[bool, float]:
 
 
 def _judged(window: Window[Model], fit: Fit[Model]) -> _Found[Model]:
-    then = fit.model.at(window.seconds)
+    then = window.at(fit.model, len(window.seconds))
     turns, rates = rotation_vectors(window.q, then.q_WB), window.w - then.w_WB_W
     count = len(window.seconds)
     orientation_residual = math.sqrt(float(np.square(turns).sum()) / count)
