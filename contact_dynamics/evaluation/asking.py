@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -176,15 +177,23 @@ def _landing(row: Comparison, event: FoundEvent, known: Context, settings: Setti
     return replace(_with_state(row, state, event, distance=distance, degrees=1), time_error=error)
 
 
-def _asked_impact(row: Comparison, event: FoundEvent, known: Context, settings: Settings) -> ImpactAnswer:
-    law: Law = row.law or settings.laws[0]
+@lru_cache(maxsize=1)
+def _first_answer(event: FoundEvent, known: Context, settings: Settings) -> ImpactAnswer:
+    """Return the answer from the fit under the first law. The baseline flies on from its state before."""
+    source = PublishedState(fit_window=settings.fit_window)
+    return _asked_impact(event, known, settings.laws[0], source, include_covariance=True)
+
+
+def _asked_impact(
+    event: FoundEvent, known: Context, law: Law, source: PublishedState, *, include_covariance: bool
+) -> ImpactAnswer:
     several = law.several_contacts_law
     question = ImpactQuestion(
         body=event.body,
-        state=_source(row, settings),
+        state=source,
         restitution_law=law.restitution_law,
         several_contacts_law=several,
-        include_covariance=row.law is settings.laws[0] and _has_covariance(row, known),
+        include_covariance=include_covariance,
     )
     try:
         if isinstance(several, InTime):
@@ -194,14 +203,19 @@ def _asked_impact(row: Comparison, event: FoundEvent, known: Context, settings: 
                 return ask(replace(question, several_contacts_law=brief), known)
         return ask(question, known)
     except NotSupportedError:  # covariances are carried through one contact alone
-        if not question.include_covariance:
+        if not include_covariance:
             raise
         return ask(replace(question, include_covariance=False), known)
 
 
 def _impact(row: Comparison, event: FoundEvent, known: Context, settings: Settings) -> Comparison:
     """Return the row with the state after the impact, flown on for as long as the measured one took."""
-    answer = _asked_impact(row, event, known, settings)
+    law = row.law or settings.laws[0]
+    if row.method is not Method.NEWEST and law is settings.laws[0]:
+        answer = _first_answer(event, known, settings)
+    else:
+        has_covariance = law is settings.laws[0] and _has_covariance(row, known)
+        answer = _asked_impact(event, known, law, _source(row, settings), include_covariance=has_covariance)
     state, covariance, lasted = answer.impact.state, answer.impact.covariance, 0.0
     if row.method is Method.NO_IMPACT:
         state, covariance = answer.state, None
