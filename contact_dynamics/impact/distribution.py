@@ -208,7 +208,9 @@ def _draw(covariance: ArrayLike, size: int, samples: int, seed: int) -> FloatArr
     if not symmetric or values[0] < -SYMMETRY_TOLERANCE * largest:
         raise InvalidFieldError("covariance", matrix.tolist(), "a symmetric positive semidefinite matrix")
     half = np.random.default_rng(seed).standard_normal((samples // 2, size))
-    deviations: FloatArray = (half * np.sqrt(np.maximum(values, 0.0))) @ vectors.T
+    # The symmetric root is the same for any axes of equal variances, which a rounding error would turn.
+    root = (vectors * np.sqrt(np.maximum(values, 0.0))) @ vectors.T
+    deviations: FloatArray = half @ root
     return np.concatenate([deviations, -deviations])
 
 

@@ -72,6 +72,19 @@ def test_no_uncertainty_gives_the_answer_itself() -> None:
     assert answer.probabilities[single.outcome] == 1.0
 
 
+def test_rounding_errors_of_equal_variances_change_next_to_nothing() -> None:
+    """The axes of equal variances are arbitrary, and a rounding error turns them by radians."""
+    contact = PlanarContact(r=(0.3, -1.0), normal=(0.0, 1.0), friction=0.2, restitution=0.5)
+    velocity = PlanarVelocity(v=(0.7, -1.0), w=0.0)
+    rounding = 1e-16 * np.array([[0.0, 1.0, -2.0], [1.0, 0.5, 1.0], [-2.0, 1.0, 0.0]])
+    one, other = (
+        planar_impact_distribution(BODY, velocity, contact, covariance=covariance, samples=200)
+        for covariance in (0.01 * np.eye(3), 0.01 * np.eye(3) + rounding)
+    )
+    assert other.mean == pytest.approx(one.mean, abs=1e-13)
+    assert other.covariance == pytest.approx(one.covariance, abs=1e-14)
+
+
 def test_space_agrees_with_the_plane() -> None:
     """Uncertain only in the plane: the same distribution, within what so few draws allow."""
     contact = PlanarContact(r=(0.3, -1.0), normal=(0.0, 1.0), friction=0.3, restitution=0.5)
