@@ -37,7 +37,7 @@ import numpy as np
 from contact_dynamics.numerics.gauss_collocation import Collocation
 from contact_dynamics.rigid_body.body import angular_momentum
 from contact_dynamics.rotations.many import cross_matrices, matrices_of
-from contact_dynamics.rotations.one import cross_matrix
+from contact_dynamics.rotations.one import cross_matrix, rotation_matrix
 from contact_dynamics.tolerances import GROWTH_ROUNDING, LARGEST_DERIVATIVE_ERROR, SMALL_TURN
 from contact_dynamics.tumbling.poinsot_construction import polhode_period
 from contact_dynamics.tumbling.polhode import Spin, largest_rate
@@ -123,7 +123,9 @@ def _seen_from_the_body(motion: FreeMotion, times: FloatArray) -> FloatArray:
     """Return B at times (n,): (n, 3, 3)."""
     rotation = motion.rotation
     if isinstance(rotation, Spin):
-        return _of_steady_spin(_coefficients(motion, np.zeros(1))[0], times)
+        I_B = motion.body.I_B
+        w_B = motion.state.R_WB.T @ motion.state.w_WB_W
+        return _of_steady_spin(np.linalg.inv(I_B) @ cross_matrix(I_B @ w_B) - cross_matrix(w_B), times)
     rate = abs(float(rotation.omega_p))
     period = polhode_period(rotation)
     turns = np.trunc(times / period)
@@ -202,12 +204,19 @@ def _edges(farthest: float, rate: float, w: float) -> FloatArray:
 
 
 def _coefficients(motion: FreeMotion, times: FloatArray) -> FloatArray:
-    """Return I^-1 [L] - [w] in body axes, (n, 3, 3), 1/s."""
-    then = motion.at(times)
-    w_B = np.einsum("nij,ni->nj", matrices_of(then.q_WB), then.w_WB_W)
-    I_B = motion.body.I_B
-    K: FloatArray = np.linalg.inv(I_B) @ cross_matrices(w_B @ I_B) - cross_matrices(w_B)
-    return K
+    """Return I^-1 [L] - [w] in body axes, (n, 3, 3), 1/s, of a tumble.
+
+    In principal axes, with l = L / |L|, an entry is one of l times a difference of |L| / I_i and |L| / I_j.
+    """
+    l_1, l_2, l_3 = motion.form.momenta(times)
+    first, third = motion.w_across
+    K = np.zeros((len(times), 3, 3))
+    K[:, 0, 1], K[:, 0, 2] = (third - first) * l_3, first * l_2
+    K[:, 1, 0], K[:, 1, 2] = -third * l_3, first * l_1
+    K[:, 2, 0], K[:, 2, 1] = -third * l_2, (third - first) * l_1
+    R_PB = rotation_matrix(np.array(motion.q_PB))
+    in_body: FloatArray = R_PB.T @ K @ R_PB
+    return in_body
 
 
 def _inverse_inertia(motion: FreeMotion, R: FloatArray) -> FloatArray:

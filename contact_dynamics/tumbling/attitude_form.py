@@ -52,6 +52,12 @@ class AttitudeForm(Record):
         factor = complex(scale, scale * tangent)
         return factor * complex(A_re, A_im), factor * complex(B_re, B_im), C / norm2, D / norm2
 
+    def momenta(self, seconds: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Return L / |L| in P at times (n,), s: three arrays (n,)."""
+        A_re, A_im, B_re, B_im, C, D, _ = self.points(seconds)
+        norm2 = A_re * A_re + A_im * A_im + B_re * B_re + B_im * B_im
+        return C / norm2, 2.0 * (A_re * B_im - A_im * B_re) / norm2, D / norm2
+
     def points(self, seconds: FloatArray) -> Values:
         """Return what `theta` says at times (n,), s."""
         return self.series.values(np, *self.z.fractions(seconds), self.psi.fractions(seconds)[0])
