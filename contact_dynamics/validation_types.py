@@ -105,8 +105,11 @@ def check_types_of(page: dict[str, Any]) -> None:
                 checked.__module__ = page["__name__"]  # where pickle finds it
                 page[name] = checked
     chapter = sys.modules[page["__name__"]]
-    if inspect.isfunction(_own_function(chapter)):
+    function = _own_function(chapter)
+    if inspect.isfunction(function):
         chapter.__class__ = CallableChapter
+        call = f"{function.__name__}{inspect.signature(function)}"  # help shows the call first
+        chapter.__doc__ = f"{inspect.getdoc(function)}\n\n{call}\n\n{chapter.__doc__}"
 
 
 def checks_types(function: Callable[P, R]) -> Callable[P, R]:

@@ -100,6 +100,7 @@ def test_a_chapter_with_a_function_of_its_name_is_called_as_it() -> None:
             assert chapter in {"contact_modes", "toss"}
             called = getattr(contact_dynamics, chapter)
             assert inspect.signature(called) == inspect.signature(function)
+            assert inspect.getdoc(called).startswith(inspect.getdoc(function)), "help shows the call first"
             assert sys.modules[f"contact_dynamics.{chapter}"] is called
             with pytest.raises(TypeError, match=r"^(body|problem) must be a "):
                 called(*["no question"] * sum(one.default is one.empty for one in _parameters(function)))
