@@ -53,31 +53,31 @@ VERBS: Final = {
         "contact_dynamics.demo.run",
         "contact_dynamics.demo.arguments:demo_parser",
         (*_ROS, "rerun"),
-        "play a recorded toss, ask the server about it, and compare predictions with measurements",
+        "play a recorded toss, and compare the server's predictions with the measurements",
     ),
     "server": Verb(
         "contact_dynamics.nodes.server",
         "contact_dynamics.nodes.arguments:server_parser",
         _ROS,
-        "serve contact modes, impacts, tumbling and tosses over ROS 2",
+        "provide the services for contact modes, impacts, tumbling and tosses over ROS 2",
     ),
     "visualizer": Verb(
         "contact_dynamics.nodes.visualizer",
         "contact_dynamics.nodes.arguments:visualizer_parser",
         (*_ROS, "rerun"),
-        "show bodies, contacts and predictions in rerun, live or to a file",
+        "draw bodies, contacts and predictions in rerun, live or to a file",
     ),
     "replay": Verb(
         "contact_dynamics.replay.run",
         "contact_dynamics.replay.arguments:replay_parser",
         (),
-        "answer the questions of a log again and compare the answers",
+        "recompute the answers in a log and compare them; tables, pictures, publishing",
     ),
     "evaluate": Verb(
         "contact_dynamics.evaluation.run",
         "contact_dynamics.evaluation.arguments:evaluate_parser",
         (),
-        "compare predictions with what happened, in logs and recorded tosses",
+        "measure the accuracy of predictions on logs and recorded tosses",
     ),
     "calibrate": Verb(
         "contact_dynamics.calibration.run",
@@ -95,33 +95,33 @@ VERBS: Final = {
         "contact_dynamics.plots.run",
         "contact_dynamics.plots.arguments:plot_parser",
         ("matplotlib",),
-        "draw the answers of a log as diagrams",
+        "draw diagrams of the answers in a log",
     ),
     "cases": Verb(
         "contact_dynamics.cases.run",
         "contact_dynamics.cases.arguments:cases_parser",
         (),
-        "solve cases with known exact answers, here and with MuJoCo",
+        "solve problems with known exact answers, and compare with MuJoCo",
     ),
     "toss_publisher": Verb(
         "contact_dynamics.demo.toss_publisher",
         "contact_dynamics.demo.arguments:toss_publisher_parser",
         _ROS,
-        "publish a recorded toss as a body's states",
+        "publish the states of a recorded toss",
         is_listed=False,
     ),
     "block_publisher": Verb(
         "contact_dynamics.demo.block_publisher",
         "contact_dynamics.demo.arguments:block_publisher_parser",
         _ROS,
-        "publish a block that a finger pushes, or whose tray tilts",
+        "publish the states of a block that is pushed or lies on a tilting tray",
         is_listed=False,
     ),
     "commentator": Verb(
         "contact_dynamics.demo.commentator",
         "contact_dynamics.demo.arguments:commentator_parser",
         _ROS,
-        "ask a running server about a body, and print the answers in words",
+        "send requests to a running server, and print text summaries of the responses",
         is_listed=False,
     ),
 }
@@ -229,10 +229,10 @@ def _parser() -> argparse.ArgumentParser:
     verbs = "\n".join(f"  {name:15} {verb.help}" for name, verb in VERBS.items() if verb.is_listed)
     parser = argparse.ArgumentParser(
         prog="contact-dynamics",
-        description="Contact modes, impacts, free tumbling and whole tosses of rigid bodies.",
+        description="Predict contact modes, impacts, tumbling and tosses of rigid bodies.",
         epilog=f"verbs:\n{verbs}\n\n`contact-dynamics <verb> --help` explains each verb.",
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument("verb", help="what to do, see below", choices=sorted(VERBS), metavar="verb")
+    parser.add_argument("verb", help="one of the verbs below", choices=sorted(VERBS), metavar="verb")
     parser.add_argument("--version", action="version", version=version_of_this_package())
     return parser

@@ -15,37 +15,39 @@ def calibrate_parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="contact-dynamics calibrate",
         usage="%(prog)s [options] RECORDING [RECORDING ...]",
-        description="Find out friction, restitution, mass centre, inertia and more from recorded tosses "
-        "of one body: flights, strikes of single corners and rests. This needs no ROS. "
-        "docs/calibrate.md explains every number.",
-        epilog="exit code: 0 all went well; 1 the data leave something open, which is said; 2 nothing "
-        "could be calibrated, or an argument is wrong",
+        description="Estimate friction, restitution, centre of mass, inertia and more from recorded "
+        "tosses of one body. ROS is not required. docs/calibrate.md explains the results.",
+        epilog="The exit code is 0 on success, 1 if a parameter remains undetermined, which the "
+        "report lists, and 2 if nothing could be estimated or an argument is invalid.",
     )
     add_recordings(parser)
     add_config(parser)
-    parser.add_argument("--body", default="", metavar="NAME", help="the body, where recordings show several")
+    parser.add_argument(
+        "--body", default="", metavar="NAME", help="body to calibrate, if recordings contain several"
+    )
     parser.add_argument(
         "--free",
         type=_groups,
         default=STANDARD,
         metavar="NAME,NAME",
-        help=f"what may change: {', '.join(each.value for each in Free)}, or all (default: {standard})",
+        help=f"parameters to estimate: {', '.join(each.value for each in Free)}, or all (default: "
+        f"{standard})",
     )
     parser.add_argument(
         "--no-trajectories",
         action="store_true",
-        help="leave out the second way, by whole trajectories, which takes most of the time",
+        help="skip the second estimate, from whole trajectories, which takes most of the time",
     )
-    parser.add_argument("--yaml", type=Path, metavar="FILE", help="parameters for the server, as calibrated")
-    parser.add_argument("--json", type=Path, metavar="FILE", help="everything, for programs")
+    parser.add_argument("--yaml", type=Path, metavar="FILE", help="calibrated parameters for the server")
+    parser.add_argument("--json", type=Path, metavar="FILE", help="the complete result")
     parser.add_argument(
-        "--plots", type=Path, metavar="DIR", help="pictures of residuals and estimates (needs matplotlib)"
+        "--plots", type=Path, metavar="DIR", help="plots of residuals and estimates (requires Matplotlib)"
     )
     parser.add_argument(
         "--rerun",
         type=Path,
         metavar="FILE.rrd",
-        help="strikes side by side, with measured and predicted velocities after them (needs rerun)",
+        help="impacts with the measured and predicted velocities after them (requires rerun)",
     )
     return parser
 

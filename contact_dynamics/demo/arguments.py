@@ -12,23 +12,23 @@ PUSHED_BLOCK: Final = "pushed_block"
 TRAY: Final = "tray"
 """The situations that the examples show. Each has a launch file of its name."""
 
-_RECORDING = "recording: a .csv like the package's own (the default), or measured cube tosses, .npz#INDEX"
+_RECORDING = "recording: a .csv file, or a measured cube toss as .npz#INDEX (default: the package's own toss)"
 
 
 def demo_parser() -> argparse.ArgumentParser:
     """Return the parser of `contact-dynamics demo`."""
     parser = argparse.ArgumentParser(
         prog="contact-dynamics demo",
-        description="Play a recorded toss, ask the server about it, and compare with measurements.",
-        epilog="The nodes of the examples have --help too: toss_publisher, block_publisher, commentator.",
+        description="Play a recorded toss, and compare the server's predictions with the measurements.",
+        epilog="The example nodes toss_publisher, block_publisher and commentator also have --help.",
     )
     parser.add_argument("--toss", default=str(DEFAULT_RECORDING), metavar="PATH", help=_RECORDING)
-    parser.add_argument("--view", action="store_true", help="open rerun's viewer and watch live")
+    parser.add_argument("--view", action="store_true", help="draw the toss live in rerun's viewer")
     parser.add_argument(
         "--output",
         default="demo_output",
         metavar="DIR",
-        help="folder for the folder of this run (default: %(default)s)",
+        help="parent folder of the folder of this run (default: %(default)s)",
     )
     parser.add_argument("--quiet", action="store_true", help="print no table")
     return parser
@@ -37,7 +37,7 @@ def demo_parser() -> argparse.ArgumentParser:
 def toss_publisher_parser() -> argparse.ArgumentParser:
     """Return the parser of `contact-dynamics toss_publisher`."""
     parser = argparse.ArgumentParser(
-        prog="contact-dynamics toss_publisher", description="Publish a recorded toss as a body's states."
+        prog="contact-dynamics toss_publisher", description="Publish the states of a recorded toss."
     )
     parser.add_argument("--toss", default=str(DEFAULT_RECORDING), metavar="PATH", help=_RECORDING)
     parser.add_argument(
@@ -54,22 +54,22 @@ def block_publisher_parser() -> argparse.ArgumentParser:
     """Return the parser of `contact-dynamics block_publisher`."""
     parser = argparse.ArgumentParser(
         prog="contact-dynamics block_publisher",
-        description="Publish the states of a block that a finger pushes, or whose tray tilts.",
-        epilog="The server's parameters describe the block and what it stands on. They follow --ros-args.",
+        description="Publish the states of a block that is pushed by a finger, or lies on a tilting tray.",
+        epilog="The server's parameters, after --ros-args, describe the block and its surfaces.",
     )
     parser.add_argument(
         "situation",
         nargs="?",
         choices=(PUSHED_BLOCK, TRAY),
         default=PUSHED_BLOCK,
-        help="what happens to the block (default: %(default)s)",
+        help="scenario (default: %(default)s)",
     )
     numbers = {
-        "--height": (0.03, "M", "height at which the finger pushes"),
-        "--rate": (1.0, "N/S", "how fast the push grows"),
-        "--tilt": (25.0, "DEGREES", "how far the tray tilts"),
-        "--degrees-per-second": (3.0, "DEGREES", "how fast the tray tilts"),
-        "--seconds": (15.0, "S", "how long to publish"),
+        "--height": (0.03, "M", "height of the push, m"),
+        "--rate": (1.0, "N/S", "growth rate of the push, N/s"),
+        "--tilt": (25.0, "DEGREES", "final tilt of the tray, degrees"),
+        "--degrees-per-second": (3.0, "DEGREES", "tilt rate of the tray, degrees/s"),
+        "--seconds": (15.0, "S", "duration, s"),
     }
     for name, (default, unit, text) in numbers.items():
         parser.add_argument(
@@ -82,15 +82,16 @@ def commentator_parser() -> argparse.ArgumentParser:
     """Return the parser of `contact-dynamics commentator`."""
     parser = argparse.ArgumentParser(
         prog="contact-dynamics commentator",
-        description="Ask a running server about a body again and again, and print the answers in words.",
-        epilog="The server's parameters name the body and the topic of its states. They follow --ros-args.",
+        description="Send requests to a running server repeatedly, and print a text summary of each "
+        "response.",
+        epilog="The server's parameters, after --ros-args, name the body and the topic of its states.",
     )
     parser.add_argument(
         "situation",
         nargs="?",
         choices=(THROWN_BOX, PUSHED_BLOCK, TRAY),
         default=THROWN_BOX,
-        help="what to ask about, as it is launched (default: %(default)s)",
+        help="scenario, as in the launch file of its name (default: %(default)s)",
     )
     parser.add_argument(
         "--server",

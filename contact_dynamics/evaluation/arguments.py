@@ -21,11 +21,11 @@ def evaluate_parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="contact-dynamics evaluate",
         usage="%(prog)s [options] RECORDING [RECORDING ...]",
-        description="Find the events in what was measured (flights, first contacts, impacts, rests, slides), "
-        "ask about each as it would have been asked some time before, and compare with what came. This needs "
-        "no ROS. docs/evaluate.md explains every number.",
-        epilog="exit code: 0 all recordings were evaluated; 1 some were not; 2 none was, or an argument is "
-        "wrong",
+        description="Find flights, first contacts, impacts, rests and slides in recordings, predict "
+        "each from the states available some time before, and compare the predictions with what "
+        "actually happened. ROS is not required. docs/evaluate.md explains the results.",
+        epilog="The exit code is 0 if all recordings were evaluated, 1 if some were not, and 2 if "
+        "none was or an argument is invalid.",
     )
     add_recordings(parser)
     _add_what_is_asked(parser)
@@ -41,7 +41,7 @@ def add_recordings(parser: argparse.ArgumentParser) -> None:
         nargs="*",
         metavar="RECORDING",
         help="log (its folder or .mcap or .db3 file), toss (.csv), tosses (.npz, or one of them: "
-        "tosses.npz#17), or a folder in which all of these are looked for",
+        "tosses.npz#17), or a folder that contains any of these",
     )
 
 
@@ -51,81 +51,80 @@ def add_config(parser: argparse._ActionsContainer) -> None:
         "--config",
         type=Path,
         metavar="YAML",
-        help="parameters of the server that describe bodies, surfaces and topics (default: those in the log; "
-        "a toss has its own)",
+        help="server parameters of bodies, surfaces and topics (default: those in the log or the toss)",
     )
 
 
 def _add_what_is_asked(parser: argparse.ArgumentParser) -> None:
-    asked = parser.add_argument_group("what is asked")
+    asked = parser.add_argument_group("predictions")
     add_config(asked)
     asked.add_argument(
         "--horizons",
         type=_list_of_seconds,
         default=HORIZONS,
         metavar="MS,MS",
-        help="how long before an event to ask, ms (default: 20,50,100,200)",
+        help="look-ahead times of the predictions, ms (default: 20,50,100,200)",
     )
     asked.add_argument(
         "--laws",
         type=_laws,
         default=LAWS,
         metavar="LAW,LAW",
-        help=f"laws of impact: {', '.join(LAWS)} (default: all)",
+        help=f"impact laws: {', '.join(LAWS)} (default: all)",
     )
     asked.add_argument(
         "--fit-window",
         type=_seconds,
         default=FIT_WINDOW,
         metavar="MS",
-        help="length of the states that a flight is fitted to, ms, at most since it began (default: 100)",
+        help="length of the window of states to which a flight is fitted, ms (default: 100)",
     )
     asked.add_argument(
         "--against",
         type=Path,
         metavar="FILE",
-        help="compare with another configuration (.yaml), asked about the same events; or with the JSON of "
-        "another evaluation of the same recordings, as by another version",
+        help="compare with predictions under another configuration (.yaml), or with the --json file "
+        "of another evaluation of the same recordings",
     )
 
 
 def _add_who_does_it(parser: argparse.ArgumentParser) -> None:
-    work = parser.add_argument_group("who does it")
+    work = parser.add_argument_group("processes")
     work.add_argument(
         "--jobs",
         type=_count,
         default=1,
         metavar="N",
-        help="processes of this machine, which share the recordings, or the bodies of few logs (default: 1)",
+        help="number of processes on this machine (default: 1)",
     )
     work.add_argument(
         "--dask",
         default="",
         metavar="ADDRESS",
-        help="scheduler of a Dask cluster whose workers see the recordings under the same paths, such as "
-        "tcp://10.0.0.1:8786; or local:N for N workers here",
+        help="scheduler of a Dask cluster whose workers find the recordings under the same paths, such as "
+        "tcp://10.0.0.1:8786; or local:N for N workers on this machine",
     )
     work.add_argument(
         "--results",
         type=Path,
         metavar="DIR",
-        help="keep the result of each recording here, and go on from what is there",
+        help="folder for the results of single recordings, from which an interrupted evaluation continues",
     )
 
 
 def _add_outputs(parser: argparse.ArgumentParser) -> None:
-    outputs = parser.add_argument_group("what it writes besides the tables on the terminal")
-    outputs.add_argument("--json", type=Path, metavar="FILE", help="everything, for --against and programs")
-    outputs.add_argument("--csv", type=Path, metavar="FILE", help="a row for each question")
-    outputs.add_argument("--parquet", type=Path, metavar="FILE", help="the same (needs pyarrow)")
+    outputs = parser.add_argument_group("output files")
+    outputs.add_argument("--json", type=Path, metavar="FILE", help="the complete result")
+    outputs.add_argument("--csv", type=Path, metavar="FILE", help="one row per prediction")
+    outputs.add_argument("--parquet", type=Path, metavar="FILE", help="the same rows (requires pyarrow)")
     outputs.add_argument(
-        "--plots", type=Path, metavar="DIR", help="pictures of errors and coverage (needs matplotlib)"
+        "--plots", type=Path, metavar="DIR", help="plots of errors and coverage (requires Matplotlib)"
     )
     outputs.add_argument(
         "--rerun",
         type=Path,
         metavar="FILE.rrd",
-        help="events side by side, measured against predicted (needs rerun)",
+        help="measured and predicted events side by side (requires rerun)",
     )
 
 

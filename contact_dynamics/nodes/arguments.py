@@ -25,8 +25,8 @@ def server_parser() -> argparse.ArgumentParser:
     """Return the parser of `contact-dynamics server`."""
     return _parser(
         "server",
-        "Serve contact modes, impacts, tumbling and whole tosses over ROS 2.",
-        f"parameters, which config/server.yaml explains:\n{_listed(described_server_parameters())}",
+        "Provide the services for contact modes, impacts, tumbling and tosses over ROS 2.",
+        f"parameters, explained in config/server.yaml:\n{_listed(described_server_parameters())}",
     )
 
 
@@ -34,9 +34,9 @@ def visualizer_parser() -> argparse.ArgumentParser:
     """Return the parser of `contact-dynamics visualizer`."""
     return _parser(
         "visualizer",
-        "Show bodies, contacts and predictions in rerun, live or to a file.",
-        "parameters, which config/visualizer.yaml explains, besides those of the server (`server --help`):\n"
-        f"{_listed(VISUALIZER_PARAMETERS.values())}\n\n"
+        "Draw bodies, contacts and predictions in rerun, live or to a file.",
+        "parameters, explained in config/visualizer.yaml, in addition to those of the server "
+        f"(`server --help`):\n{_listed(VISUALIZER_PARAMETERS.values())}\n\n"
         "One of rrd_path, spawn, serve and connect is required.",
     )
 
@@ -104,7 +104,7 @@ def _parser(verb: str, description: str, parameters: str) -> argparse.ArgumentPa
         prog=f"contact-dynamics {verb}",
         description=description,
         epilog=f"{parameters}\n\n"
-        "ROS's own arguments follow --ros-args: -p name:=value sets a parameter, -r from:=to remaps.",
+        "ROS arguments follow --ros-args: -p name:=value sets a parameter, and -r from:=to remaps a name.",
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument(

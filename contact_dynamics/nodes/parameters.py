@@ -117,8 +117,8 @@ def read_server_parameters(source: ParameterSource) -> ServerParameters:
             message names it.
     """
     reader = ParameterReader(source)
-    body_names = reader.names("bodies", "Names of the bodies that questions can name.")
-    surface_names = reader.names("surfaces", "Names of the flats and obstacles of the world.")
+    body_names = reader.names("bodies", "Names of the configured bodies.")
+    surface_names = reader.names("surfaces", "Names of the surfaces: planes and obstacles.")
     try:
         parameters = _read_parameters(reader, body_names, surface_names)
     except ConfigurationError as error:  # whose cause may be a name that is not known
@@ -157,13 +157,13 @@ def _read_parameters(
             "tf_static_topic",
             "Topic of tf2_msgs/TFMessage with static transforms. Not used if empty.",
         ),
-        world_frame=reader.name("world_frame", "world", "Frame of states and answers."),
+        world_frame=reader.name("world_frame", "world", "Frame of states and responses."),
         state_timeout=reader.read("state_timeout", 0.5, "Largest age of the newest state, s.", (1e-3, 1e6)),
         state_history=reader.read("state_history", 5.0, "Length of the history of states, s.", (0.0, 1e4)),
         future_tolerance=reader.read(
             "future_tolerance",
             FUTURE_TOLERANCE,
-            "Largest lead of a state's stamp over the node's clock, s. Other states are rejected.",
+            "Largest lead of a state's stamp over the node's clock, s. States further ahead are rejected.",
             (0.0, 1e6),
         ),
         max_states=reader.read(
@@ -171,7 +171,7 @@ def _read_parameters(
         ),
         fault_limits=reader.filled(
             FaultLimits(),
-            warn_every=("Shortest time between two warnings of one kind about a topic, s.", (0.0, 1e6)),
+            warn_every=("Shortest time between two warnings of the same kind about a topic, s.", (0.0, 1e6)),
             silent_after=("Time without a message after which a topic counts as silent, s.", (0.1, 1e6)),
         ),
         client_gone_for=reader.read(
@@ -181,26 +181,26 @@ def _read_parameters(
             Defaults(),
             velocity_tolerance=("Speed below which a contact counts as at rest, m/s.", (0.0, 1e3)),
             distance_tolerance=(
-                "Gap below which a body counts as touching, and largest depth in a surface, m.",
+                "Gap below which a body counts as touching, and largest accepted penetration, m.",
                 (0.0, 1e3),
             ),
             out_of_plane_tolerance=(
-                "Motion out of the plane that still counts as planar, m/s.",
+                "Largest motion out of the plane that counts as planar, m/s.",
                 (0.0, 1e3),
             ),
             horizon=("Look-ahead time for a first contact, s.", (0.0, 1e4)),
-            rate=("Samples a second of trajectories, Hz.", (1e-6, 1e6)),
+            rate=("Sample rate of trajectories, Hz.", (1e-6, 1e6)),
         ),
         worker_limits=reader.filled(
             WorkerLimits(),
             {"count": "workers", "deadline": "answer_deadline", "memory": "worker_memory"},
             count=(
-                "Number of processes for long questions. With 0, the server answers them itself.",
+                "Number of processes for expensive requests. With 0, the server processes them itself.",
                 (0, 64),
             ),
-            deadline=("Time limit for an answer of a worker, s.", (0.01, 3600.0)),
+            deadline=("Time limit for a request that is sent to a worker, s.", (0.01, 3600.0)),
             memory=("Memory limit of a worker, MB.", (100, 1_000_000)),
-            max_waiting=("Largest number of queued questions.", (0, 1000)),
+            max_waiting=("Largest number of queued requests.", (0, 1000)),
         ),
         autostart=reader.read(
             "autostart",
@@ -209,14 +209,16 @@ def _read_parameters(
         ),
         log=is_logged,
         log_directory=reader.read(
-            "log_directory", "", "Parent folder of the log's folder. If empty, the working directory."
+            "log_directory",
+            "",
+            "Parent folder of the log's folder. An empty text means the working directory.",
         ),
         log_before_answer=_read_log_before_answer(reader, is_logged=is_logged),
         log_limits=_read_log_limits(reader),
         self_check_period=reader.zero_or(
             "self_check_period",
             60.0,
-            "Period of the check that messages reach the server, s. 0: never.",
+            "Period of the check that messages reach the server, s. 0 disables the check.",
             (0.5, 1e6),
             unit="s",
         ),
@@ -227,7 +229,7 @@ def _read_log_before_answer(reader: ParameterReader, *, is_logged: bool) -> bool
     is_before: bool = reader.read(
         "log_before_answer",
         default=False,
-        description="Whether an answer is sent only after it is on the disk, with all that it depends on.",
+        description="Whether a response is sent only once it is on the disk, with its request and states.",
     )
     if is_before and not is_logged:
         message = "log_before_answer must be false where log is false, got true"
@@ -248,21 +250,21 @@ def _read_log_limits(reader: ParameterReader) -> LogLimits:
     file_size = reader.zero_or(
         "log_file_size",
         1000.0,
-        "Size limit of a file of the log, MB. 0: no limit.",
+        "Size limit of a file of the log, MB. 0 means no limit.",
         (least, 1e8),
         unit="MB",
     )
     file_duration = reader.zero_or(
         "log_file_duration",
         1800.0,
-        "Duration of a file of the log, s. 0: no limit.",
+        "Duration of a file of the log, s. 0 means no limit.",
         (LEAST_FILE_SECONDS, 1e8),
         unit="s",
     )
     size_limit = reader.zero_or(
         "log_size_limit",
         0.0,
-        "Size limit of the log, above which its oldest files are deleted, MB. 0: no limit.",
+        "Size limit of the log, above which its oldest files are deleted, MB. 0 means no limit.",
         (FILES_KEPT * (file_size or least), 1e8),
         unit="MB",
     )

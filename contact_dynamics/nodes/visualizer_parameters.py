@@ -22,37 +22,38 @@ MOST: Final = 10**6
 
 _DECLARED: Final = (
     DeclaredParameter("server", "/contact_dynamics", "Full name of the server node whose answers are drawn."),
-    DeclaredParameter("rrd_path", "", "File to draw into, which is replaced. Empty: none."),
+    DeclaredParameter("rrd_path", "", "Output file. An existing file is replaced."),
     DeclaredParameter(
-        "rrd_file_size", 0, "Size of a file, MB, after which the next one begins. 0: one file.", (0, MOST)
+        "rrd_file_size",
+        0,
+        "Size limit of a file, MB, after which the next one begins. 0 means one file.",
+        (0, MOST),
     ),
-    DeclaredParameter("rrd_max_files", 0, "Number of newest files to keep. 0: all.", (0, MOST)),
+    DeclaredParameter("rrd_max_files", 0, "Number of newest files to keep. 0 keeps all.", (0, MOST)),
     DeclaredParameter(
-        "spawn", value=False, description="Start rerun's viewer, unless one listens at the port already."
+        "spawn", value=False, description="Start rerun's viewer, unless one already listens at the port."
     ),
     DeclaredParameter(
         "serve", value=False, description="Serve the picture at the port, for viewers that connect."
     ),
-    DeclaredParameter(
-        "connect", "", "URL of an open viewer, as rerun+http://127.0.0.1:9876/proxy. Empty: none."
-    ),
+    DeclaredParameter("connect", "", "URL of an open viewer, such as rerun+http://127.0.0.1:9876/proxy."),
     DeclaredParameter(
         "port",
         9876,  # rerun's own
-        "Port of this machine that the viewer of spawn listens at, or that serve uses.",
+        "Port of this machine for spawn and serve.",
         (1, 65535),
     ),
     DeclaredParameter(
         "web_port",
         9090,  # rerun's own
-        "Port of this machine at which a browser finds what is served. 0: none.",
+        "Port of this machine for the web viewer of the served picture. 0 disables it.",
         (0, 65535),
     ),
     DeclaredParameter(
         "viewer_memory", "1GiB", "Memory limit of the viewer or of the served picture, such as 500MB."
     ),
     DeclaredParameter(
-        "predictions", DEFAULT_PREDICTIONS, "Number of newest predictions of a body to show.", (1, 100)
+        "predictions", DEFAULT_PREDICTIONS, "Number of newest predictions shown for a body.", (1, 100)
     ),
     DeclaredParameter("surface_side", 2.0, "Side of the square drawn for a surface, m.", (1e-3, 1e4)),
 )
@@ -84,7 +85,7 @@ def read_visualizer_parameters(source: ParameterSource) -> VisualizerParameters:
         message = f"only one of spawn, serve and connect must be set, got {' and '.join(chosen)}"
         raise ConfigurationError(message)
     if not chosen and not given["rrd_path"]:
-        message = "one of rrd_path, spawn, serve and connect is required: the picture needs a place to go"
+        message = "one of rrd_path, spawn, serve and connect is required"
         raise ConfigurationError(message)
     try:
         sinks = Sinks(

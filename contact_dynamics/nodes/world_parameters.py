@@ -67,7 +67,7 @@ def read_body(reader: ParameterReader, name: str) -> tuple[Body, BodySources]:
         f"{key}.inertia",
         [0.0],
         "Angular inertia about the centre of mass, kg m^2, in the axes of the body's frame: "
-        "ixx, iyy, izz, ixy, ixz, iyz. [0.0]: of a mass that fills the shape evenly.",
+        "ixx, iyy, izz, ixy, ixz, iyz. [0.0] means that the mass fills the shape evenly.",
     )
     offset = reader.read(
         f"{key}.center_of_mass", [0.0, 0.0, 0.0], "Centre of mass in the body's frame, m: x, y, z."
@@ -76,11 +76,11 @@ def read_body(reader: ParameterReader, name: str) -> tuple[Body, BodySources]:
     body = reader.build(key, lambda: _body(name, mass, inertia, offset, shape))
     return body, BodySources(
         body_name=name,
-        frame=reader.name(f"{key}.frame", name, "Frame of the body, which the pose is of."),
+        frame=reader.name(f"{key}.frame", name, "Frame of the body, whose pose is published."),
         velocity_window=reader.read(
             f"{key}.velocity_window",
             0.05,
-            "Time over which a velocity is found where poses alone are published, s.",
+            "Length of the window for velocities where only poses are published, s.",
             (1e-3, 10.0),
         ),
         state_deviations=_read_deviations(reader, key),
@@ -94,7 +94,7 @@ def _read_deviations(reader: ParameterReader, key: str) -> tuple[float, ...]:
         name,
         [0.0],
         "Standard deviations of states that are published without a covariance: position, m, orientation, "
-        "rad, linear velocity, m/s, angular velocity, rad/s. [0.0]: such states are exact.",
+        "rad, linear velocity, m/s, angular velocity, rad/s. [0.0] means that such states are exact.",
     )
     if found == [0.0]:
         return ()
@@ -114,13 +114,13 @@ def _read_sources(reader: ParameterReader, key: str) -> tuple[ConfiguredSource, 
     )
     twist = reader.topic(
         f"{key}.twist_topic",
-        "Topic of the body's geometry_msgs/TwistStamped. If empty, velocities come from the poses.",
+        "Topic of the body's geometry_msgs/TwistStamped. If empty, velocities are estimated from poses.",
     )
     if twist is not None and pose is None:
         message = f"{key}.twist_topic must be none without a pose_topic, got {twist.name!r}"
         raise ConfigurationError(message)
     name = reader.read(f"{key}.source", "", "Name of another source of states. Not used if empty.")
-    topics = reader.topics(f"{key}.source_topics", "Topics of that source.")
+    topics = reader.topics(f"{key}.source_topics", "Topics of this source.")
     if bool(name) != bool(topics):
         found = f"{name!r} and {[topic.name for topic in topics]}"
         message = f"{key}.source and {key}.source_topics must be both or none, got {found}"
@@ -170,12 +170,12 @@ def _read_shape(reader: ParameterReader, key: str) -> ShapeParameters:
             f"{key}.rounding", 0.0, "Radius of a ball that rolls over the shape, m.", (0.0, 1e3)
         ),
         position=reader.read(
-            f"{key}.shape_position", [0.0, 0.0, 0.0], "Where the shape is in the body's frame, m: x, y, z."
+            f"{key}.shape_position", [0.0, 0.0, 0.0], "Position of the shape in the body's frame, m: x, y, z."
         ),
         orientation=reader.read(
             f"{key}.shape_orientation",
             [0.0, 0.0, 0.0, 1.0],
-            "How the shape is turned in the body's frame: unit quaternion x, y, z, w.",
+            "Orientation of the shape in the body's frame: unit quaternion x, y, z, w.",
         ),
     )
 
@@ -184,16 +184,20 @@ def read_surface(reader: ParameterReader, name: str) -> Surface | Obstacle:
     """Return a flat, or an obstacle with corners; it raises as `read_body` does."""
     key = f"surface.{name}"
     point = reader.read(
-        f"{key}.point", [0.0, 0.0, 0.0], "A point of the flat, or the centre of the box, m, world: x, y, z."
+        f"{key}.point", [0.0, 0.0, 0.0], "A point of the plane, or the centre of the box, m, world: x, y, z."
     )
     normal = reader.read(
-        f"{key}.normal", [0.0, 0.0, 1.0], "Unit normal into the free side, world axes: x, y, z."
+        f"{key}.normal",
+        [0.0, 0.0, 1.0],
+        "Unit normal of the plane, towards its free side, world axes: x, y, z.",
     )
     shape = ShapeParameters(
         numbers={
             "box": reader.read(f"{key}.box", [0.0], "Full side lengths of a box, m: x, y, z."),
             "vertices": reader.read(
-                f"{key}.vertices", [0.0], "Corners of a convex solid or plate, from the point, m: x, y, z."
+                f"{key}.vertices",
+                [0.0],
+                "Corners of a convex solid or plate, relative to the point, m: x, y, z.",
             ),
         },
         rounding=0.0,
@@ -201,18 +205,18 @@ def read_surface(reader: ParameterReader, name: str) -> Surface | Obstacle:
         orientation=reader.read(
             f"{key}.orientation",
             [0.0, 0.0, 0.0, 1.0],
-            "How box or corners are turned: unit quaternion x, y, z, w.",
+            "Orientation of the box or the corners: unit quaternion x, y, z, w.",
         ),
         pose_names=("point", "orientation"),
     )
-    friction = reader.read(f"{key}.friction", float, "Coulomb's friction coefficient with any body, >= 0.")
+    friction = reader.read(f"{key}.friction", float, "Coefficient of Coulomb friction with any body, >= 0.")
     restitution = reader.read(
         f"{key}.restitution", float, "Coefficient of restitution with any body, 0 to 1."
     )
     lasting_factor = reader.read(
         f"{key}.lasting_factor",
         1.0,
-        "Coefficient of friction where contact lasts in whole tosses, relative to that of strikes, >= 0.",
+        "Factor of the friction coefficient for sustained contact in tosses, >= 0.",
     )
 
     def build() -> Surface | Obstacle:

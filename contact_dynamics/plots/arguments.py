@@ -15,17 +15,19 @@ def plot_parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="contact-dynamics plot",
         usage="%(prog)s [options] --output DIR LOG",
-        description="Draw the diagrams of a log's answers into files: trajectories, Poinsot's picture, "
-        "impacts in impulse space, contact modes with their forces, maps of modes and force duals, whole "
-        "tosses, many states. It needs the log alone, no ROS and no viewer.",
-        epilog="Each file's name has the question's number in the log, its service, its body and the "
-        "diagram. The exit code is 0 if something was drawn, 1 if the log has no answer with a diagram, and "
-        "2 if it is no log of the server or a file cannot be written.",
+        description="Draw diagrams of the answers in a log: trajectories, Poinsot's construction, impacts in "
+        "impulse space, contact modes with their forces, maps of modes and force duals, whole "
+        "tosses, and many states. It requires only the log, and neither ROS nor a viewer.",
+        epilog="Each file name consists of the number of the question in the log, its service, its body and "
+        "the diagram. The exit code is 0 if a diagram was drawn, 1 if the log contains no answer with a "
+        "diagram, and 2 if it is not a log of the server or a file cannot be written.",
     )
     parser.add_argument(
         "log", nargs="?", metavar="LOG", help="folder of a log of the server, or its .mcap file"
     )
-    parser.add_argument("--output", type=Path, metavar="DIR", help="folder for the files, created if needed")
+    parser.add_argument(
+        "--output", type=Path, metavar="DIR", help="output folder, created if it does not exist"
+    )
     parser.add_argument(
         "--format", choices=("svg", "png"), default="svg", help="format of the files (default: svg)"
     )
@@ -34,7 +36,7 @@ def plot_parser() -> argparse.ArgumentParser:
         type=_count,
         default=MAX_QUESTIONS,
         metavar="N",
-        help=f"draw the first N answered questions (default: {MAX_QUESTIONS})",
+        help=f"maximum number of answers to draw (default: {MAX_QUESTIONS})",
     )
     return parser
 

@@ -17,10 +17,10 @@ VIEW: Final = "view"
 PUBLISH: Final = "publish"
 
 MODES: Final = {
-    VERIFY: "answer every logged question again and compare the answers (the default mode)",
-    TABLE: "write a row for each question: request, answer and later measurement",
+    VERIFY: "recompute every logged answer and compare it (the default mode)",
+    TABLE: "write one row per question: request, answer and later measurement",
     VIEW: "draw states and answers in rerun, live or to a file",
-    PUBLISH: "publish states and repeat questions over ROS",
+    PUBLISH: "publish the states over ROS, and optionally repeat the questions",
 }
 """What `replay` can do with a log."""
 
@@ -34,8 +34,8 @@ def replay_parser() -> argparse.ArgumentParser:
     """Return the parser of `contact-dynamics replay`."""
     parser = _WithDefaultMode(
         prog="contact-dynamics replay",
-        description="Replay a log. Only the mode publish needs ROS.",
-        epilog="`contact-dynamics replay LOG` verifies. `contact-dynamics replay MODE --help` has options.",
+        description="Replay a log of the server. Only the mode publish requires ROS.",
+        epilog="`contact-dynamics replay LOG` verifies. `contact-dynamics replay MODE --help` lists options.",
     )
     modes = parser.add_subparsers(dest="mode", metavar="MODE", parser_class=argparse.ArgumentParser)
     usage = "%(prog)s [-h] [--tolerance T] [--config FILE] [--set NAME:=VALUE] LOG [LOG ...]"
@@ -53,14 +53,14 @@ def recover_parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="contact-dynamics recover",
         usage="%(prog)s [-h] [--output DIR] LOG",
-        description="Rewrite a damaged or unfinished log into a new folder that every reader can open. "
-        "The damaged log is not changed. This needs no ROS.",
-        epilog="The exit code is 0 if the new log was written, whatever is lost, and 2 if it was not.",
+        description="Copy the readable messages of a damaged or unfinished log to a new folder that "
+        "every reader accepts. The damaged log is not changed. ROS is not required.",
+        epilog="The exit code is 0 if the new log was written, even if messages are lost, and 2 otherwise.",
     )
     parser.add_argument(
-        "log", nargs="?", metavar="LOG", help="folder of a log or of another bag in MCAP, or one file of it"
+        "log", nargs="?", metavar="LOG", help="folder of a log or of another MCAP bag, or one of its files"
     )
-    parser.add_argument("--output", metavar="DIR", help="the new folder (default: LOG_recovered, beside it)")
+    parser.add_argument("--output", metavar="DIR", help="new folder (default: LOG_recovered)")
     return parser
 
 
@@ -85,41 +85,39 @@ class _WithDefaultMode(argparse.ArgumentParser):
 
 def _add_verify(parser: argparse.ArgumentParser) -> None:
     parser.epilog = (
-        "exit code: 0 all answers are as logged; 1 an answer differs, or a call cannot be read; "
-        "2 a log is not one of the server. Computation times are not compared."
+        "The exit code is 0 if all answers equal the logged ones, 1 if one differs or cannot be "
+        "read, and 2 if a log is not one of the server. Computation times are not compared."
     )
     parser.add_argument(
         "logs",
         nargs="*",
         metavar="LOG",
-        help="folder of a log of the server, one of its files, or a folder in which logs are looked for",
+        help="folder of a log of the server, one of its files, or a folder that contains logs",
     )
     _add_tolerance(parser)
 
     group = parser.add_argument_group(
-        "another configuration", "Answers under other parameters. The report lists the largest differences."
+        "other parameters", "Recompute the answers with other parameters, and list the largest differences."
     )
-    group.add_argument(
-        "--config", metavar="FILE", help="parameters of the server that replace the logged ones"
-    )
+    group.add_argument("--config", metavar="FILE", help="server parameters that replace the logged ones")
     group.add_argument(
         "--set",
         action="append",
         default=[],
         metavar="NAME:=VALUE",
-        help="one parameter, such as surface.floor.friction:=0.31; may be repeated",
+        help="value of one parameter, such as surface.floor.friction:=0.31; may be repeated",
     )
 
 
 def _add_table(parser: argparse.ArgumentParser) -> None:
-    parser.epilog = "The page docs/replay.md explains the columns."
+    parser.epilog = "docs/replay.md explains the columns."
     parser.add_argument(
         "logs", nargs="+", metavar="LOG", help="a log of the server, or a recording with --config"
     )
     parser.add_argument(
         "--output",
         metavar="FILE",
-        help=".csv or .parquet file, which is replaced (default: CSV to the terminal)",
+        help=".csv or .parquet file; an existing file is replaced (default: CSV to the terminal)",
     )
     _add_span(parser)
     _add_foreign(parser)
@@ -127,24 +125,30 @@ def _add_table(parser: argparse.ArgumentParser) -> None:
 
 def _add_view(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("log", metavar="LOG", help="a log of the server, or a recording with --config")
-    parser.add_argument("--rrd", metavar="FILE", default="", help="file to draw into, which is replaced")
+    parser.add_argument(
+        "--rrd",
+        metavar="FILE",
+        default="",
+        help="output file in rerun's format; an existing file is replaced",
+    )
     viewer = parser.add_mutually_exclusive_group()
     viewer.add_argument(
         "--spawn", action="store_true", help="open rerun's viewer (the default without --rrd)"
     )
-    viewer.add_argument(
-        "--serve", action="store_true", help="serve the picture at the port, for viewers, until Ctrl-C"
-    )
-    viewer.add_argument("--connect", metavar="URL", default="", help="a viewer that is open already")
+    viewer.add_argument("--serve", action="store_true", help="serve the picture at --port until Ctrl-C")
+    viewer.add_argument("--connect", metavar="URL", default="", help="URL of an open viewer")
     parser.add_argument(
-        "--port", type=int, default=DEFAULT_PORT, help=f"of --spawn and --serve (default: {DEFAULT_PORT})"
+        "--port",
+        type=int,
+        default=DEFAULT_PORT,
+        help=f"port for --spawn and --serve (default: {DEFAULT_PORT})",
     )
     parser.add_argument(
         "--surface-side",
         type=_positive,
         default=2.0,
         metavar="M",
-        help="side of a drawn surface, m (default: 2)",
+        help="side of the square drawn for a surface, m (default: 2)",
     )
     _add_span(parser)
     _add_foreign(parser)
@@ -152,9 +156,9 @@ def _add_view(parser: argparse.ArgumentParser) -> None:
 
 def _add_publish(parser: argparse.ArgumentParser) -> None:
     parser.epilog = (
-        "exit code: 0 all was published, and with --requests every answer is as logged; 1 nothing was "
-        "published, an answer differs, or did not come; 2 there is no such log, or no such part of it. "
-        "While it runs, the space bar pauses it, and a dot steps on. ROS's own arguments follow --ros-args."
+        "The space bar pauses, and a dot steps by 0.1 s. The exit code is 0 if the log was published "
+        "and, with --requests, every answer equals the logged one; 1 if nothing was published, or an answer "
+        "differs or is missing; 2 if there is no such log or part of it. ROS arguments follow --ros-args."
     )
     parser.add_argument("log", metavar="LOG", help="a log of the server, or any recording with --all-topics")
     parser.add_argument(
@@ -162,19 +166,19 @@ def _add_publish(parser: argparse.ArgumentParser) -> None:
         type=_positive,
         default=1.0,
         metavar="R",
-        help="playback speed relative to the recording (default: 1). Others need --clock or --stamps logged, "
-        "since velocities do not fit stretched stamps",
+        help="playback speed relative to the recording (default: 1). Other speeds require --clock or "
+        "--stamps logged, because the velocities do not match stretched stamps",
     )
-    parser.add_argument("--loop", action="store_true", help="start again at the end, until Ctrl-C")
+    parser.add_argument("--loop", action="store_true", help="restart at the end, until Ctrl-C")
     parser.add_argument("--paused", action="store_true", help="start paused")
     parser.add_argument(
         "--requests",
         action="store_true",
-        help="repeat the logged questions, each at its time, and compare the answers with the logged ones",
+        help="send each logged request at its time, and compare the answers with the logged ones",
     )
     _add_tolerance(parser)
     parser.add_argument(
-        "--clock", action="store_true", help="publish the time of the log at /clock, 100 times a second"
+        "--clock", action="store_true", help="publish the time of the log on /clock at 100 Hz"
     )
     parser.add_argument(
         "--stamps",
@@ -184,14 +188,14 @@ def _add_publish(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--all-topics",
         action="store_true",
-        help="publish every topic, not only states (default without a server's log)",
+        help="publish all topics, not only states (default for recordings that are not logs of the server)",
     )
     parser.add_argument(
         "--wait",
         type=_not_negative,
         default=3.0,
         metavar="S",
-        help="longest wait for subscribers, s (default: 3)",
+        help="maximum time to wait for subscribers, s (default: 3)",
     )
     _add_span(parser)
 
@@ -202,7 +206,7 @@ def _add_tolerance(parser: argparse.ArgumentParser) -> None:
         type=_not_negative,
         default=0.0,
         metavar="T",
-        help="largest difference of a number, relative to the larger of the two, or to 1 if both are smaller "
+        help="maximum difference of two numbers, relative to the larger one, or to 1 if both are smaller "
         "(default: 0, bit for bit)",
     )
 
@@ -221,39 +225,41 @@ def _add_span(parser: argparse.ArgumentParser) -> None:
 
 
 def _add_foreign(parser: argparse.ArgumentParser) -> None:
-    group = parser.add_argument_group("foreign recordings", "Any bag of rosbag2 with states of bodies.")
-    group.add_argument("--config", metavar="FILE", help="parameters of a server, such as config/server.yaml")
+    group = parser.add_argument_group(
+        "recordings of other systems", "Any rosbag2 bag that contains states of bodies."
+    )
+    group.add_argument("--config", metavar="FILE", help="server parameters, such as config/server.yaml")
     group.add_argument(
         "--topics",
         action="append",
         default=[],
         metavar="BODY=TOPIC",
-        help="topics of the states of a body, if not those of --config: BODY=ODOMETRY or BODY=POSE,TWIST",
+        help="topics of a body's states, instead of those in --config: BODY=ODOMETRY or BODY=POSE,TWIST",
     )
     group.add_argument(
         "--ask",
         action="append",
         default=[],
         choices=QUESTIONS,
-        help="a question to ask throughout: landing (where will it be?), impact (which velocities then?), "
-        "modes (which contact mode?); may be repeated",
+        help="prediction to repeat: landing (pose at the next contact), impact (velocities after it) "
+        "or modes (contact modes); may be repeated",
     )
     group.add_argument(
-        "--body", action="append", default=[], metavar="NAME", help="body to ask about (default: all)"
+        "--body", action="append", default=[], metavar="NAME", help="body to predict (default: all)"
     )
     group.add_argument(
         "--every",
         type=_not_negative,
         default=0.1,
         metavar="S",
-        help="time between questions, s (default: 0.1; 0: at each state)",
+        help="time between predictions, s (default: 0.1; with 0, one at each state)",
     )
     group.add_argument(
         "--fit-window",
         type=_not_negative,
         default=0.0,
         metavar="S",
-        help="length of the window of states for the fit, s (default: 0, no fit)",
+        help="length of the window of states to which a flight is fitted, s (default: 0, no fit)",
     )
 
 
