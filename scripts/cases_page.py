@@ -28,7 +28,7 @@ PAGE = ROOT / "docs" / "cases.md"
 HEAD = """\
 # Cases with exact answers, compared with MuJoCo
 
-This page compares this package with MuJoCo on problems that have an exact solution in closed form. Users of physics engines posted them,
+This page compares this package with MuJoCo on problems that have an exact solution in closed form. Users of physics engines reported them,
 because the engine's result was an artefact of time steps and softened contacts. This command solves all of them with this package and, if
 it is installed, with MuJoCo:
 
@@ -45,8 +45,8 @@ damper designed for that value and resolved by ten steps.
 
 The numbers show how large an artefact can be with default settings; they are not a verdict on MuJoCo, which simulates whole robots with
 deliberately soft contacts, and is more accurate with smaller steps and other settings. [When to use a simulator](when-to-use-what.md)
-compares the two approaches. The package's answers are exact for rigid bodies with Coulomb friction; whether a real system matches that
-model and its coefficients has to be checked separately.
+compares the two approaches. The package's answers are exact for rigid bodies with Coulomb friction; check separately whether a real system
+matches that model and its coefficients.
 
 """
 

@@ -101,8 +101,8 @@ def four_feet(mass: float) -> float:
         contact_modes(SpatialContactProblem(body=table, state=state, contacts=feet, force_W=weight)).modes
         for feet in sets
     )
-    still = next(mode for mode in two if mode.mode == "ff")
-    return 0.0 if four[0].forces_unique else float(still.contact_forces_W[0, 2])
+    rest = next(mode for mode in two if mode.mode == "ff")
+    return 0.0 if four[0].forces_unique else float(rest.contact_forces_W[0, 2])
 
 
 def tipping_cube(friction: float) -> float:
@@ -185,10 +185,10 @@ def spinning_bounce(spin: float) -> float:
 def two_balls(mass: float) -> float:
     """Return the speed of the ball that was struck, m/s."""
     first, second = (inertia.sphere(radius=0.5, mass=m).mass_properties for m in (mass, 10.0))
-    coming = BodyState(p_WB_W=[0, 0, 0], q_WB=[0, 0, 0, 1], v_WB_W=[1, 0, 0], w_WB_W=[0, 0, 0])
-    waiting = BodyState(p_WB_W=[1, 0, 0], q_WB=[0, 0, 0, 1], v_WB_W=[0, 0, 0], w_WB_W=[0, 0, 0])
-    touch = Contact(p_WC_W=[0.5, 0, 0], normal_W=[-1, 0, 0], friction=0.0, restitution=1.0)
-    other = spatial_pair_impact(first, coming, second, waiting, touch).other_state
+    first_state = BodyState(p_WB_W=[0, 0, 0], q_WB=[0, 0, 0, 1], v_WB_W=[1, 0, 0], w_WB_W=[0, 0, 0])
+    second_state = BodyState(p_WB_W=[1, 0, 0], q_WB=[0, 0, 0, 1], v_WB_W=[0, 0, 0], w_WB_W=[0, 0, 0])
+    contact = Contact(p_WC_W=[0.5, 0, 0], normal_W=[-1, 0, 0], friction=0.0, restitution=1.0)
+    other = spatial_pair_impact(first, first_state, second, second_state, contact).other_state
     return 0.0 if other is None else float(other.v_WB_W[0])
 
 
