@@ -87,7 +87,7 @@ def _edges(motion: ForcedMotion, end: float) -> FloatArray:
     pieces = np.maximum(np.ceil(rates * np.abs(lengths) / PIECE), 1.0)
     total = float(pieces.sum())
     if not total <= MAX_PIECES:
-        found = f"{end:g} s, in which neighbours turn, part or meet so fast that it takes {total:.6g} pieces"
+        found = f"{end:g} s, which takes {total:.6g} pieces"
         raise TooLargeError("times", found, f"at most {MAX_PIECES} pieces for a covariance")
     counts = pieces.astype(int)
     shares = np.concatenate([np.arange(count) / count for count in counts.tolist()])

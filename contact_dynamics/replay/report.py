@@ -36,7 +36,7 @@ def report(found: Verification) -> str:
         lines += _other(other)
     untold = sum(tally.different for tally in found.services.values()) - len(found.others)
     if untold > 0:
-        lines.append(f"  and {untold} questions more with smaller differences")
+        lines.append(f"  and {untold} more questions with smaller differences")
     lines += _gaps(found)
     return "\n".join(lines)
 
@@ -53,7 +53,7 @@ def _table(found: Verification) -> list[str]:
     if not found.services:
         return ["  no questions"]
     within = f"within {found.tolerance:g}" if found.tolerance > 0.0 else ""
-    heads = ["questions", "equal to the bit", *([within] if within else []), "different"]
+    heads = ["questions", "identical", *([within] if within else []), "different"]
     width = max(len(name) for name in found.services)
     lines = [f"  {'service':{width}}  {'  '.join(heads)}"]
     for name, tally in found.services.items():
@@ -82,12 +82,12 @@ def _gaps(found: Verification) -> list[str]:
     if other_state:
         lines.append(
             f"  {other_state} answers used other states than the logged ones, or none, and are not compared: "
-            "DDS does not keep the order between a state and a question"
+            "DDS does not preserve the order of a state and a question"
         )
     unanswered = sum(tally.unanswered for tally in found.services.values())
     unreadable = sum(tally.unreadable for tally in found.services.values())
     if unanswered:
-        lines.append(f"  not asked, because the log has no answer, or BUSY or TIMEOUT: {unanswered}")
+        lines.append(f"  not repeated, because the log contains no answer, or BUSY or TIMEOUT: {unanswered}")
     if unreadable:
         lines.append(f"  {unreadable} calls could not be read; the first: {found.unreadable}")
     if found.damage is not None:
