@@ -95,7 +95,7 @@ def _add_who_does_it(parser: argparse.ArgumentParser) -> None:
         type=_count,
         default=1,
         metavar="N",
-        help="number of processes on this machine (default: 1)",
+        help="number of processes on this machine, which share recordings, or bodies and events (default: 1)",
     )
     work.add_argument(
         "--dask",

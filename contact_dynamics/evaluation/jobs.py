@@ -82,7 +82,7 @@ def run_job(job: Job) -> dict[str, Any]:
         recording = job.source.read(config=job.config)
         other = job.asked_with or job.config
         informed = None if other is None else parameters_of(ParameterFile(other))[1]
-        evaluated = evaluate_recording(recording, job.settings, informed=informed)
+        evaluated = evaluate_recording(recording, job.settings, informed=informed, share=job.source.share)
         return replace(evaluated, source=job.source.name, digest=digest).to_dict()
     except Exception as error:  # noqa: BLE001  a fault of ours too must not stop the others
         return failed(job, error).to_dict()
@@ -196,7 +196,7 @@ def run_jobs(jobs: Sequence[Job], *, processes: int = 1, dask: str = "") -> Iter
 
 
 def _in_parts(jobs: Sequence[Job], processes: int) -> Iterator[Done]:
-    """Share the jobs among processes; where these are more, the bodies of each log too."""
+    """Share the jobs among processes; where these are more, the bodies and events of each log too."""
     share = processes // len(jobs) if jobs else 1
     parts = [
         [replace(job, source=each) for each in job.source.parts(share, config=job.config)] for job in jobs
@@ -211,7 +211,7 @@ def _in_parts(jobs: Sequence[Job], processes: int) -> Iterator[Done]:
         found[number][place] = content
         left[number] -= 1
         if left[number] == 0:
-            whole = joined(found[number])
+            whole = joined(found[number], [part.source.share[0] for part in parts[number]])
             found[number] = []
             if len(parts[number]) > 1 and (whole["problem"] or not whole["states"]):  # all at once tells why
                 ((_, whole),) = _in_processes([jobs[number]], 1)

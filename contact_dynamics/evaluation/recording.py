@@ -42,7 +42,11 @@ class Recording(Record):
 
 
 def evaluate_recording(
-    recording: Recording, settings: Settings, *, informed: Informed | None = None
+    recording: Recording,
+    settings: Settings,
+    *,
+    informed: Informed | None = None,
+    share: tuple[int, int] = (0, 1),
 ) -> SourceResult:
     """Find the events of a recording, ask about each beforehand, and compare.
 
@@ -50,17 +54,21 @@ def evaluate_recording(
         recording: What was measured, and what is known besides. The events are found with the latter.
         settings: What is asked.
         informed: What whoever asks knows. If it is None, they know the same.
+        share: (k, n): only events of the k-th of n equal parts of each motion's are asked about, k from 0 on.
     """
+    part, parts = share
     events: list[FoundEvent] = []
     rows: list[Comparison] = []
     for motion in recording.motions:
         # an impact is asked about with the states that its landing was asked about with
-        for _, at_once in groupby(find_events(motion), key=lambda event: (event.first_sample, event.time_ns)):
-            found = list(at_once)
-            known = asked_before(found[0], motion, informed or recording.informed, settings)
-            for event in found:
-                rows += compare_event(len(events), event, known, settings)
-                events.append(event)
+        by_instant = groupby(find_events(motion), key=lambda event: (event.first_sample, event.time_ns))
+        instants = [list(found) for _, found in by_instant]
+        for number, found in enumerate(instants):
+            if number * parts // len(instants) == part:
+                known = asked_before(found[0], motion, informed or recording.informed, settings)
+                for place, event in enumerate(found, len(events)):
+                    rows += compare_event(place, event, known, settings)
+            events += found
     return SourceResult(
         events=tuple(events),
         comparisons=tuple(rows),

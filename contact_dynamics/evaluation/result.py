@@ -108,18 +108,25 @@ def source_result(content: dict[str, Any]) -> SourceResult:
     return SourceResult(**plain)
 
 
-def joined(parts: Sequence[dict[str, Any]]) -> dict[str, Any]:
-    """Join the results of groups of a recording's bodies, as `SourceResult.to_dict` has them."""
+def joined(parts: Sequence[dict[str, Any]], shares: Sequence[int]) -> dict[str, Any]:
+    """Join the results of parts of a recording, as `SourceResult.to_dict` has them.
+
+    Each part has other bodies, or is of another share of the events of those before; ``shares`` numbers them.
+    """
     events: list[Any] = []
     rows: list[Any] = []
-    for part in parts:
-        rows += ({**row, "event": row["event"] + len(events)} for row in part["comparisons"])
-        events += part["events"]
+    first, wholes = 0, [part for part, share in zip(parts, shares, strict=True) if share == 0]
+    for part, share in zip(parts, shares, strict=True):
+        if share == 0:
+            first = len(events)
+            events += part["events"]
+        rows += ({**row, "event": row["event"] + first} for row in part["comparisons"])
+    rows.sort(key=lambda row: row["event"])  # a share has events of each stretch of its motion
     return {
         **parts[0],
         "problem": next((part["problem"] for part in parts if part["problem"]), ""),
-        "states": sum(part["states"] for part in parts),
-        "seconds": sum(part["seconds"] for part in parts),
+        "states": sum(part["states"] for part in wholes),
+        "seconds": sum(part["seconds"] for part in wholes),
         "events": events,
         "comparisons": rows,
     }

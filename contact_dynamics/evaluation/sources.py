@@ -7,7 +7,6 @@ import re
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
@@ -44,11 +43,14 @@ class Source(Record):
         index: Number of the toss in an ``.npz``, or None where the file is one recording.
         bodies: Names of the bodies of a log that count, which play no part in its name and digest. If there
             are none, all count.
+        share: Which share of their events is asked about, and of how many, as `evaluate_recording` takes it.
+            It plays no part in name and digest either.
     """
 
     path: Path
     index: int | None = None
     bodies: tuple[str, ...] = ()
+    share: tuple[int, int] = (0, 1)
 
     @property
     def name(self) -> str:
@@ -87,14 +89,25 @@ class Source(Record):
         return recording_of_log(self.path, config=config, only=self.bodies)
 
     def parts(self, most: int, *, config: Path | None = None) -> list[Source]:
-        """Return a log as at most ``most`` sources with some of its bodies each. Other sources stay whole."""
+        """Return a log as sources that ``most`` processes evaluate in the same time. Others stay whole.
+
+        Each has as many of its bodies, or a share of the events of one of those that are left over.
+        """
         names: list[str] = []
         if most > 1 and not self.is_toss:
             with suppress(ContactDynamicsError, OSError):  # whoever reads it tells what is wrong
                 names = bodies_of_log(self.path, config=config)
-        count = min(most, len(names))
-        ends = [len(names) * k // count for k in range(count + 1)] if count > 1 else []
-        return [replace(self, bodies=tuple(names[a:b])) for a, b in pairwise(ends)] or [self]
+        each, left = divmod(len(names), max(most, 1))
+        groups = [tuple(names[each * k : each * (k + 1)]) for k in range(most if each else 0)]
+        shares = most // max(left, 1)
+        return [
+            *(replace(self, bodies=group) for group in groups),
+            *(
+                replace(self, bodies=(name,), share=(k, shares))
+                for name in names[each * most :]
+                for k in range(shares)
+            ),
+        ] or [self]
 
 
 def find_sources(paths: Iterable[str]) -> tuple[list[Source], list[tuple[str, str]]]:

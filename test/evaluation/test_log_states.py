@@ -128,8 +128,9 @@ def test_a_wrong_parameter_is_named(tmp_path: Path) -> None:
 def test_a_log_is_read_in_parts_by_body(tmp_path: Path) -> None:
     log = Source(path=write_log(tmp_path / "log", names=("one", "two", "three"), until=BRIEF))
     parts = log.parts(2)
-    assert [part.bodies for part in parts] == [("one",), ("two", "three")]
+    assert [part.bodies for part in parts] == [("one",), ("two",), ("three",), ("three",)]
+    assert [part.share for part in parts] == [(0, 1), (0, 1), (0, 2), (1, 2)]
     found = [[motion.body.name for motion in part.read().motions] for part in parts]
-    assert found == [["one"], ["two", "three"]]
+    assert found == [["one"], ["two"], ["three"], ["three"]]
     assert {part.name for part in parts} == {log.name}
     assert log.parts(1) == [log]

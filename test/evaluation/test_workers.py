@@ -74,6 +74,17 @@ def test_two_processes_share_the_bodies_of_one_log(tmp_path: Path) -> None:
     assert shared == alone
 
 
+def test_two_processes_share_the_events_of_one_body(tmp_path: Path) -> None:
+    log = Source(path=write_log(tmp_path / "log", names=("one",), until=BRIEF))
+    halves = [run_job(Job(source=part, settings=QUICK)) for part in log.parts(2)]
+    asked = [{row["event"] for row in half["comparisons"]} for half in halves]
+    assert all(asked)
+    assert not asked[0] & asked[1]
+    jobs = [Job(source=log, settings=QUICK)]
+    ((_, alone),), ((_, shared),) = run_jobs(jobs), run_jobs(jobs, processes=2)
+    assert shared == alone
+
+
 def test_a_log_without_states_is_told_as_by_one_process(tmp_path: Path) -> None:
     log = write_log(tmp_path / "log", names=("one", "two"), until=-1.0)
     jobs = [Job(source=Source(path=log), settings=QUICK)]
