@@ -49,7 +49,8 @@ this limit, compared with samples, they are less than 1 % of the largest deviati
 variance in directions in which neighbours hardly part."""
 
 PROBES: Final = 64
-"""Number of times on the way at which growth is checked, over at most one period of the polhode."""
+"""Number of times on the way at which growth is checked, over one period of the polhode. Over a part of it
+there are as many fewer, but two at least."""
 
 MAX_SAMPLES: Final = 100_000
 """Largest number of draws. Each is a motion of its own, and takes some 0.1 ms."""
@@ -212,9 +213,11 @@ def _probes(motion: FreeMotion | ForcedMotion, seconds: FloatArray) -> FloatArra
     if isinstance(motion, ForcedMotion):
         return np.concatenate([motion.steps_to(end) for end in ends])
     period = polhode_period(motion.rotation)
-    longest = period if math.isfinite(period) else math.inf
-    ends = min(ends[0], longest), max(ends[1], -longest)
-    return np.concatenate([np.zeros(1), *(np.linspace(0.0, end, PROBES) for end in ends if end)])
+    if not math.isfinite(period):
+        return np.concatenate([np.zeros(1), *(np.linspace(0.0, end, PROBES) for end in ends if end)])
+    ends = min(ends[0], period), max(ends[1], -period)
+    spaced = (np.linspace(0.0, end, max(math.ceil(abs(end) / period * PROBES), 2)) for end in ends if end)
+    return np.concatenate([np.zeros(1), *spaced])
 
 
 def orientation_deviations(covariances: FloatArray) -> FloatArray:
