@@ -168,9 +168,7 @@ def _cases(problem: SpatialContactProblem, rough: SpatialCase) -> Iterator[tuple
     alike = np.array_equal(near.contacts.normals_W, rough.contacts.normals_W) and np.array_equal(
         near.contacts.p_WC_W, rough.contacts.p_WC_W
     )
-    if near.given is not None:
-        yield near, FLUSH, not alike
-    yield rough.given, 0.0, True
+    yield near, 0.0 if near.given is None else FLUSH, not alike
     if not alike:
         yield rough, FLUSH_ROUGHLY, False
     yield rough.given, 0.0, False
@@ -329,6 +327,8 @@ def _sought(case: SpatialCase, search: Search, *, beside_rest: bool, hurried: bo
     if all(one.frame is None for one in search.pyramids):
         return Evidence(kept, _DOUBT if search.doubtful else "")
     every = each_once([*by_letters(case, search, kept), *found.modes])
+    if not found.undecided and len(every) == len(found.modes):
+        return found
     return _with_others(case, search, every, beside_rest=beside_rest, most=MAX_PROGRAMS)
 
 
