@@ -211,23 +211,27 @@ class Program:
         table, fixed = self._table, self._fixed
         if len(fixed) == 0:
             return True
+        values, entries, costs = table[_HEAD:, -1], table[_HEAD:, :-1], table[0]
+        equations = int(np.count_nonzero(fixed))
         for _ in range(_MAX_STEPS):
-            values = table[_HEAD:, -1]
-            missed = np.maximum(-values, values * fixed)
-            worst = int(missed.argmax())
-            if missed[worst] <= FEASIBLE:
+            # Equations are mostly settled first. Then the least value is missed most.
+            worst = int(np.maximum(-values, values * fixed).argmax() if equations else values.argmin())
+            value = float(values[worst])
+            missed = max(-value, value * float(fixed[worst]))
+            if missed <= FEASIBLE:
                 return True
-            row = table[_HEAD + worst, :-1]
-            helps = row if values[worst] < 0.0 else -row
+            row = entries[worst]
+            helps = row if value < 0.0 else -row
             able = (helps > least_pivot).nonzero()[0]
             if able.size == 0:
-                by = float(missed[worst])
-                self.doubtful = by <= _CLEAR * self._noise or (
-                    by <= _MAX_FORCE * least_pivot and by <= _MAX_FORCE * float(helps.max(initial=0.0))
+                self.doubtful = missed <= _CLEAR * self._noise or (
+                    missed <= _MAX_FORCE * least_pivot
+                    and missed <= _MAX_FORCE * float(helps.max(initial=0.0))
                 )
                 return False
-            enters = able[(table[0, able] / helps[able]).argmin()]
-            self._pivot(worst, int(enters))
+            enters = int(able[(costs[able] / helps[able]).argmin()])
+            equations -= fixed[worst] != 0.0
+            self._pivot(worst, enters)
         self.doubtful = True
         return False
 

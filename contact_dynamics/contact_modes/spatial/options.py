@@ -191,6 +191,24 @@ def acting_edges(directions: FloatArray, count: int) -> NDArray[np.bool_]:
             where such a sum can vanish, any edge may act.
         count: The number of edges of a pyramid.
     """
+    starts, ranges, clear = ranges_of(directions)
+    sector = 2.0 * math.pi / count
+    start = (starts - math.pi) / sector + 0.5
+    first = np.floor(start - AT_SECTORS_BORDER)
+    more = np.floor(start + ranges / sector + AT_SECTORS_BORDER) - first
+    acting: NDArray[np.bool_] = (np.arange(count) - first[:, None]) % count <= more[:, None]
+    acting[~clear] = True
+    return acting
+
+
+def ranges_of(directions: FloatArray) -> tuple[FloatArray, FloatArray, NDArray[np.bool_]]:
+    """Return in which range of directions each contact slides: where it begins, its width, both rad.
+
+    The third value is false where the contact may slide in opposite directions, or stick.
+
+    Args:
+        directions: (m, 2, p), as for `acting_edges`.
+    """
     x, y = directions[:, 0], directions[:, 1]
     angles = np.arctan2(y, x)
     angles.sort(axis=1)
@@ -200,12 +218,7 @@ def acting_edges(directions: FloatArray, count: int) -> NDArray[np.bool_]:
     gaps -= angles
     widest = gaps.argmax(axis=1)
     each = np.arange(len(angles))
-    gap = gaps[each, widest]
-    sector = 2.0 * math.pi / count
-    start = (angles[each, (widest + 1) % angles.shape[1]] - math.pi) / sector + 0.5
-    first = np.floor(start - AT_SECTORS_BORDER)
-    more = np.floor(start + (2.0 * math.pi - gap) / sector + AT_SECTORS_BORDER) - first
-    acting: NDArray[np.bool_] = (np.arange(count) - first[:, None]) % count <= more[:, None]
+    ranges = 2.0 * math.pi - gaps[each, widest]
     least = (x * x + y * y).min(axis=1)
-    acting[(gap <= math.pi + AT_SECTORS_BORDER) | (least <= AT_SECTORS_BORDER**2)] = True
-    return acting
+    clear = (ranges < math.pi - AT_SECTORS_BORDER) & (least > AT_SECTORS_BORDER**2)
+    return angles[each, (widest + 1) % angles.shape[1]], ranges, clear

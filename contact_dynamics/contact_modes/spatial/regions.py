@@ -15,9 +15,9 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
-from contact_dynamics.contact_modes.spatial.options import MILDER, acting_edges
+from contact_dynamics.contact_modes.spatial.options import MILDER, acting_edges, ranges_of
 from contact_dynamics.numerics.linear_spaces import seen_and_unseen
-from contact_dynamics.tolerances import AT_SECTORS_BORDER, ROW_TOLERANCE, STRICT
+from contact_dynamics.tolerances import ROW_TOLERANCE, STRICT
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -107,15 +107,7 @@ class Region(NamedTuple):
 
         It is None where a contact may slide in opposite directions, or stick.
         """
-        x, y = (image.maps @ self.rays.T).transpose(1, 0, 2)  # (m, p) each
-        angles = np.sort(np.arctan2(y, x), axis=1)
-        gaps = np.diff(angles, axis=1, append=angles[:, :1] + 2.0 * math.pi)
-        widest = gaps.argmax(axis=1)
-        each = np.arange(len(angles))
-        ranges = 2.0 * math.pi - gaps[each, widest]
-        starts = angles[each, (widest + 1) % angles.shape[1]]
-        least = (x * x + y * y).min(axis=1)
-        clear = (ranges < math.pi - AT_SECTORS_BORDER) & (least > AT_SECTORS_BORDER**2)
+        starts, ranges, clear = ranges_of(image.maps @ self.rays.T)
         return [
             (start, start + size) if own else None
             for start, size, own in zip(starts.tolist(), ranges.tolist(), clear.tolist(), strict=True)
