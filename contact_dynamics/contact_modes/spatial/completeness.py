@@ -56,7 +56,8 @@ ENOUGH_PROGRAMS: Final = 1500
 """Maximum number of programs before the pyramids are searched. Few cases take more."""
 
 FEW_PROGRAMS: Final = 400
-"""Maximum number of programs where another way to a verdict is left."""
+"""Maximum number of programs where another way to a verdict is left. The search is then also given up as soon
+as it leaves letters undecided."""
 
 _CARE: Final = 3
 """Number of additional programs that a `CarefulProgram` counts as."""
@@ -310,7 +311,10 @@ class _Work(PyramidPrograms):
         if letters in self._held or (letters == self._all_stick and not self._refutes):
             return
         leave = set(letters) == {SEPARATES}  # without forces: the programs have decided that they do
-        start = np.zeros((len(letters), 3)) if leave else self._forces(letters, {}, FINE)
+        start: FloatArray | None = np.zeros((len(letters), 3))
+        if not leave:
+            start = self._forces(letters, {}, COARSE)  # it mostly refutes them, in a third of the time
+            start = None if start is None else self._forces(letters, {}, FINE)
         if start is None:
             return
         if self._refutes:
@@ -325,7 +329,7 @@ class _Work(PyramidPrograms):
             alone = regular or (near is not None and near.motion_unique)
             self._keep(Known(letters, forces, alone=alone, forces_unique=regular))
         elif not regular:
-            self.undecided.append(letters)
+            self._leave(letters)
 
     def _decide_flat(self, flat: Flat, letters: str, open_ones: list[int]) -> bool:
         """Find or refute all modes in which all contacts slide that a flat lets slide.
@@ -424,7 +428,7 @@ class _Work(PyramidPrograms):
         if width <= SAME_SLIDING and self._is_close(letters, ranges):
             return True  # it may be the same mode
         if width <= NARROWEST_RANGE:
-            self.undecided.append(letters)
+            self._leave(letters)
             self._decided.add(letters)
         return letters in self._decided
 
@@ -460,6 +464,12 @@ class _Work(PyramidPrograms):
             if new and solution.has_letters:
                 unique = solution.equations is not None
                 self._keep(Known(letters, solution.forces, alone=True, forces_unique=unique))
+
+    def _leave(self, letters: str) -> None:
+        """Leave some letters undecided."""
+        self.undecided.append(letters)
+        if self._most <= FEW_PROGRAMS:
+            raise _TooManyError
 
     def _keep(self, mode: Known) -> None:
         self.further.append(mode)

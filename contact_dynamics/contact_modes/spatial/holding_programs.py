@@ -22,7 +22,7 @@ from contact_dynamics.contact_modes.spatial.careful_program import CarefulProgra
 from contact_dynamics.contact_modes.spatial.dual_simplex import Narrowing, Program
 from contact_dynamics.contact_modes.spatial.options import MILDER
 from contact_dynamics.numerics.linear_spaces import seen_and_unseen
-from contact_dynamics.tolerances import STRICT
+from contact_dynamics.tolerances import FEASIBLE, STRICT
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -44,6 +44,9 @@ _QUARTER: Final = 0.5 * math.pi
 
 Ranges: TypeAlias = dict[int, tuple[float, float]]
 """For contacts that slide, the first and the last direction, rad, in the frames of their pyramids."""
+
+_FREEDOMS: Final = 6
+"""The freedoms of a body in space."""
 
 _CONSTANT: Final = np.eye(1, 7, 6)[0]
 
@@ -104,6 +107,10 @@ class HoldingPrograms:
         units = np.concatenate([np.array(axes)[:, None], frames], axis=1)
         of_forces = search.of_forces.reshape(6, n, 3).transpose(1, 2, 0)  # (n, 3, 6)
         self._units = np.concatenate([units, units @ of_forces], axis=2)  # (n, 3, 9)
+        power = search.mass @ search.motion[:, -1]
+        self._power = np.zeros((0, 7))
+        if search.at_rest and power.any():
+            self._power = np.append(power / np.linalg.norm(power), 0.0)[None, :]
         self._nothing = self._leaning([], np.zeros((0, 1)), np.zeros((0, 1)))
         self._around: dict[int, list[_Edges]] = {}
         self._equations: dict[str, FloatArray] = {}
@@ -124,6 +131,8 @@ class HoldingPrograms:
         """
         turning = list(ranges)
         zero, leaving, whole = self._fixed(letters, tuple(turning), facets)
+        if len(zero) == _FREEDOMS and not zero[:, -1].any() and np.any(leaving[:, -1] < -FEASIBLE):
+            return None, False  # a body that cannot move leaves no contact
         positive = [leaving]
         edges, moved, sizes, owners = whole
         if turning:
@@ -182,7 +191,7 @@ class HoldingPrograms:
             whole = [self._nothing, *(self._whole(facets)[i] for i in others)]
             self._parts[key] = (
                 self._rows_of(letters),
-                self._rising[leaving] - self._least * _CONSTANT,
+                np.concatenate([self._power, self._rising[leaving] - self._least * _CONSTANT]),
                 _Edges(*(np.concatenate(one) for one in zip(*whole, strict=True))),
             )
         return self._parts[key]
@@ -202,7 +211,8 @@ class HoldingPrograms:
 
     def _leaning(self, contacts: list[int], leans: FloatArray, turns: FloatArray) -> _Edges:
         """Return edges that lean by some slopes, (m, k), against directions, (m, k) rad."""
-        parts = np.stack([np.ones_like(leans), -leans * np.cos(turns), -leans * np.sin(turns)], axis=-1)
+        parts = np.ones((*leans.shape, 3))
+        parts[..., 1], parts[..., 2] = -leans * np.cos(turns), -leans * np.sin(turns)
         both = (parts @ self._units[contacts]).reshape(-1, 9)
         edges, moved = both[:, :3], both[:, 3:]
         sizes = np.sqrt((moved * moved).sum(axis=1))  # so that the unit of mass does not matter
@@ -217,11 +227,14 @@ class HoldingPrograms:
         half = 0.5 * wide / pieces
         shares = np.array([0.0, *(2.0 * k + 1.0 for k in range(pieces)), 2.0 * pieces])
         frictions = self._frictions[turning]
-        leans = np.repeat((frictions / np.cos(half))[:, None], len(shares), axis=1)
-        leans[:, [0, -1]] = frictions[:, None]
+        leans = np.empty((len(turning), len(shares)))
+        leans[:] = (frictions / np.cos(half))[:, None]
+        leans[:, 0] = leans[:, -1] = frictions
         edges = self._leaning(turning, leans, low[:, None] + half[:, None] * shares)
-        turns = np.stack([low + _QUARTER, 0.5 * (low + high), high - _QUARTER], axis=1)  # (m, 3)
-        rows = np.stack([np.cos(turns), np.sin(turns)], axis=-1) @ self._across[turning]
+        turns = np.column_stack([low + _QUARTER, 0.5 * (low + high), high - _QUARTER])  # (m, 3)
+        ways = np.empty((len(turning), 3, 2))
+        ways[..., 0], ways[..., 1] = np.cos(turns), np.sin(turns)
+        rows = ways @ self._across[turning]
         rows[:, 1, -1] -= MILDER * self._least
         return edges, rows
 
@@ -238,7 +251,7 @@ class HoldingPrograms:
         rays = within.region.rays
         along = within.image.maps @ rays.T  # (m, 2, p)
         middle = along.sum(axis=2)
-        middle /= np.maximum(np.linalg.norm(middle, axis=1), np.finfo(float).tiny)[:, None]
+        middle /= np.maximum(np.sqrt((middle * middle).sum(axis=1)), np.finfo(float).tiny)[:, None]
         friction = self._frictions[within.turning]
         per_contact = np.zeros((len(rays), len(self._search.touching)))
         per_contact[:, within.turning] = -(friction[:, None] * (middle[:, None, :] @ along)[:, 0]).T
