@@ -43,7 +43,7 @@ cdef class HeldContacts:
     cdef double[::1] numbers
     cdef double[13] y
 
-    cdef (double, double, double) force(self, int i) noexcept
+    cpdef (double, double, double) force(self, int i) noexcept
     cdef void set_force(self, int i, double x, double y, double z) noexcept
     @cython.locals(one=Held, flat=Flat, k=cython.int, i=cython.int)
     cdef void push(self, double* y)

@@ -20,7 +20,13 @@ from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.impact.law import RestitutionLaw
 from contact_dynamics.impact.several.orders import several_impact
 from contact_dynamics.impact.several.result import SeveralContactsLaw, SeveralVerdict
-from contact_dynamics.impact.several.tied import impulses_of, next_to_strike, pushed, response_of, shared_path
+from contact_dynamics.impact.several.tied import (
+    impulses_of,
+    next_to_strike,
+    response_of,
+    shared_path,
+    twist_after,
+)
 from contact_dynamics.impact.spatial.path import OUTCOMES
 from contact_dynamics.impact.spatial.response import Strike, refuse
 from contact_dynamics.tolerances import CONE_CREEPS, STRIKES, TIED_APPROACH
@@ -32,7 +38,6 @@ if TYPE_CHECKING:
     from contact_dynamics.contact.contact import ContactSet
     from contact_dynamics.impact.law import ImpactOutcome
     from contact_dynamics.numerics.vectors import Vector3
-    from contact_dynamics.rigid_body.body import BodyState
     from contact_dynamics.toss.solid import Numbers, Solid, Touch
 
 
@@ -53,17 +58,20 @@ class Struck(NamedTuple):
 
 
 def routh(
-    solid: Solid, y: Numbers, touch: Touch, law: RestitutionLaw, *, friction: float
+    solid: Solid, y: Numbers, touch: Touch, law: RestitutionLaw, friction: float
 ) -> tuple[Numbers, Struck]:
     """Return the state after the impact at one contact, which approaches or jams (lecture 27)."""
-    pose, flat = pose_of(solid, y), solid.flats[touch[0]]
-    arm = pose.arm(*touch)
+    surface, corner = touch
+    pose, flat = pose_of(solid, y), solid.flats[surface]
+    arm = pose.arm(surface, corner)
     one = Strike(law)
     one.body.take(solid.mass, solid.inertia, (y[3], y[4], y[5], y[6]), arm, pose.v, pose.w)
     outcome = one.strike(flat.normal, friction, flat.restitution, False, STRIKES)  # noqa: FBT003  as compiled
     if outcome < 0:
         refuse(one, STRIKES)
-    return [*y[:7], *one.body.v, *one.body.w], Struck(touch, one.impulse, OUTCOMES[outcome])
+    v, w = one.body.v, one.body.w
+    after = [*y[:7], v[0], v[1], v[2], w[0], w[1], w[2]]
+    return after, Struck(touch, one.impulse, OUTCOMES[outcome])
 
 
 def check_laws(restitution_law: RestitutionLaw, several_contacts_law: SeveralContactsLaw) -> None:
@@ -99,12 +107,11 @@ def tied_strike(
         response, normals, flats[0].restitution, flats[0].strike_friction, law=law, tolerance=STRIKES
     )
     impulses = impulses_of(path, axes)
-    (after,) = pushed(response, [state], impulses)
     struck = [
         Struck(touch, _vector(impulse), path.outcome)
         for touch, impulse in zip(group, impulses.tolist(), strict=True)
     ]
-    return _after(y, after), struck
+    return [*y[:7], *twist_after(response, impulses).tolist()], struck
 
 
 def simultaneous_strike(
@@ -126,7 +133,8 @@ def simultaneous_strike(
         for touch, impulse in zip(touching, impact.impulses_W.tolist(), strict=True)
         if any(impulse)
     ]
-    return _after(y, impact.state), struck
+    after = impact.state
+    return [*y[:7], *after.v_WB_W.tolist(), *after.w_WB_W.tolist()], struck
 
 
 def _striking(solid: Solid, y: Numbers, touching: list[Touch]) -> ContactSet:
@@ -134,10 +142,6 @@ def _striking(solid: Solid, y: Numbers, touching: list[Touch]) -> ContactSet:
     contacts = contacts_of(solid, y, touching)
     frictions = [solid.flats[surface].strike_friction for surface, _ in touching]
     return replace(contacts, frictions=np.array(frictions), body_curvatures=None)
-
-
-def _after(y: Numbers, state: BodyState) -> Numbers:
-    return [*y[:7], *state.v_WB_W.tolist(), *state.w_WB_W.tolist()]
 
 
 def _vector(numbers: list[float]) -> tuple[float, float, float]:
@@ -160,7 +164,7 @@ class Inelastic(NamedTuple):
 
 
 def inelastic_impact(
-    solid: Solid, y: Numbers, touching: list[Touch], *, room: list[float] | None = None
+    solid: Solid, y: Numbers, touching: list[Touch], room: list[float] | None = None
 ) -> Inelastic | None:
     """Return the impact without restitution at contacts, or None if none was found.
 
@@ -168,25 +172,29 @@ def inelastic_impact(
     are relative to that.
     """
     pose, cones = pose_of(solid, y), ConeForces(len(touching))
-    for k, (surface, corner) in enumerate(touching):
+    for i, (surface, corner) in enumerate(touching):
         arm = pose.arm(surface, corner)
-        rise = 0.0 if room is None else room[k]
-        cones.add(pose, arm, solid.flats[surface], pose.velocity(arm), rise)
+        cones.add(pose, arm, solid.flats[surface], pose.velocity(arm), 0.0 if room is None else room[i])
     if not cones.solve(1.0 / solid.mass, CONE_CREEPS):
         return None
     after, impulses = list(y), []
     for i, (surface, corner) in enumerate(touching):
         p, q, r = cones.push(i)
-        n, (t1, t2) = solid.flats[surface].normal, solid.flats[surface].tangents
+        flat = solid.flats[surface]
+        n = flat.normal
+        t1, t2 = flat.tangents
         impulse = (
             p * t1[0] + q * t2[0] + r * n[0],
             p * t1[1] + q * t2[1] + r * n[1],
             p * t1[2] + q * t2[2] + r * n[2],
         )
         turning = vec.times(pose.inverse, vec.cross(pose.arm(surface, corner), impulse))
-        for k in range(3):
-            after[7 + k] += impulse[k] / solid.mass
-            after[10 + k] += turning[k]
+        after[7] += impulse[0] / solid.mass
+        after[8] += impulse[1] / solid.mass
+        after[9] += impulse[2] / solid.mass
+        after[10] += turning[0]
+        after[11] += turning[1]
+        after[12] += turning[2]
         impulses.append(impulse)
     return Inelastic(after, impulses, [cones.motion(i) for i in range(len(touching))])
 

@@ -79,7 +79,12 @@ class Choice(NamedTuple):
         return pushed_by_contacts(solid, y, self.modes[way])
 
 
-def choose_mode(solid: Solid, y: Numbers, touching: list[Touch], *, thorough: bool = False) -> Choice:
+def choose_mode(
+    solid: Solid,
+    y: Numbers,
+    touching: list[Touch],
+    thorough: bool = False,  # noqa: FBT001, FBT002  C has no keywords
+) -> Choice:
     """Return the modes that are consistent at touching contacts that do not approach.
 
     ``thorough`` asks for all of them where friction may wedge the body, too, which takes some 10 to 50 ms.
@@ -87,42 +92,39 @@ def choose_mode(solid: Solid, y: Numbers, touching: list[Touch], *, thorough: bo
     if not touching:
         return Choice(ModeVerdict.UNIQUE, [()])
     pose = pose_of(solid, y)
-    guess, paradox, cones = [], False, ConeForces(len(touching))
+    guess, paradox, all_slide, cones = [], False, True, ConeForces(len(touching))
     choice = Choice(ModeVerdict.UNDECIDED, [])
     for touch in touching:
-        flat, arm = solid.flats[touch[0]], pose.arm(*touch)
-        n, (t1, t2) = flat.normal, flat.tangents
-        velocity, acceleration = (
-            pose.velocity(arm),
-            pose.acceleration(touch[0], arm, solid.gravity, pose.alpha),
-        )
-        along = vec.dot(velocity, t1), vec.dot(velocity, t2)
-        speed = math.sqrt(along[0] * along[0] + along[1] * along[1])
+        surface, corner = touch
+        flat, arm = solid.flats[surface], pose.arm(surface, corner)
+        n = flat.normal
+        t1, t2 = flat.tangents
+        velocity = pose.velocity(arm)
+        u, v = vec.dot(velocity, t1), vec.dot(velocity, t2)
+        speed = math.sqrt(u * u + v * v)
         moves = speed > SLIDING_STOPPED
         slides = moves or flat.friction == 0.0  # nothing makes it stick
-        d = pose.sliding(arm, n, n) if slides else (0.0, 0.0, 0.0)
+        all_slide = all_slide and slides
+        d = (0.0, 0.0, 0.0)
+        if slides:
+            d = pose.sliding(arm, n, n)
         guess.append(Held(touch, slides, d))
-        cones.add(pose, arm, flat, acceleration, 0.0)
-        at_rest = (0.0, 0.0) if slides else None
-        sliding = (along[0] / speed, along[1] / speed) if moves else at_rest
+        cones.add(pose, arm, flat, pose.acceleration(surface, arm, solid.gravity, pose.alpha), 0.0)
         turning = vec.times(pose.inverse, vec.cross(arm, n))
         normal = 1.0 / solid.mass + vec.dot(vec.cross(arm, n), turning)
         coupling = vec.cross(turning, arm)
-        coupled = vec.dot(coupling, t1), vec.dot(coupling, t2)
-        across = math.sqrt(coupled[0] * coupled[0] + coupled[1] * coupled[1])
-        if sliding is not None:
-            cones.slide(*sliding)
-            across = coupled[0] * sliding[0] + coupled[1] * sliding[1]
+        p, q = vec.dot(coupling, t1), vec.dot(coupling, t2)
+        across = math.sqrt(p * p + q * q)
+        if slides:
+            u, v = (u / speed, v / speed) if moves else (0.0, 0.0)
+            cones.slide(u, v)
+            across = p * u + q * v
         paradox = paradox or flat.friction * across >= normal
-    if paradox or (
-        len(guess) > 1 and all(one.slides for one in guess) and _several_forces(solid, pose, guess)
-    ):
+    if paradox or (len(guess) > 1 and all_slide and _several_forces(solid, pose, guess)):
         paradox = True
         choice = _all_modes(solid, y, touching)
         if len(choice.modes) > 1:
-            # The mode that goes on comes first.
-            going_on = [(one.touch, one.slides) for one in guess]
-            choice.modes.sort(key=lambda mode: [(one.touch, one.slides) for one in mode] != going_on)
+            _put_first(choice.modes, guess)
             return choice
     mode, pushed = corrected(solid, y, tuple(guess))
     if mode is None:
@@ -135,6 +137,12 @@ def choose_mode(solid: Solid, y: Numbers, touching: list[Touch], *, thorough: bo
         others = [other for other in known.modes if _letters(other) != _letters(mode)]
         verdict = known.verdict if others else verdict
     return Choice(verdict, [mode, *others], pushed)
+
+
+def _put_first(modes: list[Mode], guess: list[Held]) -> None:
+    """Put the mode that goes on first."""
+    going_on = [(one.touch, one.slides) for one in guess]
+    modes.sort(key=lambda mode: [(one.touch, one.slides) for one in mode] != going_on)
 
 
 def _letters(mode: Mode) -> set[tuple[Touch, bool]]:
@@ -176,7 +184,7 @@ def _several_forces(solid: Solid, pose: Pose, sliding: list[Held]) -> bool:
 
 
 def _beginning(touch: Touch, towards: Vector3) -> Held:
-    return Held(touch=touch, slides=True, towards=towards, begins=True)
+    return Held(touch, True, towards, True)  # noqa: FBT003  C has no keywords
 
 
 def corrected(solid: Solid, y: Numbers, guess: Mode) -> tuple[Mode, HeldContacts] | tuple[None, None]:
@@ -186,20 +194,22 @@ def corrected(solid: Solid, y: Numbers, guess: Mode) -> tuple[Mode, HeldContacts
     not hold slides against its friction, and one that begins to slide does so along its acceleration, or
     sticks where that is against its sliding.
     """
-    starts = {one.touch: one for one in guess}
-    held = {one.touch: one for one in guess}
+    held: list[Held | None] = list(guess)  # None where a contact separates
     for k in range(_MAX_CORRECTIONS):
-        mode = tuple(held.values())
+        mode = tuple([one for one in held if one is not None])
         if k >= _FEW_CORRECTIONS:
             mode = _turned_along_accelerations(solid, y, mode)
-            held = {one.touch: one for one in mode}
+            turned = {one.touch: one for one in mode}
+            held = [turned.get(first.touch) for first in guess]
         pushed = pushed_by_contacts(solid, y, mode)
-        forces = dict(zip(held, pushed.forces, strict=True))
-        corrections = [
-            _correction(solid, first, held.get(touch), forces.get(touch), pushed)
-            for touch, first in starts.items()
-        ]
-        after = {one.touch: one for one in corrections if one is not None}
+        after: list[Held | None] = []
+        i = 0
+        for first, one in zip(guess, held, strict=True):
+            force = (0.0, 0.0, 0.0)
+            if one is not None:
+                force = pushed.force(i)
+                i += 1
+            after.append(_correction(solid, first, one, force, pushed))
         if after == held:
             return mode, pushed
         held = after
@@ -207,7 +217,7 @@ def corrected(solid: Solid, y: Numbers, guess: Mode) -> tuple[Mode, HeldContacts
 
 
 def _correction(
-    solid: Solid, first: Held, one: Held | None, force: Vector3 | None, pushed: HeldContacts
+    solid: Solid, first: Held, one: Held | None, force: Vector3, pushed: HeldContacts
 ) -> Held | None:
     """Return how a contact is held in the next round of corrections, or None if it separates.
 
@@ -215,14 +225,14 @@ def _correction(
         solid: The body and the flats.
         first: How the contact was held at first: whether it slides already.
         one: How the contact is held, or None if it separates.
-        force: N, the force there, or None.
+        force: N, the force there, or zero.
         pushed: The contacts that were held, with the accelerations.
     """
     flat = solid.flats[first.flat]
     n = flat.normal
     least = -force_rounding(solid)
     slowest = BEGINNING_ROUNDING * (1.0 + vec.norm(solid.gravity))
-    if one is None or force is None:
+    if one is None:
         acceleration = pushed.accelerated(first.flat, first.corner)
         return first if vec.dot(n, acceleration) < -slowest else None
     pressing = vec.dot(force, n)
@@ -285,7 +295,7 @@ def _all_modes(solid: Solid, y: Numbers, touching: list[Touch]) -> Choice:
             letter = one.mode[k]
             if letter == SEPARATES:
                 continue
-            arm = pose.arm(*touch)
+            arm = pose.arm(touch[0], touch[1])
             velocity = pose.velocity(arm)
             n = solid.flats[touch[0]].normal
             x, yy, z = one.tangential_directions_W[k].tolist()

@@ -1,8 +1,30 @@
 # The types with which strike.py compiles.
 
+cimport cython
+cimport libc.math as math
+
 from contact_dynamics.toss cimport vectors as vec
+from contact_dynamics.toss.forces cimport held_as_they_are, without_rebounds
+from contact_dynamics.toss.impacts cimport inelastic_impact
+from contact_dynamics.toss.mode_choice cimport choose_mode
+from contact_dynamics.toss.solid cimport Flat, Held, Pose, Solid, approaches, pose_of
 
 cdef extern from *:
     # A checksum of strike.py and this file, which setup.py defines (see numerics/compiled.py).
     cpdef enum:
         SOURCE_CRC
+
+cdef double STILL_TOUCHING, STRIKES
+
+
+@cython.locals(fast=cython.double, rate=cython.double, is_slow=cython.bint)
+cpdef low_rebounds_ended(Solid solid, list y, list touching)
+cdef double _slow(Solid solid) noexcept
+@cython.locals(fast=cython.double, rate=cython.double, motion=(double, double, double), flat=Flat)
+cdef _settled(Solid solid, list y, list touching, list rates)
+cdef list _held(Solid solid, list y, list slow, list touching)
+@cython.locals(pose=Pose, flat=Flat, surface=cython.int, corner=cython.int, rate=cython.double,
+               rebound=cython.double, pull=cython.double, motion=(double, double, double),
+               force=(double, double, double))
+cdef list _pressed(Solid solid, list y, choice, list touching, list before, list motions)
+

@@ -122,8 +122,12 @@ def low_rebounds_ended(solid: Solid, y: Numbers, touching: list[Touch]) -> Strik
     `settling`. Its impulse is that by which it loses its rebound.
     """
     rates = approaches(solid, y, touching)
-    fast = _slow(solid)
-    if min(rates) < -STRIKES or not any(STILL_TOUCHING < rate <= fast for rate in rates):
+    fast, is_slow = _slow(solid), False
+    for rate in rates:
+        if rate < -STRIKES:
+            return None
+        is_slow = is_slow or STILL_TOUCHING < rate <= fast
+    if not is_slow:
         return None
     found = _settled(solid, y, touching, rates)
     if found is None:
@@ -151,16 +155,16 @@ def _settled(solid: Solid, y: Numbers, touching: list[Touch], rates: list[float]
     if impact is None:
         return None
     motions = impact.motions
-    slow = [
-        Held(touch, motion[0] * motion[0] + motion[1] * motion[1] > fast * solid.flats[touch[0]].friction)
-        for touch, motion in zip(touching, motions, strict=True)
-        if motion[2] * motion[2] <= fast
-    ]
+    slow = []
+    for touch, motion in zip(touching, motions, strict=True):
+        if motion[2] * motion[2] <= fast:
+            flat, speed = solid.flats[touch[0]], motion[0] * motion[0] + motion[1] * motion[1]
+            slow.append(Held(touch, speed > fast * flat.friction))
     stopped = _held(solid, impact.y, slow, touching)
     if stopped is None:
         return _all_together(impact, touching)
     choice = choose_mode(solid, stopped, [one.touch for one in slow])
-    staying = _pressed(solid, stopped, choice, touching, before=rates, motions=motions)
+    staying = _pressed(solid, stopped, choice, touching, rates, motions)
     if staying is None:
         return None
     known: Choice | None = choice
@@ -199,12 +203,11 @@ def _struck(impact: Inelastic, touching: list[Touch]) -> list[Struck]:
     ]
 
 
-def _pressed(
+def _pressed(  # noqa: PLR0917
     solid: Solid,
     y: Numbers,
     choice: Choice,
     touching: list[Touch],
-    *,
     before: list[float],
     motions: list[Vector3],
 ) -> list[Touch] | None:
@@ -216,19 +219,20 @@ def _pressed(
     """
     if not choice.modes:
         return None
-    mode = choice.modes[0]
     pushed = choice.pushed_in(0, solid, y)
-    forces = dict(zip((one.touch for one in mode), pushed.forces, strict=True))
+    forces = {one.touch: pushed.force(i) for i, one in enumerate(choice.modes[0])}
     pose = pose_of(solid, y)
     staying = []
     for touch, rate, motion in zip(touching, before, motions, strict=True):
-        flat, arm = solid.flats[touch[0]], pose.arm(*touch)
+        surface, corner = touch
+        flat, arm = solid.flats[surface], pose.arm(surface, corner)
         rebound = max(motion[2], -flat.restitution * rate)
         moment = vec.cross(arm, flat.normal)
         pull = 0.0
         if touch in forces:
             response = 1.0 / solid.mass + vec.dot(moment, vec.times(pose.inverse, moment))
-            pull = response * max(vec.dot(forces[touch], flat.normal), 0.0)
+            force = forces[touch]
+            pull = response * max(vec.dot(force, flat.normal), 0.0)
         if motion[2] <= STILL_TOUCHING or rebound * rebound <= 2.0 * solid.settling * pull:
             staying.append(touch)
         elif rate < -STRIKES:

@@ -26,7 +26,7 @@ import numpy as np
 from contact_dynamics.impact.law import RestitutionLaw
 from contact_dynamics.impact.spatial.path import SlidingLaw, SpatialPath, trace
 from contact_dynamics.impact.spatial.result import SpatialImpact
-from contact_dynamics.numerics.vectors import point_jacobians, tangents_by_sign
+from contact_dynamics.numerics.vectors import cross_of_two, point_jacobians, tangents_by_sign
 from contact_dynamics.rigid_body.body import inverse_mass_matrix
 from contact_dynamics.tolerances import NO_SHARED_RESPONSE
 
@@ -76,11 +76,17 @@ def response_of(
 
 def pushed(response: Response, states: Sequence[BodyState], impulses_W: FloatArray) -> list[BodyState]:
     """Return the states after impulses, (n, 3), N s, world axes, at the contacts of a response."""
-    twist = response.twist + response.inverse_mass @ np.einsum("ijk,ij->k", response.jacobian, impulses_W)
+    twist = twist_after(response, impulses_W)
     return [
         state.with_velocities(twist[6 * i : 6 * i + 3], twist[6 * i + 3 : 6 * i + 6])
         for i, state in enumerate(states)
     ]
+
+
+def twist_after(response: Response, impulses_W: FloatArray) -> FloatArray:
+    """Return the velocities of all bodies, (6 k,), after impulses, (n, 3), N s, world axes."""
+    pushed_by: FloatArray = np.einsum("ijk,ij->k", response.jacobian, impulses_W)
+    return response.twist + response.inverse_mass @ pushed_by
 
 
 def materials_of(contacts: ContactSet) -> list[tuple[float, float]]:
@@ -226,7 +232,7 @@ def _axes(response: Response, velocities: FloatArray, normals: FloatArray, toler
             size = float(np.linalg.norm(across))
             if size > least:
                 own[0] = across / size
-                own[1] = np.cross(normal, own[0])
+                own[1] = cross_of_two(normal, own[0])
                 break
     if not axes[:, 0].any():
         for own, normal in zip(axes, normals, strict=True):
