@@ -27,7 +27,6 @@ from contact_dynamics.toss.solid import (
     energy_of,
     kinetic_energy_of,
     low_corners,
-    numbers_of,
     points_of,
     pose_of,
     state_of,
@@ -38,7 +37,6 @@ if TYPE_CHECKING:
 
     from contact_dynamics.impact.law import ImpactOutcome, RestitutionLaw
     from contact_dynamics.numerics.vectors import Vector3
-    from contact_dynamics.rigid_body.body import BodyState
     from contact_dynamics.toss.solid import Numbers, Solid, Touch
     from contact_dynamics.validation import FloatArray
 
@@ -78,16 +76,16 @@ class History:
         resting: The contacts that the body rests on, if it does.
     """
 
-    def __init__(self, solid: Solid, state: BodyState, ways: tuple[int, ...]) -> None:
+    def __init__(self, solid: Solid, y: Numbers, ways: tuple[int, ...], began_ns: int) -> None:
         self.solid = solid
-        self.now, self.y = 0.0, _just_above(solid, numbers_of(state))
+        self.now, self.y = 0.0, _just_above(solid, y)
         self.pieces: list[Piece] = []
         self.events: list[Noted] = []
         self.lost_in_strikes = self.lost_in_contact = 0.0
         self.resting: list[Touch] = []
         self._undecided: list[Undecided] = []
         self._ways = ways
-        self._began_ns = state.stamp_ns
+        self._began_ns = began_ns
         self._first = energy_of(self.solid, self.y)
 
     def as_toss(self, end: TossEnd, law: RestitutionLaw) -> Toss:

@@ -11,10 +11,12 @@ would be shaken by it.
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from contact_dynamics.numerics.vectors import AXES
 from contact_dynamics.toss import vectors as vec
 from contact_dynamics.toss.solid import pose_of
 
@@ -22,6 +24,7 @@ if TYPE_CHECKING:
     from numpy.random import Generator
     from numpy.typing import NDArray
 
+    from contact_dynamics.numerics.vectors import Vector3
     from contact_dynamics.toss.solid import Numbers, Solid, Touch
     from contact_dynamics.toss.uncertainty import TossUncertainty
     from contact_dynamics.validation import FloatArray
@@ -95,17 +98,29 @@ class KickOfOne:
 
     def __call__(self, solid: Solid, before: Numbers, after: Numbers, touch: Touch) -> Numbers:
         """Return the changed state after a strike, for those before and after it and the contact."""
-        jump = float(np.linalg.norm(np.subtract(after[7:10], before[7:10])))
+        jump = math.dist(after[7:10], before[7:10])
         first = self._first = self._first or jump
         share = min(jump / (FULL * first), 1.0) if first > 0.0 else 1.0
         size = share * float(_tails(self._chance, 1)[0])
-        turning = _turning(solid, after, touch)
-        parts = _parts(self._sizes, np.array([(turning * turning).sum() / 3.0]))
-        drawn = size * np.repeat(np.ravel(parts), 3) * self._chance.standard_normal(9)
-        pushed = drawn[:3]
-        changes = [*(pushed + drawn[3:6]).tolist(), *(turning @ pushed + drawn[6:]).tolist()]
-        y = [*after[:7], *(x + change for x, change in zip(after[7:], changes, strict=True))]
-        return _turned_back(solid, y, touch)
+        pose = pose_of(solid, after)
+        arm, n = pose.arm(*touch), solid.flats[touch[0]].normal
+
+        def turned(impulse: Vector3) -> Vector3:
+            return vec.times(pose.inverse, vec.cross(arm, impulse))
+
+        squares = [vec.dot(turn, turn) for turn in map(turned, AXES)]
+        parts = _parts(self._sizes, np.array([solid.mass * solid.mass * sum(squares) / 3.0]))
+        drawn = (size * np.repeat(np.ravel(parts), 3) * self._chance.standard_normal(9)).tolist()
+        impulse = (solid.mass * drawn[0], solid.mass * drawn[1], solid.mass * drawn[2])
+        turn = turned(impulse)
+        v = [after[7 + k] + (drawn[k] + drawn[3 + k]) for k in range(3)]
+        w = [after[10 + k] + (turn[k] + drawn[6 + k]) for k in range(3)]
+        # The corner does not go on into the flat: an impulse along the normal turns it back.
+        rebound = vec.dot((v[0], v[1], v[2]), n) + vec.dot(vec.cross((w[0], w[1], w[2]), arm), n)
+        turn = turned(n)
+        back = max(-2.0 * rebound, 0.0) / (1.0 / solid.mass + vec.dot(vec.cross(arm, n), turn))
+        v = [x + back / solid.mass * each for x, each in zip(v, n, strict=True)]
+        return [*after[:7], *v, *(x + back * each for x, each in zip(w, turn, strict=True))]
 
 
 def _parts(sizes: FloatArray, squares: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
@@ -127,30 +142,3 @@ def _tails(chance: Generator, count: int) -> FloatArray:
     """Return factors, (n,), that make normal numbers those of Student's t with the same median."""
     sizes: FloatArray = _SAME_MEDIAN * np.sqrt(FREEDOM / chance.chisquare(FREEDOM, count))
     return sizes
-
-
-def _turning(solid: Solid, y: Numbers, touch: Touch) -> FloatArray:
-    """Return by how much an impulse at a contact changes the spin, for that of the velocity, (3, 3), 1/m."""
-    pose = pose_of(solid, y)
-    arm = pose.arm(*touch)
-    units = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
-    columns = [vec.times(pose.inverse, vec.cross(arm, unit)) for unit in units]
-    turning: FloatArray = solid.mass * np.array(columns).T
-    return turning
-
-
-def _turned_back(solid: Solid, y: Numbers, touch: Touch) -> Numbers:
-    """Return a state whose corner does not go on into the flat: an impulse along the normal turns it back."""
-    pose = pose_of(solid, y)
-    arm, n = pose.arm(*touch), solid.flats[touch[0]].normal
-    rebound = vec.dot(pose.velocity(arm), n)
-    if rebound >= 0.0:
-        return y
-    moment = vec.cross(arm, n)
-    turn = vec.times(pose.inverse, moment)
-    impulse = -2.0 * rebound / (1.0 / solid.mass + vec.dot(moment, turn))
-    return [
-        *y[:7],
-        *(x + impulse / solid.mass * each for x, each in zip(y[7:10], n, strict=True)),
-        *(x + impulse * each for x, each in zip(y[10:], turn, strict=True)),
-    ]

@@ -23,7 +23,7 @@ from contact_dynamics.tolerances import DISTANCE_TOLERANCE, LARGEST_NUMBER, LEAS
 from contact_dynamics.toss.distinct_corners import with_distinct_corners
 from contact_dynamics.toss.impacts import check_laws
 from contact_dynamics.toss.simulation import Simulation, TossSettings
-from contact_dynamics.toss.solid import solid_of
+from contact_dynamics.toss.solid import numbers_of, solid_of
 from contact_dynamics.toss.uncertainty import check_factors
 from contact_dynamics.tumbling.motion import check_extent
 from contact_dynamics.validation import check_positive, check_whole, check_within
@@ -94,12 +94,13 @@ def toss(
         error=check_within("error", error, LEAST_PHASE_ERROR, LARGEST_NUMBER),
     )
     most = check_whole("max_alternatives", max_alternatives, 0)
-    main = Simulation(settings, state, ()).toss()
+    y, began_ns = numbers_of(state), state.stamp_ns
+    main = Simulation(settings, y, (), began_ns).toss()
     waiting = deque(_other_ways(main, 0))
     others: list[Toss] = []
     while waiting and len(others) < most:
         ways = waiting.popleft()
-        other = Simulation(settings, state, ways).toss()
+        other = Simulation(settings, y, ways, began_ns).toss()
         others.append(other)
         waiting.extend(_other_ways(other, len(ways)))
     return replace(main, alternatives=tuple(others), all_followed=not waiting)

@@ -14,16 +14,14 @@ from contact_dynamics.records import NamedInt, Record
 from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.rotations.many import make_continuous
 from contact_dynamics.toss.phase import PhaseStep
-from contact_dynamics.toss.solid import state_of
+from contact_dynamics.toss.solid import properties_of, state_of
 from contact_dynamics.tumbling import FreeMotion, Precision, Trajectory, free_motion
 from contact_dynamics.validation import FloatArray, check_array
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from contact_dynamics.numerics.vectors import Vector3
-    from contact_dynamics.rigid_body.body import MassProperties
-    from contact_dynamics.toss.solid import Numbers
+    from contact_dynamics.toss.solid import Numbers, Solid
 
 
 _TIMES = 3
@@ -136,21 +134,19 @@ class FlightPiece(NamedTuple):
 
     Attributes:
         start: s, when it begins.
-        body: Mass and inertia.
+        solid: The body and its gravity.
         y: The 13 numbers of the state at that time.
-        gravity: m/s^2, world axes.
     """
 
     start: float
-    body: MassProperties
+    solid: Solid
     y: Numbers
-    gravity: Vector3
 
     @property
     def motion(self) -> FreeMotion:
         """The motion, from the state at that time."""
-        gravity = np.array(self.gravity)
-        return free_motion(self.body, state_of(self.y), gravity_W=gravity, precision=Precision.DOUBLE)
+        body, gravity = properties_of(self.solid), np.array(self.solid.gravity)
+        return free_motion(body, state_of(self.y), gravity_W=gravity, precision=Precision.DOUBLE)
 
 
 Piece: TypeAlias = "FlightPiece | PhaseStep"

@@ -46,7 +46,6 @@ from contact_dynamics.toss.strike import low_rebounds_ended, strike
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from contact_dynamics.rigid_body.body import BodyState
     from contact_dynamics.toss.forces import HeldContacts
     from contact_dynamics.toss.laid_flat import Faces
     from contact_dynamics.toss.mode_choice import Choice, Mode
@@ -121,10 +120,11 @@ class Simulation(History):
     It takes the given ways at its first undecided points, and way 0 after that.
     """
 
-    def __init__(self, settings: TossSettings, state: BodyState, ways: tuple[int, ...]) -> None:
-        super().__init__(settings.solid, state, ways)
+    def __init__(
+        self, settings: TossSettings, y: Numbers, ways: tuple[int, ...] = (), began_ns: int = 0
+    ) -> None:
+        super().__init__(settings.solid, y, ways, began_ns)
         self.settings = settings
-        self.properties = properties_of(self.solid)
         self.slow = math.inf  # J, rest is tried where the kinetic energy is below this
         self.struck = self.laid = self.steps = 0  # strikes, how often it was laid flat, steps in contact
         self.mark, self.rounds = 0.0, 0  # a time, s, and the rounds since then
@@ -186,7 +186,7 @@ class Simulation(History):
         self.y = out_of_flats(self.solid, self.y)
         flown = flight(self.solid, self.y, longest=left, pause=pause)
         if self.settings.has_pieces:
-            self.pieces.append(FlightPiece(self.now, self.properties, self.y, self.solid.gravity))
+            self.pieces.append(FlightPiece(self.now, self.solid, self.y))
             self._forget_instant()
         self.y = flown.after
         self.now += flown.seconds
@@ -265,7 +265,7 @@ class Simulation(History):
             return self.touching_now(STILL_TOUCHING)
         contacts = contacts_of(solid, self.y, touching)
         impact = settling_impact(
-            self.properties,
+            properties_of(solid),
             state_of(self.y),
             replace(contacts, body_curvatures=None),
             is_settled=lambda state: bool(choose_mode(solid, numbers_of(state), touching).modes),

@@ -10,7 +10,6 @@ from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.tolerances import SAMPLED_PHASE_ERROR
 from contact_dynamics.toss.result import TossEnd, TossEventKind
 from contact_dynamics.toss.simulation import Simulation, TossSettings
-from contact_dynamics.toss.solid import state_of
 from contact_dynamics.validation import check_whole
 
 if TYPE_CHECKING:
@@ -132,7 +131,7 @@ def _done(tosses: list[_Going], processes: int | Executor) -> Iterable[Followed]
 
 
 def _followed(one: _Going) -> Followed:
-    run = Simulation(one.settings, state_of(one.y), ())
+    run = Simulation(one.settings, one.y)
     end = run.to_end()
     struck = [event for event in run.events if event.kind == TossEventKind.STRIKES]
     return Followed(
