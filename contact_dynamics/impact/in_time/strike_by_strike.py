@@ -12,6 +12,7 @@ from contact_dynamics.contact.kinds import velocity_accelerations
 from contact_dynamics.impact.in_time.result import ImpactSequence, SequenceEnd, TimedStrike
 from contact_dynamics.impact.several.tied import materials_of, next_to_strike, strike_as_one
 from contact_dynamics.impact.spatial.one_contact import spatial_impact
+from contact_dynamics.rotations.many import crosses
 from contact_dynamics.rotations.one import cross_matrix
 from contact_dynamics.tolerances import CHATTER_HEIGHT, CHATTER_PAUSE, HELD_STILL, TIED_APPROACH
 from contact_dynamics.tumbling import Precision, free_motion
@@ -68,6 +69,7 @@ class StrikeByStrike:
         self.limit: float | None = None
         self.staying: tuple[int, ...] = ()
         self.order_is_open = False
+        self._lifted: tuple[Landing, FloatArray] | None = None  # the last landing's accelerations
 
     def run(self, state: BodyState, window: float, max_strikes: int) -> ImpactSequence:
         """Return the sequence from a state on. Each strike comes within a window, s, of the one before."""
@@ -242,14 +244,17 @@ class StrikeByStrike:
 
     def _lifting(self, landing: Landing) -> FloatArray:
         """Return the accelerations, (n,), m/s^2, that the contacts' gaps have in free motion."""
+        if self._lifted is not None and self._lifted[0] is landing:
+            return self._lifted[1]
         state, contacts = landing.state, landing.contacts
         w = state.w_WB_W
         inertia, spin = self.body.inertia_in_world(state.R_WB), cross_matrix(w)
-        angular = np.array(np.linalg.solve(inertia, np.cross(inertia @ w, w)), dtype=np.float64)
+        angular = np.array(np.linalg.solve(inertia, crosses(inertia @ w, w)), dtype=np.float64)
         turning = cross_matrix(angular) + spin @ spin
         accelerations = self.gravity_W + (contacts.p_WC_W - state.p_WB_W) @ turning.T
         rolling = velocity_accelerations(contacts, landing.velocities_W, w)
-        return _normal_parts(accelerations + rolling, contacts)
+        self._lifted = landing, _normal_parts(accelerations + rolling, contacts)
+        return self._lifted[1]
 
 
 def _fastest(landing: Landing) -> int:
