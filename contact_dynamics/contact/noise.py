@@ -9,7 +9,8 @@ so that corners that touch lie in their plane and contacts at rest have no veloc
 
 If the hypothesis that all contacts are at rest is rejected, those touch whose normal velocities can be zero,
 and of these those stick whose tangential velocities can be zero. Each is tested beside those that hold
-already, the likeliest first. So are the points that may touch a flat.
+already, the likeliest first. In the same way, all points that may touch a flat are tested first, and then
+each beside those that touch already.
 
 Not covered: gaps to obstacles, whose contacts are found at the pose as it is; the effect of the pose's noise
 on velocities, which is a product of two errors for a body that is nearly at rest.
@@ -92,9 +93,15 @@ def touching(
     points = _points_near_flats(body, noisy, surfaces, distance_tolerance)
     if not points:
         return noisy
+    gaps, rows = _gaps(points, noisy.state)
+    everything = _hypothesis(rows, gaps, noisy, noisy, math.inf)
+    if everything.passes:
+        closed = _with_gaps_closed(points, noisy, everything.state.state)
+        if np.abs(_gaps(points, closed.state)[0]).max() <= distance_tolerance:
+            return closed
     held: list[_Point] = []
     closed = noisy
-    for i in np.argsort(_gaps(points, noisy.state)[0]):
+    for i in np.argsort(gaps):
         gap, row = _gaps([points[i]], closed.state)
         hypothesis = _hypothesis(row, gap, noisy, closed, distance_tolerance)
         if hypothesis.passes and hypothesis.state is not closed:
