@@ -25,7 +25,7 @@ import numpy as np
 from contact_dynamics.constants import STANDARD_GRAVITY_W, seconds_since
 from contact_dynamics.errors import InvalidFieldError, TooLargeError
 from contact_dynamics.motion.free_derivative import derivatives_along
-from contact_dynamics.motion.velocity_jump import velocity_jump
+from contact_dynamics.motion.velocity_jump import is_held, velocity_jump
 from contact_dynamics.motion.whole_turns import (
     MAX_NOISE_RATIO,
     MAX_ORIENTATION_RESIDUAL,
@@ -94,7 +94,7 @@ class FitResult(Record):
         rounds: Number of rounds of Gauss's and Newton's method.
         converged: Whether the last round changed next to nothing, and the residuals fit the noise: their root
             mean square is at most three of the given deviations or, if no noise is given, the orientations
-            miss by at most 0.1 rad. Never where the velocity jumps.
+            miss by at most 0.1 rad. Never where the velocity jumps, nor where the body does not fall.
         position_misses_W: (count, 3), m, the positions less the fitted ones, world axes.
         orientation_misses_W: (count, 3), rad, rotation vectors from the fitted attitudes to those of the
             states, world axes.
@@ -148,7 +148,7 @@ def fit_free_motion(
     """
     body = body.mass_properties
     if len(states) < FEWEST_STATES:
-        raise InvalidFieldError("states", f"{len(states)} states", f"at least {FEWEST_STATES}")
+        raise InvalidFieldError("states", f"{len(states)} states", f"at least {FEWEST_STATES} states")
     if len(states) > MAX_STATES:
         raise TooLargeError("states", f"{len(states)} states", f"at most {MAX_STATES}")
     newest = states[-1].stamp_ns
@@ -160,7 +160,8 @@ def fit_free_motion(
     gravity = check_magnitude("gravity_W", check_array("gravity_W", gravity_W, (3,)))
     place = _fit_place(states, seconds, gravity, noise)
     jump = velocity_jump(seconds, place.misses_W)
-    spin = _fit_rotation(body, states, seconds, noise, search=jump is None)
+    flies = jump is None and not is_held(seconds, place.misses_W, gravity)
+    spin = _fit_rotation(body, states, seconds, noise, search=flies)
     covariance = np.zeros((12, 12))
     at_place, at_spin = np.r_[0:3, 6:9], np.r_[3:6, 9:12]
     covariance[np.ix_(at_place, at_place)] = np.kron(place.covariance, np.eye(3))
@@ -177,7 +178,7 @@ def fit_free_motion(
         orientation_residual=spin.residual,
         count=len(states),
         rounds=spin.rounds,
-        converged=spin.converged and place.fits_noise and jump is None,
+        converged=spin.converged and place.fits_noise and flies,
         velocity_jump=jump,
         turns_known=spin.turns_known,
         alternatives=tuple(alternatives),

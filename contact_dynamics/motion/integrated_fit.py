@@ -24,7 +24,7 @@ from contact_dynamics.motion.forces import NO_DRAG, NO_WRENCH, ConstantWrench, D
 from contact_dynamics.motion.free_fit import MAX_STATES, FitResult, StateNoise, fit_free_motion
 from contact_dynamics.motion.integrated import MAX_STEPS, ForcedMotion, forced_motion, turns_or_drags
 from contact_dynamics.motion.integrated_derivative import forced_state_derivatives
-from contact_dynamics.motion.velocity_jump import velocity_jump
+from contact_dynamics.motion.velocity_jump import is_held, velocity_jump
 from contact_dynamics.motion.whole_turns import Stamps, chosen_motion
 from contact_dynamics.numerics.gauss_newton import Fit, gauss_newton
 from contact_dynamics.rigid_body.body import BodyState, HasMassProperties, MassProperties
@@ -103,7 +103,7 @@ def fit_motion(
         orientation_residual=orientation,
         count=len(states),
         rounds=fit.rounds,
-        converged=converged and jump is None,
+        converged=converged and jump is None and not is_held(window.seconds, misses[:, :3], gravity),
         velocity_jump=jump,
         turns_known=chosen.turns_known,
         alternatives=chosen.alternatives,

@@ -1,10 +1,12 @@
-"""This file finds an impact among positions that should belong to one smooth motion.
+"""This file finds an impact among positions that should belong to one smooth motion, and a body that is held.
 
 Model: what the fitted motion misses the positions by is white noise and, if an impact lies among them, two
 straight lines with a break. A wrong force bends one line instead. Two lines are therefore compared with one
 parabola, by their likelihoods with noise of unknown size. They need to be far better, since noise of trackers
 is correlated. The search begins with the last few states and takes twice as many in each round, so that it
 finds the latest of several impacts.
+
+A body that lies, slides or is carried does not fall: its acceleration is off by more than half of gravity.
 
 Not covered: an impact with fewer than two states after it or before it, one whose change of velocity is
 hidden by the noise, and contacts that act slowly. A jump of the positions themselves counts as an impact.
@@ -29,6 +31,9 @@ MIN_EVIDENCE: Final = 32.0
 """Least difference of twice the logarithms of the likelihoods. It matters for fewer than a dozen states, of
 which noise alone reaches it about once in a million windows."""
 
+OFF_GRAVITY: Final = 0.5
+"""By which share of gravity the acceleration of a flight may be off, where it is measured that well."""
+
 _FIRST: Final = 6  # states of the first round
 _LEAST: Final = 2  # states of a line
 
@@ -52,14 +57,40 @@ def velocity_jump(seconds: FloatArray, misses_W: FloatArray) -> float | None:
     return 0.5 * float(seconds[-after - 1] + seconds[-after]) if after else None
 
 
+def is_held(seconds: FloatArray, misses_W: FloatArray, gravity_W: FloatArray) -> bool:
+    """Return whether a body accelerates unlike one in flight: what carries it takes most of its weight.
+
+    Args:
+        seconds: (n,), s, ascending, times of the positions.
+        misses_W: (n, 3), m, the positions less those of a flight.
+        gravity_W: (3,), m/s^2, world axes.
+    """
+    n, gravity = len(seconds), float(np.linalg.norm(gravity_W))
+    if n < _FIRST or gravity == 0.0:
+        return False
+    length = float(seconds[-1] - seconds[0])
+    powers, bent, curved = _parabola(seconds, misses_W)
+    straight = misses_W - powers[:, :2] @ np.linalg.lstsq(powers[:, :2], misses_W, rcond=None)[0]
+    least = n * LEAST_NOISE**2
+    ratio = (float(np.square(straight).sum()) + least) / (float(np.square(curved).sum()) + least)
+    off = 2.0 * float(np.linalg.norm(bent)) / length**2
+    return off > OFF_GRAVITY * gravity and (3 * n - 9) * math.log(ratio) > MIN_EVIDENCE
+
+
+def _parabola(t: FloatArray, x: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return powers of the times, from 0 to 1, the coefficient of their squares, and what is left, (n, 3)."""
+    s = (t - t[0]) / (t[-1] - t[0])
+    powers = np.column_stack([np.ones_like(s), s, np.square(s)])
+    coefficients = np.linalg.lstsq(powers, x, rcond=None)[0]
+    return powers, coefficients[2], x - powers @ coefficients
+
+
 def _states_after(t: FloatArray, x: FloatArray) -> int:
     """Return how many of the states come after a break, or zero if there is none."""
     n = len(t)
-    s = (t - t[0]) / (t[-1] - t[0])
     x = x - x.mean(axis=0)
-    curved = np.column_stack([np.ones(n), s, np.square(s)])
-    bent = x - curved @ np.linalg.lstsq(curved, x, rcond=None)[0]
-    smooth = float(np.square(bent).sum())
+    powers, _, left = _parabola(t, x)
+    s, smooth = powers[:, 1], float(np.square(left).sum())
     sums = _squares_about_lines(s, x)[_LEAST - 1 : -_LEAST]
     sums = sums + _squares_about_lines(s[::-1], x[::-1])[::-1][_LEAST : 1 - _LEAST]
     best = int(sums.argmin())

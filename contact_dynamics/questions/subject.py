@@ -182,9 +182,9 @@ def _check_fit(fit: FitResult, states: Sequence[BodyState]) -> None:
     if not fit.converged:
         raise InvalidFieldError(
             "fit_window",
-            f"{fit.count} states that the motion found misses by {fit.position_residual:.3g} m and "
-            f"{fit.orientation_residual:.3g} rad",
-            "a window in which nothing touches the body, and published angular velocities",
+            f"one whose {fit.count} states the fitted flight misses by {fit.position_residual:.3g} m and "
+            f"{fit.orientation_residual:.3g} rad (rms)",
+            "a window in which nothing touches the body, and angular velocities if it spins fast",
         )
     longest = max(seconds_between(a.stamp_ns, b.stamp_ns) for a, b in itertools.pairwise(states))
     turn = float(np.linalg.norm(fit.state.w_WB_W)) * longest

@@ -101,6 +101,35 @@ def noisy(
     return states
 
 
+@pytest.mark.parametrize("tilt", [0.0, 0.3])
+@pytest.mark.parametrize("noise", [0.0, 5e-4])
+def test_a_fit_to_a_body_that_lies_or_slides_has_not_converged(noise: float, tilt: float) -> None:
+    """It seems to fall, and to have been thrown upwards, if only the residuals are not looked at."""
+    rng = np.random.default_rng(5)
+    slope = np.array([np.cos(tilt), 0.0, -np.sin(tilt)])
+    states = []
+    for t in np.arange(12) / RATE:
+        along = 0.5 * G * np.sin(tilt) * t**2
+        states.append(
+            BodyState(
+                p_WB_W=along * slope + noise * rng.standard_normal(3),
+                q_WB=[0, 0, 0, 1],
+                v_WB_W=G * np.sin(tilt) * t * slope,
+                w_WB_W=[0, 0, 0],
+                stamp_ns=round(1e9 * t),
+            )
+        )
+    assert not fit_free_motion(BRICK, states).converged
+    assert not fit_motion(BRICK, states, drag=Drag(linear=0.05)).converged
+    store = StateStore(history=1.0, timeout=1e9)
+    for state in states:
+        store.add("brick", state)
+    context = Context(world=World(bodies=[BRICK]), states=store)
+    question = TumblingQuestion(body="brick", state=PublishedState(fit_window=0.2))
+    with pytest.raises(InvalidFieldError, match=r"fit_window must be .* nothing touches the body"):
+        ask(question, context)
+
+
 def test_no_impact_is_found_in_a_flight() -> None:
     """White noise of every size, gravity that leans, and drag that is not known or is: none is an impact."""
     for seed in range(300):

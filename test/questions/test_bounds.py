@@ -90,7 +90,7 @@ TOO_LARGE = {
             sampling=AtRate(duration=3.0, rate=10.0),
             include_covariance=True,
         ),
-        "times must be ..., got 3 s, in which neighbours",
+        "times must be ..., got 3 s, which takes",
     ),
 }
 

@@ -211,7 +211,7 @@ def test_a_fit_to_states_of_another_motion_is_an_error() -> None:
         half = 0.5 * (k > 4)
         states.add("cube", replace(state, q_WB=[np.sin(half), 0.0, 0.0, np.cos(half)]))
     with pytest.raises(
-        InvalidFieldError, match=r"fit_window must be .*, got 10 states that the motion found misses"
+        InvalidFieldError, match=r"fit_window must be .*, got one whose 10 states the fitted flight misses"
     ):
         subject_of("cube", PublishedState(fit_window=1.0), Context(world=WORLD, states=states))
 
@@ -291,7 +291,7 @@ def test_states_that_the_clock_falls_behind_are_forgotten() -> None:
 def test_a_fit_that_is_kept_is_that_of_the_same_body_states_and_gravity() -> None:
     """Asked in turn, so that each fit is kept while the others are asked for."""
     known = watching(*range(0, 100 * MS, 10 * MS))
-    floating = replace(known, world=replace(WORLD, gravity_W=np.array([0.0, 0.0, -1.0])))
+    floating = replace(known, world=replace(WORLD, gravity_W=np.array([0.0, 0.0, -8.0])))
     light = replace(CUBE, mass_properties=MassProperties(mass=0.5, I_B=np.diag([1e-3, 2e-3, 2.5e-3])))
     for _ in range(2):
         for body, context in (("cube", known), ("cube", floating), (light, known)):
