@@ -237,7 +237,8 @@ class ContactModeAnswer(Answer):
         wrench_facets: Number of edges of each friction pyramid in the wrench sets in space, or zero if they
             were not asked for.
         warnings: What makes the answer doubtful, in words: a contact outside of the body's shape, contacts
-            that were taken as flush because the verdict is undecided otherwise, or margins that are NaN.
+            that were taken as flush because the verdict is undecided otherwise, margins that are NaN, or
+            margins in a plane that was found from the load.
     """
 
     body_name: str
@@ -269,6 +270,12 @@ class ContactModeAnswer(Answer):
     geometry_margins: tuple[GeometryMargin, ...] | None = None
     probabilities: tuple[ModeProbability, ...] | None = None
     warnings: tuple[str, ...] = ()
+
+
+_IN_PLANE_ONLY: Final = (
+    "margins and statics are for changes of the wrench in the plane of motion; SPATIAL has those for all",
+)
+"""The plane is found from the load and the motion, so a user need not know that the answer is planar."""
 
 
 def answer(question: ContactModeQuestion, context: Context | None = None) -> ContactModeAnswer:
@@ -455,6 +462,7 @@ def _planar_answer(
         distance_tolerance=case.distance_tolerance,
         friction_facets=0,
         wrench_facets=0,
+        warnings=_IN_PLANE_ONLY if question.problem is Problem.AUTOMATIC and (margins or at_rest) else (),
     )
 
 

@@ -171,7 +171,7 @@ def _strike(
     spread: LawSpread,
 ) -> FloatArray:
     """Change the velocities of some samples by their strikes, and return the rebounds of the corners, m/s."""
-    normals = np.array([flat.normal for flat in solid.flats])[surfaces]
+    normals = np.array([flat.normal for flat in solid.flats]).reshape(-1, 3)[surfaces]
     q, inertias = state[1][which], samples.inertias_B[which]
     R = matrices_of(q)
     r = np.einsum("nij,nj->ni", R, samples.corners_B[which, corners]) - solid.rounding * normals

@@ -198,3 +198,18 @@ def test_numbers_without_sense_are_refused() -> None:
     )
     with pytest.raises(TooLargeError, match=r"contacts must be .*, got 1001 contacts"):
         answer(ContactModeQuestion(body=CUBE, state=state(), contacts=many))
+
+
+def test_margins_in_a_plane_that_was_found_from_the_load_are_said_to_be_of_that_plane() -> None:
+    """A smaller change out of the plane may end the mode."""
+    pushed = ContactModeQuestion(body=CUBE, state=RESTING, force_W=[1.0, 0, 0], include_margins=True)
+    found = answer(pushed, CONTEXT)
+    whole = answer(replace(pushed, problem=Problem.SPATIAL), CONTEXT)
+    assert (found.problem, whole.problem) == (Problem.PLANAR, Problem.SPATIAL)
+    assert any("SPATIAL" in warning for warning in found.warnings)
+    for other in (
+        replace(pushed, problem=Problem.PLANAR),
+        replace(pushed, problem=Problem.SPATIAL),
+        replace(pushed, include_margins=False),
+    ):
+        assert answer(other, CONTEXT).warnings == ()

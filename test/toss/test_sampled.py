@@ -289,3 +289,9 @@ def test_deviations_make_the_covariance_and_errors_come_in_arrays() -> None:
     np.testing.assert_allclose(found.standard_error(shares), by_hand, rtol=1e-14)
     with pytest.raises(InvalidFieldError, match=r"\(12, 12\), as rigid_body\.state_covariance makes one"):
         told(thrown(1), covariance=[0.002, 0.0, 0.05, 0.0])
+
+
+@pytest.mark.parametrize("to_rest", [False, True])
+def test_without_surfaces_all_samples_fly(*, to_rest: bool) -> None:
+    found = sampled_toss(BRICK, thrown(1), World(bodies=(BRICK,)), count=20, horizon=1.0, to_rest=to_rest)
+    assert [(branch.kind, branch.probability) for branch in found.branches] == [(BranchKind.FLIES, 1.0)]
