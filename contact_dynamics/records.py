@@ -136,7 +136,8 @@ class Record:
 
     def __str__(self) -> str:
         """Return what it is in short, and below it the fields, in at most 20 lines."""
-        return "\n".join([_cut(self.in_short()), *_lines(self)])
+        gist = textwrap.wrap(self.in_short(), _LINE, subsequent_indent="  ", break_on_hyphens=False)
+        return "\n".join([*gist, *_lines(self, _LINES - len(gist))])
 
     def in_short(self) -> str:
         """Return what it is in a few words. Results whose gist is not a field of theirs have more to say."""
@@ -283,13 +284,13 @@ def _in_a_line(record: Record, longest: int) -> str:
     return f"{name}({', '.join(shown)})"
 
 
-def _lines(record: Record) -> list[str]:
+def _lines(record: Record, count: int) -> list[str]:
     """Return a line for each field. Where there is room, lines for what is in a field follow."""
     named = _fields(record)
     width = max((len(name) for name, _ in named), default=0)
-    hidden = named[_LINES - 2 :] if len(named) > _LINES - 1 else []
+    hidden = named[count - 1 :] if len(named) > count else []
     named = named[: len(named) - len(hidden)]
-    room = _LINES - 1 - len(named)
+    room = count - len(named)
     lines = []
     for name, value in named:
         below: list[str] = []

@@ -24,6 +24,14 @@ class Colour(Enum):
     RED = 1
 
 
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class Wordy(Record):
+    values: FloatArray = field(default_factory=lambda: np.zeros(3))
+
+    def in_short(self) -> str:
+        return " ".join(f"word{k}" for k in range(40))
+
+
 class Pair(NamedTuple):
     one: float
     two: float
@@ -44,6 +52,12 @@ class Outer(Record):
     several: tuple[Inner, ...] = field(default_factory=lambda: (Inner(), Inner()))
     pair: Pair = field(default_factory=lambda: Pair(1.0, math.inf))
     missing: float | None = None
+
+
+def test_the_gist_of_a_result_is_wrapped_and_never_cut() -> None:
+    lines = str(Wordy()).splitlines()
+    assert max(map(len, lines)) <= 100
+    assert " ".join(" ".join(lines[:-1]).split()) == Wordy().in_short()
 
 
 def test_json_takes_the_dict_and_gives_the_numbers_back() -> None:

@@ -53,7 +53,7 @@ class LoggedMessage:
 
     topic: str
     type_name: str
-    data: bytes
+    data: bytes = field(repr=False)
     log_time_ns: int
     publish_time_ns: int
     definition: str = field(default="", repr=False)
@@ -79,6 +79,10 @@ class BagReader:
         if not self.paths or not self.paths[0].is_file():
             found = "no MCAP file here, and no .db3 file" if path.exists() else "no such file or folder"
             raise NotALogError(f"{path}: {found}")
+
+    def __repr__(self) -> str:
+        """Return the files' names and their size."""
+        return f"BagReader of {', '.join(str(path) for path in self.paths)} ({self.size} bytes)"
 
     @property
     def size(self) -> int:

@@ -193,7 +193,8 @@ class TossDistribution(Record):
     def standard_error(self, probability: float | FloatArray) -> float | FloatArray:
         """Return the standard error of a probability, such as a branch's, by the number of samples.
 
-        Of several, such as ``face_probabilities``, it returns an array.
+        Of several, such as ``face_probabilities``, it returns an array. It is zero for 0 and 1, which is not
+        certainty: what no sample shows has a probability of at most 3 / samples, by 95 %.
         """
         if isinstance(probability, np.ndarray):
             return np.array([self.standard_error(share) for share in probability.ravel().tolist()]).reshape(
