@@ -258,9 +258,13 @@ def _shown_fields(record: object) -> list[str]:
 
 
 def _meaning(called: Callable[..., object], name: str) -> str:
-    """Return the first line of what the help of a call says of an argument, in brackets, or nothing."""
-    meaning = re.search(rf"^\s*{name}: (.+?)\.?$", inspect.getdoc(called) or "", re.MULTILINE)
-    return f" ({meaning[1]})" if meaning else ""
+    """Return the first sentence on an argument in the help of a call, in brackets, or nothing."""
+    meaning = re.search(
+        rf"^\s*{name}: (.+?)(\.\s|\.?\n\s*\w+: |\.?\n\n|\.?\Z)",
+        inspect.getdoc(called) or "",
+        re.MULTILINE | re.DOTALL,
+    )
+    return f" ({' '.join(meaning[1].split())})" if meaning else ""
 
 
 def check_type(field: str, value: object, expected: Expected) -> None:

@@ -36,6 +36,7 @@ from contact_dynamics import (
 from contact_dynamics.contact_modes import contact_modes
 from contact_dynamics.errors import ContactDynamicsError, InvalidFieldError, WrongTypeError
 from contact_dynamics.records import Record
+from contact_dynamics.toss import sampled_toss
 from contact_dynamics.validation_types import checks_types
 from hostile_values.shared import BALL, BOX, CONTACT, CONTACTS, FLOOR, ROD, STATE, TIP, WORLD
 
@@ -136,6 +137,14 @@ GUESSES: list[tuple[Any, dict[str, Any], str]] = [
         free_motion,
         {"body": BOX, "gravty_W": 0},
         "free_motion has no argument 'gravty_W', did you mean gravity_W?",
+    ),
+    (
+        sampled_toss,
+        {"samples": 9},
+        (
+            "sampled_toss has no argument 'samples', did you mean count "
+            "(Number of samples, from 1 to `MAX_SAMPLES`)?"
+        ),
     ),
     (World, {"colour": "red"}, "World has no argument 'colour'. It has bodies, surfaces, gravity_W"),
     (Body.box, {"size": (1, 1, 1), "weight": 1}, "Body.box has no argument 'weight'. It has size, mass, "),

@@ -113,7 +113,7 @@ def _check_supported(question: ImpactQuestion, *, contact_count: int) -> None:
     if question.include_covariance and (has_other or not one_contact):
         message = (
             "include_covariance must be false except at one contact with the world in space, and without "
-            "strikes in time, got true"
+            f"strikes in time, got true for {contact_count} contacts"
         )
         raise NotSupportedError(message)
 
