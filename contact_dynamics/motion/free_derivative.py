@@ -41,7 +41,7 @@ from contact_dynamics.rotations.one import cross_matrix, rotation_matrix
 from contact_dynamics.tolerances import GROWTH_ROUNDING, LARGEST_DERIVATIVE_ERROR, SMALL_TURN
 from contact_dynamics.tumbling.poinsot_construction import polhode_period
 from contact_dynamics.tumbling.polhode import Spin, largest_rate
-from contact_dynamics.validation import FloatArray, check_array
+from contact_dynamics.validation import FloatArray, check_array, check_magnitude
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -80,7 +80,8 @@ def state_derivatives(motion: FreeMotion, seconds: ArrayLike) -> FloatArray:
 
 def rotation_derivatives(motion: FreeMotion, times: ArrayLike) -> FloatArray:
     """Return the part of `state_derivatives` for rotation vector and angular velocity, (n, 6, 6)."""
-    return derivatives_along(motion, motion.at(check_array("times", times, (None,))))
+    checked = check_magnitude("times", check_array("times", times, (None,)), motion.farthest)
+    return derivatives_along(motion, motion.at(checked))
 
 
 def derivatives_along(motion: FreeMotion, then: Trajectory) -> FloatArray:

@@ -73,7 +73,7 @@ def explicit(service: Any) -> Any:
     [
         (fast_spin, "horizon must be ..., got more than 50000 steps of the search"),
         (thousand_contacts, "contacts must be ..., got 1000 contacts at once"),
-        (carried_under_strong_drag, "times must be ..., got 10 s, in which neighbours"),
+        (carried_under_strong_drag, "times must be ..., got 10 s, which takes"),
     ],
 )
 def test_a_question_without_end_is_refused_and_the_next_is_answered(

@@ -107,7 +107,7 @@ def contents(msg: Any) -> Any:
 def check_same(client: Client, request: Any, in_python: Any) -> None:
     """Compare the server's answer with the one that was found here."""
     response = client.ask(request)
-    assert (response.status, response.message) == (response.OK, "")
+    assert (response.status, response.message) == (response.OK, in_python.message)
     assert contents(response) == contents(in_python)
 
 

@@ -65,9 +65,9 @@ def brick_world() -> Context:
     world = World(bodies=(brick,), surfaces=(floor,), gravity_W=STANDARD_GRAVITY_W)
     for i in range(200):
         state = BodyState(
-            p_WB_W=(0.001 * i, 0.0, 5.0),
+            p_WB_W=(0.001 * i, 0.0, 5.0 + 0.5 * STANDARD_GRAVITY_W[2] * (0.001 * i) ** 2),
             q_WB=(0.0, 0.0, 0.0, 1.0),
-            v_WB_W=(1.0, 0.0, 0.0),
+            v_WB_W=(1.0, 0.0, 0.001 * i * STANDARD_GRAVITY_W[2]),
             w_WB_W=np.zeros(3),
             stamp_ns=1_000_000 * i,
         )
