@@ -5,7 +5,7 @@
 no drag acts. `free_derivative` and `integrated_derivative` say how
 a motion changes with its first state, and `covariance` carries the covariance of that state along. `free_fit`
 and `integrated_fit` find the motion that fits some published states best, and `whole_turns` determines
-whether the states distinguish it from motions with more turns. `velocity_jump` finds impacts among them.
+whether the states distinguish it from motions with more turns. `flight_check` finds impacts among them.
 `between_states` interpolates, and `velocity_estimate` finds velocities from poses.
 """
 

@@ -24,8 +24,8 @@ import numpy as np
 
 from contact_dynamics.constants import STANDARD_GRAVITY_W, seconds_since
 from contact_dynamics.errors import InvalidFieldError, TooLargeError
+from contact_dynamics.motion.flight_check import is_held, velocity_jump
 from contact_dynamics.motion.free_derivative import derivatives_along
-from contact_dynamics.motion.velocity_jump import is_held, velocity_jump
 from contact_dynamics.motion.whole_turns import (
     MAX_NOISE_RATIO,
     MAX_ORIENTATION_RESIDUAL,

@@ -20,11 +20,11 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from contact_dynamics.constants import STANDARD_GRAVITY_W, seconds_since
+from contact_dynamics.motion.flight_check import is_held, velocity_jump
 from contact_dynamics.motion.forces import NO_DRAG, NO_WRENCH, ConstantWrench, Drag
 from contact_dynamics.motion.free_fit import MAX_STATES, FitResult, StateNoise, fit_free_motion
 from contact_dynamics.motion.integrated import MAX_STEPS, ForcedMotion, forced_motion, turns_or_drags
 from contact_dynamics.motion.integrated_derivative import forced_state_derivatives
-from contact_dynamics.motion.velocity_jump import is_held, velocity_jump
 from contact_dynamics.motion.whole_turns import Stamps, chosen_motion
 from contact_dynamics.numerics.gauss_newton import Fit, gauss_newton
 from contact_dynamics.rigid_body.body import BodyState, HasMassProperties, MassProperties

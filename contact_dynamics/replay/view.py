@@ -56,7 +56,7 @@ def draw(
         events: the recording.
         sinks: where to draw to.
         surface_side: m, the side of the squares that stand for surfaces.
-        on_open: a function that is told, in words, where to it is drawn, and when what is served is complete.
+        on_open: a function that is called with the address of the picture, and again when it is complete.
         on_problem: a function that is told, in words, what cannot be drawn, each kind once.
         on_progress: a function that is told the stamp of what is drawn, ns.
 

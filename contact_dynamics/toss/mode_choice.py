@@ -140,7 +140,7 @@ def choose_mode(
 
 
 def _put_first(modes: list[Mode], guess: list[Held]) -> None:
-    """Put the mode that goes on first."""
+    """Move the mode that lasts to the front."""
     going_on = [(one.touch, one.slides) for one in guess]
     modes.sort(key=lambda mode: [(one.touch, one.slides) for one in mode] != going_on)
 

@@ -1,9 +1,9 @@
-"""This file finds an impact among positions that should belong to one smooth motion, and a body that is held.
+"""This file checks that positions are those of one flight: no impact lies among them, and the body falls.
 
 Model: what the fitted motion misses the positions by is white noise and, if an impact lies among them, two
 straight lines with a break. A wrong force bends one line instead. Two lines are therefore compared with one
 parabola, by their likelihoods with noise of unknown size. They need to be far better, since noise of trackers
-is correlated. The search begins with the last few states and takes twice as many in each round, so that it
+is correlated. The search begins with the last few states and doubles their number in each round. It therefore
 finds the latest of several impacts.
 
 A body that lies, slides or is carried does not fall: its acceleration is off by more than half of gravity.
@@ -27,9 +27,9 @@ if TYPE_CHECKING:
 MIN_VARIANCE_RATIO: Final = 9.0
 """Least ratio of the variances about a parabola and about two lines with an impact between them."""
 
-MIN_EVIDENCE: Final = 32.0
-"""Least difference of twice the logarithms of the likelihoods. It matters for fewer than a dozen states, of
-which noise alone reaches it about once in a million windows."""
+LEAST_EVIDENCE: Final = 32.0
+"""Least difference of twice the logarithms of the likelihoods. It matters for fewer than a dozen states, for
+which noise alone could reach the ratio."""
 
 OFF_GRAVITY: Final = 0.5
 """By which share of gravity the acceleration of a flight may be off, where it is measured that well."""
@@ -74,7 +74,7 @@ def is_held(seconds: FloatArray, misses_W: FloatArray, gravity_W: FloatArray) ->
     least = n * LEAST_NOISE**2
     ratio = (float(np.square(straight).sum()) + least) / (float(np.square(curved).sum()) + least)
     off = 2.0 * float(np.linalg.norm(bent)) / length**2
-    return off > OFF_GRAVITY * gravity and (3 * n - 9) * math.log(ratio) > MIN_EVIDENCE
+    return off > OFF_GRAVITY * gravity and (3 * n - 9) * math.log(ratio) > LEAST_EVIDENCE
 
 
 def _parabola(t: FloatArray, x: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
@@ -98,7 +98,10 @@ def _states_after(t: FloatArray, x: FloatArray) -> int:
     free_smooth, free_broken = 3 * n - 9, 3 * n - 13
     least = n * LEAST_NOISE**2
     ratio = (smooth + least) / (broken + least)
-    if ratio * free_broken < MIN_VARIANCE_RATIO * free_smooth or free_broken * math.log(ratio) < MIN_EVIDENCE:
+    if (
+        ratio * free_broken < MIN_VARIANCE_RATIO * free_smooth
+        or free_broken * math.log(ratio) < LEAST_EVIDENCE
+    ):
         return 0
     return n - best - _LEAST
 
