@@ -14,15 +14,15 @@ from running_server import ROOT, environment, process
 PATIENCE_S = 60.0
 
 
-def told(situation: str, config: str, *arguments: str, once: str = "") -> str:
+def told(situation: str, config: str, *arguments: str, all_of: tuple[str, ...]) -> str:
     """What the commentator prints until the states end; the publisher's arguments follow its name.
 
-    It is shown again, at most four times, until the commentator tells what happens ``once``, for about as
-    long as it pauses: where a machine stalls, it misses that.
+    It is shown again, at most four times, until the commentator tells all of this in this order: where a
+    machine stalls for a moment, the states of that moment pass without a comment.
     """
     for _ in range(5):
         printed = _told(situation, config, *arguments)
-        if once in printed:
+        if are_in_order(printed, all_of):
             break
     return printed
 
@@ -44,21 +44,23 @@ def _told(situation: str, config: str, *arguments: str) -> str:
     return printed
 
 
-def in_order(printed: str, *words: str) -> None:
-    """Assert that the words are told one after the other."""
-    assert re.search(".*".join(re.escape(each) for each in words), printed, re.DOTALL), printed
+def are_in_order(printed: str, words: tuple[str, ...]) -> bool:
+    return re.search(".*".join(re.escape(each) for each in words), printed, re.DOTALL) is not None
+
+
+SLIDES = ("it stays fixed", "N from where it slides right", "it slides right", "it stays fixed")
 
 
 @pytest.fixture(scope="module")
 def slid() -> str:
     return told(
         PUSHED_BLOCK, "pushed_block.yaml", "block_publisher", PUSHED_BLOCK, "--rate", "5", "--seconds", "4",
-        once=": it slides right",
+        all_of=SLIDES,
     )  # fmt: skip
 
 
 def test_a_block_that_is_pushed_stays_slides_and_stays(slid: str) -> None:
-    in_order(slid, "it stays fixed", "N from where it slides right", "it slides right", "it stays fixed")
+    assert are_in_order(slid, SLIDES), slid
 
 
 def test_it_slides_from_the_push_on_that_friction_can_hold(slid: str) -> None:
@@ -72,31 +74,30 @@ def test_it_slides_from_the_push_on_that_friction_can_hold(slid: str) -> None:
 
 @pytest.mark.slow
 def test_a_block_that_is_pushed_high_tips() -> None:
+    tips = ("it stays fixed", "N from where it tips (2 contacts separate, 2 stay fixed)")
     printed = told(
         PUSHED_BLOCK, "pushed_block.yaml", "block_publisher", PUSHED_BLOCK,
-        "--height", "0.15", "--rate", "2", "--seconds", "5",
+        "--height", "0.15", "--rate", "2", "--seconds", "5", all_of=tips,
     )  # fmt: skip
-    in_order(printed, "it stays fixed", "N from where it tips (2 contacts separate, 2 stay fixed)")
+    assert are_in_order(printed, tips), printed
     # It has fallen onto its side, where it is pushed no more and stands wider.
     assert "N from where it slides left" in printed.splitlines()[-1]
 
 
 def test_a_block_slides_on_a_tray_that_tilts_until_it_meets_the_rim() -> None:
+    meets = ("it stays fixed", ": it slides right", "it stays fixed", "4 contacts separate, 4 slide left")
     printed = told(
         TRAY, "tray.yaml", "block_publisher", TRAY, "--degrees-per-second", "6", "--seconds", "7",
-        once=": it slides right",
+        all_of=meets,
     )  # fmt: skip
+    assert are_in_order(printed, meets), printed
     # atan 0.3 = 16.7 degrees.
     tilts = [float(tilt) for tilt in re.findall(r"by ([ .\d]+) degrees: it slides right", printed)]
-    in_order(
-        printed, "it stays fixed", ": it slides right", "it stays fixed", "4 contacts separate, 4 slide left"
-    )
     assert min(tilts) > 16.6
 
 
 @pytest.mark.slow
 def test_a_box_that_is_thrown_lands_and_lies() -> None:
-    printed = told(THROWN_BOX, "server.yaml", "toss_publisher", "--listeners", "2")
-    in_order(
-        printed, "it lands in", "s on floor, where it", "and leaves with (", "it touches: it stays fixed"
-    )
+    lands = ("it lands in", "s on floor, where it", "and leaves with (", "it touches: it stays fixed")
+    printed = told(THROWN_BOX, "server.yaml", "toss_publisher", "--listeners", "2", all_of=lands)
+    assert are_in_order(printed, lands), printed
