@@ -22,6 +22,7 @@ from contact_dynamics.questions.many import (
 from contact_dynamics.rigid_body.published_frame import centers_of_mass, origins_of_published_frame
 from contact_dynamics_interfaces.msg import BodyStates
 from contact_dynamics_interfaces.srv import PredictImpactBatch, PredictTumblingBatch
+from msg_adapters import fields
 from msg_adapters.asked_fields import (
     asked_gravity,
     asked_restitution_law,
@@ -30,13 +31,13 @@ from msg_adapters.asked_fields import (
     write_gravity,
 )
 from msg_adapters.asked_subject import asked_body, asked_inertia
-from msg_adapters.body_state import center_of_mass
 from msg_adapters.contacts import flat
 from msg_adapters.field_names import renamed
-from msg_adapters.status import with_warnings, without_warnings
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+
+    from numpy.typing import NDArray
 
     from contact_dynamics.validation import FloatArray
     from contact_dynamics.world import Body, World
@@ -115,26 +116,6 @@ def tumblings_question_to_msg(
     return msg
 
 
-def tumblings_answer_to_msg(
-    answer: ManyTumblingsAnswer,
-    *,
-    world_frame: str,  # noqa: ARG001  all is in it
-    into: PredictTumblingBatch.Response | None = None,
-) -> PredictTumblingBatch.Response:
-    """Return an answer as a response: a new one, or the empty one to fill."""
-    msg = PredictTumblingBatch.Response() if into is None else into
-    msg.body_name = answer.body_name
-    body_states_to_msg(answer.states, p_FB_F=answer.p_FB_F, into=msg.states)
-    return msg
-
-
-def tumblings_answer_from_msg(msg: PredictTumblingBatch.Response, *, world: World) -> ManyTumblingsAnswer:
-    """Return the answer that a response carries; ``world`` knows the body's centre of mass."""
-    p_FB_F = center_of_mass(msg.body_name, world)
-    states = body_states_from_msg(msg.states, p_FB_F=p_FB_F)
-    return ManyTumblingsAnswer(body_name=msg.body_name, p_FB_F=p_FB_F, states=states)
-
-
 def impacts_question_from_msg(
     request: PredictImpactBatch.Request,
     *,
@@ -176,38 +157,6 @@ def impacts_question_to_msg(
     return msg
 
 
-def impacts_answer_to_msg(
-    answer: ManyImpactsAnswer,
-    *,
-    world_frame: str,  # noqa: ARG001  all is in it
-    into: PredictImpactBatch.Response | None = None,
-) -> PredictImpactBatch.Response:
-    """Return an answer as a response: a new one, or the empty one to fill."""
-    msg = PredictImpactBatch.Response() if into is None else into
-    msg.body_name = answer.body_name
-    msg.outcomes = np.where(answer.separates, msg.SEPARATES, answer.outcomes).astype(np.uint8).tolist()
-    body_states_to_msg(answer.states, p_FB_F=answer.p_FB_F, into=msg.states_after)
-    msg.impulses = flat(answer.impulses_W)
-    msg.message = with_warnings("", answer.warnings)
-    return msg
-
-
-def impacts_answer_from_msg(msg: PredictImpactBatch.Response, *, world: World) -> ManyImpactsAnswer:
-    """Return the answer that a response carries; ``world`` knows the body's centre of mass."""
-    p_FB_F = center_of_mass(msg.body_name, world)
-    told = np.array(msg.outcomes, dtype=np.int64)
-    separates = told == msg.SEPARATES
-    return ManyImpactsAnswer(
-        body_name=msg.body_name,
-        p_FB_F=p_FB_F,
-        outcomes=np.where(separates, int(ImpactOutcome.NO_IMPULSE), told),
-        separates=separates,
-        states=body_states_from_msg(msg.states_after, p_FB_F=p_FB_F),
-        impulses_W=flat_rows("impulses", msg.impulses, 3),
-        warnings=without_warnings(msg.message)[1],
-    )
-
-
 def _write_body(
     msg: PredictTumblingBatch.Request | PredictImpactBatch.Request, body: Body | str, world: World
 ) -> Body:
@@ -224,3 +173,66 @@ def flat_rows(field: str, numbers: Sequence[float], width: int) -> FloatArray:
     if len(numbers) % width:
         raise InvalidFieldError(field, f"{len(numbers)} numbers", f"rows of {width}")
     return np.array(numbers, dtype=np.float64).reshape(-1, width)
+
+
+STATES: Final = fields.Kind(
+    lambda msg, field, states, frame: body_states_to_msg(
+        states, p_FB_F=frame.p_FB_F, into=getattr(msg, field)
+    ),
+    lambda msg, field, frame: body_states_from_msg(getattr(msg, field), p_FB_F=frame.p_FB_F),
+)
+"""Many states of one body."""
+
+_TUMBLINGS: Final = fields.AnswerTable(
+    ManyTumblingsAnswer,
+    PredictTumblingBatch.Response,
+    fields.Row("body_name", "body_name"),
+    fields.Row("states", "states", STATES),
+    body_name="body_name",
+)
+tumblings_answer_to_msg: Final = _TUMBLINGS.response_of
+tumblings_answer_from_msg: Final = _TUMBLINGS.answer_of
+
+
+_SEPARATES: Final = PredictImpactBatch.Response.SEPARATES
+
+_OUTCOMES: Final = fields.Converted(
+    np.ndarray.tolist,
+    lambda told: np.where(_separates(told), int(ImpactOutcome.NO_IMPULSE), np.array(told, dtype=np.int64)),
+)
+"""Outcomes, among which are those that separate."""
+
+
+def _write_separates(
+    msg: PredictImpactBatch.Response, field: str, value: NDArray[np.bool_], _: fields.Frame
+) -> None:
+    """Write which contacts separate in place of their outcomes."""
+    setattr(msg, field, np.where(value, _SEPARATES, getattr(msg, field)).tolist())
+
+
+def _read_separates(msg: PredictImpactBatch.Response, field: str, _: fields.Frame) -> NDArray[np.bool_]:
+    return _separates(getattr(msg, field))
+
+
+def _separates(told: Sequence[int]) -> NDArray[np.bool_]:
+    found: NDArray[np.bool_] = np.equal(told, _SEPARATES)
+    return found
+
+
+_IMPACTS: Final = fields.AnswerTable(
+    ManyImpactsAnswer,
+    PredictImpactBatch.Response,
+    fields.Row("body_name", "body_name"),
+    fields.Row("outcomes", "outcomes", _OUTCOMES),
+    fields.Row(
+        "separates",
+        "outcomes",
+        fields.Kind(_write_separates, lambda msg, field, _: _separates(getattr(msg, field))),
+    ),
+    fields.Row("states", "states_after", STATES),
+    fields.Row("impulses_W", "impulses", fields.rows_of(3)),
+    fields.Row("warnings", "message", fields.WARNINGS),
+    body_name="body_name",
+)
+impacts_answer_to_msg: Final = _IMPACTS.response_of
+impacts_answer_from_msg: Final = _IMPACTS.answer_of

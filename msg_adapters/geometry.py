@@ -23,9 +23,9 @@ def vector_from_msg(msg: Vector3 | Point) -> FloatArray:
     return np.array((msg.x, msg.y, msg.z))
 
 
-def vector_to_msg(vector: Iterable[float]) -> Vector3:
-    """Return three numbers as a message."""
-    msg = Vector3()
+def vector_to_msg(vector: Iterable[float], *, into: Vector3 | Point | None = None) -> Vector3 | Point:
+    """Return three numbers as a message, which is a new `Vector3` unless one to fill is given."""
+    msg = Vector3() if into is None else into
     msg.x, msg.y, msg.z = map(float, vector)
     return msg
 
@@ -47,12 +47,16 @@ def quaternion_from_msg(msg: Quaternion) -> FloatArray:
     return np.array((msg.x, msg.y, msg.z, msg.w))
 
 
+def quaternion_to_msg(quaternion: Iterable[float], *, into: Quaternion) -> None:
+    """Write x, y, z, w into a message."""
+    into.x, into.y, into.z, into.w = map(float, quaternion)
+
+
 def pose_to_msg(position: Iterable[float], orientation: Iterable[float]) -> Pose:
     """Return a position and a quaternion x, y, z, w as a message."""
     msg = Pose()
-    at, turned = msg.position, msg.orientation
-    at.x, at.y, at.z = map(float, position)
-    turned.x, turned.y, turned.z, turned.w = map(float, orientation)
+    vector_to_msg(position, into=msg.position)
+    quaternion_to_msg(orientation, into=msg.orientation)
     return msg
 
 

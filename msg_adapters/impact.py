@@ -6,8 +6,8 @@ than to fill.
 
 from __future__ import annotations
 
-import math
-from typing import TYPE_CHECKING
+from dataclasses import replace
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
@@ -17,7 +17,6 @@ from contact_dynamics.impact.in_time.result import SequenceEnd
 from contact_dynamics.impact.in_time.sequence import MAX_STRIKES, STRIKE_WINDOW
 from contact_dynamics.impact.law import ImpactOutcome, PathEvent, RestitutionLaw
 from contact_dynamics.impact.several.result import SeveralContactsLaw
-from contact_dynamics.plane.projection import PlaneOfMotion
 from contact_dynamics.questions.impact_answer import ImpactAnswer, StruckBody
 from contact_dynamics.questions.impact_question import ImpactQuestion, InTime
 from contact_dynamics.questions.problem import Problem
@@ -25,8 +24,10 @@ from contact_dynamics.questions.resolved_impact import ResolvedImpact, SequenceS
 from contact_dynamics.questions.subject import PublishedState
 from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.rigid_body.published_frame import centers_of_mass, origin_of_published_frame
+from contact_dynamics.world import World
 from contact_dynamics_interfaces.msg import Impact as ImpactMsg
 from contact_dynamics_interfaces.srv import PredictImpact
+from msg_adapters import fields
 from msg_adapters.asked_fields import (
     asked_contacts,
     asked_plane,
@@ -39,11 +40,8 @@ from msg_adapters.asked_fields import (
 )
 from msg_adapters.asked_subject import asked_inertia, asked_other, asked_subject, write_fitted_subject
 from msg_adapters.body_state import body_state_from_msg, body_state_to_msg, center_of_mass, known_state_to_msg
-from msg_adapters.contacts import contacts_from_msg, contacts_to_msg, flat, rows
-from msg_adapters.geometry import vector_from_msg, vector_to_msg
+from msg_adapters.contacts import flat, rows
 from msg_adapters.stamps import stamp_ns_from_msg
-from msg_adapters.status import with_warnings, without_warnings
-from msg_adapters.tumbling import read_fit, write_fit
 from msg_adapters.unread_fields import IMPACT, check_unread
 
 if TYPE_CHECKING:
@@ -51,8 +49,11 @@ if TYPE_CHECKING:
 
     from contact_dynamics.questions.subject import StateSource
     from contact_dynamics.validation import FloatArray
-    from contact_dynamics.world import Body, World
+    from contact_dynamics.world import Body
     from contact_dynamics_interfaces.msg import BodyState as BodyStateMsg
+
+_NO_END: Final = ImpactMsg().sequence_end
+"""Why there is no further strike, of an impact at one instant."""
 
 
 def impact_question_from_msg(
@@ -152,201 +153,59 @@ def _write_other(
         raise NotSupportedError(message)
 
 
-def impact_answer_to_msg(
-    answer: ImpactAnswer, *, world_frame: str, into: PredictImpact.Response | None = None
-) -> PredictImpact.Response:
-    """Return an answer as a response, which is new unless an empty one to fill is given."""
-    msg = PredictImpact.Response() if into is None else into
-    name, p_FB_F, other = answer.body_name, answer.p_FB_F, answer.other
-    resolved_impact_to_msg(
-        answer.impact, body_name=name, p_FB_F=p_FB_F, world_frame=world_frame, other=other, into=msg.impact
-    )
-    msg.message = with_warnings("", answer.warnings)
-    write_fit(msg, answer.fit)
-    msg.time_to_contact = answer.seconds_to_contact
-    msg.problem = int(answer.problem)
-    body_state_to_msg(
-        answer.state, body_name=name, world_frame=world_frame, p_FB_F=p_FB_F, into=msg.state_before
-    )
-    if other is not None:
-        msg.other_state_before = [struck_body_to_msg(other, world_frame=world_frame)]
-    contacts_to_msg(answer.contacts, into=msg.contacts)
-    if answer.plane is not None:
-        msg.plane_normal = vector_to_msg(answer.plane.normal_W)
-    msg.out_of_plane = answer.out_of_plane
-    msg.velocity_tolerance = answer.velocity_tolerance
-    msg.distance_tolerance = answer.distance_tolerance
-    return msg
+def _write_law(msg: ImpactMsg, field: str, law: SeveralContactsLaw, _: fields.Frame) -> None:
+    setattr(msg, field, int(law))
 
 
-def impact_answer_from_msg(msg: PredictImpact.Response, *, world: World) -> ImpactAnswer:
-    """Return the answer that a response contains. ``world`` knows the bodies' centres of mass.
+def _read_law(msg: ImpactMsg, field: str, _: fields.Frame) -> SeveralContactsLaw:
+    in_time = len(msg.strike_times) > 0
+    return SeveralContactsLaw.SEQUENTIAL if in_time else SeveralContactsLaw(getattr(msg, field))
 
-    Raises:
-        InvalidFieldError: arrays have unequal lengths, or a number is not allowed.
-    """
-    p_FB_F = center_of_mass(msg.state_before.body_name, world)
-    other = struck_body_from_msg(msg.other_state_before[0], world=world) if msg.other_state_before else None
-    is_planar = msg.problem == PredictImpact.Request.PLANAR
-    return ImpactAnswer(
-        body_name=msg.state_before.body_name,
-        p_FB_F=p_FB_F,
-        state=body_state_from_msg(
-            msg.state_before, world_frame=msg.state_before.header.frame_id, p_FB_F=p_FB_F
-        ),
-        fit=read_fit(msg),
-        other=other,
-        seconds_to_contact=msg.time_to_contact,
-        contacts=contacts_from_msg(msg.contacts),
-        impact=resolved_impact_from_msg(
-            msg.impact, p_FB_F=p_FB_F, other_p_FB_F=None if other is None else other.p_FB_F
-        ),
-        problem=Problem(msg.problem),
-        plane=PlaneOfMotion(normal_W=vector_from_msg(msg.plane_normal)) if is_planar else None,
-        out_of_plane=msg.out_of_plane,
-        velocity_tolerance=msg.velocity_tolerance,
-        distance_tolerance=msg.distance_tolerance,
-        warnings=without_warnings(msg.message)[1],
+
+def _write_other_state(msg: ImpactMsg, field: str, state: BodyState | None, frame: fields.Frame) -> None:
+    if isinstance(frame.answer, ImpactAnswer) and frame.answer.other is not None and state is not None:
+        setattr(msg, field, [_struck_to_msg(replace(frame.answer.other, state=state), frame)])
+
+
+def _read_other_state(msg: ImpactMsg, field: str, frame: fields.Frame) -> BodyState | None:
+    return next((_struck_from_msg(each, frame).state for each in getattr(msg, field)), None)
+
+
+def _struck_to_msg(other: StruckBody, frame: fields.Frame) -> BodyStateMsg:
+    return body_state_to_msg(
+        other.state, body_name=other.name, world_frame=frame.world_frame, p_FB_F=other.p_FB_F
     )
 
 
-def struck_body_to_msg(other: StruckBody, *, world_frame: str) -> BodyStateMsg:
-    """Return the second body just before the impact as a message."""
-    return body_state_to_msg(other.state, body_name=other.name, world_frame=world_frame, p_FB_F=other.p_FB_F)
-
-
-def struck_body_from_msg(msg: BodyStateMsg, *, world: World) -> StruckBody:
-    """Return the second body just before the impact. ``world`` knows its centre of mass."""
-    p_FB_F = center_of_mass(msg.body_name, world)
+def _struck_from_msg(msg: BodyStateMsg, frame: fields.Frame) -> StruckBody:
+    p_FB_F = center_of_mass(msg.body_name, World() if frame.world is None else frame.world)
     state = body_state_from_msg(msg, world_frame=msg.header.frame_id, p_FB_F=p_FB_F)
     return StruckBody(name=msg.body_name, p_FB_F=p_FB_F, state=state)
 
 
-def resolved_impact_to_msg(
-    impact: ResolvedImpact,
-    *,
-    body_name: str,
-    p_FB_F: FloatArray,
-    world_frame: str,
-    other: StruckBody | None = None,
-    into: ImpactMsg | None = None,
-) -> ImpactMsg:
-    """Return an impact of a body whose centre of mass is at ``p_FB_F``, (3,), m, in its published frame."""
-    msg = ImpactMsg() if into is None else into
-    msg.restitution_law = int(impact.restitution_law)
-    msg.several_contacts_law = (
-        PredictImpact.Request.SEQUENTIAL_IN_TIME if impact.strikes else int(impact.several_contacts_law)
-    )
-    msg.outcome = ImpactMsg.NOT_TOLD if impact.outcome is None else int(impact.outcome)
-    msg.jams = impact.jams
-    msg.converged = impact.converged
-    body_state_to_msg(
-        impact.state, body_name=body_name, world_frame=world_frame, p_FB_F=p_FB_F, into=msg.state_after
-    )
-    if other is not None and impact.other_state is not None:
-        msg.other_state_after = [
-            body_state_to_msg(
-                impact.other_state, body_name=other.name, world_frame=world_frame, p_FB_F=other.p_FB_F
-            )
-        ]
-    msg.impulses = flat(impact.impulses_W)
-    msg.compression_impulses = flat(impact.compression_impulses_W)
-    msg.contact_velocities_before = flat(impact.velocities_before_W)
-    msg.contact_velocities_after = flat(impact.velocities_after_W)
-    msg.path = flat(impact.path_W)
-    msg.path_events = [int(event) for event in impact.path_events]
-    msg.path_contacts = list(impact.path_contacts)
-    msg.kinetic_energy_before = impact.kinetic_energy_before
-    msg.kinetic_energy_after = impact.kinetic_energy_after
-    msg.creates_energy = impact.creates_energy
-    if impact.orders:
-        msg.orders = [",".join(map(str, order)) for order in impact.orders]
-        msg.order_velocities = flat(impact.order_velocities_W)
-    msg.orders_complete = impact.orders_complete
-    msg.orders_not_converged = impact.orders_not_converged
-    if impact.covariance is not None:
-        msg.state_after.covariance = flat(impact.covariance)
-    msg.miss_probability = math.nan
-    if impact.outcome_probabilities is not None:
-        msg.outcome_probabilities = flat(impact.outcome_probabilities)
-        msg.miss_probability = impact.miss_probability
-    msg.limit_time = math.nan if impact.limit_seconds is None else impact.limit_seconds
-    if impact.strikes:
-        _write_strikes(msg, impact, p_FB_F)
-    return msg
-
-
-def resolved_impact_from_msg(
-    msg: ImpactMsg, *, p_FB_F: FloatArray, other_p_FB_F: FloatArray | None = None
-) -> ResolvedImpact:
-    """Return an impact of a body whose centre of mass is at ``p_FB_F``, (3,), m, in its published frame.
-
-    ``other_p_FB_F`` is the second body's centre of mass in its published frame, if there is one.
-    """
-    in_time = len(msg.strike_times) > 0
-    law = SeveralContactsLaw.SEQUENTIAL if in_time else SeveralContactsLaw(msg.several_contacts_law)
-    other_state = None
-    if other_p_FB_F is not None:
-        after = msg.other_state_after[0]
-        other_state = body_state_from_msg(after, world_frame=after.header.frame_id, p_FB_F=other_p_FB_F)
-    covariance, probabilities = msg.state_after.covariance, msg.outcome_probabilities
-    return ResolvedImpact(
-        restitution_law=RestitutionLaw(msg.restitution_law),
-        several_contacts_law=law,
-        outcome=None if msg.outcome == msg.NOT_TOLD else ImpactOutcome(msg.outcome),
-        jams=msg.jams,
-        converged=msg.converged,
-        state=body_state_from_msg(
-            msg.state_after, world_frame=msg.state_after.header.frame_id, p_FB_F=p_FB_F
-        ),
-        other_state=other_state,
-        impulses_W=rows(msg.impulses),
-        compression_impulses_W=rows(msg.compression_impulses),
-        velocities_before_W=rows(msg.contact_velocities_before),
-        velocities_after_W=rows(msg.contact_velocities_after),
-        path_W=rows(msg.path),
-        path_events=tuple(PathEvent(event) for event in msg.path_events),
-        path_contacts=tuple(msg.path_contacts),
-        kinetic_energy_before=msg.kinetic_energy_before,
-        kinetic_energy_after=msg.kinetic_energy_after,
-        creates_energy=msg.creates_energy,
-        orders=tuple(tuple(int(i) for i in order.split(",") if i) for order in msg.orders),
-        order_velocities_W=rows(msg.order_velocities, 6),
-        orders_complete=msg.orders_complete,
-        orders_not_converged=msg.orders_not_converged,
-        covariance=rows(covariance, 12) if len(covariance) > 0 else None,
-        outcome_probabilities=np.array(probabilities) if len(probabilities) > 0 else None,
-        miss_probability=msg.miss_probability if len(probabilities) > 0 else 0.0,
-        strikes=_read_strikes(msg, p_FB_F),
-        end=SequenceEnd(msg.sequence_end) if in_time else None,
-        staying=tuple(msg.staying_contacts),
-        limit_seconds=msg.limit_time if len(msg.staying_contacts) > 0 else None,
-    )
-
-
-def _write_strikes(msg: ImpactMsg, impact: ResolvedImpact, p_FB_F: FloatArray) -> None:
-    """Write strikes in time, and why there is no further one."""
-    strikes = impact.strikes
+def _write_strikes(msg: ImpactMsg, _: str, strikes: tuple[SequenceStrike, ...], frame: fields.Frame) -> None:
+    """Write strikes in time, which go with a law of their own."""
+    if not strikes:
+        return
+    msg.several_contacts_law = PredictImpact.Request.SEQUENTIAL_IN_TIME
     msg.strike_times = [strike.seconds for strike in strikes]
     msg.strike_contacts = [strike.contact for strike in strikes]
     msg.strike_outcomes = [int(strike.outcome) for strike in strikes]
     msg.strike_positions = flat(np.array([strike.p_WC_W for strike in strikes]))
     msg.strike_impulses = flat(np.array([strike.impulse_W for strike in strikes]))
+    before = [strike.state_before for strike in strikes]
     msg.strike_body_positions = flat(
-        np.array([origin_of_published_frame(strike.state_before, p_FB_F) for strike in strikes])
+        np.array([origin_of_published_frame(state, frame.p_FB_F) for state in before])
     )
-    msg.strike_body_orientations = flat(np.array([strike.state_before.q_WB for strike in strikes]))
-    msg.strike_velocities_before = flat(_twists([strike.state_before for strike in strikes]))
+    msg.strike_body_orientations = flat(np.array([state.q_WB for state in before]))
+    msg.strike_velocities_before = flat(_twists(before))
     msg.strike_velocities_after = flat(_twists([strike.state_after for strike in strikes]))
-    if impact.end is not None:
-        msg.sequence_end = int(impact.end)
-    msg.staying_contacts = list(impact.staying)
 
 
-def _read_strikes(msg: ImpactMsg, p_FB_F: FloatArray) -> tuple[SequenceStrike, ...]:
+def _read_strikes(msg: ImpactMsg, _: str, frame: fields.Frame) -> tuple[SequenceStrike, ...]:
     """Return strikes in time, if there are any. The last of them leads to the state after the impact."""
     orientations = rows(msg.strike_body_orientations, 4)
-    places = centers_of_mass(rows(msg.strike_body_positions), orientations, p_FB_F)
+    places = centers_of_mass(rows(msg.strike_body_positions), orientations, frame.p_FB_F)
     last_ns = stamp_ns_from_msg(msg.state_after.header.stamp)
     strikes = []
     for i, (seconds, contact) in enumerate(zip(msg.strike_times, msg.strike_contacts, strict=True)):
@@ -379,3 +238,85 @@ def _read_strikes(msg: ImpactMsg, p_FB_F: FloatArray) -> tuple[SequenceStrike, .
 
 def _twists(states: Sequence[BodyState]) -> FloatArray:
     return np.array([np.concatenate([state.v_WB_W, state.w_WB_W]) for state in states])
+
+
+RESOLVED_IMPACT: Final = fields.Table(
+    ResolvedImpact,
+    ImpactMsg,
+    fields.Row("restitution_law", "restitution_law", fields.one_of(RestitutionLaw)),
+    fields.Row("several_contacts_law", "several_contacts_law", fields.Kind(_write_law, _read_law)),
+    fields.Row("outcome", "outcome", fields.one_of(ImpactOutcome, none=ImpactMsg.NOT_TOLD)),
+    fields.Row("jams", "jams"),
+    fields.Row("converged", "converged"),
+    fields.Row("state", "state_after", fields.STATE),
+    fields.Row("other_state", "other_state_after", fields.Kind(_write_other_state, _read_other_state)),
+    fields.Row("impulses_W", "impulses", fields.rows_of(3)),
+    fields.Row("compression_impulses_W", "compression_impulses", fields.rows_of(3)),
+    fields.Row("velocities_before_W", "contact_velocities_before", fields.rows_of(3)),
+    fields.Row("velocities_after_W", "contact_velocities_after", fields.rows_of(3)),
+    fields.Row("path_W", "path", fields.rows_of(3)),
+    fields.Row("path_events", "path_events", fields.some_of(PathEvent)),
+    fields.Row("path_contacts", "path_contacts", fields.TUPLE),
+    fields.Row("kinetic_energy_before", "kinetic_energy_before"),
+    fields.Row("kinetic_energy_after", "kinetic_energy_after"),
+    fields.Row("creates_energy", "creates_energy"),
+    fields.Row(
+        "orders",
+        "orders",
+        fields.Converted(
+            lambda orders: [",".join(map(str, order)) for order in orders],
+            lambda texts: tuple(tuple(int(i) for i in text.split(",") if i) for text in texts),
+        ),
+    ),
+    fields.Row("order_velocities_W", "order_velocities", fields.rows_of(6)),
+    fields.Row("orders_complete", "orders_complete"),
+    fields.Row("orders_not_converged", "orders_not_converged"),
+    fields.Row(
+        "covariance",
+        "state_after",
+        fields.Kind(
+            lambda msg, field, value, frame: fields.NUMBERS_OR_NONE.write(
+                getattr(msg, field), "covariance", value, frame
+            ),
+            lambda msg, field, _: rows(found, 12) if len(found := getattr(msg, field).covariance) else None,
+        ),
+    ),
+    fields.Row("outcome_probabilities", "outcome_probabilities", fields.NUMBERS_OR_NONE),
+    fields.Row("miss_probability", "miss_probability"),
+    fields.Row("strikes", "", fields.Kind(_write_strikes, _read_strikes)),
+    fields.Row("end", "sequence_end", fields.one_of(SequenceEnd, none=_NO_END)),
+    fields.Row("staying", "staying_contacts", fields.TUPLE),
+    fields.Row("limit_seconds", "limit_time", fields.NUMBER_OR_NONE),
+)
+"""An impact of the body, and of a second one if there is one."""
+
+_ANSWER: Final = fields.AnswerTable(
+    ImpactAnswer,
+    PredictImpact.Response,
+    fields.Row("warnings", "message", fields.WARNINGS),
+    fields.Row("state", "state_before", fields.STATE),
+    fields.Row("fit", "", fields.FIT),
+    fields.Row(
+        "other",
+        "other_state_before",
+        fields.Kind(
+            lambda msg, field, other, frame: setattr(
+                msg, field, [] if other is None else [_struck_to_msg(other, frame)]
+            ),
+            lambda msg, field, frame: next(
+                (_struck_from_msg(each, frame) for each in getattr(msg, field)), None
+            ),
+        ),
+    ),
+    fields.Row("seconds_to_contact", "time_to_contact"),
+    fields.Row("contacts", "contacts", fields.CONTACTS),
+    fields.Row("impact", "impact", RESOLVED_IMPACT.nested()),
+    fields.Row("problem", "problem", fields.one_of(Problem)),
+    fields.Row("plane", "plane_normal", fields.PLANE),
+    fields.Row("out_of_plane", "out_of_plane"),
+    fields.Row("velocity_tolerance", "velocity_tolerance"),
+    fields.Row("distance_tolerance", "distance_tolerance"),
+    body_name="state_before.body_name",
+)
+impact_answer_to_msg: Final = _ANSWER.response_of
+impact_answer_from_msg: Final = _ANSWER.answer_of

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import math
-from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
@@ -23,18 +22,16 @@ from contact_dynamics.toss import (
 from contact_dynamics_interfaces.msg import TossEvent as TossEventMsg
 from contact_dynamics_interfaces.msg import TossPath as TossPathMsg
 from contact_dynamics_interfaces.srv import PredictToss
+from msg_adapters import fields
 from msg_adapters.asked_fields import asked_instant_law, asked_restitution_law, optional, write_given
 from msg_adapters.asked_subject import asked_subject, write_fitted_subject
-from msg_adapters.body_state import body_state_from_msg, body_state_to_msg, center_of_mass
-from msg_adapters.contacts import flat, rows
+from msg_adapters.contacts import flat
 from msg_adapters.field_names import renamed
-from msg_adapters.geometry import vector_from_msg, vector_to_msg
-from msg_adapters.toss_distribution import distribution_from_msg, distribution_to_msg
-from msg_adapters.tumbling import read_fit, trajectory_from_msg, trajectory_to_msg, write_fit
+from msg_adapters.toss_distribution import DISTRIBUTION
+from msg_adapters.tumbling import TRAJECTORY
 from msg_adapters.unread_fields import TOSS, check_unread
 
 if TYPE_CHECKING:
-    from contact_dynamics.validation import FloatArray
     from contact_dynamics.world import World
 
 
@@ -127,133 +124,62 @@ def toss_question_to_msg(question: TossQuestion, *, world: World, world_frame: s
     return msg
 
 
-def toss_answer_to_msg(
-    answer: TossAnswer, *, world_frame: str, into: PredictToss.Response | None = None
-) -> PredictToss.Response:
-    """Return an answer as a response, which is new unless an empty one to fill is given."""
-    msg = PredictToss.Response() if into is None else into
-    name, p_FB_F = answer.body_name, answer.p_FB_F
-    write = partial(
-        toss_path_to_msg,
-        stamp_ns=answer.state.stamp_ns,
-        body_name=name,
-        world_frame=world_frame,
-        p_FB_F=p_FB_F,
-    )
-    write(answer.toss, into=msg.toss)
-    msg.alternatives = [write(each) for each in answer.alternatives]
-    msg.all_followed = answer.all_followed
-    if answer.distribution is not None:
-        msg.distribution = [distribution_to_msg(answer.distribution, p_FB_F=p_FB_F)]
-    body_state_to_msg(answer.state, body_name=name, world_frame=world_frame, p_FB_F=p_FB_F, into=msg.state)
-    write_fit(msg, answer.fit)
-    return msg
+_UNDECIDED: Final = fields.Table(
+    Undecided,
+    TossPathMsg,
+    fields.Row("seconds", "undecided_times"),
+    fields.Row("reason", "undecided_reasons", fields.one_of(UndecidedReason)),
+    fields.Row("options", "undecided_options"),
+    fields.Row("taken", "undecided_taken"),
+)
 
+_ENERGY: Final = fields.Table(
+    TossEnergy,
+    TossPathMsg,
+    fields.Row("first", "energy_first"),
+    fields.Row("left", "energy_left"),
+    fields.Row("lost_in_strikes", "energy_lost_in_strikes"),
+    fields.Row("lost_in_contact", "energy_lost_in_contact"),
+)
 
-def toss_answer_from_msg(msg: PredictToss.Response, *, world: World) -> TossAnswer:
-    """Return the answer that a response contains. ``world`` knows the bodies' centres of mass.
+EVENT: Final = fields.Table(
+    TossEvent,
+    TossEventMsg,
+    fields.Row("seconds", "time"),
+    fields.Row("kind", "kind", fields.one_of(TossEventKind)),
+    fields.Row("surfaces", "surfaces", fields.TUPLE),
+    fields.Row("corners", "corners", fields.TUPLE),
+    fields.Row("p_WC_W", "points", fields.rows_of(3)),
+    fields.Row("impulse_W", "impulse", fields.VECTOR),
+    fields.Row("outcome", "outcome", fields.one_of(ImpactOutcome, none=TossEventMsg.NO_OUTCOME)),
+    fields.Row("mode", "mode"),
+    fields.Row("state", "state", fields.STATE),
+)
+"""An event of a toss."""
 
-    Raises:
-        InvalidFieldError: a number is not finite, or a quaternion is not unit.
-    """
-    p_FB_F = center_of_mass(msg.state.body_name, world)
-    return TossAnswer(
-        body_name=msg.state.body_name,
-        p_FB_F=p_FB_F,
-        state=body_state_from_msg(msg.state, world_frame=msg.state.header.frame_id, p_FB_F=p_FB_F),
-        fit=read_fit(msg),
-        toss=toss_path_from_msg(msg.toss, p_FB_F=p_FB_F),
-        alternatives=tuple(toss_path_from_msg(each, p_FB_F=p_FB_F) for each in msg.alternatives),
-        all_followed=msg.all_followed,
-        distribution=next((distribution_from_msg(each, p_FB_F=p_FB_F) for each in msg.distribution), None),
-    )
+PATH: Final = fields.Table(
+    TossPath,
+    TossPathMsg,
+    fields.Row("end", "end", fields.one_of(TossEnd)),
+    fields.Row("seconds", "end_time"),
+    fields.Row("trajectory", "trajectory", TRAJECTORY),
+    fields.Row("events", "events", EVENT.listed()),
+    fields.Row("resting_corners", "resting_corners", fields.TUPLE),
+    fields.Row("resting_normal_B", "resting_normal", fields.VECTOR),
+    fields.Row("energy", "", _ENERGY.nested()),
+    fields.Row("undecided", "", _UNDECIDED.columns()),
+)
+"""One way of a toss."""
 
-
-def toss_path_to_msg(
-    path: TossPath,
-    *,
-    stamp_ns: int,
-    body_name: str,
-    world_frame: str,
-    p_FB_F: FloatArray,
-    into: TossPathMsg | None = None,
-) -> TossPathMsg:
-    """Return one way of a toss as a message, which is new unless an empty one to fill is given."""
-    msg = TossPathMsg() if into is None else into
-    msg.end, msg.end_time = int(path.end), path.seconds
-    trajectory_to_msg(
-        path.trajectory, stamp_ns=stamp_ns, world_frame=world_frame, p_FB_F=p_FB_F, into=msg.trajectory
-    )
-    msg.events = [
-        toss_event_to_msg(event, body_name=body_name, world_frame=world_frame, p_FB_F=p_FB_F)
-        for event in path.events
-    ]
-    msg.resting_corners = list(path.resting_corners)
-    msg.resting_normal = vector_to_msg(path.resting_normal_B)
-    msg.energy_first, msg.energy_left = path.energy.first, path.energy.left
-    msg.energy_lost_in_strikes = path.energy.lost_in_strikes
-    msg.energy_lost_in_contact = path.energy.lost_in_contact
-    msg.undecided_times = [point.seconds for point in path.undecided]
-    msg.undecided_reasons = [int(point.reason) for point in path.undecided]
-    msg.undecided_options = [point.options for point in path.undecided]
-    msg.undecided_taken = [point.taken for point in path.undecided]
-    return msg
-
-
-def toss_path_from_msg(msg: TossPathMsg, *, p_FB_F: FloatArray) -> TossPath:
-    """Return one way of a toss, of the body whose centre of mass is at ``p_FB_F``, (3,), m."""
-    undecided = zip(
-        msg.undecided_times, msg.undecided_reasons, msg.undecided_options, msg.undecided_taken, strict=True
-    )
-    return TossPath(
-        end=TossEnd(msg.end),
-        seconds=msg.end_time,
-        trajectory=trajectory_from_msg(msg.trajectory, p_FB_F=p_FB_F),
-        events=tuple(toss_event_from_msg(each, p_FB_F=p_FB_F) for each in msg.events),
-        resting_corners=tuple(int(corner) for corner in msg.resting_corners),
-        resting_normal_B=vector_from_msg(msg.resting_normal),
-        energy=TossEnergy(
-            first=msg.energy_first,
-            lost_in_strikes=msg.energy_lost_in_strikes,
-            lost_in_contact=msg.energy_lost_in_contact,
-            left=msg.energy_left,
-        ),
-        undecided=tuple(
-            Undecided(
-                seconds=float(seconds), reason=UndecidedReason(reason), options=int(options), taken=int(taken)
-            )
-            for seconds, reason, options, taken in undecided
-        ),
-    )
-
-
-def toss_event_to_msg(
-    event: TossEvent, *, body_name: str, world_frame: str, p_FB_F: FloatArray
-) -> TossEventMsg:
-    """Return an event as a message."""
-    msg = TossEventMsg()
-    msg.time, msg.kind = event.seconds, int(event.kind)
-    msg.surfaces, msg.corners = list(event.surfaces), list(event.corners)
-    msg.points = flat(event.p_WC_W)
-    msg.impulse = vector_to_msg(event.impulse_W)
-    msg.outcome = msg.NO_OUTCOME if event.outcome is None else int(event.outcome)
-    msg.mode = event.mode
-    body_state_to_msg(
-        event.state, body_name=body_name, world_frame=world_frame, p_FB_F=p_FB_F, into=msg.state
-    )
-    return msg
-
-
-def toss_event_from_msg(msg: TossEventMsg, *, p_FB_F: FloatArray) -> TossEvent:
-    """Return an event of the body whose centre of mass is at ``p_FB_F``, (3,), m, in its published frame."""
-    return TossEvent(
-        seconds=msg.time,
-        kind=TossEventKind(msg.kind),
-        surfaces=tuple(msg.surfaces),
-        corners=tuple(int(corner) for corner in msg.corners),
-        p_WC_W=rows(msg.points),
-        impulse_W=vector_from_msg(msg.impulse),
-        outcome=None if msg.outcome == msg.NO_OUTCOME else ImpactOutcome(msg.outcome),
-        mode=msg.mode,
-        state=body_state_from_msg(msg.state, world_frame=msg.state.header.frame_id, p_FB_F=p_FB_F),
-    )
+_ANSWER: Final = fields.AnswerTable(
+    TossAnswer,
+    PredictToss.Response,
+    fields.Row("state", "state", fields.STATE),
+    fields.Row("fit", "", fields.FIT),
+    fields.Row("toss", "toss", PATH.nested()),
+    fields.Row("alternatives", "alternatives", PATH.listed()),
+    fields.Row("all_followed", "all_followed"),
+    fields.Row("distribution", "distribution", DISTRIBUTION.at_most_one()),
+)
+toss_answer_to_msg: Final = _ANSWER.response_of
+toss_answer_from_msg: Final = _ANSWER.answer_of

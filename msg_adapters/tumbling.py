@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
@@ -20,7 +20,6 @@ from contact_dynamics.questions.sample_times import (
     UntilContact,
     UntilPlane,
 )
-from contact_dynamics.questions.subject import FitQuality
 from contact_dynamics.questions.tumbling import TumblingAnswer, TumblingQuestion
 from contact_dynamics.rigid_body.published_frame import centers_of_mass, origins_of_published_frame
 from contact_dynamics.tumbling import Trajectory
@@ -30,23 +29,19 @@ from contact_dynamics.tumbling.regime import Regime
 from contact_dynamics_interfaces.msg import Poinsot as PoinsotMsg
 from contact_dynamics_interfaces.msg import Trajectory as TrajectoryMsg
 from contact_dynamics_interfaces.srv import PredictTumbling
+from msg_adapters import fields
 from msg_adapters.asked_fields import asked_gravity, optional, write_given, write_gravity
 from msg_adapters.asked_subject import asked_subject, write_fitted_subject
-from msg_adapters.body_state import body_state_from_msg, body_state_to_msg, center_of_mass
 from msg_adapters.contacts import flat, rows
 from msg_adapters.field_names import WRENCH_FIELDS, renamed
 from msg_adapters.geometry import point_to_msg, vector_from_msg, vector_to_msg, wrench_to_msg
 from msg_adapters.stamps import stamp_to_msg
-from msg_adapters.status import with_warnings, without_warnings
 from msg_adapters.unread_fields import TUMBLING, check_unread
 
 if TYPE_CHECKING:
     from contact_dynamics.questions.sample_times import Sampling
     from contact_dynamics.validation import FloatArray
     from contact_dynamics.world import World
-    from contact_dynamics_interfaces.srv import PredictImpact, PredictToss
-
-    FittedResponse: TypeAlias = PredictImpact.Response | PredictToss.Response | PredictTumbling.Response
 
 
 def tumbling_question_from_msg(
@@ -184,78 +179,6 @@ def _write_sampling(msg: PredictTumbling.Request, sampling: Sampling) -> None:
     write_given(msg, rate=sampling.rate, duration=sampling.duration)
 
 
-def tumbling_answer_to_msg(
-    answer: TumblingAnswer, *, world_frame: str, into: PredictTumbling.Response | None = None
-) -> PredictTumbling.Response:
-    """Return an answer as a response, which is new unless an empty one to fill is given."""
-    msg = PredictTumbling.Response() if into is None else into
-    if answer.poinsot is None or answer.flips is None:
-        msg.poinsot = torque_acts()
-    else:
-        poinsot_to_msg(answer.poinsot, answer.flips, answer.curves, into=msg.poinsot)
-    trajectory_to_msg(
-        answer.trajectory,
-        stamp_ns=answer.state.stamp_ns,
-        world_frame=world_frame,
-        p_FB_F=answer.p_FB_F,
-        into=msg.trajectory,
-    )
-    if answer.covariance is not None:
-        write_covariances(msg.trajectory, answer.covariance)
-    write_fit(msg, answer.fit)
-    msg.method = int(answer.method)
-    msg.message = with_warnings("", answer.warnings)
-    event = answer.event
-    msg.event = msg.NONE if event is None else int(event.kind)
-    msg.event_time = math.nan
-    if event is not None:
-        msg.event_time = event.seconds
-        msg.event_point = point_to_msg(event.point_W)
-        msg.event_velocity = vector_to_msg(event.velocity_W)
-        msg.event_surface = event.surface
-    body_state_to_msg(
-        answer.state,
-        body_name=answer.body_name,
-        world_frame=world_frame,
-        p_FB_F=answer.p_FB_F,
-        into=msg.state,
-    )
-    return msg
-
-
-def tumbling_answer_from_msg(msg: PredictTumbling.Response, *, world: World) -> TumblingAnswer:
-    """Return the answer that a response contains. ``world`` knows the bodies' centres of mass.
-
-    Raises:
-        InvalidFieldError: a number is not finite, or a quaternion is not unit.
-    """
-    p_FB_F = center_of_mass(msg.state.body_name, world)
-    return TumblingAnswer(
-        body_name=msg.state.body_name,
-        p_FB_F=p_FB_F,
-        state=body_state_from_msg(msg.state, world_frame=msg.state.header.frame_id, p_FB_F=p_FB_F),
-        fit=read_fit(msg),
-        trajectory=trajectory_from_msg(msg.trajectory, p_FB_F=p_FB_F),
-        covariance=read_covariances(msg.trajectory),
-        method=Method(msg.method),
-        event=None if msg.event == msg.NONE else _event_from_msg(msg),
-        poinsot=poinsot_from_msg(msg.poinsot),
-        flips=flips_from_msg(msg.poinsot),
-        curves=curves_from_msg(msg.poinsot),
-        warnings=without_warnings(msg.message)[1],
-    )
-
-
-def _event_from_msg(msg: PredictTumbling.Response) -> Event:
-    return Event(
-        kind=EventKind(msg.event),
-        seconds=msg.event_time,
-        point_W=vector_from_msg(msg.event_point),
-        velocity_W=vector_from_msg(msg.event_velocity),
-        surface=msg.event_surface,
-    )
-
-
 def trajectory_to_msg(
     trajectory: Trajectory,
     *,
@@ -291,121 +214,132 @@ def trajectory_from_msg(msg: TrajectoryMsg, *, p_FB_F: FloatArray) -> Trajectory
     )
 
 
-def write_covariances(msg: TrajectoryMsg, carried: CarriedCovariance) -> None:
-    """Write the covariances of its samples into a trajectory."""
-    msg.covariances = flat(carried.covariances)
-    msg.covariances_trusted = carried.trusted.tolist()
+def _write_covariances(msg: object, field: str, carried: CarriedCovariance | None, _: fields.Frame) -> None:
+    if carried is not None:
+        trajectory = getattr(msg, field)
+        trajectory.covariances = flat(carried.covariances)
+        trajectory.covariances_trusted = carried.trusted.tolist()
 
 
-def read_covariances(msg: TrajectoryMsg) -> CarriedCovariance | None:
-    """Return the covariances of a trajectory's samples, or None if it has none."""
-    if len(msg.covariances) == 0:
+def _read_covariances(msg: object, field: str, _: fields.Frame) -> CarriedCovariance | None:
+    trajectory = getattr(msg, field)
+    if len(trajectory.covariances) == 0:
         return None
-    covariances = rows(msg.covariances, 144).reshape(-1, 12, 12)
+    covariances = rows(trajectory.covariances, 144).reshape(-1, 12, 12)
     return CarriedCovariance(
-        seconds=np.array(msg.times),
+        seconds=np.array(trajectory.times),
         covariances=covariances,
         orientation_deviations=orientation_deviations(covariances),
-        trusted=np.array(msg.covariances_trusted),
+        trusted=np.array(trajectory.covariances_trusted),
         method=PropagationMethod.LINEARISED,
     )
 
 
-def write_fit(response: FittedResponse, fit: FitQuality | None) -> None:
-    """Write into a response how good the fit was that its state came from, with NaN for no fit."""
-    if fit is None:
-        response.fit_position_residual = response.fit_orientation_residual = math.nan
-        return
-    response.fit_count = fit.count
-    response.fit_position_residual = fit.position_residual
-    response.fit_orientation_residual = fit.orientation_residual
+COVARIANCES: Final = fields.Kind(_write_covariances, _read_covariances)
+"""The covariances of a trajectory's samples, or None without them."""
+
+TRAJECTORY: Final = fields.Kind(
+    lambda msg, field, value, frame: trajectory_to_msg(
+        value,
+        stamp_ns=frame.stamp_ns,
+        world_frame=frame.world_frame,
+        p_FB_F=frame.p_FB_F,
+        into=getattr(msg, field),
+    ),
+    lambda msg, field, frame: trajectory_from_msg(getattr(msg, field), p_FB_F=frame.p_FB_F),
+)
+"""A trajectory, whose times count from the frame's stamp."""
 
 
-def read_fit(response: FittedResponse) -> FitQuality | None:
-    """Return how good the fit was that a response's state came from, or None without a fit."""
-    if response.fit_count == 0:
-        return None
-    return FitQuality(
-        count=response.fit_count,
-        position_residual=response.fit_position_residual,
-        orientation_residual=response.fit_orientation_residual,
-    )
+def _write_torque(msg: PoinsotMsg) -> None:
+    """Write that a torque acts, so that there is no picture of Poinsot's."""
+    msg.regime = msg.UNKNOWN
+    for field in (
+        "rotational_energy",
+        "invariable_plane_distance",
+        "polhode_period",
+        "precession_per_period",
+        "sensitivity",
+    ):
+        setattr(msg, field, math.nan)
+    msg.angular_momentum = msg.principal_moments = np.full(3, math.nan)
+    msg.principal_axes = np.full(9, math.nan)
 
 
-def poinsot_to_msg(
-    picture: Poinsot, flips: Flips, curves: RollingCurves | None, *, into: PoinsotMsg | None = None
-) -> PoinsotMsg:
-    """Return Poinsot's picture of a motion as a message, with the next flips of its middle axis and curves.
-
-    The message is new unless an empty one to fill is given.
-    """
-    msg = PoinsotMsg() if into is None else into
-    msg.regime = int(picture.regime)
-    msg.rotational_energy = picture.rotational_energy
-    msg.angular_momentum = picture.L_W
-    msg.invariable_plane_distance = picture.invariable_plane_distance
-    msg.polhode_period = picture.polhode_period
-    msg.precession_per_period = picture.precession_per_period
-    msg.principal_moments = picture.principal_moments
-    msg.principal_axes = picture.principal_axes_B.ravel()
-    msg.sensitivity = picture.sensitivity
-    msg.flip_times = flat(flips.seconds)
-    msg.flip_time_deviations = flat(flips.deviations)
-    if curves is not None:
-        msg.curve_times = flat(curves.seconds)
-        msg.polhode = flat(curves.polhode_B)
-        msg.herpolhode = flat(curves.herpolhode_W)
-    return msg
-
-
-def poinsot_from_msg(msg: PoinsotMsg) -> Poinsot | None:
-    """Return Poinsot's picture of a motion, or None if a torque acts."""
-    if msg.regime == msg.UNKNOWN:
-        return None
-    moments = np.array(msg.principal_moments)
+def _poinsot(rotational_energy: float, principal_moments: FloatArray, **others: object) -> Poinsot:
+    """Return Poinsot's picture, whose semi-axes are not in the message."""
     return Poinsot(
-        regime=Regime(msg.regime),
-        rotational_energy=msg.rotational_energy,
-        L_W=np.array(msg.angular_momentum),
-        invariable_plane_distance=msg.invariable_plane_distance,
-        polhode_period=msg.polhode_period,
-        precession_per_period=msg.precession_per_period,
-        principal_moments=moments,
-        principal_axes_B=rows(msg.principal_axes),
-        ellipsoid_semi_axes=semi_axes(msg.rotational_energy, moments),
-        sensitivity=msg.sensitivity,
+        rotational_energy=rotational_energy,
+        principal_moments=principal_moments,
+        ellipsoid_semi_axes=semi_axes(rotational_energy, principal_moments),
+        **others,  # type: ignore[arg-type]  # the table has their kinds
     )
 
 
-def flips_from_msg(msg: PoinsotMsg) -> Flips | None:
-    """Return the next flips of the middle axis, of which there may be none, or None if a torque acts."""
-    if msg.regime == msg.UNKNOWN:
-        return None
-    return Flips(seconds=np.array(msg.flip_times), deviations=np.array(msg.flip_time_deviations))
+def _is_torque(msg: PoinsotMsg) -> bool:
+    return bool(msg.regime == msg.UNKNOWN)
 
 
-def curves_from_msg(msg: PoinsotMsg) -> RollingCurves | None:
-    """Return polhode and herpolhode, or None if the response does not have them."""
-    if len(msg.polhode) == 0:
-        return None
-    return RollingCurves(
-        seconds=np.array(msg.curve_times),
-        polhode_B=rows(msg.polhode),
-        herpolhode_W=rows(msg.herpolhode),
-    )
+POINSOT: Final = fields.Table(
+    _poinsot,
+    PoinsotMsg,
+    fields.Row("regime", "regime", fields.one_of(Regime)),
+    fields.Row("rotational_energy", "rotational_energy"),
+    fields.Row("L_W", "angular_momentum", fields.FIXED),
+    fields.Row("invariable_plane_distance", "invariable_plane_distance"),
+    fields.Row("polhode_period", "polhode_period"),
+    fields.Row("precession_per_period", "precession_per_period"),
+    fields.Row("principal_moments", "principal_moments", fields.FIXED),
+    fields.Row("principal_axes_B", "principal_axes", fields.Converted(np.ravel, rows)),
+    fields.Row("sensitivity", "sensitivity"),
+).nested(_is_torque, _write_torque)
+"""Poinsot's picture of a motion, or None if a torque acts."""
+
+FLIPS: Final = fields.Table(
+    Flips,
+    PoinsotMsg,
+    fields.Row("seconds", "flip_times", fields.NUMBERS),
+    fields.Row("deviations", "flip_time_deviations", fields.NUMBERS),
+).nested(_is_torque)
+"""The next flips of the middle axis, of which there may be none, or None if a torque acts."""
+
+CURVES: Final = fields.Table(
+    RollingCurves,
+    PoinsotMsg,
+    fields.Row("seconds", "curve_times", fields.NUMBERS),
+    fields.Row("polhode_B", "polhode", fields.rows_of(3)),
+    fields.Row("herpolhode_W", "herpolhode", fields.rows_of(3)),
+).nested(lambda msg: len(msg.polhode) == 0)
+"""Polhode and herpolhode, or None without them."""
 
 
-def torque_acts() -> PoinsotMsg:
-    """Return the empty message that stands for Poinsot's picture if a torque acts."""
-    nan = math.nan
-    return PoinsotMsg(
-        regime=PoinsotMsg.UNKNOWN,
-        rotational_energy=nan,
-        angular_momentum=np.full(3, nan),
-        invariable_plane_distance=nan,
-        polhode_period=nan,
-        precession_per_period=nan,
-        principal_moments=np.full(3, nan),
-        principal_axes=np.full(9, nan),
-        sensitivity=nan,
-    )
+def _write_no_event(msg: PredictTumbling.Response) -> None:
+    msg.event, msg.event_time = msg.NONE, math.nan
+
+
+_EVENT: Final = fields.Table(
+    Event,
+    PredictTumbling.Response,
+    fields.Row("kind", "event", fields.one_of(EventKind)),
+    fields.Row("seconds", "event_time"),
+    fields.Row("point_W", "event_point", fields.VECTOR),
+    fields.Row("velocity_W", "event_velocity", fields.VECTOR),
+    fields.Row("surface", "event_surface"),
+)
+
+_ANSWER: Final = fields.AnswerTable(
+    TumblingAnswer,
+    PredictTumbling.Response,
+    fields.Row("state", "state", fields.STATE),
+    fields.Row("fit", "", fields.FIT),
+    fields.Row("trajectory", "trajectory", TRAJECTORY),
+    fields.Row("covariance", "trajectory", COVARIANCES),
+    fields.Row("method", "method", fields.one_of(Method)),
+    fields.Row("event", "", _EVENT.nested(lambda msg: msg.event == msg.NONE, _write_no_event)),
+    fields.Row("poinsot", "poinsot", POINSOT),
+    fields.Row("flips", "poinsot", FLIPS),
+    fields.Row("curves", "poinsot", CURVES),
+    fields.Row("warnings", "message", fields.WARNINGS),
+)
+tumbling_answer_to_msg: Final = _ANSWER.response_of
+tumbling_answer_from_msg: Final = _ANSWER.answer_of

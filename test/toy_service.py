@@ -13,7 +13,7 @@ import sys
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -31,6 +31,7 @@ if TYPE_CHECKING:
 
     from contact_dynamics.viewing.picture import Picture
     from contact_dynamics_interfaces.srv import PredictTumbling
+    from msg_adapters.fields import AnswerTable
 
 IMPORTED = "TOY_SERVICE_IMPORTED"
 """The environment variable that names a file for the viewers that a process has imported when it ends."""
@@ -93,31 +94,25 @@ def apex_question_to_msg(
     return msg
 
 
+def _answer_table() -> AnswerTable[ApexAnswer, PredictTumbling.Response]:
+    from contact_dynamics_interfaces.srv import PredictTumbling
+    from msg_adapters.fields import STATE, AnswerTable, Row
+    from msg_adapters.tumbling import TRAJECTORY
+
+    rows = Row("state", "state", STATE), Row("trajectory", "trajectory", TRAJECTORY)
+    return AnswerTable(ApexAnswer, PredictTumbling.Response, *rows)
+
+
 def apex_answer_to_msg(
     answer: ApexAnswer, *, world_frame: str, into: PredictTumbling.Response
 ) -> PredictTumbling.Response:
     """Write an answer into a response."""
-    from msg_adapters.body_state import body_state_to_msg
-    from msg_adapters.tumbling import trajectory_to_msg
-
-    frame: dict[str, Any] = {"world_frame": world_frame, "p_FB_F": answer.p_FB_F}
-    body_state_to_msg(answer.state, body_name=answer.body_name, into=into.state, **frame)
-    trajectory_to_msg(answer.trajectory, stamp_ns=answer.stamp_ns, into=into.trajectory, **frame)
-    return into
+    return _answer_table().response_of(answer, world_frame=world_frame, into=into)
 
 
 def apex_answer_from_msg(msg: PredictTumbling.Response, *, world: World) -> ApexAnswer:
     """Return the answer of a response."""
-    from msg_adapters.body_state import body_state_from_msg
-    from msg_adapters.tumbling import trajectory_from_msg
-
-    p_FB_F = world.body(msg.state.body_name).p_FB_F
-    return ApexAnswer(
-        body_name=msg.state.body_name,
-        p_FB_F=p_FB_F,
-        state=body_state_from_msg(msg.state, world_frame=msg.state.header.frame_id, p_FB_F=p_FB_F),
-        trajectory=trajectory_from_msg(msg.trajectory, p_FB_F=p_FB_F),
-    )
+    return _answer_table().answer_of(msg, world=world)
 
 
 def words(answer: ApexAnswer) -> list[str]:

@@ -6,6 +6,7 @@ body and for two. An answer gives all of them in one form, in world axes.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -79,7 +80,8 @@ class ResolvedImpact(Record):
             not asked for.
         outcome_probabilities: (7,), the probability of each outcome, by its value, or None if that was not
             asked for.
-        miss_probability: Probability that the contact separates, so that nothing strikes.
+        miss_probability: Probability that the contact separates, so that nothing strikes, or NaN if that was
+            not asked for.
         strikes: Strikes in time, in their order. It is empty if all happened at one instant.
         end: Why there is no further strike, or None if all happened at one instant.
         staying: The contacts that stay from then on.
@@ -109,7 +111,7 @@ class ResolvedImpact(Record):
     orders_not_converged: int = 0
     covariance: FloatArray | None = None
     outcome_probabilities: FloatArray | None = None
-    miss_probability: float = 0.0
+    miss_probability: float = math.nan
     strikes: tuple[SequenceStrike, ...] = ()
     end: SequenceEnd | None = None
     staying: tuple[int, ...] = ()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 
 import numpy as np
 from hypothesis import strategies as st
@@ -108,7 +109,7 @@ def resolved_impacts(
         orders_not_converged=draw(indices),
         covariance=draw(some(arrays(12, 12))),
         outcome_probabilities=probabilities,
-        miss_probability=0.0 if probabilities is None else draw(st.floats(0.0, 1.0)),
+        miss_probability=math.nan if probabilities is None else draw(st.floats(0.0, 1.0)),
         strikes=strikes,
         end=draw(st.sampled_from(SequenceEnd)) if strikes else None,
         staying=staying,

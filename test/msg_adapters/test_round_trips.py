@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -24,6 +25,7 @@ from contact_dynamics.questions.subject import NEWEST
 from contact_dynamics.questions.toss import TossQuestion, TossSampling
 from contact_dynamics.toss import TossUncertainty
 from contact_dynamics.world import Body, World
+from contact_dynamics_interfaces.msg import BodyStates as BodyStatesMsg
 from contact_dynamics_interfaces.msg import Poinsot as PoinsotMsg
 from contact_dynamics_interfaces.msg import Trajectory as TrajectoryMsg
 from message_values.contact_modes import (
@@ -63,60 +65,27 @@ from message_values.toss import (
     toss_questions,
 )
 from message_values.tumbling import carried, rotations, tumbling_answers, tumbling_questions
-from msg_adapters.batches import (
-    body_states_from_msg,
-    body_states_to_msg,
-)
+from msg_adapters.batches import STATES
 from msg_adapters.body_state import known_state_from_msg, known_state_to_msg
 from msg_adapters.contact_mode import (
+    GEOMETRY_MARGIN,
+    MARGIN,
+    MODE,
+    WRENCH_SET,
     contact_mode_question_to_msg,
-    margin_from_msg,
-    mode_from_msg,
-    mode_to_msg,
-    wrench_set_from_msg,
-    wrench_set_to_msg,
 )
 from msg_adapters.contacts import contacts_from_msg, contacts_to_msg
-from msg_adapters.geometry_margins import geometry_margin_from_msg, geometry_margin_to_msg
-from msg_adapters.impact import (
-    impact_question_from_msg,
-    impact_question_to_msg,
-    resolved_impact_from_msg,
-    resolved_impact_to_msg,
-)
-from msg_adapters.toss import (
-    toss_event_from_msg,
-    toss_event_to_msg,
-    toss_path_from_msg,
-    toss_path_to_msg,
-    toss_question_from_msg,
-    toss_question_to_msg,
-)
-from msg_adapters.toss_distribution import (
-    branch_from_msg,
-    branch_to_msg,
-    distribution_from_msg,
-    distribution_to_msg,
-    event_regions_from_msg,
-    event_regions_to_msg,
-    region_from_msg,
-    region_to_msg,
-)
-from msg_adapters.tumbling import (
-    curves_from_msg,
-    flips_from_msg,
-    poinsot_from_msg,
-    poinsot_to_msg,
-    read_covariances,
-    trajectory_from_msg,
-    trajectory_to_msg,
-    write_covariances,
-)
+from msg_adapters.fields import Frame, Kind, Row, Table
+from msg_adapters.impact import RESOLVED_IMPACT, impact_question_from_msg, impact_question_to_msg
+from msg_adapters.toss import EVENT, PATH, toss_question_from_msg, toss_question_to_msg
+from msg_adapters.toss_distribution import BRANCH, DISTRIBUTION, EVENT_REGIONS, REGION
+from msg_adapters.tumbling import COVARIANCES, CURVES, FLIPS, POINSOT, TRAJECTORY
 
 CENTER = np.array([0.02, -0.01, 0.005])  # m, of mass, in the body's frame
 ROUNDING = 1e-12  # m, of positions up to 1 km that go through the published frame and back
 FRAME: dict[str, Any] = {"world_frame": "map"}
 BODY: dict[str, Any] = {**FRAME, "p_FB_F": NO_OFFSET}
+AT = Frame(p_FB_F=NO_OFFSET, body_name="brick", stamp_ns=7, **FRAME)
 NOWHERE = World()
 
 
@@ -135,15 +104,30 @@ def _trajectories(draw: st.DrawFn) -> Any:
     return trajectory, draw(carried(trajectory.seconds)) if len(trajectory) and draw(st.booleans()) else None
 
 
-def _trajectory_to_msg(value: Any) -> TrajectoryMsg:
-    msg = trajectory_to_msg(value[0], stamp_ns=7, **BODY)
-    if value[1] is not None:
-        write_covariances(msg, value[1])
-    return msg
+def _of_table(table: Table[Any, Any], values: st.SearchStrategy[Any]) -> Pair:
+    """The pair of a table."""
+    return Pair(values, partial(table.to_msg, frame=AT), partial(table.from_msg, frame=AT))
 
 
-def _poinsot_from_msg(msg: PoinsotMsg) -> Any:
-    return poinsot_from_msg(msg), flips_from_msg(msg), curves_from_msg(msg)
+def _of_kinds(msg_type: Callable[[], Any], values: st.SearchStrategy[Any], *kinds: Kind) -> Pair:
+    """The pair of kinds that fill one message together, of a value or a tuple of one for each kind."""
+    names = [f"_{i}" for i in range(len(kinds))]
+    table = Table(
+        lambda **read: read["_0"] if len(kinds) == 1 else tuple(read.values()),
+        lambda: SimpleNamespace(msg=msg_type()),
+        *(Row(name, "msg", kind) for name, kind in zip(names, kinds, strict=True)),
+    )
+
+    def to_msg(value: Any) -> Any:
+        parts = (value,) if len(kinds) == 1 else value
+        return table.to_msg(SimpleNamespace(**dict(zip(names, parts, strict=True))), AT).msg
+
+    return Pair(values, to_msg, lambda msg: table.from_msg(SimpleNamespace(msg=msg), AT))
+
+
+def _mode_to_msg(value: Any) -> Any:
+    msg = MODE.to_msg(value[0])
+    return msg if value[1] is None else MARGIN.to_msg(value[1], into=msg)
 
 
 PAIRS: dict[str, Pair] = {
@@ -154,46 +138,22 @@ PAIRS: dict[str, Pair] = {
     ),
     "ContactMode": Pair(
         modes_and_margins(),
-        lambda value: mode_to_msg(*value),
-        lambda msg: (mode_from_msg(msg), margin_from_msg(msg)),
+        _mode_to_msg,
+        lambda msg: (MODE.from_msg(msg), MARGIN.from_msg(msg) if msg.margin_length else None),
     ),
     "ContactSet": Pair(contact_sets(), contacts_to_msg, contacts_from_msg),
-    "Impact": Pair(
-        resolved_impacts(),
-        lambda value: resolved_impact_to_msg(value, body_name="brick", **BODY),
-        lambda msg: resolved_impact_from_msg(msg, p_FB_F=NO_OFFSET),
-    ),
-    "GeometryMargin": Pair(geometry_margins, geometry_margin_to_msg, geometry_margin_from_msg),
-    "ModeWrenches": Pair(wrench_sets(), wrench_set_to_msg, wrench_set_from_msg),
-    "Poinsot": Pair(rotations(), lambda value: poinsot_to_msg(*value), _poinsot_from_msg),
-    "Trajectory": Pair(
-        _trajectories(),
-        _trajectory_to_msg,
-        lambda msg: (trajectory_from_msg(msg, p_FB_F=NO_OFFSET), read_covariances(msg)),
-    ),
-    "BodyStates": Pair(
-        many_states(3),
-        lambda value: body_states_to_msg(value, p_FB_F=NO_OFFSET),
-        lambda msg: body_states_from_msg(msg, p_FB_F=NO_OFFSET),
-    ),
-    "TossRegion": Pair(regions, region_to_msg, region_from_msg),
-    "TossEventRegions": Pair(event_regions, event_regions_to_msg, event_regions_from_msg),
-    "TossBranch": Pair(branches, branch_to_msg, branch_from_msg),
-    "TossDistribution": Pair(
-        toss_distributions(),
-        lambda value: distribution_to_msg(value, p_FB_F=NO_OFFSET),
-        lambda msg: distribution_from_msg(msg, p_FB_F=NO_OFFSET),
-    ),
-    "TossEvent": Pair(
-        toss_events(),
-        lambda value: toss_event_to_msg(value, body_name="brick", **BODY),
-        lambda msg: toss_event_from_msg(msg, p_FB_F=NO_OFFSET),
-    ),
-    "TossPath": Pair(
-        toss_paths(),
-        lambda value: toss_path_to_msg(value, stamp_ns=7, body_name="brick", **BODY),
-        lambda msg: toss_path_from_msg(msg, p_FB_F=NO_OFFSET),
-    ),
+    "Impact": _of_table(RESOLVED_IMPACT, resolved_impacts()),
+    "GeometryMargin": _of_table(GEOMETRY_MARGIN, geometry_margins),
+    "ModeWrenches": _of_table(WRENCH_SET, wrench_sets()),
+    "Poinsot": _of_kinds(PoinsotMsg, rotations(), POINSOT, FLIPS, CURVES),
+    "Trajectory": _of_kinds(TrajectoryMsg, _trajectories(), TRAJECTORY, COVARIANCES),
+    "BodyStates": _of_kinds(BodyStatesMsg, many_states(3), STATES),
+    "TossRegion": _of_table(REGION, regions),
+    "TossEventRegions": _of_table(EVENT_REGIONS, event_regions),
+    "TossBranch": _of_table(BRANCH, branches),
+    "TossDistribution": _of_table(DISTRIBUTION, toss_distributions()),
+    "TossEvent": _of_table(EVENT, toss_events()),
+    "TossPath": _of_table(PATH, toss_paths()),
 }
 
 VALUES = {
