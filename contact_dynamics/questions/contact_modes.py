@@ -30,6 +30,7 @@ from contact_dynamics.contact_modes import (
     statics,
     wrench_sets,
 )
+from contact_dynamics.contact_modes.letters import STICKS
 from contact_dynamics.contact_modes.planar.problem import MAX_PLANAR_CONTACTS
 from contact_dynamics.contact_modes.result import ModeProbability
 from contact_dynamics.contact_modes.spatial.problem import FRICTION_FACETS
@@ -54,7 +55,7 @@ from contact_dynamics.questions.settled_impact import (
     settled_in_space,
 )
 from contact_dynamics.questions.subject import NEWEST, StateSource, covariance_of, subject_of
-from contact_dynamics.questions.touching import in_contact, outside_shape
+from contact_dynamics.questions.touching import flush_rim, in_contact, outside_shape
 from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.tolerances import FLUSH, FLUSH_ROUGHLY
 from contact_dynamics.validation import FloatArray, check_array, check_positive, check_whole
@@ -237,8 +238,8 @@ class ContactModeAnswer(Answer):
         wrench_facets: Number of edges of each friction pyramid in the wrench sets in space, or zero if they
             were not asked for.
         warnings: What makes the answer doubtful, in words: a contact outside of the body's shape, contacts
-            that were taken as flush because the verdict is undecided otherwise, margins that are NaN, or
-            margins in a plane that was found from the load.
+            that were taken as flush because the verdict is undecided otherwise, margins that are NaN,
+            margins in a plane that was found from the load, or a flush rim that counts as a few points.
     """
 
     body_name: str
@@ -289,15 +290,20 @@ def answer(question: ContactModeQuestion, context: Context | None = None) -> Con
     case, noisy = _case(question, known)
     view, reason = _in_plane(question, case, known)
     found = _spatial_answer(question, case, reason) if view is None else _planar_answer(question, case, *view)
+    body, state, contacts = case.subject.body, case.subject.state, case.contacts
     if question.contacts is not None:
-        outside = outside_shape(
-            case.subject.body,
-            points_W=case.contacts.p_WC_W,
-            p_WB_W=case.subject.state.p_WB_W,
-            R_WB=case.subject.state.R_WB,
+        doubts = outside_shape(
+            body,
+            points_W=contacts.p_WC_W,
+            p_WB_W=state.p_WB_W,
+            R_WB=state.R_WB,
             distance_tolerance=case.distance_tolerance,
         )
-        found = replace(found, warnings=(*found.warnings, *outside))
+    else:
+        at_rest = [mode.mode for mode in found.modes] == [STICKS * len(contacts)]
+        has_loads = question.include_margins or question.include_statics or question.include_wrenches
+        doubts = () if at_rest and not has_loads else flush_rim(body, contacts)
+    found = replace(found, warnings=(*found.warnings, *doubts)) if doubts else found
     if not question.include_probabilities:
         return found
     if noisy is None:

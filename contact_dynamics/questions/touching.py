@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
@@ -10,6 +11,7 @@ import numpy as np
 
 from contact_dynamics.contact.found import find_contacts, nearest_surface
 from contact_dynamics.contact.noise import NoisyState, resting, touching
+from contact_dynamics.contact.on_flats import RIM_POINTS
 from contact_dynamics.errors import NoContactError, NoShapeError
 from contact_dynamics.questions.extent import check_extent
 from contact_dynamics.shapes.hull_features import RIM_CORNERS, features_of
@@ -135,6 +137,15 @@ def outside_shape(
         else:
             warnings += (f"contact {i} is {off[i]:.6g} m {where} the shape of {body.name!r}" for i in found)
     return tuple(warnings)
+
+
+def flush_rim(body: Body, contacts: ContactSet) -> tuple[str, ...]:
+    """Return a warning if contacts found on a body's shape are those of a rim that lies flush."""
+    if not body.shape.rims or max(Counter(contacts.surfaces).values(), default=0) < RIM_POINTS:
+        return ()
+    too_small = f"{1.0 - math.cos(math.pi / RIM_POINTS):.0%}"
+    words = f"the flush rim of {body.name!r} counts as {RIM_POINTS} points"
+    return (f"{words}: the loads that it bears without tipping are up to {too_small} too small",)
 
 
 def check_has_shape(body: Body) -> None:

@@ -105,6 +105,26 @@ def test_a_margin_that_is_not_known_is_a_warning() -> None:
     assert held.warnings == ()
 
 
+def test_a_flush_rim_counts_as_points_where_that_matters() -> None:
+    """A cup of radius r bears m g r / h at height h. Eight points bear cos 22.5 degrees of it, or all."""
+    radius, height, lightly = 0.03, 0.1, 0.1
+    cup = Body.cylinder(radius=radius, length=height, mass=0.2, name="cup")
+    standing = BodyState(p_WB_W=[0, 0, height / 2], q_WB=[0, 0, 0, 1], v_WB_W=[0, 0, 0], w_WB_W=[0, 0, 0])
+    known = Context(world=World(bodies=(cup,), surfaces=(replace(FLOOR, friction=2.0),)))
+    pushed = ContactModeQuestion(body="cup", state=standing, force_W=[lightly, 0, 0], problem=Problem.SPATIAL)
+    assert modes_questions.answer(pushed, known).warnings == ()
+    tips = 0.2 * 9.80665 * radius / (height / 2)
+    for angle in np.pi / 8 * np.arange(3):
+        along = np.array([np.cos(angle), np.sin(angle), 0.0])
+        for share, is_held in ((0.92, True), (1.001, False)):
+            answer = modes_questions.answer(replace(pushed, force_W=share * tips * along), known)
+            assert ([mode.mode for mode in answer.modes] == ["f" * 8]) == is_held
+            doubts = ["'cup' counts as 8 points" in each and "to 8% too" in each for each in answer.warnings]
+            assert doubts == ([] if is_held else [True])
+    (warning,) = modes_questions.answer(replace(pushed, include_margins=True), known).warnings
+    assert "flush rim" in warning
+
+
 def test_orders_that_lead_to_one_outcome_are_no_warning() -> None:
     """A level elastic rod on its two ends rises level in every order (`test_level_rod_on_two_supports`)."""
     rod = Body(name="rod", mass_properties=MassProperties(mass=2.0, I_B=np.diag([1e-4, 2 / 3, 2 / 3])))
