@@ -37,8 +37,8 @@ from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.qos import QoSProfile
 
-from contact_dynamics.demo.ros_domain import claim_domain
-from contact_dynamics.nodes.dds_profile import VARIABLE
+from contact_dynamics.demo.processes import claim_domain
+from contact_dynamics.nodes.running import VARIABLE
 from contact_dynamics.recording import BagReader
 from contact_dynamics_interfaces.srv import PredictTumbling
 

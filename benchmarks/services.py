@@ -37,7 +37,7 @@ from rclpy.service_introspection import ServiceIntrospectionState
 
 from benchmarks._quotes import quote
 from benchmarks._service_calls import PATIENCE_S, QOS, ROOT, SERVICES, Asker, cpu_ms, questions
-from contact_dynamics.demo.ros_domain import claim_domain
+from contact_dynamics.demo.processes import claim_domain
 from contact_dynamics_interfaces.msg import BodyStates
 from contact_dynamics_interfaces.srv import (
     PredictImpactBatch,

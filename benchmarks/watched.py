@@ -26,7 +26,7 @@ from rclpy.node import Node
 
 from benchmarks._quotes import quote
 from benchmarks._service_calls import PATIENCE_S, ROOT, Asker, questions
-from contact_dynamics.demo.ros_domain import claim_domain
+from contact_dynamics.demo.processes import claim_domain
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -1,4 +1,8 @@
-"""The demo's processes. They run in a ROS domain of their own, and are all stopped whatever happens."""
+"""The demo's processes. They run in a ROS domain of their own, and are all stopped whatever happens.
+
+The domain of one's own keeps demos and tests which run side by side from hearing each other. It works on
+Linux only. The claim is a socket in the abstract namespace, which vanishes with its process.
+"""
 
 from __future__ import annotations
 
@@ -6,16 +10,18 @@ import contextlib
 import os
 import re
 import signal
+import socket
 import subprocess
 import sys
 from typing import TYPE_CHECKING, Final
 
-from contact_dynamics.demo.ros_domain import claim_domain
+from contact_dynamics.nodes.domain_ports import FIRST_PORT, PORTS_OF_DOMAIN, ports_in_use
 from contact_dynamics.recording.closing import ClosedAtTheEnd
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
+
 
 STOP_PATIENCE_S: Final = 10.0
 """Time that a process has to finish its files after SIGINT before it is killed, s."""
@@ -106,3 +112,37 @@ class Processes(ClosedAtTheEnd):
             with contextlib.suppress(ProcessLookupError):
                 os.killpg(process.pid, signal.SIGKILL)
             process.wait()
+
+
+_DOMAINS: Final = 100
+"""Number of ROS domains to choose from. Domains 1 to 100 use ports below the ephemeral ones of Linux."""
+
+
+def claim_domain() -> int:
+    """Return a ROS_DOMAIN_ID that no other process here uses or has claimed. It is kept until this one ends.
+
+    Raises:
+        RuntimeError: all domains are in use.
+    """
+    in_use = _domains_in_use()
+    for offset in range(_DOMAINS):
+        domain = 1 + (os.getpid() + offset) % _DOMAINS
+        if domain not in in_use and _claim(domain):
+            return domain
+    raise RuntimeError(f"one of the ROS domains 1 to {_DOMAINS} must be free, got all in use")
+
+
+def _claim(domain: int) -> bool:
+    claim = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
+    try:
+        claim.bind(f"\0contact_dynamics ROS domain {domain}")
+    except OSError:
+        claim.close()
+        return False
+    claim.detach()  # stays open until the process ends
+    return True
+
+
+def _domains_in_use() -> set[int]:
+    """Return the domains on whose ports any process listens."""
+    return {(port - FIRST_PORT) // PORTS_OF_DOMAIN for port in ports_in_use()}

@@ -1,28 +1,29 @@
 """The demo plays a toss as published states, asks the server, and prints how good its answers were.
 
 The server, the visualizer and the publisher are three processes. This process asks. At the end it stops all
-of them, also after a failure.
+of them, also after a failure. The server gets the body and the surface that the recording describes.
 """
 
 from __future__ import annotations
 
 import contextlib
+import json
 import os
 import shlex
 import sys
 import time
 from datetime import datetime, timezone
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import rclpy
 from rclpy.signals import SignalHandlerOptions
 
 from contact_dynamics.demo.arguments import demo_parser
 from contact_dynamics.demo.comparison import print_table
-from contact_dynamics.demo.parameters import write_parameters
 from contact_dynamics.demo.processes import Processes
 from contact_dynamics.demo.questioner import Questioner
+from contact_dynamics.demo.toss_publisher import WORLD_FRAME, topic_of
 from contact_dynamics.errors import ContactDynamicsError
 from contact_dynamics.measured.flights import find_strikes
 from contact_dynamics.measured.read_toss import read_toss
@@ -32,8 +33,10 @@ from contact_dynamics.nodes.running import stop_signals
 if TYPE_CHECKING:
     import argparse
     import threading
+    from pathlib import Path
 
     from contact_dynamics.measured.recorded_toss import Toss
+
 
 LISTENERS: Final = 3
 """Number of subscriptions that the toss waits for: the server's, the visualizer's and this process's."""
@@ -135,3 +138,33 @@ def _new_folder(output: str) -> Path:
             return folder
         number += 1
         folder = folder.with_name(f"{name}_{number}")
+
+
+TOUCHING: Final = 0.003
+"""m. Corners this near the surface touch it. Tracked frame, shape and surface together have this error."""
+
+
+def write_parameters(path: Path, toss: Toss, *, log_directory: Path) -> None:
+    """Write the file that configures server and visualizer, as JSON, which is also YAML."""
+    name, surface = toss.body.name, toss.surface
+    (ixx, ixy, ixz), (_, iyy, iyz), (_, _, izz) = toss.body.mass_properties.I_B.tolist()
+    parameters: dict[str, Any] = {
+        "world_frame": WORLD_FRAME,
+        "gravity": toss.gravity_W.tolist(),
+        "bodies": [name],
+        f"body.{name}.mass": toss.body.mass_properties.mass,
+        f"body.{name}.inertia": [ixx, iyy, izz, ixy, ixz, iyz],
+        f"body.{name}.box": toss.box_size.tolist(),
+        f"body.{name}.odometry_topic": topic_of(toss),
+        "surfaces": [surface.name],
+        f"surface.{surface.name}.point": surface.p_WS_W.tolist(),
+        f"surface.{surface.name}.normal": surface.normal_W.tolist(),
+        f"surface.{surface.name}.friction": surface.friction,
+        f"surface.{surface.name}.restitution": surface.restitution,
+        # Measured states: what lies within their noise counts as none.
+        "velocity_tolerance": 5.0 * toss.contact_speed_noise,
+        "distance_tolerance": TOUCHING,
+        "out_of_plane_tolerance": 5.0 * toss.contact_speed_noise,
+        "log_directory": str(log_directory),
+    }
+    path.write_text(json.dumps({"/**": {"ros__parameters": parameters}}, indent=2) + "\n", encoding="utf-8")

@@ -1,8 +1,8 @@
 """A flight ends at the first contact with planes and obstacles.
 
 `earliest` finds the next landing of a body in its world, with all contacts there. `plane_arrival` finds the
-first time at a plane, with `rim_descent` for rims, and `obstacle_arrival` the first time at an obstacle. All
-of them use `acceleration_bounds`, which says for how long nothing can touch. `search_work` limits their work.
+first time at a plane. Both use `acceleration_bounds`, which says for how long nothing can touch.
+`search_work` limits their work.
 """
 
 from contact_dynamics.landing.earliest import Landing, next_landing

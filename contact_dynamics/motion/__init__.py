@@ -1,12 +1,12 @@
 """Motion under gravity, wrenches and drag is integrated, differentiated and fitted here, with covariances.
 
 `forces` says what acts on a body besides gravity. `integrated` computes its motion, with the differential
-`equations` and the integrator's `steps`. Its function `motion_of` takes the closed form where no torque and
-no drag acts. `free_derivative` and `integrated_derivative` say how
-a motion changes with its first state, and `covariance` carries the covariance of that state along. `free_fit`
-and `integrated_fit` find the motion that fits some published states best, and `whole_turns` determines
-whether the states distinguish it from motions with more turns. `flight_check` finds impacts among them.
-`between_states` interpolates, and `velocity_estimate` finds velocities from poses.
+`equations`. Its function `motion_of` takes the closed form where no torque and no drag acts.
+`free_derivative` and `integrated_derivative` say how a motion changes with its first state, and `covariance`
+carries the covariance of that state along. `free_fit` and `integrated_fit` find the motion that fits some
+published states best, and `whole_turns` determines whether the states distinguish it from motions with more
+turns. `flight_check` finds impacts among them. `between_states` interpolates, and `velocity_estimate` finds
+velocities from poses.
 """
 
 from contact_dynamics.motion.covariance import (

@@ -1,8 +1,8 @@
 """Tumbling (Mason, lecture 25): where a free rigid body will be, at any time, in closed form.
 
-`motion` answers for one body and `many` for many at once, whose rotations `many_turns` sets up. `regime` says
-what kind of rotation it is. `flips` has the flips of a body that spins near its middle axis.
-`poinsot_construction` is Poinsot's picture: an ellipsoid that rolls on a plane.
+`motion` answers for one body and `many` for many at once. `regime` says what kind of rotation it is. `flips`
+has the flips of a body that spins near its middle axis. `poinsot_construction` is Poinsot's picture: an
+ellipsoid that rolls on a plane.
 
 The method: `constants` computes the constants of a rotation from the principal axes (`rigid_body.inertia`)
 and from where it starts on its `polhode`, with `elliptic` integrals. The attitude consists of quotients of

@@ -7,14 +7,13 @@ In reading order: how diagrams are drawn (`drawing`), what colours mean in words
 drawn (`entities`), bodies and surfaces (`scene`), what was measured (`measured`, `after_impact`), lecture
 25's picture of rotations (`poinsot`), the diagrams of answers (`diagrams_in_view`), the arrangement of the
 views and where they look (`blueprint`), all of it together (`picture`), and where it goes (`sinks`): files
-(`rrd_files`), a viewer that is drawn to (`live_viewer`) or started (`viewer_process`), a browser
-(`web_viewer`). All of these are places of one recording (`kept_recording`). The diagrams come from
-`contact_dynamics.diagrams`.
+(`rrd_files`), a viewer that is drawn to or started (`viewer_process`), a browser. All of these are places of
+one recording (`kept_recording`). The diagrams come from `contact_dynamics.diagrams`.
 
 Everything is drawn on the timeline `stamp`: the stamps of the states, to the nanosecond. `kept_recording` has
-two more, the time since the start and the order of events. An answer appears
-at the stamp of the state that it was computed from, never later, so that a live view that follows the newest
-data is not pulled into the future. Poses are stored as float32: this is a picture, not a record.
+two more, the time since the start and the order of events. An answer appears at the stamp of the state that
+it was computed from, never later, so that a live view that follows the newest data is not pulled into the
+future. Poses are stored as float32: this is a picture, not a record.
 """
 
 import os

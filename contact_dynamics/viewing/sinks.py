@@ -4,36 +4,49 @@ All network addresses are of this machine (127.0.0.1) unless a URL names another
 later, the picture still goes into the file, and closing waits for the viewer a few seconds at most. A viewer
 that is opened again at the same place gets what stands in the picture. What is served stays in a memory of
 limited size, for viewers that come later.
+
+rerun's web viewer is served to browsers on this machine by rerun's executable, as a process of its own.
+rerun's library would serve it to the whole network.
+
+A viewer that is drawn to may die and come back, or hang and go on. rerun itself draws no more to a viewer
+that has gone, also when one listens there again. And it keeps in memory, without bound, what a viewer that
+hangs does not take.
 """
 
 from __future__ import annotations
 
+import os
 import re
+import subprocess
 import threading
 import time
 from dataclasses import dataclass
 from enum import Enum
 from typing import TYPE_CHECKING, Final
+from urllib.parse import quote
 
 import rerun as rr
 
 from contact_dynamics.errors import ContactDynamicsError, InvalidFieldError
 from contact_dynamics.viewing.kept_recording import KeptRecording
-from contact_dynamics.viewing.live_viewer import LiveViewer
 from contact_dynamics.viewing.ports import (
     DEFAULT_PORT,
     LOCAL,
+    Presence,
     connection_problem,
     host_and_port,
     local_url,
     serving_problem,
+    speaks_http2,
 )
 from contact_dynamics.viewing.rrd_files import RrdFiles
-from contact_dynamics.viewing.viewer_process import ViewerProcess
-from contact_dynamics.viewing.web_viewer import WebViewer
+from contact_dynamics.viewing.viewer_process import ViewerProcess, viewer_executable
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+
+    from contact_dynamics.viewing.kept_recording import KeptRecording
+
 
 NO_WEB_PORT: Final = 0
 
@@ -206,3 +219,117 @@ class OpenRecording:
 def raise_errors() -> None:
     """Make rerun raise an error for what it cannot draw, instead of a warning."""
     rr.set_strict_mode(True)
+
+
+_END_S: Final = 2.0
+
+
+class WebViewer:
+    """A web viewer at a port of this machine, that looks at what is served at a URL."""
+
+    def __init__(self, port: int, url: str, *, on_problem: Callable[[str], object]) -> None:
+        """Serve it. If that is not possible, a message says so, and ``address`` is empty."""
+        self.address = ""
+        self._process: subprocess.Popen[bytes] | None = None
+        problem = serving_problem(port)
+        try:
+            if not problem:
+                self._process = subprocess.Popen(  # noqa: S603  rerun's own program
+                    [
+                        viewer_executable(),
+                        "--serve-web",
+                        "--bind",
+                        LOCAL,
+                        "--web-viewer-port",
+                        str(port),
+                        url,
+                    ],
+                    stdin=subprocess.DEVNULL,
+                    stdout=subprocess.DEVNULL,
+                    stderr=subprocess.DEVNULL,
+                    env={**os.environ, "RERUN_APP_ONLY": "true"},
+                )
+        except OSError as error:
+            problem = str(error)
+        if problem:
+            on_problem(f"the web viewer is not served at port {port}: {problem}")
+        else:
+            # Words are chosen for rerun's dark look, which the native viewer has.
+            self.address = f"http://{LOCAL}:{port}/?url={quote(url, safe='')}&theme=dark"
+
+    def close(self) -> None:
+        """Serve it no longer."""
+        if self._process is not None:
+            self._process.terminate()
+            try:
+                self._process.wait(_END_S)
+            except subprocess.TimeoutExpired:
+                self._process.kill()
+
+
+MAX_BEHIND: Final = 30
+"""Looks at a viewer, of which each finds that it has not taken all that was drawn. Then it hangs."""
+
+_PATIENCE_S: Final = 0.01  # a viewer that takes what is drawn has taken it within a millisecond
+
+
+class LiveViewer:
+    """A viewer at a URL."""
+
+    def __init__(self, picture: KeptRecording, url: str, *, on_problem: Callable[[str], object]) -> None:
+        """Draw a picture to the viewer that listens at a URL."""
+        self._picture = picture
+        self._url = url
+        self._on_problem = on_problem
+        self._place = picture.open(rr.GrpcSink(url))
+        self._presence = self._present()
+        self._is_there = True
+        self._behind = 0  # the looks since it has taken all
+
+    @property
+    def hangs(self) -> bool:
+        """Whether nothing is drawn to it, because it has not taken what was drawn before."""
+        return self._behind >= MAX_BEHIND
+
+    def look(self) -> None:
+        """Find out whether the viewer lives and keeps up, and give the picture to one that is back."""
+        if self._presence is not None and self._presence.lasts():
+            self._look_how_far_behind()
+            return
+        if self._is_there:
+            self._is_there, self._presence, self._behind = False, None, 0
+            self._picture.reopen(self._place)
+            self._on_problem(f"no viewer listens at {self._url} any more: one that does gets the picture")
+        if speaks_http2(*host_and_port(self._url)):
+            self._picture.reopen(self._place, rr.GrpcSink(self._url))
+            self._is_there, self._presence = True, self._present()
+            self._on_problem(f"a viewer listens at {self._url} again, and has the picture")
+
+    def close(self) -> None:
+        """Look no longer. The viewer stays open."""
+        if self._presence is not None:
+            self._presence.close()
+
+    def _look_how_far_behind(self) -> None:
+        hung = self.hangs
+        self._behind = 0 if self._has_taken_all() else self._behind + 1
+        if self.hangs and not hung:
+            self._picture.leave(self._place)
+            self._on_problem(f"the viewer at {self._url} hangs: it gets the picture when it goes on")
+        elif hung and not self.hangs:
+            self._picture.reopen(self._place, rr.GrpcSink(self._url))
+            self._on_problem(f"the viewer at {self._url} goes on, and has the picture")
+
+    def _has_taken_all(self) -> bool:
+        try:
+            self._place.flush(timeout_sec=_PATIENCE_S)
+        except RuntimeError:
+            return False
+        return True
+
+    def _present(self) -> Presence | None:
+        """Return a connection to the viewer, or None if it has gone already, which the next look finds."""
+        try:
+            return Presence(*host_and_port(self._url))
+        except OSError:
+            return None

@@ -15,8 +15,7 @@ from contact_dynamics.contact.curvature import Curvatures
 from contact_dynamics.contact.found import find_contacts
 from contact_dynamics.contact.on_obstacles import site_of
 from contact_dynamics.errors import InvalidFieldError, NoContactError, NotSupportedError
-from contact_dynamics.landing.earliest import next_landing
-from contact_dynamics.landing.obstacle_arrival import first_touch
+from contact_dynamics.landing.earliest import first_touch, next_landing
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.shapes.convex import (
     ConvexShape,

@@ -7,8 +7,8 @@ import sys
 
 import pytest
 
-from contact_dynamics.demo import ros_domain
-from contact_dynamics.demo.ros_domain import claim_domain
+from contact_dynamics.demo import processes as ros_domain
+from contact_dynamics.demo.processes import claim_domain
 
 
 @pytest.fixture
@@ -21,7 +21,7 @@ def test_claims_differ_within_a_process_and_between_processes() -> None:
     mine = [claim_domain(), claim_domain()]
     # another process, which tries the same ones first
     code = f"import os; os.getpid = lambda: {os.getpid()}\n"
-    code += "from contact_dynamics.demo.ros_domain import claim_domain; print(claim_domain())"
+    code += "from contact_dynamics.demo.processes import claim_domain; print(claim_domain())"
     done = subprocess.run(
         [sys.executable, "-c", code], capture_output=True, text=True, timeout=300, check=True
     )

@@ -12,7 +12,7 @@ import numpy as np
 from nav_msgs.msg import Odometry
 from rclpy.serialization import serialize_message
 
-from contact_dynamics.demo.parameters import write_parameters
+from contact_dynamics.demo.run import write_parameters
 from contact_dynamics.demo.toss_publisher import topic_of
 from contact_dynamics.measured.read_toss import read_toss
 from contact_dynamics.measured.recorded_toss import Toss

@@ -77,8 +77,16 @@ from msg_adapters.contact_mode import (
 from msg_adapters.contacts import contacts_from_msg, contacts_to_msg
 from msg_adapters.fields import Frame, Kind, Row, Table
 from msg_adapters.impact import RESOLVED_IMPACT, impact_question_from_msg, impact_question_to_msg
-from msg_adapters.toss import EVENT, PATH, toss_question_from_msg, toss_question_to_msg
-from msg_adapters.toss_distribution import BRANCH, DISTRIBUTION, EVENT_REGIONS, REGION
+from msg_adapters.toss import (
+    BRANCH,
+    DISTRIBUTION,
+    EVENT,
+    EVENT_REGIONS,
+    PATH,
+    REGION,
+    toss_question_from_msg,
+    toss_question_to_msg,
+)
 from msg_adapters.tumbling import COVARIANCES, CURVES, FLIPS, POINSOT, TRAJECTORY
 
 CENTER = np.array([0.02, -0.01, 0.005])  # m, of mass, in the body's frame

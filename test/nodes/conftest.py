@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from contact_dynamics.demo.ros_domain import claim_domain
+from contact_dynamics.demo.processes import claim_domain
 from running_server import Client, server_and_client
 
 if TYPE_CHECKING:

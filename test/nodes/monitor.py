@@ -15,7 +15,7 @@ from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import Point
 from nav_msgs.msg import Odometry
 
-from contact_dynamics.demo.ros_domain import claim_domain
+from contact_dynamics.demo.processes import claim_domain
 from contact_dynamics.nodes.situations import Level, Part, Situation
 from msg_adapters.stamps import stamp_to_msg
 from running_server import ROOT, Client, process

@@ -14,7 +14,7 @@ from geometry_msgs.msg import Point
 from nav_msgs.msg import Odometry
 
 from changed_requests import put
-from contact_dynamics.demo.ros_domain import claim_domain
+from contact_dynamics.demo.processes import claim_domain
 from contact_dynamics_interfaces.msg import BodyState, BodyStates, ContactSet
 from contact_dynamics_interfaces.srv import (
     PredictContactMode,

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from contact_dynamics.nodes.body_shapes import DESCRIPTIONS, ShapeParameters
+from contact_dynamics.nodes.world_parameters import DESCRIPTIONS, ShapeParameters
 from contact_dynamics.rigid_body import inertia
 from contact_dynamics.shapes import ConvexShape
 

@@ -8,7 +8,7 @@ from typing import Any
 from nav_msgs.msg import Odometry
 from rosgraph_msgs.msg import Clock
 
-from contact_dynamics.demo.ros_domain import claim_domain
+from contact_dynamics.demo.processes import claim_domain
 from contact_dynamics_interfaces.srv import PredictTumbling
 from msg_adapters.stamps import stamp_to_msg
 from running_server import DEEP, ROOT, Client, process

@@ -9,7 +9,7 @@ from contextlib import ExitStack
 from pathlib import Path
 
 from contact_dynamics.command_line import DISCOVERY_RANGE
-from contact_dynamics.demo.ros_domain import claim_domain
+from contact_dynamics.demo.processes import claim_domain
 from contact_dynamics.nodes.domain_ports import FIRST_DISCOVERY, PORTS_OF_DOMAIN, first_port, ports_in_use
 from running_server import PATIENCE_S, ROOT, environment
 

@@ -11,7 +11,7 @@ import pytest
 from nav_msgs.msg import Odometry
 from scipy.spatial.transform import Rotation
 
-from contact_dynamics.demo.ros_domain import claim_domain
+from contact_dynamics.demo.processes import claim_domain
 from contact_dynamics_interfaces.srv import PredictContactMode
 from msg_adapters.stamps import stamp_to_msg
 from running_server import Client, server_and_client

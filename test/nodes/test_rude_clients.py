@@ -10,7 +10,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from contact_dynamics.demo.ros_domain import claim_domain
+from contact_dynamics.demo.processes import claim_domain
 from contact_dynamics_interfaces.srv import PredictTumbling
 from running_server import PATIENCE_S, ROOT, SERVICES, Client, environment, process, wait_for
 

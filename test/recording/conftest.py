@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from contact_dynamics.demo.ros_domain import claim_domain
+from contact_dynamics.demo.processes import claim_domain
 from contact_dynamics.recording import BagWriter, Recorder, RecorderStatus
 
 if TYPE_CHECKING:

@@ -10,7 +10,7 @@ from xml.etree import ElementTree as ET
 import pytest
 from rclpy.node import NodeNameNonExistentError
 
-from contact_dynamics.demo.ros_domain import claim_domain
+from contact_dynamics.demo.processes import claim_domain
 from running_server import ROOT, Client, server_and_client
 
 POLICY = ROOT / "config" / "sros2_policy.xml"

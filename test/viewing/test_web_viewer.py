@@ -8,8 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from contact_dynamics.viewing.ports import LOCAL, connection_problem, serving_problem
-from contact_dynamics.viewing.sinks import OpenRecording, Sinks, ViewerMode
-from contact_dynamics.viewing.web_viewer import WebViewer
+from contact_dynamics.viewing.sinks import OpenRecording, Sinks, ViewerMode, WebViewer
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

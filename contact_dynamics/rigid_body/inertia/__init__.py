@@ -5,7 +5,7 @@ inertia.box(...).placed(p_GF_G=...)])``; `Body.of` makes a body of it for a `Wor
 
 `distribution` is what all shapes become, and `composition` makes one of particles or of several parts. Mass
 properties come from `solids`, `sheets_and_wires` (each of a `mass_or_density`), or a `triangle_mesh`, which
-is checked by `closed_surface` and `mesh_parts` and integrated by `polyhedron_integrals`. `axes_of_inertia`
+is checked by `closed_surface` and integrated by `polyhedron_integrals`. `axes_of_inertia`
 has principal axes and the inertia ellipsoid, `principal_frame` the same in extended precision.
 """
 

@@ -1,12 +1,21 @@
 """Triangles bound solids: closed meshes, and the convex hull of points.
 
-Density is uniform. Coordinates are in m, so scale a mesh in mm first. `closed_surface` and `mesh_parts` say
-what makes a mesh closed and well wound. `polyhedron_integrals` has the integrals.
+Density is uniform. Coordinates are in m, so scale a mesh in mm first. `closed_surface` says what makes a mesh
+closed. `polyhedron_integrals` has the integrals.
+
+A surface may have several parts that share no edge. A part with a positive volume is a solid. It must not lie
+within another, because its mass would count twice. A part with a negative volume is a cavity. It must lie
+within a solid. Otherwise it is inside out. This is tested at one point just inside each part: the winding
+number of the others about it, a sum of solid angles, is 0 or 1 (Van Oosterom and Strackee 1983).
+
+Not covered: surfaces that cut through themselves or each other. Their volumes count by winding number.
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
@@ -15,13 +24,15 @@ from contact_dynamics.numerics.convex_hull import hull_of
 from contact_dynamics.rigid_body.inertia.closed_surface import closed_surface
 from contact_dynamics.rigid_body.inertia.distribution import MassDistribution, inertia_of_second_moments
 from contact_dynamics.rigid_body.inertia.mass_or_density import mass_of
-from contact_dynamics.rigid_body.inertia.mesh_parts import check_facing
 from contact_dynamics.rigid_body.inertia.polyhedron_integrals import polyhedron, signed_volumes
-from contact_dynamics.tolerances import EPSILON
+from contact_dynamics.tolerances import EPSILON, SURFACES_TOUCH, VOLUME_ROUNDING
 from contact_dynamics.validation import FloatArray, check_array, check_magnitude
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
+
+    from contact_dynamics.rigid_body.inertia.closed_surface import ClosedSurface
+    from contact_dynamics.validation import FloatArray
 
 
 def mesh(
@@ -83,3 +94,134 @@ def _solid(
     total = mass_of(inside.volume, mass=mass, density=density)
     I_B = inertia_of_second_moments(total / inside.volume * inside.second)
     return MassDistribution(mass=total, p_FB_F=inside.center_F, I_B=I_B)
+
+
+_OUTWARDS: Final = "counter-clockwise seen from outside"
+
+
+def check_facing(p_FV_F: FloatArray, surface: ClosedSurface) -> None:
+    """Raise `InvalidFieldError` where a part is inside out or within another, or no volume is enclosed."""
+    parts = _Parts.of(p_FV_F, surface)
+    total, rounding = float(parts.volumes.sum()), float(parts.rounding.sum())
+    if abs(total) <= rounding:
+        raise InvalidFieldError(
+            "triangles", f"an enclosed volume of {total:.3g} m^3: flat", "a surface around a volume"
+        )
+    if total < 0.0:
+        raise InvalidFieldError("triangles", f"an enclosed volume of {total:.6g} m^3: inside out", _OUTWARDS)
+    if len(parts.volumes) == 1:
+        return
+    for part in np.flatnonzero(np.abs(parts.volumes) > parts.rounding).tolist():
+        volume = float(parts.volumes[part])
+        winding = parts.winding_of_others(part)
+        first = int(surface.numbers[np.argmax(parts.labels == part)])
+        named = f"a part (that of triangle {first}) of volume {volume:.6g} m^3"
+        if volume < 0.0 and winding < 1:
+            raise InvalidFieldError("triangles", f"{named} in no solid: inside out", _OUTWARDS)
+        if volume > 0.0 and winding > 0:
+            raise InvalidFieldError(
+                "triangles", f"{named} within another", "solids side by side, or in a cavity"
+            )
+
+
+@dataclass(frozen=True, slots=True)
+class _Parts:
+    """A surface's k connected parts."""
+
+    corners: FloatArray  # (m, 3, 3), m, of all triangles
+    labels: NDArray[np.int64]  # (m,), the part of each triangle, 0 to k - 1
+    volumes: FloatArray  # (k,), m^3, signed
+    rounding: FloatArray  # (k,), m^3, how far off each volume may be
+    lowest: FloatArray  # (k, 3), m, corner of each part's bounding box
+    highest: FloatArray  # (k, 3), m
+
+    @classmethod
+    def of(cls, p_FV_F: FloatArray, surface: ClosedSurface) -> _Parts:
+        labels = _labels(surface)
+        corners = p_FV_F[surface.triangles]
+        sizes = np.bincount(labels)
+        # Each part is measured from its own middle, so that a small one far away keeps its digits.
+        middle = np.column_stack([np.bincount(labels, corners[:, 0, i]) / sizes for i in range(3)])
+        points = (corners - middle[labels][:, None, :]).reshape(-1, 3)
+        each = signed_volumes(points, np.arange(len(points)).reshape(-1, 3))
+        volumes: FloatArray = np.bincount(labels, each).astype(np.float64)
+        edges = np.diff(points.reshape(-1, 3, 3), axis=1)
+        areas: FloatArray = 0.5 * np.linalg.norm(np.cross(edges[:, 0], edges[:, 1]), axis=1)
+        reach = VOLUME_ROUNDING * np.abs(points).reshape(-1, 9).max(axis=1)
+        reach += EPSILON * float(np.abs(corners).max())
+        lowest, highest = np.full((len(sizes), 3), math.inf), np.full((len(sizes), 3), -math.inf)
+        np.minimum.at(lowest, labels, corners.min(axis=1))
+        np.maximum.at(highest, labels, corners.max(axis=1))
+        return cls(
+            corners=corners,
+            labels=labels,
+            volumes=volumes,
+            rounding=np.bincount(labels, areas * reach).astype(np.float64),
+            lowest=lowest,
+            highest=highest,
+        )
+
+    def winding_of_others(self, part: int) -> int:
+        """Return how often the other parts go round a point just inside this one."""
+        meets = (self.lowest <= self.highest[part]) & (self.highest >= self.lowest[part])
+        near = meets.all(axis=1)[self.labels]
+        is_own = self.labels == part
+        others = self.corners[near & ~is_own]
+        if len(others) == 0:
+            return 0
+        inwards = -math.copysign(1.0, self.volumes[part])
+        return _winding_number(others, _point_inside(self.corners[is_own], self.corners[near], inwards))
+
+
+def _labels(surface: ClosedSurface) -> NDArray[np.int64]:
+    """Return the number, (m,), of the part to which each triangle belongs."""
+    from scipy.sparse import coo_matrix
+    from scipy.sparse.csgraph import connected_components
+
+    size = len(surface.triangles)
+    one, other = surface.neighbors.T
+    graph = coo_matrix((np.ones(len(one), dtype=np.int8), (one, other)), shape=(size, size))
+    labels: NDArray[np.int64] = connected_components(graph, directed=False)[1].astype(np.int64)
+    return labels
+
+
+def _point_inside(own: FloatArray, near: FloatArray, inwards: float) -> FloatArray:
+    """Return a point behind a part's largest triangle, half way to the next triangle of any part.
+
+    The ray is intersected with triangles as by Möller and Trumbore (1997), in barycentric coordinates u, v.
+    """
+    normals = np.cross(own[:, 1] - own[:, 0], own[:, 2] - own[:, 0])
+    sizes = np.linalg.norm(normals, axis=1)
+    largest = int(sizes.argmax())
+    start: FloatArray = own[largest].mean(axis=0)
+    ray = inwards / sizes[largest] * normals[largest]
+    one, other, from_corner = near[:, 1] - near[:, 0], near[:, 2] - near[:, 0], start - near[:, 0]
+    across, back = np.cross(ray, other), np.cross(from_corner, one)
+    touching = SURFACES_TOUCH * float(np.ptp(own.reshape(-1, 3), axis=0).max())
+    with np.errstate(divide="ignore", invalid="ignore"):  # planes along the ray are met nowhere
+        slope = _dots(one, across)
+        u, v, distance = _dots(from_corner, across) / slope, back @ ray / slope, _dots(other, back) / slope
+        met = (
+            (u > -SURFACES_TOUCH)
+            & (v > -SURFACES_TOUCH)
+            & (u + v < 1.0 + SURFACES_TOUCH)
+            & (distance > touching)
+        )
+        met &= np.isfinite(distance)
+    gap = float(distance[met].min()) if met.any() else touching  # a thinner part has none
+    point: FloatArray = start + 0.5 * gap * ray
+    return point
+
+
+def _winding_number(corners: FloatArray, point: FloatArray) -> int:
+    """Return how often closed triangles, (m, 3, 3), go round a point that is on none of them."""
+    a, b, c = (corners[:, i] - point for i in range(3))
+    la, lb, lc = (np.linalg.norm(x, axis=1) for x in (a, b, c))
+    real = la * lb * lc + _dots(a, b) * lc + _dots(b, c) * la + _dots(c, a) * lb
+    half_angles = np.arctan2(_dots(a, np.cross(b, c)), real)
+    return round(float(half_angles.sum()) / (2.0 * math.pi))
+
+
+def _dots(x: FloatArray, y: FloatArray) -> FloatArray:
+    dots: FloatArray = np.einsum("ij,ij->i", x, y)
+    return dots
