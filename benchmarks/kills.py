@@ -38,7 +38,7 @@ from rclpy.node import Node
 from rclpy.qos import QoSProfile
 
 from contact_dynamics.demo.processes import claim_domain
-from contact_dynamics.nodes.running import VARIABLE
+from contact_dynamics.nodes.fast_dds import VARIABLE
 from contact_dynamics.recording import BagReader
 from contact_dynamics_interfaces.srv import PredictTumbling
 

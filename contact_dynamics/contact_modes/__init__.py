@@ -13,8 +13,7 @@ Files of `planar` and `spatial` that do the same have the same name. `problem` h
 the question in the coordinates in which it is answered. `answer` gives the verdict and all modes, and
 `result` has the types that it returns. `margins`, `statics` and `wrench_sets` answer the other questions. If
 contacts are uncertain (`uncertain`), `bounds` says how much, `everywhere` proves that a mode holds in the
-whole box, `excluded` that no other does, and `geometry_margins` searches for the largest box with a proof
-(`geometry_search`).
+whole box, `excluded` that no other does, and `geometry_search` finds the largest box with a proof.
 
 - In the plane, `one_contact` solves a single contact in closed form. For several contacts, `coincident` first
   takes those together that coincide. `enumeration` then lists the modes that kinematics allows, which are

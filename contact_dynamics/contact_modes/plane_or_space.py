@@ -10,21 +10,19 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, overload
 
 from contact_dynamics.contact_modes.planar.answer import planar_contact_modes
-from contact_dynamics.contact_modes.planar.geometry_margins import planar_geometry_margins
 from contact_dynamics.contact_modes.planar.margins import planar_mode_margins
 from contact_dynamics.contact_modes.planar.problem import PlanarContactProblem
 from contact_dynamics.contact_modes.planar.result import PlanarModeAnswer
 from contact_dynamics.contact_modes.planar.statics import planar_statics
-from contact_dynamics.contact_modes.planar.uncertain import planar_verdicts_within
+from contact_dynamics.contact_modes.planar.uncertain import planar_geometry_margins, planar_verdicts_within
 from contact_dynamics.contact_modes.planar.wrench_sets import planar_wrench_sets
 from contact_dynamics.contact_modes.spatial.answer import spatial_contact_modes
-from contact_dynamics.contact_modes.spatial.geometry_margins import spatial_geometry_margins
 from contact_dynamics.contact_modes.spatial.margins import spatial_mode_margins
 from contact_dynamics.contact_modes.spatial.problem import SpatialContactProblem
 from contact_dynamics.contact_modes.spatial.refusals import spatial_refused_modes
 from contact_dynamics.contact_modes.spatial.result import SpatialModeAnswer
 from contact_dynamics.contact_modes.spatial.statics import spatial_statics
-from contact_dynamics.contact_modes.spatial.uncertain import spatial_verdicts_within
+from contact_dynamics.contact_modes.spatial.uncertain import spatial_geometry_margins, spatial_verdicts_within
 from contact_dynamics.contact_modes.spatial.wrench_sets import spatial_wrench_sets
 from contact_dynamics.errors import InvalidFieldError
 

@@ -20,7 +20,7 @@ from rclpy.serialization import deserialize_message
 from rosgraph_msgs.msg import Clock
 
 from contact_dynamics.constants import NS_PER_S
-from contact_dynamics.nodes.introductions import ask_for_introductions
+from contact_dynamics.nodes.fast_dds import ask_for_introductions
 from contact_dynamics.nodes.parameter_reader import ConfigurationError
 
 if TYPE_CHECKING:

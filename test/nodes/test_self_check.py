@@ -22,8 +22,8 @@ from rclpy.parameter import Parameter
 from rclpy.publisher import Publisher
 
 from contact_dynamics.nodes import self_check
+from contact_dynamics.nodes.fast_dds import VARIABLE
 from contact_dynamics.nodes.inbox import InboxNode
-from contact_dynamics.nodes.running import VARIABLE
 from contact_dynamics.nodes.self_check import SelfCheck
 from contact_dynamics.nodes.situations import Situation
 from contact_dynamics.recording import BagReader

@@ -13,6 +13,8 @@ more verdicts occur is then not known.
 There are proofs only for bodies at rest with at most `MAX_PROVEN_CONTACTS`. Each contact's errors are
 independent of the others', and the body's mass and the applied wrench are known. Four feet that slide
 together have no proof, since they do so only if they lie exactly in a plane.
+
+The geometry margins are how far contacts would have to move, turn or change friction for another answer.
 """
 
 from __future__ import annotations
@@ -21,12 +23,13 @@ import math
 from contextlib import suppress
 from dataclasses import replace
 from functools import partial
+from itertools import islice
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from contact_dynamics.contact.uncertainty import EXACT_CONTACTS, ContactUncertainty
-from contact_dynamics.contact_modes.geometry_search import verdicts_within
+from contact_dynamics.contact_modes.geometry_search import geometry_margins_within, verdicts_within
 from contact_dynamics.contact_modes.result import ModeVerdict
 from contact_dynamics.contact_modes.spatial.answer import spatial_contact_modes
 from contact_dynamics.contact_modes.spatial.everywhere import holds_everywhere
@@ -38,9 +41,10 @@ from contact_dynamics.numerics.vectors import tangents_towards
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from contact_dynamics.contact_modes.result import VerdictsWithin
+    from contact_dynamics.contact_modes.result import GeometryMargin, VerdictsWithin
     from contact_dynamics.contact_modes.spatial.problem import SpatialContactProblem
     from contact_dynamics.contact_modes.spatial.result import SpatialModeAnswer
+
 
 SAMPLES: Final = 64
 """Contact sets that are tried if there is no proof. Half of them are at the border of the box, and in half of
@@ -122,3 +126,41 @@ def _moved(
         frictions[i] = max(0.0, frictions[i] + sign * less)
     moved = replace(contacts, p_WC_W=points, normals_W=normals, frictions=frictions)
     return replace(problem, contacts=moved, uncertainty=EXACT_CONTACTS)
+
+
+_STEP: Final = 2.0
+"""Each size is at most this factor from the next. A finer step takes more proofs, of up to seconds each."""
+
+_SAMPLES: Final = 16
+"""Contact sets that are tried for each size. Each takes some 10 ms."""
+
+_STEPS: Final = 26
+"""Sizes below the largest, which so reach down to 1.5e-8 of it."""
+
+
+def spatial_geometry_margins(
+    problem: SpatialContactProblem, answer: SpatialModeAnswer | None = None
+) -> tuple[GeometryMargin, ...]:
+    """Return the margins of the answer in points, normals and frictions, in this order.
+
+    In each of them only that one is off, for all contacts at once and for each in its own way. There are no
+    margins if a contact approaches.
+
+    Args:
+        problem: The question. Its own uncertainty plays no part.
+        answer: The answer to that question, if it is known.
+
+    Raises:
+        TooLargeError: as for `spatial_contact_modes`.
+    """
+    if answer is None:
+        answer = spatial_contact_modes(problem)
+    return geometry_margins_within(
+        answer,
+        radius_of_gyration=problem.body.mean_radius_of_gyration,
+        frictions=problem.contacts.frictions.tolist(),
+        step=_STEP,
+        steps=_STEPS,
+        is_certain=partial(is_certain, problem, answer),
+        sampled=lambda box: islice(sampled(problem, box), _SAMPLES),
+    )
