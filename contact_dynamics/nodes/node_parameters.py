@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor
 from rclpy.parameter import Parameter
 
-from contact_dynamics.nodes.argument_values import values_given, what_is_wrong
+from contact_dynamics.nodes.argument_values import IN_WORDS, values_given, what_is_wrong
 from contact_dynamics.nodes.parameter_reader import ConfigurationError
 from contact_dynamics.nodes.parameter_sections import (
     ANY_NODE,
@@ -28,6 +28,8 @@ if TYPE_CHECKING:
     from contact_dynamics.nodes.parameter_reader import DeclaredParameter
 
 _MANDATORY: Final = {float: Parameter.Type.DOUBLE, list: Parameter.Type.DOUBLE_ARRAY}
+
+_WITH_POINTS: Final = "a list of numbers with points, such as [1.0]"
 
 
 class NodeParameters:
@@ -61,14 +63,13 @@ class NodeParameters:
         """Return a parameter's value (see `ParameterSource`)."""
         descriptor = _descriptor(default, description, bounds, read_only=self._read_only)
         declared = _MANDATORY[default] if isinstance(default, type) else default
-        allowed = what_is_wrong(
-            self._given.get(name, ""), default if isinstance(default, type) else type(default)
-        )
-        if allowed:
-            message = f"{name} must be {allowed} ({description}), got {self._given[name]}"
-            raise ConfigurationError(message)
+        wanted = default if isinstance(default, type) else type(default)
         given = self._node._parameter_overrides.get(name)  # noqa: SLF001  rclpy has no public way to it
         number: Any = None if given is None else given.value
+        allowed = what_is_wrong(self._given.get(name, ""), wanted) or _lacks_a_point(number, default)
+        if allowed:
+            message = f"{name} must be {allowed} ({description}), got {self._given.get(name, number)}"
+            raise ConfigurationError(message)
         if bounds and type(number) is type(default) and not bounds[0] <= number <= bounds[1]:
             message = f"{name} must be in [{bounds[0]:g}, {bounds[1]:g}] ({description}), got {number!r}"
             raise ConfigurationError(message)
@@ -110,6 +111,17 @@ class NodeParameters:
 
     def _listed(self, name: str) -> list[str]:
         return [each for each in self._node.get_parameter(name).value if each]
+
+
+def _lacks_a_point(number: object, default: object) -> str:
+    """Return what whole numbers of a file would have to be, or nothing where they are of the wanted type."""
+    if type(number) is int and (default is float or isinstance(default, float)):
+        return IN_WORDS[float]
+    numbers = number if isinstance(number, list) else []
+    of_floats = default is list or (
+        isinstance(default, list) and any(type(each) is float for each in default)
+    )
+    return _WITH_POINTS if of_floats and any(type(each) is int for each in numbers) else ""
 
 
 def _descriptor(

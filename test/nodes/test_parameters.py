@@ -218,7 +218,11 @@ WRONG = [
     ),
     (put(body__brick__sphere=0.03), "body.brick.sphere must be a list, such as [0.03], got 0.03"),
     (put(body__brick__mass="heavy"), "body.brick.mass"),
-    (put(body__brick__mass=1), "body.brick.mass"),
+    (put(body__brick__mass=1), "body.brick.mass must be a number with a point, such as 1.0..., got 1"),
+    (
+        put(body__brick__box=[1, 1, 1]),
+        "body.brick.box must be a list of numbers with points..., got [1, 1, 1]",
+    ),
     (put(body__brick__mass=NAN), "body.brick.mass must be ..., got nan"),
     (put(body__brick__mass=0.0), "body.brick.mass must be > 0..., got 0.0"),
     (put(body__brick__inertia=[*BRICK, 0.0, 0.0]), "body.brick.inertia must be 6..., got 5 numbers"),
