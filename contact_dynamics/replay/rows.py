@@ -96,8 +96,12 @@ COLUMNS: Final[dict[str, type]] = {
     "computation_time": float,
     "state_stamp_ns": int,
     "states_fitted": int,
-    "says": str,
+    "summary": str,
     "surface": str,
+    "mode_count": int,
+    "margins": str,
+    "contact_forces": str,
+    "contact_accelerations": str,
     "predicted_ns": int,
     **{f"predicted_{name}": float for name in STATE},
     "measured_ns": int,
@@ -113,6 +117,10 @@ If a question is about many states or candidates, ``state`` is the row's place a
 ns, ``computation_time`` is s. The state that the answer used is stamped ``state_stamp_ns``: the one that was
 taken, or the newest of ``states_fitted``. Lengths are m, quaternions x, y, z, w, velocities m/s and rad/s.
 The errors are the distance, m, the angle, rad, and the differences of the velocities, m/s and rad/s.
+
+``mode_count`` is the number of consistent modes, and ``margins`` is the margin of each of them, N, as JSON.
+The contact forces on the body, N, and its accelerations at the contacts, m/s^2, both (modes, contacts, 3) in
+world axes, are JSON too.
 """
 
 
@@ -175,7 +183,7 @@ class Rows:
             return
         cells_of = answered.service.cells
         if cells_of is None:
-            yield row | {"says": answered.service.in_words(answered.answer)[0]}
+            yield row | {"summary": answered.service.in_words(answered.answer)[0]}
             return
         for cells in cells_of(answered.answer, answered.question):
             yield row | cells
@@ -254,8 +262,8 @@ def _errors(predicted: BodyState, measured: BodyState) -> dict[str, Cell]:
 def cells_of_tumbling(answer: TumblingAnswer, asked: Asked) -> Iterator[Cells]:  # noqa: ARG001  as all
     """Yield what ends the flight."""
     event = answer.event
-    says, surface = ("flight", "") if event is None else (event.kind.name.lower(), event.surface)
-    yield _cells(says, [surface])
+    summary, surface = ("flight", "") if event is None else (event.kind.name.lower(), event.surface)
+    yield _cells(summary, [surface])
 
 
 def cells_of_impact(answer: ImpactAnswer, asked: Asked) -> Iterator[Cells]:  # noqa: ARG001  as all
@@ -273,8 +281,15 @@ def cells_of_toss(answer: TossAnswer, asked: Asked) -> Iterator[Cells]:  # noqa:
 
 
 def cells_of_contact_modes(answer: ContactModeAnswer, asked: Asked) -> Iterator[Cells]:  # noqa: ARG001  as all
-    """Yield the verdict with its modes."""
-    yield _cells(_verdict(answer.verdict, [mode.mode for mode in answer.modes]), answer.contacts.surfaces)
+    """Yield the verdict with its modes, and what distinguishes them."""
+    modes = answer.modes
+    yield {
+        **_cells(_verdict(answer.verdict, [mode.mode for mode in modes]), answer.contacts.surfaces),
+        "mode_count": len(modes),
+        "margins": None if answer.margins is None else json.dumps([one.margin for one in answer.margins]),
+        "contact_forces": json.dumps([mode.contact_forces_W.tolist() for mode in modes]),
+        "contact_accelerations": json.dumps([mode.contact_accelerations_W.tolist() for mode in modes]),
+    }
 
 
 def cells_of_tumblings(answer: ManyTumblingsAnswer, asked: Asked) -> Iterator[Cells]:
@@ -285,17 +300,18 @@ def cells_of_tumblings(answer: ManyTumblingsAnswer, asked: Asked) -> Iterator[Ce
 def cells_of_impacts(answer: ManyImpactsAnswer, asked: Asked) -> Iterator[Cells]:
     """Yield the outcome of each impact, and the state after it."""
 
-    def says(i: int) -> str:
+    def summary(i: int) -> str:
         return "separates" if answer.separates[i] else ImpactOutcome(int(answer.outcomes[i])).name.lower()
 
-    return _of_states(answer, asked, says)
+    return _of_states(answer, asked, summary)
 
 
 def cells_of_many_contact_modes(answer: ManyContactModesAnswer, asked: Asked) -> Iterator[Cells]:
     """Yield the verdict on each candidate with its modes."""
     mode_ends, set_ends = np.cumsum(answer.mode_counts).tolist(), np.cumsum(answer.contact_counts).tolist()
     for i, verdict in enumerate(answer.verdicts.tolist()):
-        modes = answer.modes[mode_ends[i] - answer.mode_counts[i] : mode_ends[i]]
+        of_modes = slice(mode_ends[i] - answer.mode_counts[i], mode_ends[i])
+        modes = answer.modes[of_modes]
         k = i % len(set_ends)
         begin, end = set_ends[k] - answer.contact_counts[k], set_ends[k]
         question = _parts(asked, {"forces": 3, "torques": 3}, i, len(answer))
@@ -309,11 +325,13 @@ def cells_of_many_contact_modes(answer: ManyContactModesAnswer, asked: Asked) ->
             **_cells(_verdict(ModeVerdict(verdict), modes), answer.contacts.surfaces[begin:end]),
             "state": i,
             "question": json.dumps(question),
+            "mode_count": len(modes),
+            "margins": None if answer.margins is None else json.dumps(answer.margins[of_modes].tolist()),
         }
 
 
-def _cells(says: str, surfaces: Iterable[str]) -> Cells:
-    return {"says": says, "surface": ", ".join(dict.fromkeys(surfaces))}
+def _cells(summary: str, surfaces: Iterable[str]) -> Cells:
+    return {"summary": summary, "surface": ", ".join(dict.fromkeys(surfaces))}
 
 
 def _verdict(verdict: ModeVerdict, modes: Sequence[str]) -> str:
@@ -322,7 +340,7 @@ def _verdict(verdict: ModeVerdict, modes: Sequence[str]) -> str:
 
 
 def _of_states(
-    answer: ManyTumblingsAnswer | ManyImpactsAnswer, asked: Asked, says: Callable[[int], str]
+    answer: ManyTumblingsAnswer | ManyImpactsAnswer, asked: Asked, summary: Callable[[int], str]
 ) -> Iterator[Cells]:
     """Yield the cells of each state. Times have none, because such a question names none."""
     states = answer.states
@@ -332,7 +350,7 @@ def _of_states(
         yield {
             "state": i,
             "question": json.dumps(_parts(asked, _OF_A_STATE, i, len(states))),
-            "says": says(i),
+            "summary": summary(i),
             **{f"predicted_{name}": number for name, number in zip(STATE, row, strict=True)},
         }
 

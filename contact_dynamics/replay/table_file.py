@@ -1,19 +1,25 @@
-"""Writes rows as CSV or Parquet to a file, or as CSV to the terminal. Memory holds one batch of rows."""
+"""The table of a log: a `DataFrame` of pandas, or CSV or Parquet in a file, or CSV on the terminal.
+
+When a file is written, memory holds one batch of rows.
+"""
 
 from __future__ import annotations
 
 import csv
 import json
 import sys
+import warnings
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Final, TextIO, TypeAlias
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final, TextIO, TypeAlias
 
 from contact_dynamics.errors import InvalidFieldError, NotSupportedError
-from contact_dynamics.replay.rows import COLUMNS
+from contact_dynamics.recording.errors import DamagedLogWarning
+from contact_dynamics.replay.logged import LoggedEvents
+from contact_dynamics.replay.rows import COLUMNS, Rows
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
-    from pathlib import Path
 
     from contact_dynamics.replay.rows import Cell
 
@@ -44,6 +50,36 @@ _FOR_PANDAS: Final = {
     )
 }
 """Lets pandas keep integers where a cell is empty, and not make floats of them, which have no room for ns."""
+
+
+def log_to_frame(log: Path | str) -> Any:
+    """Return the requests and responses of a log of the server as a `DataFrame` of pandas.
+
+    Its rows and columns are those of `contact-dynamics replay table` (docs/replay.md). Empty cells are
+    missing values, and whole numbers, such as times in ns, remain whole.
+
+    Args:
+        log: the folder of the log, or one of its files.
+
+    Raises:
+        NotSupportedError: pandas is not installed.
+        NotALogError: it is no log, or none of the server.
+
+    Warns:
+        DamagedLogWarning: a part of the log could not be read.
+    """
+    try:
+        import pandas as pd  # few need it
+    except ModuleNotFoundError:
+        raise NotSupportedError("log_to_frame needs pandas: pip install pandas") from None
+    events = LoggedEvents(Path(log))
+    rows = list(Rows(events, log=str(log)))
+    if events.damage is not None:
+        warnings.warn(events.damage, DamagedLogWarning, stacklevel=2)
+    types = {str: "string", int: "Int64", float: "float64"}
+    return pd.DataFrame(
+        {name: pd.Series([row[name] for row in rows], dtype=types[kind]) for name, kind in COLUMNS.items()}
+    )
 
 
 @contextmanager

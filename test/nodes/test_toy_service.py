@@ -102,7 +102,7 @@ def test_its_answer_is_a_row_with_what_was_then_measured(log: Path, folder: Path
     with (folder / "table.csv").open(encoding="utf-8") as file:
         (row,) = csv.DictReader(file)
     assert (row["service"], row["body"]) == ("predict_apex", "brick")
-    assert row["says"].startswith("rises for 0.")
+    assert row["summary"].startswith("rises for 0.")
     assert float(row["predicted_z"]) == pytest.approx(HEIGHT, abs=1e-9)
     # Stamps are whole nanoseconds, in which the body moves by 1 nm at most.
     assert float(row["position_error"]) < 1e-8

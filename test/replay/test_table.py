@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -14,9 +15,11 @@ from rosbags.rosbag2 import CompressionMode, StoragePlugin
 
 from contact_dynamics.contact_modes import ModeVerdict
 from contact_dynamics.contact_modes.letters import mode_in_words
-from contact_dynamics.recording import BagReader, decode_without_ros, service_calls
+from contact_dynamics.errors import NotSupportedError
+from contact_dynamics.recording import BagReader, DamagedLogWarning, decode_without_ros, service_calls
 from contact_dynamics.replay.rows import COLUMNS
 from contact_dynamics.replay.run import main
+from contact_dynamics.replay.table_file import log_to_frame
 from message_words import says
 from replay.asked_log import MANY, Asked, without_ros
 from replay.flights import CONFIGURATION, RATE, START_NS, write_flight
@@ -43,7 +46,7 @@ def test_a_row_for_each_question_of_a_log(asked: Asked, tmp_path: Path) -> None:
     }
     landings = [row for row in rows if '"sampling": 3' in row["question"]]
     assert landings
-    assert {row["says"] for row in landings} == {"contact"}
+    assert {row["summary"] for row in landings} == {"contact"}
     assert {row["surface"] for row in landings} == {"floor"}
     assert {int(row["state_stamp_ns"]) for row in landings} <= published
     fitted = [row for row in rows if "fit_window" in row["question"]]
@@ -74,14 +77,14 @@ def test_a_question_about_many_states_has_a_row_for_each(asked: Asked, tmp_path:
         assert [float(row[f"predicted_{axis}"]) for row in group for axis in "xyz"] == pytest.approx(
             list(response.states_after.positions), abs=EXACT
         )
-    assert [row["says"] for row in impacts[:MANY]][-1] == "separates"
-    assert "separates" not in {row["says"] for row in impacts[: MANY - 1]}
+    assert [row["summary"] for row in impacts[:MANY]][-1] == "separates"
+    assert "separates" not in {row["summary"] for row in impacts[: MANY - 1]}
     second = json.loads(impacts[1]["question"])
     assert second["states"]["positions"] == [0.5, 0.0, 1.0]
     assert (second["frictions"], second["restitutions"]) == (0.2, [0.5])
     assert second["contact_normals"] == [0.0, 0.0, 1.0]
     assert [json.loads(row["question"])["times"] for row in flights[:MANY]] == [0.1, 0.2, 0.3]
-    assert {row["says"] for row in flights} == {"flight"}
+    assert {row["summary"] for row in flights} == {"flight"}
 
 
 def test_a_question_about_many_candidates_has_a_row_for_each(asked: Asked, tmp_path: Path) -> None:
@@ -100,7 +103,7 @@ def test_a_question_about_many_candidates_has_a_row_for_each(asked: Asked, tmp_p
         for row, verdict, count in zip(group, response.verdicts, response.mode_counts, strict=True):
             name = ModeVerdict(verdict).name.lower()
             expected = [f"{mode} ({mode_in_words(mode)})" for mode in (next(modes) for _ in range(count))]
-            assert row["says"] == (f"{name}: {', '.join(expected)}" if expected else name)
+            assert row["summary"] == (f"{name}: {', '.join(expected)}" if expected else name)
             assert (row["body"], row["status"], row["states_fitted"]) == ("brick", "OK", "0")
     pushed, standing = rows[:MANY], rows[MANY : 2 * MANY]
     assert [json.loads(row["question"])["forces"] for row in pushed] == [
@@ -108,8 +111,8 @@ def test_a_question_about_many_candidates_has_a_row_for_each(asked: Asked, tmp_p
         [0.1, 0.0, 0.0],
         [9.0, 0.0, 0.0],
     ]
-    assert len({row["says"] for row in pushed}) > 1
-    assert pushed[0]["says"] == "unique: ffff (it stays fixed)"
+    assert len({row["summary"] for row in pushed}) > 1
+    assert pushed[0]["summary"] == "unique: ffff (it stays fixed)"
     assert [row["surface"] for row in standing] == ["floor", "table", "ramp"]
     asked_contacts = [json.loads(row["question"])["contacts"] for row in standing]
     assert [each["frictions"] for each in asked_contacts] == [[0.1, 0.2], [0.3], [0.4]]
@@ -123,7 +126,7 @@ def test_parquet_has_the_cells_of_csv_and_needs_no_ros(asked: Asked, tmp_path: P
     table = pq.read_table(tmp_path / "table.parquet")
     assert table.column_names == list(COLUMNS)
     rows = rows_of(tmp_path / "table.csv")
-    for name in ("asked_ns", "service", "status", "says", "predicted_x", "state_stamp_ns"):
+    for name in ("asked_ns", "service", "status", "summary", "predicted_x", "state_stamp_ns"):
         cells = ["" if cell is None else str(cell) for cell in table.column(name).to_pylist()]
         assert cells == [row[name] for row in rows], name
 
@@ -281,3 +284,43 @@ def test_what_is_wrong_is_named(
     (tmp_path / "broken.yaml").write_text("a: [")
     assert main(["table", "bag", *arguments]) == 2
     assert says(capsys.readouterr().err, told)
+
+
+def test_contact_modes_have_their_forces_and_margins(asked: Asked, tmp_path: Path) -> None:
+    """As the responses of the log have them, one list for each mode."""
+    out = tmp_path / "table.csv"
+    assert main(["table", str(asked.log), "--output", str(out)]) == 0
+    rows = [row for row in rows_of(out) if row["service"] == "predict_contact_mode" and row["status"] == "OK"]
+    responses = [
+        decode_without_ros(call.response_event).response[0]
+        for call in service_calls(BagReader(asked.log).messages())
+        if call.service.endswith("predict_contact_mode") and call.response_event is not None
+    ]
+    assert len(rows) == len(responses) > 0
+    for row, response in zip(rows, responses, strict=True):
+        assert int(row["mode_count"]) == len(response.modes) > 0
+        assert json.loads(row["margins"]) == [mode.margin for mode in response.modes]
+        for name in ("contact_forces", "contact_accelerations"):
+            vectors = [np.reshape(getattr(mode, name), (-1, 3)) for mode in response.modes]
+            np.testing.assert_array_equal(json.loads(row[name]), vectors)
+    batches = [row for row in rows_of(out) if row["service"] == "predict_contact_mode_batch"]
+    assert all(int(row["mode_count"]) == row["summary"].count("(") for row in batches)
+
+
+def test_a_log_is_a_table_of_pandas(asked: Asked, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """It has the types and the cells of the table in Parquet."""
+    pandas = pytest.importorskip("pandas", reason="pandas of requirements/test.txt is not installed")
+    frame = log_to_frame(asked.log)
+    assert main(["table", str(asked.log), "--output", str(tmp_path / "table.parquet")]) == 0
+    pandas.testing.assert_frame_equal(
+        frame, pandas.read_parquet(tmp_path / "table.parquet"), check_dtype=False
+    )
+    assert {str(frame[name].dtype) for name, kind in COLUMNS.items() if kind is int} == {"Int64"}
+    (whole,) = asked.log.glob("*.mcap")
+    cut = tmp_path / "cut.mcap"
+    cut.write_bytes(whole.read_bytes()[: whole.stat().st_size * 3 // 10])
+    with pytest.warns(DamagedLogWarning, match=r"cut.mcap"):
+        assert 0 < len(log_to_frame(str(cut))) < len(frame)
+    monkeypatch.setitem(sys.modules, "pandas", None)
+    with pytest.raises(NotSupportedError, match="log_to_frame needs pandas: pip install pandas"):
+        log_to_frame(asked.log)
