@@ -7,6 +7,7 @@ import difflib
 import gc
 import os
 import sys
+import warnings
 from importlib import import_module
 from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
@@ -148,10 +149,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _run(name: str, arguments: list[str]) -> int:
-    from contact_dynamics.nodes.arguments import check_arguments  # loads SciPy, which --help needs not
-
     verb = VERBS[name]
-    check_arguments(verb.make_parser(), arguments)
+    with warnings.catch_warnings():
+        if not {"-h", "--help"}.isdisjoint(arguments):
+            warnings.simplefilter("ignore", RuntimeWarning)  # that the compiled core is outdated
+        from contact_dynamics.nodes.arguments import check_arguments  # loads SciPy
+
+        check_arguments(verb.make_parser(), arguments)
     missing = [needed.partition(".")[0] for needed in verb.needs if not _is_installed(needed)]
     if missing:
         print(_remedy(name, missing), file=sys.stderr)

@@ -75,7 +75,7 @@ def _problem_of(module: str) -> str:
     """Return why the compiled form of a module cannot be used, or nothing if it can."""
     try:
         built = getattr(importlib.import_module(module), "SOURCE_CRC", None)
-    except ImportError as error:
+    except (ImportError, TypeError, ValueError) as error:  # the latter if what it uses runs as plain Python
         return f"cannot be imported ({error})"
     if built == checksum(_source_of(module)):
         return ""

@@ -193,3 +193,17 @@ def test_the_quick_start_names_every_verb() -> None:
     page = (ROOT / "docs" / "quick-start-ros.md").read_text(encoding="utf-8")
     named = page.split("The commands are ")[1].split("--help")[0]
     assert [verb for verb in VERBS if f"{verb}`" not in named] == []
+
+
+def test_help_does_not_warn_of_an_outdated_core(without_ros: WithoutRos) -> None:
+    """Commands do, even those that end with an error."""
+    outdated = """
+import sys
+from contact_dynamics.numerics import compiled
+compiled.checksum = lambda source: -1
+from contact_dynamics.command_line import main
+sys.exit(main(sys.argv[1:]))
+"""
+    told = without_ros.run("-c", outdated, "replay", "--help")
+    assert (told.returncode, told.stderr) == (0, "")
+    assert "plain Python" in without_ros.run("-c", outdated, "replay", "none").stderr
