@@ -1,8 +1,8 @@
 """Logs that answer again: from the file alone and without ROS, every logged question is asked anew.
 
-There are four modes. `verify` compares the answers with those in the log. `rows` makes a table, with what was
-measured after each answer (`then_measured`), and `table_file` writes it. `view` draws. `publish` plays a log
-over ROS, in the time that `pacing` keeps.
+There are five modes. `verify` compares the answers with those in the log. `info` lists its contents. `rows`
+makes a table, with what was measured after each answer (`then_measured`), and `table_file` writes it. `view`
+draws. `publish` plays a log over ROS, in the time that `pacing` keeps.
 
 Tables and pictures are made of `events`. `logged` reads them from a log of the server. `asking` reads the
 states of any recording, with a `configuration` beside it, and asks its own questions.

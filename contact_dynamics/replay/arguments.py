@@ -12,12 +12,14 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
 VERIFY: Final = "verify"
+INFO: Final = "info"
 TABLE: Final = "table"
 VIEW: Final = "view"
 PUBLISH: Final = "publish"
 
 MODES: Final = {
     VERIFY: "recompute every logged answer and compare it (the default mode)",
+    INFO: "list topics, bodies, time span, and requests by service and status",
     TABLE: "write one row per question: request, answer and later measurement",
     VIEW: "draw states and answers in rerun, live or to a file",
     PUBLISH: "publish the states over ROS, and optionally repeat the questions",
@@ -42,6 +44,8 @@ def replay_parser() -> argparse.ArgumentParser:
     _add_verify(
         modes.add_parser(VERIFY, usage=usage, help=MODES[VERIFY], description=_sentence(MODES[VERIFY]))
     )
+    inside = modes.add_parser(INFO, help=MODES[INFO], description=_sentence(MODES[INFO]))
+    inside.add_argument("logs", nargs="+", metavar="LOG", help="a log of the server, or any rosbag2 bag")
     _add_table(modes.add_parser(TABLE, help=MODES[TABLE], description=_sentence(MODES[TABLE])))
     _add_view(modes.add_parser(VIEW, help=MODES[VIEW], description=_sentence(MODES[VIEW])))
     _add_publish(modes.add_parser(PUBLISH, help=MODES[PUBLISH], description=_sentence(MODES[PUBLISH])))

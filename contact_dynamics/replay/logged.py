@@ -82,7 +82,7 @@ class LoggedEvents(Events):
             request = part_of(call.request_event, "request")
             response = part_of(call.response_event, "response")
             question = not_default(request)
-            status, message = _status(response), str(response.message)
+            status, message = status_of(response), str(response.message)
             seconds = float(response.computation_time)
             if status == OK:
                 asked = self._server.question_from(call.service_type, request)
@@ -121,7 +121,7 @@ def _plain(value: Any) -> object:
     return [_plain(each) for each in (value.tolist() if isinstance(value, np.ndarray) else value)]
 
 
-def _status(response: Any) -> str:
+def status_of(response: Any) -> str:
     """Return the name of a response's status; its codes are above those of its other constants."""
     if response.status == response.OK:
         return OK

@@ -49,6 +49,12 @@ def summary(results: Sequence[tuple[str, str]]) -> str:
     return "\n".join([f"{good} of {len(results)} logs are answered as logged", *lines])
 
 
+def utc(stamp_ns: int) -> str:
+    """Return a time in ns since the epoch as date and time of day."""
+    when = datetime.fromtimestamp(stamp_ns // NS_PER_S, timezone.utc)
+    return f"{when:%Y-%m-%d %H:%M:%S}.{stamp_ns % NS_PER_S:09d} UTC"
+
+
 def _table(found: Verification) -> list[str]:
     if not found.services:
         return ["  no questions"]
@@ -64,16 +70,12 @@ def _table(found: Verification) -> list[str]:
 
 
 def _other(other: OtherAnswer) -> list[str]:
-    when = datetime.fromtimestamp(other.asked_ns // NS_PER_S, timezone.utc)
-    stamp = f"{when:%Y-%m-%d %H:%M:%S}.{other.asked_ns % NS_PER_S:09d} UTC"
     fields = [
         f"    {each.field}: logged {_short(each.logged)}, recomputed {_short(each.recomputed)}"
         for each in other.differences
     ]
-    return [
-        f"  {other.service}, question {other.number}, asked {stamp} (log_time {other.asked_ns}):",
-        *fields,
-    ]
+    asked = f"asked {utc(other.asked_ns)} (log_time {other.asked_ns})"
+    return [f"  {other.service}, question {other.number}, {asked}:", *fields]
 
 
 def _gaps(found: Verification) -> list[str]:

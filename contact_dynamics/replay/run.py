@@ -17,9 +17,18 @@ from contact_dynamics.nodes.run_record import LoggedParameters
 from contact_dynamics.recording.bag_reader import BagReader
 from contact_dynamics.recording.errors import DamagedLogWarning, NotALogError
 from contact_dynamics.recording.file_messages import Span
-from contact_dynamics.replay.arguments import PUBLISH, TABLE, VERIFY, VIEW, replay_parser, stamps_as_logged
+from contact_dynamics.replay.arguments import (
+    INFO,
+    PUBLISH,
+    TABLE,
+    VERIFY,
+    VIEW,
+    replay_parser,
+    stamps_as_logged,
+)
 from contact_dynamics.replay.asking import AskedEvents, Asking
 from contact_dynamics.replay.configuration import Configuration, values_of
+from contact_dynamics.replay.info import info
 from contact_dynamics.replay.logged import LoggedEvents
 from contact_dynamics.replay.progress import Progress
 from contact_dynamics.replay.report import AS_LOGGED, report, summary
@@ -66,10 +75,9 @@ def main(arguments: list[str]) -> int:
     if lacking:
         return _refused(f"{given.mode} needs what is not installed: {lacking}", LACKS)
     try:
-        if given.mode == TABLE:
-            return _table(given)
-        if given.mode == VIEW:
-            return _view(given)
+        without_ros = {INFO: _info, TABLE: _table, VIEW: _view}
+        if given.mode in without_ros:
+            return without_ros[given.mode](given)
         from contact_dynamics.replay.publish import publish  # it needs ROS
 
         return publish(given, of_ros, span=_span(Path(given.log), given))
@@ -106,6 +114,11 @@ def _verify(given: argparse.Namespace) -> int:
     if len(logs) > 1:
         print(summary(results))
     return worst
+
+
+def _info(given: argparse.Namespace) -> int:
+    print("\n\n".join(info(Path(name)) for name in given.logs))
+    return 0
 
 
 def _table(given: argparse.Namespace) -> int:

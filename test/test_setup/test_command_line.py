@@ -25,7 +25,7 @@ OPTIONS = {
     "evaluate": ["--against", "--dask", "--results", "--rerun", "RECORDING"],
     "plot": ["--output", "--format", "--max-questions", "LOG"],
     "recover": ["--output", "LOG"],
-    "replay": ["verify", "table", "view", "publish", "LOG"],
+    "replay": ["verify", "info", "table", "view", "publish", "LOG"],
     "server": ["--params-file", "--ros-args", *(each.name for each in described_server_parameters())],
     "toss_publisher": ["--toss", "--listeners"],
     "visualizer": ["--params-file", "--ros-args", *VISUALIZER_PARAMETERS],
@@ -95,7 +95,7 @@ def test_help_names_the_options(without_ros: WithoutRos, verb: str) -> None:
         (["toss-publisher"], "there is no verb 'toss-publisher'; did you mean 'toss_publisher'?"),
         (["table", "log"], "there is no verb 'table'; did you mean 'replay table'?"),
         (["replay", "tabel", "log"], "there is no mode and no log 'tabel'; did you mean 'table'?"),
-        (["replay", "draw", "log"], "no log 'draw'; the modes are verify, table, view, publish"),
+        (["replay", "draw", "log"], "no log 'draw'; the modes are verify, info, table, view, publish"),
         (["xyz"], "there is no verb 'xyz'; the verbs are demo, server, visualizer, replay"),
         (
             ["server", "--horizon", "2.0"],
