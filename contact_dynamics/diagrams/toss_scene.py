@@ -25,11 +25,15 @@ if TYPE_CHECKING:
     from contact_dynamics.diagrams.shape import Shape
     from contact_dynamics.questions.toss import TossAnswer
     from contact_dynamics.toss import TossDistribution
+    from contact_dynamics.tumbling.motion import Trajectory
     from contact_dynamics.validation import FloatArray
 
 MAX_OUTLINES: Final = 4
 """Outlines of the body along the toss, at its first strikes. Many small rebounds follow at nearly one place.
 """
+
+MAX_GHOSTS: Final = 8
+"""Outlines of the body along its way on paper, where nothing moves. They are equally far apart."""
 
 MAX_STRIKING: Final = 6
 """Samples whose strikes have outlines. More would hide the toss."""
@@ -42,6 +46,7 @@ _THIN: Final = 0.7
 
 _PATH: Final = Paint(palette.PREDICTED, paper.BLACK)
 _STRIKES: Final = Paint(palette.IMPACT, paper.RED)
+_GHOSTS: Final = Paint(palette.PREDICTED, paper.GREY)
 _OTHER: Final = Paint(palette.UNDECIDED, paper.ORANGE)
 _SAMPLES: Final = Paint(palette.PREDICTED, paper.SKY)
 _TREE: Final = Paint(palette.AFTER_IMPACT, paper.GREY)
@@ -69,6 +74,7 @@ def toss_marks(shape: Shape, toss: Toss | TossAnswer, *, up_W: FloatArray) -> li
         *([] if told is None else _fan_marks(shape, told)),
         Lines("other_ways", _OTHER, [w.p_WB_W for w in others], width=1.1, legend="other ways"),
         Lines("other_ends", _OTHER, ends, width=_THIN),
+        Lines("ghosts", _GHOSTS, _ghosts(shape, first), width=_THIN, legend="the body", in_viewer=False),
         Lines("path", _PATH, [first.p_WB_W], width=1.9, legend="the toss"),
         Lines("begin", _PATH, list(outline(shape, *begin)), on_paper=False),
         Lines("end", _PATH, list(outline(shape, *end)), width=0.9),
@@ -77,6 +83,15 @@ def toss_marks(shape: Shape, toss: Toss | TossAnswer, *, up_W: FloatArray) -> li
         *([solid(shape, "rest/faces", _PATH, *end, opacity=0.25, on_paper=False)] if rests else []),
         *([] if told is None else _tree_marks(told, lift_W=_LABELS_APART * shape.size * up_W)),
     ]
+
+
+def _ghosts(shape: Shape, way: Trajectory) -> list[FloatArray]:
+    steps = np.linalg.norm(np.diff(way.p_WB_W, axis=0), axis=1)
+    lengths = np.concatenate([[0.0], np.cumsum(steps)])
+    apart = max(shape.size, lengths[-1] / MAX_GHOSTS)
+    count = int(lengths[-1] / apart) if apart > 0.0 else 0
+    chosen = np.searchsorted(lengths, apart * np.arange(count))
+    return _outlines(shape, zip(way.p_WB_W[chosen], way.q_WB[chosen], strict=True))
 
 
 def _outlines(shape: Shape, poses: Iterable[tuple[FloatArray, FloatArray]]) -> list[FloatArray]:

@@ -72,6 +72,7 @@ def draw_seen(axes: Axes, marks: Sequence[Mark], *, across: str, up: str) -> Non
     axes.set_xlabel(f"{across}, m")
     axes.set_ylabel(f"{up}, m")
     axes.set_aspect("equal", adjustable="datalim")
+    axes.set_axisbelow(True)
     axes.grid(visible=True, color=AXIS, linewidth=0.6)
     _legend_beside(axes)
 

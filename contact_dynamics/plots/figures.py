@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final, NamedTuple
 
+import numpy as np
+
 from contact_dynamics.diagrams.planar_modes import dual_chart_of, map_of_answer, modes_side_by_side
 from contact_dynamics.diagrams.planar_scene import silhouette
 from contact_dynamics.diagrams.shape import drawn_shape
@@ -31,7 +33,7 @@ from contact_dynamics.shapes.convex import NO_SHAPE
 from contact_dynamics.tumbling.regime import Regime
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
 
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
@@ -49,6 +51,8 @@ if TYPE_CHECKING:
 MAX_MODES: Final = 6
 """Figures of this many consistent modes are made, the first ones."""
 
+_LEAST: Final = 0.25  # width and height of a view, relative to the largest
+_MARGIN: Final = 0.05  # around what is drawn, relative to its size
 _RESOLUTION: Final = 600  # points on a side of the charts of wrenches
 
 
@@ -87,21 +91,15 @@ def figures_of_many(answer: ManyTumblingsAnswer | ManyImpactsAnswer, **_: object
     """Yield the states from the side and from above."""
     if len(answer.states) == 0:
         return
-    figure = blank_figure(8.0, 8.0)
-    side, top = figure.subplots(2, 1)
-    draw_many_states(side, answer, across="x", up="z")
-    draw_many_states(top, answer, across="x", up="y")
-    yield NamedFigure("states", figure)
+    drawn = from_side_and_above(lambda axes, up: draw_many_states(axes, answer, across="x", up=up))
+    yield NamedFigure("states", drawn)
 
 
 def figures_of_toss(answer: TossAnswer, *, shape: ConvexShape, **_: object) -> Iterator[NamedFigure]:
     """Yield the toss from the side and from above, and the tree of its next strikes if it is sampled."""
     outline = drawn_shape(shape)
-    figure = blank_figure(8.0, 8.0)
-    side, top = figure.subplots(2, 1)
-    draw_toss(side, answer, outline, across="x", up="z")
-    draw_toss(top, answer, outline, across="x", up="y")
-    yield NamedFigure("toss", figure)
+    drawn = from_side_and_above(lambda axes, up: draw_toss(axes, answer, outline, across="x", up=up))
+    yield NamedFigure("toss", drawn)
     if answer.distribution is not None and answer.distribution.branches:
         figure = blank_figure(9.0, 5.0)
         draw_event_tree(figure.add_subplot(), answer.distribution)
@@ -186,6 +184,31 @@ def figures_of_modes(
         figure = blank_figure(11.0, 5.0)
         draw_force_dual(figure.add_subplot(), one, view.contacts, chart, outlines=[outline])
         yield NamedFigure(f"force-dual-{i}", figure)
+
+
+def from_side_and_above(draw: Callable[[Axes, str], None]) -> Figure:
+    """Return a figure with the side view above the top view, which share the x axis and the scale.
+
+    Args:
+        draw: Draws into axes; the world's axis upwards is "z" or "y".
+    """
+    figure = blank_figure(8.0, 8.0)
+    views = figure.subplots(2, 1, sharex=True)
+    for axes, up in zip(views, "zy", strict=True):
+        draw(axes, up)
+    limits = [views[0].dataLim.intervalx, *(axes.dataLim.intervaly for axes in views)]
+    size = max(high - low for low, high in limits)
+    rooms = [max(_MARGIN * (high - low), 0.5 * (_LEAST * size - (high - low))) for low, high in limits]
+    if size > 0.0:  # there is a path or a shape
+        setters = [views[0].set_xlim, *(axes.set_ylim for axes in views)]
+        for set_limits, (low, high), room in zip(setters, limits, rooms, strict=True):
+            set_limits(low - room, high + room)
+    for axes in views:
+        axes.set_aspect("equal", adjustable="box")
+        axes.label_outer()
+    views[0].get_gridspec().set_height_ratios([float(np.diff(axes.get_ylim())[0]) for axes in views])
+    views[1].get_legend().remove()
+    return figure
 
 
 def blank_figure(width: float, height: float) -> Figure:

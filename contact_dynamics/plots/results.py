@@ -16,7 +16,7 @@ from contact_dynamics.contact_modes.letters import mode_in_words
 from contact_dynamics.diagrams.planar_modes import side_by_side
 from contact_dynamics.diagrams.shape import drawn_shape
 from contact_dynamics.plots.draw import draw_contact_forces, draw_planar_scene, draw_toss
-from contact_dynamics.plots.figures import MAX_MODES, blank_figure
+from contact_dynamics.plots.figures import MAX_MODES, blank_figure, from_side_and_above
 from contact_dynamics.shapes.convex import NO_SHAPE
 from contact_dynamics.validation_types import checks_types
 
@@ -36,10 +36,7 @@ def toss(toss: Toss, body: Body | None = None) -> Figure:
         body: The body, whose outline is drawn where it ends, or None for the path alone.
     """
     outline = drawn_shape(NO_SHAPE if body is None else body.shape)
-    figure = blank_figure(8.0, 8.0)
-    side, top = figure.subplots(2, 1)
-    draw_toss(side, toss, outline, across="x", up="z")
-    draw_toss(top, toss, outline, across="x", up="y")
+    figure = from_side_and_above(lambda axes, up: draw_toss(axes, toss, outline, across="x", up=up))
     figure.suptitle(toss.in_short())
     return figure
 

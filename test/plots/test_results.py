@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import contact_dynamics as cd
@@ -35,6 +36,12 @@ def test_a_toss_is_drawn_from_its_first_state_to_rest_and_saved(tmp_path: Path) 
     side, top = figure.axes
     lines = {line.get_gid(): line for line in side.lines}
     assert {"path", "other_ways"} <= lines.keys()  # the other way that was followed
+    ghosts = np.array([each for each in lines["ghosts"].get_xydata() if np.isfinite(each).all()])
+    assert [ghosts[:, 0].min(), ghosts[:, 1].max()] == pytest.approx([-0.05, 0.35])  # the cube at first
+    figure.draw_without_rendering()
+    of_side, of_top = (axes.transData.transform([[0, 0], [1, 1]]) for axes in (side, top))
+    assert np.ptp(of_side, axis=0) == pytest.approx(np.ptp(of_top, axis=0))  # one scale in both views
+    assert np.ptp(of_side[:, 0]) == pytest.approx(np.ptp(of_side[:, 1]))
     across, up = lines["path"].get_xdata(), lines["path"].get_ydata()
     assert (across[0], up[0]) == pytest.approx((0.0, 0.3))
     assert (across[-1], up[-1]) == pytest.approx(tuple(went.state.p_WB_W[[0, 2]]))
