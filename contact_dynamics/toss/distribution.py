@@ -7,7 +7,7 @@ are within it. These sizes are counted among the samples, so that they hold for 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final, overload
 
 import numpy as np
@@ -32,6 +32,8 @@ FEWEST: Final = 20
 _MEAN_ROUNDS: Final = 4
 
 _ALONG_AXIS: Final = 0.98
+
+_SHOWN_FACES: Final = 6
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -104,18 +106,18 @@ class Branch(Record):
         parent: The index of the branch that it follows, or -1.
         strike: Which strike it is about, from 1.
         kind: What happens.
-        surface: The name of the surface that is struck, or nothing.
-        corner: The index of the corner that strikes, or -1.
         probability: Share of all samples that came this way.
+        corner: The index of the corner that strikes, or -1.
+        surface: The name of the surface that is struck, or nothing.
         regions: Those of its samples; None where nothing strikes, or with fewer than `FEWEST` samples.
     """
 
     parent: int
     strike: int
     kind: BranchKind
-    surface: str
-    corner: int
     probability: float
+    corner: int
+    surface: str
     regions: EventRegions | None
 
 
@@ -168,6 +170,7 @@ class TossDistribution(Record):
         face_probabilities: (f,), shares of all samples. What is missing to one did not come to rest.
         rest: When and where samples rest; None if none does, or if they were not followed so far.
         ghosts: Poses of the first samples.
+        to_rest: Whether samples were followed to rest, or None if that is not recorded, as in a message.
     """
 
     samples: int
@@ -177,12 +180,20 @@ class TossDistribution(Record):
     face_probabilities: FloatArray
     rest: RestSpread | None
     ghosts: Ghosts
+    to_rest: bool | None = field(default=None, repr=False)
 
     def in_short(self) -> str:
-        """Return the number of samples, and the share of them that did not come to rest if they could."""
-        moving = 0.0 if self.rest is None else 1.0 - float(np.sum(self.face_probabilities))
-        rest = f", {moving:.1%} of which did not come to rest" if moving > 0.5 / self.samples else ""
-        return f"TossDistribution of {self.samples} samples{rest}"
+        """Return the number of samples, the most probable faces on top, and the share that did not rest."""
+        shares = self.face_probabilities.tolist()
+        if not shares:
+            none = ", none of which came to rest before the horizon" if self.to_rest else ""
+            return f"TossDistribution of {self.samples} samples{none}"
+        words = [f"{face} {share:.1%}" for face, share in zip(self.faces_on_top, shares, strict=True)]
+        if len(words) > _SHOWN_FACES:
+            words[_SHOWN_FACES:] = [f"other faces {sum(shares[_SHOWN_FACES:]):.1%}"]
+        if 1.0 - sum(shares) > 0.5 / self.samples:
+            words.append(f"not at rest {1.0 - sum(shares):.1%}")
+        return f"TossDistribution of {self.samples} samples, on top at rest: {', '.join(words)}"
 
     @overload
     def standard_error(self, probability: float) -> float: ...

@@ -179,6 +179,7 @@ def sampled_toss(
         face_probabilities=shares,
         rest=rest,
         ghosts=_ghosts(many, rests, count),
+        to_rest=to_rest,
     )
 
 

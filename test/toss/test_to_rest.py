@@ -87,3 +87,30 @@ def test_few_samples_start_no_process() -> None:
 def test_what_is_no_number_of_processes_is_refused_by_its_name(processes: Executor | float | str) -> None:
     with pytest.raises(InvalidFieldError, match=r"^processes must be a whole number >= 1, or.*, got .*"):
         told(20, processes=processes)
+
+
+def test_printed_samples_have_their_probabilities(alone: TossDistribution) -> None:
+    """The first line has the faces, and each branch its own."""
+    first, *lines = str(alone).splitlines()
+    best = f"{alone.faces_on_top[0]} {alone.face_probabilities[0]:.1%}"
+    assert first.startswith(f"TossDistribution of {COUNT} samples, on top at rest: {best}")
+    branches = [line for line in lines if line.startswith("    [") and "Branch(" in line]
+    assert branches
+    assert all("probability=" in line for line in branches)
+
+
+def test_printed_samples_that_do_not_rest_say_so() -> None:
+    """Where it was asked for; some that rest and some that do not have the share of the latter."""
+    few = {"covariance": np.diag([1e-4] * 12) ** 2, "count": 20}
+    args = (BRICK, BodyState(p_WB_W=[0, 0, 1], q_WB=[0, 0, 0, 1], v_WB_W=[0, 0, 0], w_WB_W=[1, 0, 0]))
+    world = World(bodies=(BRICK,), surfaces=(FLOOR,))
+    none = "TossDistribution of 20 samples, none of which came to rest before the horizon"
+    assert str(sampled_toss(*args, world, horizon=0.5, to_rest=True, **few)).splitlines()[0] == none
+    unasked = "TossDistribution of 20 samples"
+    assert str(sampled_toss(*args, world, horizon=0.5, **few)).splitlines()[0] == unasked
+    times = sampled_toss(*args, world, to_rest=True, **few).rest
+    assert times is not None
+    some = sampled_toss(*args, world, to_rest=True, horizon=float(times.seconds[2]), **few)
+    still = 1.0 - some.face_probabilities.sum()
+    assert 0.0 < still < 1.0
+    assert str(some).partition("\n  samples")[0].replace("\n ", "").endswith(f"not at rest {still:.1%}")
