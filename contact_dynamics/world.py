@@ -105,7 +105,10 @@ class Body(HasMassProperties):
     ) -> Body:
         """Return a uniform box of full side lengths (3,), m, with its frame at the centre.
 
-        As for the other bodies, give either ``mass``, kg, or ``density``, kg/m^3.
+        As for the other bodies, give either ``mass``, kg, or ``density``, kg/m^3. The centre of mass of such
+        a body is at its centre. For another one, or a measured inertia, use ``Body.of(name,
+        MassDistribution(mass=..., p_FB_F=..., I_B=...), shape_F=shapes.box(size))``, and correspondingly for
+        the other shapes.
         """
         return cls.of(name, solids.box(size, mass=mass, density=density), shape_F=convex.box(size))
 
@@ -114,7 +117,7 @@ class Body(HasMassProperties):
     def sphere(
         cls, radius: float, mass: float | None = None, *, density: float | None = None, name: str = "sphere"
     ) -> Body:
-        """Return a uniform ball of a radius, m, with its frame at the centre."""
+        """Return a uniform ball of a radius, m, with its frame at the centre. See also `Body.box`."""
         return cls.of(name, solids.sphere(radius, mass=mass, density=density), shape_F=convex.sphere(radius))
 
     @classmethod
@@ -128,7 +131,10 @@ class Body(HasMassProperties):
         density: float | None = None,
         name: str = "cylinder",
     ) -> Body:
-        """Return a uniform cylinder about z, lengths in m, with its frame at the centre."""
+        """Return a uniform cylinder about z, lengths in m, with its frame at the centre.
+
+        See also `Body.box`.
+        """
         solid = solids.cylinder(radius, length, mass=mass, density=density)
         return cls.of(name, solid, shape_F=convex.cylinder(radius, length))
 
@@ -145,7 +151,7 @@ class Body(HasMassProperties):
     ) -> Body:
         """Return a uniform rod with round ends about z, with its frame at the centre.
 
-        ``length``, m, is between the centres of the two ends.
+        ``length``, m, is between the centres of the two ends. See also `Body.box`.
         """
         solid = solids.capsule(radius, length, mass=mass, density=density)
         return cls.of(name, solid, shape_F=convex.capsule(radius, length))
