@@ -60,6 +60,9 @@ LINK = re.compile(r"(?<!!)\[((?:[^\[\]]|\[[^\]]*\])*)\]\(([^)\s:#]+)(#[^)\s]*)?\
 IMAGE = re.compile(r"(!\[[^\]]*\])\(docs/([^)\s]+)\)")
 NUMBER = re.compile(r"\d[\d.]*e-\d+")
 CELL = re.compile(r"<td.*?</td>", re.DOTALL)
+CODE_IN_CELL = re.compile(r"(?<=<code>)[^<]+")
+PARTS = re.compile(r"(?<=[_/.(:])(?!py\b)(?=[a-z])", re.IGNORECASE)
+"""The places between the parts of a name."""
 MARKER = re.compile(r"<!--/?(?:bench:[\w.]+)?-->")
 
 
@@ -178,8 +181,13 @@ def on_page_markdown(markdown: str, page: Any, **_: Any) -> str:
 
 
 def on_page_content(html: str, **_: Any) -> str:
-    """Mark numbers in tables that a line must not end in: browsers break it at a hyphen."""
-    return CELL.sub(lambda cell: NUMBER.sub(r'<span class="number">\g<0></span>', cell[0]), html)
+    """Mark in tables where a line may end in code, and numbers in which browsers would end it at a hyphen."""
+
+    def marked(cell: re.Match[str]) -> str:
+        text = CODE_IN_CELL.sub(lambda code: PARTS.sub("<wbr>", code[0]), cell[0])
+        return NUMBER.sub(r'<span class="number">\g<0></span>', text)
+
+    return CELL.sub(marked, html)
 
 
 def link_on_site(link: re.Match[str], name: str, source: PurePosixPath) -> str:

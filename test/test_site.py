@@ -76,6 +76,8 @@ def test_the_site_is_built_without_a_complaint(tmp_path: Path) -> None:
     readme = (tmp_path / "readme.html").read_text(encoding="utf-8")
     assert "bench:" not in readme
     assert "config/server.yaml</code></a>" not in readme
+    # A name in a narrow column is broken between its parts.
+    assert "<code>predict_<wbr>contact_<wbr>mode</code>" in readme
     # The definitions of the interfaces stand on a page of their own, to which their names link.
     definitions = (tmp_path / "interface-files.html").read_text(encoding="utf-8")
     for path in (ROOT / "contact_dynamics_interfaces").glob("*/*.[ms]*"):
