@@ -1,4 +1,4 @@
-"""Lecture 26's wrench in a tray: which contact mode comes about under which applied wrench, as a map.
+"""Lecture 26's wrench in a tray: the map of contact modes over applied wrenches.
 
 A hex key lies in the lower right corner of a tray, flush with the floor and the wall. Writes `tray.rrd`
 (or the path given) for rerun's viewer: `rerun tray.rrd`.
@@ -58,7 +58,7 @@ print(f"{len(modes)} of 4^{len(contacts)} strings are possible: {', '.join(one.m
 answer = contact_modes(problem)
 (margin,) = mode_margins(problem, answer)
 beyond = " or ".join(margin.modes_beyond)
-print(f"the applied wrench brings about {margin.mode}, and {margin.margin:.3f} N more bring about {beyond}")
+print(f"mode {margin.mode} with a margin of {margin.margin:.3f} N, then {beyond}")
 
 outline = np.vstack([outer, inner[::-1], outer[:1]]) - mass_centre
 tray = np.array([[-0.16, 0.0], [0.0, 0.0], [0.0, 0.11]]) - mass_centre
@@ -81,7 +81,7 @@ with rr.RecordingStream("contact_dynamics") as recording:
         for origin, name in (
             ("planar_scene", "Contact forces"),
             ("force_dual", "Acceleration centres and force duals"),
-            ("mode_map", "Which applied wrench brings about which mode"),
+            ("mode_map", "Contact modes by applied wrench"),
         )
     ]
     rows = rrb.Vertical(rrb.Horizontal(*views[:2], column_shares=[2, 3]), views[2], row_shares=[2, 3])

@@ -22,7 +22,7 @@ EXAMPLES = {
     "newtons_cradle.py": "0.000  0.000  0.000  0.000  1.000 m/s",
     "diagrams_on_paper.py": "rsrs, ",
     "tossed_cube.py": "  1. corner 0 strikes: 100%, in 0.21",
-    "tray.py": "brings about rsrs",
+    "tray.py": "mode rsrs with a margin",
     "wheel_over_an_edge.py": "1.6 m/s on its edge : s, presses with 0.000 N",
 }
 

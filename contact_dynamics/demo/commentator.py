@@ -173,7 +173,7 @@ class Commentator(Node):
         words = f"{where}: {mode_in_words(mode.mode)}"
         if np.isfinite(mode.margin):
             beyond = " or ".join(mode_in_words(other) for other in mode.margin_modes)
-            words += f", {mode.margin:.2f} N from where {beyond or 'no mode is consistent'}"
+            words += f" (margin {mode.margin:.2f} N, then {beyond or 'no mode is consistent'})"
         return words
 
     def _ask(self, client: Any, request: Any) -> Any:

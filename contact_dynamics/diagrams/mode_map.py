@@ -1,4 +1,4 @@
-"""The map of contact modes shows which applied wrench brings about which mode (Mason, lecture 26).
+"""The map of contact modes assigns modes to applied wrenches (Mason, lecture 26).
 
 Each region of a chart belongs to the modes that its wrenches bring about. In some regions several modes are
 consistent (indeterminate), and in some none is (inconsistent).
@@ -54,7 +54,7 @@ _WAY_POINTS: Final = 100  # number of points of the way of a wrench that changes
 _DIGITS: Final = 9  # after the point; what is smaller is rounding of forces that cancel
 _DIRECTIONS: Final = "angle: direction of the force; middle: pure torque"
 
-_WAY: Final = ";\nline: least way\nto another mode"
+_WAY: Final = ";\nline: smallest change\nto another mode"
 
 _LINE: Final = Paint(palette.NORMAL, paper.BLACK)
 _GROUND: Final = Paint(palette.BACKGROUND, paper.SEVERAL)
@@ -269,7 +269,7 @@ def mode_map(
             on_paper=False,
         )
     )
-    title = "which applied wrench brings about which mode"
+    title = "contact modes by applied wrench"
     title += "; white: several" * any(len(modes) > 1 for modes in regions.modes)
     title += "; black: none" * (NO_MODE in there)
     frame, axes = chart_frame(chart)

@@ -70,7 +70,7 @@ def rest_in_words(told: TossDistribution) -> str:
     more = ", ".join(faces[1:MAX_FACES])
     if len(faces) > MAX_FACES:
         more += f", others: {sum(shares[MAX_FACES:]):.0%}"
-    return f"rests on its face towards {faces[0]}" + (f"\n{more}" if more else "") if faces else ""
+    return f"rests on face {faces[0]}" + (f"\n{more}" if more else "") if faces else ""
 
 
 def event_tree(told: TossDistribution) -> Diagram:
@@ -112,7 +112,7 @@ def event_tree(told: TossDistribution) -> Diagram:
             Axis("time after the state, s", begin - room, end + room),
             Axis("", 0.3 - rows, 1.2, ()),
         ),
-        title=f"what {told.samples} samples do next",
+        title=f"next events of {told.samples} samples",
         is_equal=False,
     )
 

@@ -55,17 +55,17 @@ SEQUENCE_ENDS: Final = {
     SequenceEnd.NOTHING_STRIKES: "it flies",
     SequenceEnd.STAYS: "a contact stays",
     SequenceEnd.CHATTERS: "it chatters to rest at a contact",
-    SequenceEnd.MAX_STRIKES: "the bound on their number was reached",
+    SequenceEnd.MAX_STRIKES: "the maximum number of strikes was reached",
     SequenceEnd.WINDOW_ENDED: "the window ended",
 }
 """The words for what follows the last of several strikes in time."""
 
 VERDICTS: Final = {
     ModeVerdict.UNIQUE: "has one consistent mode",
-    ModeVerdict.INDETERMINATE: "has several consistent modes, and mechanics does not choose",
-    ModeVerdict.INCONSISTENT: "has no consistent mode: an impact without approach",
-    ModeVerdict.IMPACT: "approaches: no mode before the impact is resolved",
-    ModeVerdict.UNDECIDED: "has modes that could not all be made out",
+    ModeVerdict.INDETERMINATE: "has several consistent modes, of which mechanics selects none",
+    ModeVerdict.INCONSISTENT: "has no consistent mode: an impact without approach resolves it",
+    ModeVerdict.IMPACT: "approaches: modes apply only after the impact",
+    ModeVerdict.UNDECIDED: "has modes that may be incomplete",
 }
 """The words for each verdict on a contact set."""
 
@@ -81,7 +81,7 @@ CERTAINTIES: Final = {
 TOSS_ENDS: Final = {
     TossEnd.RESTS: "rests",
     TossEnd.HORIZON: "still moves at the horizon",
-    TossEnd.MAX_EVENTS: "has more events or takes more steps than are followed",
+    TossEnd.MAX_EVENTS: "exceeds the maximum number of events or steps",
 }
 """What the body does at the end of a toss."""
 
@@ -168,13 +168,13 @@ def contact_modes_in_words(answer: ContactModeAnswer) -> list[str]:
     words += _within_in_words(answer.within) + _geometry_in_words(answer.geometry_margins)
     shared = [mode.mode for mode in answer.modes if not mode.forces_unique]
     if shared:
-        words.append(f"the contact forces of {', '.join(shared)} are one choice of many")
+        words.append(f"the contact forces of {', '.join(shared)} are not unique")
     speeds = np.linalg.norm(answer.contact_velocities_W, axis=1)
     words += [f"contact {i + 1} approaches with {speeds[i]:.3g} m/s" for i in answer.approaching]
     refused = [refused.mode for refused in answer.refused]
     if refused:
         more = f" and {len(refused) - MAX_LISTED} more" if len(refused) > MAX_LISTED else ""
-        words.append(f"refused: {', '.join(refused[:MAX_LISTED])}{more}")
+        words.append(f"inconsistent: {', '.join(refused[:MAX_LISTED])}{more}")
     return [*words, *_statics_in_words(answer.statics), *_settled_in_words(answer.settled)]
 
 
@@ -198,11 +198,11 @@ def toss_in_words(answer: TossAnswer) -> list[str]:
     words = [f"{TOSS_ENDS[path.end]} after {path.seconds:.3g} s{corners} at ({where}) m, {strikes} strikes"]
     if path.undecided:
         reasons = dict.fromkeys(UNDECIDED[point.reason] for point in path.undecided)
-        followed = "all" if answer.all_followed else "not all"
-        words.append(
-            f"undecided {len(path.undecided)} times ({', '.join(reasons)}); "
-            f"{len(answer.alternatives)} other ways are followed, which are {followed}"
-        )
+        followed = "all followed" if answer.all_followed else "not followed"
+        if answer.alternatives and not answer.all_followed:
+            followed = f"followed to {len(answer.alternatives)} alternatives"
+        count = f"{len(path.undecided)} branch point{'s' if len(path.undecided) > 1 else ''}"
+        words.append(f"{count} ({', '.join(reasons)}), {followed}")
     if answer.distribution is not None:
         words += _distribution_in_words(answer.distribution)
     return words
@@ -254,9 +254,9 @@ def margin_in_words(margin: SpatialModeMargin) -> str:
     if math.isnan(margin.margin):
         return ""
     if math.isinf(margin.margin):
-        return "(under every wrench)"
+        return "(infinite margin)"
     beyond = " or ".join(margin.modes_beyond) or "no mode"
-    return f"({margin.margin:.3g} N from {beyond})"
+    return f"(margin {margin.margin:.3g} N to {beyond})"
 
 
 def _verdict_in_words(verdict: ModeVerdict, modes: list[str]) -> str:
@@ -329,13 +329,13 @@ def _distribution_in_words(told: TossDistribution) -> list[str]:
     first = [branch for branch in told.branches if branch.strike == 1]
     if first:
         kinds = [f"{branch_in_words(each.kind, each.corner)} {each.probability:.0%}" for each in first]
-        words.append(f"what {told.samples} samples do first: {', '.join(kinds)}")
+        words.append(f"first event of {told.samples} samples: {', '.join(kinds)}")
     if len(told.face_probabilities):
         faces = [
             f"{face_in_words(normal)} {share:.0%}"
             for normal, share in zip(told.face_normals_B, told.face_probabilities.tolist(), strict=True)
         ]
-        words.append(f"samples rest on the face towards {', '.join(faces)}")
+        words.append(f"lower face of the samples at rest: {', '.join(faces)}")
     return words
 
 

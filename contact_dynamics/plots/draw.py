@@ -118,7 +118,7 @@ def draw_mode_map(
     applied: PlanarWrench | None = None,
     change: PlanarWrench | None = None,
 ) -> None:
-    """Draw which applied wrench brings about which mode.
+    """Draw the map of contact modes over applied wrenches.
 
     Args:
         axes: The axes to draw into.

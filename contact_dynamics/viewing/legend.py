@@ -41,9 +41,9 @@ Several *contact modes* may be consistent: the tab shows all, side by side; the 
 on `mode_2` and so on under *contacts* in the blueprint panel). `s` separates, `l` and `r` slide left and
 right, `f` stays fixed, `c` slides in space.
 
-The *mode map* shows which applied wrench brings about which mode. Each point of a disc is a direction: its
-angle that of the force, its distance from the centre the share of force, the centre a pure torque. White:
-several modes are consistent; black: none is. Red: the wrench in question, and its least change into another
+The *mode map* shows the contact modes by applied wrench. Each point of a disc is a direction: its angle is
+that of the force, its distance from the centre is the share of force, and the centre is a pure torque. White:
+several modes are consistent; black: none is. Red: the applied wrench, and its smallest change to another
 mode. Of a moving body, the square shows forces at the applied torque.
 
 The *force dual* shows the first mode in the plane of the body at rest, twice: wrenches that turn it

@@ -48,7 +48,7 @@ def are_in_order(printed: str, words: tuple[str, ...]) -> bool:
     return re.search(".*".join(re.escape(each) for each in words), printed, re.DOTALL) is not None
 
 
-SLIDES = ("it stays fixed", "N from where it slides right", "it slides right", "it stays fixed")
+SLIDES = ("it stays fixed", "N, then it slides right", "it slides right", "it stays fixed")
 
 
 @pytest.fixture(scope="module")
@@ -74,14 +74,14 @@ def test_it_slides_from_the_push_on_that_friction_can_hold(slid: str) -> None:
 
 @pytest.mark.slow
 def test_a_block_that_is_pushed_high_tips() -> None:
-    tips = ("it stays fixed", "N from where it tips (2 contacts separate, 2 stay fixed)")
+    tips = ("it stays fixed", "N, then it tips (2 contacts separate, 2 stay fixed)")
     printed = told(
         PUSHED_BLOCK, "pushed_block.yaml", "block_publisher", PUSHED_BLOCK,
         "--height", "0.15", "--rate", "2", "--seconds", "5", all_of=tips,
     )  # fmt: skip
     assert are_in_order(printed, tips), printed
     # It has fallen onto its side, where it is pushed no more and stands wider.
-    assert "N from where it slides left" in printed.splitlines()[-1]
+    assert "N, then it slides left" in printed.splitlines()[-1]
 
 
 def test_a_block_slides_on_a_tray_that_tilts_until_it_meets_the_rim() -> None:

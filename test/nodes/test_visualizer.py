@@ -209,9 +209,9 @@ def test_contact_modes_are_drawn_with_every_mode_in_words(bench: Bench) -> None:
     ]
     assert drawn.last("/world/contacts/brick/mode_2/forces", "Arrows3D:labels") == ["2 N", "2 N"]
     text = drawn.last("/answers/newest", "TextDocument:text")[0]
-    assert "does not choose: fl (0.25 N from ff), ff (0.25 N from ff); the contact" in text
-    assert "refused: ss" in text
-    assert "the contact forces of ff are one choice of many" in text
+    assert "selects none: fl (margin 0.25 N to ff), ff (margin 0.25 N to ff); the contact" in text
+    assert "inconsistent: ss" in text
+    assert "the contact forces of ff are not unique" in text
     assert "equilibrium possible, jammed no, wedged no" in text
 
 
@@ -237,7 +237,7 @@ def test_a_planar_answer_is_drawn_in_its_plane_with_the_map(bench: Bench) -> Non
     bench.answer("predict_contact_mode", answer)
     drawn = bench.drawn()
     titles = drawn.last("/planar_modes/mode_1/frame/title", "LineStrips2D:labels")
-    assert "fl: 1 contact slides left, 1 stays fixed\n(0.25 N from ff)" in titles
+    assert "fl: 1 contact slides left, 1 stays fixed\n(margin 0.25 N to ff)" in titles
     center = center_of_mass([0.5, 0.0, 1.0], TURNED)
     first = drawn.array("/planar_modes/mode_1/contacts/fixed", "Points2D:positions")[0]
     np.testing.assert_allclose(first, [0.1 - center[0], center[2]], atol=1e-6)  # the second axis down

@@ -89,4 +89,4 @@ def test_the_words_say_where_it_rests_and_what_strikes_first(world: World) -> No
     answer = thrown(world)
     words = "; ".join(toss_in_words(answer))
     assert f"rests after {answer.toss.seconds:.3g} s on corners" in words
-    assert "what 40 samples do first: corner" in words
+    assert "first event of 40 samples: corner" in words

@@ -1,4 +1,4 @@
-"""This file says which applied wrenches bring about which mode of planar contacts (lecture 26).
+"""This file finds the applied wrenches of each mode of planar contacts (lecture 26).
 
 The applied wrenches that can bring about a mode are a convex set, and a cone if there are no centripetal
 terms. All sets together are the map of modes over applied wrenches. They overlap where the outcome is

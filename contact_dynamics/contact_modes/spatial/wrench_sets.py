@@ -1,4 +1,4 @@
-"""Which applied wrenches bring about which contact mode in space: lecture 26's map of modes, in R^6.
+"""The applied wrenches of each contact mode in space: lecture 26's map of modes, in R^6.
 
 For letters s and f, and for contacts that slide already, the wrenches of a mode are one convex polyhedron:
 the inertial wrenches of its accelerations less the contact forces that its letters allow. Which way a contact
