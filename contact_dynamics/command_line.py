@@ -193,16 +193,16 @@ def _is_installed(module: str) -> bool:
 
 
 def _remedy(verb: str, missing: list[str]) -> str:
-    lines = [f"contact-dynamics {verb} needs what is not installed: {', '.join(missing)}."]
+    lines = [f"contact-dynamics {verb} requires modules that are not installed: {', '.join(missing)}."]
     if "rerun" in missing:
-        lines.append("rerun: the extra [view] brings it. In the project's folder: pip install '.[view]'")
+        lines.append("To install rerun, run `pip install '.[view]'` in a clone of the repository.")
     if "matplotlib" in missing:
-        lines.append("matplotlib: `pip install matplotlib` brings it. So does the project's extra [plot].")
+        lines.append("To install Matplotlib, run `pip install matplotlib`.")
     if set(missing) - {"rerun", "matplotlib"}:
         lines.append(
-            "ROS 2 Jazzy and the project's interface package. With an installed ROS: source it, and a\n"
-            "workspace in which colcon has built the project. Without: `make setup` in the project's\n"
-            "folder installs all of it into .venv (see README.md)."
+            "The other modules belong to ROS 2 Jazzy and to the interface package of this repository.\n"
+            "If ROS is installed, source it and the workspace in which colcon has built the repository.\n"
+            "Otherwise, run `make setup` in a clone, which installs them into .venv (see README.md)."
         )
     return "\n".join(lines)
 

@@ -109,10 +109,10 @@ class AskedEvents(Events):
     def why_empty(self) -> str:
         """Why there is no question, in words, where there is none."""
         if not self._asking.names:
-            return f"nothing is asked; --ask must be one of {', '.join(QUESTIONS)}"
+            return f"no prediction was requested; --ask must be one of {', '.join(QUESTIONS)}"
         bodies = ", ".join(self._asking.bodies or [body.name for body in self.world.bodies]) or "no body"
         topics = ", ".join(sorted(self._server.topics - {CLOCK})) or "none"
-        return f"there is no state of {bodies} on the configured topics ({topics}); --topics names others"
+        return f"the configured topics ({topics}) contain no state of {bodies}; --topics selects others"
 
     def __iter__(self) -> Iterator[Event]:
         """Read the recording, and ask after each state that it is time for."""

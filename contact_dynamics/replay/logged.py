@@ -52,7 +52,7 @@ class LoggedEvents(Events):
     @property
     def why_empty(self) -> str:
         """Why there is no question, in words, where there is none."""
-        return "the log has no question that was answered; --ask asks some"
+        return "the log contains no requests with a response; --ask makes predictions from its states"
 
     def __iter__(self) -> Iterator[Event]:
         """Read the log; each answer comes after the states that were known when its question came."""

@@ -63,11 +63,11 @@ def server_of_log(
         )
     if PARAMETERS not in run and "world_frame" not in run:
         raise NotALogError(
-            f"{path}: not a log of the server: no record of how its run was configured{damage}"
+            f"{path}: not a log of the server: it does not contain the server's configuration{damage}"
         )
     if is_later:
         raise NotALogError(
-            f"{path}: no record of how its run was configured at its beginning: "
+            f"{path}: the configuration at the beginning of the log is missing: "
             f"what is left of it is from after a change{damage}"
         )
     check_definitions(path, definitions, run.get("version"))

@@ -43,14 +43,14 @@ if TYPE_CHECKING:
     from contact_dynamics.replay.events import Events
 
 DIFFERENT: Final = 1
-"""This exit code says that an answer differs, that a call cannot be read, that a viewer failed, or that
-there is nothing to write or to publish."""
+"""The exit code if an answer differs, a call cannot be read, a viewer failed, or there is nothing to write or
+publish."""
 
 NO_LOG: Final = 2
-"""This exit code says that a file cannot be replayed at all."""
+"""The exit code if a file cannot be replayed at all."""
 
 LACKS: Final = 3
-"""This exit code says that a mode needs what is not installed."""
+"""The exit code if a mode requires a package that is not installed."""
 
 _KINDS: Final = ("*.mcap*", "*.db3*")
 
@@ -64,8 +64,8 @@ def main(arguments: list[str]) -> int:
         parser.error(f"--ros-args must be used with {PUBLISH}, got {given.mode}")
     if given.mode == PUBLISH and given.rate != 1.0 and not stamps_as_logged(given):
         parser.error(
-            f"--rate must be 1 where stamps are moved to the present, got {given.rate:g}: velocities do not "
-            "fit stamps that are stretched. --clock keeps the stamps, for a server with use_sim_time"
+            f"--rate must be 1 if stamps are shifted to the present, got {given.rate:g}: velocities do not "
+            "match stretched stamps. With --clock, stamps are unchanged, for a server with use_sim_time"
         )
     if given.mode == VERIFY:
         if not given.logs:  # argparse would complain of this before it complains of a mistyped option
@@ -73,7 +73,7 @@ def main(arguments: list[str]) -> int:
         return _verify(given)
     lacking = _lacking(given.mode)
     if lacking:
-        return _refused(f"{given.mode} needs what is not installed: {lacking}", LACKS)
+        return _refused(f"{given.mode} requires {lacking}", LACKS)
     try:
         without_ros = {INFO: _info, TABLE: _table, VIEW: _view}
         if given.mode in without_ros:
@@ -169,7 +169,7 @@ def _view(given: argparse.Namespace) -> int:
 
     def told(where: str) -> None:
         if given.serve:
-            print(f"{path}: {where}; Ctrl-C ends it", file=sys.stderr, flush=True)
+            print(f"{path}: {where}; press Ctrl-C to stop", file=sys.stderr, flush=True)
 
     drawn = draw(
         events,
@@ -216,7 +216,7 @@ def _events(path: Path, given: argparse.Namespace) -> Events:
     if asking.names:
         run = BagReader(path).run()
         if not run:
-            message = f"{path}: no record of how its run was configured, which --config gives"
+            message = f"{path}: the log does not contain a configuration; specify one with --config"
             raise NotALogError(message)
         logged = LoggedParameters(run)
         return AskedEvents(path, logged, asking=asking, span=span)
@@ -264,7 +264,8 @@ def _tell(name: str, what: str, events: Events) -> None:
     print(f"{name}: {what}", file=sys.stderr)
     for topic, refused in events.refused.items():
         print(
-            f"  {topic}: {refused.count} messages are no states; the first: {refused.reason}", file=sys.stderr
+            f"  {topic}: {refused.count} messages are not states; reason of the first: {refused.reason}",
+            file=sys.stderr,
         )
     if events.damage is not None:
         print(f"  {events.damage}", file=sys.stderr)
@@ -277,9 +278,9 @@ def _refused(reason: str, code: int) -> int:
 
 def _lacking(mode: str) -> str:
     if mode == VIEW and find_spec("rerun") is None:
-        return "rerun. The extra [view] brings it: pip install '.[view]'"
+        return "rerun: pip install '.[view]'"
     if mode == PUBLISH and find_spec("rclpy") is None:
-        return "ROS 2 Jazzy. Source it, or run `make setup` in the project's folder (see README.md)"
+        return "ROS 2 Jazzy: source it, or run `make setup` in a clone (see README.md)"
     return ""
 
 

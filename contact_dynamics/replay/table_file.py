@@ -141,7 +141,7 @@ def _parquet(path: Path) -> Iterator[Write]:
         import pyarrow as pa  # it is large, so it is an extra
         import pyarrow.parquet as pq
     except ModuleNotFoundError:
-        message = "out: pyarrow is not installed; the extra [evaluate] brings it: pip install '.[evaluate]'"
+        message = "a .parquet file requires pyarrow: pip install '.[evaluate]'"
         raise NotSupportedError(message) from None
     types = {str: pa.string(), int: pa.int64(), float: pa.float64()}
     schema = pa.schema([(name, types[kind]) for name, kind in COLUMNS.items()], metadata=_FOR_PANDAS)

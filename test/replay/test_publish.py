@@ -98,7 +98,7 @@ def test_stamps_in_the_present_are_not_stretched(tmp_path: Path) -> None:
     for arguments in (("--rate", "2"), ("--rate", "0.5", "--stamps", "now", "--clock")):
         done = published(tmp_path / "bag", *arguments)
         assert done.returncode == 2
-        assert f"--rate must be 1 where stamps are moved to the present, got {arguments[1]}" in done.stderr
+        assert f"--rate must be 1 if stamps are shifted to the present, got {arguments[1]}" in done.stderr
 
 
 def test_a_part_without_messages_is_an_error(tmp_path: Path) -> None:

@@ -179,14 +179,13 @@ def test_a_table_without_rows_is_an_error_and_leaves_no_file(
     out.write_text("before\n")
     common = ["table", str(tmp_path / "bag"), "--config", str(tmp_path / "server.yaml"), "--output", str(out)]
     assert main([*common, "--topics", "ball=/tracker/ball"]) == 1
-    assert "no rows: nothing is asked; --ask must be one of landing, impact, modes" in capsys.readouterr().err
+    told = "no rows: no prediction was requested; --ask must be one of landing, impact, modes"
+    assert told in capsys.readouterr().err
     assert main([*common, "--ask", "landing", "--topics", "ball=/tracker/bell"]) == 1
-    told = (
-        "no rows: there is no state of ball on the configured topics (/tracker/bell); --topics names others"
-    )
+    told = "no rows: the configured topics (/tracker/bell) contain no state of ball; --topics selects others"
     assert says(capsys.readouterr().err, told)
     assert main([*common[:-4], "--ask", "landing", "--output", str(out)]) == 2
-    assert "no record of how its run was configured, which --config gives" in capsys.readouterr().err
+    assert "the log does not contain a configuration; specify one with --config" in capsys.readouterr().err
     assert out.read_text() == "before\n"
     assert sorted(path.name for path in tmp_path.iterdir()) == ["bag", "server.yaml", "table.csv"]
 
@@ -224,7 +223,7 @@ def test_what_would_it_have_said(tmp_path: Path, storage: StoragePlugin, mode: C
     configured = ["--config", tmp_path / "server.yaml", "--topics", "ball=/tracker/ball"]
     done = without_ros("table", tmp_path / "bag", *configured, *asking, "--output", tmp_path / "table.csv")
     assert done.returncode == 0, done.stderr
-    assert "/tracker/ball: 2 messages are no states; the first: header.frame_id" in done.stderr
+    assert "/tracker/ball: 2 messages are not states; reason of the first: header.frame_id" in done.stderr
     rows = rows_of(tmp_path / "table.csv")
     assert len(rows) == 3 * 10
     landings = [row for row in rows if row["service"] == "predict_tumbling"]

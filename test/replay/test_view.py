@@ -105,7 +105,7 @@ def test_what_is_served_stays_until_it_is_stopped(tmp_path: Path) -> None:
     ) as started:
         assert started.stderr is not None
         line = started.stderr.readline()
-        assert f"served at rerun+http://127.0.0.1:{port}/proxy; Ctrl-C ends it" in line
+        assert f"served at rerun+http://127.0.0.1:{port}/proxy; press Ctrl-C to stop" in line
         assert "all 188 states and 0 answers are drawn" in started.stderr.readline()
         with pytest.raises(subprocess.TimeoutExpired):
             started.wait(1.0)

@@ -163,7 +163,7 @@ def test_a_mistyped_option_is_named_first(without_ros: WithoutRos) -> None:
 def test_what_is_missing_is_named_with_what_brings_it(without_ros: WithoutRos, verb: str) -> None:
     answer = without_ros(verb)
     assert answer.returncode == 3
-    assert f"contact-dynamics {verb} needs" in answer.stderr
+    assert f"contact-dynamics {verb} requires" in answer.stderr
     assert "rclpy" in answer.stderr
     assert "contact_dynamics_interfaces" in answer.stderr
     assert "make setup" in answer.stderr
