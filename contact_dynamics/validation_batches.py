@@ -83,19 +83,22 @@ def check_share_rows(field: str, value: ArrayLike) -> FloatArray:
 def check_unit_rows(field: str, value: ArrayLike, width: int) -> FloatArray:
     """Return vectors scaled to norm 1, (N, width), as `check_unit` scales each."""
     rows = check_rows(field, value, (width,))
+    unit, allowed = unit_rows(rows)
+    for i in np.flatnonzero(~allowed)[:1]:
+        raise InvalidFieldError(f"{field}[{i}]", rows[i].tolist(), "a unit vector")
+    return unit
+
+
+def unit_rows(rows: FloatArray) -> tuple[FloatArray, NDArray[np.bool_]]:
+    """Return vectors scaled to norm 1, (N, width), and which of them `check_unit` takes, (N,)."""
     norms = np.zeros(len(rows))
-    with np.errstate(over="ignore"):  # what overflows is no unit vector either
+    with np.errstate(over="ignore", invalid="ignore"):  # what overflows is no unit vector either
         for column in rows.T:
             norms += column * column
-    norms = np.sqrt(norms)
-    off = abs(norms - 1.0)
-    for i in np.flatnonzero(off > UNIT_LENGTH_TOLERANCE)[:1]:
-        raise InvalidFieldError(f"{field}[{i}]", rows[i].tolist(), "a unit vector")
-    scaled = off > LENGTH_ROUNDING
-    if not scaled.any():
-        return rows
-    unit: FloatArray = rows / np.where(scaled, norms, 1.0)[:, None]
-    return unit
+        off = abs(np.sqrt(norms, out=norms) - 1.0)
+    scaled = (off > LENGTH_ROUNDING) & (off <= UNIT_LENGTH_TOLERANCE)
+    unit = rows / np.where(scaled, norms, 1.0)[:, None] if scaled.any() else rows
+    return unit, off <= UNIT_LENGTH_TOLERANCE
 
 
 def common_length(fields: Mapping[str, FloatArray]) -> int:

@@ -8,21 +8,25 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
+import numpy as np
 from nav_msgs.msg import Odometry
 
+from contact_dynamics.constants import NS_PER_S
 from contact_dynamics.rigid_body.published_frame import (
     origin_of_published_frame,
     state_of_center_of_mass,
     velocity_of_published_frame,
 )
+from contact_dynamics.rotations.many import cross_matrices, matrices_of
 from contact_dynamics.rotations.one import rotation_matrix
 from contact_dynamics.validation import check_unit
+from contact_dynamics.validation_batches import unit_rows
 from msg_adapters.frames import check_frame
 from msg_adapters.geometry import pose_to_msg, quaternion_from_msg, vector_from_msg, vector_to_msg
 from msg_adapters.in_world import in_world
 from msg_adapters.published_covariance import covariance_from_msg, of_pose_and_twist, with_covariance
 from msg_adapters.stamps import stamp_ns_from_msg, stamp_to_msg
-from msg_adapters.state_adapter import StateAdapter
+from msg_adapters.state_adapter import StateAdapter, StateRows
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -65,12 +69,38 @@ def _read(msg: Odometry, settings: SourceSettings) -> KnownState:
     return in_world(known, frame, settings)
 
 
+def _rows(settings: SourceSettings, msg: Odometry) -> StateRows | None:
+    """Return what `_read` does, to the last bit, for messages in the world frame without covariances."""
+    if msg.header.frame_id != settings.world_frame or msg.child_frame_id not in {"", settings.body_frame}:
+        return None
+    pose, twist, stamp = msg.pose.pose, msg.twist.twist, msg.header.stamp
+    q_WF, are_unit = unit_rows(np.column_stack([getattr(pose.orientation, name) for name in "xyzw"]))
+    p_WF_W, v_F, w_F = (
+        np.column_stack([getattr(vector, name) for name in "xyz"])
+        for vector in (pose.position, twist.linear, twist.angular)
+    )
+    with np.errstate(invalid="ignore", over="ignore"):  # what is not finite is left to `_read`
+        R_WF = matrices_of(q_WF)
+        v_W, w_W = ((R_WF @ vectors[:, :, None])[:, :, 0] for vectors in (v_F, w_F))
+        if settings.p_FB_F.any():
+            arms_W = R_WF @ settings.p_FB_F
+            p_WF_W, v_W = p_WF_W + arms_W, v_W + (cross_matrices(w_W) @ arms_W[:, :, None])[:, :, 0]
+    numbers = np.column_stack([p_WF_W, q_WF, v_W, w_W])
+    known = [each.covariance for each in (msg.pose, msg.twist)]
+    uncertain = np.logical_and.reduce([(each[:, 0] >= 0.0) & each.any(axis=1) for each in known])
+    return StateRows(
+        stamps_ns=stamp.sec.astype(np.int64) * NS_PER_S + stamp.nanosec,
+        numbers=numbers,
+        are_all=are_unit & np.isfinite(numbers).all(axis=1) & ~uncertain,
+    )
+
+
 def _readers(settings: SourceSettings) -> Sequence[Reader]:
     return (lambda msg: _read(msg, settings),)
 
 
 ODOMETRY: Final = StateAdapter(
-    type_names=("nav_msgs/msg/Odometry",), readers=_readers, is_whole=True, is_of_one_body=True
+    type_names=("nav_msgs/msg/Odometry",), readers=_readers, is_whole=True, is_of_one_body=True, rows=_rows
 )
 
 

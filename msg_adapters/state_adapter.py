@@ -8,7 +8,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
 
 from contact_dynamics.questions.uncertain_state import KnownState
 from msg_adapters.transforms import TransformTree
@@ -41,6 +44,25 @@ class SourceSettings:
     static: TransformTree
 
 
+class StateRows(NamedTuple):
+    """The states of n messages.
+
+    Attributes:
+        stamps_ns: (n,), ns.
+        numbers: (n, 13): position, quaternion, linear and angular velocity, as in `BodyState`.
+        are_all: (n,), whether a row is all that the reader makes of the message. It is false where that has a
+            covariance too, and where the reader raises an error.
+    """
+
+    stamps_ns: NDArray[np.int64]
+    numbers: FloatArray
+    are_all: NDArray[np.bool_]
+
+
+RowsReader: TypeAlias = "Callable[[SourceSettings, Any], StateRows | None]"
+"""Makes the states of many messages, which `decode_columns` made one of, or None if they need a reader."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StateAdapter:
     """One kind of source.
@@ -52,9 +74,11 @@ class StateAdapter:
             or never. Its first field is a header with the body's stamp.
         is_of_one_body: Whether each message is about one body, whatever that is called. Then no two bodies
             can have their states by the same topic.
+        rows: Function that makes the states of many messages at once, which are whole and of one body.
     """
 
     type_names: tuple[str, ...]
     readers: Callable[[SourceSettings], Sequence[Reader]]
     is_whole: bool = False
     is_of_one_body: bool = False
+    rows: RowsReader | None = None

@@ -190,6 +190,12 @@ class StateColumns:
         for part in (state.p_WB_W, state.q_WB, state.v_WB_W, state.w_WB_W):
             self._numbers.frombytes(part.tobytes())
 
+    def extend(self, stamps_ns: IntArray, numbers: FloatArray, arrivals_ns: Sequence[int]) -> None:
+        """Add n states without covariances: stamps, (n,), `numbers`, (n, 13), and when each was known, ns."""
+        self._stamps_ns.frombytes(stamps_ns.tobytes())
+        self._numbers.frombytes(numbers.tobytes())
+        self._arrivals_ns.extend(min(arrival_ns, _LATEST_NS) for arrival_ns in arrivals_ns)
+
     def know_at_stamps(self) -> None:
         """Count each state as known at its stamp."""
         self._arrivals_ns = self._stamps_ns[:]

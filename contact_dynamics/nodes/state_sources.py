@@ -7,8 +7,9 @@ group `ENTRY_POINTS`. This file needs the classes of messages and no other part 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import partial
 from importlib.metadata import entry_points
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.nodes.parameter_reader import ConfigurationError
@@ -22,13 +23,13 @@ from msg_adapters.tf import TF
 from msg_adapters.transforms import TransformTree
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping
 
     from contact_dynamics.nodes.parameter_reader import ConfiguredTopic
     from contact_dynamics.nodes.parameters import ServerParameters
     from contact_dynamics.nodes.world_parameters import BodySources, ConfiguredSource
     from contact_dynamics.questions.uncertain_state import KnownState
-    from msg_adapters.state_adapter import Reader
+    from msg_adapters.state_adapter import Reader, StateRows
     from msg_adapters.transforms import TFMessage
 
 ENTRY_POINTS: Final = "contact_dynamics.state_sources"
@@ -74,6 +75,7 @@ class StateSource:
         is_whole: Whether each message is a state by itself, stamped by its leading header. It can then be
             read later, or never.
         is_of_one_body: Whether each message is about one body, whatever that is called.
+        rows: Makes the states of many messages about its one body, as `StateAdapter` says, or None.
     """
 
     topic: str
@@ -83,6 +85,7 @@ class StateSource:
     is_latched: bool = False
     is_whole: bool = False
     is_of_one_body: bool = False
+    rows: Callable[[Any], StateRows | None] | None = None
 
 
 def no_message(data: bytes, type_name: str) -> InvalidFieldError:
@@ -200,6 +203,7 @@ def _of_body(
             readers=(BodyReader(settings.body_name, _with_deviations(reader, deviations)),),
             is_whole=adapter.is_whole,
             is_of_one_body=adapter.is_of_one_body,
+            rows=None if adapter.rows is None or deviations else partial(adapter.rows, settings),
         )
         for topic, type_name, reader in zip(
             configured.topics, adapter.type_names, adapter.readers(settings), strict=True

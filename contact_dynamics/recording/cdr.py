@@ -28,7 +28,9 @@ from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.recording.message_types import PRIMITIVES, Field, Message, message_types
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
+
+    from numpy.typing import NDArray
 
     from contact_dynamics.recording.bag_reader import LoggedMessage
 
@@ -39,7 +41,15 @@ _HEAD: Final = 4  # bytes of encapsulation
 _CDR: Final = {0: ">", 1: "<"}  # second byte: byte order
 _NATIVE: Final = "<" if sys.byteorder == "little" else ">"
 _ALIGNMENT: Final = 8  # bytes, the largest
-_SIZES: Final = {code: struct.calcsize(f"<{code}") for code in PRIMITIVES.values()}
+_NOTHING: Final = "x"  # a byte that means nothing
+_STRING: Final = "s"
+_SIZES: Final = {code: struct.calcsize(f"<{code}") for code in PRIMITIVES.values()} | {
+    _NOTHING: 1,
+    _STRING: 4,  # its length comes first
+}
+
+_Part: TypeAlias = tuple[str, int | None]
+"""Code of a number, and how many there are in an array of fixed length, or None for a single one."""
 
 
 def decode_without_ros(message: LoggedMessage) -> Message:
@@ -75,6 +85,41 @@ def _message_and_end(data: bytes, message_type: type[Message]) -> tuple[Message,
         raise InvalidFieldError("data", f"{len(data)} bytes", expected) from None
 
 
+def decode_columns(messages: Sequence[LoggedMessage]) -> tuple[Message, NDArray[np.intp]]:
+    """Return many messages of a topic as one, whose numbers are arrays with a row for each of them.
+
+    They are those with the type, the length and the strings of the first. Their places among ``messages``
+    come second; there are none if the type has sequences.
+
+    Raises:
+        InvalidFieldError: the first one cannot be decoded, as by `decode_without_ros`.
+    """
+    first = messages[0]
+    one, order, at = decode_without_ros(first), _CDR[first.data[1]], _HEAD
+    kind: Any = type(one)
+    plan = _plan(kind, order)
+    if not plan.parts:
+        return one, np.zeros(0, dtype=np.intp)
+    looks = first.type_name, first.definition, len(first.data)
+    places = [i for i, m in enumerate(messages) if (m.type_name, m.definition, len(m.data)) == looks]
+    table = np.frombuffer(b"".join([messages[i].data for i in places]), np.uint8).reshape(len(places), -1)
+    alike = (table[:, :_HEAD] == table[0, :_HEAD]).all(axis=1)
+    values: list[Any] = []
+    for code, count in plan.parts:
+        at += (_HEAD - at) % _SIZES[code]
+        size = _SIZES[code] * (1 if count is None else count)
+        if code == _STRING:
+            size += int(table[0, at : at + size].view(f"{order}I")[0])
+            alike &= (table[:, at : at + size] == table[0, at : at + size]).all(axis=1)
+            values.append(table[0, at + _SIZES[code] : at + size - 1].tobytes().decode())
+        elif code != _NOTHING:
+            column = np.ascontiguousarray(table[:, at : at + size]).view(f"{order}{code}").astype(code)
+            values.append(column[:, 0] if count is None else column)
+        at += size
+    rows = [value if isinstance(value, str) else value[alike] for value in values]
+    return plan.build(rows), np.array(places)[alike]
+
+
 def cut_to_its_end(data: bytes, *, type_name: str, definition: str) -> bytes:
     """Return a serialised message without what follows its end.
 
@@ -103,6 +148,7 @@ class _Plan(NamedTuple):
 
     reads: tuple[Read, ...]
     build: Build
+    parts: tuple[_Part, ...]  # the numbers and strings that are read; empty if there are sequences too
 
     def message_at(self, data: bytes, at: int) -> tuple[Message, int]:
         """Return the message that begins at a place, and where it ends."""
@@ -112,40 +158,44 @@ class _Plan(NamedTuple):
         return self.build(values), at
 
 
+def _is_of_numbers(part: _Part | Read) -> bool:
+    return isinstance(part, tuple) and part[0] != _STRING
+
+
 @lru_cache(maxsize=512)
 def _plan(message_type: Any, order: str) -> _Plan:
     """Return how messages of a type, which is a subclass of `Message`, are read."""
-    reads: list[Read] = []
-    numbers: list[tuple[str, int | None]] = []  # that follow each other: what they are, and how many of them
-    places = itertools.count()  # of the values
-
-    def end_numbers() -> None:
-        if numbers:
-            reads.append(_numbers(tuple(numbers), order))
-            numbers.clear()
+    parts: list[_Part | Read] = []
+    places = itertools.count()  # one for each value
 
     def add(owner: type[Message]) -> Build:
-        """Add what reads a message, and return what makes it of the values."""
+        """Add what a message consists of, and return what makes it of the values."""
         singles: list[tuple[str, int]] = []
-        parts: list[tuple[str, Build]] = []
+        nested: list[tuple[str, Build]] = []
         if not owner.FIELDS:
-            numbers.append(("x", None))  # a type without fields has a byte that means nothing
+            parts.append((_NOTHING, None))  # a type without fields has a byte that means nothing
         for field in owner.FIELDS:
             code = PRIMITIVES.get(field.type_name)
+            if not field.is_array and field.type_name in owner.TYPES:
+                nested.append((field.name, add(owner.TYPES[field.type_name])))
+                continue
             if code is not None and (not field.is_array or field.count is not None):
-                numbers.append((code, field.count if field.is_array else None))
-                singles.append((field.name, next(places)))
-            elif not field.is_array and field.type_name in owner.TYPES:
-                parts.append((field.name, add(owner.TYPES[field.type_name])))
+                parts.append((code, field.count if field.is_array else None))
             else:
-                end_numbers()
-                reads.append(_several(field, owner, order) if field.is_array else _string(order))
-                singles.append((field.name, next(places)))
-        return _building(owner, singles, parts)
+                parts.append(_several(field, owner, order) if field.is_array else (_STRING, None))
+            singles.append((field.name, next(places)))
+        return _building(owner, singles, nested)
 
     build = add(message_type)
-    end_numbers()
-    return _Plan(tuple(reads), build)
+    reads: list[Read] = []
+    for are_numbers, group in itertools.groupby(parts, _is_of_numbers):
+        numbers: Any = tuple(group)
+        if are_numbers:
+            reads.append(_numbers(numbers, order))
+        else:
+            reads += [_string(order) if isinstance(part, tuple) else part for part in numbers]
+    fixed = tuple(part for part in parts if isinstance(part, tuple))
+    return _Plan(tuple(reads), build, fixed if len(fixed) == len(parts) else ())
 
 
 def _building(
@@ -166,7 +216,7 @@ def _building(
     return build
 
 
-def _numbers(numbers: tuple[tuple[str, int | None], ...], order: str) -> Read:
+def _numbers(numbers: tuple[_Part, ...], order: str) -> Read:
     """Return what reads numbers, and arrays of fixed lengths, that follow each other."""
     layouts: dict[int, struct.Struct] = {}
     arrays: list[tuple[int, str, int]] = []  # places among the values, what they are, and how many
@@ -174,7 +224,7 @@ def _numbers(numbers: tuple[tuple[str, int | None], ...], order: str) -> Read:
     for code, count in numbers:
         if count is not None:
             arrays.append((index, code, count))
-        index += code != "x"
+        index += code != _NOTHING
 
     def read(data: bytes, at: int, values: list[Any]) -> int:
         offset = (at - _HEAD) % _ALIGNMENT
@@ -194,14 +244,10 @@ def _numbers(numbers: tuple[tuple[str, int | None], ...], order: str) -> Read:
     return read
 
 
-def _layout(numbers: tuple[tuple[str, int | None], ...], order: str, offset: int) -> str:
+def _layout(numbers: tuple[_Part, ...], order: str, offset: int) -> str:
     """Return the format of numbers that begin ``offset`` bytes behind an aligned place."""
     parts = [order]
     for code, count in numbers:
-        if code == "x":
-            parts.append("x")
-            offset += 1
-            continue
         size = _SIZES[code]
         gap = -offset % size if count != 0 else 0
         parts.append("x" * gap)

@@ -3,22 +3,34 @@
 from __future__ import annotations
 
 import json
+import math
+from contextlib import suppress
 from pathlib import Path
 
+import numpy as np
 import pytest
+from nav_msgs.msg import Odometry
+from rclpy.serialization import deserialize_message, serialize_message
 from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin, Writer
 from rosbags.typesys import Stores, get_typestore
 
+from contact_dynamics.demo.toss_publisher import topic_of
+from contact_dynamics.errors import ContactDynamicsError
 from contact_dynamics.evaluation.log_states import recording_of_log
 from contact_dynamics.evaluation.recording import Recording, recording_of_toss
 from contact_dynamics.evaluation.sources import Source, find_sources
 from contact_dynamics.measured.events import find_events
 from contact_dynamics.measured.read_toss import read_toss
 from contact_dynamics.nodes.parameter_reader import ConfigurationError
-from contact_dynamics.recording import BagReader
+from contact_dynamics.nodes.run_record import run_record
+from contact_dynamics.questions.uncertain_state import KnownState, UncertainState
+from contact_dynamics.recording import BagReader, BagWriter
 from contact_dynamics.recording.errors import NotALogError
 from evaluation.made_logs import BRIEF, EPOCH_NS, parameters_of_toss, write_log
 from evaluation.made_motion import only_motion
+from msg_adapters.odometry import ODOMETRY
+from msg_adapters.state_adapter import SourceSettings
+from msg_adapters.transforms import TransformTree
 
 
 def happened(recording: Recording) -> list[tuple[str, str, float]]:
@@ -48,6 +60,47 @@ def test_a_log_has_the_events_of_the_toss_that_it_holds(tmp_path: Path) -> None:
 def test_a_state_is_known_when_it_arrived(tmp_path: Path) -> None:
     motion = only_motion(recording_of_log(write_log(tmp_path / "log", delay_ns=12_000_000)))
     assert set((motion.arrivals_ns - motion.stamps_ns).tolist()) == {12_000_000}
+
+
+def test_states_read_together_are_those_of_single_messages(tmp_path: Path) -> None:
+    """Plain messages are read many at once. Some among them have a covariance, another frame or faults."""
+    toss, lever = read_toss(), [0.1, -0.03, 0.02]
+    name = toss.body.name
+    parameters = parameters_of_toss(tmp_path / "beside", toss) | {f"body.{name}.center_of_mass": lever}
+    settings = SourceSettings(
+        body_name=name,
+        body_frame=name,
+        world_frame="world",
+        p_FB_F=np.array(lever),
+        velocity_window=0.1,
+        static=TransformTree(),
+    )
+    (reader,) = ODOMETRY.readers(settings)
+    expected: list[KnownState] = []
+    with BagWriter(tmp_path / "odd", run=run_record(parameters, {})) as writer:
+        writer.add_topic(topic_of(toss), "nav_msgs/msg/Odometry")
+        for i, message in enumerate(BagReader(write_log(tmp_path / "log", until=BRIEF)).messages()):
+            msg = deserialize_message(message.data, Odometry)
+            turn = msg.pose.pose.orientation
+            if i % 20 == 3:
+                msg.pose.covariance[::7] = msg.twist.covariance[::7] = np.full(6, 1e-4)
+            elif i % 20 == 7:
+                msg.header.frame_id = "elsewhere"
+            elif i % 20 == 9:
+                msg.twist.twist.linear.y = math.nan
+            elif i % 20 == 11:
+                turn.x += 0.1
+            elif i % 20 == 13:
+                turn.x, turn.y, turn.z, turn.w = (1.0005 * each for each in (turn.x, turn.y, turn.z, turn.w))
+            data = bytes(serialize_message(msg))
+            writer.write(message.topic, data, log_time_ns=message.log_time_ns, publish_time_ns=0)
+            with suppress(ContactDynamicsError):
+                expected.append(reader(msg))
+    motion = only_motion(recording_of_log(tmp_path / "odd"))
+    found = [motion.state(sample) for sample in range(len(motion))]
+    assert [each.to_dict() for each in found] == [each.to_dict() for each in expected]
+    assert sum(isinstance(each, UncertainState) for each in found) == 10
+    assert len(found) == i + 1 - 3 * 10
 
 
 def test_under_another_clock_a_state_is_known_at_its_stamp(tmp_path: Path) -> None:

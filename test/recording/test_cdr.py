@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import struct
+from dataclasses import replace
 from typing import Any
 
 import pytest
@@ -14,6 +15,7 @@ from rclpy.serialization import serialize_message
 
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.recording import LoggedMessage, decode_without_ros
+from contact_dynamics.recording.cdr import decode_columns
 from contact_dynamics.recording.definitions import find_definition
 from contact_dynamics.recording.message_types import Message, message_types
 from contact_dynamics.replay.compare import differences
@@ -25,6 +27,7 @@ from msg_adapters.contact_mode import contact_mode_answer_to_msg
 from msg_adapters.impact import impact_answer_to_msg
 from msg_adapters.tumbling import tumbling_answer_to_msg
 
+SRV = "contact_dynamics_interfaces/srv/"
 SERVICES = (PredictContactMode, PredictImpact, PredictTumbling)
 RESPONSES = st.one_of(
     contact_mode_answers().map(lambda answer: contact_mode_answer_to_msg(answer, world_frame="world")),
@@ -64,7 +67,7 @@ def test_responses_have_the_fields_that_ros_gives_them(response: Any) -> None:
     event = service.Event(response=[response])
     event.info.sequence_number = -5
     decoded: Any = decode_without_ros(
-        logged(bytes(serialize_message(event)), f"contact_dynamics_interfaces/srv/{service.__name__}_Event")
+        logged(bytes(serialize_message(event)), f"{SRV}{service.__name__}_Event")
     )
     assert decoded.info.sequence_number == -5
     assert decoded.request == []
@@ -75,7 +78,7 @@ def test_responses_have_the_fields_that_ros_gives_them(response: Any) -> None:
 @pytest.mark.parametrize("service", SERVICES)
 @pytest.mark.parametrize("part", ["Request", "Response"])
 def test_defaults_and_constants_are_those_of_ros(service: Any, part: str) -> None:
-    name = f"contact_dynamics_interfaces/srv/{service.__name__}_Event"
+    name = f"{SRV}{service.__name__}_Event"
     types = message_types(name, find_definition(name).text)
     made = types[f"contact_dynamics_interfaces/{service.__name__}_{part}"]
     assert list(differences(made(), getattr(service, part)())) == []
@@ -131,3 +134,28 @@ def test_a_type_that_the_log_does_not_describe_is_named() -> None:
         decode_without_ros(
             LoggedMessage(topic="/t", type_name="a/msg/Whole", data=b"", log_time_ns=0, publish_time_ns=0)
         )
+
+
+def test_messages_that_differ_in_numbers_alone_are_decoded_as_one() -> None:
+    """Those of another frame, another length or another byte order, and cut ones, are left to others."""
+    messages = []
+    for i, frame in enumerate(["world", "world", "earth", "world", "the world"]):
+        msg = Odometry(child_frame_id="body")
+        msg.header.frame_id, msg.header.stamp.sec = frame, i - 1
+        msg.pose.pose.position.y, msg.twist.covariance[7] = 0.1 * i, 0.3 * i
+        messages.append(logged(bytes(serialize_message(msg)), "nav_msgs/msg/Odometry"))
+    messages.append(replace(messages[1], data=b"\0\0" + messages[1].data[2:]))
+    messages.append(replace(messages[1], data=messages[1].data[:-30]))
+    as_one, places = decode_columns(messages)
+    one: Any = as_one
+    assert places.tolist() == [0, 1, 3]
+    assert (one.header.frame_id, one.child_frame_id) == ("world", "body")
+    assert one.header.stamp.sec.tolist() == [-1, 0, 2]
+    assert one.pose.pose.position.y.tolist() == [0.0, 0.1, 0.1 * 3]
+    assert one.twist.covariance.shape == (3, 36)
+    assert one.twist.covariance[:, 7].tolist() == [0.0, 0.3, 0.3 * 3]
+
+
+def test_messages_with_sequences_are_not_decoded_as_one() -> None:
+    event = logged(bytes(serialize_message(PredictImpact.Event())), f"{SRV}PredictImpact_Event")
+    assert len(decode_columns([event, event])[1]) == 0
