@@ -90,6 +90,7 @@ class FlightFit(Record):
         I_B: (3, 3), kg m^2, body axes.
         cov_p: (..., 2, 2), covariance of a coordinate and its rate: m^2, m^2/s, m^2/s^2.
         cov_rotation: (..., 6, 6), covariance of theta and L.
+        by_L: (..., n, 3, 3), 1/(kg m^2/s), what L adds to the rotation vectors of the n frames.
     """
 
     reference: FloatArray
@@ -102,6 +103,7 @@ class FlightFit(Record):
     I_B: FloatArray
     cov_p: FloatArray
     cov_rotation: FloatArray
+    by_L: FloatArray
 
     def at(self, time: float) -> MeasuredState:
         """Return a single flight's state at ``time``, s; see `poses_at`."""
@@ -136,7 +138,16 @@ class FlightFit(Record):
         q_half = _turned(q_0[..., None, :], 0.5 * after * w_0[..., None, :])
         w_half = (self._inverse_inertias(q_half) @ L[..., None, :, :])[..., 0]
         q = _turned(q_0[..., None, :], after * w_half)
-        to_L = after[..., None] * self._inverse_inertias(q)
+        return self._poses(after, q, after[..., None] * self._inverse_inertias(q))
+
+    def poses_of_frames(self, times: FloatArray) -> FittedPoses:
+        """Return the poses at the fitted frames, whose times are (..., n), s, over any angle below pi."""
+        turns = self.theta_W[..., None, :] + (self.by_L @ self.L_W[..., None, :, None])[..., 0]
+        after = (times - self.reference[..., None])[..., None]
+        return self._poses(after, _turned(self.q_reference[..., None, :], turns), self.by_L)
+
+    def _poses(self, after: FloatArray, q: FloatArray, to_L: FloatArray) -> FittedPoses:
+        """Return poses some time after the reference, (..., n, 1), s, from orientations and what L adds."""
         to_q = np.concatenate([np.broadcast_to(np.eye(3), to_L.shape), to_L], axis=-1)
         to_p = np.concatenate([np.ones_like(after), after], axis=-1)
         fallen = self.p_W[..., None, :] + after * self.v_W[..., None, :] + (0.5 * after**2) * self.gravity_W
@@ -201,6 +212,7 @@ def fit_flight(
         I_B=I_B,
         cov_p=cov_p,
         cov_rotation=cov_rotation,
+        by_L=by_L,
     )
 
 

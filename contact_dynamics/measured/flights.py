@@ -12,8 +12,9 @@ pose is continuous while velocities jump. This gives the time far more sharply t
 does not use where corners or surface are. For a strike of some length it is the centre of the impulse.
 
 Each number has its standard deviation, so that an error of prediction can be compared with the noise of
-measurement. Not covered: flights shorter than `SPAN`, between strikes in quick succession, and impacts that
-are too gentle to show within `SPAN`.
+measurement. Not covered: flights shorter than `SPAN`, between strikes in quick succession; impacts that are
+too gentle to show within `SPAN`; spins by more than half a turn within half of it; and slender bodies that
+tumble fast, since noise of their axis is a large error of their spin about it.
 """
 
 from __future__ import annotations
@@ -25,7 +26,13 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from contact_dynamics.measured.flight_fit import FEWEST_FRAMES, FlightFit, MeasuredState, fit_flight
+from contact_dynamics.measured.flight_fit import (
+    FEWEST_FRAMES,
+    FittedPoses,
+    FlightFit,
+    MeasuredState,
+    fit_flight,
+)
 from contact_dynamics.records import Record
 from contact_dynamics.rotations.many import rotation_vectors
 
@@ -82,7 +89,9 @@ def _next_begin(poses: MeasuredPoses, first: int, shortest: int) -> int | None:
         stretches = begins[:, None] + np.arange(shortest)
         stretches = stretches[_fall(poses, stretches)]
         if len(stretches):
-            fits = (_deviations(poses, stretches, stretches) <= 1.0).all(axis=1)
+            fit = fit_flight(poses, stretches, reference=stretches[:, shortest // 2])
+            expected = fit.poses_of_frames(poses.times[stretches])
+            fits = (_deviations(poses, stretches, expected) <= 1.0).all(axis=1)
             if fits.any():
                 return int(stretches[fits.argmax(), 0])
     return None
@@ -92,7 +101,8 @@ def _end(poses: MeasuredPoses, end: int, shortest: int) -> int:
     """Return the first frame, from ``end`` on, that the fit to the frames before it does not predict."""
     for at in range(end, len(poses), AT_ONCE):
         ends = np.arange(at, min(at + AT_ONCE, len(poses)))[:, None]
-        off = _deviations(poses, ends + np.arange(-shortest, 0), ends)[:, 0] > 1.0
+        expected = fit_flight(poses, ends + np.arange(-shortest, 0)).poses_at(poses.times[ends])
+        off = _deviations(poses, ends, expected)[:, 0] > 1.0
         if off.any():
             return at + int(off.argmax())
     return len(poses)
@@ -105,17 +115,13 @@ def _fall(poses: MeasuredPoses, stretches: IntArray) -> NDArray[np.bool_]:
     square = times * times
     sum_2, sum_3 = square.sum(axis=1, keepdims=True), (square * times).sum(axis=1, keepdims=True)
     bent = square - sum_3 / sum_2 * times - sum_2 / stretches.shape[1]  # orthogonal to lines
-    along = (poses.p_WB_W @ poses.gravity_W)[stretches]
+    along = poses.p_WB_W[stretches] @ poses.gravity_W
     accelerations = 2.0 * (bent * along).sum(axis=1) / (bent * bent).sum(axis=1)
     return np.asarray(accelerations > 0.5 * float(poses.gravity_W @ poses.gravity_W))
 
 
-def _deviations(poses: MeasuredPoses, fitted: IntArray, frames: IntArray) -> FloatArray:
-    """Return how far poses of ``frames``, (k, m), are off fits, as a fraction of what is allowed, (k, m).
-
-    Each row of ``fitted``, (k, n), is a stretch of frames that one flight is fitted to.
-    """
-    expected = fit_flight(poses, fitted).poses_at(poses.times[frames])
+def _deviations(poses: MeasuredPoses, frames: IntArray, expected: FittedPoses) -> FloatArray:
+    """Return how far poses of ``frames``, (k, m), are off, as a fraction of what is allowed, (k, m)."""
     p_std = np.hypot(poses.position_noise, expected.position_std)
     q_std = np.hypot(poses.orientation_noise, expected.orientation_std)
     p_off = np.abs(poses.p_WB_W[frames] - expected.p_WB_W).max(axis=-1)

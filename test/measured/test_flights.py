@@ -29,6 +29,23 @@ def test_flights_end_where_velocities_jump(seed: int) -> None:
     assert flights[0].start == 0
 
 
+@pytest.mark.parametrize("spin", [26.0, 40.0, 60.0])
+def test_flights_are_found_of_bodies_that_tumble_fast(spin: float) -> None:
+    """Within `SPAN` they turn by one to three radians, and their angular velocities change as much."""
+    axes = np.array([[0.5, 0.7, -0.5], [-0.6, 0.5, 0.62]])
+    legs = [
+        Leg(0.2013, (0.7, -0.3, -1.0), tuple(spin * axes[0])),
+        Leg(0.1507, (0.6, 0.1, 1.3), tuple(spin * axes[1])),
+    ]
+    known = toss(legs, at_rest=0.0, p_noise=P_NOISE, q_noise=Q_NOISE, seed=0)
+    first, second = find_flights(as_toss(known))
+    jump = int(np.searchsorted(known.times, legs[0].duration))
+    assert first.start == 0
+    assert jump <= first.stop <= jump + 1
+    assert second.start <= first.stop + 1
+    assert second.stop == len(known.times)
+
+
 def test_rest_is_not_flight() -> None:
     known = toss([Leg(1e-9, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))], at_rest=1.0, p_noise=P_NOISE, q_noise=Q_NOISE)
     assert find_flights(as_toss(known)) == []
