@@ -217,7 +217,8 @@ def _plain(value: Any) -> Any:
         number = float(value)
         plain = number if math.isfinite(number) else str(number)
     elif isinstance(value, np.ndarray | np.generic):
-        plain = _plain(value.tolist())
+        is_all_finite = value.dtype.kind == "f" and bool(np.isfinite(value).all())
+        plain = value.tolist() if is_all_finite else _plain(value.tolist())
     elif _has_fields(value):
         plain = {name: _plain(inner) for name, inner in _fields(value)}
     elif isinstance(value, Mapping):

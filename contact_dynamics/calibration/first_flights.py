@@ -131,7 +131,7 @@ def ratios_of_moments(observed: Sequence[Observed], inertia_at: Sequence[FloatAr
         if each.first is None:
             continue
         motion = each.motion
-        states = [state_of(motion.state(sample)) for sample in range(each.first.start, each.first.stop)]
+        states = [state_of(state) for state in motion.states(range(each.first.start, each.first.stop))]
         noise = StateNoise(position=motion.position_noise, orientation=motion.orientation_noise)
         mass = motion.body.mass_properties.mass
         misses = [

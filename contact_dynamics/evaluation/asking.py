@@ -86,8 +86,9 @@ def asked_before(
             continue
         stamps_ns = motion.stamps_ns[samples]
         store = StateStore(history=settings.fit_window, timeout=informed.state_timeout)
-        for sample in samples[stamps_ns >= stamps_ns[-1] - to_ns(settings.fit_window)].tolist():
-            store.add(event.body, motion.state(sample))
+        window = 0.0 if event.mode else settings.fit_window  # a question about a mode takes the newest state
+        for state in motion.states(samples[stamps_ns >= stamps_ns[-1] - to_ns(window)].tolist()):
+            store.add(event.body, state)
         found[horizon] = Context(
             world=informed.world,
             states=store,

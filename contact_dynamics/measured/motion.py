@@ -19,7 +19,7 @@ import numpy as np
 from contact_dynamics.constants import seconds_since, to_seconds
 from contact_dynamics.questions.uncertain_state import UncertainState, state_of
 from contact_dynamics.records import Record
-from contact_dynamics.rigid_body.body import BodyState
+from contact_dynamics.rigid_body.body import states_of_rows
 from contact_dynamics.rotations.many import rotation_vectors
 from contact_dynamics.tolerances import LEAST_ORIENTATION_NOISE, LEAST_POSITION_NOISE
 from contact_dynamics.world import Surface
@@ -138,16 +138,20 @@ class MeasuredMotion(Record):
 
     def state(self, sample: int) -> KnownState:
         """Return a state as it was published, with its covariance if it had one."""
-        state = BodyState(
-            p_WB_W=self.p_WB_W[sample],
-            q_WB=self.q_WB[sample],
-            v_WB_W=self.v_WB_W[sample],
-            w_WB_W=self.w_WB_W[sample],
-            stamp_ns=self.stamp_ns(sample),
-        )
-        if len(self.covariances) == 0 or math.isnan(self.covariances[sample, 0, 0]):
-            return state
-        return UncertainState(state=state, covariance=self.covariances[sample])
+        return self.states([sample])[0]
+
+    def states(self, samples: Sequence[int]) -> list[KnownState]:
+        """Return the states of some samples, as `state` does."""
+        rows = [getattr(self, name)[samples] for name in ("p_WB_W", "q_WB", "v_WB_W", "w_WB_W")]
+        states = states_of_rows(np.hstack(rows), self.stamps_ns[samples].tolist())
+        if len(self.covariances) == 0:
+            return [*states]
+        return [
+            state
+            if math.isnan(self.covariances[sample, 0, 0])
+            else UncertainState(state=state, covariance=self.covariances[sample])
+            for sample, state in zip(samples, states, strict=True)
+        ]
 
     def known_by(self, asked_ns: int, *, since: int = 0) -> IntArray:
         """Return the samples from ``since`` on that had been stamped and had arrived by then."""
