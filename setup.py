@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree as ET
 
+import setuptools
 from setuptools import Extension, find_packages, setup
 from setuptools.command.build_ext import build_ext
 
@@ -23,6 +24,9 @@ from setuptools.command.build_ext import build_ext
 HERE = Path(__file__).resolve().parent
 MANIFEST = ET.parse(HERE / "package.xml").getroot()
 NAME = MANIFEST.findtext("name")
+VERSION = MANIFEST.findtext("version")
+# Ubuntu 24.04's setuptools, with which colcon builds, does not know PEP 639's name.
+LICENSE_KEY = "license_expression" if int(setuptools.__version__.split(".")[0]) >= 77 else "license"
 REPOSITORY = ""
 """The address of the files, with a slash at the end, for README's links on a package index. It is empty until
 there is one."""
@@ -98,11 +102,11 @@ class BuildCore(build_ext):
 
 setup(
     name=NAME,
-    version=MANIFEST.findtext("version"),
+    version=VERSION,
     description=MANIFEST.findtext("description"),
     long_description=readme(),
     long_description_content_type="text/markdown",
-    license=MANIFEST.findtext("license"),
+    **{LICENSE_KEY: MANIFEST.findtext("license")},
     keywords=["contact mechanics", "friction", "impact", "rigid body", "robotics", "ROS 2"],
     classifiers=[
         "Development Status :: 4 - Beta",
