@@ -28,7 +28,7 @@ ROOT = Path(__file__).parents[1]
 PAGES = {
     "interfaces.md": "contact_dynamics_interfaces/README.md",
     "readme.md": "README.md",
-    "changelog.md": "CHANGELOG.md",
+    "changelog.md": "CHANGELOG.rst",
     "contributing.md": "CONTRIBUTING.md",
 }
 """The pages of the site that come from elsewhere in the repository."""
@@ -64,6 +64,8 @@ CODE_IN_CELL = re.compile(r"(?<=<code>)[^<]+")
 PARTS = re.compile(r"(?<=[_/.(:])(?!py\b)(?=[a-z])", re.IGNORECASE)
 """The places between the parts of a name."""
 MARKER = re.compile(r"<!--/?(?:bench:[\w.]+)?-->")
+TITLE = re.compile(r"\A\^+\n(.*)\n\^+\n")
+"""The title of a changelog in reStructuredText, which below it is Markdown too."""
 
 
 INTERFACE_FILES = "interface-files.md"
@@ -147,7 +149,7 @@ def on_files(files: Files, config: Any) -> Files:
     for name in WHEEL:
         files.append(File.generated(config, name, content=plain_wheel(name)))
     for name, source in PAGES.items():
-        text = (ROOT / source).read_text(encoding="utf-8")
+        text = TITLE.sub(r"# \1\n", (ROOT / source).read_text(encoding="utf-8"))
         files.append(File.generated(config, name, content=IMAGE.sub(r"\1(\2)", text)))
     return files
 

@@ -13,6 +13,8 @@ from pathlib import Path
 from xml.etree import ElementTree as ET
 
 import pytest
+from catkin_pkg.changelog import CHANGELOG_FILENAME, Changelog, populate_changelog_from_rst
+from catkin_pkg.package_version import get_forthcoming_label, rename_section
 from catkin_pkg.packages import find_packages
 
 from contact_dynamics.command_line import VERBS
@@ -111,6 +113,21 @@ def test_both_packages_have_one_version_and_one_maintainer() -> None:
     assert len(emails) == 1
     # colcon silently takes a package whose maintainer has no valid address for plain Python.
     assert re.fullmatch(r"[-\w.%+]+@[-\w.]+\.[a-zA-Z]{2,}", emails.pop() or "")
+
+
+@pytest.mark.filterwarnings("ignore:nodes.Node.traverse:DeprecationWarning")  # which catkin_pkg calls
+@pytest.mark.parametrize("manifest", MANIFESTS, ids=lambda path: path.parent.name)
+def test_each_package_has_a_changelog_that_a_release_can_read(manifest: Path) -> None:
+    text = (manifest.parent / CHANGELOG_FILENAME).read_text(encoding="utf-8")
+    version = ET.parse(manifest).findtext("version")
+    if label := get_forthcoming_label(text):
+        # As catkin_prepare_release does.
+        text = rename_section(text, label, f"{version} (2000-01-01)")
+    changelog = Changelog()
+    populate_changelog_from_rst(changelog, text)
+    newest, _, changes = next(changelog.foreach_version(reverse=True))
+    assert newest == version
+    assert changes
 
 
 def test_setup_py_takes_the_version_from_package_xml() -> None:
