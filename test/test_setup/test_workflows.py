@@ -1,7 +1,8 @@
-"""The workflows run what the documents say, and name what there is."""
+"""Workflows and containers run what the documents say, and name what there is."""
 
 from __future__ import annotations
 
+import json
 import re
 from pathlib import Path
 from typing import Any
@@ -54,3 +55,25 @@ def test_every_python_of_the_package_is_run(workflow: str, job: str) -> None:
     pythons = WORKFLOWS[workflow]["jobs"][job]["strategy"]["matrix"]["python"]
     assert " ".join(pythons) in (ROOT / "setup" / "pythons.sh").read_text(encoding="utf-8")
     assert len(pythons) == 5
+
+
+def test_the_container_is_built_as_the_quick_start_says() -> None:
+    page = (ROOT / "docs" / "quick-start-ros.md").read_text(encoding="utf-8")
+    (paths,) = re.findall(r"^rosdep install (--from-paths src .*)$", page, re.MULTILINE)
+    (build,) = re.findall(r"^colcon build --base-paths .*$", page, re.MULTILINE)
+    dockerfile = (ROOT / "docker" / "Dockerfile").read_text(encoding="utf-8")
+    assert dockerfile.count(paths) == 2
+    assert build in dockerfile
+    developed = json.loads((ROOT / ".devcontainer" / "devcontainer.json").read_text(encoding="utf-8"))[
+        "build"
+    ]
+    assert (ROOT / ".devcontainer" / developed["dockerfile"]).samefile(ROOT / "docker" / "Dockerfile")
+    assert f" AS {developed['target']}\n" in dockerfile
+
+
+def test_pixi_has_what_the_library_needs() -> None:
+    listed = re.findall(r"^([\w-]+) = ", (ROOT / "pixi.toml").read_text(encoding="utf-8"), re.MULTILINE)
+    needed = re.findall(
+        r"^[\w-]+", (ROOT / "requirements" / "core.txt").read_text(encoding="utf-8"), re.MULTILINE
+    )
+    assert {name.lower() for name in needed} <= set(listed)
