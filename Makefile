@@ -42,7 +42,7 @@ test: lint types $(MADE)/test ## lint, types and the tests; JOBS=1 runs them in 
 test-matrix: ## the physics with the oldest and newest NumPy and SciPy, on every Python and several kinds of processors
 	@setup/matrix.sh $(VENV)-matrix
 
-wheels: ## wheels for every Python of this machine, checked by auditwheel, and a plain one for all platforms, in dist/
+wheels: ## in dist/: wheels of library and interfaces for every Python of this machine or PYTHONS=3.12, a plain one for all platforms, the sdist
 	@setup/wheels.sh $(VENV)-wheels
 
 SWEEP ?= test

@@ -37,7 +37,7 @@ show_progress() { # how far ninja is; sleep must not keep the terminal or pipe o
 cmake=$(program cmake 3.21 'cmake>=3.28,<4')
 ninja=$(program ninja 1.10 'ninja>=1.11')
 
-echo "Building contact_dynamics_interfaces (about half a minute)."
+echo "Building contact_dynamics_interfaces (a minute or two)."
 mkdir -p "$build"
 : >"$log"
 show_progress &

@@ -3,7 +3,7 @@
 # usage: clean.sh VENV
 set -eu
 
-for venv in "$1" "$1"-matrix/*; do
+for venv in "$1" "$1"-matrix/* "$1"-wheels; do
     if [ -d "$venv/.made" ]; then
         echo "removing $venv"
         rm -rf "$venv"

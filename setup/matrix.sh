@@ -21,9 +21,6 @@ table=$folder/table.txt
 missing=$folder/missing.txt
 : >"$table"
 pythons=$("$here/pythons.sh" 2>"$missing")
-if [ -n "${PYTHONS:-}" ]; then
-    pythons=$(echo "$pythons" | grep -E "^($(echo "$PYTHONS" | sed 's/\./\\./g; s/  */|/g'))	")
-fi
 failed=0
 
 wheels_of() {

@@ -2,6 +2,7 @@
 # Prints the Pythons of this machine that can make an environment, one a line: version, tab, program.
 # A version that is not at hand, or has only shims that do not run, is named on stderr.
 # usage: pythons.sh
+#   PYTHONS="3.10 3.13"     only these
 set -u
 
 works() { # program, version: it runs, is that version, and can make environments
@@ -16,7 +17,7 @@ candidates() { # version; the newest release first where a folder holds several
     ls -d "${UV_PYTHON_INSTALL_DIR:-${XDG_DATA_HOME:-$HOME/.local/share}/uv/python}/cpython-$1".*/bin/"python$1" 2>/dev/null | sort -rV
 }
 
-for version in 3.10 3.11 3.12 3.13 3.14; do
+for version in ${PYTHONS:-3.10 3.11 3.12 3.13 3.14}; do
     found=""
     while IFS= read -r program; do
         if [ -z "$found" ] && [ -x "$program" ] && works "$program" "$version"; then

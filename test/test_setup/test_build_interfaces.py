@@ -6,6 +6,7 @@ import os
 import shutil
 import subprocess
 import sys
+import zipfile
 from pathlib import Path
 
 import pytest
@@ -81,6 +82,24 @@ def test_a_folder_that_a_shell_would_take_apart_builds_and_is_cleared(tmp_path: 
     assert installed() == {"_first"}
     (package / "msg" / "First.msg").rename(package / "msg" / "Second.msg")
     assert installed() == {"_second"}
+    pack = [venv / "bin" / "python", folder / "setup" / "interfaces_wheel.py", tmp_path]
+    subprocess.run(pack, check=True, timeout=300)
+    (wheel,) = tmp_path.glob("contact_dynamics_interfaces-*.whl")
+    with zipfile.ZipFile(wheel) as packed:
+        names = packed.namelist()
+        metadata = packed.read(next(name for name in names if name.endswith("/METADATA"))).decode()
+    assert len(names) == len(set(names))
+    for expected in (
+        "contact_dynamics_interfaces/msg/_second.py",
+        "contact_dynamics_interfaces/contact_dynamics_interfaces_s__rosidl_typesupport_fastrtps_c.so",
+        "data/lib/libcontact_dynamics_interfaces__rosidl_typesupport_fastrtps_c.so",
+        "data/share/ament_index/resource_index/packages/contact_dynamics_interfaces",
+        "data/share/contact_dynamics_interfaces/msg/Second.json",
+    ):
+        assert any(name.endswith(expected) for name in names), expected
+    # Those name folders of this machine.
+    assert not {".h", ".hpp", ".cmake", ".sh"} & {Path(name).suffix for name in names}
+    assert "Requires-Dist: ros-geometry-msgs==" in metadata
 
 
 def links_to_all_but_ours(environment: Path, view: Path, inside: tuple[Path | str, ...]) -> None:

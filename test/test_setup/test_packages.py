@@ -170,6 +170,12 @@ def test_an_sdist_holds_the_project_and_installs(tmp_path: Path) -> None:
     (archive,) = (checkout / "dist").iterdir()
     with tarfile.open(archive) as packed:
         assert files - {name.partition("/")[2] for name in packed.getnames()} == set()
+        metadata = packed.extractfile(f"{packed.getnames()[0]}/PKG-INFO")
+        assert metadata is not None
+        # The server without its interfaces, or with those of another version, would not start.
+        version = re.escape(ET.parse(MANIFESTS[0]).findtext("version") or "")
+        pin = rf'^Requires-Dist: contact_dynamics_interfaces=={version}; extra == "jazzy"$'
+        assert re.search(pin, metadata.read().decode(), re.MULTILINE)
     installed = tmp_path / "installed"
     install = [sys.executable, "-m", "pip", "install", "-q", "--no-deps", "--no-build-isolation"]
     done = subprocess.run(
