@@ -40,6 +40,17 @@ def test_every_argument_has_a_default_and_says_what_it_is(path: Path) -> None:
         assert argument.default_value is not None, argument.name
 
 
+@pytest.mark.parametrize("name", ["namespace", "params_file"])
+def test_an_argument_of_which_each_server_has_its_own_value_is_rejected(
+    caplog: pytest.LogCaptureFixture, name: str
+) -> None:
+    service = launch.LaunchService()
+    service.context.launch_configurations[name] = "zzz"
+    service.include_launch_description(description_of(ROOT / "launch" / "two_servers.launch.py"))
+    assert service.run() == 1
+    assert f"{name} must not be given, since each server has its own, got 'zzz'" in caplog.text
+
+
 @pytest.mark.parametrize(
     ("before", "asked", "after"),
     [
