@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
+from contact_dynamics.contact_modes.spatial import simplex_steps
 from contact_dynamics.tolerances import (
     FEASIBLE,
     ROW_TOLERANCE,
@@ -31,6 +32,8 @@ if TYPE_CHECKING:
 
 _HEAD: Final = 7
 """The number of rows of the table before the conditions: the weighted sum of edge forces, then the motion."""
+
+_COMPILED: Final = hasattr(simplex_steps, "SOURCE_CRC")
 
 _DEAD: Final = -1
 """The name of a column that stays zero."""
@@ -208,9 +211,25 @@ class Program:
         Args:
             least_pivot: Entries of the table that are no larger count as zero.
         """
-        table, fixed = self._table, self._fixed
-        if len(fixed) == 0:
+        if len(self._fixed) == 0:
             return True
+        if _COMPILED:
+            self._table = np.ascontiguousarray(self._table)
+            missed, largest, grown = simplex_steps.solved(
+                self._table, self._fixed, self._rows, self._columns, _DEAD, least_pivot, _MAX_STEPS
+            )
+            self._noise *= grown
+        else:
+            missed, largest = self._stepped(least_pivot)
+        self.doubtful = missed != 0.0 and (
+            missed <= _CLEAR * self._noise
+            or (missed <= _MAX_FORCE * least_pivot and missed <= _MAX_FORCE * largest)
+        )
+        return missed == 0.0
+
+    def _stepped(self, least_pivot: float) -> tuple[float, float]:
+        """Exchange variables with NumPy, as `simplex_steps.solved` does, whose values this returns."""
+        table, fixed = self._table, self._fixed
         values, entries, costs = table[_HEAD:, -1], table[_HEAD:, :-1], table[0]
         equations = int(np.count_nonzero(fixed))
         for _ in range(_MAX_STEPS):
@@ -219,21 +238,16 @@ class Program:
             value = float(values[worst])
             missed = max(-value, value * float(fixed[worst]))
             if missed <= FEASIBLE:
-                return True
+                return 0.0, 0.0
             row = entries[worst]
             helps = row if value < 0.0 else -row
             able = (helps > least_pivot).nonzero()[0]
             if able.size == 0:
-                self.doubtful = missed <= _CLEAR * self._noise or (
-                    missed <= _MAX_FORCE * least_pivot
-                    and missed <= _MAX_FORCE * float(helps.max(initial=0.0))
-                )
-                return False
+                return missed, float(helps.max(initial=0.0))
             enters = int(able[(costs[able] / helps[able]).argmin()])
             equations -= fixed[worst] != 0.0
             self._pivot(worst, enters)
-        self.doubtful = True
-        return False
+        return -1.0, 0.0
 
     def _pivot(self, leaves: int, enters: int) -> None:
         """Exchange a condition's variable and a column's.
