@@ -25,6 +25,7 @@ import numpy as np
 
 from contact_dynamics.contact_modes.letters import SEPARATES, STAYS, STICKS
 from contact_dynamics.contact_modes.spatial.careful_program import CarefulProgram
+from contact_dynamics.contact_modes.spatial.dual_simplex import Program
 from contact_dynamics.contact_modes.spatial.exact_letters import forces_with_letters, solution_near
 from contact_dynamics.contact_modes.spatial.holding_programs import (
     COARSE,
@@ -255,7 +256,7 @@ class _Work(PyramidPrograms):
         self.examined += _CARE * careful
         return found
 
-    def _decide_staying(self, _program: AnyProgram, trials: list[Option], /) -> None:
+    def _decide_staying(self, program: AnyProgram, trials: list[Option], /) -> None:
         """Decide all modes in which the same contacts stay."""
         letters = "".join(one.letter or STICKS for one in trials)
         self.at = letters.replace(STICKS, STAYS)
@@ -280,9 +281,11 @@ class _Work(PyramidPrograms):
         self._decide_without_directions(letters)
         flats = [flat_of(normals, frames, ())]
         seen = {frozenset(range(len(open_ones))), flats[0].stuck}
+        solved = isinstance(program, Program) and not program.doubtful
         while flats:
             flat = flats.pop()
-            if self._decide_flat(flat, letters, open_ones):
+            # Where no contact must stick, the program has the conditions of the flat's own.
+            if self._decide_flat(flat, letters, open_ones, holds=solved and not flat.stuck):
                 for further in flat.parts(normals, frames):
                     if further.stuck not in seen:
                         seen.add(further.stuck)
@@ -331,14 +334,16 @@ class _Work(PyramidPrograms):
         elif not regular:
             self._leave(letters)
 
-    def _decide_flat(self, flat: Flat, letters: str, open_ones: list[int]) -> bool:
+    def _decide_flat(self, flat: Flat, letters: str, open_ones: list[int], *, holds: bool) -> bool:
         """Find or refute all modes in which all contacts slide that a flat lets slide.
 
         Return whether there may be modes in which some of these contacts stick, and others slide.
         """
         turning = [i for k, i in enumerate(open_ones) if k not in flat.stuck]
         own = self.at = "".join(STAYS if i in turning else letter for i, letter in enumerate(letters))
-        if self._forces(own, {}, COARSE) is None:
+        if holds:
+            self._count()
+        elif self._forces(own, {}, COARSE) is None:
             return False
         if self._is_decided(own):
             return True
@@ -388,6 +393,9 @@ class _Work(PyramidPrograms):
         letters, turning = modes.letters, modes.turning
         if letters in self._decided:
             return True
+        if _takes_power(modes):
+            self._count()
+            return bool(modes.ranges)
         ranges = _met(_implied(modes), modes.ranges)
         widest, width = _widest(turning, ranges or {})
         forces = None
@@ -490,6 +498,13 @@ def _within(modes: _Set) -> Within | None:
     return Within(modes.region, modes.flat.image, modes.turning, modes.gains, implied)
 
 
+def _takes_power(modes: _Set) -> bool:
+    """Return whether the applied wrench resists all motions of a set, so that none of them begins."""
+    if modes.region is None or modes.gains is None:
+        return False
+    return bool((modes.region.rays @ modes.gains).max() < -STRICT * np.abs(modes.gains).max())
+
+
 def _widest(turning: list[int], ranges: Ranges) -> tuple[int, float]:
     """Return the contact that may slide in the widest range of directions, and the width of that, rad."""
     widths = {i: ranges[i][1] - ranges[i][0] if i in ranges else _TURN for i in turning}
@@ -524,7 +539,8 @@ def _met(implied: Ranges, demanded: Ranges) -> Ranges | None:
 def _parts(modes: _Set, ranges: Ranges, widest: int, width: float) -> Iterator[_Set]:
     """Yield the halves of a set."""
     region = modes.region
-    if region is not None and region.width > 0.0 and (region.width > _REGION or 3.0 * region.width > width):
+    wide = 0.0 if region is None else region.width
+    if region is not None and wide > 0.0 and (wide > _REGION or 3.0 * wide > width):
         for half in region.cut:
             yield modes._replace(region=half)
     elif widest in ranges:

@@ -136,11 +136,13 @@ class HoldingPrograms:
         positive = [leaving]
         edges, moved, sizes, owners = whole
         if turning:
-            own, conditions = self._in_ranges(turning, np.array(list(ranges.values())))
+            ends = np.array(list(ranges.values()))
+            own = self._in_ranges(turning, ends)
             edges, moved, sizes, owners = (np.concatenate(pair) for pair in zip(whole, own, strict=True))
-            if within is not None and within.implied:
-                conditions = conditions[[i not in within.implied for i in turning]]
-            positive.append(conditions.reshape(-1, 7))
+            implied = frozenset() if within is None else within.implied
+            demanded = [k for k, i in enumerate(turning) if i not in implied]
+            if demanded:
+                positive.append(self._conditions([turning[k] for k in demanded], ends[demanded]))
         if within is not None:
             positive.append(within.region.rows(within.image))
         table = np.column_stack([moved.T, self._search.motion[:, -1]])
@@ -219,8 +221,8 @@ class HoldingPrograms:
         owners = np.repeat(np.array(contacts, dtype=np.intp), leans.shape[1])
         return _Edges(edges / sizes[:, None], moved / sizes[:, None], sizes, owners)
 
-    def _in_ranges(self, turning: list[int], ends: FloatArray) -> tuple[_Edges, FloatArray]:
-        """Return the edges of contacts that slide in ranges of directions, and conditions, (m, 3, 7)."""
+    def _in_ranges(self, turning: list[int], ends: FloatArray) -> _Edges:
+        """Return the edges of contacts that slide in ranges of directions, (m, 2) rad."""
         low, high = ends.T
         wide = high - low
         pieces = max(1, math.ceil(float(wide.max()) / _PIECE))
@@ -230,13 +232,17 @@ class HoldingPrograms:
         leans = np.empty((len(turning), len(shares)))
         leans[:] = (frictions / np.cos(half))[:, None]
         leans[:, 0] = leans[:, -1] = frictions
-        edges = self._leaning(turning, leans, low[:, None] + half[:, None] * shares)
+        return self._leaning(turning, leans, low[:, None] + half[:, None] * shares)
+
+    def _conditions(self, turning: list[int], ends: FloatArray) -> FloatArray:
+        """Return the conditions of contacts that slide in ranges of directions, (3 m, 7)."""
+        low, high = ends.T
         turns = np.column_stack([low + _QUARTER, 0.5 * (low + high), high - _QUARTER])  # (m, 3)
         ways = np.empty((len(turning), 3, 2))
         ways[..., 0], ways[..., 1] = np.cos(turns), np.sin(turns)
-        rows = ways @ self._across[turning]
+        rows: FloatArray = ways @ self._across[turning]
         rows[:, 1, -1] -= MILDER * self._least
-        return edges, rows
+        return rows.reshape(-1, 7)
 
     def _has_power(
         self,
