@@ -414,6 +414,10 @@ STRICT: Final = 1e-8
 """Relative to the largest acceleration. A strict inequality of a mode must hold by this, a thousand times
 `FEASIBLE`."""
 
+HIDDEN_BY_FORCES: Final = 1e-4
+"""Relative to the largest acceleration. If `FEASIBLE` of what forces cause is more, they are so large that
+rounding hides the motion: a 50,000th of it is that rounding."""
+
 AT_SECTORS_BORDER: Final = 1e-9
 """In sectors of a friction pyramid. An edge this far beyond the border of a sector still counts as acting."""
 

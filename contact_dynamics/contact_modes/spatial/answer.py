@@ -61,6 +61,7 @@ from contact_dynamics.tolerances import (
     FEASIBLE,
     FLUSH,
     FLUSH_ROUGHLY,
+    HIDDEN_BY_FORCES,
     NARROWLY,
     NEARLY_ALIKE,
     STRICT,
@@ -254,6 +255,7 @@ def evidenced(
         hurried: Whether to give up soon.
     """
     found = _sought(case, search, beside_rest=beside_rest, hurried=hurried)
+    found = found._replace(modes=[_with_clear_motion(case, mode) for mode in found.modes])
     rounded = [mode.mode for mode in found.modes if _penetrates(case, mode)]
     if rounded:
         kept = [mode for mode in found.modes if not _penetrates(case, mode)]
@@ -269,14 +271,43 @@ def evidenced(
     return Evidence(exact, found.undecided or turned, letters)
 
 
-def _penetrates(case: SpatialCase, mode: SpatialMode) -> bool:
-    """Return whether contacts penetrate by more than rounding, as rounding may let modes seem consistent."""
-    motion, touching = case.motion, case.touching
-    rising = np.sum(mode.contact_accelerations_W * case.contacts.normals_W, axis=1)[touching]
-    if rising.min(initial=0.0) >= -STRICT * motion.scale:
-        return False
+def _with_clear_motion(case: SpatialCase, mode: SpatialMode) -> SpatialMode:
+    """Return a mode with the motion of its least forces, if others are so large that rounding hides it.
+
+    Forces that wedge a body between contacts may be as large as one likes, and cancel.
+    """
+    if _rounding(case, mode) <= HIDDEN_BY_FORCES * case.motion.scale:
+        return mode
+    least = with_least_forces(case, mode)
+    return mode_with_forces(
+        case,
+        "".join(mode.mode[i] for i in case.touching.tolist()),
+        least.contact_forces_W[case.touching] / case.motion.scale,
+        forces_unique=mode.forces_unique,
+        motion_unique=mode.motion_unique,
+    )
+
+
+def _rounding(case: SpatialCase, mode: SpatialMode) -> float:
+    """Return by how much rounding of forces may change the accelerations of contacts that they cause."""
+    motion = case.motion
     caused = np.abs(motion.points) @ (np.abs(motion.of_forces) @ np.abs(mode.contact_forces_W).ravel())
-    return bool(rising.min() < -STRICT * motion.scale - FEASIBLE * float(caused.max()))
+    return FEASIBLE * float(caused.max(initial=0.0))
+
+
+def _penetrates(case: SpatialCase, mode: SpatialMode) -> bool:
+    """Return whether contacts penetrate by more than rounding, as rounding may let modes seem consistent.
+
+    So do those of which nobody can tell, since rounding hides the motion.
+    """
+    rising = np.sum(mode.contact_accelerations_W * case.contacts.normals_W, axis=1)[case.touching]
+    if rising.min(initial=0.0) >= -STRICT * case.motion.scale:
+        return False
+    rounding = _rounding(case, mode)
+    return bool(
+        rounding > HIDDEN_BY_FORCES * case.motion.scale
+        or rising.min() < -STRICT * case.motion.scale - rounding
+    )
 
 
 def _narrow(case: SpatialCase, search: Search, found: Evidence, *, hurried: bool) -> Evidence:

@@ -24,11 +24,12 @@ from oracles.boxes_nearly_flush import MASS, Flush, flush
 
 EXACT = 1e-9  # relative: what modes may miss mechanics by, beside what flush contacts differ by
 LEANS = 2.0  # times the tolerance: friction leans with the normal, and so does the sliding that it opposes
+ROUNDING = 4.0 * np.finfo(float).eps  # of an acceleration, relative to the fastest one
 TOUCHES = 1e-6  # m/s
 MOST_UNDECIDED = 0.02
 SOON = 0.2  # s of processor time
 MOST_LATE = 0.15  # share of boxes: those with eight contacts that can move in many ways
-BLOCK = 100
+BOXES = 2000
 DECADES = range(-14, -2)
 
 
@@ -47,35 +48,51 @@ def noise_of(seed: int, decade: int) -> float:
     return float(10.0 ** (decade + np.random.default_rng(seed).random()))
 
 
-def worst_miss(box: Flush, mode: SpatialMode) -> float:
-    """Return by how much a mode misses Newton's, Euler's and Coulomb's laws, or its letters."""
+def worst_miss(box: Flush, mode: SpatialMode, flush_within: float) -> float:
+    """Return the largest ratio of what a mode misses mechanics by to what it may.
+
+    These are Newton's, Euler's and Coulomb's laws, and the accelerations that letters stand for. The mode is
+    that of contacts within ``flush_within`` of those of the box.
+
+    - Forces lean by as much with their contacts.
+    - The accelerations of points at rest come from n forces that lean: each accelerates the mass centre, and
+      turns the body by its lever arm, so that a point as far away accelerates by (reach / gyration)^2 of it.
+    - The direction of an acceleration is only as good as the acceleration itself, in doubles.
+    """
     forces, points, normals = mode.contact_forces_W, mode.contact_accelerations_W, box.normals
     size = max(float(np.abs(forces).max()), float(np.abs(box.wrench[:3]).max()))
     fast = max(float(np.abs(points).max()), size / MASS)
     force = forces.sum(axis=0) + box.wrench[:3] - MASS * mode.acceleration_W
     torque = np.cross(box.points, forces).sum(axis=0) + box.wrench[3:]
     torque -= box.inertia * mode.angular_acceleration_W
-    missed = [float(np.abs(force).max()) / size, float(np.abs(torque).max()) / size]
+    leaning = EXACT + LEANS * flush_within
+    reach = float(np.linalg.norm(box.points, axis=1).max())
+    turning = MASS * reach**2 / float(np.min(box.inertia))
+    moving = EXACT + LEANS * len(forces) * (1.0 + turning) * flush_within
+    missed = [float(np.abs(each).max()) / size / leaning for each in (force, torque)]
     pressing, rising = np.sum(forces * normals, axis=1), np.sum(points * normals, axis=1)
     across = forces - pressing[:, None] * normals
     sliding = points - rising[:, None] * normals
     for i, letter in enumerate(mode.mode):
         if letter == "s":
-            missed.append(float(np.abs(forces[i]).max()) / size)
+            missed.append(float(np.abs(forces[i]).max()) / size / leaning)
             if abs(normals[i] @ box.velocity) <= TOUCHES:
-                missed.append(-float(rising[i]) / fast)
+                missed.append(-float(rising[i]) / fast / moving)
             continue
         most = box.frictions[i] * pressing[i]
-        missed += [abs(float(rising[i])) / fast, -float(pressing[i]) / size]
-        missed.append((float(np.linalg.norm(across[i])) - most) / size)
+        missed += [abs(float(rising[i])) / fast / moving, -float(pressing[i]) / size / leaning]
+        missed.append((float(np.linalg.norm(across[i])) - most) / size / leaning)
         if letter == "f":
-            missed.append(float(np.linalg.norm(sliding[i])) / fast)
+            missed.append(float(np.linalg.norm(sliding[i])) / fast / moving)
         elif most > 0.0:
             way = box.velocity - (normals[i] @ box.velocity) * normals[i]
-            way = way if np.linalg.norm(way) > TOUCHES else sliding[i]
+            moves = float(np.linalg.norm(way)) > TOUCHES
+            way = way if moves else sliding[i]
             speed = float(np.linalg.norm(way))
             if speed > STRICT * fast:
-                missed.append(float(np.linalg.norm(across[i] + most * way / speed)) / size)
+                rounded = 0.0 if moves else ROUNDING * fast / speed
+                off = float(np.linalg.norm(across[i] + most * way / speed)) / size
+                missed.append(off / (leaning + rounded))
     return max(missed)
 
 
@@ -88,7 +105,7 @@ def check(seed: int, noise: float) -> tuple[ModeVerdict, float]:
     took = time.process_time() - start
     assert answer.flush_within in {0.0, FLUSH, FLUSH_ROUGHLY}
     for mode in answer.modes:
-        assert worst_miss(box, mode) <= EXACT + LEANS * answer.flush_within, (seed, mode.mode)
+        assert worst_miss(box, mode, answer.flush_within) <= 1.0, (seed, mode.mode)
     return answer.verdict, took
 
 
@@ -99,13 +116,20 @@ def test_some_boxes_are_decided(decade: int) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("block", range(20))
 @pytest.mark.parametrize("decade", DECADES)
-def test_two_thousand_boxes_of_each_decade_are_decided_and_soon(decade: int, block: int) -> None:
-    found = [check(seed, noise_of(seed, decade)) for seed in range(BLOCK * block, BLOCK * (block + 1))]
-    undecided = sum(verdict == ModeVerdict.UNDECIDED for verdict, _ in found)
-    assert undecided <= MOST_UNDECIDED * BLOCK
-    assert sum(took > SOON for _, took in found) <= MOST_LATE * BLOCK
+def test_two_thousand_boxes_of_each_decade_are_decided_and_soon(decade: int) -> None:
+    wrong, undecided, late = [], 0, 0
+    for seed in range(BOXES):
+        try:
+            verdict, took = check(seed, noise_of(seed, decade))
+        except AssertionError as error:
+            wrong.append(str(error).splitlines()[0])
+            continue
+        undecided += verdict == ModeVerdict.UNDECIDED
+        late += took > SOON
+    assert wrong == []
+    assert undecided <= MOST_UNDECIDED * BOXES
+    assert late <= MOST_LATE * BOXES
 
 
 @pytest.mark.parametrize("seed", range(200, 216))
@@ -116,6 +140,12 @@ def test_noise_that_counts_as_none_changes_no_verdict_and_no_letter(seed: int) -
         assert noisy.verdict == exact.verdict
         assert {mode.mode for mode in noisy.modes} == {mode.mode for mode in exact.modes}
         assert noisy.flush_within in {0.0, FLUSH}
+
+
+def test_forces_that_hide_the_motion_make_no_mode() -> None:
+    """In this stack a mode was found with forces of 3e14 N, under which contacts penetrate at 0.01 m/s^2."""
+    verdict, _ = check(1922, noise_of(1922, -4))
+    assert verdict == ModeVerdict.UNIQUE
 
 
 def test_contacts_that_are_flush_are_left_as_they_are() -> None:
