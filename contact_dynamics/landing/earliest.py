@@ -2,7 +2,7 @@
 
 At any time one plane separates the body from an obstacle (`contact.on_obstacles`). While the body stays above
 this plane, it does not touch. `acceleration_bounds` says for how long it must stay above. The search goes to
-the end of that time, takes the plane that separates best then, and goes on (conservative advancement;
+the end of that time, takes the plane that separates best then, and repeats (conservative advancement;
 Mirtich, Impulse-based dynamic simulation of rigid body systems, Berkeley 1996). It finds a touch within
 `GRAZING_DEPTH`, and misses no deeper one.
 

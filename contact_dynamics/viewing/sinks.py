@@ -315,10 +315,12 @@ class LiveViewer:
         self._behind = 0 if self._has_taken_all() else self._behind + 1
         if self.hangs and not hung:
             self._picture.leave(self._place)
-            self._on_problem(f"the viewer at {self._url} hangs: it gets the picture when it goes on")
+            self._on_problem(
+                f"the viewer at {self._url} does not respond; it receives the picture once it does"
+            )
         elif hung and not self.hangs:
             self._picture.reopen(self._place, rr.GrpcSink(self._url))
-            self._on_problem(f"the viewer at {self._url} goes on, and has the picture")
+            self._on_problem(f"the viewer at {self._url} responds again and has the picture")
 
     def _has_taken_all(self) -> bool:
         try:

@@ -178,7 +178,7 @@ def test_gravity_along_another_axis_is_recognised() -> None:
 
 
 def test_a_surface_that_is_not_flat_is_recognised() -> None:
-    bowed = calibrate(made_tosses(replace(TRUTH, bow=0.25), 12, 9), with_paths=False)
+    bowed = calibrate(made_tosses(replace(TRUTH, bow=0.25), 18, 8), with_paths=False)
     assert any("Surface 'floor' is not flat: heights bend by" in text for text in bowed.problems)
 
 

@@ -68,7 +68,7 @@ def test_nothing_is_drawn_to_it_until_it_goes_on(server: subprocess.Popen[bytes]
     draw(recording, 100)  # more than the sockets take
     for _ in range(MAX_BEHIND):
         viewer.look()
-    assert told == [f"the viewer at {url} hangs: it gets the picture when it goes on"]
+    assert told == [f"the viewer at {url} does not respond; it receives the picture once it does"]
     assert viewer.hangs
     before = resident()
     draw(recording, 500)  # 120 MB
@@ -79,7 +79,7 @@ def test_nothing_is_drawn_to_it_until_it_goes_on(server: subprocess.Popen[bytes]
         assert time.monotonic() < deadline, "it does not go on"
         viewer.look()
         time.sleep(0.05)
-    assert told[1:] == [f"the viewer at {url} goes on, and has the picture"]
+    assert told[1:] == [f"the viewer at {url} responds again and has the picture"]
     draw(recording, 1)
     recording.flush(timeout_sec=10.0)
     viewer.close()
