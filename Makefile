@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # There is one command for each job. It first makes the environment that it needs, if that is not there yet.
 
 SHELL := /bin/sh

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Packaging for pip and for colcon.
 
 package.xml has the version and the description of the package, and requirements/ has the dependencies. Each

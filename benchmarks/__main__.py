@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Runs the benchmarks: `python -m benchmarks`, or some of them by name: `python -m benchmarks services`."""
 
 from __future__ import annotations

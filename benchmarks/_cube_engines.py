@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The published cube in MuJoCo and in Drake: rollouts of whole tosses, and strikes of a corner in Drake.
 
 Both engines get the body that was calibrated, its gravity and the height of its floor. What is their own is

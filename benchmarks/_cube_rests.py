@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Whole tosses of the published cube, from the end of the first flight to rest: predicted and measured poses.
 
 A state is fitted to the poses of the first flight, as far as the calibration takes it, and the prediction

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The cost of an impact, in the plane, in space, in batches and for several contacts, beside iterative peers.
 
 Costs are processor time of this thread, so that a busy machine matters less.

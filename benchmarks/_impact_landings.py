@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """How well each law predicts measured landings of a cube on several corners, some milliseconds apart.
 
 The recordings are those of `_impact_tosses`. The benchmark takes pairs of flights with up to `MAX_BETWEEN`

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """How well each law predicts the velocity after measured impacts of a cube, beside "no impact" and MuJoCo.
 
 The recordings are the published cube tosses (`measured.cube_tosses`); the environment variable CUBE_TOSSES

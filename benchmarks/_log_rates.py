@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Rates of the log: writing beside the bare writer of mcap, reading, and decoding without ROS.
 
 All times are processor time of the process. The least of several rounds counts, and ours and the bare writer

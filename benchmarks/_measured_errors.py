@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Errors of predicted velocities over measured ones: tables, fitted constants, and MuJoCo beside us."""
 
 from __future__ import annotations

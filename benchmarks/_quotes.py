@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The numbers that documents quote: `measured.json` has them, and documents have them between two marks.
 
 A benchmark offers its numbers (`quote`), rounded to a few digits. `python -m benchmarks --write` puts them

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Draws how often measured tosses were where they were predicted, from the numbers of `tosses`."""
 
 from __future__ import annotations

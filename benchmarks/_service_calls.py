@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Questions to the services of a server, and a client that asks them and keeps the times."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """How often recorded strikes are in their regions, the second one by the flight before it alone.
 
 A strike is found in a recording where a flight follows it. Second strikes often have none: another corner

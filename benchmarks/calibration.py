@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """How well unseen tosses are predicted after calibration on others, beside MuJoCo and Drake, and its time.
 
 The recordings are the published cube tosses (`measured.cube_tosses`); the environment variable CUBE_TOSSES

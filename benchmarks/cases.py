@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What MuJoCo answers where the exact answer is known: the numbers of docs/cases.md."""
 
 from __future__ import annotations

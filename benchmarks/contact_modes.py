@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Contact modes in the plane against the number of contacts, beside linear programs.
 
 There are four kinds of sets. In a `ring` all contacts bound the motion, which gives the most modes. In a

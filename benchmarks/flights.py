@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Recorded flights: the pose at their end, predicted from their first part, beside what was measured.
 
 Each flight is fitted over its first half (`fit_free_motion`, poses alone) and predicted to its last frame.

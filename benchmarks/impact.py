@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The cost of an impact (`_impact_costs`), and how well it predicts measured ones (`_impact_tosses`)."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Server, publisher and client are killed with SIGKILL at random, and started again.
 
 After each kill a client asks until it has an answer. It prints how long that takes from the start of the

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Count the product's lines by room: all, those of code, and statements.
 
 Lines of code are those left without docstrings, blank lines, comments and imports. A room is a folder of the

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The server under more than it can do: 20 bodies at 1 kHz, and four clients that ask as fast as they can.
 
 It prints how many questions were answered and how fast, why others were not, how old the states in the

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The memory and the work of the visualizer's drawing: 20 bodies at 250 Hz, and 20 questions a second.
 
 The states of bodies that are thrown again and again, and answers of each kind about them, are drawn as the

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The cost of the log, for a minute of Odometry at 240 Hz with noisy values and constant covariances.
 
 The time for handing over is processor time of the thread that received the message. The time for writing is

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Round trip of each service, between processes, beside an empty service of the same type in the same run.
 
 The empty service returns its response untouched, so the ratio of both times shows what the answer costs

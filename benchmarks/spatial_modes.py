@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Contact modes in space against the number of contacts, beside a linear program for each string of letters.
 
 There are two kinds of sets. A `drawn` set has contacts all over a ball whose normals point more or less

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """How often measured tosses are in the regions that were predicted for them, and what predictions cost.
 
 The recordings are the published cube tosses (`measured.cube_tosses`); the environment variable CUBE_TOSSES

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The cost and accuracy of tumbling, beside SciPy's integrator, MuJoCo and Drake in the same run.
 
 Costs are processor time of this thread, so that a busy machine matters less. Errors are against the tests'

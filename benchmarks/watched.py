@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a visualizer that watches costs the services: round trips with it and without it, in turns.
 
 One server is asked ten kinds of questions, in blocks at a steady rate. In every second block a visualizer

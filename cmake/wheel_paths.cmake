@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Lets the CMake configurations inside the ROS wheels serve on this machine; given as -DCMAKE_PROJECT_INCLUDE=<this file>.
 #
 # The wheels' exported targets name include folders of the machine that built them, and CMake refuses a target whose

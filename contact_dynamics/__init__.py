@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Contact modes, impacts, free tumbling and whole tosses of rigid bodies (Mason's lectures 24 to 27).
 
 This page has what most users need: bodies and their states, contacts, problems, and one call for each

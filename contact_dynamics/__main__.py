@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """This file makes `python -m contact_dynamics <verb>` do the same as `contact-dynamics <verb>`."""
 
 import sys

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The command line, `contact-dynamics <verb>`. `ros2 run contact_dynamics <executable>` does the same."""
 
 from __future__ import annotations

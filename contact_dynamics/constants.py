@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """This file holds the constants that more than one chapter uses, and conversions that follow from them alone.
 
 Stamps are whole nanoseconds and durations are seconds. They are converted here, and in `msg_adapters.stamps`

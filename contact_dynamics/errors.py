@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The errors that misuse raises. There is one root, and one class for each cause.
 
 Messages name the field, what is allowed and the value received. An expected physical outcome (separating,

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The base class of the library's values: a short `repr`, a readable `str`, and a `dict` that JSON takes."""
 
 from __future__ import annotations

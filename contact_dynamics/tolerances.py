@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Every threshold of the physics stands here, by chapter, with its unit and the reason for its size.
 
 A threshold decides whether a number counts as zero, whether two things count as one, or whether an iteration

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The checks of input: each returns its value, made safe, or raises an error that names the field.
 
 Only constructors of domain types and public functions call these. The code behind them does not check again.

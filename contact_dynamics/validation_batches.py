@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The checks of batches and of covariances. A batch has a row for each case, or one row for all cases.
 
 Batches are checked as single calls are. Each error names the field and the first row that is not allowed.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The check of types: what public functions and records are given is what their annotations say.
 
 A chapter's page checks the functions that it offers (`check_types_of`), so that functions call each other

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The version of this package. Only package.xml has the number.
 
 A source tree has that file beside the package. An installed package has the number in its metadata, which

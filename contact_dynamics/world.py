@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Questions are asked about a world: bodies with shapes, the surfaces they meet, and gravity.
 
 Surfaces are flats without end (`Surface`), and convex solids and plates (`Obstacle`). They stand still.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The playground: makes an editor of each Python block on its page. A worker runs the code, so that the page stays
 // responsive and a run can be stopped. The addresses of Pyodide and of the library's wheel are those that the page names.
 "use strict";

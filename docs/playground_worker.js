@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What runs the playground's code: Python in a worker of the browser.
 "use strict";
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Ask a running server over ROS 2, with a deadline and a retry: start `contact-dynamics server` first.
 
 The client's queue is deep and each call has a deadline, because replies can get lost when many ask at once.

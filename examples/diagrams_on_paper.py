@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The diagrams of the three lectures on paper, with Matplotlib and without a viewer.
 
 Writes `impulse_space.svg`, `mode_map.svg` and `poinsot.svg` into the folder given, or into this one.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Lecture 27's rigid body example in impulse space, for several places of its contact.
 
 Writes `impulse_space.rrd` (or the path given) for rerun's viewer: `rerun impulse_space.rrd`.

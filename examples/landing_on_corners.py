@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A brick lands nearly flat: corner after corner in time, and what laws for all at once make of it."""
 
 import numpy as np

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Newton's cradle: the law for several contacts decides which balls leave. Steel balls follow one of them."""
 
 import numpy as np

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Where a tossed box lands, which corner strikes first, and what it does after that."""
 
 import numpy as np

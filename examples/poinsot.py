@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Poinsot's picture of a tumbling body: its inertia ellipsoid rolls, without slipping, on a fixed plane.
 
 Writes `poinsot.rrd` (or the path given) for rerun's viewer, to be played there: `rerun poinsot.rrd`.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Lecture 26's rod: no contact mode is consistent, or two are. Lecture 27 settles the first as an impact."""
 
 import math

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Where does a tossed cube come to rest, and what can happen on the way?  It prints the tree of its strikes.
 
 The state is known to 2 mm, 1 degree, 2 cm/s and 0.3 rad/s. Impacts differ from Routh's by a spread, which

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Lecture 26's wrench in a tray: the map of contact modes over applied wrenches.
 
 A hex key lies in the lower right corner of a tray, flush with the floor and the wall. Writes `tray.rrd`

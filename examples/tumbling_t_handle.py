@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Spin a body about its middle axis, and see it flip: the Dzhanibekov effect, hours ahead and to rounding."""
 
 import math

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A wheel rolls off the end of a table: up to which speed it tips over the edge, and when it flies off."""
 
 import math

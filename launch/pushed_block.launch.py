@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Starts the server, a block that a finger pushes, and a client that asks what the block does and prints it.
 
 The command is `ros2 launch contact_dynamics pushed_block.launch.py`. With `height:=0.15` the block tips.

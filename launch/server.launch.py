@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Starts the server, and with `view:=true` the visualizer too.
 
 The command is `ros2 launch contact_dynamics server.launch.py`.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Starts the server, a client that asks about its brick and prints the answers, and what throws the brick.
 
 The throw is a recorded one. The command is `ros2 launch contact_dynamics thrown_box.launch.py`. You can

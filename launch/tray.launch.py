@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Starts the server, a tray that tilts, and a client that asks what the block on it does and prints it.
 
 The command is `ros2 launch contact_dynamics tray.launch.py`.

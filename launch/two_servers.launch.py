@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Starts two servers side by side, each with a namespace and a configuration: copy this file for yours.
 
 The command is `ros2 launch contact_dynamics two_servers.launch.py`. Their services are then, for example,

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Reads and writes fields that requests of several services share: optional numbers, contacts, laws.
 
 A number with its field's default (`LEFT_OUT`) is left out. A value in a field that has no effect, such as a

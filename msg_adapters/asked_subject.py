@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Reads from requests, and writes, which body they are about and where its state comes from.
 
 A body is named, or described by an inertia, or both. Its state stands in the request, or was published.

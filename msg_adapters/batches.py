@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Converts requests and responses about many states to questions and answers, and back.
 
 The arrays of a request are read as they are. A length that is no multiple of the row's raises

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Converts `contact_dynamics_interfaces/BodyState` to a body's state and back.
 
 The message has the pose of the published frame and the velocity of the centre of mass, both in world axes.

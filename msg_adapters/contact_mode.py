@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Converts questions and answers about contact modes to the service's request and response, and back.
 
 All vectors are in world axes.

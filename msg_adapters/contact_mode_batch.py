@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Converts requests and responses about the contact modes of many candidates, and back."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Converts `contact_dynamics_interfaces/ContactSet` to a contact set and back."""
 
 from __future__ import annotations

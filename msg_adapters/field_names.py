@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Renames the fields in errors: messages and parameters have other names for them than the package."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Tables of fields: a record is written into a message, and read back from it, row by row.
 
 A row names an attribute of the record, the field of the message, and the kind of both. So the two directions

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Checks the names of frames: every message must be in the frame that is expected."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Converts vectors, quaternions and inertia of `geometry_msgs` to arrays and domain types, and back."""
 
 from __future__ import annotations

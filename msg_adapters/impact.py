@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Converts questions and answers about impacts to the service's request and response, and back.
 
 Messages are new, unless ``into`` is an empty one that a response has already. A message costs more to build

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Turns states in a frame that stands still in the world into states in the world frame."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Rejects numbers that rclpy mangled before it sent them.
 
 Without ROS_PYTHON_CHECK_FIELDS=1, rclpy checks no types. Of an int or a ``numpy.float32`` in a float64 field

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Converts `nav_msgs/Odometry` to a body's state and back.
 
 The pose is that of the child frame in `header.frame_id`. The twist is in the child frame's axes and at its

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Converts trajectories to `nav_msgs/Path`, which RViz draws."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Converts poses alone, with covariance or without, to states. The velocities come from the poses."""
 
 from __future__ import annotations

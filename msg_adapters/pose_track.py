@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Converts poses alone to states: the velocities are found from the poses of a short window.
 
 The filter is `motion.velocity_estimate`: a quadratic is fitted to each coordinate over the window, and its

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Converts `geometry_msgs/PoseStamped` with `TwistStamped` to a body's state and back.
 
 The pose is that of the body's published frame in the world frame. The twist belongs to that frame's origin.

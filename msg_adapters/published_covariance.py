@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Converts covariances of poses and twists, (6, 6) each as ROS publishes them, to that of a body's state.
 
 ROS's order is x y z, then the rotations about the fixed axes x y z of the header's frame. A twist's is that

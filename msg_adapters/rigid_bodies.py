@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Converts `mocap4r2_msgs/RigidBodies` to states of all bodies that a motion capture sees.
 
 A body is found by its frame, which is the `rigid_body_name` there. The velocities come from its poses. The

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Converts `builtin_interfaces/Time` to whole nanoseconds and back.
 
 Seconds since 1970 as a float would be 0.24 us apart.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a source of published states is: which messages it takes, and how states come of them.
 
 Each source has a file here with its adapter. An adapter of one's own is an object of this kind that an entry

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Converts errors to the status codes of the services. Equal offsets in their ranges mean the same."""
 
 from __future__ import annotations

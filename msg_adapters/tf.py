@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Converts `tf2_msgs/TFMessage` to states: a body's frame in the world frame, with velocities from its poses.
 
 The body's own frame moves. Frames between it and the world stand still (they come on the static topic), or

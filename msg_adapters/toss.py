@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Converts questions and answers about whole tosses to the service's request and response, and back.
 
 The distribution of an uncertain toss has regions, the tree of events, and rest.

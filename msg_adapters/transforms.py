@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Reads the tree of frames that `tf2_msgs/TFMessage` describes, and finds a frame's pose in another one.
 
 Each transform says where a child frame is in its parent. A frame's pose in another frame is found by going up

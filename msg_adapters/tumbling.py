@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Converts questions and answers about tumbling to the service's request and response, and back."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Refuses a request with a value in a field that its other fields leave unread.
 
 An explicit state with the flag of the newest one, or a plane's normal for a problem in space, would otherwise

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Writes docs/cases.md from the cases of `contact_dynamics.cases`: `python scripts/cases_page.py`.
 
 The package's numbers come from asking the cases now. MuJoCo's come from benchmarks/measured.json, into which

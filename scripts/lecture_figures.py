@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Draws the figures of docs/lectures.md with the library: `python scripts/lecture_figures.py [FOLDER]`.
 
 They are those of Mason's lectures 25 to 27, for the numbers that the lectures give. A test compares the files

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Draws the figures of the tutorials, of notation and of contacts: `python scripts/page_figures.py [FOLDER]`.
 
 A test compares the files in docs/figures/ with what this script draws.

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 # ruff: noqa: T201
 """Make the recording of a tossed brick that the demo plays: contact_dynamics/measured/tosses/brick.csv.
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """An extension of griffe, which reads the docstrings for the site: chapters are described by their purpose.
 
 The first paragraph of a chapter says what it is for. The others say what is in which of its files, which

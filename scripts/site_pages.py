@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A hook of MkDocs: pages from outside of docs/, links that leave docs/, and the order of all pages.
 
 The documents are written for people who read them in the repository, so they link to sources and to pages

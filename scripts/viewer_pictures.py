@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Takes the pictures of the viewer in docs/: `python scripts/viewer_pictures.py [NAME ...]`.
 
 rerun's own viewer opens recordings without a window and is asked for screenshots. It needs a Vulkan driver.

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: Apache-2.0
 # Builds contact_dynamics_interfaces with the rosidl generators of a virtual environment, and installs it there.
 # usage: build_interfaces.sh VENV
 set -eu

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: Apache-2.0
 # Says everything at once that this machine lacks for building the environment. It installs nothing.
 # usage: check_machine.sh PYTHON
 set -u

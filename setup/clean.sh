@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: Apache-2.0
 # Removes what make made in the project's folder, and nothing else that has a similar name.
 # usage: clean.sh VENV
 set -eu

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: Apache-2.0
 # Runs `pip install` in a virtual environment: shows that it lives, keeps its output in a file, and says plainly why it failed.
 # usage: install.sh VENV PIP_INSTALL_ARGUMENTS...
 set -eu

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Packs the interfaces that setup/build_interfaces.sh has installed in this Python's environment as a wheel.
 
 The wheel contains what a node needs: modules, libraries, definitions, and the ament index. It has no headers

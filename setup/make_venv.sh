@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: Apache-2.0
 # Makes the virtual environment, unless there is a working one with the Python that was asked for.
 # usage: make_venv.sh VENV [PYTHON]
 set -eu

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: Apache-2.0
 # Runs the suite's physics with the oldest and the newest NumPy and SciPy, on every Python of this machine, and with the newest
 # wheels as if on several kinds of processors. Prints a table; fails where anything failed or could not be set up.
 # usage: matrix.sh FOLDER

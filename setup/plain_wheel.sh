@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: Apache-2.0
 # Builds the wheel without the compiled core, which installs on every platform: arm64, macOS and Pyodide too.
 # The Python needs setuptools and wheel. Nothing is left in the source tree.
 # usage: plain_wheel.sh PYTHON FOLDER

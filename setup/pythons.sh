@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: Apache-2.0
 # Prints the Pythons of this machine that can make an environment, one a line: version, tab, program.
 # A version that is not at hand, or has only shims that do not run, is named on stderr.
 # usage: pythons.sh

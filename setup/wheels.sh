@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: Apache-2.0
 # Builds the source distribution in dist/, and wheels: for every Python of this machine the library with its compiled core and
 # the interfaces, and one of the library without the core, for all platforms. auditwheel checks those that are compiled and gives
 # them their manylinux tag. Then they are installed in empty environments, where the library is imported without ROS, and the

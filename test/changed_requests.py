@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Changes of one field of a request, for tests that put a wrong value into each."""
 
 from __future__ import annotations

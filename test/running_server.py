@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A real server in its own process and a real client in this one, for the tests of nodes."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Seeds of sweeps: a few that run each time, and the many that run with `make test-slow`."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Numbers that would be answered by chance are errors of their argument, and every covariance is one."""
 
 from __future__ import annotations

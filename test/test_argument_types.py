@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What public functions and records are given has the types that their annotations say."""
 
 from __future__ import annotations

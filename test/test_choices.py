@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Every argument that is one of an enumeration refuses what is not, by its own name."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Stamps in nanoseconds and durations in seconds: there and back, with times since 1970 too."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The documents' code passes mypy as a user's own would; a complaint names the document and the line."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Errors of functions name the argument as the caller wrote it; those of batches name the row."""
 
 from __future__ import annotations

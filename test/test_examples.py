@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The examples and the README's code run, and print what they say."""
 
 from __future__ import annotations

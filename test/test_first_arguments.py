@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Calls compose: what one returns is what the next takes, and a `Body` does where mass properties do."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Every public constructor, function and method of the physics meets hostile values.
 
 Each argument in turn becomes a value that is not allowed, one of another type, or a number at the ends of

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The notebooks run from beginning to end, and print what is stored in them."""
 
 from __future__ import annotations

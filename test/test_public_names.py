@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The page of public names is what the chapters offer, in both directions."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Every measured number in a document is that of `benchmarks/measured.json`, and stands between its marks."""
 
 from __future__ import annotations

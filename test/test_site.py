@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The site of the documents: every page is in its menu, and every link leads somewhere."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """docs/limits.md and the constants of the code agree, and each row of docs/certainty.md has its test."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The world and the contacts that geometry finds in it."""
 
 from __future__ import annotations

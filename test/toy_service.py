@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A service that is added as a user would add one: how high does a body rise?
 
 It has its question and answer, what answers it, its adapters, what shows its answers, and its record. A

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """From recorded states to parameters: what a body and its surfaces are, with how well the data say it."""
 
 from contact_dynamics.calibration.calibrate import calibrate, calibrate_observed

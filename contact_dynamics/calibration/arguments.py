@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The arguments of `contact-dynamics calibrate`. This file imports what help needs, and no more."""
 
 from __future__ import annotations

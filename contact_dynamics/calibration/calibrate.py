@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """From measured motions to parameters: the library's call, which `contact-dynamics calibrate` makes too."""
 
 from __future__ import annotations

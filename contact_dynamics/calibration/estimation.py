@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The fit of one way of using the strikes, together with what first flights and rests say.
 
 Each kind of residual has a spread of its own beside the noise of measurement, since the law of impact, the

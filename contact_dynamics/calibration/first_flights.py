@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What first flights tell: gravity for each recording, the mass centre, and the ratios of the moments.
 
 With c = p + R d the path of the mass centre, d its offset in body axes and R as measured, c is a parabola.

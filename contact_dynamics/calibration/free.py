@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Which parameters a calibration may change. This file imports nothing, since help needs it."""
 
 from __future__ import annotations

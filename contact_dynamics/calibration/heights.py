@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Heights of corners above surfaces where they should be zero: at strikes, and at rest."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the law of impact says of many strikes at once, for one or several descriptions of body and surfaces.
 
 One batch answers all of them. A derivative takes a dozen variations of each strike, and a large batch costs

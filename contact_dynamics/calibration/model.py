@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The parameters as one vector, and the body and surfaces that such a vector describes.
 
 All lengths are in body axes B at the *configured* centre of mass, so that poses need no conversion while the

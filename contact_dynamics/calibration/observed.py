@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a calibration uses of one toss: its first flight, its strikes of single corners, and its rest.
 
 Flights are found with the configured body and gravity, which need not be exact (`measured.flights`). A strike

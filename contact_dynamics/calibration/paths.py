@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The second way: whole trajectories through strikes, the flights before and after fitted in one.
 
 Each strike has 19 unknowns of its own: time, place, attitude and both velocities just before it, and by how

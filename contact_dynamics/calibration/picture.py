@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The strikes of a calibration side by side in rerun, those that the law explains worst first.
 
 Blue grey is the body at the strike, with its measured path on both sides. Two arrows begin at its mass

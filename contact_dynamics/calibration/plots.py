@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A calibration as pictures on paper: residuals against noise, and configured values against estimates."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What is wrong with the data, or doubtful in the result, in plain sentences."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A calibration for the terminal, as plain data for JSON, and as the server's parameters in YAML."""
 
 from __future__ import annotations

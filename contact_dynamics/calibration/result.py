@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a calibration found: estimates with covariance, what they rest on, and what is doubtful."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """`contact-dynamics calibrate`: recordings are read and calibrated, and the result is printed and written."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Friction where contact lasts: how fast bodies lose speed that slide on a face before they rest.
 
 A body that slides flush on a surface without turning is slowed by mu times what presses it down, whatever

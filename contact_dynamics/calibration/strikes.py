@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The strikes of many recordings as arrays, with velocities as functions of mass centre, gravity and inertia.
 
 The flight on each side of a strike is fitted over its last or first part. The velocity of the mass centre is

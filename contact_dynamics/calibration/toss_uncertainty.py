@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a calibration leaves uncertain about tosses, as samples of them take it."""
 
 from __future__ import annotations

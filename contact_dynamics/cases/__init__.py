@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Questions with known exact answers, which simulators got wrong or which somebody published.
 
 `contact-dynamics cases` solves all of them and prints the exact answer, the package's own and MuJoCo's.

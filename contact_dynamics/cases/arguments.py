@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The arguments of `contact-dynamics cases`."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A question whose exact answer is known, in Python and as a request of a service."""
 
 from __future__ import annotations

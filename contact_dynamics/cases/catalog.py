@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """All cases, by the names that the command line takes, in the order of the page."""
 
 from __future__ import annotations

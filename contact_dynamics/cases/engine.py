@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Engines that answer the cases: this package, and the simulators beside it.
 
 An engine is a module with a function of the setting for each case, of the case's name. Another simulator is

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """MuJoCo's answers to the cases, measured in simulations with its default settings and time step.
 
 Where a function departs from the defaults, it says so. The numbers hold for the version that is installed.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """This package's answers to the cases. `docs/cases.md` shows each function with the imports that it needs."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Published numbers, read from their data files, and the package's answers to them.
 
 Inputs are in SI units, angles in degrees. Each function is a few calls of the package, without formulas of

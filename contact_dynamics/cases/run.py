@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The command `contact-dynamics cases`: all engines' answers beside the exact ones, or published numbers."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Contacts are given or found from shapes. They have curvatures, velocities and friction.
 
 `contact` has one contact and sets of them, and `curvature` the shapes of both sides where they touch. `found`

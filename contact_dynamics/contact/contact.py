@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A contact says where a body meets the world, along which normal, with which friction and restitution.
 
 A contact is a point of the body on a flat of the world, unless it has curvatures (`contact.curvature`). The

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the shapes at a contact add to its acceleration: the velocity-product terms of each contact kind.
 
 If a point of the body touches a flat of the world, the same material point stays in contact. The gap's second

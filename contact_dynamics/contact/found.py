@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """This file finds the points of a convex body that touch the world's surfaces at a pose.
 
 A face or an edge that lies flush gives its extreme points as contacts: the corners of a face, the two ends of

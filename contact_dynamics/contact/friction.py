@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Coulomb's friction in space is a cone of forces. This file gives it flat sides.
 
 Model: the contact force obeys f_n >= 0 and |f_t| <= mu f_n. The round cone is replaced by a pyramid inside

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the velocities of a body add to the accelerations at its contacts, for contacts of every kind.
 
 `curvature` has the derivation, and the terms of the known kinds.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Finds which contacts of a body touch and rest, where its state is known with some noise.
 
 No point of a measured body is exactly on a surface, and none is exactly at rest. With the covariance of the

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """This file finds where a convex body touches a plane: the extreme points, with the body's curvature there.
 
 `found` says which points a face, a line and a rim have.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A convex body meets a convex obstacle with corners on faces, faces on corners, and edges across edges.
 
 Two convex bodies are apart if and only if a face's normal of one of them, or a cross product of two edges,

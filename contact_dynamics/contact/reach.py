@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Warns of contacts that are farther from a body than its shape reaches.
 
 Mostly the state is of another time than the contacts: that of the throw with those of the landing.

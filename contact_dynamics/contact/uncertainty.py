@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """`ContactUncertainty` says how well the contacts of a body are known.
 
 The model is a box. Each contact's point, normal and friction may be anywhere within the stated distance from

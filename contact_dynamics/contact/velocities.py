@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """This file takes noise out of the velocities of contacts in space, so that some count as at rest."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Contact modes (Mason, lecture 26): does the body, at each contact, separate, slide or stay fixed?
 
 You state a `PlanarContactProblem` or a `SpatialContactProblem`, and pass it to the functions of

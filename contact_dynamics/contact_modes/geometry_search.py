@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """This file searches boxes of contact sets for other answers, in the plane and in space.
 
 One question is which verdicts occur in the box of a problem's uncertainty. Another is how far contacts would

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The letters of contact modes (Mason, lecture 26). A letter says what one contact does.
 
 A mode is a string with one letter for each contact, in the contacts' order, such as "ffs". In the plane a

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """These functions ask about contact modes. Each takes a problem in the plane or in space.
 
 You state a problem once, as a `PlanarContactProblem` or a `SpatialContactProblem`, and ask it every question.

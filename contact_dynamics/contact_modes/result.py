@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Answers in the plane and in space share these types: verdicts, refused modes and statics."""
 
 from __future__ import annotations

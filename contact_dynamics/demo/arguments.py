@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The arguments of the demo's verbs. They are in a file of their own, so that `--help` needs no ROS."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Publishes the states of a block that is pushed, or whose tray tilts, and what a sensor measures there.
 
 It takes the server's parameters: the block is the first body, its topic is that body's, and it moves among

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Asks a running server about the body of an example, and prints each new answer in words.
 
 It asks four times a second. It takes the server's parameters too, and asks about the first body.

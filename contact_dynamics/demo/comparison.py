@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The demo's table of predictions beside what was then measured."""
 
 from __future__ import annotations

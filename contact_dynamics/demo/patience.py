@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A limit of the time that is spent waiting, in which a process that stood still has not waited.
 
 After a stall the clock has gone on, and what is waited for lies unread in a queue. So each look counts for a

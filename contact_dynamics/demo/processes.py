@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The demo's processes. They run in a ROS domain of their own, and are all stopped whatever happens.
 
 The domain of one's own keeps demos and tests which run side by side from hearing each other. It works on

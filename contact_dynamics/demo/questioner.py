@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Asks the server about a toss while it happens, as a robot would.
 
 It asks at meaningful moments, and uses only what was published so far.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The demo plays a toss as published states, asks the server, and prints how good its answers were.
 
 The server, the visualizer and the publisher are three processes. This process asks. At the end it stops all

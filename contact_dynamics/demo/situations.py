@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What happens to the block in the examples: a finger pushes it, or the tray that it stands on tilts."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The physics of the examples: a body whose corners press on flats like stiff springs, in the plane x, z.
 
 It shares nothing with the laws that the package predicts with, so that an example can show whether they are

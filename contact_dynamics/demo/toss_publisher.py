@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Publishes a recorded toss as `nav_msgs/Odometry`, at the pace at which it was measured."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Runs what a ROS process of a situation does, until it ends or the process is told to stop."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Computes diagrams as plain data. Nothing here draws.
 
 Two renderers draw it: `contact_dynamics.viewing` in rerun, and `contact_dynamics.plots` with Matplotlib. They

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Compares the velocity that a body has after an impact with the one that was predicted.
 
 The measured velocity is found from the poses after the impact alone, as `motion.velocity_estimate` finds

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The contact forces of one mode in their friction cones, in the plane and in space alike.
 
 A round friction cone looks the same from all sides. So each contact is one point, friction force to the right

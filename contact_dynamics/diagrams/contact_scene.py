@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Contact modes in space: friction cones, words for what the contacts do, each consistent mode.
 
 Each mode has an entity of its own, `mode_1`, `mode_2` and so on, with its contact forces, sliding directions

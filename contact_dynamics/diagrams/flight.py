@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Where a body was predicted to be: the path of its centre of mass, outlines on it, its last pose.
 
 If the prediction has covariances, there is an ellipsoid at each outline. It extends two deviations to each

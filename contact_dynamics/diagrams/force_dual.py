@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Lecture 26's construction shows acceleration centres and force duals of one mode, and what they span.
 
 The applied wrenches that can bring a mode about are pos({a} + {-c_i}): a its accelerations, c_i the edges of

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A predicted impact in space: contact, friction cone, impulse, velocities before and after.
 
 The path of the impulse as it accumulates rises from each contact, to the scale of the impulse's arrow. A

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Impulse space shows an impact (Mason, lecture 27): tangential impulse to the right, normal impulse up.
 
 The path of the accumulated impulse leaves the origin, inside the friction cone. On the sticking line the

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The answer about many states in space: where each is then, how it moves, and the impulses on it."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Diagrams as plain data: marks (lines, points, arrows, faces, labels, ellipsoids, regions) between axes.
 
 A diagram is computed once. `viewing.drawing` draws it in rerun and `plots.drawing` with Matplotlib, and

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The map of contact modes assigns modes to applied wrenches (Mason, lecture 26).
 
 Each region of a chart belongs to the modes that its wrenches bring about. In some regions several modes are

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """This file cuts a predicted flight where a surface is in the way.
 
 Free flight is predicted whatever is in its way, so a body that rests on a floor falls through it. Pictures

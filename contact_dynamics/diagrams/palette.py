@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The colours and their meanings, which are the same everywhere: red, green, blue and opacity, 0 to 255.
 
 Those who see no green tell apart any two that mean different things in the scene. They differ by

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The colours on paper. Those who see no green tell them apart too.
 
 Any two that mean different things in one diagram differ by `LEAST_DIFFERENCE` at least. This holds for usual

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """This file puts the consistent modes of a planar answer side by side, and says what the map of modes shows.
 
 The plane's normal points towards the eye.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """This file outlines a planar body, walls and friction cones, with one mode's letters and forces.
 
 Coordinates are in metres from the centre of mass, x to the right, y up.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """In Poinsot's picture the inertia ellipsoid of a free body rolls on the invariable plane (lecture 25).
 
 In the space of angular velocities the ellipsoid w^T I w = 2 T turns with the body about its fixed centre, and

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Makes the drawable shape of a convex body: faces with edges between them, flat facets on round sides."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A whole toss in space: its path with strikes and the resting pose, other ways, and the fan of samples.
 
 The fan has outlines of the body where samples strike and rest, and the tree of the next strikes: a node at

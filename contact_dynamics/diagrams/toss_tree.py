@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The tree of the next strikes of a toss, in words and over time."""
 
 from __future__ import annotations

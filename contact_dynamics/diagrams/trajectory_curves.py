@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Quantities over a trajectory: energies and momenta from the body's mass properties, and their diagrams."""
 
 from __future__ import annotations

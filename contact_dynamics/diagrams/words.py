@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Puts answers into words, beside the pictures of them: regimes, outcomes, verdicts, certainties."""
 
 from __future__ import annotations

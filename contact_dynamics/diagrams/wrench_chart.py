@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Charts of applied planar wrenches give each wrench a place in a flat picture.
 
 If modes depend on a wrench's direction alone (a body at rest), every wrench is a point of a sphere, once its

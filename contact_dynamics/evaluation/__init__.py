@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Predictions beside what came: events are found in recordings, asked about beforehand, and compared.
 
 `recording` has the one call, `evaluate_recording`. A recording is read from a log (`log_states`) or a toss by

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Each event's questions, asked as they would have been some time before, with the states known by then."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What `contact-dynamics evaluate` and `contact-dynamics calibrate` do alike with their arguments."""
 
 from __future__ import annotations

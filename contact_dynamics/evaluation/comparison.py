@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """One prediction beside what was measured, the row of every table, and how far states are apart."""
 
 from __future__ import annotations

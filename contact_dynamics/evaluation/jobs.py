@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Each recording's work, what identifies it, and who does it: this process, several, or a cluster by Dask.
 
 A job is plain data, and what it returns is plain data, so that one process, several, and a cluster do the

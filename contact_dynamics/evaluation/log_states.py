@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The states of a log's bodies, read without ROS, with when each was known to whoever asked."""
 
 from __future__ import annotations

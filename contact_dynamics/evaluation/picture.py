@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Events side by side in rerun: each has a place of its own, with what was measured and what was predicted.
 
 Blue grey is the measured body at the event, with its path shortly before and after. Orange outlines are where

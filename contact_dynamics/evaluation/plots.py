@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """An evaluation as pictures on paper: errors over the horizon, and how well covariances cover."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A recording to evaluate: the states of its bodies, and what whoever asked about them knew besides."""
 
 from __future__ import annotations

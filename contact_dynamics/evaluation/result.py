@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Results of an evaluation, of one recording and of all, as objects, JSON, CSV and Parquet."""
 
 from __future__ import annotations

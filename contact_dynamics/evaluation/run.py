@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """`contact-dynamics evaluate`: recordings are evaluated, and the result is printed, written and drawn."""
 
 from __future__ import annotations

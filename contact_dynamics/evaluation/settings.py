@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What is asked about each event: how long before, under which laws, from how many states."""
 
 from __future__ import annotations

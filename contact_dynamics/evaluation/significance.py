@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Whether one evaluation is better than another on the same events, by more than chance.
 
 Errors of one event under both are paired: what makes an event hard to predict is then in both, and cancels.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What can be evaluated: logs with states, and recorded tosses; found in folders, named, and read."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Comparisons of one kind, body, surface, horizon, method and law, put together."""
 
 from __future__ import annotations

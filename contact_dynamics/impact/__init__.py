@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """An impact (Mason, lecture 27) changes a body's velocity. These chapters say what it is afterwards.
 
 `law` has the laws of restitution and the outcomes. `energy` judges what these laws do to energy. `planar` and

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The impact of an uncertain state has a mean, a covariance and a probability of each outcome.
 
 An impact is not smooth in the state, because sliding may stop or turn. So nothing is linearised. States are

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """How an impact changes the kinetic energy, and whether the law of restitution created energy.
 
 The change of kinetic energy is the impulse times the mean of the contact's velocities before and after. The

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """This file names the restitution laws and what can happen during an impact (Mason, lecture 27).
 
 Compression collects an amount, and restitution returns a share of it. `spatial.path` has for each law a

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A flight ends at the first contact with planes and obstacles.
 
 `earliest` finds the next landing of a body in its world, with all contacts there. `plane_arrival` finds the

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """This file bounds the accelerations of a moving body's points towards a plane, all along its motion.
 
 A point at r from the centre of mass has the acceleration a + w' x r + w x (w x r). Its part along a plane's

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Finds the end of a body's flight: its first contact with the world, and all contacts there.
 
 At any time one plane separates the body from an obstacle (`contact.on_obstacles`). While the body stays above

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Finds the first time at which a moving body reaches a plane, where the flight of lecture 25 ends.
 
 The shape is convex (`shapes.convex`). Its parts that arrive are corners and rims, corners first. The heights

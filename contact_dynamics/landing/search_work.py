@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Limits the work of searches for contacts, by steps and not by time, so that a question ends alike."""
 
 from __future__ import annotations

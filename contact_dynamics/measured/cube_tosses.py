@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Pfrommer, Halm and Posa published measured tosses of an acrylic cube onto a board. This file reads them.
 
 S. Pfrommer, M. Halm, M. Posa, "ContactNets: Learning discontinuous contact dynamics with smooth, implicit

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """This file finds all events of a measured body: flights, how each ends, and when it rests or slides.
 
 Flights and strikes are found in poses alone (`flights`). A landing's time does not use the body's shape: if

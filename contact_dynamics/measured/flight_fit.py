@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """This file fits a free flight to a stretch of measured poses, in hindsight.
 
 Model: the centre of mass flies a parabola of known gravity, and the angular momentum L about it is constant

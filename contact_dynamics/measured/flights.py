@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """This file finds the free flights of a measured body, and the strikes between them.
 
 A flight grows frame by frame. Each new pose is compared with the prediction of the fitted last frames

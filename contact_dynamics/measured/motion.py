@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The measured states of one body in one stretch of time, as flights and contacts are found in them.
 
 The noise of the poses is stated by the source or estimated from their scatter. Fourth differences remove what

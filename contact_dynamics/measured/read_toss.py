@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """This file reads a recorded toss by path: the package's own, another like it, or a measured cube toss."""
 
 from __future__ import annotations

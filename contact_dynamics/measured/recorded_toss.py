@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """In a recorded toss a tracking system measured a body that flew, bounced and came to rest.
 
 Velocities are estimates from past poses alone (`velocity_estimate`), by the same method for every source. So

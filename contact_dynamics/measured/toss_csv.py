@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The project's own file of one toss is CSV, with a header of comment lines that a person can read.
 
 A header line is `# name [unit]: value`, with the value in JSON. Other comment lines are prose. After the

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Motion under gravity, wrenches and drag is integrated, differentiated and fitted here, with covariances.
 
 `forces` says what acts on a body besides gravity. `integrated` computes its motion, with the differential

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """This file interpolates the state of a body between two published ones.
 
 Velocities are taken to change linearly from one state to the next, and the orientation to turn at a constant

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """This file carries the covariance of a body's state along a free or a forced motion.
 
 Covariances are (12, 12), in the order position (m), rotation vector (rad, world axes, a small rotation

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The differential equations of a body under forces and torques, in the integrator's variables.
 
 `motion.integrated` says which variables these are, and why.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """This file checks that positions are those of one flight: no impact lies among them, and the body falls.
 
 Model: what the fitted motion misses the positions by is white noise and, if an impact lies among them, two

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Besides gravity, constant wrenches and drag act on a body (lecture 24).
 
 A wrench is a force through the centre of mass and a torque about it. Drag follows the usual two laws for

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A free motion is fitted to a short window of published states, so that one noisy velocity does no harm.
 
 Model: a torque-free body in uniform gravity (`contact_dynamics.tumbling`) is seen at n times. There is white

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """This file integrates the motion of a rigid body under forces and torques besides gravity (lecture 24).
 
 The equations are Newton's and Euler's laws about the centre of mass, dp/dt = v, m dv/dt = m g + F, dL/dt = N,

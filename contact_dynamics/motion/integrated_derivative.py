@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """How a motion under forces changes with its initial state: the derivative along the integrated motion.
 
 Let theta be a small rotation applied after the attitude, dL the change of the angular momentum, and dF and dN

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """This file fits a motion under torque and drag to a short window of published states.
 
 Model: a body moves under gravity, a constant wrench, drag and a user's function (`motion.integrated`), and is

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """This file estimates velocities as a tracking system does, from past measured poses alone.
 
 Model: over the last few frames each coordinate of the position, and of the rotation vector relative to the

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Poses do not show the whole turns between them. Angular velocities do.
 
 A body that turns by half a turn or more from one pose to the next looks as if it turned slower, or backwards.

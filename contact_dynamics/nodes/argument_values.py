@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The values that ROS's arguments give to parameters, and of which type ROS reads each.
 
 Where a file gives a parameter a value of one type and `-p` another of a type that ROS looks at later, ROS

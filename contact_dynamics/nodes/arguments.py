@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """These are the arguments that every node of this package takes on the command line, besides ROS's own.
 
 This file imports no ROS, so that `--help` works without it.

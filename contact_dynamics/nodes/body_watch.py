@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Watches whether the states of each body come and are kept, as `/diagnostics` reports it."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Notes when each request came and each answer left, because service events come only afterwards.
 
 A service publishes its events while it works, and this process receives them after the answer has left. Their

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Tells how the server is, once a second on /diagnostics, to people and to monitors.
 
 `situations` lists what makes a status a warning or an error.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The UDP ports of a ROS domain, at which its participants discover each other.
 
 The numbers are those of OMG, DDSI-RTPS 2.2, section 9.6.1. Which ports are in use is known on Linux only.

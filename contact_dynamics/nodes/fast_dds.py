@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Two faults of Fast DDS 2.14 that users would notice, and how our nodes get around them.
 
 The whole file can go when a killed process and a new one no longer trouble the others without it:

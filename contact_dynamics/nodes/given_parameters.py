@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Values by the names of parameters, as the source of the server's parameters, without ROS."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Remembers which clients seemed gone, for a short time, on the monotonic clock."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Subscriptions that no executor waits for: their node empties them all at once.
 
 An executor wakes for each message and calls a function for each. At 20 000 messages a second that takes 11 µs

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The server's log. It hands the messages of subscriptions and services to a recorder as bytes."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Makes a node the source of its parameters, and refuses parameters that it does not have."""
 
 from __future__ import annotations

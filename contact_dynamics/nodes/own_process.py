@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a node does to its own process before it starts: its memory, its output, and ROS's log files."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A change of parameters as ROS tells it, `rcl_interfaces/ParameterEvent`, read and written.
 
 To read one needs no ROS. The log has one for each change, at the time from which on it counts.

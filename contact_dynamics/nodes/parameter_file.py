@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A file of parameters, as ROS takes it, as the source of the server's parameters, without ROS.
 
 Those sections count that ROS gives to the node ``contact_dynamics``. A later one counts more than an earlier.

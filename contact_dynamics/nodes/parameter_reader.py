@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Reads parameters from a source, and refuses what is not allowed by the parameter's name.
 
 This file imports no ROS. The values come from a `ParameterSource`: a node (`node_parameters`), or the log of

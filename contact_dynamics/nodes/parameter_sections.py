@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The sections of a YAML file of parameters: their nodes, those that miss their node, and repeated keys.
 
 ROS gives a node the parameters of all sections whose name fits its full name, and says nothing of the others,

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The server's parameters. Each is declared once, with its description and range, and read into domain types.
 
 Users edit the commented file `config/server.yaml`. A test checks that both have the same parameters.

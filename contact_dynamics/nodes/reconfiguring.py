@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a change of the configuration may change while the server serves, and what it means for its states.
 
 Bodies, surfaces, gravity, tolerances and most limits may change at any time. Topics, the log and the worker

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Writes how a run was configured as text into its log, and reads it back without ROS.
 
 `PARAMETERS` and `TOPICS` are JSON, so that a number, a text and a list stay what they are, to the last bit.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Runs a node until its process is told to stop. Every node of this package has this part of `main`.
 
 rclpy's own signal handlers end the context at once, so that messages which have come already cannot be taken

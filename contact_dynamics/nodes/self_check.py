@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Finds out whether messages still reach this process: the node's self-check.
 
 A process can go deaf while everything else looks well: other nodes see it in the graph, and nothing that they

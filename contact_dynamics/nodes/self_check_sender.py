@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The process of a self-check: joins the domain as a new client does, and sends a token for a while.
 
 It ends with 0 when it has sent the token, whether or not somebody received it.

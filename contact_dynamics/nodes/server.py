@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The server: one process with the services, one store of states, and the log.
 
 It watches published states and answers the services of `questions.services`. Drawing happens in another

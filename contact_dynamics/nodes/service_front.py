@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A service's front takes requests, answers them or has them answered, and sends the responses.
 
 A quick question is answered at once. Another goes to a worker, and the server goes on until its answer comes.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """While it is configured, the server has a store of states, a log, workers and services."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The situations that `/diagnostics` reports: the level of each, what it says, and the test that shows it.
 
 A status is OK if none of its situations is present. Each of them ends when its cause does. What happens at an

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The sources of published states: which there are, and what makes states of their messages, live or logged.
 
 Each source has an adapter in `msg_adapters`. Installed packages can bring further ones by entry points of the

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Subscriptions to published states: each message is logged as it came and kept as a state.
 
 They are raw: the log takes the bytes, so that it holds what was sent. To make a state of them takes forty

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What is wrong with the topics of states: counted by topic and kind, and told from time to time.
 
 It is a message that is refused, messages that got lost on the way, a topic that fell silent, and a body whose

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Refuses parameters that are given and that nobody reads. ROS would ignore them."""
 
 from __future__ import annotations

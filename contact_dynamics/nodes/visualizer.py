@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The visualizer: shows bodies, surfaces, contacts and every answer of a server in rerun, live or to a file.
 
 It is a process of its own: it listens to the bodies' states and to the service events that the server

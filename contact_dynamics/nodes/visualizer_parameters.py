@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the visualizer is configured with besides the server's parameters (`config/visualizer.yaml`).
 
 The server knows these parameters too, as one file may configure both. So this file does not load rerun.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The parameters of each body, with the sources of its states, and of each surface.
 
 A shape is one of several primitives, with its pose and the mass that fills it.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The constants of a rotation are computed in doubles, alone or in arrays, or in decimals.
 
 The formulas are written once for all these numbers. Long motions need extended precision: an error of one

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Nonlinear least squares over clusters of observations, with outliers, bounds and undetermined directions.
 
 Observations come in groups. Each has several whitened residuals, and belongs to a cluster, such as one

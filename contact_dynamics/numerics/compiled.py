@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """This file imports modules of the compiled core: those that have a `.pxd` with C types beside their `.py`.
 
 Both forms give the same bits, and the compiled one is much faster. Python imports it by itself where it

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """This file finds convex hulls by Qhull. If rounding makes Qhull give up, it tries again with turned points.
 
 Qhull merges facets that are nearly one. Where points are symmetric, or lie nearly in a plane, rounding can

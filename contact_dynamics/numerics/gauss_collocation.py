@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Gauss collocation solves linear differential equations y' = K(t) y to rounding, over short pieces.
 
 In each piece y' is a polynomial that obeys the equation at Gauss's points (Hairer, Norsett and Wanner,

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Gauss's and Newton's method finds nonlinear least squares, with steps that are halved until they help.
 
 SciPy's ``least_squares`` finds the same, and the tests compare both. It is not used here for three reasons.

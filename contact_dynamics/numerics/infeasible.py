@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """This file finds out why linear inequalities on non-negative numbers have no solution, if they have none.
 
 It is a dual simplex on a small dense table. By Farkas' lemma, inequalities without solution have a

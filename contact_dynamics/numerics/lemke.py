@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Lemke's pivots solve linear complementarity: find z >= 0 with w = M z + q >= 0 and z . w = 0.
 
 Friction makes M unsymmetric and copositive. Lemke's method then ends at a solution wherever some z >= 0 gives

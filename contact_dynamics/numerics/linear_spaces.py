@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """This file finds orthonormal bases of the span of vectors and of its complement, and their dimensions.
 
 A few plain vectors go through Gram's and Schmidt's method. Rows of a matrix go through its singular values.

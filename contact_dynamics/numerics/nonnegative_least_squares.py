@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """This file solves non-negative least squares, after Lawson and Hanson (1974, ch. 23).
 
 `least_force` chooses among the forces that balance a wrench. It returns those of least sum of squares if none

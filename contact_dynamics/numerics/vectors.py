@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """This file calculates with vectors of three numbers, and finds the tangents of a plane.
 
 `Vector3` is three plain floats. For one answer they are much faster than an array.

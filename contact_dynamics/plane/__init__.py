@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """This chapter has planar problems, and the way between space and a plane of motion.
 
 `types` has a planar body, its velocity, contacts and wrench. `projection` turns a question in space into a

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The force dual is lecture 26's picture of planar wrenches and accelerations.
 
 Take the centre of mass as origin and the radius of gyration as unit of length. Then a wrench and the

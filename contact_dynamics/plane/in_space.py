@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """This file turns a planar problem into a problem in space with the same motion.
 
 The body in space has equal moments of inertia about all axes. Then nothing couples its motion in the plane to

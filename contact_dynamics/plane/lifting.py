@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """This file says whether a planar answer holds in space, and what it says of the body there.
 
 A planar answer holds in space if every contact lies in the plane of motion, or has an equal contact at its

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Finds the plane in which a problem in space is planar, or most nearly so.
 
 Its normal is chosen so that the letters for left and right mean the same under every load and motion: seen

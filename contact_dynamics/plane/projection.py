@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """This file projects questions onto a plane of motion, and says by how much they are not planar.
 
 The plane passes through the centre of mass. Look at it with its normal towards you and a contact's normal up:

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """These types describe a planar body, its motion and its contacts (Mason, lectures 26 and 27).
 
 Coordinates are those of the plane of motion, x and y, with the centre of mass as the origin of all positions.

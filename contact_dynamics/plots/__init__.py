@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Draws results with Matplotlib: the viewer's diagrams, for papers, notebooks and terminals without a viewer.
 
 `toss` and `modes` return a figure of what the physics returns, and `save_figure` writes it. Each of the other

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """These are the arguments of `contact-dynamics plot`."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Draws the diagrams of `contact_dynamics.diagrams` with Matplotlib, each into the axes that are given."""
 
 from __future__ import annotations

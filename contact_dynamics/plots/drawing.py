@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Draws diagrams and their marks with Matplotlib, and writes figures into files."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """This file makes figures of Matplotlib of all diagrams of an answer."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Draws what the physics returns, each result as one figure: `toss` and `modes`."""
 
 from __future__ import annotations

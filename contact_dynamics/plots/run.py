@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The command `contact-dynamics plot` draws the answers of a log into files."""
 
 from __future__ import annotations

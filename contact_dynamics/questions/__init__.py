@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Questions as Python objects: what is asked, what is known when it is asked, and what the answer says.
 
 State a `TumblingQuestion`, an `ImpactQuestion`, a `ContactModeQuestion` or a `TossQuestion`, and `ask` it.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Which contacts separate, slide or stay? All answers that mechanics allows (lecture 26)."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The context that questions are answered with: the world, the published states, and defaults."""
 
 from __future__ import annotations

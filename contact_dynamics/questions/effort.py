@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """How much work a question is: whether its answer is sure to come within some 30 ms.
 
 A server answers such a question at once, and others go to workers (`questions.workers`). What counts here are

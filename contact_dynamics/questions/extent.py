@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """This file limits the numbers of a question about contacts, so that no sum or product of them overflows."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Which velocities follow an impact? Routh's frictional rigid impact (lecture 27)."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The question about an impact: which velocities does a body have just after it?"""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Turns planar contact modes into modes in world axes, so that planar and spatial answers have one form."""
 
 from __future__ import annotations

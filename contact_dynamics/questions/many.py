@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """These questions are about many states of one body, such as the candidates among which a planner chooses.
 
 They go through the batches of the physics, which take a small part of the time of as many single questions:

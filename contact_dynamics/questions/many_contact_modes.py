@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """One question about contact modes for many candidates at once: applied wrenches, or sets of contacts.
 
 Body, state and contacts are looked up once. Each candidate then has the answer of a single question, to the

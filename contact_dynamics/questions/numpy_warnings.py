@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Leaves NumPy's warnings of numbers out in processes that answer whatever they are sent.
 
 What overflows or is not a number is refused by the field's name, counted and reported. NumPy's warning of it

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Turns the world axes of an answer about contact modes back into those of its plane of motion.
 
 Positions are relative to the centre of mass. The answer must have a plane.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """This file chooses between a plane of motion and space, and projects a question onto its plane."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Every impact in an answer has one form, whichever law resolved it and at however many contacts.
 
 The impact chapter has separate results for one contact and for several, in the plane and in space, for one

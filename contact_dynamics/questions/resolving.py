@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Gives each result of the impact chapter the one form that it has in an answer.
 
 The chapter has separate results for one contact and for several, in the plane and in space, for one body and

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """This file finds the times at which a trajectory is asked for, and what ends it."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Questions, answers, and one record for each service, with its types, its adapters and what answers it.
 
 The server, the visualizer, replay, tables, plots and `ask` all read these records. To add a service, add its

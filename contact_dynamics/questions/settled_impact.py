@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Resolves the impact that settles a question about contact modes, and finds the modes after it."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Keeps the published states of each body for as long as questions about the past are answered.
 
 A state can be handed over unread: as its stamp, and a function that reads it. It is read when a question

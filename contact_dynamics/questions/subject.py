@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Finds the body that a question is about, in the state that it gives or that was published."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Where does a tossed body come to rest, and what happens on the way? All lectures in one motion (`toss`)."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Finds the contacts of a question: those that it states, or those that geometry finds."""
 
 from __future__ import annotations

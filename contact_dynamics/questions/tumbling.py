@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Where will a free body be? Torque-free tumbling, or motion under a wrench and drag (lectures 24 and 25)."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Finds out whether published velocities are in other axes than they should be, by the poses between them."""
 
 from __future__ import annotations

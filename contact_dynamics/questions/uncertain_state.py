@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A question or a published message may give a state with its covariance."""
 
 from __future__ import annotations

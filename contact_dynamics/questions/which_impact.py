@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Finds the impact that a question is about: the bodies, their states just before, and the contacts."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """These processes answer questions, each within a time and a memory that are stated.
 
 A question goes to a worker together with all that is known about it. A worker that is not ready when the time

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The log: every state received and every request and response, in MCAP as rosbag2 of Jazzy lays it out.
 
 `BagWriter` writes a log from one thread, and `Recorder` writes it beside a server. `BagReader` and

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """This file writes one MCAP file of a log. `bag_writer.BagWriter` writes a folder of them."""
 
 from __future__ import annotations

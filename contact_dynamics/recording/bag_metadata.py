@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A bag's ``metadata.yaml`` is as rosbag2 of Jazzy writes it (version 9). The MCAP file has the same text.
 
 The code writes the YAML without a library, since the form is fixed and short. JSON strings are valid YAML.

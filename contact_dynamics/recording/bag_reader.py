@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Reads a log: a folder of rosbag2 or one file of it, ours or another's, in the order of its writing.
 
 The files are MCAP or SQLite (``.db3``), split or not, packed as a whole, by message or not at all. The reader

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Writes a log: a folder of MCAP files and the ``metadata.yaml`` that makes it a bag of rosbag2 (Jazzy).
 
 Each file has these parts:

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Turns serialised messages (CDR) into objects, with nothing but the types' texts in the log.
 
 A message begins with four bytes of encapsulation, of which the second says the byte order. Its fields follow

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Reads stamps and identities from serialised messages (CDR) without a message class.
 
 CDR has four bytes of encapsulation, the second of which gives the byte order. Then come the fields, each

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Unpacks the data of a chunk piece by piece, so that a damaged chunk with a huge size takes no memory."""
 
 from __future__ import annotations

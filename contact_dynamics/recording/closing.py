@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a `with` statement closes when its block ends."""
 
 from __future__ import annotations

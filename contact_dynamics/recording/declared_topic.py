@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A topic of a log that is being written: its type, its quality of service, and the times of its messages."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Turns logged bytes into ROS message objects, if ROS and the message's package are installed."""
 
 from __future__ import annotations

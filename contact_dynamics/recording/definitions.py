@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A message type's definition is its full text in ROS's notation and its hash, found by the ament prefixes.
 
 A log explains itself. For each type it has the `.msg` text, followed by the text of each type that it uses

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """These errors tell of misused or damaged logs. A full disk raises its own `OSError`."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The readers of all kinds of files give these types to `bag_reader`."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A gap is a time of which a log has no messages, because its disk refused them."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A log that is written for weeks has limits: how it is cut into files and packed, and which are kept."""
 
 from __future__ import annotations

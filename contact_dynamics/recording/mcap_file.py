@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """This file finds where the records of an MCAP file begin and end."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Reads the messages of an MCAP file. For a span of times it reads only the chunks that the index names."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """An MCAP file ends with a summary, which has its own checksum."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Walks through an MCAP file from front to back, and skips what is damaged.
 
 The walk gives only whole records. A checksum shows that a chunk is whole. Any other record is checked by its

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Makes classes of message types from the texts in a log. They need no ROS.
 
 A log holds the full text of each type (`definitions`). Here the text becomes a class with the fields, the

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Unpacks files and messages of rosbag2's compression modes FILE and MESSAGE, which pack each as a whole.
 
 A packed file is unpacked piece by piece into a temporary one, because a reader has to jump about in it. A

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """rosbag2 writes quality of service as YAML maps with all nine keys, and fails on a partial one.
 
 A topic has a list of them: what each of its publishers offers. The functions use only the attributes of

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A recorder writes a log beside a running server. To hand over a message takes µs and never raises.
 
 Every 100 ms (sooner above 1 MiB) a thread takes the messages that wait, writes and flushes them. So a kill of

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Rewrites a damaged or unfinished log, so that every reader takes it.
 
 What `mcap_walk` reads is written into a new folder: the same topics, types and messages, with an index and an

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Brings requests and responses of a log together, by client and sequence number.
 
 A call can leave four events. This file uses the server's two: request received, response sent. The client's

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Reads the messages of a ``.db3`` file of rosbag2, which is an SQLite database.
 
 SQLite has no checksums of its own, so a flipped bit within a message is not found. If the structure of the

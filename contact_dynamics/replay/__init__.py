@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Logs that answer again: from the file alone and without ROS, every logged question is asked anew.
 
 There are five modes. `verify` compares the answers with those in the log. `info` lists its contents. `rows`

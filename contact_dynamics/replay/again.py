@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Answers questions as the server of a log did, with its configuration and the states that it knew.
 
 It shares the server's code: parameters, states and requests are read by the same functions, the same layer

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """These are the arguments of `contact-dynamics replay`, with its modes, and of `contact-dynamics recover`."""
 
 from __future__ import annotations

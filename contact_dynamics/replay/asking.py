@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Asks questions of a recording that perhaps no server of ours was part of: what would it have said?
 
 The clock is that of the states' stamps. Each question is asked at a state, of what was published by then.

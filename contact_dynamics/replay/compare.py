@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Compares two responses field by field."""
 
 from __future__ import annotations

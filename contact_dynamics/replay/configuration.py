@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A configuration can be given beside a recording: a file of parameters, and values on the command line."""
 
 from __future__ import annotations

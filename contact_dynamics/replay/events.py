@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What happened, in the order in which it came: states of bodies, and answers to questions about them.
 
 `logged.LoggedEvents` reads them from a log of the server. `asking.AskedEvents` reads states from any

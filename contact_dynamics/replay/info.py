@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The contents of a log, or of any other bag: its time span, bodies, topics, and requests by their status."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A log of the server holds states as they came, and answers as they were given."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A log's own record configures the server that answers its questions again.
 
 Without ROS, the messages of a log are read by the definitions in the log. The adapters, however, are those of

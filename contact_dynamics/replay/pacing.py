@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Lets the time of a log pass as it did: at a rate, with pauses, and with what has to be done meanwhile."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """This line on the terminal says how far long work is, where somebody watches."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Publishes the states of a log over ROS as they came, and asks its questions again, each at its time.
 
 A server whose clock is the machine's would refuse the stamps of a log as old. So stamps are shifted to the

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The command `contact-dynamics recover` rewrites a damaged log, so that every reader takes it."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Makes a row for each question of a recording: what was asked, what the answer was, what was then measured.
 
 A question about many states or candidates has a row for each of them. Positions are those of the body's

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The command `contact-dynamics replay`: one function for each mode that needs no ROS."""
 
 from __future__ import annotations

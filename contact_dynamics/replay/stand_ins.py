@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Makes classes of messages from a log's own definitions, for machines where ROS is not installed.
 
 `msg_adapters` imports the classes that ROS generates from interface files. A log holds the text of these

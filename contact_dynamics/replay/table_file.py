@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The table of a log: a `DataFrame` of pandas, or CSV or Parquet in a file, or CSV on the terminal.
 
 When a file is written, memory holds one batch of rows.

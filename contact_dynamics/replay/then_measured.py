@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What was measured at the time that an answer is about.
 
 A flight is measured by the last state that was published before that time. It is carried on to that time as

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Yields the questions of a log in the order in which they came, each after the states known by then.
 
 A log has states in the order in which they came. The events of a call come later in it than the states that

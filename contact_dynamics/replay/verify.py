@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Asks every logged question again, with the states that were logged, and compares the answers."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Draws a recording in rerun: states of bodies, and the answers that it holds or that are asked now."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Rigid bodies have mass properties, states, momenta and energies (Mason, lectures 24 and 25).
 
 `body` has a body's mass properties, its state, and what follows from the two. `published_frame` converts

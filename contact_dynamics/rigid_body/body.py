@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A rigid body has mass properties and a state; momenta and energies follow (Mason, lectures 24 and 25).
 
 Frames: W is the world. B is the body's frame, with its origin at the centre of mass. If a published frame has

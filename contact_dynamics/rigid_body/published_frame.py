@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """This file converts between the published frame of a body and the one that the physics uses.
 
 F is the body's published frame. B is the frame of the physics, with the same axes and its origin at the

@@ -1,1 +1,2 @@
+# SPDX-License-Identifier: Apache-2.0
 """This chapter calculates with unit quaternions and rotation matrices, one at a time and many."""

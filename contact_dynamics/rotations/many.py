@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Many rotations at once are quaternions x, y, z, w, (n, 4), matrices, (n, 3, 3), rotation vectors, (n, 3).
 
 A rotation vector is axis times angle, rad. It is in world axes and turns the attitude R into Exp(theta) R.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """This file calculates with one rotation: a unit quaternion x, y, z, w, as a tuple, or a matrix, (3, 3)."""
 
 from __future__ import annotations

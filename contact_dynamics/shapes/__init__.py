@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Bodies and obstacles have convex shapes.
 
 `convex` has the shapes of bodies, from spheres to rounded polyhedra, and a function for each. An `obstacle`

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Corners given for a convex shape may be those of a concave one. Then its hull is taken, with a warning.
 
 A corner of a convex body is on its hull's surface: at a corner, on an edge, or in a face that a mesh divides.

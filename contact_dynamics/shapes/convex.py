@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A convex shape of a body is the hull of corners and circles, rolled over by a ball.
 
 A sphere is one point and a ball, a capsule is two points and a ball, a box is the hull of its corners, and a

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A convex hull touches with its corners, faces and edges. This file finds their places and directions."""
 
 from __future__ import annotations

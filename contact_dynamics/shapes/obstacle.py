@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """An obstacle is a convex piece of the world with edges and corners, such as a table, a box or a step."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Two orthogonal radii describe a rim. Its points and their heights follow from them."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Whole tosses: the motion of a body from a state in flight to rest, in one call.
 
 `one_toss` is the call, and follows other ways where mechanics does not decide. `simulation` goes from event

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Pushes at several contacts that keep a body out of the world, with round friction cones.
 
 The same problem appears twice. Contact forces change accelerations, and impulses without restitution change

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A whole toss sees corners of a body that are very near to each other as one corner.
 
 Meshes have such corners. A body that rolls over an edge of a micrometre moves less than the height of

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What can happen in a toss that is not known exactly: a tree of the next strikes, regions, and rest.
 
 A region is an ellipsoid about the mean of samples, by their covariance. Half of the samples, or nine tenths,

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A flight of a toss, up to its first contact.
 
 The search is that of `landing.plane_arrival`: a corner's height, its rate and a bound on its acceleration

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The held contacts of a body: its accelerations in their mode, and how it is kept where they are.
 
 Each held contact sticks or slides. A contact that sticks has no acceleration, which is three equations for

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # The types with which history.py compiles.
 
 from contact_dynamics.toss cimport vectors as vec

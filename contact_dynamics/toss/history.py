@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The history of a toss while it is computed: its state, its events, and the `Toss` that results."""
 
 from __future__ import annotations

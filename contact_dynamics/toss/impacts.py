@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The impacts that `strike` puts together: at one contact, and at several contacts of one instant.
 
 - At one contact: Routh's (`impact.spatial`).

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # The types with which laid_flat.py compiles.
 
 cimport cython

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A sample that only rattles on a face from now on is laid flat on it, and slides on.
 
 A body that strikes with a face rattles from corner to corner while it slides, up to its rest. That takes most

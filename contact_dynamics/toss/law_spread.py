@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The law's own spread: by how much velocities after strikes differ from what the law of impact says.
 
 A body is pushed at the contact alone, whatever the law says. So what the law is off by is an impulse through

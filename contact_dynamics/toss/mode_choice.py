@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Which contact mode follows, at a body whose contacts touch and do not approach (lecture 26).
 
 The mode that goes on is tried first: contacts that slide slide on, contacts at rest stick. If mechanics

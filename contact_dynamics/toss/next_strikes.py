@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The next strikes of samples of a toss: flight, Routh's impact, and so on.
 
 The flight of each sample is computed separately (`flight`). The impacts of all samples then form a batch

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A whole toss: free flight, strikes, contact phases and rest, one after the other.
 
 Flights end at the first contact, found to rounding (`flight`). Strikes follow Routh's

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The motion of a body in one contact mode, integrated until the mode ends.
 
 The mode says which contacts stick and which slide, and so what the accelerations are (`forces`). They are

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A whole toss: the motion from a state in flight to rest, its events, and what is undecided about it."""
 
 from __future__ import annotations

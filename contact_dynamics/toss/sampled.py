@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Samples of a toss that is not known exactly, followed through the next strikes or to rest.
 
 The next strikes of all samples are found first (`next_strikes`), in a tenth of a millisecond each. If

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A short step of a body whose contacts strike, stick and leave too fast to be followed (Moreau 1988).
 
 Strikes, modes and their ends can lead to one another at one instant, as where flats jam the body and several

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Follows one toss from event to event: flights, strikes, contact phases, jams, and rest."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A body and the world's flats in plain floats, as a whole toss needs them, and the points that touch.
 
 `solid.pxd` gives the C types with which this file compiles.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Strikes at the contacts of one instant: Routh's impact at each, and the end of many small rebounds.
 
 The contact that approaches fastest is struck first, by Routh's impact at one contact (`impact.spatial`), and

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Samples of a toss that go on to rest, each as a toss does. Several processes can share them."""
 
 from __future__ import annotations

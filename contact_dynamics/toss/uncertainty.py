@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What is not known exactly about a toss, and samples of it.
 
 A state has a covariance, and so have parameters: what a calibration finds of friction, restitution, mass

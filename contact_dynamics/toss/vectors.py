@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Vectors of three numbers and matrices, as in `numerics.vectors`, in the compiled core of tosses.
 
 `vectors.pxd` gives the C types with which this file compiles. Here all numbers are floats, while

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Tumbling (Mason, lecture 25): where a free rigid body will be, at any time, in closed form.
 
 `motion` answers for one body and `many` for many at once. `regime` says what kind of rotation it is. `flips`

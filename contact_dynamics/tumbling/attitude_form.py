@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """This file turns the constants of a motion into the functions of time that `theta` evaluates."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The constants of a free rotation: they are computed once from body and state, and kept."""
 
 from __future__ import annotations

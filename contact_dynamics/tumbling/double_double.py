@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Phases grow linearly with time. Here they lose no digits modulo one, over any number of turns.
 
 The rate and the offset are double-doubles (unevaluated sums of two doubles, 32 digits). The product of the

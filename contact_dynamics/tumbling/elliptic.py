@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """This file computes elliptic integrals without cancellation, in doubles or in decimal arithmetic.
 
 All take the complementary modulus k' = sqrt(1 - m) or Carlson's symmetric arguments, never the parameter m

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A body that spins near its middle axis flips (the Dzhanibekov effect). This file says when, and how surely.
 
 Lecture 25, polhodes. The body spins about its middle axis for a while, turns that axis over, spins on, and

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """This file follows many free motions at once, each at its own time, such as samples of an uncertain state.
 
 The formulas are those for one motion, over arrays and in doubles. Errors of attitude grow by about 1e-16 of

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A free rigid body tumbles without torque, and its centre of mass flies in a parabola (lecture 25).
 
 No integrator steps through time. Any time, past or future, costs the same, and the error does not grow with

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """In Poinsot's picture of a free rotation the energy ellipsoid rolls on the invariable plane (lecture 25).
 
 In the space of angular velocities the ellipsoid w^T I w = 2 T is fixed in the body and the plane w . L = 2 T

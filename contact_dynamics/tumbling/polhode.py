@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The constants of a torque-free rotation follow from its initial angular velocity.
 
 Jacobi's order of axes: the angular velocity circles axis 3, which is the major axis (largest moment) where

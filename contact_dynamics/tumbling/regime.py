@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What kind of rotation a free body makes, by name (lecture 25, polhodes)."""
 
 from __future__ import annotations

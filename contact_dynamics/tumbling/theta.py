@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Quotients of theta functions give the attitude of a tumbling body about its angular momentum.
 
 With the z axis along L, the Cayley-Klein parameters alpha = q_w + i q_z and beta = q_x + i q_y of the

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Draws results in rerun. Nothing comes back from a picture.
 
 It draws the answers of `contact_dynamics.questions` and their parts. They may come from a question asked in

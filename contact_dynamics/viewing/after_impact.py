@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Draws the velocity that a body has after an impact beside the one that was predicted.
 
 Among the curves of the body's speed there is one of each, over the time from which the measured one is found.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Answers in words: the list of all of them, and the newest of each kind."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Arranges the views: the scene with its eye, impulse space, curves over time, and answers in words."""
 
 from __future__ import annotations

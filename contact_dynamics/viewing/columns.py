@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What is drawn of a thing at many times, made ready for rerun once, for all places that get it.
 
 To convert it costs most of what drawing costs. And a chunk, which is what rerun takes and writes, costs about

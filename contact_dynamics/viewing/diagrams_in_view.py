@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Draws the diagrams of answers beside the scene, and remembers which of them are in view.
 
 A planar answer about contact modes has its consistent modes side by side, seen against the plane's normal. If

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Draws diagrams and their marks in rerun, at the recording's current time.
 
 rerun has neither axes nor legends for spatial views. So axes with numbers are drawn with the diagram, the

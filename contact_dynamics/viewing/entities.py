@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The names under which things are drawn, and the timeline."""
 
 from __future__ import annotations

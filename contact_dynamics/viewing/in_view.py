@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Takes out of view what an answer left in the scene once it only hides the bodies.
 
 Of several bodies, the one that the newest answer is about has labels. An impact loses its labels some time

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A recording that remembers what stands in it, so that a place that is opened later gets it too.
 
 A viewer that dies and comes back and the next of several files begin with the picture as it is then: with

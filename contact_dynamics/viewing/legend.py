@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The text that the viewer shows under *Legend*. It says in Markdown how to read the picture."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Draws what was measured: a body's pose, its trail and its curves over time, for many states in one call.
 
 The curves are height and speed. If the mass properties are known, they are energy and momenta too, which do

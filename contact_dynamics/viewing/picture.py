@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The whole picture of a world and of what is asked about it, drawn into one recording as it happens."""
 
 from __future__ import annotations

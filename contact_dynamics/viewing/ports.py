@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Ports of this and other machines: whether a viewer listens there, and still lives, or one can be served."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The newest prediction of each body, with its curves and errors beside the states that are measured.
 
 States may come before the answer that predicted them. So the newest states of a body are kept, and are

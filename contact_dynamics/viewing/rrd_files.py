@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Files that a picture is drawn into, one after the other. Each begins with the picture as it is then.
 
 rerun writes no more into a file after one failure, such as a full disk, and says so only on the console. Then

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Draws what stands still or is drawn once: surfaces as patches of ground, and the shapes of the bodies."""
 
 from __future__ import annotations

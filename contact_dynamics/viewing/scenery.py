@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Draws what keeps its form: surfaces and the shapes of bodies. It can have another form from a time on.
 
 What never changes is drawn without a time, so that it is there from the beginning. rerun shows such a drawing

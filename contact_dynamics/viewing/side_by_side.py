@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Events side by side: each has a place of its own in one scene, row after row, with a table beside them."""
 
 from __future__ import annotations

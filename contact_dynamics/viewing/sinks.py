@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Opens the places where the picture goes: a file, a viewer that is started, served or connected to, or both.
 
 All network addresses are of this machine (127.0.0.1) unless a URL names another. If a viewer dies or hangs

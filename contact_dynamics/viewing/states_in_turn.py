@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Keeps states until it is their turn to be drawn: at a pace, or before an answer that needs them."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Line strips as rerun keeps them, made at once. rerun itself converts a list of strips one by one."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Runs rerun's viewer as its own process, and reports what it says when it fails.
 
 The executable of rerun's wheel is started itself. `python -m rerun` would fail with an ImportError where

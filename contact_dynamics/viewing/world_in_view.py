@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The world as it stands in the scene: its axes, its surfaces, and the bodies that have come into view."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A source of states of one's own: `geometry_msgs/PoseArray`, as simulators publish all their bodies.
 
 A body's place in the array is the number at the end of its frame, as in `box_3`. In the configuration:

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The house: chapters in the lectures' order, each importing only what stands above it in the list.
 
 `docs/architecture.md` draws it.  An import counts wherever it stands, also inside a function or where only

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the page on the architecture names exists, and it names every chapter."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What users see: a first page, and chapters that say what is in them."""
 
 from __future__ import annotations

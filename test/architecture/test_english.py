@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Habits of our texts that are hard to read, as far as a program can see them, and what texts name.
 
 No text begins with "Of", and none says "likewise": both say nothing without the text before them. No text has

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The interface files: a comment for each field, and enumerations that equal those of the physics."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The physics knows nothing of ROS, and adapters know messages only.  `test_chapters` has the order."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """One home for each thing: thresholds in `tolerances.py`, nanoseconds in `constants.py`."""
 
 from __future__ import annotations

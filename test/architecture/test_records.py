@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """`help()` and editors show what every field of a value is, because the class's docstring says it."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Nodes keep parameters, subscriptions, clock and log; a question has types all the way to its response."""
 
 from __future__ import annotations

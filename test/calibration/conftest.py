@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """One calibration of made tosses, on which several files look."""
 
 from __future__ import annotations

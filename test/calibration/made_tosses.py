@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Tosses of a brick whose every parameter is known: a flight, a strike of one corner, and a flight."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Calibration of made tosses, whose every parameter is known."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The spread of residuals beyond their noise."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The law of impact for many variations of strikes at once."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The second way: its residuals do not hang on rounding, and are those of the first way's data."""
 
 from __future__ import annotations

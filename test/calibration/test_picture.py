@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Strikes side by side in rerun: what is drawn of a calibration, in a real file."""
 
 from __future__ import annotations

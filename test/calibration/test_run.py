@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """`contact-dynamics calibrate` from files to files, and its parameters as the server reads them."""
 
 from __future__ import annotations

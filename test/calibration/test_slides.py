@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Friction where contact lasts, from whole tosses that were made with another one than their strikes."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Each case: the package's answer is the exact one, and MuJoCo's simulation answers the same question."""
 
 from __future__ import annotations

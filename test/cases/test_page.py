@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The page of the cases is what `python scripts/cases_page.py` writes."""
 
 from __future__ import annotations

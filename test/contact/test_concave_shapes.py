@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Corners of concave bodies cause a warning, and those of convex ones do not, however a mesh divides them."""
 
 from __future__ import annotations

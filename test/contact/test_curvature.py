@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Accelerations of contacts of every kind, beside twice differentiated gaps of exactly moved geometry."""
 
 from __future__ import annotations

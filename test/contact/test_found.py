@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Contacts that geometry finds for round bodies, and the shapes themselves."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Friction cones, force duals and acceleration centres."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A body deep in a surface is an error wherever contacts are found, never a landing at once or a rest."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Contacts of noisy states: hypotheses pass as often as stated, and corrections are the least ones."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Obstacles with edges and corners: what touches them, by hand and by optimisation, and when."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A contact that a body cannot have, mostly since its state is of another time, is warned of."""
 
 from __future__ import annotations

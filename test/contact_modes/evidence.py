@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Checks accelerations and forces of an answer against Newton's law and lecture 26's table, from scratch."""
 
 from __future__ import annotations

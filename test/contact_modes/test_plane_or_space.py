@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The same questions of a problem in the plane and in space."""
 
 import dataclasses

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Mode letters come with words, verdicts with their modes, and enumerations with help for each member."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The demo as a user runs it: its processes, its table, the files that it leaves, and how it stops."""
 
 from __future__ import annotations

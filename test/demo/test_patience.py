@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Waiting that a process which stood still has not done."""
 
 from __future__ import annotations

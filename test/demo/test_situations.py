@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The examples as they are launched: server, publisher and commentator, each a process, and what is told."""
 
 from __future__ import annotations

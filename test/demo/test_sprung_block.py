@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The physics of the examples does what mechanics says in closed form, within what its springs give way."""
 
 from __future__ import annotations

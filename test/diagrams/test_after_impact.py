@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What was measured after an impact, found from the poses of flights whose velocities are known."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The sliding rod of lecture 27 (worked number 4) and impacts in space, in impulse space."""
 
 from __future__ import annotations

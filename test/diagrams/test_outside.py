@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A flight is shown until a surface is in its way."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Whatever an answer can say has words."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Logs of the package's recorded toss, with other noise, as a server would have written them."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Measured motion whose events are known: exact flights, slides and rests, with noise."""
 
 from __future__ import annotations

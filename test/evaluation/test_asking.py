@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Questions as they would have been asked: with the states that had arrived, and no others."""
 
 from __future__ import annotations

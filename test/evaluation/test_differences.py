@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Distances in deviations, against drawing."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Events found in made motion whose truth is known: when, how many are missed, how many are invented."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """States read from logs: the same events as from the toss itself, whatever clock and configuration."""
 
 from __future__ import annotations

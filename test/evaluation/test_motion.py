@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A body's states in stretches, and how well their poses are measured."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The published tosses of a cube, evaluated as a whole: what anybody can repeat who has the recordings."""
 
 from __future__ import annotations

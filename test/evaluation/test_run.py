@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The command: its tables and files, what it goes on from, what it says of what went wrong."""
 
 from __future__ import annotations

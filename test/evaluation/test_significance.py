@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Two evaluations of the same events: equal ones, one that is better, and chance."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What paths of a command line name, and what identifies it."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """One process, several, and Dask: the same numbers to the bit; a bad recording or worker stops nobody."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Every public constructor, function and method of the physics, with arguments that it takes, by chapter."""
 
 from hostile_values.contacts import CALLS_WITH_CONTACTS

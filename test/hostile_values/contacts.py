@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Calls about contacts, worlds and contact problems."""
 
 from contact_dynamics import (

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Calls about planes of motion, contact modes and what follows from them."""
 
 from contact_dynamics import PlanarContact, PlanarVelocity, contact_modes, plane

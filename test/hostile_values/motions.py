@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Calls about free and forced motion."""
 
 from dataclasses import replace

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Calls about the rigid body and its shape."""
 
 import numpy as np

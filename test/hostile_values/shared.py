@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Ordinary values, of which calls are made before one of their arguments becomes hostile."""
 
 from collections.abc import Callable

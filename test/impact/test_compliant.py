@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The rigid answers are the limit of a stiff spring with friction, in every outcome class.
 
 The spring gives back the part e^2 of its work, so that its limit is the energetic law; the other laws

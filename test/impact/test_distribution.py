@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Uncertain states through an impact: closed forms where the law is linear, counted outcomes elsewhere."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Each restitution law has its rule for paths in space."""
 
 from __future__ import annotations

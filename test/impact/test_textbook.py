@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Impacts that textbooks solve by hand: balls, rods, cradles, cubes and rocking blocks."""
 
 from __future__ import annotations

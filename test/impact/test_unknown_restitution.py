@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """An impact needs restitutions, and says so. Contact modes do not."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Where free flights end: drops with known answers, bodies that touch already, dense sampling as witness."""
 
 from __future__ import annotations

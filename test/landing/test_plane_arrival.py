@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The first contact of a tossed body: beside dense sampling, at grazes, and in every way to begin."""
 
 from __future__ import annotations

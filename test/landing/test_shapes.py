@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """First contacts of round bodies: closed forms, grazes, and dense sampling of their support functions."""
 
 from __future__ import annotations

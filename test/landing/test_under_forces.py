@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """First contacts under torque and drag: closed forms, brute-force steps, dense sampling, and no force."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the engine computed for the recorded toss, without noise, as `record_toss.py --truth` wrote it."""
 
 from __future__ import annotations

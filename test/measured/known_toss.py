@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """An oracle's toss in the demo's own type."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The end of recorded flights, predicted from their first half, beside the noise of a measured pose."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Random values that the questions and answers of every chapter are made of, and whether two are the same."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Random questions and answers about tosses, and their parts."""
 
 from __future__ import annotations

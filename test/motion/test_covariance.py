@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Covariances along free motions: two methods beside each other, known cases, and where not to trust them."""
 
 from __future__ import annotations

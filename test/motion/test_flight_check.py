@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Fits to windows that contain an impact, and to windows that contain none."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Wrenches and drag: what they hold, what they refuse, and that they act as their formulas say."""
 
 from __future__ import annotations

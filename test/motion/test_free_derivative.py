@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The derivative of free motions: beside differences of the closed form, composed, and by its symmetries."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Fits of free motions: exact data, known noise, another minimiser, and windows that say too little."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Bodies under forces: known answers, balances of momentum and energy, brute force, and the closed form."""
 
 from __future__ import annotations

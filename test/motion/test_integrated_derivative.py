@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The derivative of forced motions: beside differences of brute force, the closed form, known solutions."""
 
 from __future__ import annotations

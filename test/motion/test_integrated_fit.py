@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Fits under torque and drag: exact states are found again, errors are as large as their covariance says."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Bodies that turn by half a turn and more from state to state: no fit takes another motion for the true one.
 
 True motions are integrated (`oracles.tumbling_stepped`).

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Contact sets through their message: kinds, curvatures, and what is refused."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Errors name the fields of messages to who sent a message, and arguments to who called a function."""
 
 from __future__ import annotations

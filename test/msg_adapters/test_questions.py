@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Requests become questions: an empty list says nothing."""
 
 from __future__ import annotations

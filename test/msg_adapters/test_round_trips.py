@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Whatever travels in a message comes back as it was: each message and service has a pair of adapters."""
 
 from __future__ import annotations

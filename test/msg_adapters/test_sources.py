@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Messages that robots publish become states: frames, covariances, and velocities from poses alone."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """States as messages: frames, points and stamps survive the border; what makes no sense is refused."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Each field of a request changes the question or is refused by its name: nothing is ignored."""
 
 from __future__ import annotations

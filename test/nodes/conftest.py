@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """One server for the tests that only ask it, since each start of a server takes seconds."""
 
 from __future__ import annotations

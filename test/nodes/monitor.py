@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A client that listens to /diagnostics of a server of its own, for tests that wait for a situation."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Sends bytes to the request topics of a server's services, as ``raw_requests.py COUNT SEED``.
 
 A process of its own, since it calls the middleware (rmw) directly. rclpy cannot: it puts a slash before the

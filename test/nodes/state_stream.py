@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Publishes the brick's states at 500 Hz until it is stopped, and, if asked, a simulated clock at 40 Hz.
 
 A process of its own, as a driver or a simulator is: ``state_stream.py wall``, ``state_stream.py simulated``.

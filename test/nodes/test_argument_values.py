@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Values of the command line are of the type that ROS itself makes of them."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Bad input over the services: each gets its error by field and value, and the node serves on."""
 
 from __future__ import annotations

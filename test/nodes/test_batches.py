@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Many states in one call, over DDS: each has the answer of a single call, and one bad row is named."""
 
 from __future__ import annotations

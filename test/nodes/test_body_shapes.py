@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Configured shapes, where they are, and the inertia of a mass that fills them."""
 
 from __future__ import annotations

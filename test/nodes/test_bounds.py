@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Questions that once silenced the server, over real DDS: each is refused by name, the next one answered."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The times of calls where events get lost or are not the server's: they cost their own call at most."""
 
 from __future__ import annotations

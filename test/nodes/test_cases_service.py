@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Each case over ROS 2: the response has the exact number where the case says."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Parameters that change while the server serves: checked as a whole, taken at once, and logged."""
 
 from __future__ import annotations

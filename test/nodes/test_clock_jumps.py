@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A simulated clock that jumps, over real DDS; and one that nobody goes by."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Contact modes over the service: a block on an incline, with margins, wrench sets and statics."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """/diagnostics over real DDS: each situation of the table is reported as long as its cause is there."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """States that a server must not believe, over real DDS: refused, counted and told, each kind by itself."""
 
 from __future__ import annotations

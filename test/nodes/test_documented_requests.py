@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The requests that the interfaces' README gives for pasting, and the answers that it states."""
 
 from __future__ import annotations

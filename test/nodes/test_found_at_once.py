@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A node that starts again after it was killed is found, and hears, as soon as it can be."""
 
 from __future__ import annotations

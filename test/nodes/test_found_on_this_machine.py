@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Nodes are found on this machine alone, however they are started, unless the environment asks for more."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A log whose disk is full: the server reports it, goes on answering, and logs again once there is room.
 
 A limit on the size of files, which the kernel applies to a running process, refuses each write as a full disk

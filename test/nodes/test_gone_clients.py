@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Clients that seemed gone get no answers for a short time, whatever happens to the machine's clock."""
 
 from __future__ import annotations

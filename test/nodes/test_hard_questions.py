@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Questions that take long, over real DDS: they cost who asks them alone, and end when the server says."""
 
 from __future__ import annotations

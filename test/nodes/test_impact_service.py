@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Impacts over the service: two bodies, several contacts at once, the next landing, beside known answers."""
 
 from __future__ import annotations

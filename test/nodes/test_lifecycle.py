@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The server as a managed node, over the services by which a lifecycle manager brings nodes up and down."""
 
 from __future__ import annotations

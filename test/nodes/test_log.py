@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The log of a real server beside what its client sent and received, read back by three readers.
 
 The session ends in the least convenient way: the server is told to stop, twice, right behind a burst of

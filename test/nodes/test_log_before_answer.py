@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """With `log_before_answer`, what a client has been told is in the log, however soon the server dies then."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The times in the log of a server that is asked while states stream in, also in a simulation.
 
 What counts is that a log can be replayed: the states with a `log_time` up to a request's are those that its

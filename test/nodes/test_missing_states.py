@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Who asks and finds no state is told what became of those that came; the log, asked again, says the same."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A brick at rest whose states are published with noise: the server answers that it rests."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What publishers offer, in the log of a real server and from a log that is published."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The server's parameters out of a file, without ROS: the same as ROS reads, and mistakes named."""
 
 from __future__ import annotations

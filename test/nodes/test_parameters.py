@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The commented configuration files beside what the nodes declare, and what a wrong value gets."""
 
 from __future__ import annotations

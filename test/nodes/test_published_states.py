@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Questions about published states over real DDS: several servers at once, each configured in another way."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Room that DDS reserves for long lists stays untouched, also where a process joins or configures again."""
 
 from __future__ import annotations

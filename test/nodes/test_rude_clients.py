@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Clients that do what they should not, over real DDS: the others are answered, and the server ends well."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A question over a real server and the same question in Python: one answer, to the last bit."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A server that messages do not reach any more notices it, and joins the domain anew."""
 
 from __future__ import annotations

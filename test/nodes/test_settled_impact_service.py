@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A question about contact modes goes on to the impact that settles it, and to the modes after that."""
 
 from __future__ import annotations

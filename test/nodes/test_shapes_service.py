@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Round bodies and a table with edges over the services, as a user configures them."""
 
 from __future__ import annotations

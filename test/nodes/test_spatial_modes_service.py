@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Contact modes in space over the service, and which problem AUTOMATIC takes."""
 
 from __future__ import annotations

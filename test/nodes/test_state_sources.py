@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The server takes states from what robots publish: poses alone, covariances, adapters of one's own."""
 
 from __future__ import annotations

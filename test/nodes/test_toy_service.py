@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A service that a record adds is served, logged, verified, tabulated, drawn and plotted."""
 
 from __future__ import annotations

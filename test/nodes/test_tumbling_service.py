@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Tumbling over the service: times, stamps, contacts, planes, drag, Poinsot, beside known motions."""
 
 from __future__ import annotations

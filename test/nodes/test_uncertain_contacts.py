@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Contacts that are known only to some uncertainty, asked about over the service."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Uncertain and noisy states over the services: covariances carried along, and fits to what was published."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A server whose output nobody reads goes on answering, also when it has much to say."""
 
 from __future__ import annotations

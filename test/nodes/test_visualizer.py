@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The visualizer: states and service events over DDS in, a file out, which is read back."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The visualizer as a process of its own, its parameters, and the configuration that it follows."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The worked numbers of lectures 26 and 27 over the services; another process answers."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Margins, wrench sets and statics over the service beside closed forms: a block, a tray, a grasp, a peg."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A visualizer on a bench: a node beside it publishes what a body and a server would."""
 
 from __future__ import annotations

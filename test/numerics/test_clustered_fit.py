@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Least squares over clusters: linear problems whose answers are known, and how often regions hold them."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Convex hulls in rotations in which Qhull alone gives up."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Linear equations by collocation, beside matrix exponentials and a variable coefficient that is known."""
 
 from __future__ import annotations

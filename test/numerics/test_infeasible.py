@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Linear inequalities without solution: multipliers contradict themselves, and SciPy finds no solution."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Tangents of planes: each choice is at right angles, of unit length, right-handed, and the one it says."""
 
 from __future__ import annotations

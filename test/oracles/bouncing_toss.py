@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Tosses with known answers: exact flights by `rigid_flight` between jumps of velocity, rest, and noise."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Boxes whose contacts would be flush but for noise: on feet, in slots, in stacks and as pegs in holes.
 
 Each box is placed exactly and turned at random. Then noise of one size is added to its normals, or to its

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Planar contact cases in rational numbers, many degenerate on purpose, and their rounding to floats."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Planar contact modes by trying every string over {s, l, r, f}, in exact rational arithmetic.
 
 Slow and obvious: the lecture's table is written down as equations and inequalities for each string, in the

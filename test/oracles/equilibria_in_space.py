@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Bodies at rest by construction: forces drawn within round cones, and the load that they balance.
 
 Contacts are nearly the same in some way: points and normals are off by lengths and angles drawn on their own

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A rigid body under forces by brute force: Euler's equations in body axes, by Runge and Kutta.
 
 Slow, obvious, and sharing nothing with the package, in formulas or in variables.

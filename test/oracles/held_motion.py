@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The motion of a body whose contacts are held, integrated in high precision and without the package.
 
 The unknowns of each instant are the six accelerations and three force components for each contact. Newton's

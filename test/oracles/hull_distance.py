@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Distances and overlaps of convex hulls by optimisation over all their points, without any features.
 
 Slow, obvious, and sharing nothing with the package.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Impact of a body in space as the motion of a body on a stiff spring, integrated in time.
 
 The contact point carries a normal spring that gives back the part e^2 of the work done on it (it unloads

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Routh's planar impact in exact rational arithmetic, by walking the path vertex by vertex.
 
 Slow and obvious on purpose: at each vertex it tries the three contact modes, keeps the one whose force lies

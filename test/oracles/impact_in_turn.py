@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Frictionless strikes in turn, in exact fractions: each takes a normal impulse (1 + e) v / k.
 
 Corners that tie share an impulse equally, which then acts at their mean place.

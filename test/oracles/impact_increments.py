@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Impact at one contact in space by small equal increments of normal impulse, with implicit Coulomb friction.
 
 Slow and obvious on purpose. In each increment the tangential impulse either stops the contact or, where that

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """One interleaving of impacts at several contacts, increment by increment: slow and obvious.
 
 Each contact owes e^2 of the work that compression has taken from it. Who gets the next increment is drawn.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Keller's equations for one contact in space that slides throughout, integrated by SciPy.
 
 State: the body's own velocity, 6 numbers, and nothing else; the contact's velocity and the friction follow

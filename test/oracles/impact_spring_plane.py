@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Planar impacts as the motion of bodies on stiff springs, many at once, in small equal steps of time.
 
 The contact point carries a normal spring that gives back the part e^2 of the work done on it (it unloads

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Impacts in space as the motion of bodies on stiff springs, many at once, in small equal steps of time.
 
 As in `impact_spring_plane`; the tangential impulse of a step stops the contact, or where that would leave the

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """One contact in space with 40 digits: the impulse path by quadrature over the sliding direction.
 
 Let the tangential velocity be u = q (cos a, sin a). Then dq/dp = g(a) and q da/dp = h(a), so that between two

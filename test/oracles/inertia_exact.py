@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Mass properties of a closed triangle mesh in rational numbers, by the divergence theorem over its faces.
 
 The integral of a monomial over the inside is that of its antiderivative in x, times n_x, over the surface;

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Mass properties as lecture 24 defines them: sums over particles, in plain loops.
 
 A shape becomes the nodes of a quadrature that integrates polynomials of degree 2 (times the profile)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Modes in space by construction: accelerations and forces are chosen, and the load follows from them.
 
 Contacts lean against each other. Some separate, some slide from rest, some stick. Where the body turns about

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Modes of a body on one to four planes by construction: a motion and forces are chosen, the load follows.
 
 A motion is drawn under which some contacts stay, and some of these stick. It gives each contact its letter,

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Gaps between exactly moved bodies, in many digits, and their second derivatives by differences.
 
 Slow, obvious, and sharing nothing with the package. Each gap is a function of a pose (p, R); a pose moves

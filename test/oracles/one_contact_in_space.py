@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """One contact at rest in space, on a round cone: every mode, by looking in all directions of sliding."""
 
 from __future__ import annotations

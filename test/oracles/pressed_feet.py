@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A body on a floor whose feet carry known loads: the one motion that it then begins.
 
 Friction does the most it can, so that what it leaves of the applied wrench, in the metric of kinetic energy,

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The flight of a rigid body by brute force: Euler's equations and the quaternion's rate by Runge and Kutta.
 
 Slow, obvious, and sharing nothing with the package. Quaternions are w, x, y, z inside and x, y, z, w outside.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Every combination of letters in space, each with one linear program: slow, and complete by construction.
 
 A contact separates (s), sticks (f), or slides (c) in one of 2 K ways on a pyramid of K edges: opposite to

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A body falls on the floor, by brute force: small steps of time, and an impulse where a corner sinks in.
 
 Slow, obvious, and sharing nothing with the package. Between strikes Euler's equations are stepped by Runge

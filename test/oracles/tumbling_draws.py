@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Random free rotations that reach every singular end, each in its own logarithmic distance."""
 
 from __future__ import annotations

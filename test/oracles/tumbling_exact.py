@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A free body's attitude to 50 digits, the textbook's way and with nothing of the package.
 
 Landau and Lifshitz, Mechanics, 37: body rates are cn, sn, dn of time; two Euler angles follow from where L

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A free body stepped by an integrator: L is constant in the world, w = I^-1 L, R' = [w] R (lecture 25)."""
 
 from __future__ import annotations

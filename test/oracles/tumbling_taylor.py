@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A free body integrated by Taylor series with 40 digits: q' = q w / 2 and I w' = I w x w (lecture 25)."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Whether a planar answer holds in space: mirror images of contacts, and shares of forces."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The plane of motion: what is planar, by how much the rest is not, and which way is right."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The diagrams of this chapter, each drawn from a result, and what is read back from them."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The event tree of a toss: what is drawn is what the distribution says, read back from SVG."""
 
 from __future__ import annotations

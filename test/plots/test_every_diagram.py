@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What holds for every diagram: names, units, colours, and words that neither overlap nor are cut off."""
 
 from __future__ import annotations

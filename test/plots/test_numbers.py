@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Numbers drawn are the numbers of the result, read back from the artists and from SVG."""
 
 from __future__ import annotations

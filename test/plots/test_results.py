@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the physics returns is drawn as it is, without a second type."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The command on the log of a real server, with and without ROS and Matplotlib."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Questions of all kinds with numbers of every size, for the fuzzing of what answers them."""
 
 from __future__ import annotations

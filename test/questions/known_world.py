@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A small world that the tests of questions ask about, and a question of each kind with its answer."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Questions that would take too long, or too much memory, are refused by name."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Questions about contact modes, asked in Python: a block on a floor that is pushed, pulled and dropped."""
 
 from __future__ import annotations

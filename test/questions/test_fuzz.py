@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Whatever is asked, the answer is one, or an error of this package that says what is wrong."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Questions about impacts, asked in Python, beside what momentum and the laws of restitution say."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Many states at once have the answers of as many single questions, to rounding."""
 
 from __future__ import annotations

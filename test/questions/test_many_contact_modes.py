@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Many candidates at once have the answers of as many single questions."""
 
 from __future__ import annotations

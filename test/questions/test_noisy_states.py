@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Contact modes of a brick on a floor whose state is measured with noise, drawn many times."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """When a trajectory is sampled: what is refused when a question is made."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Each service has one record, and what the record names exists."""
 
 from __future__ import annotations

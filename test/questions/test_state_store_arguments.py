@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A store of states and logs reject arguments of wrong types and sizes by name."""
 
 from __future__ import annotations

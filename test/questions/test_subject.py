@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Which body and state a question is about: said, published, fitted, or with another mass."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Questions about whole tosses: the answer is the toss itself, and what is not allowed is named."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Questions about tumbling, asked in Python, beside the parabola and steady spin."""
 
 from __future__ import annotations

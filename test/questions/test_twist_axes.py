@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Velocities in the wrong axes are found from poses, and impacts, noise and jumps are not taken for them."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """States that are handed over unread: read when a question needs one, once; forgotten if it is none."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Answers that hold and are doubtful say so: an open order of strikes, a contact off the shape's surface."""
 
 from __future__ import annotations

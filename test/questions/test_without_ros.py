@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The questions are asked where there is no ROS at all, and the answers are the same numbers."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Workers as real processes: answers, a deadline, a limit of memory, a fault, and a queue that is full."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A log made the real way, once a session, and messages made by hand for tests without ROS.
 
 The real way: states and calls from another process over DDS, raw subscriptions into a `Recorder`.

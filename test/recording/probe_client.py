@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A process that publishes states and calls two services as a robot's would, then says what it did, as JSON.
 
 Run by `conftest.py`, which compares the log with it.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Messages decoded from the definitions in a log, beside what ROS's own classes make of the same bytes."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Logs with flipped bits, wrong lengths and cut ends: all but the damage is read, and nothing wrong.
 
 The files are a real session's, and those of other writers: with attachments, without chunks or checksums.

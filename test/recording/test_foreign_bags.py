@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Recordings that our server never wrote: by rosbags and by mcap, in every form that rosbag2 has."""
 
 from __future__ import annotations

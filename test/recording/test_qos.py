@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Qualities of service in the forms in which bags have them."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """One session between two real processes, read back by every reader at hand, each in its own way."""
 
 from __future__ import annotations

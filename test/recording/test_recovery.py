@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Damaged logs written anew: standard readers take them, and they hold what can be read of the old."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Logs of several files: where one ends, what is kept, and that standard readers take them."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A log of a real server for the tests of replay, and the command line without ROS."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Recordings of a ball that flies, strikes the floor and flies on, exactly as the mechanics has it."""
 
 from __future__ import annotations

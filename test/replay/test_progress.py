@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The line on the terminal that says how far long work is."""
 
 from __future__ import annotations

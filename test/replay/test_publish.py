@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Logs that are published over DDS to a real server, whose own log says what came."""
 
 from __future__ import annotations

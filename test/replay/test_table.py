@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Tables of logs of a server, and of recordings that no server was part of."""
 
 from __future__ import annotations

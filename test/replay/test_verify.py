@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Logs of a real server, asked again: all is as it was, and what was changed is found and named."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Logs that are drawn: the file is read back and has what was logged."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Mass properties and states: what is refused, and momenta and energies beside sums over particles."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Rotations in batches, beside SciPy's, near no turn and near half a turn too."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What setup/build_interfaces.sh says while the compilers work, and when they fail."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The command line where only `pip install .` was run: no ROS, no rerun."""
 
 from __future__ import annotations

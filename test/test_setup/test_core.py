@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The compiled core gives the same bits as the Python that it comes from, and an outdated one is not used.
 
 Numbers are compared as they are, since both round each operation alike. So fused multiply-adds, which round

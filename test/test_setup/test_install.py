@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What setup/install.sh says while pip works, and when it fails."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The launch files, read by the genuine `launch` where that is installed."""
 
 from __future__ import annotations

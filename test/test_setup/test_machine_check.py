@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What is said on a machine that lacks something, before anything is installed."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What `make` does a second time: nothing, unless an input changed, and then what depends on it."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """`make test-matrix` runs the physics where there is neither ROS nor rerun nor a tool of `make test`."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Both packages as ROS sees them: found by colcon, of one version, with every dependency declared."""
 
 from __future__ import annotations

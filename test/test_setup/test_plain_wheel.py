@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The wheel without the compiled core: it installs where nothing compiles, and computes the same numbers."""
 
 from __future__ import annotations

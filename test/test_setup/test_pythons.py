@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Which Pythons the matrix and continuous integration find: those that run, wherever they are."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The policy for SROS 2 allows the server what a running server has, and nothing that it has not."""
 
 from __future__ import annotations

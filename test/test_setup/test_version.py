@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """One version number: from a source tree, and from an installed wheel."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Workflows and containers run what the documents say, and name what there is."""
 
 from __future__ import annotations

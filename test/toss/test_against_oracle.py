@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The contact phases of whole tosses, held against an integration in high precision that shares no code."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Tosses among one to four flats: each comes to an end, gains no energy, and stays out of the flats.
 
 The whole sweep has 10,000 tosses in blocks of ten:

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A body on an edge whose friction hardly suffices: its corners stick, or begin to slide as Coulomb says."""
 
 from __future__ import annotations

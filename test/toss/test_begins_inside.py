@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Tosses of bodies that begin inside a surface, as measured poses do: they come to rest as others do."""
 
 from __future__ import annotations

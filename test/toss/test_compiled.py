@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The compiled core of tosses gives the same bits as the Python that it comes from."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A corner in a groove touches two flats. It is pressed against both, and friction makes it a joint."""
 
 from __future__ import annotations

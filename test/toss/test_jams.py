@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Bodies that jam between flats: what happens at one instant is found for all contacts together."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Samples that only rattle on a face are laid flat: where that holds, and where it must not be done."""
 
 from __future__ import annotations

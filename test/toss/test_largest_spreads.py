@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Uncertainties of any size are sampled or refused by name."""
 
 from __future__ import annotations

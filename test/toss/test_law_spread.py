@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The law's own spread is an impulse at the contact for the most part, for many samples and for one."""
 
 from __future__ import annotations

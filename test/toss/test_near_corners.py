@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Corners of a body that are at one place, or nearly: meshes have them, and a toss must come to rest."""
 
 from __future__ import annotations

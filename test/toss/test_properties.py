@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What holds of every toss of boxes drawn at random: energy never grows, and nothing penetrates."""
 
 from __future__ import annotations

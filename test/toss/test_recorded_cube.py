@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Whole tosses of a real cube, predicted from its flight to rest with its published constants.
 
 The recordings are not part of the repository (`contact_dynamics.measured.cube_tosses` says whose they are).

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Samples of tosses, held against single tosses, against what follows by hand, and against frequencies."""
 
 from __future__ import annotations

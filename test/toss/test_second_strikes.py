@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Second strikes of made tosses: whether they are in their regions, and whether a recording tells them."""
 
 from __future__ import annotations

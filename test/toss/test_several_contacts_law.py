@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The law by which contacts that strike at one instant are resolved within a toss."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Bodies that slide under strong friction, where several contact modes are consistent or none is."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A corner that slides slowly and turns faster than a step can follow stops all the same."""
 
 from __future__ import annotations

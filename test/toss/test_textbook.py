@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Whole tosses whose motion is known: bounces, sliding blocks, falling rods, plates, rolling balls."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Samples that several processes follow to rest: the numbers are those of one process."""
 
 from __future__ import annotations

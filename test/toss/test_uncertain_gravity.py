@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Samples whose gravity is not known: how far they spread, and whether made tosses are in their regions."""
 
 from __future__ import annotations

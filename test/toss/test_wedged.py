@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Bodies that friction may wedge between two flats: they may stick or fall, and a toss tells both."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Free motions of every kind, by name."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Attitude beside 50 digits, for every kind of body and up to 1e9 revolutions.
 
 Those digits, in turn, beside a Taylor series.

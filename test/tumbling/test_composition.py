@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A motion is the same motion begun later: state(t1 + t2) is state(t2) from state(t1), also for t2 = -t1."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The caller's decimal context, or the default one, plays no part in a motion."""
 
 from __future__ import annotations

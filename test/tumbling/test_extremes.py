@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Bodies and times far from the usual: exact as far as doubles mean something, refused by name beyond."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Flips near the middle axis: when they come, and how surely."""
 
 from __future__ import annotations

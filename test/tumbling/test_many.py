@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Many rotations at once: the same as one by one."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Free motion of all kinds of bodies, beside an integrator without elliptic functions; conservation."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Poinsot's picture: its constants against the motion itself, its curves against the surfaces they lie on."""
 
 from __future__ import annotations

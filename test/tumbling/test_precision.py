@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Constants in doubles: as good as extended ones at first, and worse by what their last bits do in time."""
 
 from __future__ import annotations

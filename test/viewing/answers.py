@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Answers to draw, whose numbers a test chooses."""
 
 from __future__ import annotations

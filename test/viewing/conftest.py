@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Drawings go to a file and are read back; whatever rerun finds wrong raises."""
 
 from __future__ import annotations

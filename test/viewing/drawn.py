@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What a finished .rrd file holds, read back with rerun's own reader."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What was measured after an impact is drawn with the numbers that were found."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Arrangements of views cost nothing that lasts, however many are sent, and the newest holds."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A world that changes while it is drawn: each surface and shape has its form of the time."""
 
 from __future__ import annotations

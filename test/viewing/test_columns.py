@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What is made ready for rerun in less time is what rerun itself makes."""
 
 from __future__ import annotations

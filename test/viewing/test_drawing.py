@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Diagrams are drawn in rerun with their numbers, and with words that do not cover each other."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What is cleared from the scene, and when."""
 
 from __future__ import annotations

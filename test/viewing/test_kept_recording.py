@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A place that is opened late gets what stands in the picture, on all timelines."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """States are drawn as often as they may cost."""
 
 from __future__ import annotations

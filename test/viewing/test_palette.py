@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The colours of the viewer, as those see them who see no green."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Files that follow each other when they are full."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """An answer from Python and the same answer out of a response give the same picture."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """States wait for their turn, and an answer has those before it that it needs."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The fan of a toss: what is drawn is what the answer says."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """rerun's own viewer: that it opens, and what is told when it does not."""
 
 from __future__ import annotations

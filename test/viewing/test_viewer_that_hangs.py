@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """rerun's own server, in the place of a viewer, hangs and goes on."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """rerun's own viewer, without a window, dies and comes back: it then has the whole picture."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """rerun's web viewer beside what is served."""
 
 from __future__ import annotations

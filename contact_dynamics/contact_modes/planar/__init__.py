@@ -1,1 +1,2 @@
+# SPDX-License-Identifier: Apache-2.0
 """This chapter finds contact modes in the plane."""

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """This file finds every mode of a planar body that is consistent with mechanics (Mason, lecture 26).
 
 The model is a rigid body in the plane that touches the fixed world with Coulomb friction, under an applied

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """If planar contacts are known only to some uncertainty, this file bounds their rows and friction edges.
 
 Every bound holds for each coordinate alone, and for all contacts in the box at once. With an angle of at most

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Contacts that coincide are answered as one, such as those of a body's two sides in a plane of motion.
 
 Contacts coincide if their places and normals agree within `SAME_ROWS`, and they have the same friction and

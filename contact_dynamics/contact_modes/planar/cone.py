@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The faces of a polyhedral convex cone in R^3 that is given by half-spaces.
 
 `extreme_rays` finds the rays that span it. Its faces are the whole cone, sectors between neighbouring rays,

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Some modes have as many independent equations as unknown forces. This file solves and judges them.
 
 Their forces and accelerations are linear in w+ = (w, m scale). Here w is the applied wrench, m is the mass,

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """This file finds all modes that some acceleration realises without penetration (Mason, lecture 26, "5^n?").
 
 The accelerations that do not penetrate are a polyhedral cone. A contact stays (l, r or f) only on its own

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """This file proves that a planar mode of a body at rest is consistent for all contacts in a box.
 
 If the equations of the mode are independent, their solution is enclosed: the inverse of the nominal matrix

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Vectors in R^3 whose components are floats or decimals. The same formulas work for both."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """This file proves that a planar body at rest has no other mode than one, for all contacts in a box.
 
 A motion q and contact forces that bring about a mode satisfy linear inequalities. Each inequality is relaxed

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Polyhedral convex cones in R^3 are given by half-spaces. This file finds their extreme rays.
 
 It uses the double description method (Motzkin and others 1953). The cone is cut with one half-space after the

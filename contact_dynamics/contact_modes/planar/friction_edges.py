@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """This file gives the wrenches of the edges of friction cones, for the contacts that stay in a mode.
 
 A few edges are computed in plain floats and many in arrays, whichever is faster.

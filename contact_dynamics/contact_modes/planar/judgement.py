@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """This file decides whether mechanics allows a mode, and gives accelerations and forces or a reason against.
 
 Each letter of a mode brings as many equations as unknown forces (lecture 26). For `l` and `r` this is one

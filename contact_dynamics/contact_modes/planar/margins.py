@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Margins say how far an applied wrench is from leaving its contact modes (Mason, lecture 26)."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """This file finds the modes of one planar contact in closed form, case by case (Mason, lecture 26).
 
 The model is a rigid body that touches the fixed world in one point with Coulomb friction. In contact axes the

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A planar problem asks for contact modes in the plane. Its case is the same question in coordinates.
 
 In a case, accelerations and wrenches are vectors of one space. The radius of gyration rho is the unit of

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The answer to a question about contact modes in the plane has a verdict, modes and refused modes.
 
 A mode is a string with one letter for each contact, in the contacts' order (lecture 26): `s` separates, `l`

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """This file answers whether a planar body at rest stays at rest, and what holds it there.
 
 The model is that of `planar_contact_modes`, with the body at rest. Equilibrium is possible if the contact

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """This file finds the verdicts that occur if planar contacts are known only to some uncertainty.
 
 The true contacts are somewhere in the box of a `ContactUncertainty`. A verdict is certain if it is proven for

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The applied wrenches that can bring about a planar mode are the cone pos({a} + {-c_i}) of lecture 26.
 
 Newton's law is m q = w + c, where c is the sum of contact forces. So the wrenches of a mode are w = m q - c,

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """This file finds the applied wrenches of each mode of planar contacts (lecture 26).
 
 The applied wrenches that can bring about a mode are a convex set, and a cone if there are no centripetal

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The contact modes of a body in space that are consistent with mechanics, with directions of sliding.
 
 The model is that of the plane (lecture 26), with Coulomb's round cone. A contact that moves already slides in

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The applied wrench that belongs to a mode's accelerations and forces, by Newton's and Euler's laws."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """If contacts in space are known only to some uncertainty, this file bounds their rows and forces.
 
 If the angle between a normal and the true one is at most theta, the smallest rotation that takes one to the

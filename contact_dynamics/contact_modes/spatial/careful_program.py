@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Whether some edge forces satisfy conditions that nearly coincide.
 
 `dual_simplex` goes on from table to table. Where two contacts or normals are nearly the same, it divides by

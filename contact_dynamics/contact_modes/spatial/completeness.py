@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Whether a case has modes that were not found: every set of them is found, refuted or named.
 
 The search of the pyramids can miss a mode whose friction lies between their edges. Here linear programs hold

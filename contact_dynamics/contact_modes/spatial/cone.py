@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Polyhedral cones in a space of any dimension: their inner points, lines and extreme rays.
 
 A cone is given by its rows, {x : rows x >= 0}. Its rays are the facets of the convex hull of the rows, seen

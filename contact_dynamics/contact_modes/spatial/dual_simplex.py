@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Whether some edge forces satisfy linear conditions, by a small dense dual simplex that can be continued.
 
 Edge forces are >= 0, the motion is an affine function of them, and each condition demands that a combination

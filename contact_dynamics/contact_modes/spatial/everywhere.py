@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """This file proves that a mode of a body at rest in space is consistent for all contacts in a box.
 
 If contacts stick or separate, and the equations of those that stick are independent, their solution is

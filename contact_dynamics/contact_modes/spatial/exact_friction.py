@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Exact friction for a mode in space that was found with friction pyramids.
 
 Where contacts at rest come to slide, friction on a pyramid is up to half a sector away from the direction

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Forces of given letters with Coulomb's round cones, by Newton's method from forces that are close.
 
 A contact that sticks has three unknown components of force, and its acceleration vanishes. A contact that

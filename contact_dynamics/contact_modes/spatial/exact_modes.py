@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Exact modes in place of those whose friction could not be turned against the sliding.
 
 A mode of the friction pyramids is close to one of the round cones, if there is one: with the same letters

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """This file proves that a body at rest in space has no other mode than one, for all contacts in a box.
 
 A motion and contact forces that bring about a mode satisfy linear inequalities, if each contact that slides

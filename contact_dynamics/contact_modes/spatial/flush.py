@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Contacts that are flush but for noise, made exactly flush.
 
 Where normals, or places, are nearly the same, rounding or noise decides how contacts share a load and which

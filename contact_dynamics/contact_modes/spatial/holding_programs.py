@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Linear programs that hold all modes with some letters and some directions of sliding.
 
 Each asks for less than its modes do. A contact that slides in a range of directions has a force in the hull

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Kinematics alone gives a body in space lecture 26's strings, with `c` where a contact stays.
 
 The accelerations (a, alpha) that do not penetrate form a polyhedral cone in R^6, and each mode is one of its

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """How large may a load become before a body at rest begins to move, and how does it move then?"""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The contact forces that the answer shows for a mode in space, and whether they oppose the sliding.
 
 Many forces may bring about the same motion, as under four feet. The answer shows those of least sum of

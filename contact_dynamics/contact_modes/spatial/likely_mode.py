@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The most likely mode: what a body does whose contacts give way a little.
 
 A contact that would penetrate presses in proportion to that. Friction opposes its sliding in the same

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """How far an applied wrench in space is from leaving its contact modes, and into which ones it would.
 
 The applied wrenches of a mode are a convex set in R^6 if no contact at rest begins to slide, or if those that

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """How far an applied wrench is from leaving a mode in which contacts at rest begin to slide in any direction.
 
 Their directions depend on the wrench, so that the wrenches of the mode are not convex. But the ways out of

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The mode that contact forces bring about: its accelerations, its letters and the directions of sliding."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Modes that hold so narrowly that the search refuses them, as where contacts have only just begun to slide.
 
 The search asks that strict inequalities hold by `STRICT`. If contacts begin to slide or to separate more

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """All modes of one contact at rest in space, with Coulomb's round cone, from the roots of a polynomial.
 
 The contact point's acceleration is b + G f for a contact force f. The contact sticks with f = -G^-1 b if that

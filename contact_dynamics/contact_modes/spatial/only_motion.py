@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Whether one mode's motion is the only one, by one matrix, without looking for others.
 
 Let A* be the motion of a mode with forces f*, and A another one with forces f, with d = A - A*. Then d M d is

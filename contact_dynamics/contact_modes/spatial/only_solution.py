@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """In which range of sliding directions the equations of some letters have one solution only.
 
 The equations say that rows of the motion vanish. The motion is a sum of unit changes times the unknowns. Rows

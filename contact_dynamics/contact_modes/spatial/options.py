@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The conditions of each letter of one contact in space: separate, stick, or slide within a sector.
 
 Letters are the leaves of a tree of groups. A group asks for no more than each of its letters does. So if a

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A question about contact modes in space, and its case: the question in the units of the computation.
 
 Accelerations of the body and of its contact points are affine functions of the contact forces. The units are

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Touching contacts with friction pyramids, and linear programs about the forces along their edges."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Forces that realise a mode which the search found, exactly where they can be exact.
 
 Friction is turned exactly against the sliding (`exact_friction`). A body that stays rests to rounding.

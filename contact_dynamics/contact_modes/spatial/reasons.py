@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """This file remembers why letters of uncertain contacts in space were excluded, to exclude others with it.
 
 A reason is a direction of wrenches along which all forces of some letters are positive, like the applied

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Why mechanics refuses contacting and separating strings of a body in space that kinematics allows.
 
 A string of letters s (separates) and c (stays, sticking or sliding) is refused if no mode of it is

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Directions in which contacts that stay can move together along their surfaces, and simplices of them.
 
 The tangential accelerations of all contacts that stay lie in a space of few dimensions: two for one contact,

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Whether forces within Coulomb's round cones keep contacts from moving.
 
 The answer yes comes with such forces, and the answer no with a virtual motion.

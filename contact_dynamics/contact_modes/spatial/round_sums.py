@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Positive sums of rays and of forces in round friction cones, and the sum that is nearest to a given wrench.
 
 A few edges replace the cones at first. The forces that lead nearer to the target become further edges, until

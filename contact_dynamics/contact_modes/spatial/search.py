@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Every combination of letters that some contact forces bring about: a search that refuses many at once.
 
 The search decides three things in turn:

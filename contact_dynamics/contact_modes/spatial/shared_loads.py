@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Forces with which contacts that share a load in many ways begin to slide together, with round cones.
 
 In a given direction of the common motion, each contact's friction has a known direction. Then the sizes of

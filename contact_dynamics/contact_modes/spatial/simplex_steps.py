@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The steps of `dual_simplex` in loops over the numbers of a table, which are fast where they are compiled.
 
 Elsewhere `dual_simplex` takes the same steps with NumPy, because such loops take many times as long in plain

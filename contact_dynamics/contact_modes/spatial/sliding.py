@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Which ways contacts in space can stick and slide together, whatever the forces.
 
 A few lines through each contact cut its tangent plane, so that a contact slides in a sector between two

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Static questions in space: does a body at rest stay, is it jammed or wedged, which disturbance can it take?
 
 The questions are those of the plane (`planar.statics`). Round cones decide whether forces balance the wrench,

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """This file says what one contact that is known only to some uncertainty may do.
 
 A contact separates, sticks, or slides in a direction of some arc. Each of these is an `UncertainWay`. Its

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """How the contacts of a body in space can separate, stick and slide together, whatever the forces.
 
 Rays through a contact divide its tangent plane into the sectors of its friction pyramid. They define planes

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The applied wrenches of each contact mode in space: lecture 26's map of modes, in R^6.
 
 For letters s and f, and for contacts that slide already, the wrenches of a mode are one convex polyhedron:

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The applied wrenches in space that can bring letters about.
 
 They are the wrenches that the motions with these letters need, less the wrenches of contact forces. They are

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """This file finds the next contacts of a body from its shape and the world, or among points that are given.
 
 Both ways return a `Landing`. They recognise a corner, a ball or a given point when it comes back. On a rim,

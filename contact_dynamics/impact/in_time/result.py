@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The result of a landing over several strikes says when each was, and why the sequence ends."""
 
 from __future__ import annotations

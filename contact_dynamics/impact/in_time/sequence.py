@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A landing takes time: corners strike some milliseconds apart, with free flight between the strikes.
 
 In recordings of real bodies, contacts that look simultaneous are mostly not. One corner strikes, the body

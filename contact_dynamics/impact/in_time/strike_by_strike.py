@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Goes from strike to strike: it resolves each, and decides where a sequence waits, goes on or ends."""
 
 from __future__ import annotations

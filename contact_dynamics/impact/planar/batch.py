@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """This file resolves many planar impacts, one after the other by the code of one (`routh`)."""
 
 from __future__ import annotations

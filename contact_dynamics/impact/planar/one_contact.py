@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A planar body strikes the fixed world at one contact (Mason, lecture 27).
 
 The model is Routh's analysis in impulse space (`routh`), with Poisson's, Newton's or the energetic law of

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Routh's construction follows a planar impact through impulse space in closed form (lecture 27; Routh 1860).
 
 The model has one contact with Coulomb friction. Positions do not change during the impact. The normal

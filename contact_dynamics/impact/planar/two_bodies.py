@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Two planar bodies strike each other. Their relative velocity makes this one problem.
 
 The impulses on the two bodies are opposite. So the contact's relative velocity responds with the sum of the

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Several contacts of one body whose impacts interleave: the set of outcomes, from inside and from outside.
 
 Contacts that strike at once share the instant in any way (Halm and Posa, Set-valued rigid-body dynamics for

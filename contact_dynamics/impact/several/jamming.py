@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Contacts can jam: none approaches, and yet no mode is consistent (lecture 26's last remark).
 
 The applied wrench then cannot act for any time, however short, without an impulse. So it acts for a short

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """One body strikes at several contacts at once. No single law is accepted for this, so laws have names.
 
 * SEQUENTIAL (Routh 1860; Ivanov 1995; Smith et al. 2012) applies the law for one contact to one contact after

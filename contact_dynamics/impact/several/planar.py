@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """One planar body strikes at several contacts at once, under the laws of `orders`.
 
 The plane is put into space, where the body gets equal moments about all axes. Such a body moves in the plane

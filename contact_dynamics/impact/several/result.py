@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The result of an impact at several contacts, of one body or of several, and the names of the laws.
 
 `SeveralImpact` and `BodiesImpact` have all fields in common but one, the state or the states. They are two

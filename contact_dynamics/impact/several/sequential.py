@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Several bodies strike each other and the fixed world at several contacts at once.
 
 The laws are those of one body (`orders`). SEQUENTIAL strikes one contact after the other, each as the impact

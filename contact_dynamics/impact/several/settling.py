@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Jammed contacts go through jamming impacts until some contact mode is consistent.
 
 After one jamming impact (`jamming`), contacts may slide on in another direction and jam again. Each impact

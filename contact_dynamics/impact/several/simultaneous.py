@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """This file finds impulses at several contacts at once, which complement the velocities that they lead to.
 
 In compression, or in the whole impact under Newton's law, every contact with the velocity v after and v0

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Contacts that approach equally fast strike as one, so that no order of the list decides between them.
 
 The law for one contact (`impact.spatial`) needs an order, and a tie has none. So tied contacts with the same

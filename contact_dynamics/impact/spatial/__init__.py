@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """This chapter resolves impacts in space. Its `path` and `response` are parts of the compiled core."""
 
 from contact_dynamics.numerics.compiled import import_core

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """This file resolves many impacts in space at once, with the numbers of `one_contact` to the last bit.
 
 They are struck one after the other by the code of one (`response`). Vertices of the impulse paths are not

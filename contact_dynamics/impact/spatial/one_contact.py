@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A body in space strikes the fixed world, or a second moving body, at one contact.
 
 The model is that of the plane (`impact.planar`): bodies are rigid, the impact has no duration, friction is

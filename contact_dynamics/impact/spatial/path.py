@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """This file follows the impulse path of one contact in space, from the first touch to the end of restitution.
 
 The contact first slides. It swerves (`SlidingSeries`), or slides straight if its direction is invariant.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """One impact at a contact in space: how the contact responds to impulses, and what they do to the bodies.
 
 Contact axes are two tangents and the normal. The tangents are the principal ones of the tangential block of

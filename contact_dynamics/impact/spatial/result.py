@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The result of an impact at one contact in space has the state afterwards and the impulse path."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Particles, shapes and meshes have mass properties, sums and principal axes (Mason, lectures 24 and 25).
 
 `from contact_dynamics import inertia`, then for a hammer: ``inertia.combined([inertia.cylinder(...),

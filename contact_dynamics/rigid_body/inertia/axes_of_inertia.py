@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Principal moments and axes have an order, signs and an inertia ellipsoid (lecture 25, eq. 10 to 17).
 
 An inertia matrix determines its principal axes up to order and sign, and, where moments are equal, up to a

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Is a list of triangles a closed surface, wound one way? If not, at which edge does it fail?
 
 Each edge must belong to exactly two triangles, which pass it in opposite directions. Triangles that name a

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Mass distributions of particles and of several parts, which are added and subtracted (lecture 24)."""
 
 from __future__ import annotations

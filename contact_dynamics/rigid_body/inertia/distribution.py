@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A mass distribution has a mass, a centre and an angular inertia in a frame (Mason, lectures 24 and 25).
 
 Shapes are turned into a `MassDistribution`, and several of these can be combined. It may also be a point or a

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The size of a shape is bounded, and its mass is given as such or as a density."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Triangles enclose a volume, whose centre and second moments are exact integrals (lecture 25, eq. 4 to 9).
 
 Each triangle and the origin span a tetrahedron. The sign of its volume says on which side the origin is.

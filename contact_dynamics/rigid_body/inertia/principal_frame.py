@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """This file finds principal moments and axes in extended precision (lecture 25, eq. 10 and 11).
 
 A tumbling body turns by phases that grow with time. So an error of one last bit in a moment becomes an error

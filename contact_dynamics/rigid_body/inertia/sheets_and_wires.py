@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Sheets and wires of no thickness have mass properties in closed form.
 
 Axes are those of the solids: an axis of symmetry is z, and the origin is the centre. Lengths are in m. Give

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Solids of uniform density have mass properties in closed form.
 
 Each solid has axes of its own. An axis of symmetry is z. The origin is the centre. If the two ends of the

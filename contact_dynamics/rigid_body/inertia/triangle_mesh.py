@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Triangles bound solids: closed meshes, and the convex hull of points.
 
 Density is uniform. Coordinates are in m, so scale a mesh in mm first. `closed_surface` says what makes a mesh

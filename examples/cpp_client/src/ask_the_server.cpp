@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Asks a running server about its brick: what the next impact does, and in which contact mode the brick lies.
 // Start `contact-dynamics server` or `ros2 launch contact_dynamics server.launch.py` first.
 //

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The enumeration and every verdict beside an exact trial of all 4^n strings (`oracles.contact_modes`)."""
 
 from __future__ import annotations

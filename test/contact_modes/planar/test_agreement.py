@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """All questions of one planar problem answer alike: modes, statics, margins, wrench sets and refusals.
 
 The problems are at random, degenerate, next to degeneracy and permuted.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Extreme rays of cones beside all cross products of their rows, in whole numbers."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Moving bodies that roll, slide over corners and over curved ground: forces known in closed form."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What cannot matter does not: order, mirror, units of mass, copies, contacts that leave."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Lecture 26's two rods, with the worked numbers of the project's physics page."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Contacts as estimators give them, next to degeneracy, with loads that friction can hold by construction.
 
 Offsets of points and normals are drawn on logarithmic scales of their own. All questions of one problem are

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """One contact: every row of lecture 26's table, with its strictness."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Lever arms much longer and much shorter than the radius of gyration, beside exact trials of all strings.
 
 Long ones end at a thousand radii for sets of any shape: what accelerates at ten thousand can be a difference

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Textbook statics in closed form: incline, ladder, two-finger grasp, peg in a hole."""
 
 from __future__ import annotations

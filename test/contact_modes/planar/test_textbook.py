@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Textbook problems of frictional contact in closed form, on both sides of each threshold.
 
 Blocks on inclines and pushed or braked blocks, the ladder with a climber, the jamming diagram of a peg, two

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Verdicts within an uncertainty of contacts: proofs against samples, margins against closed forms."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The map of modes over applied wrenches beside the modes themselves, and margins beside small pushes."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Every consistent mode in space, beside a linear program for each combination of letters."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Sticking and sliding in space: closed forms, the planar answers in a plane of symmetry, evidence."""
 
 from __future__ import annotations

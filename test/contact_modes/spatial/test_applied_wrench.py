@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """From every consistent mode the wrench that was applied comes back."""
 
 from __future__ import annotations

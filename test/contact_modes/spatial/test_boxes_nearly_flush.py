@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Boxes on feet, in slots, in stacks and as pegs are decided, and soon, whatever the noise of their contacts.
 
 Each mode is checked by mechanics alone, with the contacts that were given.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """No mode of a few oblique contacts is missed: each that was made by construction is listed, or named."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Every mode of an answer obeys Newton's and Coulomb's laws, or the verdict says that it may not."""
 
 from __future__ import annotations

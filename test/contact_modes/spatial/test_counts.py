@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Counts of contacting and separating modes: published ones, and those of polytopes that are known.
 
 Huang, Cheng and Mason, Efficient Contact Mode Enumeration in 3D (WAFR 2020), count the modes of a box with

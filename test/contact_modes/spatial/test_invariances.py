@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What must not change the modes in space: names of contacts, axes, handedness, units of mass."""
 
 from __future__ import annotations

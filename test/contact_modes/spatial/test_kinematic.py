@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Contacting and separating modes in space: counts by hand, and every string beside a linear program."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """How large a push may become: by hand, and against all modes just before and just beyond."""
 
 from __future__ import annotations

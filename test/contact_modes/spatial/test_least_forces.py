@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Where many contact forces cause one motion, the answer shows those of least sum of squares."""
 
 from __future__ import annotations

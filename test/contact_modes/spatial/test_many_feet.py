@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A body on many feet, whose loads are not known: all modes, without trying every cell of their sectors."""
 
 from __future__ import annotations

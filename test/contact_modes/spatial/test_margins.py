@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Margins in space: closed forms, and the margin's own meaning put to the test."""
 
 from __future__ import annotations

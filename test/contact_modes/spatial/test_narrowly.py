@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Modes that hold narrowly: contacts that have just used up their friction begin to slide, however slowly.
 
 The exact answers are those of a plate that turns about one of its edges, and of a box that is pushed.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Contacts in space that are nearly the same: equilibria by construction, whose sticking is never missed."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Modes, statics, margins and wrench sets of one question in space, which never contradict each other."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """No mode is missed on several planes: each that was made by construction is listed, or one is unproven."""
 
 from __future__ import annotations

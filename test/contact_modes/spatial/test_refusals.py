@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Why contacting and separating strings in space are refused: closed forms, and the margin of what holds."""
 
 from __future__ import annotations

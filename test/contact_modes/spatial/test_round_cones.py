@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Coulomb's round cones in space: one contact against an independent solution, several against themselves."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The compiled steps of the dual simplex give the same bits as NumPy's, and as the Python they come from."""
 
 from __future__ import annotations

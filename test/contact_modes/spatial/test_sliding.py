@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Ways of sticking and sliding together: known counts, strings beside linear programs, sampled motions."""
 
 from __future__ import annotations

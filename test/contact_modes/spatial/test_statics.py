@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Statics in space: closed forms, and the plane's answers where a case is planar."""
 
 from __future__ import annotations

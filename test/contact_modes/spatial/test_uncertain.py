@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Verdicts within an uncertainty of contacts in space: proofs against samples, margins against formulas."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The map of modes over applied wrenches in space beside the modes themselves, and closed forms."""
 
 from __future__ import annotations

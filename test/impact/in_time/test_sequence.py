@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Strikes in time with flight between: closed forms, brute force, and what must never happen."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Batches of planar impacts: the scalar numbers to the last bit, and refusals that name the row."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """One planar contact: the lecture's numbers, every outcome class, the laws, and exact arithmetic."""
 
 from __future__ import annotations

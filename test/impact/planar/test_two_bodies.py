@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Two moving bodies: momentum, closed forms, and the fixed world as the limit of a heavy second body."""
 
 from __future__ import annotations

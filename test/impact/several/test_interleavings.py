@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Interleaved impacts: bounds hold for every brute-force interleaving, and drawn outcomes are right."""
 
 from __future__ import annotations

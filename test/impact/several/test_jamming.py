@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Contacts that jam although none approaches: closed forms, Routh's path at one, laws on drawn sets."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """No answer about several contacts depends on the order in which contacts are listed, but where it says so.
 
 The bounds over interleavings are held in `test_interleavings.py`, and ties in `test_tied.py`.

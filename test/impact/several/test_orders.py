@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Several contacts at once: named landings in closed form, and what every law must obey."""
 
 from __future__ import annotations

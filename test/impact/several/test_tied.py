@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Contacts that approach equally fast strike as one: no list decides, and what is symmetric stays so."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Problems of one contact in space, drawn at random."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Friction so small that it changes nothing acts as none does, down to the least number there is."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """One contact in space: two independent integrations, closed forms, the plane inside it, special cases."""
 
 from __future__ import annotations

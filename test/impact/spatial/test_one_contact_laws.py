@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What every impact at one contact in space obeys: its laws, and turned and mirrored problems."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Impulse paths in space are right to rounding, beside 40 digits, also for slender bodies.
 
 Doubles hold the contact's inverse inertia to a rounding of its largest number. A long rod responds a million

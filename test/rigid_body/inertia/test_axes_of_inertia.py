@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Principal axes: what makes them that, their order and signs, equal moments, and the inertia ellipsoid."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Distributions of mass: sums over particles, parallel axes, composition, placing, and what is refused."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Shapes in closed form beside lecture 24's sums over the particles of a quadrature, and textbook values."""
 
 from __future__ import annotations

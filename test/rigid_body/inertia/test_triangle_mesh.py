@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Closed meshes beside exact rational integrals, closed forms and convergence, and refusals with reasons."""
 
 from __future__ import annotations
