@@ -20,6 +20,7 @@ round cones decide (`shared_loads`). What is left over when ranges are narrow is
 from __future__ import annotations
 
 import math
+from collections import Counter
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
@@ -38,7 +39,13 @@ from contact_dynamics.contact_modes.spatial.holding_programs import (
 from contact_dynamics.contact_modes.spatial.only_motion import is_only_motion
 from contact_dynamics.contact_modes.spatial.only_solution import Equations, alone_within
 from contact_dynamics.contact_modes.spatial.pyramid_programs import PyramidPrograms
-from contact_dynamics.contact_modes.spatial.regions import flat_of, gains_in, whole
+from contact_dynamics.contact_modes.spatial.regions import (
+    directions,
+    directions_where_all_slide,
+    flat_of,
+    gains_in,
+    whole,
+)
 from contact_dynamics.contact_modes.spatial.shared_loads import sliding_together
 from contact_dynamics.tolerances import NARROWEST_RANGE, SAME_MOTION, SAME_SLIDING, STRICT
 
@@ -63,6 +70,12 @@ as it leaves letters undecided."""
 
 _CARE: Final = 3
 """Number of additional programs that a `CarefulProgram` counts as."""
+
+_MAX_TRIES: Final = 3
+"""The number of regions with the same letters in whose middle a mode is sought. The second mostly has one."""
+
+_SUSPICIOUS: Final = 2
+"""A mode is sought there after Newton's method has found this many solutions that are none."""
 
 _QUARTER: Final = 0.5 * math.pi
 
@@ -228,6 +241,7 @@ class _Work(PyramidPrograms):
         self._held = {one.letters for one in known}
         self._decided = {one.letters for one in known if not one.alone}
         self._solutions: dict[str, list[_Alone]] = {}
+        self._tries: Counter[str] = Counter()
         for one in known:
             if one.alone:
                 self._solve(one.letters, one.forces)
@@ -372,6 +386,10 @@ class _Work(PyramidPrograms):
             for one in (*self._known, *self.further)
             if not one.alone and _staying(one.letters) == staying
         ]
+        return self._slides_together(letters, near)
+
+    def _slides_together(self, letters: str, near: Sequence[FloatArray]) -> bool:
+        """Return whether all modes with some letters are known, after a search near some motions, (6,)."""
         held = sliding_together(self._search, letters, near)
         if held.forces is None:
             return held.certain
@@ -397,7 +415,8 @@ class _Work(PyramidPrograms):
         if _takes_power(modes):
             self._count()
             return bool(modes.ranges)
-        ranges = _met(_implied(modes), modes.ranges)
+        implied = _implied(modes)
+        ranges = None if implied is None else _met(implied, modes.ranges)
         widest, width = _widest(turning, ranges or {})
         forces = None
         if ranges is not None:
@@ -424,6 +443,8 @@ class _Work(PyramidPrograms):
             forces: Forces that its programs allow.
         """
         letters = modes.letters
+        if self._slides_in_the_middle(modes):
+            return True
         solution = self._inside(letters, ranges)
         if solution is None and width <= _WIDE:
             self._solve(letters, forces, new=True)
@@ -440,6 +461,21 @@ class _Work(PyramidPrograms):
             self._leave(letters)
             self._decided.add(letters)
         return letters in self._decided
+
+    def _slides_in_the_middle(self, modes: _Set) -> bool:
+        """Return whether a mode is found in the middle of a region that stands for all with its letters.
+
+        Where contacts share loads, such modes fill a range of directions. Newton's method, which starts from
+        forces, then mostly finds ever other forces that hold the body at rest.
+        """
+        if modes.region is None or modes.flat is None or self._tries[modes.letters] == _MAX_TRIES:
+            return False
+        if sum(not one.has_letters for one in self._solutions.get(modes.letters, ())) < _SUSPICIOUS:
+            return False
+        self._tries[modes.letters] += 1
+        rays = modes.region.rays
+        middle = (rays / np.linalg.norm(rays, axis=1)[:, None]).sum(axis=0)
+        return self._slides_together(modes.letters, [middle @ modes.flat.image.coordinates])
 
     def _inside(self, letters: str, ranges: Ranges) -> _Alone | None:
         """Return a solution whose directions are in all ranges."""
@@ -513,12 +549,34 @@ def _widest(turning: list[int], ranges: Ranges) -> tuple[int, float]:
     return widest, widths[widest]
 
 
-def _implied(modes: _Set) -> Ranges:
-    """Return the ranges of directions that follow from the region of a set."""
-    if modes.region is None or modes.flat is None:
+def _implied(modes: _Set) -> Ranges | None:
+    """Return the ranges of directions that follow from the region of a set, and from those that it demands.
+
+    It is None if the region has no such motions.
+    """
+    region, flat = modes.region, modes.flat
+    if region is None or flat is None:
         return {}
-    found = modes.region.directions(modes.flat.image)
+    maps = flat.image.maps
+    if modes.ranges:
+        rows = [
+            across @ maps[k]
+            for k, i in enumerate(modes.turning)
+            if i in modes.ranges
+            for across in _sides(*modes.ranges[i])
+        ]
+        rays = region.part(np.array(rows))
+        if len(rays) == 0:
+            return None
+        found = directions_where_all_slide(maps, rays)
+    else:
+        found = directions(maps, region.rays)
     return {i: one for i, one in zip(modes.turning, found, strict=True) if one is not None}
+
+
+def _sides(low: float, high: float) -> FloatArray:
+    """Return rows, (2, 2), that are not negative on directions between two, less than half a turn apart."""
+    return np.array([[-math.sin(low), math.cos(low)], [math.sin(high), -math.cos(high)]])
 
 
 def _met(implied: Ranges, demanded: Ranges) -> Ranges | None:

@@ -18,7 +18,7 @@ import numpy as np
 
 from contact_dynamics.contact_modes.spatial.options import MILDER, acting_edges, ranges_of
 from contact_dynamics.numerics.linear_spaces import seen_and_unseen
-from contact_dynamics.tolerances import ROW_TOLERANCE, STRICT
+from contact_dynamics.tolerances import FEASIBLE, ROW_TOLERANCE, STRICT
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -34,6 +34,10 @@ sectors."""
 
 _NARROW_OF_MORE: Final = 0.64
 """rad. The same angle where there are more dimensions, and thus many regions."""
+
+
+_MOST_RAYS: Final = 24
+"""The largest number of rays of a part of a region."""
 
 
 class Image(NamedTuple):
@@ -103,16 +107,22 @@ class Region(NamedTuple):
         apart, between = unit[one] - unit[other], unit[one] + unit[other]
         return one, other, 2.0 * math.atan2(math.sqrt(apart @ apart), math.sqrt(between @ between))
 
-    def directions(self, image: Image) -> list[tuple[float, float] | None]:
-        """Return the first and the last direction, rad, in which each contact slides in the region.
+    def part(self, rows: FloatArray) -> FloatArray:
+        """Return unit rays, (k, p), whose positive sums hold what of the region some rows, (m, p), allow.
 
-        It is None where a contact may slide in opposite directions, or stick.
+        The rows must not be negative there. Where that would take many rays, the rays hold more.
         """
-        starts, ranges, clear = ranges_of(image.maps @ self.rays.T)
-        return [
-            (start, start + size) if own else None
-            for start, size, own in zip(starts.tolist(), ranges.tolist(), clear.tolist(), strict=True)
-        ]
+        rays: FloatArray = self.rays / np.sqrt((self.rays * self.rays).sum(axis=1))[:, None]
+        for row in rows:
+            heights = rays @ row
+            inside = heights >= -FEASIBLE
+            if inside.all() or inside.sum() * (1 + (~inside).sum()) > _MOST_RAYS:
+                continue
+            near, far = np.maximum(heights[inside], 0.0)[:, None, None], heights[~inside][:, None]
+            between = (near * rays[~inside] - far * rays[inside][:, None]).reshape(-1, rays.shape[1])
+            between /= np.sqrt((between * between).sum(axis=1))[:, None]
+            rays = np.concatenate([rays[inside], between])
+        return rays
 
     def acting_edges(self, image: Image, count: int) -> NDArray[np.bool_]:
         """Return which of ``count`` edges, (m, count), of each contact's pyramid oppose some sliding here."""
@@ -185,6 +195,30 @@ def image_of(normals: FloatArray, frames: FloatArray) -> Image:
     along = frames.reshape(-1, 6) @ free.T
     basis, rest = seen_and_unseen(along)
     return Image(basis @ free, rest @ free, (along @ basis.T).reshape(len(frames), 2, -1))
+
+
+def directions(maps: FloatArray, rays: FloatArray) -> list[tuple[float, float] | None]:
+    """Return the first and the last direction, rad, in which each contact slides in a region.
+
+    It is None where a contact may slide in opposite directions, or stick.
+
+    Args:
+        maps: (m, 2, p), as an image has them.
+        rays: (k, p), whose positive sums are the region.
+    """
+    starts, ranges, clear = ranges_of(maps @ rays.T)
+    return [
+        (start, start + size) if own else None
+        for start, size, own in zip(starts.tolist(), ranges.tolist(), clear.tolist(), strict=True)
+    ]
+
+
+def directions_where_all_slide(maps: FloatArray, rays: FloatArray) -> list[tuple[float, float] | None]:
+    """Return what `directions` does, without the motions in which a contact sticks."""
+    along = maps @ rays.T
+    slides = np.sqrt((along * along).sum(axis=1)) > ROW_TOLERANCE * np.linalg.norm(rays, axis=1)
+    middle = (along * slides[:, None]).sum(axis=2)
+    return directions(np.where(slides[:, None], along, middle[:, :, None]), np.eye(len(rays)))
 
 
 def gains_in(image: Image, power: FloatArray, mass: FloatArray) -> FloatArray:

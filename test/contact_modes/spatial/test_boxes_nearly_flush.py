@@ -29,7 +29,7 @@ ROUNDING = 4.0 * np.finfo(float).eps  # of an acceleration, relative to the fast
 TOUCHES = 1e-6  # m/s
 MOST_UNDECIDED = 0.02
 SOON = 0.2  # s of processor time
-MOST_LATE = 0.15  # share of boxes: those with eight contacts that can move in many ways
+MOST_LATE = 0.05  # share of boxes: those with eight contacts that can move in many ways
 BOXES = 2000
 DECADES = range(-14, -2)
 
@@ -147,6 +147,18 @@ def test_forces_that_hide_the_motion_make_no_mode() -> None:
     """In this stack a mode was found with forces of 3e14 N, under which contacts penetrate at 0.01 m/s^2."""
     verdict, _ = check(1922, noise_of(1922, -4))
     assert verdict == ModeVerdict.UNIQUE
+
+
+@pytest.mark.parametrize(("seed", "decade"), [(74, -13), (74, -11), (1398, -9)])
+def test_stacks_that_may_begin_to_turn_about_a_foot_are_decided_soon(seed: int, decade: int) -> None:
+    """Near a foot about which a stack turns, feet slide any way, but those above each other the same way.
+
+    The search took 1,500 to 4,700 linear programs, and up to 9 s.
+    """
+    answer = contact_modes(problem_of(flush(seed, noise_of(seed, decade))))
+    assert answer.verdict == ModeVerdict.INDETERMINATE
+    assert len(answer.modes) >= 5
+    assert answer.examined <= 600
 
 
 def test_contacts_that_are_flush_are_left_as_they_are() -> None:
