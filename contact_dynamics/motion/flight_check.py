@@ -9,8 +9,12 @@ finds the latest of several impacts.
 
 A body that lies, slides or is carried does not fall: its acceleration is off by more than half of gravity.
 
-Not covered: an impact with fewer than two states after it or before it, one whose change of velocity is
-hidden by the noise, and contacts that act slowly. A jump of the positions themselves counts as an impact.
+If only the newest state comes after an impact, there is no second line: that state is compared with the
+parabola of the others, by the same measures.
+
+Not covered: an impact with fewer than two states before it, one whose change of velocity is hidden by the
+noise, and contacts that act slowly. A jump of the positions themselves counts as an impact, also that of a
+newest state that is an outlier.
 """
 
 from __future__ import annotations
@@ -55,6 +59,8 @@ def velocity_jump(seconds: FloatArray, misses_W: FloatArray) -> float | None:
         if after and 2 * after <= count:  # otherwise, more states before it show better where it is
             break
         count = total if count < total < 2 * count else 2 * count
+    if not after and _newest_is_off(seconds, misses_W):
+        after = 1
     return 0.5 * float(seconds[-after - 1] + seconds[-after]) if after else None
 
 
@@ -96,15 +102,30 @@ def _states_after(t: FloatArray, x: FloatArray) -> int:
     sums = sums + _squares_about_lines(s[::-1], x[::-1])[::-1][_LEAST : 1 - _LEAST]
     best = int(sums.argmin())
     broken = max(float(sums[best]), 0.0)
-    free_smooth, free_broken = 3 * n - 9, 3 * n - 13
+    return n - best - _LEAST if _is_far_better(n, smooth, broken, 3 * n - 13) else 0
+
+
+def _newest_is_off(t: FloatArray, x: FloatArray) -> bool:
+    """Return whether the newest state is off the parabola of the others."""
+    n = len(t)
+    if n <= _FIRST:
+        return False
+    all_of_them, others = _parabola(t, x)[2], _parabola(t[:-1], x[:-1])[2]
+    return _is_far_better(n, float(np.square(all_of_them).sum()), float(np.square(others).sum()), 3 * n - 12)
+
+
+def _is_far_better(n: int, smooth: float, broken: float, free: int) -> bool:
+    """Return whether positions fit another model far better than one parabola.
+
+    Args:
+        n: The number of states.
+        smooth: m^2, the sum of the squares of what the parabola misses them by.
+        broken: m^2, that of the other model.
+        free: The number of positions, times three, less that of the other model's coefficients.
+    """
     least = n * LEAST_NOISE**2
     ratio = (smooth + least) / (broken + least)
-    if (
-        ratio * free_broken < MIN_VARIANCE_RATIO * free_smooth
-        or free_broken * math.log(ratio) < LEAST_EVIDENCE
-    ):
-        return 0
-    return n - best - _LEAST
+    return ratio * free >= MIN_VARIANCE_RATIO * (3 * n - 9) and free * math.log(ratio) >= LEAST_EVIDENCE
 
 
 def _squares_about_lines(s: FloatArray, x: FloatArray) -> FloatArray:

@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
-from contact_dynamics import Body, BodyState, World
+from contact_dynamics import Body, BodyState, Surface, World
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.motion import Drag, FitResult, fit_free_motion, fit_motion
 from contact_dynamics.motion.integrated import ForcedMotion, forced_motion
-from contact_dynamics.questions import Context, PublishedState, TumblingQuestion, ask
+from contact_dynamics.questions import Context, ImpactQuestion, PublishedState, TumblingQuestion, ask
 from contact_dynamics.questions.state_store import StateStore
 from contact_dynamics.tumbling import FreeMotion, free_motion
 
@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 
 BALL = Body.sphere(name="ball", radius=0.03, mass=0.1)
 BRICK = Body.box(name="brick", size=[0.2, 0.1, 0.05], mass=1.0)
+FLOOR = Surface(name="floor", p_WS_W=[0, 0, -0.03], normal_W=[0, 0, 1], friction=0.3, restitution=0.6)
 G = 9.81
 RATE = 120.0
 
@@ -55,15 +56,27 @@ def bouncing(
 
 @pytest.mark.parametrize("noise", [0.0, 1e-6, 1e-4, 1e-3])
 def test_a_fit_across_an_impact_has_not_converged(noise: float) -> None:
-    least = 1.5 if noise < 1e-3 else 2.5  # intervals on each side, with two and three states
+    least = 1.5 if noise < 1e-3 else 2.5  # intervals before and after, with two and three states
     for count, seed in itertools.product((8, 12, 20, 60) if noise < 1e-3 else (12, 20, 60), range(5)):
-        for after in (least, 0.5 * count, count - 1.0 - least):
+        alone = [count - 1.5] if noise < 1e-3 else []  # the newest state is the only one after it
+        for after in (least, 0.5 * count, count - 1.0 - least, *alone):
             states = bouncing(count, after, noise=noise, seed=seed)
             fit = fit_free_motion(BALL, states)
             assert not fit.converged
             assert fit.velocity_jump is not None
             at = after / RATE - 1e-9 * states[-1].stamp_ns
             assert fit.velocity_jump == pytest.approx(at, abs=1.01 / RATE)
+
+
+def test_the_first_state_after_a_bounce_is_an_error_and_not_a_landing_now() -> None:
+    """The fitted flight was in the floor at that state, and was said to land in 0 s."""
+    store = StateStore(history=1.0, timeout=1e9)
+    for state in bouncing(20, 18.5, noise=1e-4):
+        store.add("ball", state)
+    context = Context(world=World(bodies=[BALL], surfaces=[FLOOR]), states=store)
+    question = ImpactQuestion(body="ball", state=PublishedState(fit_window=0.5))
+    with pytest.raises(InvalidFieldError, match=r"fit_window must be a window that begins after the impact"):
+        ask(question, context)
 
 
 def test_of_several_impacts_the_latest_is_found() -> None:
