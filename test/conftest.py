@@ -3,6 +3,9 @@
 
 import os
 
+# Test processes share the cores already. They import no NumPy before this is set.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
 from hypothesis import settings
 
 from contact_dynamics.nodes.own_process import keep_reserved_memory_untouched

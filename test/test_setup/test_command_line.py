@@ -208,3 +208,29 @@ sys.exit(main(sys.argv[1:]))
     told = without_ros.run("-c", outdated, "replay", "--help")
     assert (told.returncode, told.stderr) == (0, "")
     assert "plain Python" in without_ros.run("-c", outdated, "replay", "none").stderr
+
+
+def test_verbs_use_one_thread_of_linear_algebra_unless_more_are_asked_for() -> None:
+    """The threads of NumPy's matrices wait for each other on a busy machine."""
+    program = (
+        "import os\nfrom contact_dynamics.command_line import main\n"
+        "main(['plot', '--output', 'x', 'no.mcap'])\n"
+        "import numpy as np\nnp.linalg.svd(np.eye(200))\nprint(len(os.listdir('/proc/self/task')))"
+    )
+    if (os.cpu_count() or 1) < 2:
+        pytest.skip("one core: NumPy has no further threads")
+
+    def threads(**asked: str) -> int:
+        given = {key: value for key, value in os.environ.items() if not key.endswith("_NUM_THREADS")}
+        done = subprocess.run(
+            [sys.executable, "-c", program],
+            cwd=ROOT,
+            env={**given, **asked},
+            capture_output=True,
+            text=True,
+            check=True,
+        )
+        return int(done.stdout.splitlines()[-1])
+
+    assert threads() == 1
+    assert threads(OPENBLAS_NUM_THREADS="2") == 2

@@ -40,6 +40,9 @@ if TYPE_CHECKING:
 _MAX_STEPS: Final = 25
 """The largest number of Newton's steps. From forces that are close, some five are enough."""
 
+_FREEDOMS: Final = 6
+"""The freedoms of a body in space."""
+
 _MAX_SWAPPED: Final = 5
 """The largest number of contacts that are tried sticking and sliding. Each of them doubles the number of
 letters."""
@@ -120,12 +123,11 @@ def solution_near(
 def _solved(system: _System, forces: FloatArray, *, shared: bool) -> FloatArray | None:
     """Return the unknowns with which no equation is missed, or None if the steps do not settle."""
     unknowns: FloatArray = system.start(forces)
-    if len(unknowns) == 0:
+    if len(unknowns) == 0 or not (shared or system.may_be_regular):
         return None
     for _ in range(_MAX_STEPS):
         missed, slopes = system.at(unknowns)
-        sizes = np.linalg.norm(slopes, axis=0)
-        sizes[sizes == 0.0] = 1.0
+        sizes = _sizes(slopes)
         left, spread, right = np.linalg.svd(slopes / sizes, full_matrices=False)
         seen = spread > LETTERS_REGULAR * spread[0]
         if not (shared or seen.all()):
@@ -137,6 +139,13 @@ def _solved(system: _System, forces: FloatArray, *, shared: bool) -> FloatArray 
         if float(np.abs(missed).max()) <= LETTERS_SETTLED:
             return unknowns
     return None
+
+
+def _sizes(slopes: FloatArray) -> FloatArray:
+    """Return the lengths of columns, or 1 for those of zeros."""
+    sizes: FloatArray = np.sqrt((slopes * slopes).sum(axis=0))
+    sizes[sizes == 0.0] = 1.0
+    return sizes
 
 
 class _System:
@@ -160,6 +169,11 @@ class _System:
                 self._unknowns += [(i, False)] * (3 if letter == STICKS else 1)
                 if letter == STAYS and self._frames[i] is not None:
                     self._unknowns.append((i, True))
+
+    @property
+    def may_be_regular(self) -> bool:
+        """Whether shares of force are so few that they can differ in the motion, which has six components."""
+        return sum(not is_angle for _, is_angle in self._unknowns) <= _FREEDOMS
 
     def start(self, forces: FloatArray) -> FloatArray:
         """Return the unknowns that are nearest to given forces."""
@@ -244,16 +258,13 @@ class _System:
 
     def is_motion_unique(self, unknowns: FloatArray) -> bool:
         """Return whether unknowns nearby that solve the equations too cause the same motion."""
-        slopes, of_unknowns = (
-            self.at(unknowns)[1],
-            self._search.of_forces @ self._forces_and_changes(unknowns)[1],
-        )
-        sizes = np.linalg.norm(slopes, axis=0)
-        sizes[sizes == 0.0] = 1.0
-        spread, right = np.linalg.svd(slopes / sizes)[1:]
-        open_ones = right[int((spread > LETTERS_REGULAR * spread[0]).sum()) :].T
-        moved = (of_unknowns / sizes) @ open_ones
-        return bool(np.abs(moved).max(initial=0.0) <= SAME_MOTION * np.abs(of_unknowns / sizes).max())
+        slopes = self.at(unknowns)[1]
+        of_unknowns = self._search.of_forces @ self._forces_and_changes(unknowns)[1]
+        sizes = _sizes(slopes)
+        slopes, of_unknowns = slopes / sizes, of_unknowns / sizes
+        combined = np.linalg.lstsq(slopes.T, of_unknowns.T, rcond=LETTERS_REGULAR)[0]
+        moved = of_unknowns - combined.T @ slopes
+        return bool(np.abs(moved).max(initial=0.0) <= SAME_MOTION * np.abs(of_unknowns).max())
 
     def sliding(self, forces: FloatArray) -> dict[int, float]:
         """Return the direction, rad, in which forces make each contact slide that begins to."""
