@@ -127,7 +127,8 @@ setup(
     zip_safe=False,
     install_requires=requirements("core"),
     extras_require={
-        **{kind: requirements(kind) for kind in ("view", "plot", "completion", "test", "bench", "docs")},
+        **{kind: requirements(kind) for kind in ("view", "plot", "mesh", "completion")},
+        **{kind: requirements(kind) for kind in ("test", "bench", "docs")},
         # Their wheel is built by `make wheels`. An installed ROS has the interfaces from colcon instead.
         "jazzy": [*requirements("jazzy"), f"{NAME}_interfaces=={VERSION}"],
         "evaluate": [*requirements("evaluate"), *requirements("plot")],

@@ -105,6 +105,10 @@ class ConcaveShapeWarning(UserWarning):
     """The corners are those of a concave body. Shapes are convex, and the convex hull is used."""
 
 
+class ImplausibleBodyWarning(UserWarning):
+    """The mass of a body from a file cannot lie inside its shape, as where lengths are in millimetres."""
+
+
 class FarContactWarning(UserWarning):
     """A contact is farther from a body than its shape reaches: the state or the contact is wrong."""
 

@@ -165,6 +165,12 @@ this counts as zero."""
 VOLUME_ROUNDING: Final = 1e-13
 """Relative to a surface's area times its size, m^3. A smaller volume is rounding, and the surface is flat."""
 
+DENSEST: Final = 30_000.0
+"""kg/m^3. No body is denser than osmium, 22,590. A file in which one is has other units."""
+
+THINNEST: Final = 1.0
+"""kg/m^3. The density of air. A body in a bounding box is hardly lighter."""
+
 SURFACES_TOUCH: Final = 1e-9
 """Relative to a part's size. Surfaces that are nearer than this touch, with nothing in between."""
 

@@ -7,6 +7,7 @@ Surfaces are flats without end (`Surface`), and convex solids and plates (`Obsta
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar, Final
 
 import numpy as np
@@ -26,6 +27,7 @@ from contact_dynamics.validation import (
     check_array,
     check_magnitude,
     check_not_negative,
+    check_positive,
     check_unit,
     check_within,
 )
@@ -47,8 +49,8 @@ class Body(HasMassProperties):
     """A rigid body with a name and a shape.
 
     `Body.box`, `Body.sphere`, `Body.cylinder`, `Body.capsule` and `Body.from_mesh` make a uniform one, whose
-    mass properties and shape agree. `Body.of` takes any distribution of mass, such as measured values or
-    several parts of `inertia`.
+    mass properties and shape agree. `Body.from_urdf` and `Body.from_sdf` read a link of a file. `Body.of`
+    takes any distribution of mass, such as measured values or several parts of `inertia`.
 
     Attributes:
         name: The name by which questions refer to it.
@@ -161,11 +163,12 @@ class Body(HasMassProperties):
     @checks_types
     def from_mesh(
         cls,
-        vertices_F: ArrayLike,
-        triangles: ArrayLike,
+        vertices_F: ArrayLike | str | Path,
+        triangles: ArrayLike | None = None,
         mass: float | None = None,
         *,
         density: float | None = None,
+        scale: float = 1.0,
         name: str = "mesh",
     ) -> Body:
         """Return the uniform solid inside a closed mesh, in whose frame F it is published.
@@ -174,17 +177,64 @@ class Body(HasMassProperties):
         `ConcaveShapeWarning` where that differs.
 
         Args:
-            vertices_F: (n, 3), m.
-            triangles: (m, 3), three indices of vertices each, counter-clockwise seen from outside.
+            vertices_F: (n, 3), m. Or a file: STL, OBJ, PLY or glTF, which requires trimesh
+                (`pip install 'contact-dynamics[mesh]'`).
+            triangles: (m, 3), three indices of vertices each, counter-clockwise seen from outside. None for a
+                file.
             mass: kg, or None if a density is given.
             density: kg/m^3, or None if a mass is given.
+            scale: The vertices are multiplied by it, as by 0.001 if they are in millimetres.
             name: The name by which questions refer to it.
 
         Raises:
-            InvalidFieldError: as `inertia.mesh`.
+            InvalidFieldError: as `inertia.mesh`. Or the file cannot be read, or trimesh is not installed.
             TooLargeError: there are more vertices than `MAX_VERTICES`.
         """
-        return cls.of(name, mesh(vertices_F, triangles, mass=mass, density=density), vertices_F=vertices_F)
+        if isinstance(vertices_F, (str, Path)):
+            if triangles is not None:
+                raise InvalidFieldError("triangles", "triangles beside a file", "None")
+            from contact_dynamics.shapes.files import read_mesh
+
+            vertices_F, triangles = read_mesh(vertices_F)
+        elif triangles is None:
+            raise InvalidFieldError("triangles", None, "(m, 3) indices of vertices")
+        vertices = check_positive("scale", scale) * check_array("vertices_F", vertices_F, (None, 3))
+        return cls.of(name, mesh(vertices, triangles, mass=mass, density=density), vertices_F=vertices)
+
+    @classmethod
+    @checks_types
+    def from_urdf(cls, source: str | Path, link: str | None = None, *, name: str | None = None) -> Body:
+        """Return a link of a URDF with its inertia and its collision shape. Its frame F is that of the link.
+
+        The shape is a box, a cylinder, a sphere, a capsule, or the convex hull of a mesh, which requires
+        trimesh. Of several shapes the hull is taken, with a `ConcaveShapeWarning`. Friction and restitution
+        belong to surfaces here, and are not read.
+
+        Args:
+            source: A file, or its text, as from ``robot_description``. Files of meshes are looked for beside
+                it, in the folders above, and in a sourced workspace (``package://``).
+            link: The link. It is not needed if only one has a mass.
+            name: The name by which questions refer to the body. By default it is the link's.
+
+        Raises:
+            InvalidFieldError: the file cannot be read, it has no such link with a mass, an element is missing
+                or not supported, a number is no number, or no mass has the inertia.
+            TooLargeError: the shape has too many vertices.
+
+        Warns:
+            ImplausibleBodyWarning: the mass cannot lie inside the shape, so that units or placeholders are
+                likely wrong.
+        """
+        from contact_dynamics.shapes.files import body_of_link
+
+        found, mass, shape = body_of_link(source, link)
+        return cls.of(found if name is None else name, mass, shape_F=shape)
+
+    @classmethod
+    @checks_types
+    def from_sdf(cls, source: str | Path, link: str | None = None, *, name: str | None = None) -> Body:
+        """Return a link of an SDF file, with its inertia and its collision shape. See `Body.from_urdf`."""
+        return cls.from_urdf(source, link, name=name)
 
     @classmethod
     @checks_types

@@ -3,8 +3,8 @@
 
 `convex` has the shapes of bodies, from spheres to rounded polyhedra, and a function for each. An `obstacle`
 is a convex piece of the world with edges and corners. `concavity` warns of corners that are not those of a
-convex body. `hull_features` and `rim` have the parts of a shape
-that can touch.
+convex body. `hull_features` and `rim` have the parts of a shape that can touch. `files` reads bodies from
+URDF and SDF files and from meshes.
 """
 
 from contact_dynamics.shapes.convex import (

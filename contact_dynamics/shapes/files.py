@@ -1,0 +1,248 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Bodies from files: a link of a URDF or an SDF file, and meshes.
+
+Both formats have the same elements. Where URDF has an attribute, SDF has an element with that text.
+
+Not covered: xacro (run it first), SDF's ``relative_to``, friction and restitution, which belong to surfaces
+here, and bodies of several parts that are not convex together, of which the hull is taken, with a warning.
+"""
+
+from __future__ import annotations
+
+import os
+import warnings
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+from xml.etree import ElementTree as ET
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from contact_dynamics.errors import (
+    ConcaveShapeWarning,
+    ImplausibleBodyWarning,
+    InvalidFieldError,
+    frames_to_caller,
+)
+from contact_dynamics.rigid_body.inertia import MassDistribution
+from contact_dynamics.shapes import convex
+from contact_dynamics.shapes.concavity import warn_if_concave
+from contact_dynamics.shapes.convex import MAX_VERTICES, NO_SHAPE, ConvexShape
+from contact_dynamics.tolerances import DENSEST, THINNEST
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from xml.etree.ElementTree import Element
+
+    from contact_dynamics.validation import FloatArray
+
+_MOMENTS: Final = (("ixx", "ixy", "ixz"), ("ixy", "iyy", "iyz"), ("ixz", "iyz", "izz"))
+
+
+def body_of_link(source: str | Path, link: str | None) -> tuple[str, MassDistribution, ConvexShape]:
+    """Return the name, the mass and the shape of a link, in the link's frame; see `Body.from_urdf`."""
+    root, folder = _read(source)
+    element = _link(root, link)
+    name = element.get("name", "")
+    mass = _mass(element, f"link {name!r}")
+    shape = _shape(element, name, folder)
+    _warn_if_implausible(name, mass, shape)
+    return name, mass, shape
+
+
+def read_mesh(file: str | Path, scale: Sequence[float] = (1.0, 1.0, 1.0)) -> tuple[FloatArray, FloatArray]:
+    """Return the vertices, (n, 3), m, and the triangles, (m, 3), of a mesh in a file."""
+    try:
+        import trimesh
+    except ImportError:
+        allowed = "arrays of vertices and triangles, unless trimesh is installed"
+        raise InvalidFieldError("file", file, allowed, "pip install 'contact-dynamics[mesh]'") from None
+    try:
+        found: Any = trimesh.load(file, force="mesh")
+    except (ValueError, OSError, KeyError, NotImplementedError, IndexError) as error:
+        raise InvalidFieldError("file", f"{file} ({error})", "a mesh: STL, OBJ, PLY, glTF") from None
+    vertices, triangles = np.array(found.vertices, dtype=float), np.array(found.faces)
+    if vertices.ndim != 2 or len(vertices) == 0:
+        raise InvalidFieldError("file", f"{file} without triangles", "a mesh: STL, OBJ, PLY, glTF")
+    factors = np.array(scale, float)
+    return vertices * factors, triangles if factors.prod() > 0.0 else triangles[:, ::-1]
+
+
+def _read(source: str | Path) -> tuple[Element, Path]:
+    """Return the root of a description, and the folder to which its files are relative."""
+    text, folder = source, Path()
+    if isinstance(source, Path) or not source.lstrip().startswith("<"):
+        try:
+            text, folder = Path(source).read_text(encoding="utf-8"), Path(source).resolve().parent
+        except (OSError, UnicodeDecodeError) as error:
+            raise InvalidFieldError("source", f"{source} ({error})", "a file that can be read") from None
+    try:
+        root = ET.fromstring(str(text))  # noqa: S314 (whoever names the file trusts it like a program)
+    except ET.ParseError as error:
+        raise InvalidFieldError("source", f"XML with an error ({error})", "a URDF or an SDF file") from None
+    if root.tag not in {"robot", "sdf", "link", "model"}:
+        raise InvalidFieldError("source", f"<{root.tag}>", "<robot> (URDF) or <sdf>")
+    return root, folder
+
+
+def _link(root: Element, name: str | None) -> Element:
+    links = {link.get("name", ""): link for link in root.iter("link")}
+    heavy = {key: link for key, link in links.items() if link.find("inertial") is not None}
+    if name is None and len(heavy) == 1:
+        return next(iter(heavy.values()))
+    if name in heavy:
+        return heavy[name]
+    found = "none" if name is None else f"{name!r}, which has no <inertial>" if name in links else repr(name)
+    raise InvalidFieldError(
+        "link", found, f"one of those with a mass: {', '.join(map(repr, heavy)) or 'none'}"
+    )
+
+
+def _mass(link: Element, what: str) -> MassDistribution:
+    """Return the mass of a link, in its frame."""
+    inertial = link.find("inertial")
+    inertia = None if inertial is None else inertial.find("inertia")
+    if inertial is None or inertia is None:
+        raise InvalidFieldError(what, "no <inertia>", "mass and inertia")
+    I_B = [[_numbers(inertia, key, 1)[0] for key in row] for row in _MOMENTS]
+    p, q = _pose(inertial)
+    mass = inertial.find("mass")
+    value = None if mass is None else mass.get("value", mass.text)
+    of_mass = MassDistribution(mass=_parsed(value, "mass", 1)[0], p_FB_F=np.zeros(3), I_B=np.array(I_B))
+    return of_mass.placed(p_GF_G=p, q_GF=q)
+
+
+def _shape(link: Element, name: str, folder: Path) -> ConvexShape:
+    """Return the hull of a link's collision shapes, in its frame."""
+    shapes = [_one_shape(collision, folder) for collision in link.findall("collision")]
+    if len(shapes) <= 1:
+        return shapes[0] if shapes else NO_SHAPE
+    if len({shape.rounding for shape in shapes}) > 1:
+        raise InvalidFieldError(
+            "collision", "balls or capsules beside other shapes", "shapes whose hull has one rounding"
+        )
+    message = f"link {name!r} has {len(shapes)} collision shapes. Their convex hull is taken"
+    warnings.warn(message, ConcaveShapeWarning, stacklevel=frames_to_caller())
+    return ConvexShape(
+        vertices=np.concatenate([shape.vertices for shape in shapes]),
+        rims=tuple(rim for shape in shapes for rim in shape.rims),
+        rounding=shapes[0].rounding,
+    )
+
+
+def _one_shape(collision: Element, folder: Path) -> ConvexShape:
+    geometry = collision.find("geometry")
+    solid = next(iter(geometry), None) if geometry is not None else None
+    if solid is None:
+        raise InvalidFieldError("collision", "no <geometry>", "a box, cylinder, sphere, capsule or mesh")
+    if solid.tag == "box":
+        shape = convex.box(_numbers(solid, "size", 3))
+    elif solid.tag == "sphere":
+        shape = convex.sphere(_numbers(solid, "radius", 1)[0])
+    elif solid.tag in {"cylinder", "capsule"}:
+        make = convex.cylinder if solid.tag == "cylinder" else convex.capsule
+        shape = make(_numbers(solid, "radius", 1)[0], _numbers(solid, "length", 1)[0])
+    elif solid.tag == "mesh":
+        file = _file(_text(solid, "filename") or _text(solid, "uri") or "", folder)
+        scale = _parsed(_text(solid, "scale") or "1 1 1", "scale", 3)
+        shape = convex.polyhedron(_corners(f"mesh {file.name}", read_mesh(file, scale)[0]))
+    else:
+        raise InvalidFieldError("geometry", f"<{solid.tag}>", "a box, cylinder, sphere, capsule or mesh")
+    p, q = _pose(collision)
+    return shape.moved(p, q)
+
+
+def _corners(what: str, vertices: FloatArray) -> FloatArray:
+    """Return the vertices of a mesh, or of its hull if there are too many. Warn if it is concave."""
+    if len(vertices) <= MAX_VERTICES:
+        warn_if_concave(what, vertices)
+        return vertices
+    from scipy.spatial import ConvexHull
+
+    corners: FloatArray = vertices[ConvexHull(vertices).vertices]
+    message = f"{what} has {len(vertices)} vertices. Its convex hull is taken"
+    warnings.warn(message, ConcaveShapeWarning, stacklevel=frames_to_caller())
+    return corners
+
+
+def _file(name: str, folder: Path) -> Path:
+    """Return the path of a mesh that is named by ``package://``, ``model://``, ``file://`` or relatively."""
+    scheme, separator, path = name.partition("://")
+    if not separator:
+        return folder / name
+    if scheme == "file":
+        return Path(path)
+    prefixes = [
+        Path(one) / "share" for one in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if one
+    ]
+    tried = [place / path for place in (folder, *folder.parents, *prefixes)]
+    for each in tried:
+        if each.exists():
+            return each
+    raise InvalidFieldError(
+        "mesh", name, "a file beside the description, above it, or in a sourced workspace"
+    )
+
+
+def _pose(element: Element) -> tuple[FloatArray, FloatArray]:
+    """Return the position, (3,), m, and the unit quaternion x, y, z, w of an element in its link."""
+    pose, origin = element.find("pose"), element.find("origin")
+    numbers = [0.0] * 6
+    if pose is not None:
+        if pose.get("relative_to"):
+            raise InvalidFieldError("pose", f"relative_to={pose.get('relative_to')!r}", "none")
+        numbers = _parsed(pose.text, "pose", 6)
+    elif origin is not None:
+        numbers = [
+            *_parsed(origin.get("xyz", "0 0 0"), "origin xyz", 3),
+            *_parsed(origin.get("rpy", "0 0 0"), "origin rpy", 3),
+        ]
+    return np.array(numbers[:3]), Rotation.from_euler("xyz", numbers[3:]).as_quat()
+
+
+def _text(element: Element, key: str) -> str | None:
+    """Return an attribute, or the text of an element of that name."""
+    return element.get(key, element.findtext(key))
+
+
+def _numbers(element: Element, key: str, count: int) -> list[float]:
+    return _parsed(_text(element, key), f"{element.tag} {key}", count)
+
+
+def _parsed(text: str | None, what: str, count: int) -> list[float]:
+    try:
+        numbers = [float(part) for part in (text or "").split()]
+    except ValueError:
+        numbers = []
+    if len(numbers) != count:
+        allowed = "one number" if count == 1 else f"{count} numbers"
+        raise InvalidFieldError(what, "nothing" if text is None else repr(text), allowed)
+    return numbers
+
+
+def _warn_if_implausible(name: str, mass: MassDistribution, shape: ConvexShape) -> None:
+    """Warn if the mass cannot lie inside the shape: lengths are in mm, or numbers are placeholders."""
+    if shape.is_empty:
+        return
+    low, high = _extent(shape)
+    reach = float(np.linalg.norm(np.maximum(high - mass.p_FB_F, mass.p_FB_F - low)))
+    volume = float(np.prod(high - low))
+    found = []
+    if not np.all((low <= mass.p_FB_F) & (mass.p_FB_F <= high)):
+        found.append("the centre of mass is outside of the shape")
+    elif 0.5 * float(np.trace(mass.I_B)) > mass.mass * reach**2:
+        found.append("the inertia is larger than any mass inside the shape has")
+    if volume > 0.0 and not THINNEST * volume <= mass.mass <= DENSEST * volume:
+        found.append(f"the mass in its bounding box has a density of {mass.mass / volume:.3g} kg/m^3")
+    if found:
+        message = f"link {name!r}: {' and '.join(found)}. Are lengths in metres, and masses in kg?"
+        warnings.warn(message, ImplausibleBodyWarning, stacklevel=frames_to_caller())
+
+
+def _extent(shape: ConvexShape) -> tuple[FloatArray, FloatArray]:
+    """Return the corners, (3,), m, of a shape's bounding box."""
+    centers = [shape.vertices, *(np.array([rim.center]) for rim in shape.rims)]
+    sizes = [np.zeros_like(shape.vertices)]
+    sizes += [rim.radius * np.sqrt(np.maximum(1.0 - np.square([rim.axis]), 0.0)) for rim in shape.rims]
+    center, size = np.concatenate(centers), np.concatenate(sizes) + shape.rounding
+    return (center - size).min(axis=0), (center + size).max(axis=0)

@@ -1,0 +1,179 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Bodies from files: URDF, SDF and meshes."""
+
+from __future__ import annotations
+
+import warnings
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pytest
+
+from contact_dynamics import Body, BodyState, Surface, World, next_landing, shapes
+from contact_dynamics.errors import ConcaveShapeWarning, ImplausibleBodyWarning, InvalidFieldError
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+SIZE = (0.15, 0.09, 0.05)
+UNIFORM = Body.box(SIZE, 0.4)
+MOMENTS = dict(zip(("ixx", "iyy", "izz"), np.diag(UNIFORM.mass_properties.I_B).tolist(), strict=True))
+FLOOR = Surface(name="floor", p_WS_W=[0, 0, 0], normal_W=[0, 0, 1], friction=0.4, restitution=0.3)
+STATE = BodyState(p_WB_W=[0, 0, 0.5], q_WB=[0.2, 0.1, 0.3, 0.927361850], v_WB_W=[0.3, 0, 0], w_WB_W=[2, 3, 1])
+
+
+def urdf(
+    collisions: str, *, moments: dict[str, float] = MOMENTS, origin: str = '<origin xyz="0 0 0"/>'
+) -> str:
+    tensor = " ".join(
+        f'{key}="{value!r}"' for key, value in {**moments, "ixy": 0, "ixz": 0, "iyz": 0}.items()
+    )
+    inertial = f'<inertial><mass value="0.4"/>{origin}<inertia {tensor}/></inertial>'
+    return f'<robot name="r"><link name="base"/><link name="brick">{inertial}{collisions}</link></robot>'
+
+
+def collision(geometry: str, origin: str = "") -> str:
+    return f"<collision>{origin}<geometry>{geometry}</geometry></collision>"
+
+
+BOX = collision('<box size="0.15 0.09 0.05"/>')
+
+
+def lands(body: Body) -> float:
+    found = next_landing(body, STATE, World(surfaces=(FLOOR,)))
+    assert found is not None
+    return found.seconds
+
+
+@pytest.mark.parametrize("rpy", [(0.0, 0.0, 0.0), (0.3, -0.4, 1.1)])
+def test_a_link_is_the_body_that_its_elements_describe(
+    rpy: tuple[float, float, float], tmp_path: Path
+) -> None:
+    """The link's frame is turned against the box's by roll, pitch and yaw about fixed axes."""
+    r, p, y = rpy
+    turn = (
+        np.array([[np.cos(y), -np.sin(y), 0], [np.sin(y), np.cos(y), 0], [0, 0, 1]])
+        @ np.array([[np.cos(p), 0, np.sin(p)], [0, 1, 0], [-np.sin(p), 0, np.cos(p)]])
+        @ np.array([[1, 0, 0], [0, np.cos(r), -np.sin(r)], [0, np.sin(r), np.cos(r)]])
+    )
+    origin = f'<origin xyz="0.1 0.2 0.3" rpy="{r} {p} {y}"/>'
+    file = tmp_path / "brick.urdf"
+    file.write_text(urdf(collision('<box size="0.15 0.09 0.05"/>', origin), origin=origin), encoding="utf-8")
+    for body in (Body.from_urdf(file), Body.from_urdf(str(file), "brick"), Body.from_urdf(file.read_text())):
+        assert body.name == "brick"
+        assert body.p_FB_F == pytest.approx([0.1, 0.2, 0.3], abs=1e-15)
+        I_B = turn @ UNIFORM.mass_properties.I_B @ turn.T
+        moments = body.mass_properties.I_B
+        assert moments == pytest.approx(I_B, abs=1e-17)  # 14 digits of the largest moment
+        corners = UNIFORM.vertices_B @ turn.T
+        assert body.vertices_B == pytest.approx(corners, abs=1e-15)
+
+
+def test_sdf_has_the_same_elements_with_texts() -> None:
+    moments = "".join(f"<{key}>{value!r}</{key}>" for key, value in MOMENTS.items())
+    none = "<ixy>0</ixy><ixz>0</ixz><iyz>0</iyz>"
+    sdf = (
+        '<sdf version="1.9"><world name="w"><model name="m"><link name="brick"><pose>0 0 1 0 0 0</pose>'
+        f"<inertial><mass>0.4</mass><inertia>{moments}{none}</inertia></inertial>"
+        "<collision name='c'><geometry><box><size>0.15 0.09 0.05</size></box></geometry></collision>"
+        "</link></model></world></sdf>"
+    )
+    assert lands(Body.from_sdf(sdf, name="renamed")) == lands(Body.from_urdf(urdf(BOX))) == lands(UNIFORM)
+    assert Body.from_sdf(sdf, name="renamed").name == "renamed"
+
+
+@pytest.mark.parametrize(
+    ("geometry", "shape"),
+    [
+        ('<cylinder radius="0.03" length="0.1"/>', shapes.cylinder(0.03, 0.1)),
+        ('<capsule radius="0.03" length="0.1"/>', shapes.capsule(0.03, 0.1)),
+        ('<sphere radius="0.05"/>', shapes.sphere(0.05)),
+    ],
+)
+def test_round_shapes(geometry: str, shape: shapes.ConvexShape) -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", ImplausibleBodyWarning)
+        found = Body.from_urdf(urdf(collision(geometry))).shape
+    assert (found.rims, found.rounding) == (shape.rims, shape.rounding)
+    assert np.array_equal(found.vertices, shape.vertices)
+
+
+def test_meshes_are_read_beside_the_description(tmp_path: Path) -> None:
+    trimesh = pytest.importorskip("trimesh")
+    (tmp_path / "parts" / "meshes").mkdir(parents=True)
+    file = tmp_path / "parts" / "meshes" / "brick.stl"
+    trimesh.creation.box(extents=[1e3 * side for side in SIZE]).export(file)  # mm
+    for name in ("meshes/brick.stl", "package://parts/meshes/brick.stl", f"file://{file}"):
+        description = tmp_path / "parts" / "brick.urdf"
+        description.write_text(
+            urdf(collision(f'<mesh filename="{name}" scale="0.001 0.001 0.001"/>')), encoding="utf-8"
+        )
+        # STL has single precision
+        assert lands(Body.from_urdf(description)) == pytest.approx(lands(UNIFORM), rel=1e-7)
+    whole = Body.from_mesh(file, mass=0.4, scale=1e-3)
+    moments = whole.mass_properties.I_B
+    assert moments == pytest.approx(UNIFORM.mass_properties.I_B, rel=1e-6, abs=1e-9)
+    description.write_text(urdf(collision('<mesh filename="brick.stl"/>')), encoding="utf-8")
+    with pytest.raises(
+        InvalidFieldError, match=r"file must be a mesh: STL, OBJ, PLY, glTF, got .*brick\.stl"
+    ):
+        Body.from_urdf(description)
+    with pytest.raises(InvalidFieldError, match="triangles must be None"):
+        Body.from_mesh(file, [[0, 1, 2]], mass=1.0)
+
+
+def test_what_no_mass_inside_the_shape_has_is_a_warning() -> None:
+    with pytest.warns(
+        ImplausibleBodyWarning, match="the inertia is larger than any mass inside the shape has"
+    ):
+        Body.from_urdf(urdf(BOX, moments=dict.fromkeys(MOMENTS, 1.0)))
+    with pytest.warns(ImplausibleBodyWarning, match="the centre of mass is outside of the shape"):
+        Body.from_urdf(urdf(BOX, origin='<origin xyz="0 0 0.03"/>'))
+    with pytest.warns(ImplausibleBodyWarning, match=r"density of 5\.93e-07 kg/m\^3. Are lengths in metres"):
+        Body.from_urdf(urdf(collision('<box size="150 90 50"/>')))
+
+
+def test_the_hull_of_several_shapes_is_a_warning_and_balls_beside_boxes_are_an_error() -> None:
+    halves = [
+        collision('<box size="0.075 0.09 0.05"/>', f'<origin xyz="{x} 0 0"/>') for x in (-0.0375, 0.0375)
+    ]
+    with pytest.warns(ConcaveShapeWarning, match="link 'brick' has 2 collision shapes"):
+        assert lands(Body.from_urdf(urdf("".join(halves)))) == pytest.approx(lands(UNIFORM), rel=1e-12)
+    with pytest.raises(InvalidFieldError, match="balls or capsules beside other shapes"):
+        Body.from_urdf(urdf(BOX + collision('<sphere radius="0.01"/>')))
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        (urdf(collision('<box size="0.15 0.05"/>')), "box size must be 3 numbers, got '0.15 0.05'"),
+        (urdf(BOX).replace('value="0.4"', 'value="x"'), "mass must be one number, got 'x'"),
+        (urdf(BOX).replace('value="0.4"', 'value="-1"'), "mass must be .*> 0"),
+        (urdf(BOX, moments={**MOMENTS, "izz": 1.0}), "I1 \\+ I2 >= I3"),
+        (urdf(collision('<torus size="1"/>')), "geometry must be a box, .*, got <torus>"),
+        (urdf(collision('<mesh filename="no.stl"/>')), "file must be a mesh: STL, .*no.stl"),
+        (urdf(collision('<mesh filename="package://no/a.stl"/>')), "mesh must be a file beside"),
+        ("<robot/>", "link must be one of those with a mass: none"),
+        (
+            urdf(BOX).replace("brick", "a") + "x",
+            "source must be a URDF or an SDF file, got XML with an error",
+        ),
+        ("no_file.urdf", "source must be a file that can be read, got no_file.urdf"),
+        ("<html/>", r"source must be <robot> \(URDF\) or <sdf>, got <html>"),
+    ],
+)
+def test_errors_name_the_element(text: str, message: str) -> None:
+    pytest.importorskip("trimesh")
+    with pytest.raises(InvalidFieldError, match=message):
+        Body.from_urdf(text)
+
+
+def test_the_link_is_named_where_there_are_several() -> None:
+    two = urdf(BOX).replace("</robot>", '<link name="other"><inertial/></link></robot>')
+    with pytest.raises(InvalidFieldError, match="'brick', 'other'"):
+        Body.from_urdf(two)
+    with pytest.raises(InvalidFieldError, match="'base', which has no <inertial>"):
+        Body.from_urdf(two, "base")
+    with pytest.raises(InvalidFieldError, match="no <inertia>"):
+        Body.from_urdf(two, "other")
+    assert Body.from_urdf(two, "brick").name == "brick"
