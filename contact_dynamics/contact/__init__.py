@@ -1,12 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Contacts are given or found from shapes. They have curvatures, velocities and friction.
 
-`contact` has one contact and sets of them, and `curvature` the shapes of both sides where they touch. `found`
-finds contacts from geometry: `on_flats` where a body meets a plane, `on_obstacles` where it meets a solid.
-`velocities` says which contacts count as at rest. `kinds` says what velocities add to the accelerations of
-contacts. `friction` makes pyramids from friction cones. `uncertainty` says how well contacts are known, and
-`noise` which of them touch and rest where the state is measured. `reach` warns of contacts that a body cannot
-have.
+`contact` has one contact and sets of them. `curvature` has the shapes of both sides where they touch, and
+what velocities add to the accelerations there. `found` finds contacts from geometry, with the points where a
+body touches a plane or a solid (`touches`). `velocities` says which contacts count as at rest, and warns of
+those that a body cannot have. `friction` makes pyramids from friction cones. `uncertainty` says how well
+contacts are known, and `noise` which of them touch and rest where the state is measured.
 """
 
 from contact_dynamics.contact.contact import Contact, ContactSet

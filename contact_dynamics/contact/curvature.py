@@ -50,6 +50,7 @@ from contact_dynamics.validation import FloatArray, check_array
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
+
 Pair: TypeAlias = "tuple[float, float]"
 
 
@@ -190,15 +191,10 @@ def planar_gap_acceleration(
 
 
 class Rolling(NamedTuple):
-    """How the point of contact moves over the body, and what its motion adds to the gap.
+    """How the point of contact moves over the body, and what its motion adds to the gap."""
 
-    Attributes:
-        eta: Velocity of the point of contact over the body, m/s.
-        gap: The gap's second derivative less a_n, m/s^2.
-    """
-
-    eta: Pair
-    gap: float
+    eta: Pair  # Velocity of the point of contact over the body, m/s
+    gap: float  # the gap's second derivative less a_n, m/s^2
 
 
 Side: TypeAlias = "list[tuple[float, Pair]]"

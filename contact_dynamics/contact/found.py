@@ -3,7 +3,7 @@
 
 A face or an edge that lies flush gives its extreme points as contacts: the corners of a face, the two ends of
 a cylinder's or a capsule's line. They carry every force that the whole face or edge can. A ball touches in
-one point. A rim touches in its lowest point. If it lies flush as a whole, it touches in `on_flats.RIM_POINTS`
+one point. A rim touches in its lowest point. If it lies flush as a whole, it touches in `touches.RIM_POINTS`
 points, evenly spaced, the first towards the body's x axis (for a rim about x: its y axis). Their wrenches
 form a cone inside that of the whole rim, with at least 92 % of its tipping moments (the cosine of 22.5
 degrees).
@@ -11,7 +11,7 @@ degrees).
 A round body's contact has the body's curvature (`contact.curvature`). It is that of the ball that rolls over
 the shape, and along a rim of radius R whose plane is tilted by theta, sin(theta) / R.
 
-This file treats flats. `on_obstacles` treats obstacles, which have edges and corners.
+`touches` finds the points where a body touches one surface.
 """
 
 from __future__ import annotations
@@ -22,21 +22,17 @@ import numpy as np
 
 from contact_dynamics.contact.contact import ContactSet
 from contact_dynamics.contact.curvature import Curvatures
-from contact_dynamics.contact.on_flats import flat_touches
-from contact_dynamics.contact.on_obstacles import lowest_along, site_of, touches_of
+from contact_dynamics.contact.touches import Side, Touch, flat_touches, lowest_along, site_of, touches_of
 from contact_dynamics.errors import InvalidFieldError, NoShapeError
 from contact_dynamics.tolerances import DISTANCE_TOLERANCE
-from contact_dynamics.validation import check_not_negative
-from contact_dynamics.world import Surface
+from contact_dynamics.validation import FloatArray, check_not_negative
+from contact_dynamics.world import Body, Surface, World
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from contact_dynamics.contact.on_flats import Side, Touch
     from contact_dynamics.rigid_body.body import BodyState
     from contact_dynamics.shapes.obstacle import Obstacle
-    from contact_dynamics.validation import FloatArray
-    from contact_dynamics.world import Body, World
 
 
 def find_contacts(
@@ -58,7 +54,7 @@ def find_contacts(
         NoContactError: the body has no shape that could touch anything.
         InvalidFieldError: the body is deeper in a surface than the tolerance, or the tolerance is negative or
             not finite.
-        NotSupportedError: a rim of the body is at an edge of an obstacle (`on_obstacles`).
+        NotSupportedError: a rim of the body is at an edge of an obstacle (`touches`).
     """
     check_not_inside(body, state, world.surfaces, distance_tolerance=distance_tolerance)
     return contacts_within(body, state, world.surfaces, distance_tolerance)
@@ -78,11 +74,7 @@ def check_not_inside(
     check_has_shape(body)
     allowed = max(check_not_negative("distance_tolerance", distance_tolerance), DISTANCE_TOLERANCE)
     for surface in surfaces:
-        if isinstance(surface, Surface):
-            lowest = lowest_along(body.shape, state.p_WB_W, state.R_WB, surface.normal_W[None])
-            gap = float(lowest[0] - surface.p_WS_W @ surface.normal_W)
-        else:
-            gap = site_of(body.shape, state.p_WB_W, state.R_WB, surface).gap
+        gap = _gap(body, state, surface)
         if gap < -allowed:
             raise InvalidFieldError(
                 "state",
@@ -131,17 +123,16 @@ def nearest_surface(
 
     The gap is negative where they penetrate. Of an obstacle it may be less than the distance (`site_of`).
     """
-    shape, R_WB = body.shape, state.R_WB
-    nearest = None
-    for surface in surfaces:
-        if isinstance(surface, Surface):
-            lowest = lowest_along(shape, state.p_WB_W, R_WB, surface.normal_W[None])
-            gap = float(lowest[0] - surface.p_WS_W @ surface.normal_W)
-        else:
-            gap = site_of(shape, state.p_WB_W, R_WB, surface).gap
-        if nearest is None or gap < nearest[1]:
-            nearest = surface, gap
-    return nearest
+    gaps = ((surface, _gap(body, state, surface)) for surface in surfaces)
+    return min(gaps, key=lambda pair: pair[1], default=None)
+
+
+def _gap(body: Body, state: BodyState, surface: Surface | Obstacle) -> float:
+    """Return the gap between a body with a shape and a surface, m, as `nearest_surface` does."""
+    if isinstance(surface, Surface):
+        lowest = lowest_along(body.shape, state.p_WB_W, state.R_WB, surface.normal_W[None])
+        return float(lowest[0] - surface.p_WS_W @ surface.normal_W)
+    return site_of(body.shape, state.p_WB_W, state.R_WB, surface).gap
 
 
 def check_has_shape(body: Body) -> None:

@@ -15,12 +15,10 @@ import numpy as np
 
 from contact_dynamics.numerics.vectors import tangents_towards
 from contact_dynamics.tolerances import LARGEST_NUMBER
-from contact_dynamics.validation import check_array, check_not_negative, check_unit, check_whole
+from contact_dynamics.validation import FloatArray, check_array, check_not_negative, check_unit, check_whole
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
-
-    from contact_dynamics.validation import FloatArray
 
 
 MAX_FACETS: Final = 1000

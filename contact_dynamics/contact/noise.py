@@ -25,11 +25,11 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
-from contact_dynamics.contact.on_flats import flat_touches
+from contact_dynamics.contact.touches import flat_touches
 from contact_dynamics.numerics.vectors import point_jacobians, tangent_rows
 from contact_dynamics.rotations.many import turned
 from contact_dynamics.tolerances import NO_NOISE
-from contact_dynamics.world import Surface
+from contact_dynamics.world import Body, Surface
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -38,7 +38,6 @@ if TYPE_CHECKING:
     from contact_dynamics.rigid_body.body import BodyState
     from contact_dynamics.shapes.obstacle import Obstacle
     from contact_dynamics.validation import FloatArray
-    from contact_dynamics.world import Body
 
 REST_LEVEL: Final = 0.999
 """Probability with which a hypothesis about touching or resting contacts passes its test if it is true."""
@@ -54,15 +53,10 @@ _ROUNDS: Final = 3
 
 
 class NoisyState(NamedTuple):
-    """A state and its noise.
-
-    Attributes:
-        state: The state.
-        root: (12, k), a root of its covariance, which is root @ root.T, in the order of `motion.covariance`.
-    """
+    """A state and its noise."""
 
     state: BodyState
-    root: FloatArray
+    root: FloatArray  # (12, k), a root of its covariance, root @ root.T, in the order of `motion.covariance`
 
     @classmethod
     def of(cls, state: BodyState, covariance: FloatArray) -> NoisyState:
@@ -206,19 +200,12 @@ def _components(state: BodyState, contacts: ContactSet) -> tuple[FloatArray, Flo
 
 
 class _Hypothesis(NamedTuple):
-    """That the error of a state meets some conditions, beside those that it meets already.
+    """That the error of a state meets some conditions, beside those that it meets already."""
 
-    Attributes:
-        is_possible: Whether any error meets them.
-        passes: Whether the test does not reject it.
-        size: The square of the least error that meets the conditions, in standard deviations.
-        state: The likeliest state that does.
-    """
-
-    is_possible: bool
-    passes: bool
-    size: float
-    state: NoisyState
+    is_possible: bool  # whether any error meets them
+    passes: bool  # whether the test does not reject it
+    size: float  # the square of the least error that meets the conditions, in standard deviations
+    state: NoisyState  # the likeliest state that does
 
 
 def _hypothesis(
@@ -252,17 +239,11 @@ def _hypothesis(
 
 
 class _Point(NamedTuple):
-    """A point of a body near a flat.
+    """A point of a body near a flat."""
 
-    Attributes:
-        p_BP_B: (3,), m, where it is in the body.
-        normal_W: (3,), unit, of the flat.
-        level: m, the flat's, and how far a ball around the point reaches.
-    """
-
-    p_BP_B: FloatArray
-    normal_W: FloatArray
-    level: float
+    p_BP_B: FloatArray  # (3,), m, where it is in the body
+    normal_W: FloatArray  # (3,), unit, of the flat
+    level: float  # m, the flat's, and how far a ball around the point reaches
 
 
 def _points_near_flats(

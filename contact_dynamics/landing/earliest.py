@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """Finds the end of a body's flight: its first contact with the world, and all contacts there.
 
-At any time one plane separates the body from an obstacle (`contact.on_obstacles`). While the body stays above
+At any time one plane separates the body from an obstacle (`contact.touches`). While the body stays above
 this plane, it does not touch. `acceleration_bounds` says for how long it must stay above. The search goes to
 the end of that time, takes the plane that separates best then, and repeats (conservative advancement;
 Mirtich, Impulse-based dynamic simulation of rigid body systems, Berkeley 1996). It finds a touch within
 `GRAZING_DEPTH`, and misses no deeper one.
 
 Not covered: a body that hovers so close and so long that the search needs more than `MAX_STEPS` steps
-(`NotSupportedError`), and rims that come to edges and corners (`contact.on_obstacles`).
+(`NotSupportedError`), and rims that come to edges and corners (`contact.touches`).
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ import numpy as np
 
 from contact_dynamics.constants import HORIZON
 from contact_dynamics.contact.found import check_not_inside, contacts_within
-from contact_dynamics.contact.on_obstacles import site_of, touches_of
+from contact_dynamics.contact.touches import site_of, touches_of
 from contact_dynamics.errors import InvalidFieldError, NotSupportedError
 from contact_dynamics.landing.plane_arrival import Descent, first_contact
 from contact_dynamics.landing.search_work import OBSTACLE_STEP, SearchWork

@@ -3,11 +3,11 @@
 
 `types` has a planar body, its velocity, contacts and wrench. `projection` turns a question in space into a
 planar one, or says by how much it is not planar; `plane_search` finds the plane for that. `lifting` brings a
-planar answer back to space, and `in_space` makes a spatial problem from a planar one. `force_dual` is lecture
-26's picture of planar wrenches.
+planar answer back to space, and makes a spatial problem from a planar one. `force_dual` is lecture 26's
+picture of planar wrenches.
 """
 
-from contact_dynamics.plane.in_space import planar_in_space
+from contact_dynamics.plane.lifting import planar_in_space
 from contact_dynamics.plane.plane_search import best_plane
 from contact_dynamics.plane.projection import (
     PlanarProblem,

@@ -26,13 +26,9 @@ class Turn(NamedInt):
 
 
 class OrientedPoint(NamedTuple):
-    """A wrench or an acceleration up to a positive factor, as a point of the plane with a sign.
+    """A wrench or an acceleration up to a positive factor, as a point of the plane with a sign."""
 
-    Attributes:
-        point: Position from the centre of mass, m, or a unit direction where the point is at infinity.
-    """
-
-    point: Vector2
+    point: Vector2  # Position from the centre of mass, m, or a unit direction where the point is at infinity
     turn: Turn
 
 
@@ -60,9 +56,7 @@ def force_dual(body: PlanarBody, wrench: PlanarWrench) -> OrientedPoint | None:
 def acceleration_centre(acceleration: Vector2, angular_acceleration: float) -> OrientedPoint | None:
     """Return the point of a body at rest that does not accelerate, or None if no point does (lecture 26).
 
-    Args:
-        acceleration: m/s^2, of the centre of mass.
-        angular_acceleration: rad/s^2.
+    The centre of mass has the acceleration, m/s^2, and the body the angular one, rad/s^2.
     """
     a_x, a_y = acceleration
     size = math.hypot(a_x, a_y)

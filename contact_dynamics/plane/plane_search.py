@@ -18,7 +18,10 @@ from contact_dynamics.numerics.linear_spaces import rough_span
 from contact_dynamics.numerics.vectors import Vector3, cross, dot, norm, normalised, scaled, without
 from contact_dynamics.plane.projection import (
     STEEP,
+    PlanarProblem,
+    PlaneFit,
     PlaneOfMotion,
+    ProblemInFloats,
     fit_of,
     in_floats,
     projected,
@@ -26,7 +29,7 @@ from contact_dynamics.plane.projection import (
     three_of,
 )
 from contact_dynamics.tolerances import OUT_OF_PLANE_RATIO, OUT_OF_PLANE_SPEED
-from contact_dynamics.validation import check_not_negative, check_vector3
+from contact_dynamics.validation import FloatArray, check_not_negative, check_vector3
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -34,9 +37,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from contact_dynamics.contact.contact import ContactSet
-    from contact_dynamics.plane.projection import PlanarProblem, PlaneFit, ProblemInFloats
     from contact_dynamics.rigid_body.body import BodyState, HasMassProperties, MassProperties
-    from contact_dynamics.validation import FloatArray
 
 
 def project_onto_best_plane(

@@ -27,10 +27,10 @@ from contact_dynamics.impact import (
 from contact_dynamics.impact.several.orders import order_warning
 from contact_dynamics.impact.several.result import SeveralContactsLaw
 from contact_dynamics.motion.covariance import propagate_covariance
-from contact_dynamics.plane.in_space import planar_in_space
 from contact_dynamics.plane.lifting import (
     check_mirrored,
     mirror_partners,
+    planar_in_space,
     planar_velocity,
     with_planar_velocity,
 )

@@ -16,8 +16,12 @@ from contact_dynamics.contact_modes import (
 )
 from contact_dynamics.impact import outcomes_over_orders, planar_impact, several_impact, spatial_impact
 from contact_dynamics.impact.several.settling import settling_impact
-from contact_dynamics.plane.in_space import planar_in_space
-from contact_dynamics.plane.lifting import equal_shares, planar_velocity, with_planar_velocity
+from contact_dynamics.plane.lifting import (
+    equal_shares,
+    planar_in_space,
+    planar_velocity,
+    with_planar_velocity,
+)
 from contact_dynamics.questions.lifted_modes import lifted_mode
 from contact_dynamics.questions.resolved_impact import Before, ResolvedImpact
 from contact_dynamics.questions.resolving import (

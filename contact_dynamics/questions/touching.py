@@ -12,7 +12,7 @@ import numpy as np
 
 from contact_dynamics.contact.found import find_contacts, nearest_surface
 from contact_dynamics.contact.noise import NoisyState, resting, touching
-from contact_dynamics.contact.on_flats import RIM_POINTS
+from contact_dynamics.contact.touches import RIM_POINTS
 from contact_dynamics.errors import NoContactError, NoShapeError
 from contact_dynamics.questions.extent import check_extent
 from contact_dynamics.shapes.hull_features import RIM_CORNERS, features_of

@@ -6,7 +6,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final
 
-from contact_dynamics.contact.on_obstacles import lowest_along
+from contact_dynamics.contact.touches import lowest_along
 from contact_dynamics.errors import TooLargeError
 from contact_dynamics.motion.covariance import CarriedCovariance, covariance_along
 from contact_dynamics.motion.forces import NO_DRAG, NO_WRENCH, ConstantWrench, Drag

@@ -13,7 +13,7 @@ from mpmath import mp, mpf
 
 from contact_dynamics.contact.contact import ContactSet
 from contact_dynamics.contact.curvature import Curvatures, planar_gap_acceleration
-from contact_dynamics.contact.kinds import velocity_accelerations
+from contact_dynamics.contact.velocities import velocity_accelerations
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.plane.types import PlanarContact
 from oracles import moved_gaps as exact

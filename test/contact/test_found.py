@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from contact_dynamics.contact.found import find_contacts, nearest_surface
-from contact_dynamics.contact.on_flats import RIM_POINTS
+from contact_dynamics.contact.touches import RIM_POINTS
 from contact_dynamics.errors import InvalidFieldError, TooLargeError
 from contact_dynamics.landing.earliest import next_landing
 from contact_dynamics.rigid_body.body import BodyState, MassProperties

@@ -14,7 +14,7 @@ from scipy.spatial.transform import Rotation
 from contact_dynamics.contact.contact import ContactSet
 from contact_dynamics.contact.curvature import Curvatures
 from contact_dynamics.contact.found import find_contacts
-from contact_dynamics.contact.on_obstacles import site_of
+from contact_dynamics.contact.touches import site_of
 from contact_dynamics.errors import InvalidFieldError, NoContactError, NotSupportedError
 from contact_dynamics.landing.earliest import first_touch, next_landing
 from contact_dynamics.rigid_body.body import BodyState, MassProperties

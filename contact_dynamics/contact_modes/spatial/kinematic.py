@@ -20,8 +20,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from contact_dynamics.contact.kinds import velocity_accelerations
-from contact_dynamics.contact.velocities import check_speeds
+from contact_dynamics.contact.velocities import check_speeds, velocity_accelerations
 from contact_dynamics.contact_modes.letters import SEPARATES, STAYS
 from contact_dynamics.contact_modes.spatial.cone import cone_of
 from contact_dynamics.errors import TooLargeError

@@ -15,9 +15,8 @@ import numpy as np
 
 from contact_dynamics.contact.found import find_contacts
 from contact_dynamics.contact.friction import check_facets
-from contact_dynamics.contact.kinds import velocity_accelerations
-from contact_dynamics.contact.reach import warn_if_far
 from contact_dynamics.contact.uncertainty import EXACT_CONTACTS, ContactUncertainty
+from contact_dynamics.contact.velocities import velocity_accelerations, warn_if_far
 from contact_dynamics.contact_modes.spatial.flush import made_flush
 from contact_dynamics.contact_modes.spatial.pyramid_programs import Touching
 from contact_dynamics.contact_modes.spatial.search import Search

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from contact_dynamics.contact.kinds import velocity_accelerations
+from contact_dynamics.contact.velocities import velocity_accelerations
 from contact_dynamics.impact.in_time.result import ImpactSequence, SequenceEnd, TimedStrike
 from contact_dynamics.impact.several.tied import materials_of, next_to_strike, strike_as_one
 from contact_dynamics.impact.spatial.one_contact import spatial_impact

@@ -25,8 +25,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import numpy as np
 
 from contact_dynamics.contact.friction import check_facets
-from contact_dynamics.contact.kinds import velocity_accelerations
-from contact_dynamics.contact.velocities import spatial_contact_velocities
+from contact_dynamics.contact.velocities import spatial_contact_velocities, velocity_accelerations
 from contact_dynamics.errors import InvalidFieldError, TooLargeError
 from contact_dynamics.impact.law import RestitutionLaw
 from contact_dynamics.impact.several.result import SeveralContactsLaw, SeveralImpact, SeveralVerdict

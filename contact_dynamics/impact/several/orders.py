@@ -23,7 +23,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from contact_dynamics.contact.reach import warn_if_far
+from contact_dynamics.contact.velocities import warn_if_far
 from contact_dynamics.errors import TooLargeError
 from contact_dynamics.impact.law import RestitutionLaw
 from contact_dynamics.impact.several.result import (

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Final
 from contact_dynamics.impact.law import RestitutionLaw
 from contact_dynamics.impact.several.orders import several_impact
 from contact_dynamics.impact.several.result import SeveralContactsLaw, SeveralImpact
-from contact_dynamics.plane.in_space import planar_in_space
+from contact_dynamics.plane.lifting import planar_in_space
 from contact_dynamics.tolerances import VELOCITY_TOLERANCE
 
 if TYPE_CHECKING:

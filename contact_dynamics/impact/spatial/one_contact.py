@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from contact_dynamics.contact.reach import warn_if_far
+from contact_dynamics.contact.velocities import warn_if_far
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.impact.law import RestitutionLaw
 from contact_dynamics.impact.spatial.path import OUTCOMES

@@ -21,7 +21,7 @@ from contact_dynamics.impact import SeveralImpact, SeveralVerdict, planar_impact
 from contact_dynamics.impact.several.jamming import jamming_impact
 from contact_dynamics.impact.several.settling import MAX_JAMS, settling_impact
 from contact_dynamics.numerics.lemke import solve_complementarity
-from contact_dynamics.plane.in_space import planar_in_space
+from contact_dynamics.plane.lifting import planar_in_space
 from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
 from contact_dynamics.rigid_body.body import BodyState, MassProperties, kinetic_energy
 from contact_modes.evidence import planar_problem

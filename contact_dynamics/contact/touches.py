@@ -1,5 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A convex body meets a convex obstacle with corners on faces, faces on corners, and edges across edges.
+"""Where a convex body touches a plane or an obstacle: the extreme points, with the curvatures there.
+
+`found` says which points a face, a line and a rim have on a plane.
+
+A convex body meets a convex obstacle with corners on faces, faces on corners, and edges across edges.
 
 Two convex bodies are apart if and only if a face's normal of one of them, or a cross product of two edges,
 separates them (Gottschalk, Lin and Manocha, OBBTree, SIGGRAPH 1996). The direction of the largest separation
@@ -25,38 +29,111 @@ obstacle's overlap, the extreme points are corners of either within the other, a
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Final, NamedTuple, TypeAlias
 
 import numpy as np
 
-from contact_dynamics.contact.on_flats import Touch, flat_touches
 from contact_dynamics.errors import NotSupportedError
 from contact_dynamics.numerics.convex_hull import hull_of
-from contact_dynamics.numerics.vectors import tangent_rows
-from contact_dynamics.shapes.hull_features import features_of
-from contact_dynamics.shapes.obstacle import closest_points
+from contact_dynamics.numerics.vectors import along_least, tangent_rows
+from contact_dynamics.shapes.hull_features import Features, features_of
+from contact_dynamics.shapes.obstacle import Obstacle, closest_points
+from contact_dynamics.shapes.rim import Radii, radii_of
 from contact_dynamics.tolerances import PARALLEL_EDGES, SAME_POINT
 
 if TYPE_CHECKING:
-    from contact_dynamics.contact.on_flats import Side, Touch
+    from collections.abc import Iterator
+
     from contact_dynamics.shapes.convex import ConvexShape
-    from contact_dynamics.shapes.hull_features import Features
-    from contact_dynamics.shapes.obstacle import Obstacle
     from contact_dynamics.validation import FloatArray
+
+Side: TypeAlias = "tuple[float, float, FloatArray]"
+"""Curvatures, 1/m, along a tangent and across it, and the tangent, (3,), unit."""
+
+RIM_POINTS: Final = 8
+"""Number of contacts of a rim that lies flush."""
+
+
+class Touch(NamedTuple):
+    """One extreme point of where a body touches, with curvatures of both sides (`contact.curvature`)."""
+
+    p_WC_W: FloatArray  # (3,), m, the point in the world
+    normal_W: FloatArray  # (3,), unit, into the body
+    body: Side  # Curvatures, 1/m, along a tangent and across it, and the tangent, (3,), unit
+    surface: Side
+
+
+def flat_touches(
+    shape: ConvexShape,
+    p_WB_W: FloatArray,
+    R_WB: FloatArray,
+    n_W: FloatArray,
+    *,
+    level: float,
+    tolerance: float,
+) -> Iterator[Touch]:
+    """Yield where a body at a pose touches the plane n . p = ``level``, m, of a unit normal, (3,).
+
+    Corners come first, then rims. A point touches if it is at most ``tolerance``, m, above the plane.
+    """
+    points = p_WB_W + shape.vertices @ R_WB.T
+    tangent = along_least(n_W)
+    corner = 1.0 / shape.rounding if shape.rounding > 0.0 else math.inf
+    for i in np.flatnonzero(points @ n_W - level - shape.rounding <= tolerance):
+        p_WC_W = points[i] - shape.rounding * n_W
+        yield Touch(p_WC_W, n_W, (corner, corner, tangent), (0.0, 0.0, tangent))
+    for rim in shape.rims:
+        turned = _turned(radii_of(rim), p_WB_W, R_WB)
+        yield from _of_rim(turned, n_W, level, rounding=shape.rounding, tolerance=tolerance)
+
+
+class _RimW(NamedTuple):
+    """A rim in the world."""
+
+    center: FloatArray  # (3,), m
+    first: FloatArray  # (3,), m, a radius
+    second: FloatArray  # (3,), m, one across
+    radius: float  # m
+
+
+def _turned(radii: Radii, p_WB_W: FloatArray, R_WB: FloatArray) -> _RimW:
+    first, second = R_WB @ radii.first, R_WB @ radii.second
+    return _RimW(p_WB_W + R_WB @ radii.center, first, second, math.sqrt(first @ first))
+
+
+def _of_rim(
+    rim: _RimW, n_W: FloatArray, level: float, *, rounding: float, tolerance: float
+) -> Iterator[Touch]:
+    height = float(rim.center @ n_W) - level - rounding
+    a_1, a_2 = float(n_W @ rim.first), float(n_W @ rim.second)
+    size = math.hypot(a_1, a_2)  # m, R sin(theta)
+    if height - size > tolerance:
+        return
+    flush = height + size <= tolerance
+    corner = 1.0 / rounding if rounding > 0.0 else math.inf
+    tangent = along_least(n_W)
+    flat = (0.0, 0.0, tangent)
+    if flush:
+        turns = [2.0 * math.pi * i / RIM_POINTS for i in range(RIM_POINTS)]
+        directions = [(math.cos(turn), math.sin(turn)) for turn in turns]
+    else:
+        directions = [(-a_1 / size, -a_2 / size)]
+    for cosine, sine in directions:
+        p_WC_W = rim.center + cosine * rim.first + sine * rim.second - rounding * n_W
+        if flush:
+            yield Touch(p_WC_W, n_W, (corner, corner, tangent), flat)
+        else:
+            around = (cosine * rim.second - sine * rim.first) / rim.radius  # level: along the rim
+            radius = rim.radius * rim.radius / size + rounding
+            yield Touch(p_WC_W, n_W, (1.0 / radius, corner, around), flat)
 
 
 class Site(NamedTuple):
-    """Where a body is nearest to an obstacle, or deepest in it.
+    """Where a body is nearest to an obstacle, or deepest in it."""
 
-    Attributes:
-        gap: Distance along the normal, m. It is negative where they penetrate.
-        normal_W: (3,), unit, out of the obstacle, into the body.
-        level: The obstacle's furthest extent along the normal, m: its points have n . p <= level.
-    """
-
-    gap: float
-    normal_W: FloatArray
-    level: float
+    gap: float  # m, along the normal; it is negative where they penetrate
+    normal_W: FloatArray  # (3,), unit, out of the obstacle, into the body
+    level: float  # m, the obstacle's furthest extent along the normal: its points have n . p <= level
 
 
 def site_of(shape: ConvexShape, p_WB_W: FloatArray, R_WB: FloatArray, obstacle: Obstacle) -> Site:
@@ -145,17 +222,11 @@ def touches_of(
 
 
 class Outline(NamedTuple):
-    """A convex polygon, a line or a point in the touching plane.
+    """A convex polygon, a line or a point in the touching plane."""
 
-    Attributes:
-        points: (k, 3), m, world, in order.
-        flat: (k, 2), m, in the plane, counterclockwise.
-        order: (k,), the indices of the points in the list that was given.
-    """
-
-    points: FloatArray
-    flat: FloatArray
-    order: list[int]
+    points: FloatArray  # (k, 3), m, world, in order
+    flat: FloatArray  # (k, 2), m, in the plane, counterclockwise
+    order: list[int]  # (k,), the indices of the points in the list that was given
 
     def side_at(self, place: FloatArray, frame: FloatArray, *, sharp: float, slack: float) -> Side | None:
         """Return the curvatures at a place, (2,), m, of a face, an edge or a corner, or None outside.
@@ -199,15 +270,10 @@ def outline(points: FloatArray, frame: FloatArray) -> Outline:
 
 
 class Rounded(NamedTuple):
-    """The rounding of a body's outline, if it is that of a hull over which a ball rolls.
+    """The rounding of a body's outline, if it is that of a hull over which a ball rolls."""
 
-    Attributes:
-        curvature: Curvature of the ball, 1/m.
-        slack: Distance within which its corners and lines are on edges and corners, m.
-    """
-
-    curvature: float
-    slack: float
+    curvature: float  # Curvature of the ball, 1/m
+    slack: float  # Distance within which its corners and lines are on edges and corners, m
 
 
 def overlap(
