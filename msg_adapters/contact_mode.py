@@ -21,10 +21,10 @@ from contact_dynamics.contact_modes.result import (
     ModeVerdict,
     Refusal,
     RefusedMode,
+    SpatialMode,
     VerdictsWithin,
 )
 from contact_dynamics.contact_modes.spatial.margins import SpatialModeMargin
-from contact_dynamics.contact_modes.spatial.result import SpatialMode
 from contact_dynamics.contact_modes.spatial.wrench_sets import SpatialWrenchSet
 from contact_dynamics.errors import InvalidFieldError, NotSupportedError
 from contact_dynamics.questions.contact_modes import ContactModeAnswer, ContactModeQuestion

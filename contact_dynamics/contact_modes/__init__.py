@@ -7,33 +7,40 @@ leaving each of them, `largest_load` how large a push in space may become, `geom
 are from another verdict, and `refused_modes` says why the other modes are not consistent. `wrench_sets`
 returns the wrenches of each mode. `statics` says whether a body at rest stays at rest.
 
-A mode is a string with one of the `letters` for each contact. The plane and space share the types in
-`result`.
+A mode is a string with one of the `letters` for each contact. `result` has the types of answers.
 
 Files of `planar` and `spatial` that do the same have the same name. `problem` has the question, and its case:
-the question in the coordinates in which it is answered. `answer` gives the verdict and all modes, and
-`result` has the types that it returns. `margins`, `statics` and `wrench_sets` answer the other questions. If
-contacts are uncertain (`uncertain`), `bounds` says how much, `everywhere` proves that a mode holds in the
-whole box, `excluded` that no other does, and `geometry_search` finds the largest box with a proof.
+the question in the coordinates in which it is answered. `answer` gives the verdict and all modes. `statics`
+and `wrench_sets` answer other questions. If contacts are uncertain, `uncertain` searches boxes of contacts
+for other verdicts; its namesakes say how much each contact may be off, and prove with `everywhere` that a
+mode holds in the whole box, and that no other does (in space `excluded`).
 
-- In the plane, `one_contact` solves a single contact in closed form. For several contacts, `coincident` first
+- In the plane, `answer` solves a single contact in closed form. For several contacts, `coincident` first
   takes those together that coincide. `enumeration` then lists the modes that kinematics allows, which are
-  faces of a `cone` (`extreme_rays`), and `judgement` decides which of them mechanics allows. If the equations
-  of a mode are independent, `determined` solves them. If they are not, `wrench_cone` decides by the cone of
-  wrenches that can bring the mode about, which the `friction_edges` of the contacts span.
-- In space, `kinematic` gives the strings of contacting and separating, and `sliding` those with ways of
-  sliding. With mechanics, all combinations of `options` are searched (`search`, `pyramid_programs`),
-  and shown with exact friction (`exact_friction`) and shared forces (`least_forces`). `refusals` says why
-  others are refused. The wrenches of a mode (`wrenches`, on a `cone`) come in ways of sliding
-  (`ways_of_sliding`). Margins are distances to sums of round cones (`round_sums`), also of modes in which
-  contacts begin to slide (`margins_of_sliding`).
+  faces of a `cone`, and `judgement` decides which of them mechanics allows. If the equations of a mode are
+  independent, `determined` solves them. If they are not, `wrench_cone` decides by the cone of wrenches that
+  can bring the mode about.
+- In space, `kinematic` gives the strings of contacting, separating and ways of sliding. With mechanics, the
+  `likely_mode` comes first, for which a single contact at rest has its own file (`one_contact`).
+  `only_motion` may show that no other mode exists. Otherwise `completeness` finds or refutes all others, with
+  linear programs (`holding_programs`), ranges of directions with one solution (`only_solution`) and modes in
+  which contacts share loads (`shared_loads`). What this leaves undecided takes a `search` of all combinations
+  of `options`, in `regions` of common motions (`pyramid_programs`). The programs are solved by a
+  `dual_simplex` (`simplex_steps`), and as a `careful_program` if rounding may decide. Modes that were found
+  are made exact (`realised`, `exact_modes`, `exact_letters`), those that hold `narrowly` are found near
+  others, and `round_cones` decides whether forces hold contacts. `mode_with_forces` gives the accelerations.
+  The wrenches of a mode (`wrenches`, on a `cone`) come in ways of sliding. `margins` are distances to sums of
+  round cones, also of modes in which contacts begin to slide (`margins_of_sliding`), and so are the reasons
+  of refused modes.
 """
 
 from contact_dynamics.contact_modes.letters import Letter
-from contact_dynamics.contact_modes.planar.margins import PlanarModeMargin
 from contact_dynamics.contact_modes.planar.problem import PlanarContactProblem
-from contact_dynamics.contact_modes.planar.result import PlanarMode, PlanarModeAnswer
-from contact_dynamics.contact_modes.planar.wrench_sets import PlanarWrenchSet, WrenchHalfSpace
+from contact_dynamics.contact_modes.planar.wrench_sets import (
+    PlanarModeMargin,
+    PlanarWrenchSet,
+    WrenchHalfSpace,
+)
 from contact_dynamics.contact_modes.plane_or_space import (
     contact_modes,
     geometry_margins,
@@ -48,16 +55,18 @@ from contact_dynamics.contact_modes.result import (
     GeometryMargin,
     ModeProbability,
     ModeVerdict,
+    PlanarMode,
+    PlanarModeAnswer,
     Refusal,
     RefusedMode,
+    SpatialMode,
+    SpatialModeAnswer,
     VerdictsWithin,
 )
-from contact_dynamics.contact_modes.spatial.kinematic import spatial_kinematic_modes
-from contact_dynamics.contact_modes.spatial.largest_load import LargestLoad, largest_load
+from contact_dynamics.contact_modes.spatial.kinematic import spatial_kinematic_modes, spatial_sliding_modes
 from contact_dynamics.contact_modes.spatial.margins import SpatialModeMargin
 from contact_dynamics.contact_modes.spatial.problem import SpatialContactProblem
-from contact_dynamics.contact_modes.spatial.result import SpatialMode, SpatialModeAnswer
-from contact_dynamics.contact_modes.spatial.sliding import spatial_sliding_modes
+from contact_dynamics.contact_modes.spatial.statics import LargestLoad, largest_load
 from contact_dynamics.contact_modes.spatial.wrench_sets import SpatialWrenchSet
 from contact_dynamics.validation_types import check_types_of
 

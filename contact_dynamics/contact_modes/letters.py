@@ -46,11 +46,6 @@ _ALTOGETHER: Final = {SEPARATES: "leaves"}
 """The words for a body that is not said to do what its contacts do."""
 
 
-def words_of(mode: str) -> tuple[str, ...]:
-    """Return what each contact does in a mode with forces, in words."""
-    return tuple(LETTERS[letter][0] for letter in mode)
-
-
 def mode_in_words(mode: str) -> str:
     """Return words for a mode with forces, one letter for each contact: what the body does, or each kind.
 

@@ -11,27 +11,23 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, overload
 
 from contact_dynamics.contact_modes.planar.answer import planar_contact_modes
-from contact_dynamics.contact_modes.planar.margins import planar_mode_margins
 from contact_dynamics.contact_modes.planar.problem import PlanarContactProblem
-from contact_dynamics.contact_modes.planar.result import PlanarModeAnswer
 from contact_dynamics.contact_modes.planar.statics import planar_statics
-from contact_dynamics.contact_modes.planar.uncertain import planar_geometry_margins, planar_verdicts_within
-from contact_dynamics.contact_modes.planar.wrench_sets import planar_wrench_sets
+from contact_dynamics.contact_modes.planar.uncertain import planar_boxes
+from contact_dynamics.contact_modes.planar.wrench_sets import planar_mode_margins, planar_wrench_sets
+from contact_dynamics.contact_modes.result import PlanarModeAnswer, SpatialModeAnswer
 from contact_dynamics.contact_modes.spatial.answer import spatial_contact_modes
-from contact_dynamics.contact_modes.spatial.margins import spatial_mode_margins
+from contact_dynamics.contact_modes.spatial.margins import spatial_mode_margins, spatial_refused_modes
 from contact_dynamics.contact_modes.spatial.problem import SpatialContactProblem
-from contact_dynamics.contact_modes.spatial.refusals import spatial_refused_modes
-from contact_dynamics.contact_modes.spatial.result import SpatialModeAnswer
 from contact_dynamics.contact_modes.spatial.statics import spatial_statics
-from contact_dynamics.contact_modes.spatial.uncertain import spatial_geometry_margins, spatial_verdicts_within
+from contact_dynamics.contact_modes.spatial.uncertain import spatial_boxes
 from contact_dynamics.contact_modes.spatial.wrench_sets import spatial_wrench_sets
 from contact_dynamics.errors import InvalidFieldError
 
 if TYPE_CHECKING:
     from collections.abc import Collection
 
-    from contact_dynamics.contact_modes.planar.margins import PlanarModeMargin
-    from contact_dynamics.contact_modes.planar.wrench_sets import PlanarWrenchSet
+    from contact_dynamics.contact_modes.planar.wrench_sets import PlanarModeMargin, PlanarWrenchSet
     from contact_dynamics.contact_modes.result import BodyStatics, GeometryMargin, RefusedMode
     from contact_dynamics.contact_modes.spatial.margins import SpatialModeMargin
     from contact_dynamics.contact_modes.spatial.wrench_sets import SpatialWrenchSet
@@ -59,11 +55,11 @@ def contact_modes(
         answer = planar_contact_modes(problem)
         if problem.uncertainty.is_exact:
             return answer
-        return replace(answer, within=planar_verdicts_within(problem, answer))
+        return replace(answer, within=planar_boxes(problem, answer).verdicts_within(problem.uncertainty))
     in_space = spatial_contact_modes(problem)
     if problem.uncertainty.is_exact:
         return in_space
-    return replace(in_space, within=spatial_verdicts_within(problem, in_space))
+    return replace(in_space, within=spatial_boxes(problem, in_space).verdicts_within(problem.uncertainty))
 
 
 @overload
@@ -211,9 +207,11 @@ def geometry_margins(
         TooLargeError: as for `contact_modes`.
     """
     if isinstance(problem, PlanarContactProblem) and not isinstance(answer, SpatialModeAnswer):
-        return planar_geometry_margins(problem, answer)
+        found = planar_contact_modes(problem) if answer is None else answer
+        return planar_boxes(problem, found).margins()
     if isinstance(problem, SpatialContactProblem) and not isinstance(answer, PlanarModeAnswer):
-        return spatial_geometry_margins(problem, answer)
+        in_space = spatial_contact_modes(problem) if answer is None else answer
+        return spatial_boxes(problem, in_space).margins()
     raise _other_answer(problem, answer)
 
 

@@ -1,18 +1,29 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Answers in the plane and in space share these types: verdicts, refused modes and statics."""
+"""The answers to questions about contact modes in the plane and in space: verdicts, modes, why not others.
+
+A mode is a string with one letter for each contact, in the contacts' order (`letters`). In the plane, contact
+axes are (tangent, normal), where the tangent is the normal turned by -90 degrees.
+"""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final
 
+import numpy as np
+
 from contact_dynamics.contact.uncertainty import ContactUncertainty
-from contact_dynamics.contact_modes.letters import mode_in_words
+from contact_dynamics.contact_modes.letters import LETTERS, mode_in_words
+from contact_dynamics.plane.types import Vector2
 from contact_dynamics.records import NamedInt, Record
-from contact_dynamics.validation import check_not_negative
+from contact_dynamics.validation import check_not_negative, check_size
 
 if TYPE_CHECKING:
     from collections.abc import Sequence, Sized
+
+    from contact_dynamics.contact.contact import ContactSet
+    from contact_dynamics.rigid_body.body import BodyState, MassProperties
+    from contact_dynamics.validation import FloatArray
 
 _SHOWN: Final = 2
 """Modes that a verdict is shown with in short."""
@@ -139,11 +150,13 @@ def verdict_on(modes: Sized) -> ModeVerdict:
     return ModeVerdict.INDETERMINATE if len(modes) > 0 else ModeVerdict.INCONSISTENT
 
 
-def verdict_in_short(kind: str, verdict: ModeVerdict, modes: Sequence[str]) -> str:
-    """Return a verdict with the first modes, each with its words."""
-    shown = [f"{mode}: {mode_in_words(mode)}" for mode in modes[:_SHOWN]]
-    more = [f"{len(modes) - _SHOWN} more"] if len(modes) > _SHOWN else []
-    return f"{kind}: {verdict}{', ' if shown else ''}{'; '.join([*shown, *more])}"
+def check_length(margin_length: float | None, own: float) -> float:
+    """Return the length, m, that makes a torque comparable with a force, or the body's own without one.
+
+    Raises:
+        InvalidFieldError: the length is not from 1 / `LARGEST_NUMBER` to `LARGEST_NUMBER`.
+    """
+    return own if margin_length is None else check_size("margin_length", margin_length)
 
 
 class Certainty(NamedInt):
@@ -185,3 +198,175 @@ class BodyStatics(Record):
     def is_stable_against(self, disturbance: float) -> bool:
         """Return whether equilibrium stays possible under every change of the wrench up to this size, N."""
         return self.stable_disturbance >= check_not_negative("disturbance", disturbance)  # false for NaN
+
+
+class AnyMode(Record):
+    """What a mode that is consistent with mechanics says in words."""
+
+    __slots__ = ()
+    mode: str
+
+    @property
+    def words(self) -> tuple[str, ...]:
+        """What each contact does: "separates", "stays fixed", "slides", "slides left" or "slides right"."""
+        return tuple(LETTERS[letter][0] for letter in self.mode)
+
+    def in_short(self) -> str:
+        """Return the letters, and what the body does, or each kind of contact."""
+        return f"{type(self).__name__} {self.mode}: {mode_in_words(self.mode)}"
+
+
+class AnyModeAnswer(Record):
+    """What an answer says in words."""
+
+    __slots__ = ()
+    verdict: ModeVerdict
+    modes: Sequence[AnyMode]
+
+    def in_short(self) -> str:
+        """Return the verdict, and what the first modes are in words."""
+        shown = [f"{mode.mode}: {mode_in_words(mode.mode)}" for mode in self.modes[:_SHOWN]]
+        more = [f"{len(self.modes) - _SHOWN} more"] if len(self.modes) > _SHOWN else []
+        return f"{type(self).__name__}: {self.verdict}{', ' if shown else ''}{'; '.join([*shown, *more])}"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
+class PlanarMode(AnyMode):
+    """A mode that is consistent with mechanics, with accelerations and forces that realise it.
+
+    Attributes:
+        mode: The mode, with one letter for each contact.
+        acceleration: m/s^2, the acceleration of the centre of mass.
+        angular_acceleration: rad/s^2.
+        contact_forces: N, the force (f_t, f_n) on the body at each contact.
+        contact_accelerations: m/s^2, the acceleration (a_t, a_n) of the body's point at each contact.
+        forces_unique: Whether the forces above are the only ones with this mode.
+        motion_unique: Whether the accelerations above are the only ones with this mode.
+    """
+
+    mode: str
+    acceleration: Vector2
+    angular_acceleration: float
+    contact_forces: tuple[Vector2, ...]
+    contact_accelerations: tuple[Vector2, ...]
+    forces_unique: bool
+    motion_unique: bool
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
+class PlanarModeAnswer(AnyModeAnswer):
+    """The answer to one question about contact modes.
+
+    Attributes:
+        verdict: The verdict on the whole contact set.
+        modes: All consistent modes.
+        refused: The modes that are possible kinematically and not consistent, each with the reason.
+        approaching: The indices of the contacts that approach. There are some exactly if the verdict is
+            IMPACT.
+        contact_velocities: m/s, the velocity (v_t, v_n) of the body's point at each contact. Values within
+            tolerance are 0.
+        velocity_tolerance: m/s. Velocities of contacts up to this size counted as zero.
+        acceleration_tolerance: m/s^2. Accelerations of the centre of mass up to this size counted as zero.
+        undecided: What could not be decided, and why. It is empty unless the verdict is UNDECIDED.
+        undecided_modes: The modes that are possible kinematically and neither consistent nor refused.
+        within: The verdicts that occur within the problem's uncertainty, or None if it has none.
+        problem: The `PlanarContactProblem` that is answered.
+    """
+
+    verdict: ModeVerdict
+    modes: tuple[PlanarMode, ...]
+    refused: tuple[RefusedMode, ...]
+    approaching: tuple[int, ...]
+    contact_velocities: tuple[Vector2, ...]
+    velocity_tolerance: float
+    acceleration_tolerance: float
+    undecided: str = ""
+    undecided_modes: tuple[str, ...] = ()
+    within: VerdictsWithin | None = None
+    problem: Record = field(repr=False, compare=False)
+
+    @property
+    def kinematic_modes(self) -> tuple[str, ...]:
+        """Return every mode that some acceleration realises without penetration, in alphabetical order."""
+        consistent = [found.mode for found in self.modes]
+        refused = [found.mode for found in self.refused]
+        return tuple(sorted([*consistent, *refused, *self.undecided_modes]))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class SpatialMode(AnyMode):
+    """A mode that is consistent with mechanics, with accelerations and forces that realise it, in world axes.
+
+    Attributes:
+        mode: One letter for each contact: s, f or c.
+        acceleration_W: (3,), m/s^2, the acceleration of the centre of mass.
+        angular_acceleration_W: (3,), rad/s^2.
+        contact_forces_W: (n, 3), N, the forces on the body.
+        contact_accelerations_W: (n, 3), m/s^2, the accelerations of the body's points in contact.
+        tangential_directions_W: (n, 3), unit, the direction in which a contact slides; zero where it does
+            not slide.
+        misdirection: rad, the largest angle between friction and the direction against the sliding. It is
+            rounding, unless the problem's ``sharpen`` is false.
+        forces_unique: Whether the forces are the only ones with this mode.
+        motion_unique: Whether the accelerations are the only ones with this mode.
+    """
+
+    mode: str
+    acceleration_W: FloatArray
+    angular_acceleration_W: FloatArray
+    contact_forces_W: FloatArray
+    contact_accelerations_W: FloatArray
+    tangential_directions_W: FloatArray
+    misdirection: float
+    forces_unique: bool
+    motion_unique: bool
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class SpatialModeAnswer(AnyModeAnswer):
+    """The answer to one question about contact modes in space.
+
+    Refused letters are not listed: there are as many as cells in the arrangement of all sectors, and groups
+    of them are refused at once. Strings of contacting and separating have their reasons (`margins`).
+
+    Attributes:
+        verdict: On the whole contact set.
+        modes: All consistent modes. Separating comes before sticking, and sticking before sliding.
+        approaching: The contacts that approach. It is not empty exactly where the verdict is IMPACT.
+        velocity_tolerance: m/s. A contact's velocity up to it counted as zero.
+        friction_facets: The number of edges of each friction pyramid.
+        examined: The number of cases, of one letter or of a group of letters, that were tried.
+        undecided: What could not be decided, and why. It is empty unless the verdict is UNDECIDED.
+        undecided_modes: The letters of modes that could be neither found nor refuted.
+        flush_within: rad, or a share of the reach. The modes are those of contacts whose normals and places
+            differ by no more than this from the given ones, in which flush ones are exactly flush
+            (`spatial.problem`). It is 0 where the modes are those of the given contacts.
+        within: The verdicts that occur within the problem's uncertainty, or None if it has none.
+        problem: The `SpatialContactProblem` that is answered.
+    """
+
+    verdict: ModeVerdict
+    modes: tuple[SpatialMode, ...]
+    approaching: tuple[int, ...]
+    velocity_tolerance: float
+    friction_facets: int
+    examined: int
+    undecided: str = ""
+    undecided_modes: tuple[str, ...] = ()
+    flush_within: float = 0.0
+    within: VerdictsWithin | None = None
+    problem: Record = field(repr=False)
+
+
+def applied_wrench(
+    body: MassProperties, state: BodyState, contacts: ContactSet, mode: SpatialMode
+) -> FloatArray:
+    """Return the wrench under which a mode's contact forces give its accelerations, gravity included.
+
+    It is (6,), the force, N, then the torque about the centre of mass, N m, in world axes.
+    """
+    I_W = body.inertia_in_world(state.R_WB)
+    force_W = body.mass * mode.acceleration_W - mode.contact_forces_W.sum(axis=0)
+    torques_W = np.cross(contacts.p_WC_W - state.p_WB_W, mode.contact_forces_W)
+    spun_W = I_W @ mode.angular_acceleration_W + np.cross(state.w_WB_W, I_W @ state.w_WB_W)
+    return np.concatenate([force_W, spun_W - torques_W.sum(axis=0)])

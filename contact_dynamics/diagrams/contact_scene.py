@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from contact_dynamics.contact_modes.spatial.applied_wrench import applied_wrench
+from contact_dynamics.contact_modes.result import applied_wrench
 from contact_dynamics.diagrams import palette, paper
 from contact_dynamics.diagrams.marks import Arrows, Faces, Labels, Lines, Points
 from contact_dynamics.diagrams.palette import Paint

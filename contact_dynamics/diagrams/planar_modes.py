@@ -14,7 +14,7 @@ import numpy as np
 
 from contact_dynamics.contact_modes.letters import mode_in_words
 from contact_dynamics.contact_modes.planar.wrench_sets import length_of
-from contact_dynamics.contact_modes.spatial.applied_wrench import applied_wrench
+from contact_dynamics.contact_modes.result import applied_wrench
 from contact_dynamics.diagrams.mode_map import LIVE_RESOLUTION, chart_for
 from contact_dynamics.diagrams.planar_scene import planar_scene_of
 from contact_dynamics.diagrams.words import margin_in_words

@@ -11,12 +11,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from contact_dynamics.contact_modes.letters import SLIDES_LEFT, SLIDES_RIGHT
-from contact_dynamics.contact_modes.planar.result import PlanarMode
 from contact_dynamics.contact_modes.planar.wrench_sets import PlanarWrenchSet, WrenchHalfSpace
+from contact_dynamics.contact_modes.result import PlanarMode
 from contact_dynamics.plane.types import PlanarContact, PlanarWrench
 
 if TYPE_CHECKING:
-    from contact_dynamics.contact_modes.spatial.result import SpatialMode
+    from contact_dynamics.contact_modes.result import SpatialMode
     from contact_dynamics.contact_modes.spatial.wrench_sets import SpatialWrenchSet
     from contact_dynamics.plane.projection import PlaneOfMotion
     from contact_dynamics.plane.types import Vector2

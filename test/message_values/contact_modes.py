@@ -17,10 +17,10 @@ from contact_dynamics.contact_modes.result import (
     ModeVerdict,
     Refusal,
     RefusedMode,
+    SpatialMode,
     VerdictsWithin,
 )
 from contact_dynamics.contact_modes.spatial.margins import SpatialModeMargin
-from contact_dynamics.contact_modes.spatial.result import SpatialMode
 from contact_dynamics.contact_modes.spatial.wrench_sets import SpatialWrenchSet
 from contact_dynamics.questions import (
     ContactModeAnswer,

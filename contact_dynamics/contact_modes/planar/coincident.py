@@ -10,8 +10,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
-from contact_dynamics.contact_modes.planar.result import PlanarMode
-from contact_dynamics.contact_modes.result import RefusedMode
+from contact_dynamics.contact_modes.result import PlanarMode, RefusedMode
 from contact_dynamics.tolerances import SAME_ROWS
 
 if TYPE_CHECKING:
@@ -21,17 +20,11 @@ if TYPE_CHECKING:
 
 
 class Coincident(NamedTuple):
-    """The groups of contacts that coincide.
+    """The groups of contacts that coincide."""
 
-    Attributes:
-        firsts: The index of the first contact of each group.
-        group: The index of each contact's group.
-        counts: The number of contacts in each group.
-    """
-
-    firsts: list[int]
-    group: list[int]
-    counts: list[int]
+    firsts: list[int]  # the index of the first contact of each group
+    group: list[int]  # the index of each contact's group
+    counts: list[int]  # the number of contacts in each group
 
     def letters_of_all(self, mode: str) -> str:
         """Return the letters of all contacts for a mode with one letter for each group."""
@@ -73,12 +66,8 @@ def coincident(
     """Return the groups of contacts that coincide, or None if all contacts differ.
 
     Two contacts also belong together if a chain of contacts leads from one to the other in which neighbours
-    coincide. So the order in which contacts are listed does not matter.
-
-    Args:
-        contacts: The contacts.
-        velocities: (v_t, v_n) of each contact. Only their signs count.
-        rho: m, the body's radius of gyration.
+    coincide. So the order in which contacts are listed does not matter. Of the velocities (v_t, v_n), only
+    the signs count.
     """
     pairs = _same_pairs(contacts, velocities, rho)
     if not pairs:

@@ -31,31 +31,19 @@ Vector4: TypeAlias = tuple[float, float, float, float]
 
 
 class _Equation(NamedTuple):
-    """An acceleration that must be zero, and the force that keeps it at zero.
+    """An acceleration that must be zero, and the force that keeps it at zero."""
 
-    Attributes:
-        row: The acceleration as a linear function of w+. Its first three numbers are a unit vector.
-        wrench: The wrench of the force, as a unit vector.
-        length: The size of the wrench of a unit force, with moments divided by the radius of gyration.
-    """
-
-    row: Vector4
-    wrench: Vector3
-    length: float
+    row: Vector4  # the acceleration as a function of w+; its first three numbers are a unit vector
+    wrench: Vector3  # the wrench of the force, as a unit vector
+    length: float  # the size of the wrench of a unit force, with moments divided by the radius of gyration
 
 
 class _Unknown(NamedTuple):
-    """One unknown force.
+    """One unknown force."""
 
-    Attributes:
-        wrench: The wrench of the force, as a unit vector.
-        length: The size of the wrench of a unit force, with moments divided by the radius of gyration.
-        response: The wrench that solves the equations is -response . w+ times the unit vector.
-    """
-
-    wrench: Vector3
-    length: float
-    response: Vector4
+    wrench: Vector3  # the wrench of the force, as a unit vector
+    length: float  # the size of the wrench of a unit force, as for `_Equation`
+    response: Vector4  # the wrench that solves the equations is -response . w+ times the unit vector
 
 
 class _Refused(NamedTuple):

@@ -48,16 +48,10 @@ class Cell(NamedTuple):
 
 
 class _Tangent(NamedTuple):
-    """The tangential acceleration of a contact.
+    """The tangential acceleration of a contact."""
 
-    Attributes:
-        row: Its row, as a unit vector.
-        letter: The code of the letter of a contact that slides already. It is 0 if the contact is at rest, so
-            that the sign of its acceleration decides.
-    """
-
-    row: Vector3
-    letter: int
+    row: Vector3  # a unit vector
+    letter: int  # the code of the letter of a contact that slides already, or 0 if its acceleration decides
 
 
 def kinematic_cells(case: PlanarCase) -> dict[str, Cell]:
@@ -122,20 +116,12 @@ def _letter(tangent: _Tangent, height: float) -> int:
 
 
 class _Staying(NamedTuple):
-    """A contact that stays on the whole of a sector.
+    """A contact that stays on the whole of a sector."""
 
-    Attributes:
-        position: Its position in the rows of the case.
-        start: The code of its letter on the sector's first ray.
-        end: The code of its letter on the sector's last ray.
-        crossing: The share of the way from the first ray to the last at which the letter changes from left to
-            right or back. It is -1 if the letter does not change so.
-    """
-
-    position: int
-    start: int
-    end: int
-    crossing: float
+    position: int  # in the rows of the case
+    start: int  # the code of its letter on the sector's first ray
+    end: int  # the code of its letter on the sector's last ray
+    crossing: float  # the share of the way at which the letter changes from left to right or back, or -1
 
 
 def _sector_cells(sector: Sector, tangents: list[_Tangent]) -> Iterator[tuple[Letters, list[Vector3]]]:

@@ -16,9 +16,9 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 from contact_dynamics.contact_modes.planar.determined import IndependentModes
 from contact_dynamics.contact_modes.planar.enumeration import FIXED, RIGHT, Cell
-from contact_dynamics.contact_modes.planar.result import PlanarMode
+from contact_dynamics.contact_modes.planar.problem import contact_accelerations
 from contact_dynamics.contact_modes.planar.wrench_cone import ModeWrenches
-from contact_dynamics.contact_modes.result import ModeVerdict, Refusal, RefusedMode, verdict_on
+from contact_dynamics.contact_modes.result import ModeVerdict, PlanarMode, Refusal, RefusedMode, verdict_on
 from contact_dynamics.numerics.vectors import Vector3, combined, dot, norm, scaled
 from contact_dynamics.tolerances import FORCES_ROUNDING
 
@@ -33,17 +33,11 @@ EVIDENCE: Final = 3.0
 
 
 class Judged(NamedTuple):
-    """What mechanics says about some modes, in alphabetical order.
+    """What mechanics says about some modes, in alphabetical order."""
 
-    Attributes:
-        consistent: The modes that it allows.
-        refused: The modes that it does not allow.
-        undecided: The modes that it may allow. Rounding decides whether their forces bring them about.
-    """
-
-    consistent: list[PlanarMode]
-    refused: list[RefusedMode]
-    undecided: list[str]
+    consistent: list[PlanarMode]  # the modes that it allows
+    refused: list[RefusedMode]  # the modes that it does not allow
+    undecided: list[str]  # modes that it may allow: rounding decides whether their forces bring them about
 
     @property
     def verdict(self) -> ModeVerdict:
@@ -61,7 +55,9 @@ def judge_all(case: PlanarCase, cells: Mapping[str, Cell], accuracy: float) -> J
         forces = independent.forces(mode, cell.letters)
         outcome: PlanarMode | RefusedMode | None
         if forces is None:
-            outcome = _from_cone(case, mode, cell, accuracy)
+            outcome = _judged(case, mode, cell, accuracy, exact=False)
+            if outcome is None:  # its forces do not bring about what the letters say: they are no evidence
+                outcome = _judged(case, mode, cell, accuracy, exact=True)
         elif isinstance(forces, RefusedMode):
             outcome = forces
         else:
@@ -92,20 +88,10 @@ def _shown(
     return _consistent(case, mode, cell, inside, q, unique=(True, True))
 
 
-def _from_cone(case: PlanarCase, mode: str, cell: Cell, accuracy: float) -> PlanarMode | RefusedMode | None:
-    """Decide a mode whose equations are not independent by the cone of its wrenches.
-
-    If the forces do not bring about what the letters say, they are no evidence. Then the mode is decided
-    again with more digits.
-    """
-    outcome = _judged(case, mode, cell, accuracy, exact=False)
-    return _judged(case, mode, cell, accuracy, exact=True) if outcome is None else outcome
-
-
 def _judged(
     case: PlanarCase, mode: str, cell: Cell, accuracy: float, *, exact: bool
 ) -> PlanarMode | RefusedMode | None:
-    """Return the decision on a mode, or None if there are forces for it that do not bring it about."""
+    """Decide a mode by the cone of its wrenches. Return None if its forces do not bring it about."""
     wrenches = ModeWrenches(case, cell, exact=exact)
     shortfall = wrenches.shortfall(accuracy)
     if shortfall is not None:
@@ -139,15 +125,7 @@ def _consistent(
     unique: tuple[bool, bool],
 ) -> PlanarMode:
     alpha = q[2] / case.rho
-    square = case.omega * case.omega
-    accelerations: list[Vector2] = []
-    a_x, a_y, _ = q
-    for contact in case.contacts:
-        n_x, n_y = contact.normal
-        r_x, r_y = contact.r
-        c_x = a_x - alpha * r_y - square * r_x
-        c_y = a_y + alpha * r_x - square * r_y
-        accelerations.append((c_x * n_y - c_y * n_x, c_x * n_x + c_y * n_y))
+    accelerations = contact_accelerations(case.contacts, q[:2], alpha, case.omega)
     all_forces: list[Vector2] = [(0.0, 0.0)] * len(case.contacts)
     for (position, letter), force in zip(cell.letters, forces, strict=True):
         index = case.rows[position].contact
@@ -157,7 +135,7 @@ def _consistent(
     forces_unique, motion_unique = unique
     return PlanarMode(
         mode=mode,
-        acceleration=(a_x, a_y),
+        acceleration=q[:2],
         angular_acceleration=alpha,
         contact_forces=tuple(all_forces),
         contact_accelerations=tuple(accelerations),

@@ -37,7 +37,7 @@ from contact_dynamics.tolerances import (
     ROW_TOLERANCE,
     VELOCITY_TOLERANCE,
 )
-from contact_dynamics.validation import check_not_negative, check_size
+from contact_dynamics.validation import check_not_negative
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -113,86 +113,44 @@ class PlanarContactProblem(Record):
 
 
 class ContactRow(NamedTuple):
-    """One touching contact.
+    """One touching contact."""
 
-    Attributes:
-        contact: Its index in the caller's order.
-        N: The row of its normal acceleration. It is not a unit vector.
-        T: The row of its tangential acceleration. It is not a unit vector.
-        unit_n: The unit vector along N.
-        unit_t: The unit vector along T.
-        size_n: |N|.
-        size_t: |T|.
-        b_n: m/s^2, the part of the normal acceleration that is due to velocities.
-        b_t: m/s^2, the part of the tangential acceleration that is due to velocities.
-        slides: -1 if it moves left, +1 if it moves right, and 0 if it is at rest.
-        friction: The coefficient of friction that acts, see `effective_friction`.
-    """
-
-    contact: int
-    N: Vector3
-    T: Vector3
-    unit_n: Vector3
-    unit_t: Vector3
-    size_n: float
-    size_t: float
-    b_n: float
-    b_t: float
-    slides: float
-    friction: float
+    contact: int  # its index in the caller's order
+    N: Vector3  # the row of its normal acceleration, not a unit vector
+    T: Vector3  # the row of its tangential acceleration, not a unit vector
+    unit_n: Vector3  # the unit vector along N
+    unit_t: Vector3  # the unit vector along T
+    size_n: float  # |N|
+    size_t: float  # |T|
+    b_n: float  # m/s^2, the part of the normal acceleration that is due to velocities
+    b_t: float  # m/s^2, the part of the tangential acceleration that is due to velocities
+    slides: float  # -1 if it moves left, +1 if it moves right, and 0 if it is at rest
+    friction: float  # the coefficient of friction that acts, see `effective_friction`
 
 
 class Lift(NamedTuple):
-    """The line of symmetry of a body that turns about its contacts, and coordinates across it.
+    """The line of symmetry of a body that turns about its contacts, and coordinates across it."""
 
-    Attributes:
-        line: The direction of the velocity, as a unit vector.
-        across: Two unit vectors that are orthogonal to the line and to each other.
-        scale: m/s^2, the largest |b|. It is the unit of the third coordinate.
-    """
-
-    line: Vector3
-    across: tuple[Vector3, Vector3]
-    scale: float
+    line: Vector3  # the direction of the velocity, as a unit vector
+    across: tuple[Vector3, Vector3]  # two unit vectors that are orthogonal to the line and to each other
+    scale: float  # m/s^2, the largest |b|, which is the unit of the third coordinate
 
 
 class PlanarCase(NamedTuple):
-    """A question in coordinates. The enumeration and the judgement of modes need no more than this.
+    """A question in coordinates. The enumeration and the judgement of modes need no more than this."""
 
-    Attributes:
-        contacts: All contacts, also those that do not touch.
-        mass: kg.
-        rho: m, the radius of gyration.
-        w: N, the applied wrench.
-        rows: The touching contacts.
-        omega: rad/s, the angular velocity that the contacts allow.
-        lift: The line of symmetry. It is None if there are no centripetal terms, so that the accelerations
-            are a cone already.
-    """
-
-    contacts: Sequence[PlanarContact]
-    mass: float
-    rho: float
-    w: Vector3
-    rows: list[ContactRow]
-    omega: float
-    lift: Lift | None
+    contacts: Sequence[PlanarContact]  # all contacts, also those that do not touch
+    mass: float  # kg
+    rho: float  # m, the radius of gyration
+    w: Vector3  # N, the applied wrench
+    rows: list[ContactRow]  # the touching contacts
+    omega: float  # rad/s, the angular velocity that the contacts allow
+    lift: Lift | None  # the line of symmetry, or None: without centripetal terms, accelerations are a cone
 
     @property
     def load(self) -> float:
         """Return the size with which forces are compared, N: the applied wrench plus centripetal terms."""
         return norm(self.w) + (self.mass * self.lift.scale if self.lift else 0.0)
-
-
-def check_length(margin_length: float | None, body: PlanarBody) -> float:
-    """Return the length, m, that makes a moment comparable with a force. Without one, it is rho.
-
-    Raises:
-        InvalidFieldError: the length is not from 1 / `LARGEST_NUMBER` to `LARGEST_NUMBER`.
-    """
-    if margin_length is None:
-        return body.radius_of_gyration
-    return check_size("margin_length", margin_length)
 
 
 def touching_case(problem: PlanarContactProblem) -> PlanarCase | None:
@@ -268,6 +226,21 @@ def planar_case(
         omega=omega,
         lift=_lift(twist, largest) if largest > 0.0 else None,
     )
+
+
+def contact_accelerations(
+    contacts: Sequence[PlanarContact], a: Vector2, alpha: float, omega: float
+) -> list[Vector2]:
+    """Return the accelerations (a_t, a_n) of the body's points at contacts, m/s^2, whose centre has ``a``."""
+    found = []
+    (a_x, a_y), square = a, omega * omega
+    for contact in contacts:
+        n_x, n_y = contact.normal
+        r_x, r_y = contact.r
+        c_x = a_x - alpha * r_y - square * r_x
+        c_y = a_y + alpha * r_x - square * r_y
+        found.append((c_x * n_y - c_y * n_x, c_x * n_x + c_y * n_y))
+    return found
 
 
 def contact_rows(contact: PlanarContact, length: float) -> tuple[Vector3, Vector3]:

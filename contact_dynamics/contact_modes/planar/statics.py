@@ -21,16 +21,15 @@ from contact_dynamics.contact_modes.letters import STICKS
 from contact_dynamics.contact_modes.planar.answer import planar_contact_modes
 from contact_dynamics.contact_modes.planar.cone import PolyhedralCone
 from contact_dynamics.contact_modes.planar.enumeration import FIXED
-from contact_dynamics.contact_modes.planar.friction_edges import edge_forces, sharp_reaction
 from contact_dynamics.contact_modes.planar.judgement import EVIDENCE
 from contact_dynamics.contact_modes.planar.problem import (
     AT_REST,
     accuracy_of,
-    check_length,
     contact_rows,
     effective_friction,
 )
-from contact_dynamics.contact_modes.result import BodyStatics, Certainty, ModeVerdict
+from contact_dynamics.contact_modes.planar.wrench_cone import edge_forces, sharp_reaction
+from contact_dynamics.contact_modes.result import BodyStatics, Certainty, ModeVerdict, check_length
 from contact_dynamics.errors import UndecidedError
 from contact_dynamics.numerics.nonnegative_least_squares import distance_from_cone
 from contact_dynamics.numerics.vectors import Vector3, combined, dot, normalised, opposite
@@ -40,28 +39,19 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from contact_dynamics.contact_modes.planar.problem import PlanarContactProblem
-    from contact_dynamics.contact_modes.planar.result import PlanarMode, PlanarModeAnswer
+    from contact_dynamics.contact_modes.result import PlanarMode, PlanarModeAnswer
     from contact_dynamics.plane.types import PlanarContact
 
 
 def planar_statics(problem: PlanarContactProblem, *, margin_length: float | None = None) -> BodyStatics:
-    """Return whether and how well a body at rest stays at rest.
-
-    Args:
-        problem: The question. Its velocity plays no part.
-        margin_length: m, > 0. It makes a moment comparable with a force. If it is None, it is the radius of
-            gyration.
-
-    Raises:
-        InvalidFieldError: the length is not > 0.
-        UndecidedError: it is not decided whether the body can stay, for a reason that the message says.
+    """Return whether and how well a body at rest stays at rest (`plane_or_space.statics`).
 
     Source: Mason 5.5 to 6.5 and lecture 26; D. E. Whitney, J. Dyn. Sys. Meas. Control 104 (1982), jamming and
     wedging.
     """
     body, contacts, wrench = problem.body, problem.contacts, problem.wrench
     accuracy = accuracy_of(problem)
-    length = check_length(margin_length, body)
+    length = check_length(margin_length, body.radius_of_gyration)
     answer = planar_contact_modes(replace(problem, velocity=AT_REST))
     target = (wrench.f[0], wrench.f[1], wrench.moment / length)
     rho = body.radius_of_gyration

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""This file finds the applied wrenches of each mode of planar contacts (lecture 26).
+"""The applied wrenches of each mode of planar contacts, and the margins of a wrench in them (lecture 26).
 
 The applied wrenches that can bring about a mode are a convex set, and a cone if there are no centripetal
 terms. All sets together are the map of modes over applied wrenches. They overlap where the outcome is
@@ -13,20 +13,25 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 from contact_dynamics.contact_modes.letters import PLANAR_LETTERS, check_modes
+from contact_dynamics.contact_modes.planar.answer import planar_contact_modes
 from contact_dynamics.contact_modes.planar.enumeration import kinematic_cells
-from contact_dynamics.contact_modes.planar.problem import touching_case
+from contact_dynamics.contact_modes.planar.judgement import judge_all
+from contact_dynamics.contact_modes.planar.problem import accuracy_of, touching_case
 from contact_dynamics.contact_modes.planar.wrench_cone import ModeWrenches
+from contact_dynamics.contact_modes.result import ModeVerdict, check_length
 from contact_dynamics.plane.types import PlanarWrench
 from contact_dynamics.records import Record
+from contact_dynamics.tolerances import BEYOND_MARGIN
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
 
     from contact_dynamics.contact_modes.planar.enumeration import Cell
     from contact_dynamics.contact_modes.planar.problem import PlanarCase, PlanarContactProblem
+    from contact_dynamics.contact_modes.result import PlanarModeAnswer
     from contact_dynamics.numerics.vectors import Vector3
 
 
@@ -96,19 +101,10 @@ def length_of(sets: Sequence[PlanarWrenchSet]) -> float:
 def planar_wrench_sets(
     problem: PlanarContactProblem, *, modes: Collection[str] | None = None
 ) -> tuple[PlanarWrenchSet, ...]:
-    """Return the applied wrenches of every kinematically possible mode, in alphabetical order.
+    """Return the applied wrenches of every kinematically possible mode (`plane_or_space.wrench_sets`).
 
-    There are none if a contact approaches, or if none touches. The problem's own wrench plays no part.
-
-    Args:
-        problem: The contacts and the velocity.
-        modes: The modes that are wanted, with one letter for each contact. If it is None, all are returned. A
-            mode that is impossible under every wrench has no set.
-
-    Raises:
-        InvalidFieldError: modes that are not strings of s, l, r and f.
-
-    Source: lecture 26, "Force dual for dynamic contact problem" and "Contact modes for wrench in tray".
+    There are none if a contact approaches, or if none touches. The problem's own wrench plays no part. A mode
+    that is impossible under every wrench has no set.
     """
     check_modes(modes or (), len(problem.contacts), PLANAR_LETTERS)
     case = touching_case(problem)
@@ -133,3 +129,81 @@ def wrench_set_of(case: PlanarCase, mode: str, cell: Cell) -> PlanarWrenchSet:
 
 def _in_units(w: Vector3, rho: float) -> PlanarWrench:
     return PlanarWrench(f=(w[0], w[1]), moment=w[2] * rho)
+
+
+_NO_WRENCH: Final = PlanarWrench(f=(0.0, 0.0))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
+class PlanarModeMargin(Record):
+    """How far an applied wrench is from leaving one of its consistent modes, and where it would go.
+
+    Attributes:
+        mode: The mode, with one letter for each contact.
+        margin: N, the size of the least change that leaves the mode, in the metric |f|^2 + (moment /
+            length)^2. It is infinite if no change does.
+        length: m, the length in that metric.
+        change: The least change itself, or zero if no change leaves the mode.
+        verdict_beyond: The verdict where the wrench has changed by `BEYOND_MARGIN` more than that, or the
+            present one if there is no boundary. It holds further on only up to the next boundary.
+        modes_beyond: The consistent modes there.
+    """
+
+    mode: str
+    margin: float
+    length: float
+    change: PlanarWrench
+    verdict_beyond: ModeVerdict
+    modes_beyond: tuple[str, ...]
+
+
+def planar_mode_margins(
+    problem: PlanarContactProblem,
+    answer: PlanarModeAnswer | None = None,
+    *,
+    margin_length: float | None = None,
+) -> tuple[PlanarModeMargin, ...]:
+    """Return the margin of the wrench in each of its consistent modes (`plane_or_space.mode_margins`).
+
+    If all contacts separate already, no wrench changes the mode, and its margin is infinite.
+    """
+    length = check_length(margin_length, problem.body.radius_of_gyration)
+    if answer is None:
+        answer = planar_contact_modes(problem)
+    if answer.approaching:
+        return ()
+    wrench, case = problem.wrench, touching_case(problem)
+    cells = kinematic_cells(case) if case is not None else {}
+    present = tuple(mode.mode for mode in answer.modes)
+    found = []
+    for mode in present:
+        margin, change, verdict, beyond = math.inf, _NO_WRENCH, answer.verdict, present
+        sides = wrench_set_of(case, mode, cells[mode]).half_spaces if case is not None else ()
+        if case is not None and sides:
+            side = min(sides, key=lambda half_space: half_space.depth(wrench, length))
+            # A consistent wrench that rounding has put outside has the margin zero.
+            margin, way = max(0.0, side.depth(wrench, length)), side.outward(length)
+            change = _stepped(_NO_WRENCH, margin, way)
+            step = margin + BEYOND_MARGIN * max(margin, math.hypot(*wrench.f, wrench.moment / length))
+            there = _stepped(wrench, step, way)
+            other = case._replace(w=(*there.f, there.moment / case.rho))
+            judged = judge_all(other, cells, accuracy_of(problem))
+            verdict, beyond = judged.verdict, tuple(one.mode for one in judged.consistent)
+        found.append(
+            PlanarModeMargin(
+                mode=mode,
+                margin=margin,
+                length=length,
+                change=change,
+                verdict_beyond=verdict,
+                modes_beyond=beyond,
+            )
+        )
+    return tuple(found)
+
+
+def _stepped(wrench: PlanarWrench, step: float, way: PlanarWrench) -> PlanarWrench:
+    return PlanarWrench(
+        f=(wrench.f[0] + step * way.f[0], wrench.f[1] + step * way.f[1]),
+        moment=wrench.moment + step * way.moment,
+    )

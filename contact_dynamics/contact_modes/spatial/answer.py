@@ -12,7 +12,7 @@ The letters are s (separates), f (sticks) and c (stays and slides); the sector o
 First the most likely mode is found (`likely_mode`). Often it is proven at once that it is alone
 (`only_motion`). Otherwise all other modes are found or refuted (`completeness`). Only what this leaves
 undecided takes a search for all modes of the pyramids (`search`), whose friction is then turned exactly
-against the sliding (`exact_friction`, `exact_modes`). So the answer does not depend on the pyramids. One
+against the sliding (`realised`, `exact_modes`). So the answer does not depend on the pyramids. One
 contact at rest is solved exactly (`one_contact`), and round cones decide whether all contacts can stick
 (`round_cones`).
 A contact without friction has the letter c, whether it slides or not.
@@ -29,7 +29,13 @@ from typing import TYPE_CHECKING, Final, NamedTuple, cast
 import numpy as np
 
 from contact_dynamics.contact_modes.letters import SEPARATES, SPATIAL_LETTERS, STAYS, STICKS
-from contact_dynamics.contact_modes.result import SOME_MODE, ModeVerdict, verdict_on
+from contact_dynamics.contact_modes.result import (
+    SOME_MODE,
+    ModeVerdict,
+    SpatialMode,
+    SpatialModeAnswer,
+    verdict_on,
+)
 from contact_dynamics.contact_modes.spatial.completeness import (
     ENOUGH_PROGRAMS,
     FEW_PROGRAMS,
@@ -51,7 +57,6 @@ from contact_dynamics.contact_modes.spatial.problem import (
     spatial_case,
 )
 from contact_dynamics.contact_modes.spatial.realised import as_given, realised
-from contact_dynamics.contact_modes.spatial.result import SpatialMode, SpatialModeAnswer
 from contact_dynamics.contact_modes.spatial.round_cones import (
     held_by_round_cones,
     hold_alone,

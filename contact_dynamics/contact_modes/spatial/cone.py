@@ -38,19 +38,12 @@ takes milliseconds, has to find it."""
 
 
 class Cone(NamedTuple):
-    """The parts of {x : rows x >= 0}: positive sums of rays, plus sums of lines.
+    """The parts of {x : rows x >= 0}: positive sums of rays, plus sums of lines."""
 
-    Attributes:
-        strict: (m,), which rows can be positive. The others vanish all over the cone.
-        rows: (k, d), the rows that can be positive, projected on the space where the others vanish, unit.
-        rays: (r, d), unit, orthogonal to the lines. A ray may appear several times.
-        lines: (l, d), orthonormal.
-    """
-
-    strict: NDArray[np.bool_]
-    rows: FloatArray
-    rays: FloatArray
-    lines: FloatArray
+    strict: NDArray[np.bool_]  # (m,), which rows can be positive; the others vanish all over the cone
+    rows: FloatArray  # (k, d), those rows, unit, projected on the space where the others vanish
+    rays: FloatArray  # (r, d), unit, orthogonal to the lines; a ray may appear several times
+    lines: FloatArray  # (l, d), orthonormal
 
 
 def cone_of(rows: FloatArray) -> Cone:

@@ -21,8 +21,8 @@ from contact_dynamics.tolerances import MODE_STRAIGHT
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from contact_dynamics.contact_modes.result import SpatialMode
     from contact_dynamics.contact_modes.spatial.problem import SpatialCase
-    from contact_dynamics.contact_modes.spatial.result import SpatialMode
     from contact_dynamics.contact_modes.spatial.search import Search
 
 

@@ -4,7 +4,7 @@
 Their directions depend on the wrench, so that the wrenches of the mode are not convex. But the ways out of
 the mode are known: a contact that slides sticks, the load leaves all contacts but those on one side, or a
 contact that separates touches again. The wrenches of each way out lie in a convex set, and the distance to
-that is exact (`round_sums`).
+that is exact (`RoundSum`).
 
 No wrench nearer than all these sets leaves the mode, if the body is at rest and has no other mode. Consider
 contacts that give way a little. Whatever the wrench, the motions that solve the equations then add up to one,
@@ -29,8 +29,7 @@ import numpy as np
 from contact_dynamics.contact_modes.letters import SEPARATES, STAYS, STICKS
 from contact_dynamics.contact_modes.spatial.kinematic import cone_faces
 from contact_dynamics.contact_modes.spatial.regions import flat_of, image_of
-from contact_dynamics.contact_modes.spatial.round_sums import RoundSum, unit_rows
-from contact_dynamics.contact_modes.spatial.wrenches import needed_wrenches
+from contact_dynamics.contact_modes.spatial.wrenches import RoundSum, needed_wrenches, unit_rows
 from contact_dynamics.numerics.linear_spaces import row_space
 from contact_dynamics.tolerances import ROW_TOLERANCE
 
@@ -61,11 +60,7 @@ def directions_of(
 ) -> dict[int, FloatArray] | None:
     """Return in which directions contacts begin to slide, or None if that depends on the wrench.
 
-    Args:
-        case: The body with its contacts.
-        search: The search of that case.
-        letters: Those of its touching contacts in a mode.
-        directions: (n, 3), unit, in which they slide in it.
+    The touching contacts have these letters, and slide in these directions, (n, 3), unit, in the mode.
     """
     turning = begin_to_slide(search, letters)
     if turning:

@@ -37,15 +37,10 @@ _POLISHING: Final = 8
 
 
 class Lettered(NamedTuple):
-    """A mode of one contact.
+    """A mode of one contact."""
 
-    Attributes:
-        letter: s, f or c.
-        force: (3,).
-    """
-
-    letter: str
-    force: FloatArray
+    letter: str  # s, f or c
+    force: FloatArray  # (3,)
 
 
 def modes_of_one(G: FloatArray, b: FloatArray, normal: FloatArray, friction: float) -> list[Lettered]:

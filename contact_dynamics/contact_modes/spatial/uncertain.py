@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""This file finds the verdicts that occur if contacts in space are known only to some uncertainty.
+"""The verdicts that occur if contacts in space are known only to some uncertainty.
 
 The true contacts are somewhere in the box of a `ContactUncertainty`. A verdict is certain if it is proven for
 every contact set in the box:
@@ -8,14 +8,9 @@ every contact set in the box:
   body at rest always has a consistent mode, so this one is left.
 - INDETERMINATE is certain if two modes hold everywhere (`everywhere`).
 
-If there is no proof, contact sets in the box are sampled, and the verdicts that they have are listed. Whether
-more verdicts occur is then not known.
-
 There are proofs only for bodies at rest with at most `MAX_PROVEN_CONTACTS`. Each contact's errors are
 independent of the others', and the body's mass and the applied wrench are known. Four feet that slide
 together have no proof, since they do so only if they lie exactly in a plane.
-
-The geometry margins are how far contacts would have to move, turn or change friction for another answer.
 """
 
 from __future__ import annotations
@@ -24,27 +19,28 @@ import math
 from contextlib import suppress
 from dataclasses import replace
 from functools import partial
-from itertools import islice
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from contact_dynamics.contact.friction import linearised_cone
 from contact_dynamics.contact.uncertainty import EXACT_CONTACTS, ContactUncertainty
-from contact_dynamics.contact_modes.geometry_search import geometry_margins_within, verdicts_within
-from contact_dynamics.contact_modes.result import ModeVerdict
+from contact_dynamics.contact_modes.everywhere import holds_for_all
+from contact_dynamics.contact_modes.result import BodyStatics, ModeVerdict
 from contact_dynamics.contact_modes.spatial.answer import spatial_contact_modes
-from contact_dynamics.contact_modes.spatial.everywhere import holds_everywhere
-from contact_dynamics.contact_modes.spatial.excluded import no_other_mode
+from contact_dynamics.contact_modes.spatial.excluded import bounded_body, no_other_mode
 from contact_dynamics.contact_modes.spatial.problem import SpatialCase, spatial_case
+from contact_dynamics.contact_modes.spatial.statics import spatial_statics
+from contact_dynamics.contact_modes.uncertain import Boxes
 from contact_dynamics.errors import TooLargeError
 from contact_dynamics.numerics.vectors import tangents_towards
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from contact_dynamics.contact_modes.result import GeometryMargin, VerdictsWithin
+    from contact_dynamics.contact_modes.result import SpatialModeAnswer
     from contact_dynamics.contact_modes.spatial.problem import SpatialContactProblem
-    from contact_dynamics.contact_modes.spatial.result import SpatialModeAnswer
+    from contact_dynamics.validation import FloatArray
 
 
 SAMPLES: Final = 64
@@ -55,26 +51,27 @@ MAX_PROVEN_CONTACTS: Final = 4
 """The largest number of contacts that proofs are tried for. The programs grow exponentially with them."""
 
 
-def spatial_verdicts_within(
-    problem: SpatialContactProblem, answer: SpatialModeAnswer | None = None
-) -> VerdictsWithin:
-    """Return the verdicts that occur within the problem's uncertainty.
+_STEP: Final = 2.0
+"""Each size is at most this factor from the next. A finer step takes more proofs, of up to seconds each."""
 
-    Args:
-        problem: The question, with its uncertainty.
-        answer: The answer to that question, if it is known.
+_SAMPLES: Final = 16
+"""Contact sets that are tried for each size. Each takes some 10 ms."""
 
-    Raises:
-        TooLargeError: more contacts touch than `spatial_contact_modes` accepts, or its search takes too many
-            trials. Samples that take too many are left out.
-    """
-    if answer is None:
-        answer = spatial_contact_modes(problem)
-    return verdicts_within(
+_STEPS: Final = 26
+"""Sizes below the largest, which so reach down to 1.5e-8 of it."""
+
+
+def spatial_boxes(problem: SpatialContactProblem, answer: SpatialModeAnswer) -> Boxes[SpatialModeAnswer]:
+    """Return what is known of the answers in boxes around the contacts of a problem."""
+    return Boxes(
         answer,
-        problem.uncertainty,
         is_certain=partial(is_certain, problem, answer),
         sampled=partial(sampled, problem),
+        radius_of_gyration=problem.body.mean_radius_of_gyration,
+        frictions=problem.contacts.frictions.tolist(),
+        step=_STEP,
+        steps=_STEPS,
+        samples=_SAMPLES,
     )
 
 
@@ -129,39 +126,23 @@ def _moved(
     return replace(problem, contacts=moved, uncertainty=EXACT_CONTACTS)
 
 
-_STEP: Final = 2.0
-"""Each size is at most this factor from the next. A finer step takes more proofs, of up to seconds each."""
+def holds_everywhere(problem: SpatialContactProblem, mode: str, box: ContactUncertainty) -> bool:
+    """Return whether it is proven that a consistent mode is consistent everywhere in a box.
 
-_SAMPLES: Final = 16
-"""Contact sets that are tried for each size. Each takes some 10 ms."""
-
-_STEPS: Final = 26
-"""Sizes below the largest, which so reach down to 1.5e-8 of it."""
-
-
-def spatial_geometry_margins(
-    problem: SpatialContactProblem, answer: SpatialModeAnswer | None = None
-) -> tuple[GeometryMargin, ...]:
-    """Return the margins of the answer in points, normals and frictions, in this order.
-
-    In each of them only that one is off, for all contacts at once and for each in its own way. There are no
-    margins if a contact approaches.
-
-    Args:
-        problem: The question. Its own uncertainty plays no part.
-        answer: The answer to that question, if it is known.
-
-    Raises:
-        TooLargeError: as for `spatial_contact_modes`.
+    The body is at rest, and all contacts touch it. Nothing is proven of contacts that slide.
     """
-    if answer is None:
-        answer = spatial_contact_modes(problem)
-    return geometry_margins_within(
-        answer,
-        radius_of_gyration=problem.body.mean_radius_of_gyration,
-        frictions=problem.contacts.frictions.tolist(),
-        step=_STEP,
-        steps=_STEPS,
-        is_certain=partial(is_certain, problem, answer),
-        sampled=lambda box: islice(sampled(problem, box), _SAMPLES),
-    )
+    body = bounded_body(problem, box)
+    least = np.array([one.min_friction for one in body.contacts])
+
+    def statics() -> BodyStatics:
+        return spatial_statics(replace(problem, contacts=replace(problem.contacts, frictions=least)))
+
+    def edges() -> tuple[FloatArray, FloatArray]:
+        wrenches, costs = [], []
+        for one in body.contacts:
+            forces = linearised_cone(np.array([1.0, 0.0, 0.0]), one.min_friction, problem.friction_facets)
+            wrenches.append(forces @ one.rows)
+            costs.append(math.hypot(one.errors[0, 0], one.errors[0, -1]) * np.linalg.norm(forces, axis=1))
+        return np.vstack(wrenches), np.concatenate(costs)
+
+    return holds_for_all(body, mode, statics=statics, edges=edges)

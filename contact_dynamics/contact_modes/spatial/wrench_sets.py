@@ -13,6 +13,9 @@ and pyramids that lie alike: with as many facets, and under the wrench for which
 turned otherwise differ by the part 1 - cos(pi / facets) of friction at rest. On a set's boundary, which it
 contains here, the strict inequalities of its letters fail. A frictionless contact that stays is `c`, whether
 it slides or not.
+
+The ways in which contacts can slide together are faces of an arrangement (`kinematic`), whose planes are
+those of the borders between sectors.
 """
 
 from __future__ import annotations
@@ -23,11 +26,11 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from contact_dynamics.contact_modes.letters import SEPARATES, SPATIAL_LETTERS, check_modes
+from contact_dynamics.contact_modes.letters import SEPARATES, SPATIAL_LETTERS, STAYS, STICKS, check_modes
+from contact_dynamics.contact_modes.spatial.kinematic import sliding_faces
 from contact_dynamics.contact_modes.spatial.problem import SpatialCase, search_of_few_edges, spatial_case
-from contact_dynamics.contact_modes.spatial.ways_of_sliding import sliding_range, ways_of
-from contact_dynamics.contact_modes.spatial.wrenches import distinct, supports, wrench_generators
-from contact_dynamics.errors import TooLargeError
+from contact_dynamics.contact_modes.spatial.wrenches import Way, distinct, supports, wrench_generators
+from contact_dynamics.errors import TooLargeError, UndecidedError
 from contact_dynamics.records import Record
 from contact_dynamics.tolerances import ROW_TOLERANCE
 
@@ -36,7 +39,9 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
+    from contact_dynamics.contact_modes.spatial.options import Pyramid
     from contact_dynamics.contact_modes.spatial.problem import SpatialContactProblem
+    from contact_dynamics.contact_modes.spatial.pyramid_programs import Touching
     from contact_dynamics.contact_modes.spatial.search import Search
     from contact_dynamics.contact_modes.spatial.wrenches import Way
     from contact_dynamics.validation import FloatArray
@@ -91,22 +96,15 @@ class SpatialWrenchSet(Record):
 def spatial_wrench_sets(
     problem: SpatialContactProblem, *, modes: Collection[str] | None = None
 ) -> tuple[SpatialWrenchSet, ...]:
-    """Return the applied wrenches of every mode and way of sliding, in alphabetical order of the letters.
+    """Return the applied wrenches of every mode and way of sliding (`plane_or_space.wrench_sets`).
 
     There are none where a contact approaches. Sets of one mode follow each other. The problem's own wrench
-    says how the friction pyramids lie, and plays no other part.
-
-    Args:
-        problem: The contacts, the state and the facets: 4 keep the sets few.
-        modes: The modes that are wanted, with one letter for each contact; None for all. A mode that is
-            impossible whatever the wrench has no set.
+    says how the friction pyramids lie, and plays no other part. A mode that is impossible whatever the wrench
+    has no set.
 
     Raises:
-        InvalidFieldError: modes that are not strings of s, f and c.
-        UndecidedError: the contacts are so nearly the same that rounding decides the sets.
-        TooLargeError: as for `spatial_contact_modes`; or more than `MAX_WRENCH_SETS` sets, more than
-            `spatial.problem.MAX_EDGES` edges of all pyramids, or too many ways of sliding
-            (`ways_of_sliding.MAX_MEETINGS`).
+        TooLargeError: more than `MAX_WRENCH_SETS` sets, more than `spatial.problem.MAX_EDGES` edges of all
+            pyramids, or too many ways of sliding (`MAX_MEETINGS`).
 
     Source: lecture 26, "Force dual for dynamic contact problem"; Huang, Cheng and Mason 2020 for the ways.
     """
@@ -162,4 +160,92 @@ def _wrench_set(
         vertices=given.rays[high, :6] / given.rays[high, 6:] * metric * unit + turning,
         generators=np.vstack([given.rays[~high], given.lines, -given.lines])[:, :6] * metric,
         half_spaces=np.column_stack([outward, sides[:, 6] * unit + outward @ turning]),
+    )
+
+
+MAX_MEETINGS: Final = 10_000
+"""The largest number of sets of planes of one arrangement whose common lines are computed, in about a
+second."""
+
+
+def ways_of(search: Search) -> list[tuple[Way, ...]]:
+    """Return all that touching contacts can do together, each with a `Way` for every contact.
+
+    Raises:
+        TooLargeError: more than `MAX_MEETINGS` sets of planes meet in lines.
+        UndecidedError: rounding decides which ways of sliding there are.
+    """
+    touching = search.touching
+    height = np.eye(1, 7, 6)
+    normals = [(contact.normal @ contact.point)[None, :] for contact in touching]
+    rows = np.vstack([*normals, height])
+    rows /= np.linalg.norm(rows, axis=1)[:, None]
+    cuts = [_borders(of, pyramid) for of, pyramid in zip(touching, search.pyramids, strict=True)]
+    found: dict[tuple[Way, ...], None] = {}
+    for signs_of in sliding_faces(rows, cuts, MAX_MEETINGS):
+        ways = [Way(SEPARATES, -1)] * len(touching)
+        for i, signs in signs_of.items():
+            ways[i] = _way(signs, len(search.pyramids[i].edges))
+        found[tuple(ways)] = None
+    rest = tuple(Way(STAYS if one.frame is None else STICKS, -1) for one in search.pyramids)
+    if rest not in found and not any(np.any(contact.point[:, -1]) for contact in touching):
+        raise _undecided()  # nothing keeps a body from resting
+    return list(found)
+
+
+def sliding_range(pyramid: Pyramid, way: Way) -> tuple[FloatArray, FloatArray]:
+    """Return the unit tangents, (3,) each, between which a contact slides, anticlockwise about its normal.
+
+    Both are zero where it does not slide or may slide any way. They are equal where it slides in that one
+    direction.
+    """
+    if way.item < 0 or pyramid.frame is None:
+        return np.zeros(3), np.zeros(3)
+    count = len(pyramid.edges)
+    first = (way.item + 1) // 2 - 0.5 if way.item % 2 == 0 else way.item // 2 + 0.5
+    angles = 2.0 * math.pi / count * np.array([first, first + (way.item % 2 == 0)]) + math.pi
+    one, two = pyramid.frame
+    low, high = (math.cos(angle) * one + math.sin(angle) * two for angle in angles)
+    return low, high
+
+
+def _borders(contact: Touching, pyramid: Pyramid) -> FloatArray:
+    """Return rows, (k, 7), that are positive where a contact slides anticlockwise of a border.
+
+    Each sector of sliding is opposite to an edge, and border j lies between sectors j and j + 1. If their
+    number is even, the second half would be the first half's rows, reversed, and is left out. A contact whose
+    direction of sliding does not matter has no rows.
+    """
+    if pyramid.frame is None:
+        return np.zeros((0, 7))
+    count = len(pyramid.edges)
+    angles = math.pi / count * (2.0 * np.arange(count if count % 2 else count // 2) + 1.0)
+    quarter_on = np.column_stack([np.sin(angles), -np.cos(angles)])
+    return quarter_on @ np.array(pyramid.frame) @ contact.point
+
+
+def _way(signs: list[int], count: int) -> Way:
+    """Return what a contact that stays does, from the side of each of its borders that it slides to.
+
+    Its pyramid has ``count`` edges.
+    """
+    if not signs:
+        return Way(STAYS, -1)
+    if not any(signs):
+        return Way(STICKS, -1)
+    if len(signs) < count:
+        signs = [*signs, *(-sign for sign in signs)]
+    for k, sign in enumerate(signs):
+        after = signs[(k + 1) % count]
+        if sign == 0 and after < 0:
+            return Way(STAYS, 2 * k + 1)
+        if sign > 0 and after < 0:
+            return Way(STAYS, 2 * ((k + 1) % count))
+    raise _undecided()
+
+
+def _undecided() -> UndecidedError:
+    return UndecidedError(
+        "contacts and their normals must be either the same or clearly apart, got ways of sliding that "
+        "rounding decides"
     )

@@ -4,6 +4,10 @@
 They are the wrenches that the motions with these letters need, less the wrenches of contact forces. They are
 given as positive sums of rays, plus sums of lines. Centripetal terms add a seventh coordinate, in which a
 wrench has the height one. A wrench is (force, torque / length) / mass, in the units of accelerations.
+
+The sum that is nearest to a given wrench may also have forces in round friction cones. A few edges replace
+the cones at first. The forces that lead nearer to the target become further edges, until none does. Then the
+remainder separates the target from all sums, so that no sum is nearer.
 """
 
 from __future__ import annotations
@@ -14,9 +18,9 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import numpy as np
 
 from contact_dynamics.contact_modes.letters import SEPARATES, STICKS
-from contact_dynamics.contact_modes.spatial.cone import cone_of
-from contact_dynamics.contact_modes.spatial.round_sums import RoundSum, unit_rows
+from contact_dynamics.contact_modes.spatial.cone import cone_of, nearest_sum
 from contact_dynamics.numerics.linear_spaces import null_space
+from contact_dynamics.tolerances import NEAREST_GAIN, NEAREST_REACHED, ROW_TOLERANCE
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -27,7 +31,6 @@ if TYPE_CHECKING:
     from contact_dynamics.contact_modes.spatial.search import Search
     from contact_dynamics.validation import FloatArray
 
-
 _ALIKE: Final = 7
 """Unit rows that agree to so many digits count as the same. Rounding reaches the eleventh digit."""
 
@@ -37,41 +40,25 @@ HEIGHT_WEIGHT: Final = 1e4
 
 
 class Way(NamedTuple):
-    """What one touching contact does.
+    """What one touching contact does."""
 
-    Attributes:
-        letter: s (separates), f (sticks) or c (stays).
-        item: The item of sliding (`options`), or -1 if none is asked for.
-    """
-
-    letter: str
-    item: int
+    letter: str  # s (separates), f (sticks) or c (stays)
+    item: int  # the item of sliding (`options`), or -1 if none is asked for
 
 
 class Generators(NamedTuple):
-    """Wrenches that bring something about, with their heights: positive sums of rays, plus sums of lines.
+    """Wrenches that bring something about, with their heights: positive sums of rays, plus sums of lines."""
 
-    Attributes:
-        rays: (k, 7), unit.
-        lines: (m, 7), unit.
-    """
-
-    rays: FloatArray
-    lines: FloatArray
+    rays: FloatArray  # (k, 7), unit
+    lines: FloatArray  # (m, 7), unit
 
 
 class _Conditions(NamedTuple):
-    """What a contact demands of the motion, and the force edges that may act.
+    """What a contact demands of the motion, and the force edges that may act."""
 
-    Attributes:
-        zero: (k, 7), rows that vanish on the motion.
-        positive: (l, 7), rows that are not negative on it.
-        acting: (j, 3), the edges.
-    """
-
-    zero: FloatArray
-    positive: FloatArray
-    acting: FloatArray
+    zero: FloatArray  # (k, 7), rows that vanish on the motion
+    positive: FloatArray  # (l, 7), rows that are not negative on it
+    acting: FloatArray  # (j, 3), the edges
 
 
 def wrench_generators(
@@ -182,3 +169,53 @@ def _conditions(contact: Touching, pyramid: Pyramid, way: Way) -> _Conditions:
 def distinct(rows: FloatArray) -> FloatArray:
     """Return unit rows, each once."""
     return rows[np.sort(np.unique(np.round(rows, _ALIKE), axis=0, return_index=True)[1])]
+
+
+_MAX_ROUNDS: Final = 60
+"""Rounds of further edges. Six are enough, and each adds an edge to a cone."""
+
+_START: Final = np.array([[1.0, 0.0], [-0.5, 0.75**0.5], [-0.5, -(0.75**0.5)]])
+
+
+class RoundSum(NamedTuple):
+    """What is summed, in a space of k dimensions."""
+
+    rays: FloatArray  # (m, k)
+    axes: FloatArray  # (n, k), the axes of the cones
+    leans: FloatArray  # (n, 2, k); edges of a cone are its axis plus unit sums of its two leans
+
+    def rest(self, target: FloatArray) -> FloatArray:
+        """Return a target, (k,), less the sum that is nearest to it; zeros if it is a sum to rounding."""
+        edges = [self.axes + self.leans[:, 0] * x + self.leans[:, 1] * y for x, y in _START]
+        rays = unit_rows(self.rays)
+        spans = np.vstack([rays, unit_rows(np.vstack(edges))])
+        size = float(np.linalg.norm(target))
+        rest, before = target, np.inf
+        for _ in range(_MAX_ROUNDS if len(spans) else 0):
+            shares, left = nearest_sum(spans, target)
+            if left <= NEAREST_REACHED * size:
+                return np.zeros_like(target)
+            rest = target - shares @ spans
+            if len(self.axes) == 0 or left >= before:
+                break
+            before = left
+            along = self.leans @ rest
+            sizes = np.sqrt((along * along).sum(axis=1))[:, None]
+            along /= np.where(sizes > 0.0, sizes, 1.0)
+            best = self.axes + (along[:, None, :] @ self.leans)[:, 0]
+            best /= np.sqrt((best * best).sum(axis=1))[:, None]
+            gains = best @ rest
+            # No sum is nearer by more than the gain of all forces together, were they along the best edge.
+            if float(gains.max()) * float(shares.sum()) <= NEAREST_GAIN * left * left:
+                break
+            helps = gains > 0.0
+            shares[: len(rays)] = 1.0  # rays that do not act now may do so with further edges
+            spans = np.concatenate([spans[shares > 0.0], best[helps]])
+        return rest
+
+
+def unit_rows(rows: FloatArray) -> FloatArray:
+    """Return rows, (m, k), divided by their lengths, without those that vanish."""
+    sizes = np.sqrt((rows * rows).sum(axis=1))
+    found: FloatArray = rows[sizes > ROW_TOLERANCE] / sizes[sizes > ROW_TOLERANCE, None]
+    return found

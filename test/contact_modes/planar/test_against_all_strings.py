@@ -8,8 +8,8 @@ import random
 import pytest
 
 from contact_dynamics.contact_modes import ModeVerdict, PlanarContactProblem, PlanarModeAnswer, contact_modes
-from contact_dynamics.contact_modes.planar import cone, extreme_rays
-from contact_dynamics.contact_modes.planar import friction_edges as edges
+from contact_dynamics.contact_modes.planar import cone
+from contact_dynamics.contact_modes.planar import wrench_cone as edges
 from contact_modes.evidence import check_evidence
 from oracles.contact_mode_cases import FloatCase, contact, draw, resting, rounded
 from oracles.contact_modes import ExactCase, consistent_modes, kinematic_modes, uniqueness
@@ -102,7 +102,6 @@ def test_drawn_sets_turned_and_in_other_units(seed: int) -> None:
 
 @pytest.mark.parametrize("seed", range(2000, 2030))
 def test_drawn_sets_by_the_arrays_that_large_ones_need(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(extreme_rays, "MANY", 3)
     monkeypatch.setattr(cone, "MANY", 3)
     monkeypatch.setattr(edges, "MANY", 0)
     exact = draw(seed, most_contacts=4)

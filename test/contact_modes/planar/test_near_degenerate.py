@@ -23,7 +23,7 @@ from contact_dynamics.contact_modes import (
     statics,
     wrench_sets,
 )
-from contact_dynamics.contact_modes.planar import extreme_rays
+from contact_dynamics.contact_modes.planar import cone
 from contact_dynamics.errors import UndecidedError
 from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
 from contact_modes.evidence import check_evidence, check_forces
@@ -184,8 +184,8 @@ def compare_with_decimals(problem: PlanarContactProblem, monkeypatch: pytest.Mon
     """Check floats against decimals, which decide about the contacts exactly as they are given."""
     answer = check(problem)
     with monkeypatch.context() as patched:
-        patched.setattr(extreme_rays, "CLEAR_ROWS_OF_MANY", 2.0)
-        patched.setattr(extreme_rays, "CLEAR_ROWS", 2.0)
+        patched.setattr(cone, "CLEAR_ROWS_OF_MANY", 2.0)
+        patched.setattr(cone, "CLEAR_ROWS", 2.0)
         exact = contact_modes(problem)
     assert answer.kinematic_modes == exact.kinematic_modes
     assert [mode.mode for mode in answer.modes] == [mode.mode for mode in exact.modes]

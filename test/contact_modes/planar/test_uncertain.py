@@ -16,8 +16,7 @@ from contact_dynamics.contact_modes import (
     contact_modes,
     geometry_margins,
 )
-from contact_dynamics.contact_modes.planar.everywhere import holds_everywhere
-from contact_dynamics.contact_modes.planar.excluded import no_other_mode
+from contact_dynamics.contact_modes.planar.uncertain import holds_everywhere, no_other_mode
 from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
 
 BLOCK = PlanarBody(mass=2.0, inertia=0.033)
@@ -202,7 +201,7 @@ def test_feet_in_a_row_may_slide_in_many_ways_if_the_row_is_not_exact() -> None:
 
 def test_a_proof_fails_where_the_mode_fails_in_the_box() -> None:
     problem = on_feet(9.0, -0.2, 0.2)
-    (mode,) = contact_modes(problem).modes
+    mode = contact_modes(problem).modes[0].mode
     assert holds_everywhere(problem, mode, ContactUncertainty(frictions=0.039))
     assert not holds_everywhere(problem, mode, ContactUncertainty(frictions=0.042))
     assert no_other_mode(problem, mode, ContactUncertainty(frictions=0.039))

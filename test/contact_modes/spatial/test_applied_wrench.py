@@ -11,7 +11,7 @@ import pytest
 
 from contact_dynamics.contact.contact import ContactSet
 from contact_dynamics.contact_modes import SpatialContactProblem, contact_modes
-from contact_dynamics.contact_modes.spatial.applied_wrench import applied_wrench
+from contact_dynamics.contact_modes.result import applied_wrench
 from contact_dynamics.errors import NoContactError
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.world import Body, Surface, World

@@ -8,7 +8,7 @@ import pytest
 
 from contact_dynamics import BodyState, ContactSet, MassProperties
 from contact_dynamics.contact_modes import SpatialContactProblem, contact_modes
-from contact_dynamics.contact_modes.spatial.result import SpatialModeAnswer
+from contact_dynamics.contact_modes.result import SpatialModeAnswer
 from sweeps import sweep
 
 CUBE = MassProperties(mass=1.0, I_B=np.eye(3) / 6.0)

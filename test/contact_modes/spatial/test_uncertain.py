@@ -16,8 +16,8 @@ from contact_dynamics.contact_modes import (
     contact_modes,
     geometry_margins,
 )
-from contact_dynamics.contact_modes.spatial.everywhere import holds_everywhere
 from contact_dynamics.contact_modes.spatial.excluded import no_other_mode
+from contact_dynamics.contact_modes.spatial.uncertain import holds_everywhere
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 
