@@ -88,7 +88,7 @@ def questions() -> list[tuple[str, str, Any]]:
     one.times = [0.1]
     ten.times = [0.1 * i for i in range(10)]
     many.times = [0.001 * i for i in range(1000)]
-    contact.sampling, contact.rate = contact.UNTIL_CONTACT, [100.0]
+    contact.sampling, contact.rate = contact.UNTIL_CONTACT, 100.0
     return [
         ("contact mode, one contact", "predict_contact_mode", one_foot),
         ("contact mode, box on two feet", "predict_contact_mode", two_feet),
