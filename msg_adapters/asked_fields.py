@@ -1,34 +1,53 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Reads and writes fields that requests of several services share: optional numbers, contacts, laws.
+"""Reads and writes what requests of several services share: the body and its state, contacts, laws, numbers.
 
-A number with its field's default (`LEFT_OUT`) is left out. A value in a field that has no effect, such as a
-horizon if the contacts are given, is an error (`unread_fields`). A question with a gravity of its own has no
-request, and raises `NotSupportedError`.
+A body is named, or described by an inertia, or both. Its state stands in the request, or was published. A
+number with its field's default (`LEFT_OUT`) is left out. A value in a field that has no effect, such as a
+horizon if the contacts are given, is an error (`rejected_fields`). A question with a gravity of its own has
+no request, and raises `NotSupportedError`.
 """
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import TYPE_CHECKING, Final, Protocol, TypeVar
 
 import numpy as np
 
-from contact_dynamics.errors import InvalidFieldError, NotSupportedError
+from contact_dynamics.errors import InvalidFieldError, NotSupportedError, TooLargeError
 from contact_dynamics.impact.law import RestitutionLaw
 from contact_dynamics.impact.several.result import SeveralContactsLaw
 from contact_dynamics.plane.projection import PlaneOfMotion
 from contact_dynamics.questions.problem import Problem
+from contact_dynamics.questions.subject import NEWEST, PublishedState, changed_body
+from contact_dynamics.world import LONGEST_NAME, Body
+from msg_adapters.body_state import known_state_from_msg, known_state_to_msg
 from msg_adapters.contacts import contacts_from_msg, contacts_to_msg
 from msg_adapters.field_names import renamed
-from msg_adapters.geometry import vector_from_msg, vector_to_msg
+from msg_adapters.geometry import (
+    mass_properties_from_msg,
+    mass_properties_to_msg,
+    vector_from_msg,
+    vector_to_msg,
+)
+from msg_adapters.stamps import stamp_ns_from_msg, stamp_to_msg
 
 if TYPE_CHECKING:
-    from geometry_msgs.msg import Vector3
+    from builtin_interfaces.msg import Time
+    from geometry_msgs.msg import Inertia, Vector3
 
     from contact_dynamics.contact.contact import ContactSet
+    from contact_dynamics.numerics.vectors import Vector3 as Vector
     from contact_dynamics.questions.contact_modes import ContactModeQuestion
     from contact_dynamics.questions.impact_question import ImpactQuestion
+    from contact_dynamics.questions.subject import StateSource
+    from contact_dynamics.questions.uncertain_state import KnownState
+    from contact_dynamics.rigid_body.body import MassProperties
     from contact_dynamics.validation import FloatArray
+    from contact_dynamics.world import World
+    from contact_dynamics_interfaces.msg import BodyState as BodyStateMsg
     from contact_dynamics_interfaces.msg import ContactSet as ContactSetMsg
+    from contact_dynamics_interfaces.srv import PredictImpact
 
 LEFT_OUT: Final = -1
 """The default of a number that a request may leave out. No such number may be negative, and zero is zero."""
@@ -162,3 +181,160 @@ def write_given(msg: object, **numbers: float | None) -> None:
     for field, number in numbers.items():
         if number is not None:
             setattr(msg, field, number)
+
+
+_REMEMBERED: Final = 16  # described bodies that are kept, since a client sends an inertia with every request
+
+
+class _SubjectRequest(Protocol):
+    """The fields about the body, which the requests of all services have."""
+
+    STATE_NEWEST: int
+    STATE_EXPLICIT: int
+    STATE_AT_STAMP: int
+    body_name: str
+    inertia: Inertia
+    state_source: int
+    stamp: Time
+    state: BodyStateMsg
+
+
+class _FittedRequest(_SubjectRequest, Protocol):
+    """Those and the window of a fit to published states."""
+
+    fit_window: float
+
+
+def asked_subject(
+    request: _SubjectRequest, world: World, world_frame: str, *, fit_window: float = 0.0
+) -> tuple[Body, StateSource]:
+    """Return the body that a request names or describes, and where its state comes from.
+
+    Raises:
+        ContactDynamicsError: the body is not known, or a field about the state holds what is not allowed.
+    """
+    stamp_ns = _stamp_ns(request)
+    body = asked_body(request.body_name, request.inertia, world)
+    if request.state_source == request.STATE_EXPLICIT:
+        return body, _explicit("state", request.state, body, world_frame)
+    return body, _published(stamp_ns, fit_window)
+
+
+def asked_other(
+    request: PredictImpact.Request, world: World, world_frame: str
+) -> tuple[Body | None, StateSource]:
+    """Return the second body of an impact, or None if the world is struck, and where its state comes from."""
+    explicit = request.other_state[0] if request.other_state else None
+    if not request.other_body_name and explicit is None and not _is_described(request.other_inertia):
+        return None, NEWEST
+    body = asked_body(request.other_body_name, request.other_inertia, world, field="other_body_name")
+    if explicit is None:
+        return body, _published(_stamp_ns(request))
+    return body, _explicit("other_state[0]", explicit, body, world_frame)
+
+
+def _explicit(field: str, msg: BodyStateMsg, body: Body, world_frame: str) -> KnownState:
+    """Return a state that a request has. If it names a body, that is the body of the request."""
+    if body.name and msg.body_name not in {"", body.name}:
+        raise InvalidFieldError(f"{field}.body_name", repr(msg.body_name), f"{body.name!r}, or left out")
+    return known_state_from_msg(msg, world_frame=world_frame, p_FB_F=body.p_FB_F, field=field)
+
+
+def asked_body(name: str, inertia: Inertia, world: World, *, field: str = "body_name") -> Body:
+    """Return the body that a request names, in that field, or describes.
+
+    Raises:
+        ContactDynamicsError: the name is not known or too long, or the numbers are no body's.
+    """
+    if len(name) > LONGEST_NAME:
+        raise TooLargeError(field, f"{len(name)} characters", f"at most {LONGEST_NAME}")
+    is_described = _is_described(inertia)
+    described = field.replace("body_name", "inertia")
+    if not name and not is_described:
+        raise InvalidFieldError(field, name, f"the name of a configured body, unless {described}.m is > 0")
+    # The body is looked up here, because an explicit state is that of the body's published frame.
+    known = world.body(name) if name else None
+    if known is not None and not is_described:
+        return known
+    try:
+        mass_properties, p_FB_F = mass_properties_from_msg(inertia)
+    except InvalidFieldError as error:
+        raise renamed(error, {"mass": f"{described}.m", "I_B": described}) from None
+    return _described_body(mass_properties, tuple(p_FB_F.tolist()), known)
+
+
+@lru_cache(maxsize=_REMEMBERED)
+def _described_body(mass_properties: MassProperties, com: Vector, known: Body | None) -> Body:
+    """Return a body with the mass properties of a request, and any known body's name and shape."""
+    if known is None:
+        return Body(name="", mass_properties=mass_properties, p_FB_F=com)
+    return changed_body(known, mass_properties, np.array(com))
+
+
+def _is_described(inertia: Inertia) -> bool:
+    """Whether a request says anything of a body's mass: one of mass zero with other numbers is none."""
+    com = inertia.com
+    numbers = (inertia.m, inertia.ixx, inertia.ixy, inertia.ixz, inertia.iyy, inertia.iyz, inertia.izz)
+    return any(numbers) or any((com.x, com.y, com.z))
+
+
+def _stamp_ns(request: _SubjectRequest) -> int | None:
+    """Return the time of the published state that a request names, or None if it names none."""
+    if request.state_source == request.STATE_AT_STAMP:
+        return stamp_ns_from_msg(request.stamp)
+    if request.state_source not in {request.STATE_NEWEST, request.STATE_EXPLICIT}:
+        allowed = "STATE_NEWEST (0), STATE_EXPLICIT (1) or STATE_AT_STAMP (2)"
+        raise InvalidFieldError("state_source", request.state_source, allowed)
+    return None
+
+
+def _published(stamp_ns: int | None, fit_window: float = 0.0) -> PublishedState:
+    if stamp_ns is None and fit_window == 0.0:
+        return NEWEST
+    return PublishedState(stamp_ns=stamp_ns, fit_window=fit_window)
+
+
+def write_fitted_subject(
+    msg: _FittedRequest, body: Body | str, source: StateSource, world: World, world_frame: str
+) -> None:
+    """Write what `write_subject` writes, and the window of the fit to published states."""
+    write_subject(msg, body, source, world, world_frame)
+    if isinstance(source, PublishedState):
+        msg.fit_window = source.fit_window
+
+
+def write_subject(
+    msg: _SubjectRequest, body: Body | str, source: StateSource, world: World, world_frame: str
+) -> None:
+    """Write the body that a request is about, and where its state comes from.
+
+    Raises:
+        UnknownBodyError: the world does not have the body.
+        NotSupportedError: the body has no request.
+    """
+    body = world.body(body) if isinstance(body, str) else body
+    msg.body_name = body.name
+    inertia = asked_inertia(body, world)
+    if inertia is not None:
+        msg.inertia = inertia
+    if isinstance(source, PublishedState):
+        msg.state_source = msg.STATE_NEWEST
+        if source.stamp_ns is not None:
+            msg.state_source = msg.STATE_AT_STAMP
+            msg.stamp = stamp_to_msg(source.stamp_ns)
+        return
+    msg.state_source = msg.STATE_EXPLICIT
+    known_state_to_msg(
+        source, body_name=body.name, world_frame=world_frame, p_FB_F=body.p_FB_F, into=msg.state
+    )
+
+
+def asked_inertia(body: Body, world: World) -> Inertia | None:
+    """Return the inertia of a body that differs from the known one, or None if the body is the known one."""
+    named = [known for known in world.bodies if known.name == body.name]
+    if body in named:
+        return None
+    if not named and (body.name or not body.shape.is_empty):
+        message = f"body must be one of the world's, or one without name and shape, got {body.name!r}"
+        raise NotSupportedError(message)
+    return mass_properties_to_msg(body.mass_properties, body.p_FB_F)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Converts requests and responses about many states to questions and answers, and back.
+"""Converts requests and responses about many states or candidates to questions and answers, and back.
 
 The arrays of a request are read as they are. A length that is no multiple of the row's raises
 `InvalidFieldError` with the field.
@@ -20,20 +20,24 @@ from contact_dynamics.questions.many import (
     ManyTumblingsAnswer,
     ManyTumblingsQuestion,
 )
+from contact_dynamics.questions.many_contact_modes import ManyContactModesAnswer, ManyContactModesQuestion
 from contact_dynamics.rigid_body.published_frame import centers_of_mass, origins_of_published_frame
 from contact_dynamics_interfaces.msg import BodyStates
-from contact_dynamics_interfaces.srv import PredictImpactBatch, PredictTumblingBatch
+from contact_dynamics_interfaces.srv import PredictContactModeBatch, PredictImpactBatch, PredictTumblingBatch
 from msg_adapters import fields
 from msg_adapters.asked_fields import (
+    asked_body,
     asked_gravity,
+    asked_inertia,
     asked_restitution_law,
     optional,
     write_given,
     write_gravity,
 )
-from msg_adapters.asked_subject import asked_body, asked_inertia
+from msg_adapters.contact_mode import asked_contact_modes, write_contact_modes
 from msg_adapters.contacts import flat
 from msg_adapters.field_names import renamed
+from msg_adapters.rejected_fields import CONTACT_MODE_BATCH
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -72,16 +76,12 @@ def body_states_from_msg(msg: BodyStates, *, p_FB_F: FloatArray) -> ManyStates:
         raise renamed(error, _STATE_FIELDS) from None
 
 
-def body_states_to_msg(
-    states: ManyStates, *, p_FB_F: FloatArray, into: BodyStates | None = None
-) -> BodyStates:
-    """Return states as a message: a new one, or the empty one to fill."""
-    msg = BodyStates() if into is None else into
-    msg.positions = flat(origins_of_published_frame(states.p_WB_W, states.q_WB, p_FB_F))
-    msg.orientations = flat(states.q_WB)
-    msg.linear_velocities = flat(states.v_WB_W)
-    msg.angular_velocities = flat(states.w_WB_W)
-    return msg
+def body_states_to_msg(states: ManyStates, *, p_FB_F: FloatArray, into: BodyStates) -> None:
+    """Write states into an empty message."""
+    into.positions = flat(origins_of_published_frame(states.p_WB_W, states.q_WB, p_FB_F))
+    into.orientations = flat(states.q_WB)
+    into.linear_velocities = flat(states.v_WB_W)
+    into.angular_velocities = flat(states.w_WB_W)
 
 
 def tumblings_question_from_msg(
@@ -211,10 +211,6 @@ def _write_separates(
     setattr(msg, field, np.where(value, _SEPARATES, getattr(msg, field)).tolist())
 
 
-def _read_separates(msg: PredictImpactBatch.Response, field: str, _: fields.Frame) -> NDArray[np.bool_]:
-    return _separates(getattr(msg, field))
-
-
 def _separates(told: Sequence[int]) -> NDArray[np.bool_]:
     found: NDArray[np.bool_] = np.equal(told, _SEPARATES)
     return found
@@ -237,3 +233,59 @@ _IMPACTS: Final = fields.AnswerTable(
 )
 impacts_answer_to_msg: Final = _IMPACTS.response_of
 impacts_answer_from_msg: Final = _IMPACTS.answer_of
+
+
+def contact_modes_question_from_msg(
+    request: PredictContactModeBatch.Request, *, world: World, world_frame: str
+) -> ManyContactModesQuestion:
+    """Return the question of a `PredictContactModeBatch` request.
+
+    Raises:
+        ContactDynamicsError: a field holds what is not allowed, or names a body that is not known.
+    """
+    forces = flat_rows("forces", request.forces, 3)
+    torques = flat_rows("torques", request.torques, 3)
+    none = np.zeros((max(len(forces), len(torques), 1), 3))
+    asked = asked_contact_modes(request, world, world_frame, read_if=CONTACT_MODE_BATCH)
+    try:
+        return ManyContactModesQuestion(
+            asked=asked,
+            forces_W=forces if len(forces) > 0 else none,
+            torques_W=torques if len(torques) > 0 else none,
+            contact_counts=request.contact_counts,
+        )
+    except InvalidFieldError as error:
+        raise renamed(error, {"forces_W": "forces", "torques_W": "torques"}) from None
+
+
+def contact_modes_question_to_msg(
+    question: ManyContactModesQuestion, *, world: World, world_frame: str
+) -> PredictContactModeBatch.Request:
+    """Return the request of a question about the contact modes of many candidates."""
+    msg = PredictContactModeBatch.Request()
+    write_contact_modes(msg, question.asked, world, world_frame)
+    msg.forces, msg.torques = flat(question.forces_W), flat(question.torques_W)
+    msg.contact_counts = list(question.contact_counts)
+    return msg
+
+
+_ANSWER: Final = fields.AnswerTable(
+    ManyContactModesAnswer,
+    PredictContactModeBatch.Response,
+    fields.Row("body_name", "body_name"),
+    fields.Row("state", "state", fields.STATE),
+    fields.Row("contacts", "contacts", fields.CONTACTS),
+    fields.Row("contact_counts", "contact_counts", fields.TUPLE),
+    fields.Row("verdicts", "verdicts", fields.array_of(np.int64)),
+    fields.Row("problems", "problems", fields.array_of(np.int64)),
+    fields.Row("mode_counts", "mode_counts", fields.array_of(np.int64)),
+    fields.Row("modes", "modes", fields.TUPLE),
+    fields.Row("accelerations_W", "linear_accelerations", fields.rows_of(3)),
+    fields.Row("angular_accelerations_W", "angular_accelerations", fields.rows_of(3)),
+    # If there is no mode, the response does not say whether margins were asked for.
+    fields.Row("margins", "margins", fields.NUMBERS_OR_NONE),
+    fields.Row("warnings", "message", fields.WARNINGS),
+    body_name="body_name",
+)
+contact_modes_answer_to_msg: Final = _ANSWER.response_of
+contact_modes_answer_from_msg: Final = _ANSWER.answer_of

@@ -40,17 +40,18 @@ from msg_adapters.asked_fields import (
     asked_gravity,
     asked_plane,
     asked_problem,
+    asked_subject,
     optional,
     write_contacts,
     write_given,
     write_gravity,
     write_problem,
+    write_subject,
 )
-from msg_adapters.asked_subject import asked_subject, write_subject
 from msg_adapters.field_names import WRENCH_FIELDS, renamed
 from msg_adapters.geometry import vector_from_msg, wrench_to_msg
 from msg_adapters.impact import RESOLVED_IMPACT
-from msg_adapters.unread_fields import CONTACT_MODE, check_unread
+from msg_adapters.rejected_fields import CONTACT_MODE, check_unread
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -58,7 +59,7 @@ if TYPE_CHECKING:
     from contact_dynamics.contact.uncertainty import Uncertain
     from contact_dynamics.world import World
     from contact_dynamics_interfaces.srv import PredictContactModeBatch
-    from msg_adapters.unread_fields import ReadIf
+    from msg_adapters.rejected_fields import ReadIf
 
     Side: TypeAlias = PredictContactMode.Request | PredictContactMode.Response
 
@@ -69,16 +70,7 @@ _WEDGED: Final = {True: Certainty.POSSIBLE, False: Certainty.NO, None: Certainty
 def contact_mode_question_from_msg(
     request: PredictContactMode.Request, *, world: World, world_frame: str
 ) -> ContactModeQuestion:
-    """Return the question of a `PredictContactMode` request.
-
-    Args:
-        request: The request.
-        world: The bodies that it can name.
-        world_frame: The frame that an explicit state must be in.
-
-    Raises:
-        ContactDynamicsError: a field holds what is not allowed, or names a body that is not known.
-    """
+    """Return the question of a `PredictContactMode` request; see `tumbling_question_from_msg`."""
     try:
         return asked_contact_modes(
             request,

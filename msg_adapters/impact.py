@@ -31,19 +31,22 @@ from contact_dynamics_interfaces.srv import PredictImpact
 from msg_adapters import fields
 from msg_adapters.asked_fields import (
     asked_contacts,
+    asked_inertia,
+    asked_other,
     asked_plane,
     asked_problem,
     asked_restitution_law,
+    asked_subject,
     optional,
     write_contacts,
+    write_fitted_subject,
     write_given,
     write_problem,
 )
-from msg_adapters.asked_subject import asked_inertia, asked_other, asked_subject, write_fitted_subject
 from msg_adapters.body_state import body_state_from_msg, body_state_to_msg, center_of_mass, known_state_to_msg
 from msg_adapters.contacts import flat, rows
+from msg_adapters.rejected_fields import IMPACT, check_unread
 from msg_adapters.stamps import stamp_ns_from_msg
-from msg_adapters.unread_fields import IMPACT, check_unread
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -60,16 +63,7 @@ _NO_END: Final = ImpactMsg().sequence_end
 def impact_question_from_msg(
     request: PredictImpact.Request, *, world: World, world_frame: str
 ) -> ImpactQuestion:
-    """Return the question of a `PredictImpact` request.
-
-    Args:
-        request: The request.
-        world: The bodies that it can name.
-        world_frame: The frame that explicit states must be in.
-
-    Raises:
-        ContactDynamicsError: a field holds what is not allowed, or names a body that is not known.
-    """
+    """Return the question of a `PredictImpact` request; see `tumbling_question_from_msg`."""
     problem, law = asked_problem(request.problem), _several_contacts_law(request)
     body, state = asked_subject(request, world, world_frame, fit_window=request.fit_window)
     other, other_state = asked_other(request, world, world_frame)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Turns states in a frame that stands still in the world into states in the world frame."""
+"""Frames of states: a message must be in the expected frame, or in one that stands still in the world."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from contact_dynamics.errors import FrameMismatchError
 from contact_dynamics.questions.uncertain_state import KnownState, UncertainState
 from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.rotations.one import rotation_matrix
@@ -14,6 +15,13 @@ from msg_adapters.transforms import FramePose
 
 if TYPE_CHECKING:
     from msg_adapters.state_adapter import SourceSettings
+
+
+def check_frame(field: str, found: str, expected: str) -> None:
+    """Raise `FrameMismatchError` if a message's frame is not the expected one."""
+    if found != expected:
+        message = f"{field} must be {expected!r}, got {found!r}"
+        raise FrameMismatchError(message)
 
 
 def in_world(known: KnownState, frame: str, settings: SourceSettings) -> KnownState:

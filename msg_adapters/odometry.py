@@ -7,6 +7,7 @@ origin (REP 105 and the message's own comment).
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -22,20 +23,17 @@ from contact_dynamics.rotations.many import cross_matrices, matrices_of
 from contact_dynamics.rotations.one import rotation_matrix
 from contact_dynamics.validation import check_unit
 from contact_dynamics.validation_batches import unit_rows
-from msg_adapters.frames import check_frame
 from msg_adapters.geometry import pose_to_msg, quaternion_from_msg, vector_from_msg, vector_to_msg
-from msg_adapters.in_world import in_world
+from msg_adapters.in_world import check_frame, in_world
 from msg_adapters.published_covariance import covariance_from_msg, of_pose_and_twist, with_covariance
 from msg_adapters.stamps import stamp_ns_from_msg, stamp_to_msg
 from msg_adapters.state_adapter import StateAdapter, StateRows
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from contact_dynamics.questions.uncertain_state import KnownState
     from contact_dynamics.rigid_body.body import BodyState
     from contact_dynamics.validation import FloatArray
-    from msg_adapters.state_adapter import Reader, SourceSettings
+    from msg_adapters.state_adapter import SourceSettings
 
 
 def body_state_from_odometry(msg: Odometry, *, world_frame: str, p_FB_F: FloatArray) -> BodyState:
@@ -96,12 +94,12 @@ def _rows(settings: SourceSettings, msg: Odometry) -> StateRows | None:
     )
 
 
-def _readers(settings: SourceSettings) -> Sequence[Reader]:
-    return (lambda msg: _read(msg, settings),)
-
-
 ODOMETRY: Final = StateAdapter(
-    type_names=("nav_msgs/msg/Odometry",), readers=_readers, is_whole=True, is_of_one_body=True, rows=_rows
+    type_names=("nav_msgs/msg/Odometry",),
+    readers=lambda settings: (partial(_read, settings=settings),),
+    is_whole=True,
+    is_of_one_body=True,
+    rows=_rows,
 )
 
 

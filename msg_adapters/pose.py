@@ -1,9 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Converts poses alone, with covariance or without, to states. The velocities come from the poses."""
+"""Converts poses alone to states, whose velocities come from the poses.
+
+They are poses of one body, with covariance or without; the frames of `tf2_msgs/TFMessage`; or those of all
+bodies that a motion capture sees, `mocap4r2_msgs/RigidBodies`. The packages of the last two are needed only
+where these sources are used.
+"""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, Protocol
 
 import numpy as np
 
@@ -12,7 +17,7 @@ from msg_adapters.pose_track import PoseTrack
 from msg_adapters.published_covariance import covariance_from_msg
 from msg_adapters.stamps import stamp_ns_from_msg
 from msg_adapters.state_adapter import StateAdapter
-from msg_adapters.transforms import FramePose
+from msg_adapters.transforms import FramePose, TransformTree
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -22,7 +27,8 @@ if TYPE_CHECKING:
 
     from contact_dynamics.questions.uncertain_state import KnownState
     from contact_dynamics.validation import FloatArray
-    from msg_adapters.state_adapter import Reader, SourceSettings
+    from msg_adapters.state_adapter import SourceSettings
+    from msg_adapters.transforms import TFMessage
 
 
 def pose_in_world(header: Header, pose: Pose, settings: SourceSettings) -> FramePose:
@@ -43,20 +49,60 @@ def pose_in_world(header: Header, pose: Pose, settings: SourceSettings) -> Frame
     return outer.of(found)
 
 
+class RigidBody(Protocol):
+    """What is read of a `mocap4r2_msgs/RigidBody`."""
+
+    rigid_body_name: str
+    pose: Pose
+
+
+class RigidBodies(Protocol):
+    """What is read of a `mocap4r2_msgs/RigidBodies`."""
+
+    header: Header
+    rigidbodies: Sequence[RigidBody]
+
+
 class _Poses:
     """Reads the poses of one body."""
 
     def __init__(self, settings: SourceSettings) -> None:
         self._settings = settings
         self._track = PoseTrack(settings)
+        self._tree = TransformTree(settings.static)
 
     def plain(self, msg: PoseStamped) -> KnownState | None:
-        return self._add(msg.header, msg.pose, None)
+        return self._add(msg.header, msg.pose)
 
     def with_covariance(self, msg: PoseWithCovarianceStamped) -> KnownState | None:
         return self._add(msg.header, msg.pose.pose, covariance_from_msg(msg.pose.covariance))
 
-    def _add(self, header: Header, pose: Pose, covariance: FloatArray | None) -> KnownState | None:
+    def of_capture(self, msg: RigidBodies) -> KnownState | None:
+        """Take the body that is named as the frame is."""
+        for body in msg.rigidbodies:
+            if body.rigid_body_name == self._settings.body_frame:
+                return self._add(msg.header, body.pose)
+        return None
+
+    def of_transforms(self, msg: TFMessage) -> KnownState | None:
+        """Take the pose of the body's own frame, which moves.
+
+        Frames between it and the world stand still (they come on the static topic), or are told with the same
+        stamp, before the body's frame or in the same message.
+        """
+        frame = self._settings.body_frame
+        self._tree.add(msg, is_static=False)
+        if all(each.child_frame_id != frame for each in msg.transforms):
+            return None
+        stamp_ns = self._tree.stamp_ns(frame)
+        if stamp_ns is None:
+            return None
+        pose = self._tree.pose(
+            frame, in_frame=self._settings.world_frame, stamp_ns=stamp_ns, field="child_frame_id"
+        )
+        return self._track.add(pose.p, pose.q, stamp_ns=stamp_ns)
+
+    def _add(self, header: Header, pose: Pose, covariance: FloatArray | None = None) -> KnownState | None:
         found = pose_in_world(header, pose, self._settings)
         if covariance is not None and header.frame_id != self._settings.world_frame:
             covariance = _turned(covariance, found, pose)
@@ -72,17 +118,19 @@ def _turned(covariance: FloatArray, found: FramePose, pose: Pose) -> FloatArray:
     return turned
 
 
-def _plain(settings: SourceSettings) -> Sequence[Reader]:
-    return (_Poses(settings).plain,)
-
-
-def _with_covariance(settings: SourceSettings) -> Sequence[Reader]:
-    return (_Poses(settings).with_covariance,)
-
-
-POSE: Final = StateAdapter(type_names=("geometry_msgs/msg/PoseStamped",), readers=_plain, is_of_one_body=True)
+POSE: Final = StateAdapter(
+    type_names=("geometry_msgs/msg/PoseStamped",),
+    readers=lambda settings: (_Poses(settings).plain,),
+    is_of_one_body=True,
+)
 POSE_WITH_COVARIANCE: Final = StateAdapter(
     type_names=("geometry_msgs/msg/PoseWithCovarianceStamped",),
-    readers=_with_covariance,
+    readers=lambda settings: (_Poses(settings).with_covariance,),
     is_of_one_body=True,
+)
+TF: Final = StateAdapter(
+    type_names=("tf2_msgs/msg/TFMessage",), readers=lambda settings: (_Poses(settings).of_transforms,)
+)
+RIGID_BODIES: Final = StateAdapter(
+    type_names=("mocap4r2_msgs/msg/RigidBodies",), readers=lambda settings: (_Poses(settings).of_capture,)
 )

@@ -7,6 +7,7 @@ Its own header says whether it is in the axes of the world or of the body.
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING, Final, Generic, Protocol, TypeVar
 
 from geometry_msgs.msg import PoseStamped, TwistStamped
@@ -19,9 +20,8 @@ from contact_dynamics.rigid_body.published_frame import (
 )
 from contact_dynamics.rotations.one import rotation_matrix
 from contact_dynamics.validation import check_unit
-from msg_adapters.frames import check_frame
 from msg_adapters.geometry import pose_to_msg, quaternion_from_msg, vector_from_msg, vector_to_msg
-from msg_adapters.in_world import in_world
+from msg_adapters.in_world import check_frame, in_world
 from msg_adapters.published_covariance import covariance_from_msg, of_pose_and_twist, with_covariance
 from msg_adapters.stamps import stamp_ns_from_msg, stamp_to_msg
 from msg_adapters.state_adapter import StateAdapter
@@ -99,25 +99,14 @@ def _joined_with_covariance(
     )
 
 
-def _readers(settings: SourceSettings) -> Sequence[Reader]:
-    def join(pose: PoseStamped, twist: TwistStamped) -> KnownState:
-        return _joined(pose, twist, settings)
-
-    pairs = Pairs(join)
-    return pairs.first, pairs.second
-
-
-def _readers_with_covariance(settings: SourceSettings) -> Sequence[Reader]:
-    def join(pose: PoseWithCovarianceStamped, twist: TwistWithCovarianceStamped) -> KnownState:
-        return _joined_with_covariance(pose, twist, settings)
-
-    pairs = Pairs(join)
+def _readers(join: Callable[..., KnownState], settings: SourceSettings) -> Sequence[Reader]:
+    pairs = Pairs[Stamped, Stamped](partial(join, settings=settings))
     return pairs.first, pairs.second
 
 
 POSE_TWIST: Final = StateAdapter(
     type_names=("geometry_msgs/msg/PoseStamped", "geometry_msgs/msg/TwistStamped"),
-    readers=_readers,
+    readers=partial(_readers, _joined),
     is_of_one_body=True,
 )
 POSE_TWIST_WITH_COVARIANCE: Final = StateAdapter(
@@ -125,7 +114,7 @@ POSE_TWIST_WITH_COVARIANCE: Final = StateAdapter(
         "geometry_msgs/msg/PoseWithCovarianceStamped",
         "geometry_msgs/msg/TwistWithCovarianceStamped",
     ),
-    readers=_readers_with_covariance,
+    readers=partial(_readers, _joined_with_covariance),
     is_of_one_body=True,
 )
 

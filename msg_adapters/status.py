@@ -7,7 +7,7 @@ import math
 from typing import TYPE_CHECKING, Final, Protocol
 
 from contact_dynamics import errors
-from msg_adapters.mangled_numbers import in_fields
+from msg_adapters.rejected_fields import in_fields
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -39,13 +39,19 @@ from contact_dynamics_interfaces.msg import TossEvent as TossEventMsg
 from contact_dynamics_interfaces.msg import TossPath as TossPathMsg
 from contact_dynamics_interfaces.srv import PredictToss
 from msg_adapters import fields
-from msg_adapters.asked_fields import asked_instant_law, asked_restitution_law, optional, write_given
-from msg_adapters.asked_subject import asked_subject, write_fitted_subject
+from msg_adapters.asked_fields import (
+    asked_instant_law,
+    asked_restitution_law,
+    asked_subject,
+    optional,
+    write_fitted_subject,
+    write_given,
+)
 from msg_adapters.batches import body_states_from_msg, body_states_to_msg
 from msg_adapters.contacts import flat
 from msg_adapters.field_names import renamed
+from msg_adapters.rejected_fields import TOSS, check_unread
 from msg_adapters.tumbling import TRAJECTORY
-from msg_adapters.unread_fields import TOSS, check_unread
 
 if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
@@ -134,16 +140,7 @@ DISTRIBUTION: Final = fields.Table(
 
 
 def toss_question_from_msg(request: PredictToss.Request, *, world: World, world_frame: str) -> TossQuestion:
-    """Return the question of a `PredictToss` request.
-
-    Args:
-        request: The request.
-        world: The bodies that it can name.
-        world_frame: The frame that an explicit state must be in.
-
-    Raises:
-        ContactDynamicsError: a field holds what is not allowed, or names a body that is not known.
-    """
+    """Return the question of a `PredictToss` request; see `tumbling_question_from_msg`."""
     body, state = asked_subject(request, world, world_frame, fit_window=request.fit_window)
     check_unread(request, TOSS)
     return TossQuestion(
@@ -194,17 +191,7 @@ def _uncertainty(request: PredictToss.Request) -> TossUncertainty:
 
 
 def toss_question_to_msg(question: TossQuestion, *, world: World, world_frame: str) -> PredictToss.Request:
-    """Return the request of a question about a toss.
-
-    Args:
-        question: The question.
-        world: The bodies that the server knows by name.
-        world_frame: The frame of its world.
-
-    Raises:
-        UnknownBodyError: the question names a body that the world does not have.
-        NotSupportedError: the question has no request.
-    """
+    """Return the request of a question about a toss; see `tumbling_question_to_msg`."""
     msg = PredictToss.Request()
     write_fitted_subject(msg, question.body, question.state, world, world_frame)
     msg.restitution_law = int(question.restitution_law)

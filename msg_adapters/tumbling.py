@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Converts questions and answers about tumbling to the service's request and response, and back."""
+"""Converts questions and answers about tumbling to the service's request and response, and back.
+
+A trajectory also becomes a `nav_msgs/Path`, which RViz draws.
+"""
 
 from __future__ import annotations
 
@@ -7,7 +10,10 @@ import math
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
+from geometry_msgs.msg import PoseStamped
+from nav_msgs.msg import Path
 
+from contact_dynamics.constants import ns_after
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.motion.covariance import CarriedCovariance, PropagationMethod, orientation_deviations
 from contact_dynamics.motion.forces import NO_DRAG, NO_WRENCH, ConstantWrench, Drag, WrenchAxes
@@ -31,13 +37,19 @@ from contact_dynamics_interfaces.msg import Poinsot as PoinsotMsg
 from contact_dynamics_interfaces.msg import Trajectory as TrajectoryMsg
 from contact_dynamics_interfaces.srv import PredictTumbling
 from msg_adapters import fields
-from msg_adapters.asked_fields import asked_gravity, optional, write_given, write_gravity
-from msg_adapters.asked_subject import asked_subject, write_fitted_subject
+from msg_adapters.asked_fields import (
+    asked_gravity,
+    asked_subject,
+    optional,
+    write_fitted_subject,
+    write_given,
+    write_gravity,
+)
 from msg_adapters.contacts import flat, rows
 from msg_adapters.field_names import WRENCH_FIELDS, renamed
-from msg_adapters.geometry import point_to_msg, vector_from_msg, vector_to_msg, wrench_to_msg
-from msg_adapters.stamps import stamp_to_msg
-from msg_adapters.unread_fields import TUMBLING, check_unread
+from msg_adapters.geometry import point_to_msg, pose_to_msg, vector_from_msg, vector_to_msg, wrench_to_msg
+from msg_adapters.rejected_fields import TUMBLING, check_unread
+from msg_adapters.stamps import stamp_ns_from_msg, stamp_to_msg
 
 if TYPE_CHECKING:
     from contact_dynamics.questions.sample_times import Sampling
@@ -180,38 +192,26 @@ def _write_sampling(msg: PredictTumbling.Request, sampling: Sampling) -> None:
     write_given(msg, rate=sampling.rate, duration=sampling.duration)
 
 
-def trajectory_to_msg(
-    trajectory: Trajectory,
-    *,
-    stamp_ns: int,
-    world_frame: str,
-    p_FB_F: FloatArray,
-    into: TrajectoryMsg | None = None,
-) -> TrajectoryMsg:
-    """Return a trajectory as a message. Times count from ``stamp_ns``, positions are of the frame F.
-
-    The message is new unless an empty one to fill is given.
-    """
-    msg = TrajectoryMsg() if into is None else into
-    msg.header.stamp = stamp_to_msg(stamp_ns)
-    msg.header.frame_id = world_frame
-    msg.times = flat(trajectory.seconds)
-    msg.positions = flat(origins_of_published_frame(trajectory.p_WB_W, trajectory.q_WB, p_FB_F))
-    msg.orientations = flat(trajectory.q_WB)
-    msg.linear_velocities = flat(trajectory.v_WB_W)
-    msg.angular_velocities = flat(trajectory.w_WB_W)
-    return msg
+def _write_trajectory(msg: object, field: str, trajectory: Trajectory, frame: fields.Frame) -> None:
+    into: TrajectoryMsg = getattr(msg, field)
+    stamp_to_msg(frame.stamp_ns, into=into.header.stamp)
+    into.header.frame_id = frame.world_frame
+    into.times = flat(trajectory.seconds)
+    into.positions = flat(origins_of_published_frame(trajectory.p_WB_W, trajectory.q_WB, frame.p_FB_F))
+    into.orientations = flat(trajectory.q_WB)
+    into.linear_velocities = flat(trajectory.v_WB_W)
+    into.angular_velocities = flat(trajectory.w_WB_W)
 
 
-def trajectory_from_msg(msg: TrajectoryMsg, *, p_FB_F: FloatArray) -> Trajectory:
-    """Return a trajectory of the centre of mass, which is at ``p_FB_F``, (3,), m, in the published frame."""
-    orientations = rows(msg.orientations, 4)
+def _read_trajectory(msg: object, field: str, frame: fields.Frame) -> Trajectory:
+    found: TrajectoryMsg = getattr(msg, field)
+    orientations = rows(found.orientations, 4)
     return Trajectory(
-        seconds=np.array(msg.times),
-        p_WB_W=centers_of_mass(rows(msg.positions), orientations, p_FB_F),
+        seconds=np.array(found.times),
+        p_WB_W=centers_of_mass(rows(found.positions), orientations, frame.p_FB_F),
         q_WB=orientations,
-        v_WB_W=rows(msg.linear_velocities),
-        w_WB_W=rows(msg.angular_velocities),
+        v_WB_W=rows(found.linear_velocities),
+        w_WB_W=rows(found.angular_velocities),
     )
 
 
@@ -239,16 +239,7 @@ def _read_covariances(msg: object, field: str, _: fields.Frame) -> CarriedCovari
 COVARIANCES: Final = fields.Kind(_write_covariances, _read_covariances)
 """The covariances of a trajectory's samples, or None without them."""
 
-TRAJECTORY: Final = fields.Kind(
-    lambda msg, field, value, frame: trajectory_to_msg(
-        value,
-        stamp_ns=frame.stamp_ns,
-        world_frame=frame.world_frame,
-        p_FB_F=frame.p_FB_F,
-        into=getattr(msg, field),
-    ),
-    lambda msg, field, frame: trajectory_from_msg(getattr(msg, field), p_FB_F=frame.p_FB_F),
-)
+TRAJECTORY: Final = fields.Kind(_write_trajectory, _read_trajectory)
 """A trajectory, whose times count from the frame's stamp."""
 
 
@@ -344,3 +335,23 @@ _ANSWER: Final = fields.AnswerTable(
 )
 tumbling_answer_to_msg: Final = _ANSWER.response_of
 tumbling_answer_from_msg: Final = _ANSWER.answer_of
+
+
+MAX_POSES: Final = 200
+"""Largest number of poses. A pose costs some 0.1 ms as a nested message, and a drawn line needs no more."""
+
+
+def path_from_trajectory(trajectory: TrajectoryMsg) -> Path:
+    """Return at most `MAX_POSES` poses of a trajectory's message, with the first and the last."""
+    count = len(trajectory.times)
+    chosen = np.unique(np.linspace(0, count - 1, min(count, MAX_POSES)).round().astype(int)).tolist()
+    positions = np.array(trajectory.positions).reshape(-1, 3)
+    orientations = np.array(trajectory.orientations).reshape(-1, 4)
+    begin_ns = stamp_ns_from_msg(trajectory.header.stamp)
+    path = Path(header=trajectory.header)
+    for i in chosen:
+        pose = PoseStamped(pose=pose_to_msg(positions[i], orientations[i]))
+        pose.header.frame_id = trajectory.header.frame_id
+        pose.header.stamp = stamp_to_msg(ns_after(begin_ns, trajectory.times[i]))
+        path.poses.append(pose)
+    return path

@@ -77,7 +77,7 @@ def apex_question_from_msg(
     request: PredictTumbling.Request, *, world: World, world_frame: str
 ) -> ApexQuestion:
     """Return the question of a request."""
-    from msg_adapters.asked_subject import asked_subject
+    from msg_adapters.asked_fields import asked_subject
 
     body, state = asked_subject(request, world, world_frame)
     return ApexQuestion(body=body, state=state)
@@ -88,7 +88,7 @@ def apex_question_to_msg(
 ) -> PredictTumbling.Request:
     """Return the request of a question."""
     from contact_dynamics_interfaces.srv import PredictTumbling
-    from msg_adapters.asked_subject import write_subject
+    from msg_adapters.asked_fields import write_subject
 
     msg = PredictTumbling.Request()
     write_subject(msg, question.body, question.state, world, world_frame)

@@ -35,8 +35,8 @@ from contact_dynamics.questions.services import SERVICES
 from contact_dynamics.questions.state_store import StateStore
 from contact_dynamics.questions.twist_axes import TwistAxes
 from contact_dynamics.questions.workers import Workers
-from msg_adapters.path import path_from_trajectory
 from msg_adapters.transforms import TransformTree
+from msg_adapters.tumbling import path_from_trajectory
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

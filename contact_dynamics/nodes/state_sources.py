@@ -16,11 +16,9 @@ from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.nodes.parameter_reader import ConfigurationError
 from contact_dynamics.questions.uncertain_state import with_deviations
 from msg_adapters.odometry import ODOMETRY
-from msg_adapters.pose import POSE, POSE_WITH_COVARIANCE
+from msg_adapters.pose import POSE, POSE_WITH_COVARIANCE, RIGID_BODIES, TF
 from msg_adapters.pose_twist import POSE_TWIST, POSE_TWIST_WITH_COVARIANCE
-from msg_adapters.rigid_bodies import RIGID_BODIES
 from msg_adapters.state_adapter import SourceSettings, StateAdapter
-from msg_adapters.tf import TF
 from msg_adapters.transforms import TransformTree
 
 if TYPE_CHECKING:

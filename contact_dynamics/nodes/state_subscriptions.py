@@ -24,7 +24,7 @@ from contact_dynamics.questions.extent import check_believable
 from contact_dynamics.questions.uncertain_state import state_of
 from contact_dynamics.recording.cdr_stamp import leading_stamp_ns
 from contact_dynamics.recording.decoding import message_class
-from msg_adapters.mangled_numbers import check_numbers, in_fields
+from msg_adapters.rejected_fields import check_numbers, in_fields
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable

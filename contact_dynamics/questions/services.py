@@ -208,7 +208,7 @@ class Service:
         return [answer.in_short()] if self.words is None else self.words(answer)
 
 
-_CHECK_NUMBERS: Final = ImportedOnUse[None]("msg_adapters.mangled_numbers:check_numbers")
+_CHECK_NUMBERS: Final = ImportedOnUse[None]("msg_adapters.rejected_fields:check_numbers")
 
 SERVICES: Final = (
     Service(
@@ -307,7 +307,7 @@ SERVICES: Final = (
         digest="44ba569b07524b90",
         question_type="contact_dynamics.questions.many_contact_modes:ManyContactModesQuestion",
         answer_type="contact_dynamics.questions.many_contact_modes:ManyContactModesAnswer",
-        adapters="msg_adapters.contact_mode_batch:contact_modes",
+        adapters="msg_adapters.batches:contact_modes",
         answer=ImportedOnUse("contact_dynamics.questions.many_contact_modes:answer"),
         is_quick=ImportedOnUse("contact_dynamics.questions.effort:are_quick_candidates"),
         words=ImportedOnUse("contact_dynamics.diagrams.words:many_contact_modes_in_words"),

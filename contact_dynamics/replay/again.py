@@ -25,7 +25,7 @@ from contact_dynamics.questions.uncertain_state import state_of
 from contact_dynamics.recording.cdr import decode_without_ros
 from contact_dynamics.recording.cdr_stamp import leading_stamp_ns
 from contact_dynamics.replay.timeline import CLOCK
-from msg_adapters.mangled_numbers import check_numbers, in_fields
+from msg_adapters.rejected_fields import check_numbers, in_fields
 from msg_adapters.status import report_error
 from msg_adapters.transforms import TransformTree
 

@@ -29,12 +29,10 @@ from contact_dynamics.rigid_body.published_frame import state_of_center_of_mass
 from contact_dynamics.rotations.many import rotation_vectors, turned
 from contact_dynamics.rotations.one import rotation_matrix
 from msg_adapters.odometry import ODOMETRY, odometry_from_body_state
-from msg_adapters.pose import POSE, POSE_WITH_COVARIANCE
+from msg_adapters.pose import POSE, POSE_WITH_COVARIANCE, RIGID_BODIES, TF
 from msg_adapters.pose_twist import POSE_TWIST_WITH_COVARIANCE
-from msg_adapters.rigid_bodies import RIGID_BODIES
 from msg_adapters.stamps import stamp_to_msg
 from msg_adapters.state_adapter import SourceSettings, StateAdapter
-from msg_adapters.tf import TF
 from msg_adapters.transforms import TransformTree
 
 MS = 1_000_000  # ns

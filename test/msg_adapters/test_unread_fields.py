@@ -22,9 +22,12 @@ from contact_dynamics_interfaces.srv import (
     PredictTumblingBatch,
 )
 from message_values.shared import same
-from msg_adapters.batches import impacts_question_from_msg, tumblings_question_from_msg
+from msg_adapters.batches import (
+    contact_modes_question_from_msg,
+    impacts_question_from_msg,
+    tumblings_question_from_msg,
+)
 from msg_adapters.contact_mode import contact_mode_question_from_msg
-from msg_adapters.contact_mode_batch import contact_modes_question_from_msg
 from msg_adapters.impact import impact_question_from_msg
 from msg_adapters.toss import toss_question_from_msg
 from msg_adapters.tumbling import tumbling_question_from_msg

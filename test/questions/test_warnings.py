@@ -23,8 +23,7 @@ from contact_dynamics.questions.many_contact_modes import ManyContactModesQuesti
 from contact_dynamics.questions.problem import Problem
 from contact_dynamics.shapes import box, capsule, cylinder, sphere
 from contact_dynamics.shapes.convex import ConvexShape
-from msg_adapters.batches import impacts_answer_to_msg
-from msg_adapters.contact_mode_batch import contact_modes_answer_to_msg
+from msg_adapters.batches import contact_modes_answer_to_msg, impacts_answer_to_msg
 from msg_adapters.impact import impact_answer_to_msg
 from oracles.boxes_nearly_flush import MASS as BOX_MASS
 from oracles.boxes_nearly_flush import flush
