@@ -18,7 +18,7 @@ from contact_dynamics.errors import InvalidFieldError, NotSupportedError, TooLar
 from contact_dynamics.impact.law import RestitutionLaw
 from contact_dynamics.impact.several.result import SeveralContactsLaw
 from contact_dynamics.plane.projection import PlaneOfMotion
-from contact_dynamics.questions.problem import Problem
+from contact_dynamics.questions.plane_of_motion import Problem
 from contact_dynamics.questions.subject import NEWEST, PublishedState, changed_body
 from contact_dynamics.world import LONGEST_NAME, Body
 from msg_adapters.body_state import known_state_from_msg, known_state_to_msg

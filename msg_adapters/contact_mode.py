@@ -28,7 +28,7 @@ from contact_dynamics.contact_modes.spatial.margins import SpatialModeMargin
 from contact_dynamics.contact_modes.spatial.wrench_sets import SpatialWrenchSet
 from contact_dynamics.errors import InvalidFieldError, NotSupportedError
 from contact_dynamics.questions.contact_modes import ContactModeAnswer, ContactModeQuestion
-from contact_dynamics.questions.problem import Problem
+from contact_dynamics.questions.plane_of_motion import Problem
 from contact_dynamics.questions.settled_impact import SettledImpact
 from contact_dynamics.questions.subject import PublishedState
 from contact_dynamics_interfaces.msg import ContactMode, ModeWrenches

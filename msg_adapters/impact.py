@@ -18,10 +18,15 @@ from contact_dynamics.impact.in_time.result import SequenceEnd
 from contact_dynamics.impact.in_time.sequence import MAX_STRIKES, STRIKE_WINDOW
 from contact_dynamics.impact.law import ImpactOutcome, PathEvent, RestitutionLaw
 from contact_dynamics.impact.several.result import SeveralContactsLaw
-from contact_dynamics.questions.impact_answer import ImpactAnswer, StruckBody
-from contact_dynamics.questions.impact_question import ImpactQuestion, InTime
-from contact_dynamics.questions.problem import Problem
-from contact_dynamics.questions.resolved_impact import ResolvedImpact, SequenceStrike
+from contact_dynamics.questions.impact_question import (
+    ImpactAnswer,
+    ImpactQuestion,
+    InTime,
+    ResolvedImpact,
+    SequenceStrike,
+    StruckBody,
+)
+from contact_dynamics.questions.plane_of_motion import Problem
 from contact_dynamics.questions.subject import PublishedState
 from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.rigid_body.published_frame import centers_of_mass, origin_of_published_frame

@@ -16,7 +16,7 @@ import subprocess
 import sys
 from typing import TYPE_CHECKING, Final
 
-from contact_dynamics.nodes.domain_ports import FIRST_PORT, PORTS_OF_DOMAIN, ports_in_use
+from contact_dynamics.nodes.fast_dds import FIRST_PORT, PORTS_OF_DOMAIN, ports_in_use
 from contact_dynamics.recording.closing import ClosedAtTheEnd
 
 if TYPE_CHECKING:

@@ -19,7 +19,7 @@ from contact_dynamics.motion.velocity_estimate import FEWEST_FRAMES, WINDOW, vel
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from contact_dynamics.questions.impact_answer import ImpactAnswer
+    from contact_dynamics.questions.impact_question import ImpactAnswer
     from contact_dynamics.rigid_body.body import BodyState
     from contact_dynamics.validation import FloatArray
 

@@ -19,7 +19,7 @@ from contact_dynamics.diagrams.palette import Paint
 from contact_dynamics.diagrams.shape import outline
 from contact_dynamics.diagrams.words import contacts_in_words
 from contact_dynamics.numerics.vectors import tangents_near_x
-from contact_dynamics.questions.planar_view import beyond, sliding_directions
+from contact_dynamics.questions.plane_of_motion import beyond, sliding_directions
 
 if TYPE_CHECKING:
     from contact_dynamics.contact_modes import SpatialMode

@@ -33,8 +33,7 @@ from contact_dynamics.numerics.vectors import across, tangents_near_x
 
 if TYPE_CHECKING:
     from contact_dynamics.diagrams.marks import Mark
-    from contact_dynamics.questions.impact_answer import ImpactAnswer
-    from contact_dynamics.questions.resolved_impact import ResolvedImpact
+    from contact_dynamics.questions.impact_question import ImpactAnswer, ResolvedImpact
     from contact_dynamics.rigid_body.body import BodyState, HasMassProperties, MassProperties
     from contact_dynamics.validation import FloatArray
 

@@ -19,7 +19,7 @@ from contact_dynamics.diagrams.mode_map import LIVE_RESOLUTION, chart_for
 from contact_dynamics.diagrams.planar_scene import planar_scene_of
 from contact_dynamics.diagrams.words import margin_in_words
 from contact_dynamics.diagrams.wrench_chart import DirectionChart, ForceDualChart
-from contact_dynamics.questions.planar_view import seen_contacts, seen_modes, seen_wrench, seen_wrench_set
+from contact_dynamics.questions.plane_of_motion import seen_contacts, seen_modes, seen_wrench, seen_wrench_set
 
 if TYPE_CHECKING:
     from contact_dynamics.contact_modes import PlanarMode, PlanarWrenchSet

@@ -48,7 +48,7 @@ if TYPE_CHECKING:
     from contact_dynamics.measured.events import FoundEvent
     from contact_dynamics.measured.motion import MeasuredMotion
     from contact_dynamics.questions.context import Defaults
-    from contact_dynamics.questions.impact_answer import ImpactAnswer
+    from contact_dynamics.questions.impact_question import ImpactAnswer
     from contact_dynamics.questions.tumbling import TumblingAnswer
     from contact_dynamics.tumbling import Trajectory
     from contact_dynamics.world import World

@@ -25,6 +25,7 @@ only an ear, at the port where this process listens by now. The others tell it w
 from __future__ import annotations
 
 import os
+import re
 import socket
 import struct
 import tempfile
@@ -33,13 +34,35 @@ from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-import rclpy
-
 from contact_dynamics.constants import NS_PER_S
-from contact_dynamics.nodes.domain_ports import FIRST_DISCOVERY, PORTS_OF_PARTICIPANT, first_port
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
+
+FIRST_PORT: Final = 7400
+"""First port of domain 0."""
+
+PORTS_OF_DOMAIN: Final = 250
+
+FIRST_DISCOVERY: Final = 10
+"""Port at which the first participant of a machine discovers others, counted from the first of the domain."""
+
+PORTS_OF_PARTICIPANT: Final = 2
+"""Ports that a participant takes. Each is that of the participant before it and this many more."""
+
+_TABLES: Final = (Path("/proc/net/udp"), Path("/proc/net/udp6"))
+_LOCAL_PORT: Final = re.compile(r"^ *\d+: [0-9A-F]+:([0-9A-F]{4}) ", re.MULTILINE)
+
+
+def first_port(domain_id: int) -> int:
+    """Return the first port of a domain."""
+    return FIRST_PORT + PORTS_OF_DOMAIN * domain_id
+
+
+def ports_in_use() -> set[int]:
+    """Return the ports on which any process listens."""
+    text = "\n".join(table.read_text(encoding="ascii") for table in _TABLES if table.is_file())
+    return {int(port, 16) for port in _LOCAL_PORT.findall(text)}
 
 
 _DISCOVERY_RANGE: Final = "ROS_AUTOMATIC_DISCOVERY_RANGE"
@@ -58,6 +81,8 @@ _HEARS_WHO_IS_THERE: Final = 2  # the only one of the built-in endpoints that it
 
 def ask_for_introductions(domain_id: int) -> None:
     """Let all on this machine who are in a domain say again who they are, once this process has joined it."""
+    import rclpy  # here, for others look at ports without ROS
+
     if not rclpy.get_rmw_implementation_identifier().startswith("rmw_fastrtps"):
         return
     if os.environ.get(_DISCOVERY_RANGE) == "OFF":

@@ -1,17 +1,30 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Values by the names of parameters, as the source of the server's parameters, without ROS."""
+"""Values by the names of parameters, as the source of the server's parameters, without ROS.
+
+In a file of parameters, as ROS takes it, those sections count that ROS gives to the node
+``contact_dynamics``. A later one counts more than an earlier. Nested names are joined by points:
+``body: {brick: {mass: 0.4}}`` is ``body.brick.mass``.
+"""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+import json
+from typing import TYPE_CHECKING, Any, Final
 
-from contact_dynamics.nodes.argument_values import IN_WORDS
-from contact_dynamics.nodes.parameter_reader import ConfigurationError, DeclaredParameter
-from contact_dynamics.nodes.run_record import NODE_NAME
-from contact_dynamics.nodes.unknown_parameters import likely_misspelling, qos_overrides_of, refuse_unknown
+from contact_dynamics.nodes.parameter_mistakes import (
+    IN_WORDS,
+    check_sections,
+    likely_misspelling,
+    qos_overrides_of,
+    read_sections,
+    refuse_unknown,
+)
+from contact_dynamics.nodes.parameter_reader import NODE_NAME, ConfigurationError, DeclaredParameter
+from contact_dynamics.nodes.visualizer_parameters import VISUALIZER_PARAMETERS
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Iterable, Mapping
+    from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+    from pathlib import Path
 
 
 class GivenParameters:
@@ -84,3 +97,73 @@ class GivenParameters:
         except ConfigurationError as error:
             message = f"{self._before}{error}"
             raise ConfigurationError(message) from None
+
+
+_NODE: Final = f"/{NODE_NAME}"
+
+
+class ParameterFile(GivenParameters):
+    """The values in a file, with other topics for some bodies; a `ParameterSource`."""
+
+    def __init__(self, path: Path, topics: Sequence[str] = ()) -> None:
+        """Read the file.
+
+        Args:
+            path: a file of parameters, as `config/server.yaml`.
+            topics: where states are, as "BODY=ODOMETRY_TOPIC" or "BODY=POSE_TOPIC,TWIST_TOPIC". This counts
+                before what the file says.
+
+        Raises:
+            ConfigurationError: it is missing, no YAML, or has no parameters of the server; or it has those of
+                a node whose name is nearly the server's; or a text in ``topics`` has another form.
+        """
+        sections = read_sections(path)
+        warning = check_sections(path, sections, _NODE)
+        if warning:
+            raise ConfigurationError(warning)  # nobody else is configured by what is read here
+        values: dict[str, Any] = {}
+        for section in sections:
+            if section.is_for(_NODE):
+                values.update(_flat(section.values))
+        for text in topics:
+            values.update(_topics(text))
+        # One file may configure both nodes.
+        super().__init__(values, origin=str(path), also_known=VISUALIZER_PARAMETERS)
+
+
+def _flat(given: dict[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
+    for name, value in given.items():
+        if isinstance(value, dict):
+            yield from _flat(value, f"{prefix}{name}.")
+        else:
+            yield f"{prefix}{name}", value
+
+
+def values_of(config: Path | None, settings: Sequence[str]) -> dict[str, Any]:
+    """Return the values of a file of parameters and of texts "name:=value", which count more.
+
+    Raises:
+        ConfigurationError: the file has no parameters, or a text has another form.
+    """
+    values = {} if config is None else dict(ParameterFile(config).values)
+    for text in settings:
+        name, separator, value = text.partition(":=")
+        if not name or not separator:
+            message = f"--set must be NAME:=VALUE, got {text!r}"
+            raise ConfigurationError(message)
+        try:
+            values[name] = json.loads(value)
+        except ValueError:
+            values[name] = value
+    return values
+
+
+def _topics(text: str) -> dict[str, str]:
+    body, _, names = text.partition("=")
+    found = names.split(",")
+    if not body or not all(found) or len(found) > 2:
+        message = f"--topics must be BODY=ODOMETRY or BODY=POSE,TWIST, got {text!r}"
+        raise ConfigurationError(message)
+    odometry, pose, twist = ("", *found) if len(found) == 2 else (found[0], "", "")
+    key = f"body.{body}"
+    return {f"{key}.odometry_topic": odometry, f"{key}.pose_topic": pose, f"{key}.twist_topic": twist}

@@ -9,17 +9,21 @@ from typing import TYPE_CHECKING, Any, Final
 from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor
 from rclpy.parameter import Parameter
 
-from contact_dynamics.nodes.argument_values import IN_WORDS, values_given, what_is_wrong
-from contact_dynamics.nodes.parameter_reader import ConfigurationError
-from contact_dynamics.nodes.parameter_sections import (
+from contact_dynamics.nodes.parameter_mistakes import (
     ANY_NODE,
+    IN_WORDS,
     Section,
     check_sections,
     files_given,
+    likely_misspelling,
     nodes_given,
+    qos_overrides_of,
     read_sections,
+    refuse_unknown,
+    values_given,
+    what_is_wrong,
 )
-from contact_dynamics.nodes.unknown_parameters import likely_misspelling, qos_overrides_of, refuse_unknown
+from contact_dynamics.nodes.parameter_reader import ConfigurationError
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Sequence

@@ -8,7 +8,7 @@ a run that is over (`run_record`).
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any, Final, NamedTuple, Protocol, TypeVar
 
 from contact_dynamics.errors import ContactDynamicsError, InvalidFieldError
 from contact_dynamics.world import LONGEST_NAME
@@ -18,6 +18,9 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Mapping
 
 T = TypeVar("T")
+
+NODE_NAME: Final = "contact_dynamics"
+"""The name of the server's node."""
 
 
 class ConfigurationError(ContactDynamicsError):

@@ -31,7 +31,7 @@ from contact_dynamics.nodes.own_process import (
     keep_reserved_memory_untouched,
     never_wait_for_readers,
 )
-from contact_dynamics.questions.numpy_warnings import leave_out_numpy_warnings
+from contact_dynamics.questions.extent import leave_out_numpy_warnings
 
 if TYPE_CHECKING:
     import argparse

@@ -24,13 +24,12 @@ from contact_dynamics.nodes.arguments import server_parser
 from contact_dynamics.nodes.given_parameters import GivenParameters
 from contact_dynamics.nodes.inbox import InboxNode
 from contact_dynamics.nodes.node_parameters import NodeParameters, refuse_lost_sections
-from contact_dynamics.nodes.parameter_event import event_of_change
-from contact_dynamics.nodes.parameters import read_server_parameters
-from contact_dynamics.nodes.reconfiguring import check_change
-from contact_dynamics.nodes.run_record import NODE_NAME, plain, run_record
+from contact_dynamics.nodes.parameter_mistakes import is_of_ros
+from contact_dynamics.nodes.parameter_reader import NODE_NAME
+from contact_dynamics.nodes.parameters import check_change, read_server_parameters
+from contact_dynamics.nodes.run_record import event_of_change, plain, run_record
 from contact_dynamics.nodes.running import run_node
 from contact_dynamics.nodes.serving import Serving
-from contact_dynamics.nodes.unknown_parameters import is_of_ros
 from contact_dynamics.nodes.visualizer_parameters import VISUALIZER_PARAMETERS
 
 if TYPE_CHECKING:

@@ -19,7 +19,7 @@ from rclpy.serialization import serialize_message
 from rclpy.service_introspection import ServiceIntrospectionState
 
 from contact_dynamics.errors import BusyError, ContactDynamicsError
-from contact_dynamics.nodes.call_times import CallTimes
+from contact_dynamics.nodes.calls import CallTimes
 from contact_dynamics.questions.effort import excerpt
 from contact_dynamics.recording.cdr import cut_to_its_end
 from contact_dynamics.recording.cdr_stamp import EventType
@@ -33,8 +33,7 @@ if TYPE_CHECKING:
 
     from rclpy.qos import QoSProfile
 
-    from contact_dynamics.nodes.call_times import Call
-    from contact_dynamics.nodes.gone_clients import GoneClients
+    from contact_dynamics.nodes.calls import Call, GoneClients
     from contact_dynamics.nodes.inbox import InboxNode, Taken
     from contact_dynamics.questions.context import Context
     from contact_dynamics.questions.services import Answer, Service

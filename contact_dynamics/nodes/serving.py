@@ -12,8 +12,7 @@ from rclpy.clock import JumpThreshold
 from rclpy.duration import Duration
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 
-from contact_dynamics.nodes import parameter_event
-from contact_dynamics.nodes.body_watch import BodyWatch
+from contact_dynamics.nodes.calls import GoneClients
 from contact_dynamics.nodes.diagnostics import (
     AnswerTimes,
     Diagnostics,
@@ -21,14 +20,19 @@ from contact_dynamics.nodes.diagnostics import (
     values_of_self_check,
     values_of_topics,
 )
-from contact_dynamics.nodes.gone_clients import GoneClients
 from contact_dynamics.nodes.log import Log
-from contact_dynamics.nodes.reconfiguring import CONFIGURED_ANEW, bodies_read_otherwise
+from contact_dynamics.nodes.parameters import CONFIGURED_ANEW, bodies_read_otherwise
+from contact_dynamics.nodes.run_record import CHANGE_TYPE, CHANGES
 from contact_dynamics.nodes.self_check import SelfCheck
 from contact_dynamics.nodes.service_front import ServiceFront
 from contact_dynamics.nodes.situations import Part, Present, Situation
 from contact_dynamics.nodes.state_sources import expected, state_sources
-from contact_dynamics.nodes.state_subscriptions import OfferedQosWatch, present_ns, subscribe_to_states
+from contact_dynamics.nodes.state_subscriptions import (
+    BodyWatch,
+    OfferedQosWatch,
+    present_ns,
+    subscribe_to_states,
+)
 from contact_dynamics.nodes.topic_faults import TopicFaults
 from contact_dynamics.questions.context import Context
 from contact_dynamics.questions.services import SERVICES
@@ -139,7 +143,7 @@ class Serving:
             self._log.add_topic(topic.name, topic.type_name)
         self._clock_publishers: OfferedQosWatch | None = None
         self._log_clock()
-        self._log.add_topic(parameter_event.TOPIC, parameter_event.TYPE_NAME, EVENT_QOS)
+        self._log.add_topic(CHANGES, CHANGE_TYPE, EVENT_QOS)
         self._logs_first = parameters.log_before_answer
         self._path = node.create_publisher(Path, "~/predicted_path", PATH_QOS)
         limits = parameters.worker_limits
@@ -201,7 +205,7 @@ class Serving:
         self._node.take_messages()  # what came before is of the configuration before
         now_ns = time.time_ns()
         self._node.note_question(now_ns)  # and what is taken from here on counts as later
-        self._log.record(parameter_event.TOPIC, event, log_time_ns=now_ns)
+        self._log.record(CHANGES, event, log_time_ns=now_ns)
         self._log.change_run(run)
         self._states.change_limits(
             history=parameters.state_history,

@@ -24,16 +24,13 @@ from rclpy.clock import Clock, ClockType
 from rclpy.qos import QoSProfile
 from rclpy.serialization import deserialize_message
 
-from contact_dynamics.nodes import parameter_event
 from contact_dynamics.nodes.arguments import visualizer_parser
 from contact_dynamics.nodes.given_parameters import GivenParameters
 from contact_dynamics.nodes.inbox import InboxNode
 from contact_dynamics.nodes.node_parameters import NodeParameters, refuse_lost_sections
-from contact_dynamics.nodes.parameter_event import changed_values
 from contact_dynamics.nodes.parameter_reader import ConfigurationError
-from contact_dynamics.nodes.parameters import read_server_parameters
-from contact_dynamics.nodes.reconfiguring import bodies_read_otherwise, check_change
-from contact_dynamics.nodes.run_record import plain
+from contact_dynamics.nodes.parameters import bodies_read_otherwise, check_change, read_server_parameters
+from contact_dynamics.nodes.run_record import CHANGES, changed_values, plain
 from contact_dynamics.nodes.running import run_node
 from contact_dynamics.nodes.state_sources import state_sources
 from contact_dynamics.nodes.state_subscriptions import subscribe_to_states
@@ -131,7 +128,7 @@ class Visualizer(InboxNode):
         self._answers: deque[_Waiting] = deque()
         self._server = server
         self._values = {name: plain(parameter.value) for name, parameter in self._parameters.items()}
-        self.create_subscription(ParameterEvent, parameter_event.TOPIC, self._follow, EVENT_QOS)
+        self.create_subscription(ParameterEvent, CHANGES, self._follow, EVENT_QOS)
         self._events = [self._listen(shown, f"{server}/{shown.name}") for shown in SERVICES]
         self._wait_for_server(server, self._events, server_wait)
         self._static = TransformTree()

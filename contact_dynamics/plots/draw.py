@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from contact_dynamics.diagrams.wrench_chart import ForceDualChart, WrenchChart
     from contact_dynamics.motion.covariance import CarriedCovariance
     from contact_dynamics.plane.types import PlanarContact, PlanarWrench
-    from contact_dynamics.questions.impact_answer import ImpactAnswer
+    from contact_dynamics.questions.impact_question import ImpactAnswer
     from contact_dynamics.questions.many import ManyImpactsAnswer, ManyTumblingsAnswer
     from contact_dynamics.questions.toss import TossAnswer
     from contact_dynamics.rigid_body.body import BodyState, HasMassProperties

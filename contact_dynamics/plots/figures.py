@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from contact_dynamics.questions.contact_modes import ContactModeAnswer
-    from contact_dynamics.questions.impact_answer import ImpactAnswer
+    from contact_dynamics.questions.impact_question import ImpactAnswer
     from contact_dynamics.questions.many import ManyImpactsAnswer, ManyTumblingsAnswer
     from contact_dynamics.questions.services import Answer
     from contact_dynamics.questions.toss import TossAnswer

@@ -7,28 +7,32 @@ service's request becomes a question, and its answer becomes the response. A not
 the same question without ROS.
 
 Each kind has a file with its question, its answer and a function ``answer``. `tumbling` says where a free
-body will be (lectures 24, 25). `impact` says which velocities follow (lecture 27). Its question is in
-`impact_question` and its answer in `impact_answer`, and `which_impact` finds the contacts that it means.
-`contact_modes` says which contacts separate, slide or stay (lecture 26). `toss` says where all that ends.
+body will be (lectures 24, 25). `impact` says which velocities follow (lecture 27), and `impact_question` has
+its question and its answer. `contact_modes` says which contacts separate, slide or stay (lecture 26). `toss`
+says where all that ends.
 
 The kinds share these files: `context` (the world, defaults, and in a `state_store` what was published),
 `subject` (which body, in which state, which may be an `uncertain_state`), `twist_axes` (whether published
-velocities are in the right axes), `sample_times` (when), `touching`
-(which contacts), `extent` (how large numbers may be) and `problem` (in a plane or in space). Answers describe
-every impact in the same way (`resolved_impact`, `resolving`). They give modes of a plane in world axes
-(`lifted_modes`), and `planar_view` leads back. `settled_impact` has the impact that follows an inconsistency.
-`many` asks about many states at once, and `many_contact_modes` about many wrenches or sets of contacts.
+velocities are in the right axes), `sample_times` (when), `touching` (which contacts), `extent` (how large
+numbers may be) and `plane_of_motion` (in a plane or in space; modes of a plane in world axes, and back).
+Answers describe every impact in the same way (`resolving`). `settled_impact` has the impact that follows an
+inconsistency. `many` asks about many states at once, and `many_contact_modes` about many wrenches or sets of
+contacts.
 
 `effort` determines whether a question is quick, and `workers` are processes that answer those that are not.
-They and the server leave out `numpy_warnings`.
 """
 
 from contact_dynamics.questions.contact_modes import ContactModeAnswer, ContactModeQuestion
 from contact_dynamics.questions.context import Context, Defaults
-from contact_dynamics.questions.impact_answer import ImpactAnswer, StruckBody
-from contact_dynamics.questions.impact_question import ImpactQuestion, InTime
-from contact_dynamics.questions.problem import Problem
-from contact_dynamics.questions.resolved_impact import ResolvedImpact, SequenceStrike
+from contact_dynamics.questions.impact_question import (
+    ImpactAnswer,
+    ImpactQuestion,
+    InTime,
+    ResolvedImpact,
+    SequenceStrike,
+    StruckBody,
+)
+from contact_dynamics.questions.plane_of_motion import Problem
 from contact_dynamics.questions.sample_times import (
     AtRate,
     AtStamps,

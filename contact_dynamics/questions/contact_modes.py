@@ -41,13 +41,14 @@ from contact_dynamics.plane.lifting import check_mirrored, mirror_partners
 from contact_dynamics.plane.projection import PlaneOfMotion
 from contact_dynamics.questions.context import Context, check_optional, or_default
 from contact_dynamics.questions.extent import check_contacts, check_extent, check_margin_length, check_wrench
-from contact_dynamics.questions.lifted_modes import (
+from contact_dynamics.questions.plane_of_motion import (
+    Problem,
     lifted_margin,
     lifted_mode,
     lifted_vectors,
     lifted_wrench_set,
+    planar_problem_of,
 )
-from contact_dynamics.questions.problem import Problem, planar_problem_of
 from contact_dynamics.questions.services import Answer, Question
 from contact_dynamics.questions.settled_impact import (
     ModeCase,

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Final
 
 from contact_dynamics.impact.several.result import SeveralContactsLaw
 from contact_dynamics.motion.forces import NO_DRAG, NO_WRENCH
-from contact_dynamics.questions.problem import Problem
+from contact_dynamics.questions.plane_of_motion import Problem
 from contact_dynamics.questions.sample_times import UntilContact, UntilPlane
 from contact_dynamics.questions.subject import PublishedState, subject_of
 

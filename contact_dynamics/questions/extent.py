@@ -114,3 +114,8 @@ def check_vector(name: str, vector: FloatArray) -> None:
     largest = max(map(abs, vector.tolist()))
     if not largest <= MAX_IN_CONTACT:
         raise InvalidFieldError(name, f"{largest:g}", f"at most {MAX_IN_CONTACT:g} for contacts")
+
+
+def leave_out_numpy_warnings() -> None:
+    """Let this thread compute with any numbers without warnings."""
+    np.seterr(all="ignore")

@@ -4,14 +4,14 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
-from functools import partial
-from typing import TYPE_CHECKING, Final
+from dataclasses import dataclass, replace
+from functools import lru_cache, partial
+from typing import TYPE_CHECKING, Final, TypeAlias
 
 import numpy as np
 
 from contact_dynamics.contact.contact import ContactSet
-from contact_dynamics.errors import NORMAL_HINT, NoContactError, SeparatingContactError
+from contact_dynamics.errors import NORMAL_HINT, NoContactError, NotSupportedError, SeparatingContactError
 from contact_dynamics.impact import (
     SequenceEnd,
     bodies_impact,
@@ -26,6 +26,7 @@ from contact_dynamics.impact import (
 )
 from contact_dynamics.impact.several.orders import order_warning
 from contact_dynamics.impact.several.result import SeveralContactsLaw
+from contact_dynamics.landing.earliest import next_landing
 from contact_dynamics.motion.covariance import propagate_covariance
 from contact_dynamics.plane.lifting import (
     check_mirrored,
@@ -35,27 +36,35 @@ from contact_dynamics.plane.lifting import (
     with_planar_velocity,
 )
 from contact_dynamics.questions.context import Context, or_default
-from contact_dynamics.questions.impact_answer import ImpactAnswer, StruckBody
-from contact_dynamics.questions.impact_question import ImpactQuestion, InTime
-from contact_dynamics.questions.problem import Problem, planar_problem_of
-from contact_dynamics.questions.resolved_impact import Before, ResolvedImpact
+from contact_dynamics.questions.extent import check_contacts, check_extent
+from contact_dynamics.questions.impact_question import (
+    ImpactAnswer,
+    ImpactQuestion,
+    InTime,
+    ResolvedImpact,
+    StruckBody,
+)
+from contact_dynamics.questions.plane_of_motion import Problem, planar_problem_of
 from contact_dynamics.questions.resolving import (
     planar_resolved,
     sequence_resolved,
     several_resolved,
     spatial_resolved,
-    with_distribution,
     with_orders,
 )
-from contact_dynamics.questions.subject import Subject, covariance_of
-from contact_dynamics.questions.touching import outside_shape
-from contact_dynamics.questions.which_impact import Strike, strike_of
+from contact_dynamics.questions.subject import Subject, covariance_of, subject_of
+from contact_dynamics.questions.touching import check_has_shape, contacts_of, outside_shape
+from contact_dynamics.records import Record
 from contact_dynamics.rigid_body.body import BodyState
 
 if TYPE_CHECKING:
-    from contact_dynamics.impact import ImpactDistribution, ImpactSequence, OrderedOutcomes
+    from contact_dynamics.impact import BodiesImpact, ImpactDistribution, ImpactSequence, SeveralImpact
     from contact_dynamics.plane.projection import PlanarProblem
+    from contact_dynamics.questions.resolving import Before
     from contact_dynamics.rigid_body.body import MassProperties
+
+    _InSpace: TypeAlias = tuple[MassProperties, BodyState, ContactSet]
+    """A body, its state and its contacts, as the orders of strikes take them."""
 
 SAMPLES: Final = 2000
 """Number of states that are drawn for an uncertain impact. They give probabilities to 0.011 and take some 20
@@ -77,25 +86,43 @@ def answer(question: ImpactQuestion, context: Context | None = None) -> ImpactAn
             supported. The message names it.
     """
     known = Context() if context is None else context
-    strike = strike_of(question, known)
+    strike = _strike_of(question, known)
     problem: PlanarProblem | None = None
     warnings = _outside(question, strike)
     law = question.several_contacts_law
+    ordered = strike.before[0] + (strike.contacts,)
     if isinstance(law, InTime):
         sequence = _in_time(question, law, strike, known)
         strike = _from_first(sequence, strike)
-        resolved = sequence_resolved(sequence, strike.before)
+        resolved = sequence_resolved(sequence, strike.before[0])
         if sequence.order_is_open:
             warnings += (_OPEN_AT_AN_INSTANT,)
     elif question.problem is Problem.PLANAR:
         problem = _problem(question, strike, known)
-        resolved = _in_plane(question, law, strike, problem)
+        if len(problem.contacts) > 1:
+            ordered = planar_in_space(
+                problem.body, problem.velocity, problem.contacts, axes_W=problem.plane.axes_W
+            )
+        resolved = _in_plane(question, law, strike, problem, ordered)
     else:  # AUTOMATIC goes here too, because space contains the plane
         resolved = _in_space(question, law, strike)
     if law is SeveralContactsLaw.SEQUENTIAL:
-        warnings += _order_warning(question, strike, problem)
+        warnings += _order_warning(question, strike, ordered)
+    if question.include_orders:
+        outcomes = outcomes_over_orders(
+            *ordered,
+            restitution_law=question.restitution_law,
+            velocity_tolerance=strike.velocity_tolerance,
+        )
+        resolved = with_orders(resolved, outcomes)
     if question.include_covariance:
-        resolved = with_distribution(resolved, _distribution(question, strike, known))
+        distribution = _distribution(question, strike, known)
+        resolved = replace(
+            resolved,
+            covariance=distribution.covariance,
+            outcome_probabilities=distribution.probabilities,
+            miss_probability=distribution.missed,
+        )
     body, other = strike.subject.body, strike.other
     return ImpactAnswer(
         body_name=body.name,
@@ -117,7 +144,7 @@ def answer(question: ImpactQuestion, context: Context | None = None) -> ImpactAn
     )
 
 
-def _outside(question: ImpactQuestion, strike: Strike) -> tuple[str, ...]:
+def _outside(question: ImpactQuestion, strike: _Strike) -> tuple[str, ...]:
     """Return warnings of stated contacts that are outside of the body's shape."""
     if question.contacts is None:
         return ()
@@ -130,14 +157,9 @@ def _outside(question: ImpactQuestion, strike: Strike) -> tuple[str, ...]:
     )
 
 
-def _order_warning(
-    question: ImpactQuestion, strike: Strike, problem: PlanarProblem | None
-) -> tuple[str, ...]:
+def _order_warning(question: ImpactQuestion, strike: _Strike, ordered: _InSpace) -> tuple[str, ...]:
     """Return a warning where the order of strikes decides the answer, with the difference that it makes."""
-    body, state, contacts = strike.before.body, strike.state, strike.contacts
-    if problem is not None and len(problem.contacts) > 1:
-        axes = problem.plane.axes_W
-        body, state, contacts = planar_in_space(problem.body, problem.velocity, problem.contacts, axes_W=axes)
+    body, state, contacts = ordered
     if len(contacts) == 1:
         return ()
     bodies, states, pair = [body], [state], None
@@ -156,13 +178,13 @@ def _order_warning(
     return (words,) if words else ()
 
 
-def _in_time(question: ImpactQuestion, law: InTime, strike: Strike, context: Context) -> ImpactSequence:
+def _in_time(question: ImpactQuestion, law: InTime, strike: _Strike, context: Context) -> ImpactSequence:
     """Return the strikes from a state on. Without any, raise `SeparatingContactError` or `NoContactError`."""
     world = context.world
     if question.contacts is not None:
         follow = partial(
             impact_sequence_of,
-            strike.before.body,
+            strike.subject.body.mass_properties,
             strike.state,
             strike.contacts,
             gravity_W=world.gravity_W,
@@ -194,7 +216,7 @@ def _in_time(question: ImpactQuestion, law: InTime, strike: Strike, context: Con
     return sequence
 
 
-def _from_first(sequence: ImpactSequence, strike: Strike) -> Strike:
+def _from_first(sequence: ImpactSequence, strike: _Strike) -> _Strike:
     """Return the impact that begins with the first of several strikes, with the contacts of all of them."""
     first = sequence.strikes[0]
     return replace(
@@ -202,63 +224,44 @@ def _from_first(sequence: ImpactSequence, strike: Strike) -> Strike:
     )
 
 
-def _in_space(question: ImpactQuestion, law: SeveralContactsLaw, strike: Strike) -> ResolvedImpact:
-    before, contacts = strike.before, strike.contacts
-    if strike.other is not None:
-        return _of_two(question, law, strike, strike.other)
+def _in_space(question: ImpactQuestion, law: SeveralContactsLaw, strike: _Strike) -> ResolvedImpact:
+    contacts, (body, state), *others = strike.contacts, *strike.before
     if len(contacts) == 1:
-        impact = spatial_impact(
-            before.body,
-            strike.state,
+        hit = (
+            partial(spatial_pair_impact, body, state, *others[0])
+            if others
+            else partial(spatial_impact, body, state)
+        )
+        impact = hit(
             contacts[0],
             restitution_law=question.restitution_law,
             velocity_tolerance=strike.velocity_tolerance,
         )
-        resolved = spatial_resolved(impact, before)
+        return spatial_resolved(impact, *strike.before)
+    several: SeveralImpact | BodiesImpact
+    if others:
+        several = bodies_impact(
+            [each for each, _ in strike.before],
+            [each for _, each in strike.before],
+            contacts,
+            [(0, 1)] * len(contacts),
+            several_contacts_law=law,
+            restitution_law=question.restitution_law,
+            velocity_tolerance=strike.velocity_tolerance,
+        )
     else:
         several = several_impact(
-            before.body,
-            strike.state,
+            body,
+            state,
             contacts,
             several_contacts_law=law,
             restitution_law=question.restitution_law,
             velocity_tolerance=strike.velocity_tolerance,
         )
-        resolved = several_resolved(several, before)
-    if not question.include_orders:
-        return resolved
-    return with_orders(resolved, _orders(question, strike, before.body, strike.state, contacts))
+    return several_resolved(several, *strike.before)
 
 
-def _of_two(
-    question: ImpactQuestion, law: SeveralContactsLaw, strike: Strike, other: Subject
-) -> ResolvedImpact:
-    before, contacts = strike.before, strike.contacts
-    other_before = Before(body=other.body.mass_properties, state=other.state)
-    if len(contacts) == 1:
-        impact = spatial_pair_impact(
-            before.body,
-            strike.state,
-            other_before.body,
-            other.state,
-            contacts[0],
-            restitution_law=question.restitution_law,
-            velocity_tolerance=strike.velocity_tolerance,
-        )
-        return spatial_resolved(impact, before, other_before)
-    several = bodies_impact(
-        [before.body, other_before.body],
-        [strike.state, other.state],
-        contacts,
-        [(0, 1)] * len(contacts),
-        several_contacts_law=law,
-        restitution_law=question.restitution_law,
-        velocity_tolerance=strike.velocity_tolerance,
-    )
-    return several_resolved(several, before, other_before)
-
-
-def _problem(question: ImpactQuestion, strike: Strike, context: Context) -> PlanarProblem:
+def _problem(question: ImpactQuestion, strike: _Strike, context: Context) -> PlanarProblem:
     """Return the problem in its plane of motion. Refuse contacts beside it that have no mirror image."""
     problem = planar_problem_of(
         strike.subject.body.mass_properties,
@@ -278,9 +281,13 @@ def _problem(question: ImpactQuestion, strike: Strike, context: Context) -> Plan
 
 
 def _in_plane(
-    question: ImpactQuestion, law: SeveralContactsLaw, strike: Strike, problem: PlanarProblem
+    question: ImpactQuestion,
+    law: SeveralContactsLaw,
+    strike: _Strike,
+    problem: PlanarProblem,
+    ordered: _InSpace,
 ) -> ResolvedImpact:
-    before = strike.before
+    (before,) = strike.before
     if len(problem.contacts) == 1:
         impact = planar_impact(
             problem.body,
@@ -289,40 +296,21 @@ def _in_plane(
             restitution_law=question.restitution_law,
             velocity_tolerance=strike.velocity_tolerance,
         )
-        resolved = planar_resolved(impact, problem, before)
-        ordered = (before.body, strike.state, strike.contacts)
-    else:
-        ordered = planar_in_space(
-            problem.body, problem.velocity, problem.contacts, axes_W=problem.plane.axes_W
-        )
-        several = several_impact(
-            *ordered,
-            several_contacts_law=law,
-            restitution_law=question.restitution_law,
-            velocity_tolerance=strike.velocity_tolerance,
-        )
-        velocity = planar_velocity(problem.plane, several.state)
-        after = with_planar_velocity(problem, strike.state, velocity)
-        resolved = several_resolved(replace(several, state=after), before)
-    return with_orders(resolved, _orders(question, strike, *ordered)) if question.include_orders else resolved
-
-
-def _orders(
-    question: ImpactQuestion, strike: Strike, body: MassProperties, state: BodyState, contacts: ContactSet
-) -> OrderedOutcomes:
-    return outcomes_over_orders(
-        body,
-        state,
-        contacts,
+        return planar_resolved(impact, problem, before)
+    several = several_impact(
+        *ordered,
+        several_contacts_law=law,
         restitution_law=question.restitution_law,
         velocity_tolerance=strike.velocity_tolerance,
     )
+    after = with_planar_velocity(problem, strike.state, planar_velocity(problem.plane, several.state))
+    return several_resolved(replace(several, state=after), before)
 
 
-def _distribution(question: ImpactQuestion, strike: Strike, context: Context) -> ImpactDistribution:
+def _distribution(question: ImpactQuestion, strike: _Strike, context: Context) -> ImpactDistribution:
     """Return the distribution of the state after the impact, from the covariance of the state before."""
     covariance = covariance_of(strike.subject)
-    body = strike.before.body
+    body = strike.subject.body.mass_properties
     if strike.seconds > 0.0:
         flight = propagate_covariance(
             body,
@@ -341,3 +329,137 @@ def _distribution(question: ImpactQuestion, strike: Strike, context: Context) ->
         velocity_tolerance=strike.velocity_tolerance,
         samples=SAMPLES,
     )
+
+
+_kept_landing = lru_cache(maxsize=4)(next_landing)
+"""`next_landing`, for the several questions about one landing, each with another law."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class _Strike(Record):
+    """An impact that is to be resolved.
+
+    Attributes:
+        subject: The first body, in the question's state.
+        other: The second body, or None for the world.
+        seconds: The time from that state to the impact, s.
+        state: The first body just before.
+        contacts: The contacts at which it strikes.
+        velocity_tolerance: m/s. A slower approach counts as none.
+        distance_tolerance: m. A body with a smaller gap touches.
+    """
+
+    subject: Subject
+    other: Subject | None
+    seconds: float
+    state: BodyState
+    contacts: ContactSet
+    velocity_tolerance: float
+    distance_tolerance: float
+
+    @property
+    def before(self) -> tuple[Before, ...]:
+        """The bodies just before, one or both."""
+        first = self.subject.body.mass_properties, self.state
+        return (
+            (first,) if self.other is None else (first, (self.other.body.mass_properties, self.other.state))
+        )
+
+
+def _strike_of(question: ImpactQuestion, context: Context) -> _Strike:
+    """Return the impact that a question means, at the contacts that it states or at the next landing.
+
+    Raises:
+        ContactDynamicsError: nothing strikes, or a part of the question is not known or not supported.
+    """
+    subject = subject_of(question.body, question.state, context)
+    other = None if question.other is None else subject_of(question.other, question.other_state, context)
+    for one in (subject, other):
+        if one is not None:
+            check_extent(one.body.mass_properties, one.state)
+    velocity_tolerance = or_default(question.velocity_tolerance, context.defaults.velocity_tolerance)
+    distance_tolerance = or_default(question.distance_tolerance, context.defaults.distance_tolerance)
+    seconds, state = 0.0, subject.state
+    if question.contacts is not None:
+        contacts = contacts_of(
+            question.contacts, subject, context.world, distance_tolerance=distance_tolerance
+        )
+        _ = contacts.impact_restitutions
+    elif other is not None:
+        message = "contacts of two bodies must be given explicitly: only those with the world are found"
+        raise NotSupportedError(message)
+    else:
+        seconds, state, contacts = _landing(
+            question,
+            subject,
+            context,
+            velocity_tolerance=velocity_tolerance,
+            distance_tolerance=distance_tolerance,
+        )
+    check_contacts(contacts)
+    _check_supported(question, contact_count=len(contacts))
+    return _Strike(
+        subject=subject,
+        other=other,
+        seconds=seconds,
+        state=state,
+        contacts=contacts,
+        velocity_tolerance=velocity_tolerance,
+        distance_tolerance=distance_tolerance,
+    )
+
+
+def _check_supported(question: ImpactQuestion, *, contact_count: int) -> None:
+    """Raise `NotSupportedError` for combinations that a question can ask for and no law here answers."""
+    in_time = isinstance(question.several_contacts_law, InTime)
+    is_planar, has_other = question.problem is Problem.PLANAR, question.other is not None
+    if has_other and (question.include_orders or is_planar or in_time):
+        message = (
+            "with a second body (other), problem must be SPATIAL or AUTOMATIC, several_contacts_law "
+            "SEQUENTIAL or SIMULTANEOUS, and include_orders false"
+        )
+        raise NotSupportedError(message)
+    if in_time and is_planar:
+        message = "problem must be SPATIAL for strikes in time, got PLANAR: space contains the plane"
+        raise NotSupportedError(message)
+    if in_time and question.include_orders:
+        message = "include_orders must be false for strikes in time, got true: time is the order"
+        raise NotSupportedError(message)
+    one_contact = contact_count == 1 and not is_planar and not in_time
+    if question.include_covariance and (has_other or not one_contact):
+        message = (
+            "include_covariance must be false except at one contact with the world in space, and without "
+            f"strikes in time, got true for {contact_count} contacts"
+        )
+        raise NotSupportedError(message)
+
+
+def _landing(
+    question: ImpactQuestion,
+    subject: Subject,
+    context: Context,
+    *,
+    velocity_tolerance: float,
+    distance_tolerance: float,
+) -> tuple[float, BodyState, ContactSet]:
+    """Return when a body lands, s after its state, its state then, and its contacts."""
+    check_has_shape(subject.body)
+    horizon = or_default(question.horizon, context.defaults.horizon)
+    landing = _kept_landing(
+        subject.body,
+        subject.state,
+        context.world,
+        horizon=horizon,
+        distance_tolerance=distance_tolerance,
+        velocity_tolerance=velocity_tolerance,
+    )
+    name = subject.body.name
+    if landing is None:
+        raise NoContactError(f"contacts: {name!r} touches no surface within the horizon of {horizon:g} s")
+    in_time = isinstance(question.several_contacts_law, InTime)
+    if not landing.strikes and not in_time:  # in time, another corner may strike while this one rests
+        raise NoContactError(
+            f"contacts: {name!r} touches {landing.contacts.surfaces[0]!r} and does not approach it by more "
+            f"than {velocity_tolerance:g} m/s (a question about contact modes says what follows)"
+        )
+    return landing.seconds, landing.state, landing.contacts

@@ -8,7 +8,7 @@ for two.
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -22,7 +22,7 @@ from contact_dynamics.impact import (
 )
 from contact_dynamics.impact.energy import created
 from contact_dynamics.plane.lifting import with_planar_velocity
-from contact_dynamics.questions.resolved_impact import Before, ResolvedImpact, SequenceStrike
+from contact_dynamics.questions.impact_question import ResolvedImpact, SequenceStrike
 from contact_dynamics.rigid_body.body import kinetic_energy
 from contact_dynamics.validation import FloatArray
 
@@ -30,7 +30,6 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from contact_dynamics.impact import (
-        ImpactDistribution,
         ImpactSequence,
         OrderedOutcomes,
         PlanarImpact,
@@ -38,15 +37,16 @@ if TYPE_CHECKING:
         SpatialImpact,
     )
     from contact_dynamics.plane.projection import PlanarProblem
+    from contact_dynamics.rigid_body.body import BodyState, MassProperties
+
+    Before: TypeAlias = tuple[MassProperties, BodyState]
+    """A body just before an impact."""
 
 
-def spatial_resolved(impact: SpatialImpact, before: Before, other: Before | None = None) -> ResolvedImpact:
+def spatial_resolved(impact: SpatialImpact, *before: Before) -> ResolvedImpact:
     """Return an impact at one contact in space, of a body with the world or with another body."""
-    energy_before = kinetic_energy(before.body, before.state)
-    energy_after = kinetic_energy(before.body, impact.state)
-    if other is not None and impact.other_state is not None:
-        energy_before += kinetic_energy(other.body, other.state)
-        energy_after += kinetic_energy(other.body, impact.other_state)
+    after = (impact.state,) if impact.other_state is None else (impact.state, impact.other_state)
+    energy_before, energy_after = _energies(before, after)
     return ResolvedImpact(
         restitution_law=impact.restitution_law,
         several_contacts_law=SeveralContactsLaw.SEQUENTIAL,
@@ -70,7 +70,9 @@ def spatial_resolved(impact: SpatialImpact, before: Before, other: Before | None
 
 def planar_resolved(impact: PlanarImpact, problem: PlanarProblem, before: Before) -> ResolvedImpact:
     """Return an impact at the one contact of a plane of motion. Motion out of the plane stays as it was."""
-    after = with_planar_velocity(problem, before.state, impact.velocity)
+    _, state = before
+    after = with_planar_velocity(problem, state, impact.velocity)
+    energy_before, energy_after = _energies([before], [after])
     path = impact.path
     (t_x, t_y), (n_x, n_y) = problem.contacts[0].tangent, problem.contacts[0].normal
     (x_1, x_2, x_3), (y_1, y_2, y_3) = problem.plane.axes_W.tolist()
@@ -99,8 +101,8 @@ def planar_resolved(impact: PlanarImpact, problem: PlanarProblem, before: Before
         path_W=vectors_W[4:],
         path_events=tuple(event for event, _ in path),
         path_contacts=(0,) * len(path),
-        kinetic_energy_before=kinetic_energy(before.body, before.state),
-        kinetic_energy_after=kinetic_energy(before.body, after),
+        kinetic_energy_before=energy_before,
+        kinetic_energy_after=energy_after,
         creates_energy=impact.creates_energy,
     )
 
@@ -108,8 +110,7 @@ def planar_resolved(impact: PlanarImpact, problem: PlanarProblem, before: Before
 def several_resolved(impact: SeveralImpact | BodiesImpact, *before: Before) -> ResolvedImpact:
     """Return an impact at several contacts in space, of one body with the world, or of two bodies."""
     after = impact.states if isinstance(impact, BodiesImpact) else (impact.state,)
-    energy_before = sum(kinetic_energy(one.body, one.state) for one in before)
-    energy_after = sum(kinetic_energy(one.body, state) for one, state in zip(before, after, strict=True))
+    energy_before, energy_after = _energies(before, after)
     told = _told_by(impact.strikes, len(impact.impulses_W)) if impact.strikes else _NOT_TOLD
     return ResolvedImpact(
         restitution_law=impact.restitution_law,
@@ -129,6 +130,7 @@ def several_resolved(impact: SeveralImpact | BodiesImpact, *before: Before) -> R
 
 def sequence_resolved(impact: ImpactSequence, before: Before) -> ResolvedImpact:
     """Return one or more strikes in time. ``before`` is the body just before the first."""
+    energy_before, energy_after = _energies([before], [impact.state])
     first = impact.strikes[0].seconds
     impulses = np.zeros((len(impact.contacts), 3))
     velocities_before, velocities_after = np.zeros_like(impulses), np.zeros_like(impulses)
@@ -146,8 +148,8 @@ def sequence_resolved(impact: ImpactSequence, before: Before) -> ResolvedImpact:
         impulses_W=impulses,
         velocities_before_W=velocities_before,
         velocities_after_W=velocities_after,
-        kinetic_energy_before=kinetic_energy(before.body, before.state),
-        kinetic_energy_after=kinetic_energy(before.body, impact.state),
+        kinetic_energy_before=energy_before,
+        kinetic_energy_after=energy_after,
         creates_energy=impact.creates_energy,
         strikes=tuple(
             SequenceStrike(
@@ -179,13 +181,11 @@ def with_orders(resolved: ResolvedImpact, outcomes: OrderedOutcomes) -> Resolved
     )
 
 
-def with_distribution(resolved: ResolvedImpact, distribution: ImpactDistribution) -> ResolvedImpact:
-    """Return an impact with the covariance of the state after it and the probability of each outcome."""
-    return replace(
-        resolved,
-        covariance=distribution.covariance,
-        outcome_probabilities=distribution.probabilities,
-        miss_probability=distribution.missed,
+def _energies(before: Sequence[Before], after: Sequence[BodyState]) -> tuple[float, float]:
+    """Return the kinetic energy of all bodies before and after, J."""
+    return (
+        sum(kinetic_energy(body, state) for body, state in before),
+        sum(kinetic_energy(body, state) for (body, _), state in zip(before, after, strict=True)),
     )
 
 

@@ -22,8 +22,8 @@ from contact_dynamics.plane.lifting import (
     planar_velocity,
     with_planar_velocity,
 )
-from contact_dynamics.questions.lifted_modes import lifted_mode
-from contact_dynamics.questions.resolved_impact import Before, ResolvedImpact
+from contact_dynamics.questions.impact_question import ResolvedImpact
+from contact_dynamics.questions.plane_of_motion import lifted_mode
 from contact_dynamics.questions.resolving import (
     planar_resolved,
     several_resolved,
@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from contact_dynamics.contact_modes import PlanarModeAnswer, SpatialModeAnswer
-    from contact_dynamics.impact import OrderedOutcomes, SeveralImpact
+    from contact_dynamics.impact import SeveralImpact
     from contact_dynamics.plane.projection import PlanarProblem
     from contact_dynamics.plane.types import PlanarVelocity
     from contact_dynamics.rigid_body.body import BodyState, MassProperties
@@ -100,42 +100,29 @@ class ModeCase(Record):
             velocity_tolerance=self.velocity_tolerance,
         )
 
-    @property
-    def before(self) -> Before:
-        """The body before the impact that settles the case."""
-        return Before(body=self.subject.body.mass_properties, state=self.subject.state)
-
 
 def settled_in_space(case: ModeCase, verdict: ModeVerdict) -> SettledImpact | None:
     """Return the impact and the modes after it, or None if the verdict on a case in space needs none."""
     if verdict not in _UNSETTLED:
         return None
-    before, contacts, problem = case.before, case.contacts, case.in_space
+    body, state = before = case.subject.body.mass_properties, case.subject.state
+    contacts, problem = case.contacts, case.in_space
 
     def modes_after(state: BodyState) -> SpatialModeAnswer:
         return contact_modes(replace(problem, state=state))
 
     if len(contacts) == 1:
-        impact = spatial_impact(
-            before.body,
-            before.state,
-            contacts[0],
-            velocity_tolerance=case.velocity_tolerance,
-        )
+        impact = spatial_impact(body, state, contacts[0], velocity_tolerance=case.velocity_tolerance)
         resolved = spatial_resolved(impact, before)
     else:
         several = _several(
             case,
-            before.body,
-            before.state,
+            *before,
             contacts,
             verdict,
             is_settled=lambda state: modes_after(state).verdict != ModeVerdict.INCONSISTENT,
         )
-        resolved = several_resolved(several, before)
-        outcomes = _orders(case, before.body, before.state, contacts, verdict)
-        if outcomes is not None:
-            resolved = with_orders(resolved, outcomes)
+        resolved = _with_orders(several_resolved(several, before), case, (*before, contacts), verdict)
     then = modes_after(resolved.state)
     return SettledImpact(impact=resolved, verdict=then.verdict, modes=then.modes)
 
@@ -159,7 +146,7 @@ def settled_in_plane(
     """
     if verdict not in _UNSETTLED:
         return None
-    plane, before = problem.plane, case.before
+    plane, before = problem.plane, (case.subject.body.mass_properties, case.subject.state)
 
     def modes_after(velocity: PlanarVelocity) -> PlanarModeAnswer:
         return contact_modes(replace(in_plane, velocity=velocity))
@@ -184,12 +171,10 @@ def settled_in_plane(
             plane_normal_W=plane.normal_W,
         )
         velocity = planar_velocity(plane, several.state)
-        after = with_planar_velocity(problem, before.state, velocity)
+        after = with_planar_velocity(problem, case.subject.state, velocity)
         impulses = several.impulses_W if several.strikes else equal_shares(several.impulses_W, partners)
         resolved = several_resolved(replace(several, state=after, impulses_W=impulses), before)
-        outcomes = _orders(case, *flat, verdict)
-        if outcomes is not None:
-            resolved = with_orders(resolved, outcomes)
+        resolved = _with_orders(resolved, case, flat, verdict)
     then = modes_after(velocity)
     return SettledImpact(
         impact=resolved,
@@ -224,10 +209,13 @@ def _several(
     )
 
 
-def _orders(
-    case: ModeCase, body: MassProperties, state: BodyState, contacts: ContactSet, verdict: ModeVerdict
-) -> OrderedOutcomes | None:
-    """Return the outcomes over the orders of contacts that approach, or None for too many contacts."""
-    if verdict != ModeVerdict.IMPACT or len(contacts) > MAX_CONTACTS_IN_ORDERS:
-        return None
-    return outcomes_over_orders(body, state, contacts, velocity_tolerance=case.velocity_tolerance)
+def _with_orders(
+    resolved: ResolvedImpact,
+    case: ModeCase,
+    ordered: tuple[MassProperties, BodyState, ContactSet],
+    verdict: ModeVerdict,
+) -> ResolvedImpact:
+    """Return an impact with the outcomes over the orders of contacts that approach, if these are few."""
+    if verdict != ModeVerdict.IMPACT or len(ordered[2]) > MAX_CONTACTS_IN_ORDERS:
+        return resolved
+    return with_orders(resolved, outcomes_over_orders(*ordered, velocity_tolerance=case.velocity_tolerance))

@@ -23,7 +23,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final, TypeVar
 
 from contact_dynamics.errors import BusyError, ContactDynamicsError, TookTooLongError, TooLargeError
-from contact_dynamics.questions.numpy_warnings import leave_out_numpy_warnings
+from contact_dynamics.questions.extent import leave_out_numpy_warnings
 from contact_dynamics.questions.services import SERVICES
 
 if TYPE_CHECKING:

@@ -11,11 +11,8 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from contact_dynamics.errors import ContactDynamicsError
-from contact_dynamics.nodes import parameter_event
-from contact_dynamics.nodes.parameter_event import changed_values
-from contact_dynamics.nodes.parameters import read_server_parameters
-from contact_dynamics.nodes.reconfiguring import CONFIGURED_ANEW, bodies_read_otherwise
-from contact_dynamics.nodes.run_record import LoggedParameters
+from contact_dynamics.nodes.parameters import CONFIGURED_ANEW, bodies_read_otherwise, read_server_parameters
+from contact_dynamics.nodes.run_record import CHANGES, LoggedParameters, changed_values
 from contact_dynamics.nodes.state_sources import expected, no_message, state_sources
 from contact_dynamics.questions.context import Context
 from contact_dynamics.questions.extent import check_believable
@@ -101,7 +98,7 @@ class ServerAgain:
     @property
     def topics_of_changes(self) -> frozenset[str]:
         """The topics of changes of the configuration, which the log of a server has."""
-        return frozenset({parameter_event.TOPIC} if isinstance(self._source, LoggedParameters) else ())
+        return frozenset({CHANGES} if isinstance(self._source, LoggedParameters) else ())
 
     def receive(self, message: LoggedMessage, *, is_live: bool = True) -> list[tuple[str, BodyState]]:
         """Take a message about bodies, a tick of the simulated time, or a change; ignore what the server did.

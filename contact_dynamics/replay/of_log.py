@@ -13,14 +13,12 @@ import warnings
 from typing import TYPE_CHECKING, Any, Final
 
 from contact_dynamics.errors import NotSupportedError
-from contact_dynamics.nodes import parameter_event
-from contact_dynamics.nodes.run_record import PARAMETERS, LoggedParameters
+from contact_dynamics.nodes.run_record import CHANGES, PARAMETERS, LoggedParameters
 from contact_dynamics.questions.services import SERVICES
 from contact_dynamics.recording.bag_reader import BagReader
 from contact_dynamics.recording.definitions import EVENT_SUFFIX
 from contact_dynamics.recording.errors import DamagedLogWarning, NotALogError
 from contact_dynamics.recording.message_types import message_types
-from contact_dynamics.replay.configuration import ChangedRun
 from contact_dynamics.replay.stand_ins import stand_in
 from contact_dynamics.replay.timeline import INTERFACES
 
@@ -55,7 +53,7 @@ def server_of_log(
         damage = f" ({log.damage})" if log.damage else ""
         run = log.run()
         damage = f" ({log.damage})" if log.damage else damage
-        is_later = log.run_is_later and next(log.messages({parameter_event.TOPIC}), None) is not None
+        is_later = log.run_is_later and next(log.messages({CHANGES}), None) is not None
     events = [name for name in definitions if name.startswith(INTERFACES) and name.endswith(EVENT_SUFFIX)]
     if not events:
         known = ", ".join(sorted(definitions)) or "none"
@@ -75,7 +73,7 @@ def server_of_log(
     stand_in(definitions.items())
     from contact_dynamics.replay.again import ServerAgain  # here, for it imports what now stands in for ROS
 
-    return run, ServerAgain(ChangedRun(run, instead) if instead else LoggedParameters(run))
+    return run, ServerAgain(LoggedParameters(run, instead))
 
 
 def digest(event_type: str, definition: str) -> str:

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
     from contact_dynamics.questions.contact_modes import ContactModeAnswer
-    from contact_dynamics.questions.impact_answer import ImpactAnswer
+    from contact_dynamics.questions.impact_question import ImpactAnswer
     from contact_dynamics.questions.many import ManyImpactsAnswer, ManyTumblingsAnswer
     from contact_dynamics.questions.many_contact_modes import ManyContactModesAnswer
     from contact_dynamics.questions.toss import TossAnswer

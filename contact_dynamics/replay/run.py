@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Final
 
 from contact_dynamics.constants import ns_after, to_seconds
 from contact_dynamics.errors import ContactDynamicsError, InvalidFieldError
+from contact_dynamics.nodes.given_parameters import ParameterFile, values_of
 from contact_dynamics.nodes.run_record import LoggedParameters
 from contact_dynamics.recording.bag_reader import BagReader
 from contact_dynamics.recording.errors import DamagedLogWarning, NotALogError
@@ -28,7 +29,6 @@ from contact_dynamics.replay.arguments import (
     stamps_as_logged,
 )
 from contact_dynamics.replay.asking import AskedEvents, Asking
-from contact_dynamics.replay.configuration import Configuration, values_of
 from contact_dynamics.replay.info import info
 from contact_dynamics.replay.logged import LoggedEvents
 from contact_dynamics.replay.progress import Progress
@@ -213,7 +213,7 @@ def _events(path: Path, given: argparse.Namespace) -> Events:
         names=tuple(given.ask), bodies=tuple(given.body), every=given.every, fit_window=given.fit_window
     )
     if given.config is not None:
-        return AskedEvents(path, Configuration(Path(given.config), given.topics), asking=asking, span=span)
+        return AskedEvents(path, ParameterFile(Path(given.config), given.topics), asking=asking, span=span)
     if asking.names:
         run = BagReader(path).run()
         if not run:

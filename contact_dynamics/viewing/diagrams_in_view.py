@@ -46,7 +46,7 @@ if TYPE_CHECKING:
     from contact_dynamics.plane.projection import PlaneOfMotion
     from contact_dynamics.plane.types import PlanarWrench
     from contact_dynamics.questions.contact_modes import ContactModeAnswer
-    from contact_dynamics.questions.impact_answer import ImpactAnswer
+    from contact_dynamics.questions.impact_question import ImpactAnswer
     from contact_dynamics.rigid_body.body import MassProperties
     from contact_dynamics.validation import FloatArray
 

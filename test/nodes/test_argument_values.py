@@ -9,7 +9,7 @@ from rclpy.context import Context
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 
-from contact_dynamics.nodes.argument_values import values_given, what_is_wrong
+from contact_dynamics.nodes.parameter_mistakes import values_given, what_is_wrong
 
 TYPES = {
     Parameter.Type.BOOL: bool,

@@ -8,7 +8,7 @@ import time
 
 import pytest
 
-from contact_dynamics.nodes.call_times import CallTimes
+from contact_dynamics.nodes.calls import CallTimes
 from contact_dynamics.recording.cdr_stamp import EventType
 
 GID_A, GID_B = b"a" * 16, b"b" * 16

@@ -13,8 +13,7 @@ from pathlib import Path
 
 import pytest
 
-from contact_dynamics.nodes.domain_ports import first_port
-from contact_dynamics.nodes.fast_dds import FIRST_OFFSET, PORTS, VARIABLE, profile_of_fast_dds
+from contact_dynamics.nodes.fast_dds import FIRST_OFFSET, PORTS, VARIABLE, first_port, profile_of_fast_dds
 from running_server import DOMAIN_ID, PATIENCE_S, ROOT, environment, process, wait_for
 
 ARGUMENTS = ["--params-file", str(ROOT / "config" / "server.yaml"), "--ros-args", "-p", "log:=false"]

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from contact_dynamics.command_line import DISCOVERY_RANGE
 from contact_dynamics.demo.processes import claim_domain
-from contact_dynamics.nodes.domain_ports import FIRST_DISCOVERY, PORTS_OF_DOMAIN, first_port, ports_in_use
+from contact_dynamics.nodes.fast_dds import FIRST_DISCOVERY, PORTS_OF_DOMAIN, first_port, ports_in_use
 from running_server import PATIENCE_S, ROOT, environment
 
 SERVER = ("server", "--ros-args", "-p", "log:=false")

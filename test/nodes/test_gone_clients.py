@@ -7,7 +7,7 @@ import time
 
 import pytest
 
-from contact_dynamics.nodes.gone_clients import GoneClients
+from contact_dynamics.nodes.calls import GoneClients
 
 HOUR_NS = 3_600_000_000_000
 CLIENT = b"one"

@@ -11,10 +11,9 @@ from rclpy.context import Context
 from rclpy.node import Node
 
 from contact_dynamics.nodes import server
-from contact_dynamics.nodes.given_parameters import GivenParameters
-from contact_dynamics.nodes.parameter_file import ParameterFile
+from contact_dynamics.nodes.given_parameters import GivenParameters, ParameterFile
+from contact_dynamics.nodes.parameter_mistakes import Section, check_sections, read_sections
 from contact_dynamics.nodes.parameter_reader import ConfigurationError
-from contact_dynamics.nodes.parameter_sections import Section, check_sections, read_sections
 from contact_dynamics.nodes.parameters import read_server_parameters
 from contact_dynamics.nodes.state_sources import state_sources
 from message_words import says

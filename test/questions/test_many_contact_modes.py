@@ -20,7 +20,7 @@ from contact_dynamics.questions.many_contact_modes import (
     ManyContactModesQuestion,
     answer,
 )
-from contact_dynamics.questions.problem import Problem
+from contact_dynamics.questions.plane_of_motion import Problem
 from questions.known_world import CUBE, WORLD
 
 KNOWN = Context(world=WORLD)

@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The sections of a YAML file of parameters: their nodes, those that miss their node, and repeated keys.
+"""Finds the mistakes in parameters that ROS does not report. This file imports no ROS.
 
 ROS gives a node the parameters of all sections whose name fits its full name, and says nothing of the others,
 so a misspelled name costs all parameters of its section. YAML forbids repeated keys, but ROS silently takes
-the last one. This file finds both, and imports no ROS.
+the last one. It ignores parameters that nobody reads. Where a file gives a parameter a value of one type and
+`-p` another of a type that ROS looks at later, it keeps that of the file: `-p log:=0` beside `log: true` goes
+on logging.
 """
 
 from __future__ import annotations
@@ -18,7 +20,7 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 from contact_dynamics.nodes.parameter_reader import ConfigurationError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
     from pathlib import Path
 
 ANY_NODE: Final = "/**"
@@ -232,3 +234,114 @@ def _keys(node: Any, above: tuple[str, ...]) -> Iterator[tuple[tuple[str, ...], 
         yield path, key.start_mark.line + 1, is_leaf
         if not is_leaf:
             yield from _keys(value, path)
+
+
+_GIVEN: Final = re.compile(r"(?:([^:=]+):)?([^:=]+):=(.*)", re.DOTALL)
+_BOOLEAN: Final = re.compile(
+    r"[yYnN]|yes|Yes|YES|no|No|NO|true|True|TRUE|false|False|FALSE|on|On|ON|off|Off|OFF"
+)
+_WHOLE: Final = re.compile(r"[-+]?(0[xX][0-9a-fA-F]+|[0-9]+)")
+_DECIMAL: Final = re.compile(
+    r"[-+]?(([0-9]+\.?[0-9]*|\.[0-9]+)([eE][-+]?[0-9]+)?|\.?(nan|NaN|NAN|inf|Inf|INF))"
+)
+IN_WORDS: Final = {
+    bool: "true or false",
+    int: "a whole number",
+    float: "a number with a point, such as 1.0",
+    str: "a text",
+    list: "a list with an entry, such as [1.0]",
+}
+"""The types of parameters, in the words of an error."""
+
+
+def values_given(arguments: Sequence[str], full_name: str) -> dict[str, str]:
+    """Return the texts of the parameters that ROS's arguments give to a node of this full name."""
+    found: dict[str, str] = {}
+    for flag, text in pairwise(arguments):
+        match = _GIVEN.fullmatch(text) if flag in {"-p", "--param"} else None
+        if match is not None and (match[1] is None or Section(absolute(match[1]), {}).is_for(full_name)):
+            found[match[2]] = match[3].strip()
+    return found
+
+
+def what_is_wrong(text: str, wanted: type[Any]) -> str:
+    """Return what a parameter's text would have to be, or nothing where it is of the type that is wanted."""
+    return "" if text == "" or _type_of(text) is wanted else IN_WORDS[wanted]
+
+
+def _type_of(text: str) -> type[Any] | None:
+    """Return the type that ROS makes of a text. A list without an entry has none, and ROS ignores it."""
+    if text.startswith("["):
+        return list if text.strip("[] ") else None
+    for pattern, kind in ((_BOOLEAN, bool), (_WHOLE, int), (_DECIMAL, float)):
+        if pattern.fullmatch(text):
+            return kind
+    return str
+
+
+_OF_ROS: Final = re.compile(r"use_sim_time|start_type_description_service")
+_QOS: Final = "qos_overrides"
+_POLICIES: Final = ("history", "depth", "reliability")
+"""What ROS lets parameters override of a subscription, unless a node asks for more."""
+_LIKELY: Final = 0.7
+"""Similarity from which on a name counts as a misspelled one, by `difflib`. One letter in four makes 0.75."""
+_MEANT: Final = {"radius": "sphere", "size": "box", "com": "center_of_mass", "mu": "friction"}
+"""Names that others have for a parameter, with ours."""
+_LISTED_BY: Final = {"body": "bodies", "surface": "surfaces"}
+
+
+def is_of_ros(name: str) -> bool:
+    """Tell whether a parameter is one that ROS gives every node."""
+    return _OF_ROS.fullmatch(name) is not None or name.startswith(f"{_QOS}.")
+
+
+def qos_overrides_of(topics: Iterable[str]) -> set[str]:
+    """Return the parameters that override the quality of service of subscriptions to topics."""
+    return {f"{_QOS}.{topic}.subscription.{policy}" for topic in topics for policy in _POLICIES}
+
+
+def refuse_unknown(
+    given: Iterable[str],
+    known: Collection[str],
+    listed: Callable[[str], Iterable[str]],
+    early: Collection[str] | None = None,
+) -> None:
+    """Refuse names of parameters that are not known.
+
+    Args:
+        given: the names.
+        known: those that somebody reads, with `qos_overrides_of` the topics.
+        listed: returns what the parameter of a name lists, `bodies` or `surfaces`.
+        early: the names of all parameters, where an error has left some unread. Topics are not known then,
+            and overrides of their quality of service are not refused.
+
+    Raises:
+        ConfigurationError: some are unknown. The message names each, with the most similar known one.
+    """
+    is_allowed = _OF_ROS.fullmatch if early is None else is_of_ros
+    known = {*known, *(early or ())}
+    unknown = sorted(name for name in given if name not in known and not is_allowed(name))
+    if unknown:
+        raise ConfigurationError("\n".join(_unknown(name, known, listed) for name in unknown))
+
+
+def likely_misspelling(missing: str, given: Iterable[str]) -> str:
+    """Return words about a given name that is probably meant by the missing one, or nothing."""
+    group, _, last = missing.rpartition(".")
+    beside = [name.rpartition(".")[2] for name in given if name.rpartition(".")[0] == group]
+    close = difflib.get_close_matches(last, beside, n=1, cutoff=_LIKELY)
+    return f" Given is {group}.{close[0]}, which may be misspelled." if close else ""
+
+
+def _unknown(name: str, known: Collection[str], listed: Callable[[str], Iterable[str]]) -> str:
+    kind, _, rest = name.partition(".")
+    listing = _LISTED_BY.get(kind)
+    if listing and rest:
+        own_name = rest.rpartition(".")[0] or rest
+        allowed = list(listed(listing))
+        if own_name not in allowed:
+            return f"{name} must be about one of the names in {listing} {allowed}, got {kind} {own_name!r}"
+    group, _, last = name.rpartition(".")
+    meant = f"{group}.{_MEANT.get(last, '')}"
+    nearest = meant if meant in known else difflib.get_close_matches(name, known, n=1, cutoff=0.0)[0]
+    return f"{name}: there is no such parameter; the nearest is {nearest}"

@@ -1,0 +1,229 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The plane of motion of a question: it is chosen, and modes in it become modes in world axes, and back.
+
+So planar and spatial answers have one form. Positions in the plane are relative to the centre of mass.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Protocol
+
+import numpy as np
+
+from contact_dynamics.contact_modes import SpatialMode, SpatialModeMargin, SpatialWrenchSet
+from contact_dynamics.contact_modes.letters import SLIDES_LEFT, SLIDES_RIGHT
+from contact_dynamics.contact_modes.planar.result import PlanarMode
+from contact_dynamics.contact_modes.planar.wrench_sets import PlanarWrenchSet, WrenchHalfSpace
+from contact_dynamics.plane.lifting import equal_shares
+from contact_dynamics.plane.plane_search import project_onto_best_plane
+from contact_dynamics.plane.projection import PlanarProblem, PlaneOfMotion, project_onto_plane
+from contact_dynamics.plane.types import PlanarContact, PlanarWrench
+from contact_dynamics.records import NamedInt
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from contact_dynamics.contact.contact import ContactSet
+    from contact_dynamics.contact_modes import PlanarModeMargin
+    from contact_dynamics.plane.types import Vector2
+    from contact_dynamics.rigid_body.body import BodyState, MassProperties
+    from contact_dynamics.validation import FloatArray
+
+    class _PlanarAnswer(Protocol):
+        """What is read of a `ContactModeAnswer`, which has a plane."""
+
+        @property
+        def state(self) -> BodyState: ...
+        @property
+        def contacts(self) -> ContactSet: ...
+        @property
+        def modes(self) -> tuple[SpatialMode, ...]: ...
+        @property
+        def plane(self) -> PlaneOfMotion | None: ...
+        @property
+        def acceleration_tolerance(self) -> float: ...
+
+
+class Problem(NamedInt):
+    """Whether a question about contacts is solved in a plane or in space. Messages have the same numbers."""
+
+    AUTOMATIC = 0
+    """The question is solved in whichever suits, and the answer says in which. An impact is solved in space,
+    which contains the plane."""
+    PLANAR = 1
+    """The question is solved in a plane of motion through the centre of mass. What leaves the plane is
+    refused."""
+    SPATIAL = 2
+
+
+def planar_problem_of(
+    body: MassProperties,
+    state: BodyState,
+    contacts: ContactSet,
+    *,
+    plane: PlaneOfMotion | None,
+    force_W: FloatArray,
+    torque_W: FloatArray,
+    speed_tolerance: float,
+) -> PlanarProblem:
+    """Return a problem in a plane of motion. If ``plane`` is None, the best fitting plane is found.
+
+    Raises:
+        OutOfPlaneError: something leaves the plane by too much, as in `project_onto_plane` and
+            `best_plane`.
+    """
+    if plane is None:
+        return project_onto_best_plane(
+            body, state, contacts, force_W=force_W, torque_W=torque_W, speed_tolerance=speed_tolerance
+        )
+    return project_onto_plane(
+        body,
+        state,
+        contacts,
+        plane=plane,
+        force_W=force_W,
+        torque_W=torque_W,
+        speed_tolerance=speed_tolerance,
+    )
+
+
+def lifted_mode(mode: PlanarMode, problem: PlanarProblem, partners: tuple[int, ...]) -> SpatialMode:
+    """Return a mode in world axes. Contacts share their forces with ``partners``, their mirror images."""
+    plane = problem.plane
+    return SpatialMode(
+        mode=mode.mode,
+        acceleration_W=plane.lift(mode.acceleration),
+        angular_acceleration_W=mode.angular_acceleration * plane.normal_W,
+        contact_forces_W=equal_shares(lifted_vectors(mode.contact_forces, problem), partners),
+        contact_accelerations_W=lifted_vectors(mode.contact_accelerations, problem),
+        tangential_directions_W=np.zeros((0, 3)),  # the letters say it
+        misdirection=0.0,
+        forces_unique=mode.forces_unique,
+        motion_unique=mode.motion_unique,
+    )
+
+
+def lifted_margin(margin: PlanarModeMargin, plane: PlaneOfMotion) -> SpatialModeMargin:
+    """Return the margin of a mode in world axes."""
+    return SpatialModeMargin(
+        mode=margin.mode,
+        margin=margin.margin,
+        length=margin.length,
+        change_W=_wrench_row(margin.change, plane),
+        verdict_beyond=margin.verdict_beyond,
+        modes_beyond=margin.modes_beyond,
+    )
+
+
+def lifted_wrench_set(wrenches: PlanarWrenchSet, plane: PlaneOfMotion) -> SpatialWrenchSet:
+    """Return the applied wrenches of a mode in world axes. Wrenches out of the plane have no bounds."""
+    return SpatialWrenchSet(
+        mode=wrenches.mode,
+        sliding_from_W=np.zeros((0, 3)),  # the letters say it
+        sliding_to_W=np.zeros((0, 3)),
+        vertices=_wrench_rows(wrenches.vertices, plane),
+        generators=_wrench_rows(wrenches.generators, plane),
+        half_spaces=np.array(
+            [
+                [*plane.lift((side.a[0], side.a[1])), *(side.a[2] * plane.normal_W), side.b]
+                for side in wrenches.half_spaces
+            ]
+        ).reshape(-1, 7),
+    )
+
+
+def lifted_vectors(vectors_C: Sequence[Vector2], problem: PlanarProblem) -> FloatArray:
+    """Return vectors in contact axes (t, n), one for each contact, in world axes, (n, 3)."""
+    axes_W = problem.plane.axes_W
+    if not vectors_C:
+        return np.zeros((0, 3))
+    bases = np.array([(contact.tangent, contact.normal) for contact in problem.contacts])
+    lifted: FloatArray = np.einsum("ni,nij->nj", np.array(vectors_C), bases) @ axes_W
+    return lifted
+
+
+def _wrench_rows(wrenches: Sequence[PlanarWrench], plane: PlaneOfMotion) -> FloatArray:
+    return np.array([_wrench_row(wrench, plane) for wrench in wrenches]).reshape(-1, 6)
+
+
+def _wrench_row(wrench: PlanarWrench, plane: PlaneOfMotion) -> FloatArray:
+    return np.concatenate([plane.lift(wrench.f), wrench.moment * plane.normal_W])
+
+
+def seen_contacts(answer: _PlanarAnswer, plane: PlaneOfMotion) -> tuple[PlanarContact, ...]:
+    """Return the contacts in the plane, all as points on flats."""
+    contacts = answer.contacts
+    arms = (contacts.p_WC_W - answer.state.p_WB_W) @ plane.axes_W.T
+    normals = contacts.normals_W @ plane.axes_W.T
+    return tuple(
+        PlanarContact(r=_pair(arm), normal=_pair(normal / np.linalg.norm(normal)), friction=friction)
+        for arm, normal, friction in zip(arms, normals, contacts.frictions.tolist(), strict=True)
+    )
+
+
+def seen_modes(answer: _PlanarAnswer, plane: PlaneOfMotion) -> tuple[PlanarMode, ...]:
+    """Return the consistent modes in the plane. Accelerations within the answer's tolerance are zero."""
+    bases = np.array([(contact.tangent, contact.normal) for contact in seen_contacts(answer, plane)])
+    bases_W = bases.reshape(-1, 2, 2) @ plane.axes_W
+    return tuple(_seen_mode(mode, plane, bases_W, answer.acceleration_tolerance) for mode in answer.modes)
+
+
+def seen_wrench_set(wrenches: SpatialWrenchSet, plane: PlaneOfMotion) -> PlanarWrenchSet:
+    """Return the applied wrenches of a mode within the plane."""
+    return PlanarWrenchSet(
+        mode=wrenches.mode,
+        vertices=tuple(seen_wrench(row, plane) for row in wrenches.vertices),
+        generators=tuple(seen_wrench(row, plane) for row in wrenches.generators),
+        half_spaces=tuple(
+            WrenchHalfSpace(
+                a=(*_pair(plane.axes_W @ row[:3]), float(plane.normal_W @ row[3:6])), b=float(row[6])
+            )
+            for row in wrenches.half_spaces
+        ),
+    )
+
+
+def seen_wrench(wrench_W: FloatArray, plane: PlaneOfMotion) -> PlanarWrench:
+    """Return a wrench in the plane from force and torque, (6,), N and N m, world axes."""
+    return PlanarWrench(f=_pair(plane.axes_W @ wrench_W[:3]), moment=float(plane.normal_W @ wrench_W[3:]))
+
+
+def sliding_directions(answer: _PlanarAnswer, mode: SpatialMode) -> FloatArray:
+    """Return the unit direction in which each contact slides in a mode, (n, 3), world axes, or zero.
+
+    In space the mode has the directions. In a plane its letters give them: l is against the tangent, r along
+    it.
+    """
+    if answer.plane is None:
+        return mode.tangential_directions_W
+    ways = np.array([{SLIDES_LEFT: -1.0, SLIDES_RIGHT: 1.0}.get(letter, 0.0) for letter in mode.mode])
+    tangents = np.array([contact.tangent for contact in seen_contacts(answer, answer.plane)]).reshape(-1, 2)
+    directions: FloatArray = ways[:, None] * tangents @ answer.plane.axes_W
+    return directions
+
+
+def beyond(vectors: FloatArray, tolerance: float) -> FloatArray:
+    """Return vectors, (n, k), in which those no longer than a tolerance are set to zero."""
+    return np.where(np.linalg.norm(vectors, axis=1, keepdims=True) > tolerance, vectors, 0.0)
+
+
+def _seen_mode(mode: SpatialMode, plane: PlaneOfMotion, bases_W: FloatArray, tolerance: float) -> PlanarMode:
+    """Return a mode in the plane. ``bases_W``, (n, 2, 3), has the tangent and the normal of each contact."""
+    forces, accelerations = (
+        tuple(_pair(pair) for pair in np.einsum("nij,nj->ni", bases_W, vectors_W))
+        for vectors_W in (mode.contact_forces_W, beyond(mode.contact_accelerations_W, tolerance))
+    )
+    return PlanarMode(
+        mode=mode.mode,
+        acceleration=_pair(plane.axes_W @ mode.acceleration_W),
+        angular_acceleration=float(plane.normal_W @ mode.angular_acceleration_W),
+        contact_forces=forces,
+        contact_accelerations=accelerations,
+        forces_unique=mode.forces_unique,
+        motion_unique=mode.motion_unique,
+    )
+
+
+def _pair(vector: FloatArray) -> Vector2:
+    x, y = vector.tolist()
+    return (x, y)
