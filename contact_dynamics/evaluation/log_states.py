@@ -22,7 +22,7 @@ from contact_dynamics.nodes.run_record import PARAMETERS, LoggedParameters
 from contact_dynamics.recording.bag_reader import BagReader
 from contact_dynamics.recording.cdr import decode_columns, decode_without_ros
 from contact_dynamics.recording.errors import DamagedLogWarning, NotALogError
-from contact_dynamics.replay.stand_ins import stand_in
+from contact_dynamics.replay.of_log import stand_in
 
 if TYPE_CHECKING:
     from collections.abc import Collection

@@ -298,9 +298,6 @@ _FIXED: Final = {
 }
 """The fields of the configuration that stay, with the parameters that they come from."""
 
-CONFIGURED_ANEW: Final = "the body was configured anew"
-"""Why the states of a body are forgotten, live and where a log is replayed."""
-
 
 def check_change(before: ServerParameters, after: ServerParameters) -> None:
     """Refuse a change of what stays as long as the server is configured.

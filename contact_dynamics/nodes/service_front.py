@@ -15,11 +15,12 @@ from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
 from rclpy.exceptions import InvalidHandle
+from rclpy.qos import QoSProfile
 from rclpy.serialization import serialize_message
 from rclpy.service_introspection import ServiceIntrospectionState
 
 from contact_dynamics.errors import BusyError, ContactDynamicsError
-from contact_dynamics.nodes.calls import CallTimes
+from contact_dynamics.nodes.calls import CallTimes, GoneClients
 from contact_dynamics.questions.effort import excerpt
 from contact_dynamics.recording.cdr import cut_to_its_end
 from contact_dynamics.recording.cdr_stamp import EventType
@@ -31,14 +32,20 @@ from msg_adapters.status import report_error
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from rclpy.qos import QoSProfile
-
-    from contact_dynamics.nodes.calls import Call, GoneClients
+    from contact_dynamics.nodes.calls import Call
     from contact_dynamics.nodes.inbox import InboxNode, Taken
-    from contact_dynamics.questions.context import Context
+    from contact_dynamics.nodes.log import Log
+    from contact_dynamics.nodes.server_core import ServerCore
     from contact_dynamics.questions.services import Answer, Service
     from contact_dynamics.questions.workers import Workers
     from msg_adapters.status import Response
+
+SERVICE_QOS = QoSProfile(depth=1000)
+"""Queue depth of the services. With the usual 10, replies get lost when several clients ask at once."""
+
+EVENT_QOS = QoSProfile(depth=10 * SERVICE_QOS.depth)
+"""The queue of the service events is this deep. The log must lose none of them, and all requests that wait
+are answered, each with two events, before the first of these events is taken."""
 
 _EVENT_PATIENCE_S: Final = 0.1
 """s for which the event of a request is waited for, where the answer is logged before it leaves. DDS hands it
@@ -74,7 +81,6 @@ class ServiceFront:
     Attributes:
         is_active: Whether questions are answered. Otherwise they are refused.
         gone: The clients that seemed gone. One that is only found late is answered what it asks from then on.
-        context: What is known. It may be replaced, and counts for the questions that come later.
     """
 
     def __init__(
@@ -82,59 +88,43 @@ class ServiceFront:
         node: InboxNode,
         served: Service,
         *,
-        context: Context,
-        world_frame: str,
+        core: ServerCore,
         workers: Workers | None,
-        gone: GoneClients,
-        begin: Callable[[int], object],
+        log: Log,
         answered: Callable[[Response], object],
-        qos: QoSProfile,
-        event_qos: QoSProfile,
-        record: Callable[[str, bytes, int, int | None], object],
-        settle: Callable[[], object] | None,
     ) -> None:
         """Begin to serve.
 
         Args:
             node: the node.
             served: the service.
-            context: what is known.
-            world_frame: the frame of states and answers.
+            core: what is known and configured, and what is told when a question comes.
             workers: they answer what takes long. Without them, this process does.
-            gone: as the attribute.
-            begin: is told when a question came, ns by the node's clock, before it is answered.
+            log: takes the service events.
             answered: sees each response after it was sent, so that nobody waits for it.
-            qos: the queue of requests.
-            event_qos: the queue of the service events.
-            record: takes a service event as topic, bytes, time of the log, and time of the node's clock, if
-                that is another one than the event's.
-            settle: returns when the disk has what was recorded. If it is given, an answer leaves only then.
         """
         self._node = node
         self._served = served
-        self.context = context
-        self._world_frame = world_frame
+        self._core = core
         self._workers = workers
-        self._begin = begin
+        self._log = log
         self._answered = answered
-        self._record = record
-        self._settle = settle
         self._event_bytes = EventBytes(f"contact_dynamics_interfaces/srv/{served.type_name}_Event")
         self._under_way: set[_Answering] = set()  # that workers answer
         self._times = CallTimes(lambda: node.get_clock().now().nanoseconds)
         self.is_active = False
-        self.gone = gone
+        self.gone = GoneClients(core.parameters.client_gone_for)
         served.prepare()
         self._service = service = node.create_service(
-            served.service_type, f"~/{served.name}", self._take, qos_profile=qos
+            served.service_type, f"~/{served.name}", self._take, qos_profile=SERVICE_QOS
         )
-        service.configure_introspection(node.get_clock(), event_qos, ServiceIntrospectionState.CONTENTS)
+        service.configure_introspection(node.get_clock(), EVENT_QOS, ServiceIntrospectionState.CONTENTS)
         self._send_response = service.send_response
         # An executor of rclpy sends what the callback returns at once. This is its way to send.
         service.send_response = self._send_or_wait
         self.topic = f"{service.service_name}/_service_event"
         self._events = node.subscribe(
-            served.service_type.Event, self.topic, self._record_event, event_qos, in_rounds=False
+            served.service_type.Event, self.topic, self._record_event, EVENT_QOS, in_rounds=False
         )
 
     def remove(self) -> None:
@@ -160,7 +150,7 @@ class ServiceFront:
     def _take(self, request: object, response: Response) -> _Answering:
         self._node.take_messages()  # the question sees all states that came before it
         call = self._times.begin()
-        self._begin(call.node_clock_ns)
+        self._core.asked_ns = call.node_clock_ns
         self._node.note_question(call.received_ns)
         answering = _Answering(call=call, response=response, begun=time.perf_counter())
         if self._is_open():
@@ -168,12 +158,12 @@ class ServiceFront:
         return answering
 
     def _serve(self, request: object, answering: _Answering) -> None:
-        served, context, world_frame = self._served, self.context, self._world_frame
+        served, core = self._served, self._core
 
         def fill(outcome: Answer | Exception) -> None:
             if isinstance(outcome, Exception):
                 raise outcome
-            served.answer_to_msg(outcome, world_frame=world_frame, into=answering.response)
+            core.fill(served, outcome, answering.response)
 
         def done(outcome: Answer | Exception) -> None:
             executor = self._node.executor
@@ -191,7 +181,7 @@ class ServiceFront:
             if not self.is_active:
                 message = "the server is not active, which its lifecycle manager decides"
                 raise BusyError(message)
-            question = served.question_of(request, world=context.world, world_frame=world_frame)
+            question, context = core.question_of(served, request), core.context
             if self._workers is None or served.is_answered_at_once(question, context):
                 fill(served.answer(question, context))
                 return
@@ -241,9 +231,9 @@ class ServiceFront:
     def _deliver(self, answering: _Answering) -> None:
         call = answering.call
         self._times.end(call)
-        if self._settle is not None:
+        if self._core.parameters.log_before_answer:
             self._log_answer(answering)
-            self._settle()
+            self._log.settle()
         # rclpy warns if DDS waited in vain for the client. How long it took tells nothing on a busy machine.
         with warnings.catch_warnings(record=True) as warned:
             warnings.simplefilter("always")
@@ -275,7 +265,7 @@ class ServiceFront:
             sequence_number=call.sequence_number,
             stamp_ns=stamp_ns,
         )
-        self._record(self.topic, data, call.sent_ns, None)
+        self._log.record(self.topic, data, log_time_ns=call.sent_ns)
         call.is_logged = True
 
     def _is_open(self) -> bool:
@@ -288,9 +278,9 @@ class ServiceFront:
 
     def _record_event(self, event: Taken) -> None:
         happened = self._times.of_event(event.data, received_ns=event.received_ns)
-        if happened.is_logged:
-            return
-        self._record(self.topic, event.data, happened.log_time_ns, happened.publish_time_ns)
+        if not happened.is_logged:
+            at_ns, node_clock_ns = happened.log_time_ns, happened.publish_time_ns
+            self._log.record(self.topic, event.data, log_time_ns=at_ns, publish_time_ns=node_clock_ns)
 
 
 class EventBytes:

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import time
-from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
 from nav_msgs.msg import Path
@@ -12,7 +11,6 @@ from rclpy.clock import JumpThreshold
 from rclpy.duration import Duration
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 
-from contact_dynamics.nodes.calls import GoneClients
 from contact_dynamics.nodes.diagnostics import (
     AnswerTimes,
     Diagnostics,
@@ -21,25 +19,21 @@ from contact_dynamics.nodes.diagnostics import (
     values_of_topics,
 )
 from contact_dynamics.nodes.log import Log
-from contact_dynamics.nodes.parameters import CONFIGURED_ANEW, bodies_read_otherwise
 from contact_dynamics.nodes.run_record import CHANGE_TYPE, CHANGES
 from contact_dynamics.nodes.self_check import SelfCheck
-from contact_dynamics.nodes.service_front import ServiceFront
+from contact_dynamics.nodes.server_core import ServerCore
+from contact_dynamics.nodes.service_front import EVENT_QOS, ServiceFront
 from contact_dynamics.nodes.situations import Part, Present, Situation
-from contact_dynamics.nodes.state_sources import expected, state_sources
 from contact_dynamics.nodes.state_subscriptions import (
     BodyWatch,
     OfferedQosWatch,
+    StateTopic,
     present_ns,
-    subscribe_to_states,
 )
 from contact_dynamics.nodes.topic_faults import TopicFaults
-from contact_dynamics.questions.context import Context
 from contact_dynamics.questions.services import SERVICES
-from contact_dynamics.questions.state_store import StateStore
 from contact_dynamics.questions.twist_axes import TwistAxes
 from contact_dynamics.questions.workers import Workers
-from msg_adapters.transforms import TransformTree
 from msg_adapters.tumbling import path_from_trajectory
 
 if TYPE_CHECKING:
@@ -49,13 +43,6 @@ if TYPE_CHECKING:
     from contact_dynamics.nodes.parameters import ServerParameters
     from contact_dynamics.questions.services import Service
     from msg_adapters.status import Response
-
-SERVICE_QOS = QoSProfile(depth=1000)
-"""Queue depth of the services. With the usual 10, replies get lost when several clients ask at once."""
-
-EVENT_QOS = QoSProfile(depth=10 * SERVICE_QOS.depth)
-"""The queue of the service events is this deep. The log must lose none of them, and all requests that wait
-are answered, each with two events, before the first of these events is taken."""
 
 CLOCK_QOS = QoSProfile(depth=1000, reliability=ReliabilityPolicy.BEST_EFFORT)
 """Queue of the simulated time. It matches every publisher, like the node's own subscription to the clock."""
@@ -98,33 +85,22 @@ class Serving:
             ConfigurationError: a source or the log's folder is not there.
         """
         self._node = node
-        self._parameters = parameters
-        self._static = TransformTree()
-        self._states = states = StateStore(
-            history=parameters.state_history,
-            timeout=parameters.state_timeout,
-            future_tolerance=parameters.future_tolerance,
-            max_states=parameters.max_states,
-        )
-        self._asked_ns = 0  # when the present question came, by the node's clock
-        self._context = Context(
-            world=parameters.world,
-            states=states,
-            defaults=parameters.defaults,
-            now_ns=lambda: self._asked_ns or None,  # zero before a simulation tells the time
-        )
+        self._core = core = ServerCore(parameters)
         # The log begins after this, so that a configuration with an unknown source leaves no log.
         self._faults = TopicFaults(
             node.get_logger().warning, inform=node.get_logger().info, limits=parameters.fault_limits
         )
-        self._topics = subscribe_to_states(
-            node,
-            state_sources(parameters, static=self._static),
-            states=states,
-            record=self._record,
-            offered=self._note_offers,
-            faults=self._faults,
-        )
+        self._topics = [
+            StateTopic(
+                node,
+                source,
+                states=core.states,
+                record=self._record,
+                offered=self._note_offers,
+                faults=self._faults,
+            )
+            for source in core.sources.values()
+        ]
         self._note_publishers()
         by_name = {topic.name: topic for topic in self._topics}
         self._bodies = {
@@ -144,7 +120,6 @@ class Serving:
         self._clock_publishers: OfferedQosWatch | None = None
         self._log_clock()
         self._log.add_topic(CHANGES, CHANGE_TYPE, EVENT_QOS)
-        self._logs_first = parameters.log_before_answer
         self._path = node.create_publisher(Path, "~/predicted_path", PATH_QOS)
         limits = parameters.worker_limits
         self._workers = Workers(limits) if limits.count > 0 else None
@@ -161,11 +136,13 @@ class Serving:
         # It comes last, since the clock goes on to call what is not unregistered, and ends the process if
         # that is not there any more.
         set_back = JumpThreshold(min_forward=None, min_backward=Duration(nanoseconds=-1))
-        self._jumps = node.get_clock().create_jump_callback(set_back, post_callback=lambda _: states.clear())
+        self._jumps = node.get_clock().create_jump_callback(
+            set_back, post_callback=lambda _: core.states.clear()
+        )
 
     def __str__(self) -> str:
         """Return in words what is served."""
-        bodies = ", ".join(body.name for body in self._parameters.world.bodies) or "none"
+        bodies = ", ".join(body.name for body in self._core.world.bodies) or "none"
         return f"bodies {bodies}; log {self._log.folder or 'off'}"
 
     @property
@@ -207,25 +184,14 @@ class Serving:
         self._node.note_question(now_ns)  # and what is taken from here on counts as later
         self._log.record(CHANGES, event, log_time_ns=now_ns)
         self._log.change_run(run)
-        self._states.change_limits(
-            history=parameters.state_history,
-            timeout=parameters.state_timeout,
-            future_tolerance=parameters.future_tolerance,
-            max_states=parameters.max_states,
-        )
-        changed = bodies_read_otherwise(self._parameters, parameters)
-        for name in changed:
-            self._states.forget(name, CONFIGURED_ANEW)
-        if changed:
-            sources = {each.full_name: each for each in state_sources(parameters, static=self._static)}
-            for topic in self._topics:
-                topic.source = sources[topic.name]
-        self._parameters = parameters
+        self._core.change(parameters)
+        for topic in self._topics:
+            topic.source = self._core.sources[topic.name]
+        self._note_publishers()
         self._twist_axes = _watch_twists(parameters)
         self._faults.limits = parameters.fault_limits
         for front in self._fronts:
             front.gone.gone_for = parameters.client_gone_for
-            front.context = replace(front.context, world=parameters.world, defaults=parameters.defaults)
         if self._workers is not None:
             self._workers.limits = parameters.worker_limits
 
@@ -305,10 +271,12 @@ class Serving:
         present = [found for topic in self._topics for found in topic.look(awake_for=awake_for)]
         self._note_publishers()
         for name, body in self._bodies.items():
-            silent_after = self._parameters.fault_limits.silent_after
-            present += body.look(self._states.arrivals(name), silent_after=silent_after, awake_for=awake_for)
+            silent_after = self._core.parameters.fault_limits.silent_after
+            present += body.look(
+                self._core.states.arrivals(name), silent_after=silent_after, awake_for=awake_for
+            )
         for topic, axes in self._twist_axes:
-            speed = axes.look(self._states)
+            speed = axes.look(self._core.states)
             if speed is not None:
                 found = Situation.TWIST_AXES.present(topic=topic, speed=speed)
                 self._faults.add(topic, "twist in other axes", 1, found.text.removeprefix(f"{topic}: "))
@@ -321,10 +289,7 @@ class Serving:
 
     def _note_publishers(self) -> None:
         """Note, for whoever asks before the first state, on which topics how many publish."""
-        publishers = {topic.name: topic.publishers for topic in self._topics}
-        for body in self._parameters.sources:
-            names = {topic.full_name for source in body.sources for topic in source.topics}
-            self._states.expect(body.body_name, expected(body, sum(publishers[name] for name in names)))
+        self._core.expect({topic.name: topic.publishers for topic in self._topics})
 
     def _look_at_workers(self) -> list[Present]:
         if self.is_ready or self._workers is None:
@@ -343,27 +308,15 @@ class Serving:
         front = ServiceFront(
             self._node,
             served,
-            context=self._context,
-            world_frame=self._parameters.world_frame,
+            core=self._core,
             workers=self._workers,
-            gone=GoneClients(self._parameters.client_gone_for),
-            begin=self._begin,
+            log=self._log,
             answered=self._note_answer,
-            qos=SERVICE_QOS,
-            event_qos=EVENT_QOS,
-            record=self._record_event,
-            settle=self._log.settle if self._logs_first else None,
         )
         self._log.add_topic(
             front.topic, f"contact_dynamics_interfaces/srv/{served.type_name}_Event", EVENT_QOS
         )
         return front
-
-    def _begin(self, asked_ns: int) -> None:
-        self._asked_ns = asked_ns
-
-    def _record_event(self, topic: str, data: bytes, log_time_ns: int, publish_time_ns: int | None) -> None:
-        self._log.record(topic, data, log_time_ns=log_time_ns, publish_time_ns=publish_time_ns)
 
     def _log_clock(self) -> None:
         """Log the simulated time, which the stamps of states and events are of, where there is one."""

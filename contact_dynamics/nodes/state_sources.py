@@ -14,7 +14,8 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.nodes.parameter_reader import ConfigurationError
-from contact_dynamics.questions.uncertain_state import with_deviations
+from contact_dynamics.questions.extent import check_believable
+from contact_dynamics.questions.uncertain_state import state_of, with_deviations
 from msg_adapters.odometry import ODOMETRY
 from msg_adapters.pose import POSE, POSE_WITH_COVARIANCE, RIGID_BODIES, TF
 from msg_adapters.pose_twist import POSE_TWIST, POSE_TWIST_WITH_COVARIANCE
@@ -59,6 +60,17 @@ class BodyReader(NamedTuple):
 
     body_name: str
     state_from: Reader
+
+    def believable(self, msg: object) -> KnownState | None:
+        """Return what `state_from` does.
+
+        Raises:
+            ContactDynamicsError: the message is refused, or so is its state (`check_believable`).
+        """
+        state = self.state_from(msg)
+        if state is not None:
+            check_believable(state_of(state))
+        return state
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -21,14 +21,12 @@ from contact_dynamics.errors import ContactDynamicsError
 from contact_dynamics.nodes.situations import RECENT_S, Present, Situation
 from contact_dynamics.nodes.state_sources import no_message
 from contact_dynamics.nodes.topic_faults import TopicFaults, TopicTraffic
-from contact_dynamics.questions.extent import check_believable
-from contact_dynamics.questions.uncertain_state import state_of
 from contact_dynamics.recording.cdr_stamp import leading_stamp_ns
 from contact_dynamics.recording.decoding import message_class
 from msg_adapters.rejected_fields import check_numbers, in_fields
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping
+    from collections.abc import Callable, Mapping
 
     from rclpy.node import Node
     from rclpy.topic_endpoint_info import TopicEndpointInfo
@@ -50,29 +48,6 @@ _EXAMINE_EVERY_NS: Final = NS_PER_S // 2
 _ANEW_AFTER_S: Final = 5.0  # that a topic is silent although somebody publishes
 _ANEW_AT_LEAST_EVERY_S: Final = 600.0
 _FRAME_AT: Final = 12  # bytes before a header's frame: encapsulation and stamp
-
-
-def subscribe_to_states(
-    node: InboxNode,
-    sources: Iterable[StateSource],
-    *,
-    states: StateStore,
-    record: Callable[[str, Taken], object],
-    offered: Callable[[str, list[Any]], object],
-    faults: TopicFaults,
-) -> list[StateTopic]:
-    """Subscribe to all sources of states, record every message, keep every state.
-
-    A message that is no state or no believable one, or whose stamp is in the future, is recorded, and counted
-    in a warning, and not kept. ``offered`` is told what the publishers of a topic offer.
-
-    Raises:
-        InvalidFieldError: the package of a source's messages is not installed.
-    """
-    return [
-        StateTopic(node, source, states=states, record=record, offered=offered, faults=faults)
-        for source in sources
-    ]
 
 
 def present_ns(node: Node) -> int | None:
@@ -103,7 +78,22 @@ class StateTopic:
         offered: Callable[[str, list[Any]], object],
         faults: TopicFaults,
     ) -> None:
-        """Subscribe; see `subscribe_to_states`."""
+        """Subscribe, record every message, and keep every state.
+
+        A message that is no state or no believable one, or whose stamp is in the future, is recorded, and
+        counted in a warning, and not kept.
+
+        Args:
+            node: the node.
+            source: what makes states of the messages.
+            states: keeps the states.
+            record: takes the topic and each message.
+            offered: is told the topic, and what its publishers offer.
+            faults: counts what is wrong.
+
+        Raises:
+            InvalidFieldError: the package of the source's messages is not installed.
+        """
         self._node = node
         self.source = source
         self._states = states
@@ -190,9 +180,8 @@ class StateTopic:
     def _keep(self, reader: BodyReader, msg: object, *, now_ns: int | None, taken: Taken) -> None:
         """Keep the state of one body, if a message has or completes one."""
         try:
-            state = reader.state_from(msg)
+            state = reader.believable(msg)
             if state is not None:
-                check_believable(state_of(state))
                 self._states.add(reader.body_name, state, now_ns=now_ns)
                 self._examined_ns, self._length = taken.received_ns, len(taken.data)
                 self._frame = _leading_frame(taken.data)
@@ -213,13 +202,10 @@ class StateTopic:
         try:
             msg = deserialize_message(data, self._msg_type)
             check_numbers(msg)
-            state = reader.state_from(msg)
-            if state is not None:
-                check_believable(state_of(state))
+            return reader.believable(msg)
         except (ContactDynamicsError, RuntimeError) as error:  # bytes that are no message raise the latter
             self._refuse(error, data, reader, now_ns=came_ns, was_kept=True)
             return None
-        return state
 
     def _refuse(
         self,

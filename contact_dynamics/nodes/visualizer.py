@@ -29,11 +29,11 @@ from contact_dynamics.nodes.given_parameters import GivenParameters
 from contact_dynamics.nodes.inbox import InboxNode
 from contact_dynamics.nodes.node_parameters import NodeParameters, refuse_lost_sections
 from contact_dynamics.nodes.parameter_reader import ConfigurationError
-from contact_dynamics.nodes.parameters import bodies_read_otherwise, check_change, read_server_parameters
+from contact_dynamics.nodes.parameters import check_change, read_server_parameters
 from contact_dynamics.nodes.run_record import CHANGES, changed_values, plain
 from contact_dynamics.nodes.running import run_node
-from contact_dynamics.nodes.state_sources import state_sources
-from contact_dynamics.nodes.state_subscriptions import subscribe_to_states
+from contact_dynamics.nodes.server_core import ServerCore
+from contact_dynamics.nodes.state_subscriptions import StateTopic
 from contact_dynamics.nodes.topic_faults import TopicFaults
 from contact_dynamics.nodes.visualizer_parameters import VISUALIZER_PARAMETERS, read_visualizer_parameters
 from contact_dynamics.questions.services import SERVICES
@@ -44,7 +44,6 @@ from contact_dynamics.viewing.picture import Picture
 from contact_dynamics.viewing.sinks import OpenRecording, ViewerMode, raise_errors
 from contact_dynamics.viewing.states_in_turn import SHORTEST_S, StatesInTurn
 from msg_adapters.stamps import stamp_ns_from_msg
-from msg_adapters.transforms import TransformTree
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -114,13 +113,13 @@ class Visualizer(InboxNode):
         self._source = NodeParameters(
             self, ros_arguments=ros_arguments, also_known=VISUALIZER_PARAMETERS, read_only=True
         )
-        self._configuration = parameters = read_server_parameters(self._source)
+        self._core = core = ServerCore(read_server_parameters(self._source))
         own = read_visualizer_parameters(self._source)
         server, self._sinks = own.server, own.sinks
         self._recording = OpenRecording(self._sinks, on_problem=self.get_logger().warning)
         self._picture = Picture(
             self._recording.stream,
-            parameters.world,
+            core.world,
             surface_side=own.surface_side,
             predictions=own.predictions,
         )
@@ -131,16 +130,18 @@ class Visualizer(InboxNode):
         self.create_subscription(ParameterEvent, CHANGES, self._follow, EVENT_QOS)
         self._events = [self._listen(shown, f"{server}/{shown.name}") for shown in SERVICES]
         self._wait_for_server(server, self._events, server_wait)
-        self._static = TransformTree()
-        handed_on = _HandedOn(self._states)
-        self._topics = subscribe_to_states(
-            self,
-            state_sources(parameters, static=self._static),
-            states=handed_on,
-            record=handed_on.note,
-            offered=lambda _topic, _offers: None,
-            faults=TopicFaults(self.get_logger().warning),
-        )
+        handed_on, faults = _HandedOn(self._states), TopicFaults(self.get_logger().warning)
+        self._topics = [
+            StateTopic(
+                self,
+                source,
+                states=handed_on,
+                record=handed_on.note,
+                offered=lambda _topic, _offers: None,
+                faults=faults,
+            )
+            for source in core.sources.values()
+        ]
         self.create_timer(SHORTEST_S, self._keep_pace, clock=Clock(clock_type=ClockType.STEADY_TIME))
         self.get_logger().info(f"ready: draws {server} to {self._recording.description}")
 
@@ -222,7 +223,7 @@ class Visualizer(InboxNode):
             refused = f"rejected ({response.status}): {response.message}"
             self._picture.tell(shown.kind, refused, stamp_ns=now_ns, is_error=True)
             return
-        answer = shown.answer_from_msg(response, world=self._configuration.world)
+        answer = shown.answer_from_msg(response, world=self._core.world)
         self._states.draw_before(answer, came_ns=waiting.came_ns)
         self._picture.show(
             answer, now_ns=now_ns, remark=response.message, computation_time=response.computation_time
@@ -235,16 +236,14 @@ class Visualizer(InboxNode):
         self._values.update(changed_values(event))
         given = GivenParameters(self._values, also_known=self._values, resolve=self._source.resolved_topic)
         try:
-            before, after = self._configuration, read_server_parameters(given)
+            before, after = self._core.parameters, read_server_parameters(given)
             check_change(before, after)
         except ConfigurationError:
             return  # parameters of a body come one by one, before that which lists it
         self.draw_all()
-        self._configuration = after
-        if bodies_read_otherwise(before, after):
-            sources = {each.full_name: each for each in state_sources(after, static=self._static)}
-            for topic in self._topics:
-                topic.source = sources[topic.name]
+        self._core.change(after)
+        for topic in self._topics:
+            topic.source = self._core.sources[topic.name]
         if after.world.to_dict() == before.world.to_dict():
             return  # each parameter of a change is told by an event, and many do not belong to the world
         change = partial(self._picture.change_world, after.world, stamp_ns=stamp_ns_from_msg(event.stamp))

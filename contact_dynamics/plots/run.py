@@ -13,8 +13,7 @@ from contact_dynamics.errors import ContactDynamicsError
 from contact_dynamics.plots.arguments import plot_parser
 from contact_dynamics.plots.drawing import save_figure
 from contact_dynamics.plots.figures import figures_of
-from contact_dynamics.replay.events import OK, UNREADABLE, StateCame, WorldChanged
-from contact_dynamics.replay.logged import LoggedEvents
+from contact_dynamics.replay.events import OK, UNREADABLE, LoggedEvents, StateCame, WorldChanged
 from contact_dynamics.shapes.convex import NO_SHAPE
 from contact_dynamics.world import Body
 

@@ -1,21 +1,46 @@
 # SPDX-License-Identifier: Apache-2.0
 """What happened, in the order in which it came: states of bodies, and answers to questions about them.
 
-`logged.LoggedEvents` reads them from a log of the server. `asking.AskedEvents` reads states from any
-recording and asks questions of them.
+`LoggedEvents` are read from a log of the server. `AskedEvents` are states of any recording, and answers to
+questions that are asked now: what would a server of ours have said? Their clock is that of the states'
+stamps. Each question is asked at a state, of what was published by then.
 """
 
 from __future__ import annotations
 
+import warnings
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, TypeAlias
+from functools import partial
+from typing import TYPE_CHECKING, Any, Final, TypeAlias
+
+import numpy as np
+
+from contact_dynamics.constants import ns_after
+from contact_dynamics.errors import ContactDynamicsError, InvalidFieldError
+from contact_dynamics.questions.contact_modes import ContactModeQuestion
+from contact_dynamics.questions.impact_question import ImpactQuestion
+from contact_dynamics.questions.sample_times import UntilContact
+from contact_dynamics.questions.services import ask, service_of, service_of_type
+from contact_dynamics.questions.subject import PublishedState
+from contact_dynamics.questions.tumbling import TumblingQuestion
+from contact_dynamics.recording.bag_reader import BagReader
+from contact_dynamics.recording.errors import DamagedLogWarning
+from contact_dynamics.recording.message_types import Message
+from contact_dynamics.recording.service_calls import ServiceCall
+from contact_dynamics.replay.of_log import server_of_log, stand_in
+from contact_dynamics.replay.timeline import CLOCK, EVERYTHING, in_order, part_of
+from contact_dynamics.replay.verify import differences
+from contact_dynamics.validation import check_not_negative
+from msg_adapters.status import code_name
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Callable, Iterator, Mapping
+    from pathlib import Path
 
+    from contact_dynamics.nodes.parameter_reader import ParameterSource
     from contact_dynamics.questions.services import Answer, Question, Service
-    from contact_dynamics.recording.bag_reader import BagReader
+    from contact_dynamics.recording.file_messages import Span
     from contact_dynamics.replay.again import Refused, ServerAgain
     from contact_dynamics.rigid_body.body import BodyState
     from contact_dynamics.world import World
@@ -119,3 +144,234 @@ class Events(ABC):
     def damage(self) -> str | None:
         """What of the recording could not be read, in words, or None if all was whole."""
         return self._reader.damage
+
+
+class LoggedEvents(Events):
+    """A log of the server as a source of events."""
+
+    def __init__(self, path: Path, *, span: Span = EVERYTHING, states: bool = True) -> None:
+        """Read how the run was configured.
+
+        Args:
+            path: the log: its folder, or one of its files.
+            span: which part of it is read.
+            states: whether states are read.
+
+        Raises:
+            NotALogError: it is no log, or none of the server.
+            ConfigurationError: its record of the run lacks a parameter, or has one that is not allowed.
+        """
+        _, server = server_of_log(path)
+        super().__init__(BagReader(path), server)
+        self._topics = self._server.topics if states else self._server.topics_of_changes
+        self._span = span
+        self._numbers: dict[str, int] = {}
+        self._path = path
+
+    @property
+    def why_empty(self) -> str:
+        """Why there is no question, in words, where there is none."""
+        return "the log contains no requests with a response; --ask makes predictions from its states"
+
+    def __iter__(self) -> Iterator[Event]:
+        """Read the log; each answer comes after the states that were known when its question came."""
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", DamagedLogWarning)  # told by `damage`
+            again = BagReader(self._path)
+            for each in in_order(self._reader, again, self._topics, span=self._span):
+                if isinstance(each, ServiceCall):
+                    answered = self._answered(each)
+                    if answered is not None:
+                        yield answered
+                    continue
+                before = self._server.world
+                for body_name, state in self._server.receive(each):
+                    yield StateCame(body_name=body_name, state=state)
+                if self._server.world is not before:
+                    yield WorldChanged(world=self._server.world, stamp_ns=each.publish_time_ns)
+
+    def _answered(self, call: ServiceCall) -> Answered | None:
+        if call.request_event is None or call.response_event is None:
+            return None
+        number = self._numbers[call.service] = self._numbers.get(call.service, 0) + 1
+        service = service_of_type(call.service_type)
+        question: dict[str, object] = {}
+        asked: Question[Answer] | None = None
+        answer: Answer | None = None
+        try:
+            request = part_of(call.request_event, "request")
+            response = part_of(call.response_event, "response")
+            question = not_default(request)
+            status, message = status_of(response), str(response.message)
+            seconds = float(response.computation_time)
+            if status == OK:
+                asked = self._server.question_of(service, request)
+                answer = service.answer_from_msg(response, world=self._server.world)
+        except (ContactDynamicsError, AttributeError) as error:  # the latter of a log with other fields
+            status, message, seconds = UNREADABLE, f"this version cannot read it: {error}", 0.0
+        return Answered(
+            service_name=call.service.rpartition("/")[2],
+            service=service,
+            number=number,
+            log_time_ns=call.request_event.log_time_ns,
+            asked_ns=call.request_event.publish_time_ns,
+            question=question,
+            asked=asked,
+            answer=answer,
+            status=status,
+            message=message,
+            computation_time=seconds,
+        )
+
+
+def not_default(message: Message) -> dict[str, object]:
+    """Return the fields of a message that differ from an empty one, as plain numbers, texts and lists."""
+    changed = {each.field.removeprefix("number of ") for each in differences(message, type(message)())}
+    names = {name.partition(".")[0].partition("[")[0] for name in changed}
+    return {
+        field.name: _plain(getattr(message, field.name)) for field in message.FIELDS if field.name in names
+    }
+
+
+def _plain(value: Any) -> object:
+    if isinstance(value, Message):
+        return {field.name: _plain(getattr(value, field.name)) for field in value.FIELDS}
+    if isinstance(value, (str, bool, int, float)):
+        return value
+    return [_plain(each) for each in (value.tolist() if isinstance(value, np.ndarray) else value)]
+
+
+def status_of(response: Any) -> str:
+    """Return the name of a response's status; its codes are above those of its other constants."""
+    if response.status == response.OK:
+        return OK
+    constants = vars(type(response)).items()
+    return next((name for name, value in constants if name.isupper() and value == response.status), "UNKNOWN")
+
+
+LANDING: Final = "landing"
+IMPACT: Final = "impact"
+MODES: Final = "modes"
+QUESTIONS: Final[Mapping[str, Callable[..., Question[Answer]]]] = {
+    LANDING: partial(TumblingQuestion, sampling=UntilContact()),
+    IMPACT: ImpactQuestion,
+    MODES: ContactModeQuestion,
+}
+"""What can be asked about a body and a state."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Asking:
+    """What is asked of a recording, and when.
+
+    Attributes:
+        names: Which questions, of `QUESTIONS`. Without any, the states alone are read.
+        bodies: The bodies that are asked about. Without any, all that are configured are.
+        every: s, by the stamps, from one question about a body to the next. With zero each state has one.
+        fit_window: s. The motion is fitted to the states of this last time, with zero to none but the newest.
+
+    Raises:
+        InvalidFieldError: a question is not known, or a time is negative or not finite.
+    """
+
+    names: tuple[str, ...] = ()
+    bodies: tuple[str, ...] = ()
+    every: float = 0.1
+    fit_window: float = 0.0
+
+    def __post_init__(self) -> None:
+        """Check all of it."""
+        for name in self.names:
+            if name not in QUESTIONS:
+                raise InvalidFieldError("ask", name, f"one of {', '.join(QUESTIONS)}")
+        check_not_negative("every", self.every)
+        check_not_negative("fit_window", self.fit_window)
+
+
+class AskedEvents(Events):
+    """A recording as a source of events: its states, and answers to questions that are asked now."""
+
+    def __init__(self, path: Path, source: ParameterSource, *, asking: Asking, span: Span) -> None:
+        """Configure what would have been a server.
+
+        Args:
+            path: the recording: its folder, or one of its files.
+            source: how the server would have been configured.
+            asking: what is asked.
+            span: which part of it is read.
+
+        Raises:
+            NotALogError: it is no recording.
+            ConfigurationError: a parameter is missing or not allowed.
+            InvalidFieldError: a body that is asked about is not configured.
+        """
+        reader = BagReader(path)
+        stand_in(())
+        from contact_dynamics.replay.again import ServerAgain  # here, for it imports what stands in for ROS
+
+        super().__init__(reader, ServerAgain(source))
+        self._asking = asking
+        self._span = span
+        known = [body.name for body in self.world.bodies]
+        for name in asking.bodies:
+            if name not in known:
+                raise InvalidFieldError("body", name, f"one of {known}")
+        self._numbers = dict.fromkeys(QUESTIONS, 0)
+        self._next_ns: dict[str, int] = {}
+
+    @property
+    def why_empty(self) -> str:
+        """Why there is no question, in words, where there is none."""
+        if not self._asking.names:
+            return f"no prediction was requested; --ask must be one of {', '.join(QUESTIONS)}"
+        bodies = ", ".join(self._asking.bodies or [body.name for body in self.world.bodies]) or "no body"
+        topics = ", ".join(sorted(self._server.topics - {CLOCK})) or "none"
+        return f"the configured topics ({topics}) contain no state of {bodies}; --topics selects others"
+
+    def __iter__(self) -> Iterator[Event]:
+        """Read the recording, and ask after each state that it is time for."""
+        topics = self._server.topics
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", DamagedLogWarning)  # told by `damage`
+            for message in self._reader.messages(
+                topics, start_ns=self._span.start_ns, end_ns=self._span.end_ns
+            ):
+                for body_name, state in self._server.receive(message, is_live=False):
+                    yield StateCame(body_name=body_name, state=state)
+                    if self._is_due(body_name, state.stamp_ns):
+                        for name in self._asking.names:
+                            yield self._asked(name, body_name, state.stamp_ns, message.log_time_ns)
+
+    def _is_due(self, body_name: str, stamp_ns: int) -> bool:
+        if self._asking.bodies and body_name not in self._asking.bodies:
+            return False
+        due_ns = self._next_ns.get(body_name)
+        if due_ns is not None and stamp_ns < due_ns:
+            return False
+        self._next_ns[body_name] = ns_after(stamp_ns, self._asking.every)
+        return True
+
+    def _asked(self, name: str, body_name: str, stamp_ns: int, log_time_ns: int) -> Answered:
+        self._numbers[name] += 1
+        answer, status, message = None, OK, ""
+        question = QUESTIONS[name](body=body_name, state=PublishedState(fit_window=self._asking.fit_window))
+        self._server.asked_ns = stamp_ns
+        try:
+            answer = ask(question, self._server.context)
+        except ContactDynamicsError as error:
+            status, message = code_name(error), str(error)
+        service = service_of(question)
+        window = {"fit_window": self._asking.fit_window} if self._asking.fit_window > 0.0 else {}
+        return Answered(
+            service_name=service.name,
+            service=service,
+            number=self._numbers[name],
+            log_time_ns=log_time_ns,
+            asked_ns=stamp_ns,
+            question={"body_name": body_name, "ask": name, **window},
+            asked=question,
+            answer=answer,
+            status=status,
+            message=message,
+            computation_time=0.0,
+        )

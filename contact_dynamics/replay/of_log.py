@@ -1,15 +1,23 @@
 # SPDX-License-Identifier: Apache-2.0
 """A log's own record configures the server that answers its questions again.
 
-Without ROS, the messages of a log are read by the definitions in the log. The adapters, however, are those of
-this version. If a field has another name or type, they cannot read the questions, or they compare answers
-that mean something else. Such a log is rejected.
+Without ROS, the messages of a log are read by the definitions in the log. `msg_adapters` imports the classes
+that ROS generates from interface files. If ``geometry_msgs.msg`` and the like are missing, modules of the
+same names are made here, with classes made from the definitions. If ROS is installed, its own classes are
+used.
+
+The adapters, however, are those of this version. If a field has another name or type, they cannot read the
+questions, or they compare answers that mean something else. Such a log is rejected.
 """
 
 from __future__ import annotations
 
 import hashlib
+import sys
 import warnings
+from importlib.machinery import ModuleSpec
+from importlib.util import find_spec
+from types import ModuleType
 from typing import TYPE_CHECKING, Any, Final
 
 from contact_dynamics.errors import NotSupportedError
@@ -18,12 +26,11 @@ from contact_dynamics.questions.services import SERVICES
 from contact_dynamics.recording.bag_reader import BagReader
 from contact_dynamics.recording.definitions import EVENT_SUFFIX
 from contact_dynamics.recording.errors import DamagedLogWarning, NotALogError
-from contact_dynamics.recording.message_types import message_types
-from contact_dynamics.replay.stand_ins import stand_in
+from contact_dynamics.recording.message_types import Message, message_types
 from contact_dynamics.replay.timeline import INTERFACES
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterable, Mapping
     from pathlib import Path
 
     from contact_dynamics.replay.again import ServerAgain
@@ -119,3 +126,85 @@ def check_definitions(path: Path, definitions: Mapping[str, str], version: str |
             f"log was written by another version of contact_dynamics ({version or 'not recorded'}); replay "
             "it with that one"
         )
+
+
+_PACKAGES: Final = (
+    "builtin_interfaces.msg",
+    "contact_dynamics_interfaces.msg",
+    "contact_dynamics_interfaces.srv",
+    "geometry_msgs.msg",
+    "nav_msgs.msg",
+)
+"""`msg_adapters` imports messages from these modules."""
+
+_PARTS: Final = ("_Request", "_Response", EVENT_SUFFIX)
+
+
+def stand_in(definitions: Iterable[tuple[str, str]]) -> None:
+    """Make the missing modules of messages importable, from pairs of a type's name and its text.
+
+    Raises:
+        NotSupportedError: a type of this name was made before, with other fields.
+    """
+    modules = {name: _module(name) for name in _PACKAGES if _is_missing(name)}
+    for type_name, text in definitions:
+        for full_name, message_type in message_types(type_name, text).items():
+            package, _, name = full_name.partition("/")
+            part = next((part for part in _PARTS if name.endswith(part)), "")
+            module = modules.get(f"{package}.{'srv' if part else 'msg'}")
+            if module is not None:
+                _put(module, name, part, message_type)
+
+
+def _put(module: ModuleType, name: str, part: str, message_type: type[Message]) -> None:
+    owner: Any = module
+    if part:
+        name = name.removesuffix(part)
+        owner = module.__dict__.setdefault(name, type(name, (), {}))
+        name = part[1:]
+    stands = vars(owner).get(name)
+    if stands is None:
+        setattr(owner, name, message_type)
+    elif stands.FIELDS != message_type.FIELDS:
+        raise NotSupportedError(
+            f"{message_type.__name__}: logs replayed together must have the same fields, got other fields "
+            "than in the log before; replay each log in a process of its own"
+        )
+
+
+class _StandIn(ModuleType):
+    """A module of messages. A type that no log has described can be imported, but not instantiated."""
+
+    def __getattr__(self, name: str) -> Any:
+        """Return a class that cannot be instantiated, for a type that no log has described."""
+        if name.startswith("__"):
+            raise AttributeError(name)
+
+        def refuse(_self: object, **_values: object) -> None:
+            raise NotSupportedError(f"{self.__name__}.{name}: the log does not describe this type")
+
+        return type(name, (), {"__init__": refuse})
+
+
+def _is_missing(name: str) -> bool:
+    """Return whether a module is not installed. A folder without code, as in the sources, does not count."""
+    if isinstance(sys.modules.get(name), _StandIn):
+        return True
+    try:
+        spec = find_spec(name)
+    except (ModuleNotFoundError, ValueError):
+        return True
+    return spec is None or spec.origin is None
+
+
+def _module(name: str) -> ModuleType:
+    found = sys.modules.get(name)
+    if found is not None:
+        return found
+    package = name.partition(".")[0]
+    parent = sys.modules.setdefault(package, ModuleType(package))
+    module = _StandIn(name)
+    module.__spec__ = ModuleSpec(name, None)  # it has no origin, so it does not count as installed
+    setattr(parent, name.rpartition(".")[2], module)
+    sys.modules[name] = module
+    return module

@@ -1,16 +1,22 @@
 # SPDX-License-Identifier: Apache-2.0
 """Publishes the states of a log over ROS as they came, and asks its questions again, each at its time.
 
-A server whose clock is the machine's would refuse the stamps of a log as old. So stamps are shifted to the
-present, unless the log's own time is published at `/clock` for those who run with ``use_sim_time``.
+The time of the log passes as it did: at a rate, with pauses. A server whose clock is the machine's would
+refuse the stamps of a log as old. So stamps are shifted to the present, unless the log's own time is
+published at `/clock` for those who run with ``use_sim_time``.
 """
 
 from __future__ import annotations
 
+import os
+import select
 import struct
 import sys
+import termios
 import time
+import tty
 import warnings
+from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
@@ -26,7 +32,6 @@ from rosgraph_msgs.msg import Clock
 from contact_dynamics.constants import NS_PER_S
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.nodes.own_process import ensure_ros_log_directory
-from contact_dynamics.nodes.run_record import versions_here
 from contact_dynamics.nodes.running import stop_signals
 from contact_dynamics.recording.bag_reader import BagReader
 from contact_dynamics.recording.cdr_stamp import leading_stamp_ns
@@ -37,18 +42,15 @@ from contact_dynamics.recording.message_types import Message
 from contact_dynamics.recording.qos import FOREVER_NS, OfferedQos, offered_qos
 from contact_dynamics.recording.service_calls import EVENT_TOPIC_SUFFIX, ServiceCall
 from contact_dynamics.replay.arguments import stamps_as_logged
-from contact_dynamics.replay.compare import differences
 from contact_dynamics.replay.of_log import server_of_log
-from contact_dynamics.replay.pacing import Pacing, single_keys
 from contact_dynamics.replay.progress import Progress
-from contact_dynamics.replay.report import report
 from contact_dynamics.replay.timeline import CLOCK, in_order, part_of
-from contact_dynamics.replay.verify import ServiceTally, Verification, note_difference
+from contact_dynamics.replay.verify import ServiceTally, differences, note_difference, nothing_yet, report
 from msg_adapters.stamps import stamp_ns_from_msg, stamp_to_msg
 
 if TYPE_CHECKING:
     import argparse
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
 
     from rclpy.client import Client
     from rclpy.publisher import Publisher
@@ -56,7 +58,97 @@ if TYPE_CHECKING:
 
     from contact_dynamics.recording.bag_reader import LoggedMessage
     from contact_dynamics.recording.file_messages import Span, Topic
-    from contact_dynamics.replay.compare import Difference
+    from contact_dynamics.replay.verify import Difference
+
+PAUSE: Final = " "
+STEP: Final = "."
+
+_STEP_NS: Final = NS_PER_S // 10
+_AT_ONCE_S: Final = 1.0 / 200.0  # how long the meanwhile may wait for something to do
+
+
+class Pacing:
+    """The time of a log, which runs beside the machine's own."""
+
+    def __init__(
+        self,
+        *,
+        rate: float,
+        is_paused: bool,
+        meanwhile: Callable[[int, float], object],
+        is_over: Callable[[], bool],
+    ) -> None:
+        """Set the time to nothing; `begin` starts it.
+
+        Args:
+            rate: how many times as fast as the machine's time it runs, > 0.
+            is_paused: whether it stands still until somebody presses the space bar.
+            meanwhile: a function that is called again and again with the time of the log, ns, and with how
+                long it may wait, s.
+            is_over: whether to stop.
+        """
+        self._rate = rate
+        self._is_paused = is_paused
+        self._meanwhile = meanwhile
+        self._is_over = is_over
+        self.begin(0)
+
+    @property
+    def now_ns(self) -> int:
+        """The time of the log now, ns."""
+        if self._is_paused:
+            return self._log_ns
+        return self._log_ns + round((time.monotonic() - self._since_s) * self._rate * NS_PER_S)
+
+    def begin(self, log_ns: int) -> None:
+        """Set the time of the log."""
+        self._log_ns, self._since_s, self._since_ns = log_ns, time.monotonic(), time.time_ns()
+
+    def present_of(self, log_ns: int) -> int:
+        """Return when a time of the log is now, ns since the epoch by the machine's clock.
+
+        What is at one time in the log stays at one time, such as a pose and its twist.
+        """
+        return self._since_ns + round((log_ns - self._log_ns) / self._rate)
+
+    def wait_until(self, log_ns: int) -> bool:
+        """Let time pass until it is that time of the log; return False where it was told to stop before."""
+        while not self._is_over():
+            self._read_keys()
+            now_ns = self.now_ns
+            left_s = (log_ns - now_ns) / (self._rate * NS_PER_S)
+            if left_s <= 0.0:
+                self._meanwhile(now_ns, 0.0)
+                return True
+            self._meanwhile(now_ns, min(_AT_ONCE_S, left_s))
+        return False
+
+    def _read_keys(self) -> None:
+        while sys.stdin.isatty() and select.select([sys.stdin], [], [], 0.0)[0]:
+            key = os.read(sys.stdin.fileno(), 1).decode(errors="replace")  # select sees what is left
+            now_ns = self.now_ns
+            if key == PAUSE:
+                self._is_paused = not self._is_paused
+                self.begin(now_ns)
+            elif key == STEP and self._is_paused:
+                self.begin(now_ns + _STEP_NS)
+            elif not key:
+                return
+
+
+@contextmanager
+def single_keys() -> Iterator[None]:
+    """Let each key come at once, without the return key, where a terminal is at the standard input."""
+    if not sys.stdin.isatty():
+        yield
+        return
+    before = termios.tcgetattr(sys.stdin)
+    tty.setcbreak(sys.stdin, termios.TCSADRAIN)  # keys that were pressed before count too
+    try:
+        yield
+    finally:
+        termios.tcsetattr(sys.stdin, termios.TCSADRAIN, before)
+
 
 NODE_NAME: Final = "contact_dynamics_replay"
 
@@ -117,7 +209,9 @@ class _LogPublisher:
         self._path = path
         self._span = span
         self._asks = given.requests
-        self.found = _nothing_yet(path, given.tolerance) if given.requests else None
+        self.found = (
+            nothing_yet(path, server_of_log(path)[0], tolerance=given.tolerance) if given.requests else None
+        )
         topics = _topics(path, given=given)
         self._topics = frozenset(topic.name for topic in topics)
         self._is_shifted = not stamps_as_logged(given)
@@ -316,14 +410,6 @@ def _stamped(data: bytes, stamp_ns: int) -> bytes:
     """Return a serialised message that begins with a stamp, with another one."""
     order = "<" if data[1] == _LITTLE_ENDIAN else ">"
     return data[:4] + struct.pack(f"{order}iI", *divmod(stamp_ns, NS_PER_S)) + data[12:]
-
-
-def _nothing_yet(path: Path, tolerance: float) -> Verification:
-    """Return how answers compare before there is any."""
-    run, _ = server_of_log(path)
-    here = versions_here()
-    versions = {name: run[name] for name in here if name in run}
-    return Verification(path=path, tolerance=tolerance, versions=versions, versions_now=here)
 
 
 def _used_other_states(logged: Any, response: Any, differing: list[Difference]) -> bool:

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, Final, TextIO, TypeAlias
 
 from contact_dynamics.errors import InvalidFieldError, NotSupportedError
 from contact_dynamics.recording.errors import DamagedLogWarning
-from contact_dynamics.replay.logged import LoggedEvents
+from contact_dynamics.replay.events import LoggedEvents
 from contact_dynamics.replay.rows import COLUMNS, Rows
 
 if TYPE_CHECKING:

@@ -1,27 +1,122 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Asks every logged question again, with the states that were logged, and compares the answers."""
+"""Asks every logged question again, with the logged states, compares the answers, and reports the result."""
 
 from __future__ import annotations
 
+import math
+import re
 import warnings
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+from dataclasses import field as attribute
+from datetime import datetime, timezone
 from typing import TYPE_CHECKING, Any, Final
 
+import numpy as np
+
+from contact_dynamics.constants import NS_PER_S
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.nodes.run_record import versions_here
 from contact_dynamics.recording.bag_reader import BagReader
 from contact_dynamics.recording.errors import DamagedLogWarning
+from contact_dynamics.recording.message_types import PRIMITIVES, PYTHON_TYPES, Field, Message
 from contact_dynamics.recording.service_calls import ServiceCall
-from contact_dynamics.replay.compare import Difference, differences
 from contact_dynamics.replay.of_log import server_of_log
 from contact_dynamics.replay.timeline import in_order, part_of
 from contact_dynamics.validation import check_not_negative
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping
+    from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
     from pathlib import Path
 
     from contact_dynamics.replay.again import ServerAgain
+
+_PUBLISHERS: Final = re.compile(r" \(\d+ publishers?\)")
+"""In a message: how many publishers there were, which no log has. It is not compared either."""
+
+MEASURED: Final = frozenset({"computation_time"})
+"""These fields of a response say how the answer was made, not what it is. They are not compared."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Difference:
+    """One field in which two responses differ.
+
+    Attributes:
+        field: Path of the field within the response, as in "modes[2].margin".
+        logged: Its value in the log.
+        recomputed: Its value when the question is asked again.
+        size: The difference relative to the larger of the two, or to 1 if both are smaller. It is infinite if
+            the values are not numbers, if one of them is not finite, or if arrays have unequal lengths.
+    """
+
+    field: str
+    logged: object
+    recomputed: object
+    size: float
+
+
+def differences(logged: Message, recomputed: object, *, path: str = "") -> Iterator[Difference]:
+    """Yield each field of a logged message whose value in another message is not the same to the last bit."""
+    for field in logged.FIELDS:
+        if not path and field.name in MEASURED:
+            continue
+        name = f"{path}.{field.name}" if path else field.name
+        ours = getattr(logged, field.name)
+        if not hasattr(recomputed, field.name):
+            yield Difference(field=name, logged=ours, recomputed="no such field", size=math.inf)
+            continue
+        theirs = getattr(recomputed, field.name)
+        if not field.is_array:
+            yield from _of_one(field, name, ours, theirs)
+        elif field.type_name in PRIMITIVES:
+            yield from _of_numbers(field, name, ours, theirs)
+        elif len(ours) != len(theirs):
+            yield _of_lengths(name, len(ours), len(theirs))
+        else:
+            for index, (one, other) in enumerate(zip(ours, theirs, strict=True)):
+                yield from _of_one(field, f"{name}[{index}]", one, other)
+
+
+def _of_one(field: Field, name: str, ours: Any, theirs: Any) -> Iterator[Difference]:
+    if field.type_name in PRIMITIVES:
+        yield from _of_numbers(field, name, [ours], [theirs], is_array=False)
+    elif field.type_name == "string":
+        if _PUBLISHERS.sub("", ours) != _PUBLISHERS.sub("", theirs):
+            yield Difference(field=name, logged=ours, recomputed=theirs, size=math.inf)
+    else:
+        yield from differences(ours, theirs, path=name)
+
+
+def _of_numbers(
+    field: Field, name: str, ours: Any, theirs: Any, *, is_array: bool = True
+) -> Iterator[Difference]:
+    if len(ours) != len(theirs):
+        yield _of_lengths(name, len(ours), len(theirs))
+        return
+    code = PRIMITIVES[field.type_name]
+    one, other = np.array(ours, dtype=code), np.array(theirs, dtype=code)
+    if one.tobytes() == other.tobytes():
+        return
+    to_python = PYTHON_TYPES[field.type_name]
+    for index in range(len(one)):
+        x, y = to_python(one[index]), to_python(other[index])
+        if one[index].tobytes() == other[index].tobytes() or (math.isnan(x) and math.isnan(y)):
+            continue
+        where = f"{name}[{index}]" if is_array else name
+        size = _size(x, y) if to_python is float else math.inf
+        yield Difference(field=where, logged=x, recomputed=y, size=size)
+
+
+def _of_lengths(name: str, ours: int, theirs: int) -> Difference:
+    return Difference(field=f"number of {name}", logged=ours, recomputed=theirs, size=math.inf)
+
+
+def _size(x: float, y: float) -> float:
+    """Return the distance of two numbers relative to the larger one, or to 1 if both are smaller."""
+    if not (math.isfinite(x) and math.isfinite(y)):
+        return math.inf
+    return abs(x - y) / max(1.0, abs(x), abs(y))
+
 
 MAX_TOLD: Final = 10
 """The differences of this many questions are kept, those of the largest ones."""
@@ -97,9 +192,9 @@ class Verification:
     tolerance: float
     versions: dict[str, str]
     versions_now: dict[str, str]
-    instead: dict[str, Any] = field(default_factory=dict)
-    services: dict[str, ServiceTally] = field(default_factory=dict)
-    others: list[OtherAnswer] = field(default_factory=list)
+    instead: dict[str, Any] = attribute(default_factory=dict)
+    services: dict[str, ServiceTally] = attribute(default_factory=dict)
+    others: list[OtherAnswer] = attribute(default_factory=list)
     unreadable: str | None = None
     damage: str | None = None
     lost_bytes: int = 0
@@ -108,6 +203,20 @@ class Verification:
     def agrees(self) -> bool:
         """Whether every question that could be read is answered as in the log, within the tolerance."""
         return not any(tally.different or tally.unreadable for tally in self.services.values())
+
+
+def nothing_yet(
+    path: Path, run: Mapping[str, str], *, tolerance: float, instead: Mapping[str, Any] | None = None
+) -> Verification:
+    """Return the result of a log's replay before there is an answer; ``run`` is the log's record."""
+    here = versions_here()
+    return Verification(
+        path=path,
+        tolerance=tolerance,
+        versions={name: run[name] for name in here if name in run},
+        versions_now=here,
+        instead=dict(instead or {}),
+    )
 
 
 def verify_log(
@@ -119,7 +228,7 @@ def verify_log(
 ) -> Verification:
     """Ask every question of a log again and compare the answers field by field.
 
-    Fields that tell how an answer was made (`compare.MEASURED`) are left out.
+    Fields that tell how an answer was made (`MEASURED`) are left out.
 
     Args:
         path: a log of the server, as its folder or as an ``.mcap`` file.
@@ -140,13 +249,7 @@ def verify_log(
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", DamagedLogWarning)  # the result says it
         run, server = server_of_log(path, instead=instead)
-        found = Verification(
-            path=path,
-            tolerance=tolerance,
-            versions={name: run[name] for name in versions_here() if name in run},
-            versions_now=versions_here(),
-            instead=dict(instead or {}),
-        )
+        found = nothing_yet(path, run, tolerance=tolerance, instead=instead)
         log, again = BagReader(path), BagReader(path)
         states = questions = 0
         for each in in_order(log, again, server.topics):
@@ -222,3 +325,97 @@ def _beyond(found: Iterable[Difference], tolerance: float) -> tuple[bool, list[D
 def _unreadable(found: Verification, tally: ServiceTally, reason: str) -> None:
     tally.unreadable += 1
     found.unreadable = found.unreadable or reason
+
+
+AS_LOGGED: Final = "as logged"
+"""What comes of a log whose answers are all the same today."""
+
+_LONGEST_VALUE: Final = 120  # characters, since a message that an answer carries can be pages long
+
+
+def report(found: Verification) -> str:
+    """Return the table of one log, the answers that differ most, and what could not be read."""
+    lines = [str(found.path)]
+    changed = [
+        f"{name} {text} (here {found.versions_now[name]})"
+        for name, text in found.versions.items()
+        if found.versions_now[name] != text
+    ]
+    if changed:
+        lines.append(f"  written with {', '.join(changed)}: the last bits may differ (see --tolerance)")
+    if found.instead:
+        values = ", ".join(f"{name} {value}" for name, value in found.instead.items())
+        lines.append(f"  with other parameters than logged: {values}")
+    lines += _table(found)
+    for other in found.others:
+        lines += _other(other)
+    untold = sum(tally.different for tally in found.services.values()) - len(found.others)
+    if untold > 0:
+        lines.append(f"  and {untold} more questions with smaller differences")
+    lines += _gaps(found)
+    return "\n".join(lines)
+
+
+def summary(results: Sequence[tuple[str, str]]) -> str:
+    """Return a table of several logs: the name of each, and what came of it."""
+    width = max(len(name) for name, _ in results)
+    good = sum(result == AS_LOGGED for _, result in results)
+    lines = [f"  {name:{width}}  {result}" for name, result in results]
+    return "\n".join([f"{good} of {len(results)} logs are answered as logged", *lines])
+
+
+def utc(stamp_ns: int) -> str:
+    """Return a time in ns since the epoch as date and time of day."""
+    when = datetime.fromtimestamp(stamp_ns // NS_PER_S, timezone.utc)
+    return f"{when:%Y-%m-%d %H:%M:%S}.{stamp_ns % NS_PER_S:09d} UTC"
+
+
+def _table(found: Verification) -> list[str]:
+    if not found.services:
+        return ["  no questions"]
+    within = f"within {found.tolerance:g}" if found.tolerance > 0.0 else ""
+    heads = ["questions", "identical", *([within] if within else []), "different"]
+    width = max(len(name) for name in found.services)
+    lines = [f"  {'service':{width}}  {'  '.join(heads)}"]
+    for name, tally in found.services.items():
+        counts = [tally.questions, tally.equal, *([tally.within] if within else []), tally.different]
+        cells = "  ".join(f"{count:>{len(head)}}" for count, head in zip(counts, heads, strict=True))
+        lines.append(f"  {name:{width}}  {cells}")
+    return lines
+
+
+def _other(other: OtherAnswer) -> list[str]:
+    fields = [
+        f"    {each.field}: logged {_short(each.logged)}, recomputed {_short(each.recomputed)}"
+        for each in other.differences
+    ]
+    asked = f"asked {utc(other.asked_ns)} (log_time {other.asked_ns})"
+    return [f"  {other.service}, question {other.number}, {asked}:", *fields]
+
+
+def _gaps(found: Verification) -> list[str]:
+    lines = []
+    other_state = sum(tally.other_state for tally in found.services.values())
+    if other_state:
+        lines.append(
+            f"  {other_state} answers used other states than the logged ones, or none, and are not compared: "
+            "DDS does not preserve the order of a state and a question"
+        )
+    unanswered = sum(tally.unanswered for tally in found.services.values())
+    unreadable = sum(tally.unreadable for tally in found.services.values())
+    if unanswered:
+        lines.append(f"  not repeated, because the log contains no answer, or BUSY or TIMEOUT: {unanswered}")
+    if unreadable:
+        lines.append(f"  {unreadable} calls could not be read; the first: {found.unreadable}")
+    if found.damage is not None:
+        lines.append(f"  {found.damage}")
+    if found.lost_bytes:
+        lines.append(
+            "  what was read is compared above; an answer can differ where a state that it used is lost"
+        )
+    return lines
+
+
+def _short(value: object) -> str:
+    text = repr(value)
+    return text if len(text) <= _LONGEST_VALUE else f"{text[:_LONGEST_VALUE]}..."

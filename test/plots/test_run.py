@@ -17,8 +17,7 @@ from contact_dynamics.diagrams.impulse_space import main_contact
 from contact_dynamics.impact.law import PathEvent
 from contact_dynamics.plots.run import NO_LOG, NOTHING_DRAWN, main
 from contact_dynamics.questions.impact_question import ImpactAnswer
-from contact_dynamics.replay.events import Answered
-from contact_dynamics.replay.logged import LoggedEvents
+from contact_dynamics.replay.events import Answered, LoggedEvents
 from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact, PredictTumbling
 from message_words import says
 from replay.asked_log import about_many

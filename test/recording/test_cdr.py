@@ -19,7 +19,7 @@ from contact_dynamics.recording import LoggedMessage, decode_without_ros
 from contact_dynamics.recording.cdr import decode_columns
 from contact_dynamics.recording.definitions import find_definition
 from contact_dynamics.recording.message_types import Message, message_types
-from contact_dynamics.replay.compare import differences
+from contact_dynamics.replay.verify import differences
 from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact, PredictTumbling
 from message_values.contact_modes import contact_mode_answers
 from message_values.impact import impact_answers

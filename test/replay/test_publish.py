@@ -17,8 +17,7 @@ from rclpy.qos import QoSProfile
 from rosbags.rosbag2 import StoragePlugin
 
 from contact_dynamics.recording import BagReader, ServiceCall, decode_without_ros, service_calls
-from contact_dynamics.replay.compare import differences
-from contact_dynamics.replay.verify import verify_log
+from contact_dynamics.replay.verify import differences, verify_log
 from message_words import says
 from replay.asked_log import Asked, configured
 from replay.flights import flight, write_flight
