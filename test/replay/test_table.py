@@ -266,6 +266,10 @@ def test_questions_come_as_often_as_they_are_asked_for(tmp_path: Path) -> None:
             ["--config", "server.yaml", "--topics", "ball"],
             "--topics must be BODY=ODOMETRY..., got 'ball'",
         ),
+        (
+            ["--config", "server.yaml", "--topics", "cat=/tracker/cat"],
+            "body.cat.odometry_topic must be about one of the names in bodies ['ball'], got body 'cat'",
+        ),
         (["--config", "server.yaml", "--body", "cat"], "body must be one of ['ball']..., got cat"),
         ([], "not a log of the server: no service of it in the log's types"),
     ],
