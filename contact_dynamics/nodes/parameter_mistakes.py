@@ -31,7 +31,7 @@ _MERGE: Final = "<<"  # a key of YAML itself
 _ALIKE: Final = 0.9  # the share of equal letters; a name of 16 letters with two that are swapped has 0.94
 _NUMBER: Final = re.compile(r"[_\d]+$")
 _FILE: Final = "--params-file"
-_FOR_A_NODE: Final = re.compile(r"([^:=]+):[^:=]+:=.*", re.DOTALL)
+_GIVEN: Final = re.compile(r"(?:([^:=]+):)?([^:=]+):=(.*)", re.DOTALL)
 
 
 class Section(NamedTuple):
@@ -115,9 +115,24 @@ def files_given(arguments: Sequence[str]) -> list[str]:
 
 def nodes_given(arguments: Sequence[str]) -> list[str]:
     """Return the names of nodes in ROS's arguments of the form `-p NODE:PARAMETER:=VALUE`."""
-    pairs = pairwise(arguments)
-    found = [_FOR_A_NODE.fullmatch(text) for flag, text in pairs if flag in {"-p", "--param"}]
-    return [absolute(match[1]) for match in found if match is not None]
+    return [absolute(match[1]) for match in _given(arguments) if match[1] is not None]
+
+
+def values_given(arguments: Sequence[str], full_name: str) -> dict[str, str]:
+    """Return the texts of the parameters that ROS's arguments give to a node of this full name."""
+    return {
+        match[2]: match[3].strip()
+        for match in _given(arguments)
+        if match[1] is None or Section(absolute(match[1]), {}).is_for(full_name)
+    }
+
+
+def _given(arguments: Sequence[str]) -> Iterator[re.Match[str]]:
+    """Yield the node, if any, the name and the value of each parameter in ROS's arguments."""
+    for flag, text in pairwise(arguments):
+        match = _GIVEN.fullmatch(text) if flag in {"-p", "--param"} else None
+        if match is not None:
+            yield match
 
 
 def _nearest(names: Sequence[str], full_name: str) -> str:
@@ -236,7 +251,6 @@ def _keys(node: Any, above: tuple[str, ...]) -> Iterator[tuple[tuple[str, ...], 
             yield from _keys(value, path)
 
 
-_GIVEN: Final = re.compile(r"(?:([^:=]+):)?([^:=]+):=(.*)", re.DOTALL)
 _BOOLEAN: Final = re.compile(
     r"[yYnN]|yes|Yes|YES|no|No|NO|true|True|TRUE|false|False|FALSE|on|On|ON|off|Off|OFF"
 )
@@ -252,16 +266,6 @@ IN_WORDS: Final = {
     list: "a list with an entry, such as [1.0]",
 }
 """The types of parameters, in the words of an error."""
-
-
-def values_given(arguments: Sequence[str], full_name: str) -> dict[str, str]:
-    """Return the texts of the parameters that ROS's arguments give to a node of this full name."""
-    found: dict[str, str] = {}
-    for flag, text in pairwise(arguments):
-        match = _GIVEN.fullmatch(text) if flag in {"-p", "--param"} else None
-        if match is not None and (match[1] is None or Section(absolute(match[1]), {}).is_for(full_name)):
-            found[match[2]] = match[3].strip()
-    return found
 
 
 def what_is_wrong(text: str, wanted: type[Any]) -> str:

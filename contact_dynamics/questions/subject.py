@@ -36,10 +36,6 @@ if TYPE_CHECKING:
     from contact_dynamics.rigid_body.body import MassProperties
 
     Fitting: TypeAlias = Callable[[MassProperties, Sequence[BodyState]], FitResult]
-    from collections.abc import Sequence
-
-    from contact_dynamics.rigid_body.body import BodyState, MassProperties
-    from contact_dynamics.validation import FloatArray
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
