@@ -36,6 +36,7 @@ import_core(
     "contact_dynamics.toss.impacts",
     "contact_dynamics.toss.strike",
     "contact_dynamics.toss.laid_flat",
+    "contact_dynamics.toss.law_spread",
     "contact_dynamics.toss.history",
     "contact_dynamics.toss.simulation",
 )

@@ -60,8 +60,8 @@ class ConeForces:
         self.equations = Equations(3 * most)
         # Each contact has ten numbers: its friction, the direction in which it slides already, by the two
         # tangents, whether it does, its motion without any push, and its push.
-        self.numbers = array("d", bytes(8 * _WIDTH * most))
-        self.motions = array("d", bytes(8 * 3 * most))
+        self.numbers = array("d", bytes(8 * (_WIDTH + 3) * most))
+        self.motions = self.numbers[_WIDTH * most :]
 
     def add(self, pose: Pose, arm: Vector3, flat: Flat, velocity: Vector3, rise: float) -> None:
         """Add a contact.

@@ -27,7 +27,7 @@ cdef class Equations:
     cdef (double, double, double) part(self, int k, int first) noexcept
     cdef void respond(self, double per_mass) noexcept
     @cython.locals(t=cython.double[::1], m=cython.double[::1])
-    cdef bint solve(self, double per_mass) except -1
+    cdef int solve(self, double per_mass) except -1
     cdef double size(self, int k) noexcept
     cdef (double, double, double) summed(self, (double, double, double) start, int first, double factor) noexcept
 
@@ -54,8 +54,13 @@ cdef class HeldContacts:
     cpdef double least_left(self) noexcept
     @cython.locals(one=Held, flat=Flat, numbers=cython.double[::1], begin=cython.int)
     cdef bint _slide_flush(self, double* y) noexcept
+    @cython.locals(
+        flat=Flat, k=cython.int, a=(double, double, double), b=(double, double, double),
+        c=(double, double, double), moved=(double, double, double),
+    )
+    cdef bint _tips(self) except -1
     @cython.locals(one=Held, other=Held)
-    cdef void _share_between_two(self) noexcept
+    cdef bint _share_between_two(self) noexcept
     @cython.locals(one=Held, other=Held, flat=Flat)
     cdef void _share_along_edge(self) noexcept
     @cython.locals(one=Held, other=Held, flat=Flat, flat_other=Flat)

@@ -27,6 +27,7 @@ from contact_dynamics.tolerances import (
     DISTANCE_TOLERANCE,
     FORCE_ROUNDING,
     HELD_DRIFT,
+    ROUND_CONE_HELD,
     SAME_FORCES,
     SLIDING_DIRECTION_SPEED,
     SLIDING_STOPPED,
@@ -59,8 +60,8 @@ class Equations:
 
     def __init__(self, most: int) -> None:
         self.count = 0
-        self.table = array("d", bytes(8 * _WIDTH * most))
-        self.matrix = array("d", bytes(8 * most * most))
+        self.table = array("d", bytes(8 * (_WIDTH + most) * most))
+        self.matrix = self.table[_WIDTH * most :]
 
     def add(self, pose: Pose, arm: Vector3, row: Vector3, force: Vector3, wanted: float) -> None:
         """Add a row and a force at an arm, m."""
@@ -88,17 +89,17 @@ class Equations:
                 pushed = per_mass * vec.dot(row, self.part(j, _FORCE))
                 self.matrix[i * n + j] = pushed + vec.dot(moment, self.part(j, _TURNING))
 
-    def solve(self, per_mass: float) -> bool:
-        """Find the sizes, the least ones if there are many, and return whether there are not."""
+    def solve(self, per_mass: float) -> int:
+        """Find the sizes, the least ones if there are many, and return in how many ways others differ."""
         self.respond(per_mass)
         t, m, n = self.table, self.matrix, self.count
         first, second, third = _SIZE, _WIDTH + _SIZE, 2 * _WIDTH + _SIZE
         if n == 0:
-            return True
+            return 0
         x = t[_WANTED]
         if n == 1:
             t[first] = x / m[0] if m[0] != 0.0 else _INFINITE
-            return True
+            return 0
         a, b = m[0], m[1]
         y = t[_WIDTH + _WANTED]
         if n == 2:
@@ -106,7 +107,7 @@ class Equations:
             det = a * d - b * c
             if abs(det) > SAME_FORCES * (abs(a) + abs(b)) * (abs(c) + abs(d)):
                 t[first], t[second] = (d * x - b * y) / det, (a * y - c * x) / det
-                return True
+                return 0
         if n == 3:
             c, d, e, f, g, h, i = m[2], m[3], m[4], m[5], m[6], m[7], m[8]
             z = t[2 * _WIDTH + _WANTED]
@@ -118,10 +119,10 @@ class Equations:
                 t[first] = (A * x + D * y + G * z) / det
                 t[second] = (B * x + E * y + H * z) / det
                 t[third] = (C * x + F * y + K * z) / det
-                return True
+                return 0
         return self._solve_many()
 
-    def _solve_many(self) -> bool:
+    def _solve_many(self) -> int:
         n = self.count
         matrix = np.array(self.matrix[: n * n]).reshape(n, n)
         wanted = np.array([self.table[_WIDTH * k + _WANTED] for k in range(n)])
@@ -129,7 +130,7 @@ class Equations:
         found = sizes.tolist()
         for k in range(n):
             self.table[_WIDTH * k + _SIZE] = found[k]
-        return bool(rank == n)
+        return n - int(rank)
 
     def size(self, k: int) -> float:
         """Return the size of a force."""
@@ -210,7 +211,7 @@ class HeldContacts:
                 equations.add(pose, arm, t2, t2, -vec.dot(t2, moves))
                 equations.add(pose, arm, n, n, -vec.dot(n, moves))
         per_mass = 1.0 / solid.mass
-        unique = equations.solve(per_mass)
+        others = equations.solve(per_mass)
         k = 0
         for i in range(self.count):
             one = self.mode[i]
@@ -222,9 +223,9 @@ class HeldContacts:
             self.set_force(i, f_x, f_y, f_z)
         a = equations.summed(solid.gravity, _FORCE, per_mass)
         self._set_rates(y, a, equations.summed(pose.alpha, _TURNING, 1.0))
-        if self.count == 2:
-            self._share_between_two()
-        if not unique and self.least_left() < 0.0:
+        if self.count == 2 and self._share_between_two() and others == 1:
+            return
+        if others > 0 and self.least_left() < 0.0 and not self._tips():
             self._bring_within_cones()
 
     def _set_rates(self, y: Numbers, a: Vector3, alpha: Vector3) -> None:
@@ -346,6 +347,27 @@ class HeldContacts:
 
     # Forces that are not the only ones with the mode
 
+    def _tips(self) -> bool:
+        """Return whether the body tips over two of three contacts, whichever forces have the motion's effect.
+
+        A turn about the line through two contacts moves the third one alone. All such forces have the same
+        power on it, and where the third contact rises, no force in its cone has a negative one.
+        """
+        if self.count != 3:
+            return False
+        arms = [self.pose.arm(one.flat, one.corner) for one in self.mode]
+        for k in range(3):
+            a, b, c = arms[k], arms[(k + 1) % 3], arms[(k + 2) % 3]
+            turn, arm = (c[0] - b[0], c[1] - b[1], c[2] - b[2]), (a[0] - b[0], a[1] - b[1], a[2] - b[2])
+            flat, moved = self.solid.flats[self.mode[k].flat], vec.cross(turn, arm)
+            if vec.dot(moved, flat.normal) < 0.0:
+                moved = vec.opposite(moved)
+            rise, aside = vec.dot(moved, flat.normal), vec.norm(vec.without(moved, flat.normal))
+            least = -force_rounding(self.solid) * vec.norm(moved)
+            if rise > flat.friction * aside and vec.dot(moved, self.force(k)) < least:
+                return True
+        return False
+
     def _bring_within_cones(self) -> None:
         """Take forces with the same motion that press, and that friction allows, if there are any."""
         pose, axes, frictions, effects = self.pose, [], [], []
@@ -357,22 +379,39 @@ class HeldContacts:
             frictions.append(0.0 if one.slides else mu)
             x, y, z = [each / self.solid.reach for each in arm]
             effects.append([[1, 0, 0], [0, 1, 0], [0, 0, 1], [0, -z, y], [z, 0, -x], [-y, x, 0]])
-        each = np.array(effects, dtype=float).transpose(1, 0, 2).reshape(6, -1)
-        target = each @ np.array(self.forces).ravel()
+        each, forces = np.array(effects, dtype=float).transpose(1, 0, 2).reshape(6, -1), np.array(self.forces)
+        target = each @ forces.ravel()
+        if all(frictions):
+            # Where contacts that press more take more of the friction, it is mostly enough.
+            presses = np.repeat(np.maximum((forces * axes).sum(axis=1), 0.0), 3)
+            found = presses * np.linalg.lstsq(each * presses, target, rcond=SAME_FORCES)[0]
+            if np.abs(each @ found - target).max() <= ROUND_CONE_HELD * np.abs(target).max():
+                self._set_forces(found.reshape(-1, 3).tolist())
+                if self.least_left() >= 0.0:
+                    return
+                self._set_forces(forces.tolist())
         held = summed_by_round_cones(each, target, np.array(axes), np.array(frictions)).forces
         if held is not None:
-            for i, (x, y, z) in enumerate(held.tolist()):
-                self.set_force(i, x, y, z)
+            self._set_forces(held.tolist())
 
-    def _share_between_two(self) -> None:
-        """Share forces between two contacts that stick, without a change of the motion."""
+    def _set_forces(self, forces: list[list[float]]) -> None:
+        for i, (x, y, z) in enumerate(forces):
+            self.set_force(i, x, y, z)
+
+    def _share_between_two(self) -> bool:
+        """Share forces between two contacts that stick, without a change of the motion.
+
+        Return whether they are on one flat. Then no other forces do better, unless they differ by more than
+        what acts along the edge.
+        """
         one, other = self.mode[0], self.mode[1]
         if one.slides or other.slides:
-            return
+            return False
         if one.flat == other.flat:
             self._share_along_edge()
-        else:
-            self._squeeze()
+            return True
+        self._squeeze()
+        return False
 
     def _share_along_edge(self) -> None:
         """Have two contacts that stick share what acts along their edge.

@@ -130,11 +130,14 @@ class History:
         Contacts that touch together are held together. If two are near to each other, the tolerance of one's
         height would be a large angle, so it is less there.
         """
-        corners, reach = self.solid.corners, self.solid.reach
+        solid = self.solid
         found: list[Touch] = []
         for height, (flat, corner) in sorted(listed):
-            apart = min((dist(corners[corner], corners[k]) for s, k in found if s == flat), default=reach)
-            if height <= DISTANCE_TOLERANCE * min(1.0, apart / (NEAR_CORNERS * reach)):
+            apart = solid.reach
+            for s, k in found:
+                if s == flat:
+                    apart = min(apart, dist(solid.corner(corner), solid.corner(k)))
+            if height <= DISTANCE_TOLERANCE * min(1.0, apart / (NEAR_CORNERS * solid.reach)):
                 found.append((flat, corner))
         return [touch for _, touch in listed if touch in found]
 

@@ -8,11 +8,14 @@ contact is not quite where the shape has it.
 Recorded strikes of a cube have one spread, whether they change the velocity by 0.3 or by 1.8 m/s. A strike
 of a sample that is much weaker than its first one has a smaller spread. Otherwise a body that comes to rest
 would be shaken by it.
+
+`law_spread.pxd` gives the C types with which this file compiles.
 """
 
 from __future__ import annotations
 
 import math
+from math import dist
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -25,7 +28,6 @@ if TYPE_CHECKING:
     from numpy.random import Generator
     from numpy.typing import NDArray
 
-    from contact_dynamics.numerics.vectors import Vector3
     from contact_dynamics.toss.solid import Numbers, Solid, Touch
     from contact_dynamics.toss.uncertainty import TossUncertainty
     from contact_dynamics.validation import FloatArray
@@ -53,11 +55,10 @@ class LawSpread:
     """Draws changes of velocities after strikes, for n samples."""
 
     def __init__(self, uncertainty: TossUncertainty, count: int, chance: Generator) -> None:
-        self._sizes = np.array([uncertainty.velocity] * 3 + [uncertainty.spin] * 3)
-        self._chance = chance
+        self._velocity, self._spin, self._chance = uncertainty.velocity, uncertainty.spin, chance
         self._first = np.zeros(count)  # m/s, by how much the first strike changed the velocity
         self._own: list[Generator] = []
-        self.is_none = not self._sizes.any()
+        self.is_none = self._velocity == self._spin == 0.0
 
     def changes(self, which: NDArray[np.intp], jumps: FloatArray, turning: FloatArray) -> FloatArray:
         """Return changes of velocities, (m, 6), m/s and rad/s, of some samples after one more strike.
@@ -73,9 +74,11 @@ class LawSpread:
         shares = np.minimum(np.divide(jumps, FULL * first, out=np.ones(len(jumps)), where=first > 0.0), 1.0)
         # Numbers are drawn for all samples, so that a sample's do not depend on what others do.
         count = len(self._first)
-        drawn, sizes = self._chance.standard_normal((count, 9))[which], _tails(self._chance, count)[which]
-        parts = _parts(self._sizes, np.einsum("nij,nij->n", turning, turning) / 3.0)
-        drawn *= np.repeat(np.array(parts).T * (sizes * shares)[:, None], 3, axis=1)
+        drawn = self._chance.standard_normal((count, 9))[which]
+        sizes = shares * (_SAME_MEDIAN * np.sqrt(FREEDOM / self._chance.chisquare(FREEDOM, count)))[which]
+        squares = np.einsum("nij,nij->n", turning, turning) / 3.0
+        parts = np.array([_parts(self._velocity, self._spin, square) for square in squares.tolist()])
+        drawn *= np.repeat(parts.reshape(-1, 3) * sizes[:, None], 3, axis=1)
         drawn[:, 3:6] += drawn[:, :3]
         drawn[:, 6:] += np.einsum("nij,nj->ni", turning, drawn[:, :3])
         changes: FloatArray = drawn[:, 3:]
@@ -87,59 +90,65 @@ class LawSpread:
         Each sample has numbers of its own, so that it does not matter which one goes on first.
         """
         self._own = self._own or self._chance.spawn(len(self._first))
-        return KickOfOne(self._sizes, float(self._first[i]), self._own[i])
+        return KickOfOne(self._velocity, self._spin, float(self._first[i]), self._own[i])
 
 
 class KickOfOne:
     """Changes the velocities of one sample after its strikes. It can be handed to another process."""
 
-    def __init__(self, sizes: FloatArray, first: float, chance: Generator) -> None:
-        self._sizes, self._chance = sizes, chance
-        self._first = first  # m/s, by how much the first strike changed the velocity
+    def __init__(self, velocity: float, spin: float, first: float, chance: Generator) -> None:
+        self.velocity, self.spin, self.chance = velocity, spin, chance
+        self.first = first  # m/s, by how much the first strike changed the velocity
 
-    def __call__(self, solid: Solid, before: Numbers, after: Numbers, touch: Touch) -> Numbers:
+    def kicked(self, solid: Solid, before: Numbers, after: Numbers, touch: Touch) -> Numbers:
         """Return the changed state after a strike, for those before and after it and the contact."""
-        jump = math.dist(after[7:10], before[7:10])
-        first = self._first = self._first or jump
-        share = min(jump / (FULL * first), 1.0) if first > 0.0 else 1.0
-        size = share * float(_tails(self._chance, 1)[0])
-        pose = pose_of(solid, after)
-        arm, n = pose.arm(*touch), solid.flats[touch[0]].normal
-
-        def turned(impulse: Vector3) -> Vector3:
-            return vec.times(pose.inverse, vec.cross(arm, impulse))
-
-        squares = [vec.dot(turn, turn) for turn in map(turned, AXES)]
-        parts = _parts(self._sizes, np.array([solid.mass * solid.mass * sum(squares) / 3.0]))
-        drawn = (size * np.repeat(np.ravel(parts), 3) * self._chance.standard_normal(9)).tolist()
-        impulse = (solid.mass * drawn[0], solid.mass * drawn[1], solid.mass * drawn[2])
-        turn = turned(impulse)
-        v = [after[7 + k] + (drawn[k] + drawn[3 + k]) for k in range(3)]
-        w = [after[10 + k] + (turn[k] + drawn[6 + k]) for k in range(3)]
+        jump = dist(after[7:10], before[7:10])
+        self.first = self.first or jump
+        size = min(jump / (FULL * self.first), 1.0) if self.first > 0.0 else 1.0
+        size *= _SAME_MEDIAN * math.sqrt(FREEDOM / self.chance.chisquare(FREEDOM))
+        surface, corner = touch
+        pose, flat, mass = pose_of(solid, after), solid.flats[surface], solid.mass
+        arm, n = pose.arm(surface, corner), flat.normal
+        square = 0.0
+        for axis in AXES:
+            turn = vec.times(pose.inverse, vec.cross(arm, axis))
+            square += vec.dot(turn, turn)
+        pushed, velocity, spin = _parts(self.velocity, self.spin, mass * mass * square / 3.0)
+        pushed, velocity, spin = size * pushed, size * velocity, size * spin
+        a, b, c, d, e, f, g, h, i = self.chance.standard_normal(9).tolist()
+        a, b, c = pushed * a, pushed * b, pushed * c
+        turn = vec.times(pose.inverse, vec.cross(arm, (mass * a, mass * b, mass * c)))
+        v = (after[7] + (a + velocity * d), after[8] + (b + velocity * e), after[9] + (c + velocity * f))
+        w = (
+            after[10] + (turn[0] + spin * g),
+            after[11] + (turn[1] + spin * h),
+            after[12] + (turn[2] + spin * i),
+        )
         # The corner does not go on into the flat: an impulse along the normal turns it back.
-        rebound = vec.dot((v[0], v[1], v[2]), n) + vec.dot(vec.cross((w[0], w[1], w[2]), arm), n)
-        turn = turned(n)
-        back = max(-2.0 * rebound, 0.0) / (1.0 / solid.mass + vec.dot(vec.cross(arm, n), turn))
-        v = [x + back / solid.mass * each for x, each in zip(v, n, strict=True)]
-        return [*after[:7], *v, *(x + back * each for x, each in zip(w, turn, strict=True))]
+        rebound = vec.dot(v, n) + vec.dot(vec.cross(w, arm), n)
+        turn = vec.times(pose.inverse, vec.cross(arm, n))
+        back = max(-2.0 * rebound, 0.0) / (1.0 / mass + vec.dot(vec.cross(arm, n), turn))
+        x = back / mass
+        return [
+            *after[:7],
+            v[0] + x * n[0],
+            v[1] + x * n[1],
+            v[2] + x * n[2],
+            w[0] + back * turn[0],
+            w[1] + back * turn[1],
+            w[2] + back * turn[2],
+        ]
 
 
-def _parts(sizes: FloatArray, squares: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return standard deviations: of velocities by an impulse, and of what is left of both, (m,).
+def _parts(velocity: float, spin: float, square: float) -> tuple[float, float, float]:
+    """Return standard deviations: of velocities by an impulse, and of what is left of both.
 
     Args:
-        sizes: (6,), m/s and rad/s, those of velocities and spins.
-        squares: (m,), 1/m^2, the variances of a spin's components by an impulse that changes those of the
-            velocity by 1.
+        velocity: m/s, that of each component of a velocity.
+        spin: rad/s, that of each component of a spin.
+        square: 1/m^2, the variance of a spin's components by an impulse that changes those of the velocity
+            by 1.
     """
-    velocity, spin = sizes[0] ** 2, sizes[3] ** 2
-    most = np.full(len(squares), velocity)
-    np.divide(spin, squares, out=most, where=squares > 0.0)
-    pushed = BY_IMPULSE * np.minimum(velocity, most)
-    return np.sqrt(pushed), np.sqrt(velocity - pushed), np.sqrt(np.maximum(spin - pushed * squares, 0.0))
-
-
-def _tails(chance: Generator, count: int) -> FloatArray:
-    """Return factors, (n,), that make normal numbers those of Student's t with the same median."""
-    sizes: FloatArray = _SAME_MEDIAN * np.sqrt(FREEDOM / chance.chisquare(FREEDOM, count))
-    return sizes
+    velocity, spin = velocity * velocity, spin * spin
+    pushed = BY_IMPULSE * (min(velocity, spin / square) if square > 0.0 else velocity)
+    return math.sqrt(pushed), math.sqrt(velocity - pushed), math.sqrt(max(spin - pushed * square, 0.0))

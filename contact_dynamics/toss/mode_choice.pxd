@@ -22,6 +22,8 @@ cdef int _FEW_CORRECTIONS, _MAX_CORRECTIONS
                all_slide=cython.bint, moves=cython.bint, slides=cython.bint, u=cython.double, v=cython.double,
                across=cython.double, d=(double, double, double))
 cpdef choose_mode(Solid solid, list y, list touching, bint thorough=*)
+@cython.locals(one=Held)
+cdef ConeForces _cones_of(Solid solid, Pose pose, list guess, list ways)
 @cython.locals(one=Held, flat=Flat)
 cdef bint _several_forces(Solid solid, Pose pose, list sliding) except -1
 cdef Held _beginning(tuple touch, (double, double, double) towards)

@@ -93,7 +93,7 @@ def choose_mode(
     if not touching:
         return Choice(ModeVerdict.UNIQUE, [()])
     pose = pose_of(solid, y)
-    guess, paradox, all_slide, cones = [], False, True, ConeForces(len(touching))
+    guess, ways, paradox, all_slide = [], [], False, True
     choice = Choice(ModeVerdict.UNDECIDED, [])
     for touch in touching:
         surface, corner = touch
@@ -110,7 +110,6 @@ def choose_mode(
         if slides:
             d = pose.sliding(arm, n, n)
         guess.append(Held(touch, slides, d))
-        cones.add(pose, arm, flat, pose.acceleration(surface, arm, solid.gravity, pose.alpha), 0.0)
         turning = vec.times(pose.inverse, vec.cross(arm, n))
         normal = 1.0 / solid.mass + vec.dot(vec.cross(arm, n), turning)
         coupling = vec.cross(turning, arm)
@@ -118,8 +117,8 @@ def choose_mode(
         across = math.sqrt(p * p + q * q)
         if slides:
             u, v = (u / speed, v / speed) if moves else (0.0, 0.0)
-            cones.slide(u, v)
             across = p * u + q * v
+        ways.append((u, v))
         paradox = paradox or flat.friction * across >= normal
     if paradox or (len(guess) > 1 and all_slide and _several_forces(solid, pose, guess)):
         paradox = True
@@ -129,6 +128,7 @@ def choose_mode(
             return choice
     mode, pushed = corrected(solid, y, tuple(guess))
     if mode is None:
+        cones = _cones_of(solid, pose, guess, ways)
         if not cones.solve(1.0 / solid.mass, 0.0):
             return choice if paradox else _all_modes(solid, y, touching)
         mode = _read_off(solid, y, guess, cones)
@@ -138,6 +138,18 @@ def choose_mode(
         others = [other for other in known.modes if _letters(other) != _letters(mode)]
         verdict = known.verdict if others else verdict
     return Choice(verdict, [mode, *others], pushed)
+
+
+def _cones_of(solid: Solid, pose: Pose, guess: list[Held], ways: list[tuple[float, float]]) -> ConeForces:
+    """Return the contacts' problem, where those that slide do so in directions by the two tangents."""
+    cones = ConeForces(len(guess))
+    for one, (u, v) in zip(guess, ways, strict=True):
+        arm = pose.arm(one.flat, one.corner)
+        moves = pose.acceleration(one.flat, arm, solid.gravity, pose.alpha)
+        cones.add(pose, arm, solid.flats[one.flat], moves, 0.0)
+        if one.slides:
+            cones.slide(u, v)
+    return cones
 
 
 def _put_first(modes: list[Mode], guess: list[Held]) -> None:

@@ -8,6 +8,7 @@ with a low rebound continues as a single toss (`to_rest`), since several corners
 
 from __future__ import annotations
 
+from array import array
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import numpy as np
@@ -246,7 +247,6 @@ def _arrivals(
 def solids_of(solid: Solid, samples: Samples) -> list[Solid]:
     """Return the body and the flats of each sample."""
     inertias, inverses = _matrices(samples.inertias_B), _matrices(np.linalg.inv(samples.inertias_B))
-    corners = samples.corners_B.tolist()
     materials = np.stack(
         [samples.lasting_frictions, samples.restitutions, samples.frictions], axis=2
     ).tolist()
@@ -255,14 +255,14 @@ def solids_of(solid: Solid, samples: Samples) -> list[Solid]:
             solid.mass,
             inertias[i],
             inverses[i],
-            tuple(map(tuple, corners[i])),
+            array("d", corners.tobytes()),
             solid.indices,
             solid.rounding,
             solid.gravity,
             tuple([flat.with_frictions(*own) for flat, own in zip(solid.flats, materials[i], strict=True)]),
             solid.settling,
         )
-        for i in range(len(corners))
+        for i, corners in enumerate(samples.corners_B)
     ]
 
 

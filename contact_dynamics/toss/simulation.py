@@ -5,14 +5,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import TYPE_CHECKING, Final, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
 from contact_dynamics.impact.law import ImpactOutcome, RestitutionLaw
 from contact_dynamics.impact.several.result import SeveralContactsLaw, SeveralVerdict
 from contact_dynamics.impact.several.settling import settling_impact
-from contact_dynamics.numerics.vectors import norm
 from contact_dynamics.tolerances import (
     BUSY,
     LIFT_OFF_PAUSE,
@@ -24,6 +23,7 @@ from contact_dynamics.tolerances import (
     STILL_TOUCHING,
     STRIKES,
 )
+from contact_dynamics.toss import vectors as vec
 from contact_dynamics.toss.flight import flight
 from contact_dynamics.toss.forces import held_in_place, out_of_flats, pushed_by_contacts
 from contact_dynamics.toss.history import History
@@ -45,16 +45,12 @@ from contact_dynamics.toss.solid import (
 from contact_dynamics.toss.strike import low_rebounds_ended, strike
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from contact_dynamics.toss.forces import HeldContacts
     from contact_dynamics.toss.laid_flat import Faces
+    from contact_dynamics.toss.law_spread import KickOfOne
     from contact_dynamics.toss.mode_choice import Choice, Mode
     from contact_dynamics.toss.solid import Held, Numbers, Solid, Touch
     from contact_dynamics.toss.strike import Strikes
-
-Kick: TypeAlias = "Callable[[Solid, Numbers, Numbers, Touch], Numbers]"
-"""Takes the body, the states before and after a strike, and the contact, and returns another state after."""
 
 MAX_STEPS: Final = 100_000
 """Steps in contact, after which a toss ends unfinished. A ball that rolls takes some thirteen a turn."""
@@ -109,7 +105,7 @@ class TossSettings(NamedTuple):
     horizon: float
     max_events: int
     error: float
-    kick: Kick | None = None
+    kick: KickOfOne | None = None
     flat_after: int | None = None
     thorough: bool = True
     has_pieces: bool = True
@@ -125,7 +121,7 @@ class Simulation(History):
         self, settings: TossSettings, y: Numbers, ways: tuple[int, ...] = (), began_ns: int = 0
     ) -> None:
         super().__init__(settings.solid, y, ways, began_ns)
-        self.settings = settings
+        self.settings, self.kick = settings, settings.kick
         self.slow = math.inf  # J, rest is tried where the kinetic energy is below this
         self.struck = self.laid = self.steps = 0  # strikes, how often it was laid flat, steps in contact
         self.mark, self.rounds = 0.0, 0  # a time, s, and the rounds since then
@@ -202,9 +198,8 @@ class Simulation(History):
     # Strikes
 
     def _strike(self, touching: list[Touch], rates: list[float]) -> list[Touch]:
-        striking = [
-            touch for rate, touch in sorted(zip(rates, touching, strict=True)) if rate < -self._fast()
-        ]
+        fast = -self._fast()
+        striking = [touch for rate, touch in sorted(zip(rates, touching, strict=True)) if rate < fast]
         first, together = None, self.settings.several_contacts_law
         if len(striking) > 1 and together == SeveralContactsLaw.SEQUENTIAL:
             way = self.way(UndecidedReason.STRIKE_TOGETHER, len(striking))
@@ -215,9 +210,8 @@ class Simulation(History):
         )
         self.settled = strikes
         self.y, staying = strikes.y, strikes.staying
-        kick = self.settings.kick
-        if kick is not None and len(touching) == 1 and not strikes.settled:
-            self.y = kick(self.solid, y, self.y, touching[0])
+        if self.kick is not None and len(touching) == 1 and not strikes.settled:
+            self.y = self.kick.kicked(self.solid, y, self.y, touching[0])
             staying = self.touching_now(STILL_TOUCHING)
         for one in strikes.struck:
             kind = TossEventKind.SETTLES if one.settles else TossEventKind.STRIKES
@@ -247,7 +241,7 @@ class Simulation(History):
 
     def _fast(self) -> float:
         """Return the approach, m/s, from which the order of contacts that strike together matters."""
-        return math.sqrt(2.0 * self.solid.settling * norm(self.solid.gravity)) + STRIKES
+        return math.sqrt(2.0 * self.solid.settling * vec.norm(self.solid.gravity)) + STRIKES
 
     def _jam(self, touching: list[Touch]) -> list[Touch]:
         """Settle contacts without a consistent mode by an impact, and return what touches then.
@@ -289,15 +283,15 @@ class Simulation(History):
             return mode, pushed_by_contacts(self.solid, self.y, mode)
         thorough = self.settings.thorough and touching != self.looked_at
         self.looked_at = touching
-        known = self._known_since_strikes(touching, thorough=thorough)
-        choice = known or choose_mode(self.solid, self.y, touching, thorough=thorough)
+        known = self._known_since_strikes(touching, thorough)
+        choice = known or choose_mode(self.solid, self.y, touching, thorough)
         if not choice.modes:
             return None
         options = len(choice.modes)
         way = self.way(UndecidedReason.SEVERAL_MODES, options) if options > 1 else 0
         return choice.modes[way], choice.pushed_in(way, self.solid, self.y)
 
-    def _known_since_strikes(self, touching: list[Touch], *, thorough: bool) -> Choice | None:
+    def _known_since_strikes(self, touching: list[Touch], thorough: bool) -> Choice | None:  # noqa: FBT001
         """Return the modes that the last strikes found for these contacts in this state, if they did."""
         last = self.settled
         if last is None or last.y is not self.y or last.staying != touching:
@@ -309,7 +303,7 @@ class Simulation(History):
         self.note(
             TossEventKind.NEW_MODE,
             [one.touch for one in mode],
-            mode="".join("c" if one.slides else "f" for one in mode),
+            mode=_letters(mode),
         )
         before = energy_of(self.solid, self.y)
         went = phase(
@@ -365,8 +359,7 @@ class Simulation(History):
             mode = mode or went.mode
             self.y, self.now = went.y, self.now + went.step.span
             self.steps += 1
-        letters = "".join("c" if one.slides else "f" for one in mode)
-        self.note(TossEventKind.NEW_MODE, [one.touch for one in mode], mode=letters)
+        self.note(TossEventKind.NEW_MODE, [one.touch for one in mode], mode=_letters(mode))
         self.lost_in_contact += before - energy_of(self.solid, self.y)
         self.linger = min(_LONGER * self.linger, _LONGEST_LINGER)
         self.mark, self.rounds = self.now, 0
@@ -378,8 +371,11 @@ class Simulation(History):
 
         Without friction it would slide on for ever. There its speed has to be rounding.
         """
-        grip = min((self.solid.flats[touch[0]].friction for touch in touching), default=0.0)
-        per_mass = norm(self.solid.gravity) * self.solid.settling * min(grip, 1.0)
+        grip = 1.0 if touching else 0.0
+        for surface, _ in touching:
+            flat = self.solid.flats[surface]
+            grip = min(grip, flat.friction)
+        per_mass = vec.norm(self.solid.gravity) * self.solid.settling * grip
         return self.solid.mass * max(per_mass, 0.5 * SLIDING_STOPPED**2)
 
     def _laid_flat(self, touching: list[Touch]) -> list[Touch]:
@@ -401,16 +397,16 @@ class Simulation(History):
             return False
         touching = self.touching_now(math.inf)
         still = [*self.y[:7], *[0.0] * 6]
-        choice = choose_mode(self.solid, still, touching, thorough=self.settings.thorough)
+        choice = choose_mode(self.solid, still, touching, self.settings.thorough)
         modes = choice.modes
         if not modes:
             return False
         pushed = choice.pushed_in(0, self.solid, still)
-        rates = pushed.rates[7:]
-        fastest = max(map(abs, rates[:3])) + self.solid.reach * max(map(abs, rates[3:]))
+        _, _, _, _, _, _, _, a, b, c, d, e, f = pushed.rates
+        fastest = max(abs(a), abs(b), abs(c)) + self.solid.reach * max(abs(d), abs(e), abs(f))
         # A mode of nearly flush contacts may be still by forces that pull, because they are not quite flush.
         is_held = pushed.least_left() >= 0.0
-        if not is_held or fastest > RESTING_ACCELERATION * norm(self.solid.gravity):
+        if not is_held or fastest > RESTING_ACCELERATION * vec.norm(self.solid.gravity):
             self.slow = _SLOWER * energy
             return False
         if len(modes) > 1:
@@ -424,3 +420,7 @@ class Simulation(History):
         self.y, self.resting = placed, [one.touch for one in modes[0]]
         self.note(TossEventKind.RESTS, self.resting)
         return True
+
+
+def _letters(mode: Mode) -> str:
+    return "".join(["c" if one.slides else "f" for one in mode])

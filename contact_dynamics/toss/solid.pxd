@@ -26,12 +26,12 @@ cdef class Flat:
 cdef class Solid:
     cdef readonly double mass, rounding, reach, settling
     cdef readonly (double, double, double, double, double, double, double, double, double) inertia, inverse
-    cdef readonly tuple corners, indices, flats
+    cdef readonly tuple indices, flats
     cdef readonly (double, double, double) gravity
     cdef readonly int count
     cdef double[::1] points
 
-    cdef (double, double, double) corner(self, int k) noexcept
+    cpdef (double, double, double) corner(self, int k) noexcept
 
 
 @cython.final
@@ -75,6 +75,8 @@ cdef class Above:
 
 cpdef (double, double, double, double, double, double, double, double, double) rows_of(double x, double yy, double z, double w) noexcept nogil
 cpdef Pose pose_of(Solid solid, list y)
+cpdef double energy_of(Solid solid, list y)
+cpdef double kinetic_energy_of(Solid solid, list y)
 cpdef list heights_and_rates(Solid solid, list y)
 @cython.locals(flat=cython.int, corner=cython.int)
 cpdef list low_corners(Solid solid, list y, double high, double leaving)

@@ -88,7 +88,7 @@ class Solid:
         mass: kg.
         inertia: (3, 3) row by row, kg m^2, body axes.
         inverse: Its inverse.
-        corners: m, body axes.
+        points: m, the corners, three numbers each, body axes.
         indices: Those of the corners among the vertices of the body's shape.
         rounding: m, the radius of the ball that rolls over the corners.
         reach: m, the distance of the farthest point of the body from its centre of mass.
@@ -102,7 +102,7 @@ class Solid:
         mass: float,
         inertia: Matrix3,
         inverse: Matrix3,
-        corners: tuple[Vector3, ...],
+        points: array[float],
         indices: tuple[int, ...],
         rounding: float,
         gravity: Vector3,
@@ -110,11 +110,12 @@ class Solid:
         settling: float,
     ) -> None:
         self.mass, self.inertia, self.inverse = mass, inertia, inverse
-        self.corners, self.indices, self.rounding = corners, indices, rounding
+        self.points, self.indices, self.rounding = points, indices, rounding
         self.gravity, self.flats, self.settling = gravity, flats, settling
-        self.reach = max([vec.norm(corner) for corner in corners]) + rounding
-        self.count = len(corners)
-        self.points = array("d", [x for corner in corners for x in corner])
+        self.count, self.reach = len(indices), 0.0
+        for k in range(self.count):
+            self.reach = max(self.reach, vec.norm(self.corner(k)))
+        self.reach += rounding
 
     def __reduce__(self) -> tuple[object, ...]:
         return Solid, self._parts(self.flats)
@@ -124,12 +125,18 @@ class Solid:
         return Solid(*self._parts(flats))
 
     def _parts(self, flats: tuple[Flat, ...]) -> Any:
-        body = [self.mass, self.inertia, self.inverse, self.corners, self.indices, self.rounding]
+        points = array("d", self.points)
+        body = [self.mass, self.inertia, self.inverse, points, self.indices, self.rounding]
         return (*body, self.gravity, flats, self.settling)
 
     def corner(self, k: int) -> Vector3:
         """Return a corner, m, body axes."""
         return (self.points[3 * k], self.points[3 * k + 1], self.points[3 * k + 2])
+
+    @property
+    def corners(self) -> list[Vector3]:
+        """The corners, m, body axes."""
+        return [self.corner(k) for k in range(self.count)]
 
 
 class Held:
@@ -318,14 +325,14 @@ def solid_of(
         e, mu = surface.restitution, surface.friction
         flats.append(Flat(surface.name, normal, level, lasting, e, mu, tangents(normal)))
     I_B = body.mass_properties.I_B
-    corners = tuple((x, y, z) for x, y, z in body.shape.vertices.tolist())
+    vertices = body.shape.vertices
     g_x, g_y, g_z = world.gravity_W.tolist()
     return Solid(
         mass=body.mass_properties.mass,
         inertia=matrix_of(I_B),
         inverse=matrix_of(np.linalg.inv(I_B)),
-        corners=corners,
-        indices=tuple(range(len(corners))) if indices is None else indices,
+        points=array("d", vertices.tobytes()),
+        indices=tuple(range(len(vertices))) if indices is None else indices,
         rounding=body.shape.rounding,
         gravity=(g_x, g_y, g_z),
         flats=tuple(flats),
@@ -435,8 +442,8 @@ class Above:
     def __init__(self, solid: Solid) -> None:
         self.solid = solid
         self.count = solid.count * len(solid.flats)
-        self.heights = array("d", bytes(8 * self.count))
-        self.rates = array("d", bytes(8 * self.count))
+        self.heights = array("d", bytes(16 * self.count))
+        self.rates = self.heights[self.count :]
         self.least = math.inf
         self.y = [0.0] * 13
 

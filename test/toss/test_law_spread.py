@@ -54,7 +54,7 @@ def changes_of_one() -> np.ndarray:
     before = [*after[:7], *STATE.v_WB_W, *STATE.w_WB_W]
     spread = LawSpread(UNCERTAINTY, 60, np.random.default_rng(0))
     solid = solid_of(BRICK, WORLD)
-    kicked = [spread.of_one(i)(solid, before, after, (0, event.corners[0])) for i in range(60)]
+    kicked = [spread.of_one(i).kicked(solid, before, after, (0, event.corners[0])) for i in range(60)]
     return np.array(kicked)[:, 7:] - np.array(after[7:])
 
 
@@ -89,7 +89,7 @@ def test_what_the_spread_does_to_a_sample_does_not_depend_on_which_goes_first() 
     changed = []
     for order in ((0, 1, 2), (2, 0, 1)):
         spread = LawSpread(UNCERTAINTY, 3, np.random.default_rng(1))
-        kicks = {i: spread.of_one(i)(solid, y, after, (0, 0)) for i in order}
+        kicks = {i: spread.of_one(i).kicked(solid, y, after, (0, 0)) for i in order}
         changed.append([kicks[i] for i in range(3)])
     assert changed[0] == changed[1]
     assert changed[0][0] != changed[0][1]

@@ -1,0 +1,32 @@
+# SPDX-License-Identifier: Apache-2.0
+# The types with which law_spread.py compiles.
+
+cimport cython
+cimport libc.math as math
+
+from contact_dynamics.toss cimport vectors as vec
+from contact_dynamics.toss.solid cimport Flat, Pose, Solid, pose_of
+
+cdef extern from *:
+    # A checksum of law_spread.py and this file, which setup.py defines (see numerics/compiled.py).
+    cpdef enum:
+        SOURCE_CRC
+
+cdef double BY_IMPULSE, FREEDOM, FULL, _SAME_MEDIAN
+
+
+@cython.final
+cdef class KickOfOne:
+    cdef double velocity, spin, first
+    cdef object chance
+
+    @cython.locals(
+        jump=cython.double, size=cython.double, surface=cython.int, corner=cython.int, pose=Pose, flat=Flat,
+        axis=(double, double, double), pushed=cython.double, velocity=cython.double, spin=cython.double,
+        a=cython.double, b=cython.double, c=cython.double, d=cython.double, e=cython.double, f=cython.double,
+        g=cython.double, h=cython.double, i=cython.double,
+    )
+    cpdef list kicked(self, Solid solid, list before, list after, tuple touch)
+
+
+cpdef (double, double, double) _parts(double velocity, double spin, double square) noexcept
