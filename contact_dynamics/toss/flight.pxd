@@ -12,7 +12,7 @@ cdef extern from *:
     cpdef enum:
         SOURCE_CRC
 
-cdef double GRAZING_DEPTH, NEGLIGIBLE_TERM, _GYROSCOPIC, _INFINITE, _MANY
+cdef double GRAZING_DEPTH, NEGLIGIBLE_TERM, SAMPLED_ARRIVAL, _GYROSCOPIC, _INFINITE, _MANY
 cdef int MAX_SEARCH_STEPS, SEARCH_BEGUN, _MAX_ROOT_STEPS, _ORDER
 
 
@@ -61,6 +61,12 @@ cdef class Descent:
     cdef double _root(self, int part, double low, double high) except -2.0
 
 
+@cython.locals(gravity=(double, double, double), descent=Descent, i=cython.int, k=cython.int,
+               arrival=cython.double)
+cpdef arrivals(
+    list solids, const double[:, ::1] gravities, const double[:, ::1] starts, const double[::1] longest,
+    double[:, ::1] after, double[::1] seconds, long[::1] parts,
+)
 cdef double free_for(double height, double rate, double pull) noexcept
 cdef double ulp(double x) noexcept
 cdef double _row_sum((double, double, double, double, double, double, double, double, double) matrix) noexcept

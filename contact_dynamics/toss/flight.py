@@ -18,16 +18,19 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import numpy as np
 
 from contact_dynamics.landing.search_work import MAX_SEARCH_STEPS, SEARCH_BEGUN, SearchWork
-from contact_dynamics.tolerances import GRAZING_DEPTH, NEGLIGIBLE_TERM
+from contact_dynamics.tolerances import GRAZING_DEPTH, NEGLIGIBLE_TERM, SAMPLED_ARRIVAL
 from contact_dynamics.toss import vectors as vec
 from contact_dynamics.toss.solid import Above, pose_of, properties_of, rows_of, state_of
 from contact_dynamics.tumbling import Precision, free_motion
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from contact_dynamics.numerics.vectors import Vector3
     from contact_dynamics.rotations.one import Quaternion
     from contact_dynamics.toss.solid import Numbers, Solid
     from contact_dynamics.toss.vectors import Matrix3
+    from contact_dynamics.validation import FloatArray
 
 _ORDER: Final = 20
 """Order of the series. A body turns by one or two radians while they hold."""
@@ -63,6 +66,37 @@ def flight(solid: Solid, y: Numbers, *, longest: float, pause: float) -> Flight:
     seconds = descent.run(min(pause, longest), longest)
     descent.look(seconds)
     return Flight(seconds, descent.state())
+
+
+def arrivals(  # noqa: PLR0917  C has no keywords
+    solids: list[Solid],
+    gravities: FloatArray,
+    starts: FloatArray,
+    longest: FloatArray,
+    after: FloatArray,
+    seconds: FloatArray,
+    parts: NDArray[np.int64],
+) -> None:
+    """Find where flights of n samples end.
+
+    Args:
+        solids: The body and the flats of each.
+        gravities: (n, 3), m/s^2.
+        starts: (n, 13), the states at the beginning.
+        longest: (n,), s, after which flights end anyway.
+        after: (n, 13), gets the states at the end.
+        seconds: (n,), gets how long flights last, s.
+        parts: (n,), gets the flat times the number of corners plus the corner that strikes, or -1.
+    """
+    for i in range(len(solids)):
+        gravity = (float(gravities[i, 0]), float(gravities[i, 1]), float(gravities[i, 2]))
+        descent = Descent(solids[i], gravity, [float(starts[i, k]) for k in range(13)])
+        arrival = descent.run(0.0, float(longest[i]))
+        descent.look(arrival)
+        seconds[i] = arrival
+        parts[i] = descent.striking(SAMPLED_ARRIVAL)
+        for k in range(13):
+            after[i, k] = descent.above.y[k]
 
 
 def _closed_form(solid: Solid, gravity: Vector3, y: Numbers, seconds: float) -> Numbers:

@@ -5,7 +5,7 @@ cimport cython
 cimport libc.math as math
 
 from contact_dynamics.toss cimport vectors as vec
-from contact_dynamics.toss.solid cimport Flat, Pose, Solid
+from contact_dynamics.toss.solid cimport Flat, Pose, Solid, kinetic_energy_of, low_corners, pose_of
 
 cdef extern from *:
     # A checksum of laid_flat.py and this file, which setup.py defines (see numerics/compiled.py).
@@ -15,7 +15,10 @@ cdef extern from *:
 cdef double FACE_ROUNDING
 
 
-@cython.locals(flat=Flat, pose=Pose, low=cython.double, rise=cython.double)
+@cython.locals(
+    flat=Flat, low=cython.double, rise=cython.double, rattles=cython.double, pressing=cython.double,
+    speed=cython.double, share=cython.double, ahead=cython.double, v_n=cython.double, w_n=cython.double,
+)
 cpdef laid_flat(Solid solid, list y, dict faces)
 @cython.locals(i=cython.int, j=cython.int, k=cython.int, high=cython.double)
 cdef _face_below(Solid solid, (double, double, double) n_B, (double, double, double) lean, list near, dict faces)

@@ -72,11 +72,14 @@ def laid_flat(solid: Solid, y: Numbers, faces: Faces) -> Numbers | None:
     n, pressing = flat.normal, -vec.dot(solid.gravity, flat.normal)
     if pressing <= 0.0:
         return None
-    rows = pose_of(solid, y).rows
     v_n, w_n = vec.dot(n, (y[7], y[8], y[9])), vec.dot(n, (y[10], y[11], y[12]))
     along = (y[7] - v_n * n[0], y[8] - v_n * n[1], y[9] - v_n * n[2])
     turning = (w_n * n[0], w_n * n[1], w_n * n[2])
-    speed = vec.norm(along)
+    flush = [*y[:7], along[0], along[1], along[2], turning[0], turning[1], turning[2]]
+    rattles = (kinetic_energy_of(solid, y) - kinetic_energy_of(solid, flush)) / (solid.mass * pressing)
+    if rattles > RATTLING * solid.reach:  # no face takes more than the reach to tip over
+        return None
+    rows, speed = pose_of(solid, y).rows, vec.norm(along)
     share = max(1.0 + flat.friction * v_n / speed, 0.0) if speed > 0.0 else 0.0
     # Friction at the ground moves the place where the weight is borne ahead of the mass centre.
     rests = (share * speed) ** 2 <= 2.0 * pressing * flat.friction * solid.settling
@@ -86,10 +89,8 @@ def laid_flat(solid: Solid, y: Numbers, faces: Faces) -> Numbers | None:
     if face is None:
         return None
     stands = flat.level + face.high + solid.rounding
-    flush = [*y[:7], along[0], along[1], along[2], turning[0], turning[1], turning[2]]
-    rattles = kinetic_energy_of(solid, y) - kinetic_energy_of(solid, flush)
     rise = vec.dot(n, (y[0], y[1], y[2])) - stands
-    if max(rise, 0.0) + rattles / (solid.mass * pressing) > RATTLING * face.tipping:
+    if max(rise, 0.0) + rattles > RATTLING * face.tipping:
         return None
     up = vec.times(rows, face.up)
     x, yy, z = vec.cross(up, n)

@@ -16,8 +16,8 @@ import numpy as np
 from contact_dynamics.impact.spatial.batch import StrikingBodies, spatial_impacts
 from contact_dynamics.records import NamedInt
 from contact_dynamics.rotations.many import crosses, matrices_of
-from contact_dynamics.tolerances import SAMPLED_ARRIVAL, SAMPLED_SETTLING_HEIGHT
-from contact_dynamics.toss.flight import Descent
+from contact_dynamics.tolerances import SAMPLED_SETTLING_HEIGHT
+from contact_dynamics.toss.flight import arrivals
 from contact_dynamics.toss.solid import Solid
 
 if TYPE_CHECKING:
@@ -110,7 +110,7 @@ def next_strikes(
         further: Whether the last states are those after later strikes. Samples go on as long as
             `FEWEST_AT_ONCE` fly on after each.
     """
-    n = len(samples.p_WB_W)
+    n, inverses = len(samples.p_WB_W), np.linalg.inv(samples.inertias_B)
     state = [samples.p_WB_W.copy(), samples.q_WB.copy(), samples.v_WB_W.copy(), samples.w_WB_W.copy()]
     now = np.zeros(n)
     ends = np.full(n, SampleEnd.FOLLOWED, dtype=np.int64)
@@ -125,7 +125,7 @@ def next_strikes(
         ends=ends,
         now=now,
         last=(state[0], state[1], state[2], state[3]),
-        solids=solids_of(solid, samples),
+        solids=solids_of(solid, samples, inverses),
     )
     going = np.arange(n)
     for k in range(depth + (MAX_FURTHER if further else 0)):
@@ -147,7 +147,15 @@ def next_strikes(
         over = going[~arrived]
         going, surfaces, corners = going[arrived], found.surfaces[arrived], found.corners[arrived]
         rebounds = _strike(
-            solid, samples, going, state, surfaces=surfaces, corners=corners, law=law, spread=spread
+            solid,
+            samples,
+            going,
+            state,
+            inverses=inverses[going],
+            surfaces=surfaces,
+            corners=corners,
+            law=law,
+            spread=spread,
         )
         slow = rebounds**2 <= 2.0 * SAMPLED_SETTLING_HEIGHT * float(np.linalg.norm(solid.gravity))
         if k < depth:
@@ -167,6 +175,7 @@ def _strike(
     which: NDArray[np.intp],
     state: list[FloatArray],
     *,
+    inverses: NDArray[np.floating[Any]],
     surfaces: NDArray[np.int64],
     corners: NDArray[np.int64],
     law: RestitutionLaw,
@@ -192,7 +201,7 @@ def _strike(
         restitution_laws=law,
         skip_separating=True,
     )
-    inverses = R @ np.linalg.inv(inertias) @ R.transpose(0, 2, 1)
+    inverses = R @ inverses @ R.transpose(0, 2, 1)
     turning = solid.mass * np.cross(inverses, r[:, None, :])  # rows of the inverse times the matrix of r x
     changes = spread.changes(which, np.linalg.norm(impacts.v_WB_W - state[2][which], axis=1), turning)
     v, w = impacts.v_WB_W + changes[:, :3], impacts.w_WB_W + changes[:, 3:]
@@ -227,26 +236,18 @@ def _arrivals(
     Raises:
         TooLargeError: the search for an end takes too many steps.
     """
-    seconds, parts, then = [], [], []
-    rows = np.hstack(state).tolist()
-    for i, gravity, row, most in zip(which.tolist(), gravities.tolist(), rows, longest.tolist(), strict=True):
-        descent = Descent(solids[i], tuple(gravity), row)
-        arrival = descent.run(0.0, most)
-        descent.look(arrival)
-        seconds.append(arrival)
-        parts.append(descent.striking(SAMPLED_ARRIVAL))
-        then.append(descent.state())
-    after = np.array(then).reshape(-1, 13)
-    surfaces, corners = np.divmod(np.array(parts, dtype=np.int64), solids[0].count)
+    starts = np.hstack(state)
+    after, seconds = np.empty_like(starts), np.empty(len(which))
+    parts = np.empty(len(which), dtype=np.int64)
+    arrivals([solids[i] for i in which.tolist()], gravities, starts, longest, after, seconds, parts)
+    surfaces, corners = np.divmod(parts, solids[0].count)
     corners[surfaces < 0] = -1
-    return _Arrivals(
-        np.array(seconds), surfaces, corners, [after[:, :3], after[:, 3:7], after[:, 7:10], after[:, 10:]]
-    )
+    return _Arrivals(seconds, surfaces, corners, [after[:, :3], after[:, 3:7], after[:, 7:10], after[:, 10:]])
 
 
-def solids_of(solid: Solid, samples: Samples) -> list[Solid]:
-    """Return the body and the flats of each sample."""
-    inertias, inverses = _matrices(samples.inertias_B), _matrices(np.linalg.inv(samples.inertias_B))
+def solids_of(solid: Solid, samples: Samples, inverses_B: NDArray[np.floating[Any]]) -> list[Solid]:
+    """Return the body and the flats of each sample; the inverses of their inertias are (n, 3, 3)."""
+    inertias, inverses = _matrices(samples.inertias_B), _matrices(inverses_B)
     materials = np.stack(
         [samples.lasting_frictions, samples.restitutions, samples.frictions], axis=2
     ).tolist()

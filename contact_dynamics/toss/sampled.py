@@ -172,10 +172,11 @@ def sampled_toss(
     if rests:
         times = np.array([each.seconds for each in rests.values()])
         rest = rest_of(times, np.array([each.y[:3] for each in rests.values()]))
+    marginals = tuple(_marginals(many, count))
     return TossDistribution(
         samples=count,
-        strikes=tuple(_marginals(many, count)),
-        branches=tuple(_branches(solid, many, count)),
+        strikes=marginals,
+        branches=tuple(_branches(solid, many, marginals)),
         face_normals_B=faces,
         face_probabilities=shares,
         rest=rest,
@@ -217,9 +218,10 @@ def _regions(many: ManyStrikes, k: int, which: NDArray[np.intp], count: int) -> 
     )
 
 
-def _branches(solid: Solid, many: ManyStrikes, count: int) -> list[Branch]:
-    """Return the tree, strike after strike."""
+def _branches(solid: Solid, many: ManyStrikes, marginals: tuple[EventRegions, ...]) -> list[Branch]:
+    """Return the tree, strike after strike. ``marginals`` are the regions of all samples with each strike."""
     branches: list[Branch] = []
+    count = len(many.now)
     level = [(-1, np.arange(count))]
     for k in range(len(many.seconds)):
         after = []
@@ -233,8 +235,13 @@ def _branches(solid: Solid, many: ManyStrikes, count: int) -> list[Branch]:
                 which = members[keys[members] == key]
                 strikes = key >= 0
                 surface, corner = divmod(key, solid.count)
+                regions = None
                 if strikes:
                     after.append((len(branches), which))
+                    if number == (many.corners[k] >= 0).sum():
+                        regions = marginals[k]
+                    elif number >= FEWEST:
+                        regions = _regions(many, k, which, count)
                 branches.append(
                     Branch(
                         parent=parent,
@@ -243,7 +250,7 @@ def _branches(solid: Solid, many: ManyStrikes, count: int) -> list[Branch]:
                         surface=solid.flats[surface].name if strikes else "",
                         corner=solid.indices[corner] if strikes else -1,
                         probability=number / count,
-                        regions=_regions(many, k, which, count) if strikes and number >= FEWEST else None,
+                        regions=regions if number >= FEWEST else None,
                     )
                 )
         level = after
