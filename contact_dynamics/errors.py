@@ -42,7 +42,7 @@ class WrongTypeError(InvalidFieldError, TypeError):
 
 
 class UnknownArgumentError(ContactDynamicsError, TypeError):
-    """A call has no argument of that name. The message names the one that was probably meant."""
+    """A call has no argument of that name, or requires another one. The message names what was meant."""
 
 
 class TooLargeError(InvalidFieldError):

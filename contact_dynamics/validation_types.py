@@ -35,8 +35,8 @@ _UNCHECKED: Final = {*_NUMBERS, "Any", "object"}
 _MEANT: Final[dict[str, tuple[str, ...]]] = {
     **dict.fromkeys(("position", "point", "location", "pos", "p"), ("p_WB_W", "p_WC_W", "p_WS_W", "r")),
     **dict.fromkeys(("velocity", "linear_velocity", "vel"), ("v_WB_W", "v")),
-    **dict.fromkeys(("angular_velocity", "omega", "spin"), ("w_WB_W", "w")),
-    **dict.fromkeys(("orientation", "quaternion", "attitude", "rotation", "q"), ("q_WB",)),
+    **dict.fromkeys(("angular_velocity", "omega", "spin"), ("w_WB_W", "w", "angular_velocity")),
+    **dict.fromkeys(("orientation", "quaternion", "attitude", "rotation", "q"), ("q_WB", "rotation")),
     **dict.fromkeys(("mu", "friction_coefficient"), ("friction", "frictions")),
     **dict.fromkeys(("e", "coefficient_of_restitution", "bounce"), ("restitution", "restitutions")),
     **dict.fromkeys(("mass", "inertia", "density"), ("mass_properties", "I_B")),
@@ -54,8 +54,8 @@ _MEANT: Final[dict[str, tuple[str, ...]]] = {
 _INTERNAL: Final = ("_", "HINT_IF", "ALLOWED")
 """How names begin that no user asks for."""
 
-_NAMES: Final[dict[type, Mapping[str, inspect.Parameter]]] = {}
-"""What each class is made with, once that was asked for."""
+_NAMES: Final[dict[type, tuple[set[str], set[str]]]] = {}
+"""What each class is made with, and what of it is required by name, once that was asked for."""
 
 _FUNCTION: Final[type] = Callable  # type: ignore[assignment]  # a class in all that it is used for here
 _SEQUENCES: Final = (collections.abc.Sequence, Collection, tuple, list)
@@ -101,10 +101,8 @@ def check_types_of(page: dict[str, Any]) -> None:
     for name in page["__all__"]:
         function = page[name]
         if inspect.isfunction(function) and not hasattr(function, "__wrapped__"):
-            checked = checks_types(function)
-            if checked is not function:
-                checked.__module__ = page["__name__"]  # where pickle finds it
-                page[name] = checked
+            page[name] = checks_types(function)
+            page[name].__module__ = page["__name__"]  # where pickle finds it
     chapter = sys.modules[page["__name__"]]
     function = _own_function(chapter)
     if inspect.isfunction(function):
@@ -114,13 +112,12 @@ def check_types_of(page: dict[str, Any]) -> None:
 
 
 def checks_types(function: Callable[P, R]) -> Callable[P, R]:
-    """Return the function with a check of its arguments' types, or itself if all of them are numbers.
+    """Return the function with a check of its arguments' names and types.
 
-    The function raises `WrongTypeError` where an argument has another type than its annotation.
+    The function raises `UnknownArgumentError` where it has no argument of a name, and `WrongTypeError` where
+    an argument has another type than its annotation.
     """
     annotations = {name: text for name, text in function.__annotations__.items() if name != "return"}
-    if _is_numeric(annotations.values()):
-        return function
     by_name: dict[str, Expected] = {}
     names: dict[str, inspect.Parameter] = {}
     by_place: list[tuple[str, Expected | None]] = []
@@ -207,12 +204,25 @@ def checks_fields(post_init: Callable[[Any], None], annotations: Mapping[str, st
 
 
 def check_names(made: type, arguments: Mapping[str, object]) -> None:
-    """Raise `UnknownArgumentError` if a class is made with an argument of a name that it does not have."""
-    names = _NAMES.get(made)
-    if names is None:
-        names = _NAMES[made] = inspect.signature(made.__init__).parameters  # type: ignore[misc]  # not called
-    if not arguments.keys() <= names.keys():
-        refuse_unknown(made, next(name for name in arguments if name not in names), names)
+    """Raise `UnknownArgumentError` if a class has no such argument, or requires another one."""
+    known = _NAMES.get(made)
+    if known is None:
+        by_name = inspect.signature(made.__init__).parameters  # type: ignore[misc]  # not called
+        known = {*by_name}, {name for name, one in by_name.items() if _is_required(one)}
+        _NAMES[made] = known
+    names, required = known
+    if names.issuperset(arguments) and not required.difference(arguments):
+        return
+    in_order = inspect.signature(made.__init__).parameters  # type: ignore[misc]  # not called
+    for name in arguments:
+        if name not in names:
+            refuse_unknown(made, name, in_order)
+    missing = [f"{name}{_meaning(made, name)}" for name in in_order if name in required.difference(arguments)]
+    raise UnknownArgumentError(f"{made.__qualname__} requires {', '.join(missing)}")
+
+
+def _is_required(parameter: inspect.Parameter) -> bool:
+    return parameter.kind is parameter.KEYWORD_ONLY and parameter.default is parameter.empty
 
 
 def refuse_unknown(called: Callable[..., object], name: str, allowed: Collection[str]) -> NoReturn:

@@ -32,13 +32,13 @@ from contact_dynamics import (
     motion,
     questions,
     spatial_impact,
+    state_covariance,
     toss,
 )
 from contact_dynamics.contact_modes import contact_modes
 from contact_dynamics.errors import ContactDynamicsError, InvalidFieldError, WrongTypeError
 from contact_dynamics.records import Record
 from contact_dynamics.toss import sampled_toss
-from contact_dynamics.validation_types import checks_types
 from hostile_values.shared import BALL, BOX, CONTACT, CONTACTS, FLOOR, ROD, STATE, TIP, WORLD
 
 TOUCH = PlanarContact(**TIP)
@@ -149,6 +149,16 @@ GUESSES: list[tuple[Any, dict[str, Any], str]] = [
     ),
     (World, {"colour": "red"}, "World has no argument 'colour'. It has bodies, surfaces, gravity_W"),
     (Body.box, {"size": (1, 1, 1), "weight": 1}, "Body.box has no argument 'weight'. It has size, mass, "),
+    (
+        state_covariance,
+        {"attitude": 0.1},
+        "state_covariance has no argument 'attitude', did you mean rotation (rad, >= 0, of a small rotation",
+    ),
+    (
+        Surface,
+        {"name": "floor", "friction": 0.3, "normal_W": (0, 0, 1)},
+        "Surface requires p_WS_W ((3,), m, a point of the surface, world), restitution (Coefficient e, in ",
+    ),
 ]
 """Calls with a guessed name, and how the error begins that names the right one."""
 
@@ -263,15 +273,6 @@ def test_a_check_leaves_no_trace(name: str, thing: Any) -> None:
     assert inspect.signature(thing) == inspect.signature(inner)
     assert pickle.loads(pickle.dumps(thing)) is thing  # noqa: S301  our own
     assert getattr(sys.modules[inner.__module__], inner.__name__) is inner, name
-
-
-@pytest.mark.parametrize("count", [1, 2])
-def test_functions_of_numbers_have_no_check(count: int) -> None:
-    def double(x: float, y: float | None = None) -> float:
-        return 2.0 * x + (y or 0.0)
-
-    assert checks_types(double) is double
-    assert double(count) == 2.0 * count
 
 
 def test_what_is_wrong_in_another_way_is_still_told_as_before() -> None:

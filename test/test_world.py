@@ -39,7 +39,7 @@ def test_a_uniform_body_has_the_mass_properties_of_its_shape() -> None:
         assert made.shape.to_dict() == shape.to_dict()
         assert not made.p_FB_F.any()
     assert Body.box(size, density=1000.0).mass_properties.mass == pytest.approx(0.675)
-    with pytest.raises(InvalidFieldError, match="exactly one of the two"):
+    with pytest.raises(InvalidFieldError, match="mass or density must be given, and not both, got neither"):
         Body.box(size)
 
 

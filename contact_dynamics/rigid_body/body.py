@@ -101,11 +101,14 @@ class MassProperties(HasMassProperties):
 class BodyState(Record):
     """Where a body is and how it moves at one time.
 
+    The arrays are read-only. ``state.R_WB @ vector`` rotates a vector. Functions that require writable arrays
+    take a copy, such as SciPy's ``Rotation.from_quat(state.q_WB.copy())``.
+
     Attributes:
         p_WB_W: (3,), m, centre of mass in the world.
         q_WB: (4,), unit quaternion x, y, z, w: body coordinates into world coordinates.
-        v_WB_W: (3,), m/s, velocity of the centre of mass, world axes.
-        w_WB_W: (3,), rad/s, angular velocity, world axes.
+        v_WB_W: (3,), m/s, velocity of the centre of mass, world axes. The default is zero.
+        w_WB_W: (3,), rad/s, angular velocity, world axes. The default is zero.
         stamp_ns: The time of this state, ns, on the caller's clock.
 
     Raises:
@@ -124,8 +127,8 @@ class BodyState(Record):
         *,
         p_WB_W: ArrayLike,
         q_WB: ArrayLike | None = None,
-        v_WB_W: ArrayLike,
-        w_WB_W: ArrayLike,
+        v_WB_W: ArrayLike = (0.0, 0.0, 0.0),
+        w_WB_W: ArrayLike = (0.0, 0.0, 0.0),
         stamp_ns: int = 0,
         quaternion_wxyz: ArrayLike | None = None,
     ) -> None:

@@ -107,6 +107,12 @@ def test_an_attitude_may_be_given_with_w_first(q: np.ndarray) -> None:
         BodyState(quaternion_wxyz=2.0 * q, **moving)
 
 
+def test_a_state_without_velocities_is_at_rest() -> None:
+    state = BodyState(p_WB_W=[0, 0, 1], q_WB=[0, 0, 0, 1])
+    assert not state.v_WB_W.any()
+    assert not state.w_WB_W.any()
+
+
 @given(q=quaternions, v=vectors, w=vectors, points=st.lists(vectors, min_size=4, max_size=8))
 def test_momenta_and_energy_are_the_sums_over_particles(
     q: np.ndarray, v: np.ndarray, w: np.ndarray, points: list[np.ndarray]

@@ -21,7 +21,8 @@ def check_length_or_none(field: str, value: object) -> float:
 def mass_of(measure: float, *, mass: float | None, density: float | None) -> float:
     """Return the mass, kg, of a shape of that volume, area or length, from a mass or from a density."""
     if (mass is None) == (density is None):
-        raise InvalidFieldError("mass, density", f"{mass}, {density}", "exactly one of the two")
+        found = "neither" if mass is None else "both"
+        raise InvalidFieldError("mass or density", found, "given, and not both")
     if density is None:
         return check_within("mass", mass, 1.0 / LARGEST_NUMBER, LARGEST_NUMBER)
     return check_within("density", density, 1.0 / LARGEST_NUMBER, LARGEST_NUMBER) * measure
