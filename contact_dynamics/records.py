@@ -96,6 +96,9 @@ _LONGEST_ARRAY: Final = 75
 _LINES: Final = 20
 """Lines of a value that is printed."""
 
+_MAX_TABLE: Final = 5
+"""Rows and columns of an array that is shown row by row, where there is room."""
+
 _FEW: Final = 4
 """Lines that are worth a list of records of which more follow."""
 
@@ -304,6 +307,8 @@ def _lines(record: Record, count: int) -> list[str]:
                 for k, each in enumerate(value)
                 if isinstance(each, Record)
             ]
+        elif isinstance(value, np.ndarray) and value.ndim == 2 and max(value.shape) <= _MAX_TABLE:
+            below = [_short(row) for row in value] if value.size > _MAX_SHOWN else []
         if len(below) > room and isinstance(value, tuple | list) and room >= _FEW:
             below = [*below[: room - 1], f"... and {len(below) - room + 1} more"]
         if len(below) <= room:

@@ -126,15 +126,22 @@ class Branch(Record):
 class RestSpread(Record):
     """When and where samples rest. The places need the friction where contact lasts (docs/toss.md).
 
+    They are those of all samples that rest, on whichever face. `TossDistribution.ghosts` has single poses of
+    rest, whose attitudes tell the face.
+
     Attributes:
-        seconds: (5,), s, the `QUANTILES` of the time of rest.
-        positions: (5, 3), m, those of each coordinate of the centre of mass.
+        seconds: (5,), s, the quantiles 5, 25, 50, 75 and 95 % of the time of rest.
+        positions: (5, 3), m, the same quantiles of each coordinate of the centre of mass, world.
         position: Where the centre of mass rests, m (k = 3).
     """
 
     seconds: FloatArray
     positions: FloatArray
     position: Region
+
+    def in_short(self) -> str:
+        """Return which quantiles the numbers are."""
+        return f"RestSpread, quantiles {', '.join(f'{q:.0%}' for q in QUANTILES)} of time (s) and place (m)"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -172,6 +179,8 @@ class TossDistribution(Record):
         rest: When and where samples rest; None if none does, or if they were not followed so far.
         ghosts: Poses of the first samples.
         to_rest: Whether samples were followed to rest, or None if that is not recorded, as in a message.
+        exact: Which of friction, restitution and impact law are the same in all samples, since their
+            ``uncertainty`` was not given. None if that is not recorded.
     """
 
     samples: int
@@ -182,19 +191,24 @@ class TossDistribution(Record):
     rest: RestSpread | None
     ghosts: Ghosts
     to_rest: bool | None = field(default=None, repr=False)
+    exact: tuple[str, ...] | None = field(default=None, repr=False)
 
     def in_short(self) -> str:
-        """Return the number of samples, the most probable faces on top, and the share that did not rest."""
+        """Return the number of samples, where they rest, and what was taken as exact."""
+        exact = f"; taken as exact: {', '.join(self.exact)}" if self.exact else ""
+        return f"TossDistribution of {self.samples} samples{self._rests()}{exact}"
+
+    def _rests(self) -> str:
+        """Return the most probable faces on top, and the share that did not rest."""
         shares = self.face_probabilities.tolist()
         if not shares:
-            none = ", none of which came to rest before the horizon" if self.to_rest else ""
-            return f"TossDistribution of {self.samples} samples{none}"
+            return ", none of which came to rest before the horizon" if self.to_rest else ""
         words = [f"{face} {share:.1%}" for face, share in zip(self.faces_on_top, shares, strict=True)]
         if len(words) > _SHOWN_FACES:
             words[_SHOWN_FACES:] = [f"other faces {sum(shares[_SHOWN_FACES:]):.1%}"]
         if 1.0 - sum(shares) > 0.5 / self.samples:
             words.append(f"not at rest {1.0 - sum(shares):.1%}")
-        return f"TossDistribution of {self.samples} samples, on top at rest: {', '.join(words)}"
+        return f", on top at rest: {', '.join(words)}"
 
     @overload
     def standard_error(self, probability: float) -> float: ...
@@ -205,8 +219,9 @@ class TossDistribution(Record):
     def standard_error(self, probability: float | FloatArray) -> float | FloatArray:
         """Return the standard error of a probability, such as a branch's, by the number of samples.
 
-        Of several, such as ``face_probabilities``, it returns an array. It is zero for 0 and 1, which is not
-        certainty: what no sample shows has a probability of at most 3 / samples, by 95 %.
+        It is the error of sampling only, and does not contain that of inputs taken as exact (`exact`). Of
+        several probabilities, such as ``face_probabilities``, it returns an array. It is zero for 0 and 1,
+        which is not certainty: what no sample shows has a probability of at most 3 / samples, by 95 %.
         """
         if isinstance(probability, np.ndarray):
             return np.array([self.standard_error(share) for share in probability.ravel().tolist()]).reshape(

@@ -39,7 +39,7 @@ from contact_dynamics.toss.law_spread import LawSpread
 from contact_dynamics.toss.next_strikes import ManyStrikes, SampleEnd, next_strikes
 from contact_dynamics.toss.solid import solid_of
 from contact_dynamics.toss.to_rest import check_processes, followed_to_rest
-from contact_dynamics.toss.uncertainty import EXACT, MAX_SPREAD, TossUncertainty, draw
+from contact_dynamics.toss.uncertainty import EXACT, MAX_SPREAD, TossUncertainty, draw, exact_inputs
 from contact_dynamics.tumbling.motion import check_extent
 from contact_dynamics.validation import check_array, check_magnitude, check_positive, check_whole
 from contact_dynamics.validation_batches import check_covariance
@@ -97,7 +97,8 @@ def sampled_toss(
             from standard deviations.
         by_gravity: s^2 and s, by how much the best position and velocity change with gravity, as
             `FitResult.by_gravity`. A state that does not depend on gravity has zeros.
-        uncertainty: How uncertain parameters and law are. The uncertainty of the state is ``covariance``.
+        uncertainty: How uncertain friction, restitution, other parameters and the law of impact are. By
+            default all of them are exact. The uncertainty of the state is ``covariance``.
         count: Number of samples, from 1 to `MAX_SAMPLES`. Standard errors of probabilities are at most
             0.5 / sqrt(count), which is 0.035 for 200.
         strikes: How many next strikes the tree has, from 1 to `MAX_STRIKES`.
@@ -182,6 +183,7 @@ def sampled_toss(
         rest=rest,
         ghosts=_ghosts(many, rests, count),
         to_rest=to_rest,
+        exact=exact_inputs(uncertainty),
     )
 
 

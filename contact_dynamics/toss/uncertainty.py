@@ -106,6 +106,19 @@ class TossUncertainty(Record):
             raise InvalidFieldError("lasting_factor_stds", found, f"{count}, one for each factor, or none")
 
 
+def exact_inputs(uncertainty: TossUncertainty) -> tuple[str, ...]:
+    """Return which of friction, restitution and the law of impact are not uncertain at all."""
+    size = len(uncertainty.covariance)
+    s = (size - (7 if size % 2 else 4)) // 2  # surfaces
+    variances = uncertainty.covariance.diagonal()
+    spread = {
+        "friction": variances[:s].any() or uncertainty.lasting_factor_stds.any(),
+        "restitution": variances[s : 2 * s].any(),
+        "impact law": uncertainty.velocity > 0.0 or uncertainty.spin > 0.0,
+    }
+    return tuple(name for name, is_uncertain in spread.items() if not is_uncertain)
+
+
 def check_factors(field: str, values: ArrayLike) -> FloatArray:
     """Return numbers from 0 to `MAX_SPREAD`, (s,)."""
     factors = check_magnitude(field, check_array(field, values, (None,)), MAX_SPREAD)

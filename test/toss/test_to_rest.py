@@ -105,13 +105,46 @@ def test_printed_samples_that_do_not_rest_say_so() -> None:
     few = {"covariance": np.diag([1e-4] * 12) ** 2, "count": 20}
     args = (BRICK, BodyState(p_WB_W=[0, 0, 1], q_WB=[0, 0, 0, 1], v_WB_W=[0, 0, 0], w_WB_W=[1, 0, 0]))
     world = World(bodies=(BRICK,), surfaces=(FLOOR,))
-    none = "TossDistribution of 20 samples, none of which came to rest before the horizon"
-    assert str(sampled_toss(*args, world, horizon=0.5, to_rest=True, **few)).splitlines()[0] == none
-    unasked = "TossDistribution of 20 samples"
+    exact = "; taken as exact: friction, restitution, impact law"
+    none = f"TossDistribution of 20 samples, none of which came to rest before the horizon{exact}"
+    assert (
+        str(sampled_toss(*args, world, horizon=0.5, to_rest=True, **few))
+        .partition("\n  samples")[0]
+        .replace("\n ", "")
+        == none
+    )
+    unasked = f"TossDistribution of 20 samples{exact}"
     assert str(sampled_toss(*args, world, horizon=0.5, **few)).splitlines()[0] == unasked
     times = sampled_toss(*args, world, to_rest=True, **few).rest
     assert times is not None
     some = sampled_toss(*args, world, to_rest=True, horizon=float(times.seconds[2]), **few)
     still = 1.0 - some.face_probabilities.sum()
     assert 0.0 < still < 1.0
-    assert str(some).partition("\n  samples")[0].replace("\n ", "").endswith(f"not at rest {still:.1%}")
+    assert (
+        str(some).partition("\n  samples")[0].replace("\n ", "").endswith(f"not at rest {still:.1%}{exact}")
+    )
+
+
+@pytest.mark.parametrize(
+    ("uncertainty", "exact"),
+    [
+        (TossUncertainty(height=1e-3), ("friction", "restitution", "impact law")),
+        (TossUncertainty(spin=0.1), ("friction", "restitution")),
+        (TossUncertainty(covariance=np.diag([0, 1, 0, 0, 0, 0]) * 1e-4), ("friction", "impact law")),
+        (TossUncertainty(covariance=np.diag([1] + [0] * 8) * 1e-4), ("restitution", "impact law")),
+        (TossUncertainty(lasting_factors=[1], lasting_factor_stds=[0.1]), ("restitution", "impact law")),
+    ],
+)
+def test_samples_name_the_inputs_that_were_taken_as_exact(
+    uncertainty: TossUncertainty, exact: tuple[str, ...]
+) -> None:
+    state = BodyState(p_WB_W=[0, 0, 1], q_WB=[0, 0, 0, 1])
+    found = sampled_toss(BRICK, state, World(surfaces=(FLOOR,)), uncertainty=uncertainty, count=2, strikes=1)
+    assert found.exact == exact
+
+
+def test_the_quantiles_of_rest_are_printed_and_named(alone: TossDistribution) -> None:
+    assert alone.rest is not None
+    shown = str(alone.rest)
+    assert shown.startswith("RestSpread, quantiles 5%, 25%, 50%, 75%, 95% of time (s) and place (m)")
+    assert f"    [{alone.rest.positions[2, 0]:.6g}, " in shown
