@@ -107,6 +107,7 @@ COLUMNS: Final[dict[str, type]] = {
     "states_fitted": int,
     "summary": str,
     "surface": str,
+    **{f"contact_{axis}": float for axis in "xyz"},
     "mode_count": int,
     "margins": str,
     "contact_forces": str,
@@ -124,8 +125,9 @@ COLUMNS: Final[dict[str, type]] = {
 
 If a question is about many states or candidates, ``state`` is the row's place among them, from 0. Times are
 ns, ``computation_time`` is s. The state that the answer used is stamped ``state_stamp_ns``: the one that was
-taken, or the newest of ``states_fitted``. Lengths are m, quaternions x, y, z, w, velocities m/s and rad/s.
-The errors are the distance, m, the angle, rad, and the differences of the velocities, m/s and rad/s.
+taken, or the newest of ``states_fitted``. Lengths are m, quaternions x, y, z, w with w >= 0, velocities m/s
+and rad/s. The errors are the distance, m, the angle, rad, and the differences of the velocities, in the same
+units.
 
 ``mode_count`` is the number of consistent modes, and ``margins`` is the margin of each of them, N, as JSON.
 The contact forces on the body, N, and its accelerations at the contacts, m/s^2, both (modes, contacts, 3) in
@@ -246,7 +248,7 @@ class Rows:
         offset = self._offset(body_name)
         numbers = [
             *origin_of_published_frame(state, offset).tolist(),
-            *state.q_WB.tolist(),
+            *_with_positive_w(state.q_WB).tolist(),
             *state.v_WB_W.tolist(),
             *state.w_WB_W.tolist(),
         ]
@@ -255,6 +257,11 @@ class Rows:
     def _offset(self, body_name: str) -> FloatArray:
         known = [body.p_FB_F for body in self._world.bodies if body.name == body_name]
         return known[0] if known else np.zeros(3)
+
+
+def _with_positive_w(q_WB: FloatArray) -> FloatArray:
+    """Return quaternions, (..., 4), of the two that mean the same attitude, so that rows compare."""
+    return np.where(q_WB[..., 3:] < 0.0, -q_WB, q_WB)
 
 
 def _errors(predicted: BodyState, measured: BodyState) -> dict[str, Cell]:
@@ -276,9 +283,11 @@ def cells_of_tumbling(answer: TumblingAnswer, asked: Asked) -> Iterator[Cells]: 
 
 
 def cells_of_impact(answer: ImpactAnswer, asked: Asked) -> Iterator[Cells]:  # noqa: ARG001  as all
-    """Yield the outcome of the impact."""
+    """Yield the outcome of the impact, and where its first contact is."""
     outcome = answer.impact.outcome
-    yield _cells("several at once" if outcome is None else outcome.name.lower(), answer.contacts.surfaces)
+    summary = "several at once" if outcome is None else outcome.name.lower()
+    place = zip("xyz", answer.contacts.p_WC_W[0].tolist(), strict=True)
+    yield {**_cells(summary, answer.contacts.surfaces), **{f"contact_{axis}": x for axis, x in place}}
 
 
 def cells_of_toss(answer: TossAnswer, asked: Asked) -> Iterator[Cells]:  # noqa: ARG001  as all
@@ -354,7 +363,7 @@ def _of_states(
     """Yield the cells of each state. Times have none, because such a question names none."""
     states = answer.states
     origins = origins_of_published_frame(states.p_WB_W, states.q_WB, answer.p_FB_F)
-    numbers = np.concatenate([origins, states.q_WB, states.v_WB_W, states.w_WB_W], axis=1)
+    numbers = np.concatenate([origins, _with_positive_w(states.q_WB), states.v_WB_W, states.w_WB_W], axis=1)
     for i, row in enumerate(numbers.tolist()):
         yield {
             "state": i,

@@ -57,6 +57,11 @@ def test_a_row_for_each_question_of_a_log(asked: Asked, tmp_path: Path) -> None:
     assert rows[-1]["status"] == "STALE_STATE"
     for row in rows:
         assert json.loads(row["question"]).get("body_name", "") == row["body"]
+        assert not row["predicted_qw"] or float(row["predicted_qw"]) >= 0.0
+        is_impact = row["service"] == "predict_impact" and row["status"] == "OK"
+        assert all((row[f"contact_{axis}"] != "") == is_impact for axis in "xyz")
+    heights = [float(row["contact_z"]) for row in rows if row["contact_z"] and row["surface"] == "floor"]
+    assert heights == pytest.approx([0.0] * len(heights), abs=EXACT)
 
 
 def test_a_question_about_many_states_has_a_row_for_each(asked: Asked, tmp_path: Path) -> None:
