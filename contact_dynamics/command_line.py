@@ -6,6 +6,7 @@ from __future__ import annotations
 import argparse
 import difflib
 import gc
+import io
 import os
 import sys
 import warnings
@@ -43,6 +44,9 @@ class Verb(NamedTuple):
 
 INTERRUPTED: Final = 130
 """The exit code after Ctrl-C, as shells have it."""
+
+BROKEN_PIPE: Final = 141
+"""The exit code where the reader of the output has gone, as `head` goes. Shells have it too."""
 
 DISCOVERY_RANGE: Final = "ROS_AUTOMATIC_DISCOVERY_RANGE"
 _SERVER_OF_DISCOVERY: Final = "ROS_DISCOVERY_SERVER"
@@ -138,6 +142,32 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if "_ARGCOMPLETE" in os.environ:
         _complete()
     given = list(sys.argv[1:] if arguments is None else arguments)
+    out = sys.stdout
+    if out is sys.__stdout__ and isinstance(out, io.TextIOWrapper) and not out.isatty():
+        raw = _Output(out.fileno(), "w", closefd=False)
+        output: Any = raw if out.write_through else io.BufferedWriter(raw)  # -u writes through
+        sys.stdout = io.TextIOWrapper(
+            output, encoding=out.encoding, errors=out.errors, write_through=out.write_through
+        )
+    try:
+        return _main(given)
+    finally:
+        sys.stdout.flush()
+
+
+class _Output(io.FileIO):
+    """The standard output. It ends the command without a word where the reader has gone, as `head` goes."""
+
+    def write(self, data: Any) -> int:
+        """Write some bytes."""
+        try:
+            return super().write(data)
+        except BrokenPipeError:
+            os.dup2(os.open(os.devnull, os.O_WRONLY), self.fileno())  # what else is written on the way out
+            raise SystemExit(BROKEN_PIPE) from None
+
+
+def _main(given: list[str]) -> int:
     parser = _parser()
     if not given:
         parser.print_help(sys.stderr)

@@ -11,13 +11,16 @@ from __future__ import annotations
 
 import re
 from array import array
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import lru_cache
-from typing import Any, ClassVar, Final
+from typing import TYPE_CHECKING, Any, ClassVar, Final
 
 import numpy as np
 
 from contact_dynamics.errors import InvalidFieldError
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
 
 PRIMITIVES: Final = {
     "bool": "?", "byte": "B", "char": "B", "int8": "b", "uint8": "B", "int16": "h", "uint16": "H",
@@ -41,6 +44,7 @@ class Field:
         is_array: Whether it holds several.
         count: The number of elements, or None if each message has its own.
         default: The default in the type's text, or None if it has none.
+        names: The names of its values: the constants of its type that stand before it in the type's text.
     """
 
     name: str
@@ -48,6 +52,7 @@ class Field:
     is_array: bool = False
     count: int | None = None
     default: Any = None
+    names: Mapping[Any, str] = field(default_factory=dict, compare=False)
 
 
 class Message:
@@ -63,8 +68,8 @@ class Message:
 
     def __init__(self, **values: Any) -> None:
         """Give each field its value, or its default."""
-        for field in self.FIELDS:
-            setattr(self, field.name, values[field.name] if field.name in values else self.empty(field))
+        for each in self.FIELDS:
+            setattr(self, each.name, values[each.name] if each.name in values else self.empty(each))
 
     @classmethod
     def empty(cls, field: Field) -> Any:
@@ -112,11 +117,11 @@ def message_types(type_name: str, definition: str) -> dict[str, type[Message]]:
     for full_name, text in texts.items():
         types[full_name] = _class(full_name, text, types)
     for full_name, made in types.items():
-        for field in made.FIELDS:
-            if field.type_name not in {*types, *PRIMITIVES, "string"}:
+        for each in made.FIELDS:
+            if each.type_name not in {*types, *PRIMITIVES, "string"}:
                 raise InvalidFieldError(
                     "definition",
-                    f"{full_name}.{field.name} of the type {field.type_name}",
+                    f"{full_name}.{each.name} of the type {each.type_name}",
                     "types it defines",
                 )
     return types
@@ -126,6 +131,7 @@ def _class(full_name: str, text: str, types: dict[str, type[Message]]) -> type[M
     package, _, name = full_name.rpartition("/")
     fields: list[Field] = []
     constants: dict[str, Any] = {}
+    names: dict[Any, str] = {}  # constants that stand before the next field
     for number, line in enumerate(text.splitlines(), start=1):
         stripped = line.strip()
         if not stripped or stripped.startswith("#"):
@@ -137,7 +143,8 @@ def _class(full_name: str, text: str, types: dict[str, type[Message]]) -> type[M
             )
         rest = match["rest"]
         if rest.startswith("=") and not match["array"]:
-            constants[match["name"]] = _value(rest[1:].strip(), match["type"])
+            constants[match["name"]] = value = _value(rest[1:].strip(), match["type"])
+            names[value] = match["name"]
             continue
         rest = rest.partition("#")[0].strip() if not rest.startswith(("'", '"')) else rest
         bounded = _BOUNDED in (match["array"] or "")
@@ -148,8 +155,10 @@ def _class(full_name: str, text: str, types: dict[str, type[Message]]) -> type[M
                 is_array=match["array"] is not None,
                 count=int(match["count"]) if match["count"] and not bounded else None,
                 default=_default(rest, match["type"], is_array=match["array"] is not None) if rest else None,
+                names=names,
             )
         )
+        names = {}
     return type(name, (Message,), {"FIELDS": tuple(fields), "TYPES": types, **constants})
 
 

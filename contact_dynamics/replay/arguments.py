@@ -46,7 +46,9 @@ def replay_parser() -> argparse.ArgumentParser:
         modes.add_parser(VERIFY, usage=usage, help=MODES[VERIFY], description=_sentence(MODES[VERIFY]))
     )
     inside = modes.add_parser(INFO, help=MODES[INFO], description=_sentence(MODES[INFO]))
-    inside.add_argument("logs", nargs="+", metavar="LOG", help="a log of the server, or any rosbag2 bag")
+    inside.add_argument(
+        "logs", nargs="+", metavar="LOG", help="a log of the server, any rosbag2 bag, or a folder of them"
+    )
     _add_table(modes.add_parser(TABLE, help=MODES[TABLE], description=_sentence(MODES[TABLE])))
     _add_view(modes.add_parser(VIEW, help=MODES[VIEW], description=_sentence(MODES[VIEW])))
     _add_publish(modes.add_parser(PUBLISH, help=MODES[PUBLISH], description=_sentence(MODES[PUBLISH])))

@@ -120,7 +120,7 @@ def _verify(given: argparse.Namespace) -> int:
 
 
 def _info(given: argparse.Namespace) -> int:
-    print("\n\n".join(info(Path(name)) for name in given.logs))
+    print("\n\n".join(info(log) for name in given.logs for log in logs_in(Path(name))))
     return 0
 
 

@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 import re
 import warnings
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from dataclasses import field as attribute
 from datetime import datetime, timezone
 from typing import TYPE_CHECKING, Any, Final
@@ -33,6 +33,8 @@ if TYPE_CHECKING:
 _PUBLISHERS: Final = re.compile(r" \(\d+ publishers?\)")
 """In a message: how many publishers there were, which no log has. It is not compared either."""
 
+_LONGEST_VALUE: Final = 120  # characters, since a message that an answer carries can be pages long
+
 MEASURED: Final = frozenset({"computation_time"})
 """These fields of a response say how the answer was made, not what it is. They are not compared."""
 
@@ -43,16 +45,40 @@ class Difference:
 
     Attributes:
         field: Path of the field within the response, as in "modes[2].margin".
-        logged: Its value in the log.
-        recomputed: Its value when the question is asked again.
+        logged: Its value in the log, or the name of that value if it has one.
+        recomputed: Its value when the question is asked again, or its name.
         size: The difference relative to the larger of the two, or to 1 if both are smaller. It is infinite if
             the values are not numbers, if one of them is not finite, or if arrays have unequal lengths.
+        is_length: Whether it is the number of elements of an array.
     """
 
     field: str
     logged: object
     recomputed: object
     size: float
+    is_length: bool = False
+
+    @property
+    def rank(self) -> tuple[bool, bool, bool, float]:
+        """Where it stands among others: fields, then elements of arrays, then lengths; the largest first.
+
+        Of fields and elements, those come last whose difference 6 digits do not show.
+        """
+        is_hidden = _rounded(self.logged) == _rounded(self.recomputed)
+        return self.is_length, is_hidden, self.field.endswith("]"), -self.size
+
+
+def in_words(difference: Difference) -> str:
+    """Return a difference as a line. Numbers have 6 digits, or all of them if these are the same."""
+    one, other = _rounded(difference.logged), _rounded(difference.recomputed)
+    if one == other:
+        one, other = repr(difference.logged), repr(difference.recomputed)
+    return f"{difference.field}: logged {one}, recomputed {other}"
+
+
+def _rounded(value: object) -> str:
+    text = f"{value:.6g}" if isinstance(value, float) else repr(value)
+    return text if len(text) <= _LONGEST_VALUE else f"{text[:_LONGEST_VALUE]}..."
 
 
 def differences(logged: Message, recomputed: object, *, path: str = "") -> Iterator[Difference]:
@@ -104,11 +130,14 @@ def _of_numbers(
             continue
         where = f"{name}[{index}]" if is_array else name
         size = _size(x, y) if to_python is float else math.inf
-        yield Difference(field=where, logged=x, recomputed=y, size=size)
+        logged, recomputed = field.names.get(x, x), field.names.get(y, y)
+        yield Difference(field=where, logged=logged, recomputed=recomputed, size=size)
 
 
 def _of_lengths(name: str, ours: int, theirs: int) -> Difference:
-    return Difference(field=f"number of {name}", logged=ours, recomputed=theirs, size=math.inf)
+    return Difference(
+        field=f"number of {name}", logged=ours, recomputed=theirs, size=math.inf, is_length=True
+    )
 
 
 def _size(x: float, y: float) -> float:
@@ -162,13 +191,15 @@ class OtherAnswer:
         number: Number of the question among those to this service, from 1.
         asked_ns: When it came, ns since the epoch, by the machine's clock. It is the ``log_time`` of its
             event.
-        differences: The fields that differ most, the largest difference first.
+        differences: The fields that differ most, in the order of `Difference.rank`.
+        repeated: How many later questions to this service have the same differences, to the digits shown.
     """
 
     service: str
     number: int
     asked_ns: int
     differences: tuple[Difference, ...]
+    repeated: int = 0
 
 
 @dataclass(slots=True, kw_only=True)
@@ -182,7 +213,7 @@ class Verification:
         versions_now: Versions of the libraries that answered again, by name.
         instead: Values of parameters that counted instead of those in the log, by name.
         services: Tallies by the service's name.
-        others: The questions whose answers differ most, the largest difference first.
+        others: The questions whose answers differ most, in the order of their first differences.
         unreadable: The first reason why a call could not be read, or None if all could.
         damage: The damaged parts of the log, in words, or None if all was whole.
         lost_bytes: How many bytes of the log could not be read.
@@ -305,10 +336,15 @@ def note_difference(
     same, told = _beyond(differing, found.tolerance)
     if told:
         tally.different += 1
+        shown = [in_words(each) for each in told]
+        for i, other in enumerate(found.others):
+            if other.service == service and [in_words(each) for each in other.differences] == shown:
+                found.others[i] = replace(other, repeated=other.repeated + 1)
+                return
         other = OtherAnswer(
             service=service, number=tally.questions, asked_ns=asked_ns, differences=tuple(told)
         )
-        found.others = sorted([*found.others, other], key=lambda each: -each.differences[0].size)[:MAX_TOLD]
+        found.others = sorted([*found.others, other], key=lambda each: each.differences[0].rank)[:MAX_TOLD]
     elif same:
         tally.equal += 1
     else:
@@ -316,10 +352,10 @@ def note_difference(
 
 
 def _beyond(found: Iterable[Difference], tolerance: float) -> tuple[bool, list[Difference]]:
-    """Return whether there is no difference at all, and the largest ones beyond the tolerance."""
+    """Return whether there is no difference at all, and the first ones beyond the tolerance."""
     listed = list(found)
     told = [each for each in listed if tolerance == 0.0 or each.size > tolerance]
-    return not listed, sorted(told, key=lambda each: -each.size)[:MAX_FIELDS_TOLD]
+    return not listed, sorted(told, key=lambda each: each.rank)[:MAX_FIELDS_TOLD]
 
 
 def _unreadable(found: Verification, tally: ServiceTally, reason: str) -> None:
@@ -329,8 +365,6 @@ def _unreadable(found: Verification, tally: ServiceTally, reason: str) -> None:
 
 AS_LOGGED: Final = "as logged"
 """What comes of a log whose answers are all the same today."""
-
-_LONGEST_VALUE: Final = 120  # characters, since a message that an answer carries can be pages long
 
 
 def report(found: Verification) -> str:
@@ -349,7 +383,8 @@ def report(found: Verification) -> str:
     lines += _table(found)
     for other in found.others:
         lines += _other(other)
-    untold = sum(tally.different for tally in found.services.values()) - len(found.others)
+    told = sum(1 + other.repeated for other in found.others)
+    untold = sum(tally.different for tally in found.services.values()) - told
     if untold > 0:
         lines.append(f"  and {untold} more questions with smaller differences")
     lines += _gaps(found)
@@ -385,10 +420,9 @@ def _table(found: Verification) -> list[str]:
 
 
 def _other(other: OtherAnswer) -> list[str]:
-    fields = [
-        f"    {each.field}: logged {_short(each.logged)}, recomputed {_short(each.recomputed)}"
-        for each in other.differences
-    ]
+    fields = [f"    {in_words(each)}" for each in other.differences]
+    if other.repeated:
+        fields.append(f"    the same in {other.repeated} further question{'s'[: other.repeated > 1]}")
     asked = f"asked {utc(other.asked_ns)} (log_time {other.asked_ns})"
     return [f"  {other.service}, question {other.number}, {asked}:", *fields]
 
@@ -414,8 +448,3 @@ def _gaps(found: Verification) -> list[str]:
             "  what was read is compared above; an answer can differ where a state that it used is lost"
         )
     return lines
-
-
-def _short(value: object) -> str:
-    text = repr(value)
-    return text if len(text) <= _LONGEST_VALUE else f"{text[:_LONGEST_VALUE]}..."

@@ -42,15 +42,17 @@ def test_the_contents_of_a_log(asked: Asked) -> None:
 def test_other_bags_and_damaged_ones(
     asked: Asked, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    write_flight(tmp_path / "bag")
+    (tmp_path / "runs").mkdir()
+    write_flight(tmp_path / "runs" / "bag")
     (whole,) = asked.log.glob("*.mcap")
     cut = tmp_path / "cut.mcap"
     cut.write_bytes(whole.read_bytes()[: whole.stat().st_size * 3 // 10])
-    assert main(["info", str(tmp_path / "bag"), str(cut)]) == 0
+    assert main(["info", str(tmp_path / "runs"), str(cut)]) == 0
     bag, damaged = capsys.readouterr().out.split("\n\n" + str(cut))
     assert table(bag, "topic")["/tracker/ball"] == ["nav_msgs/msg/Odometry", str(int(0.95 * RATE))]
     assert "bodies" not in bag
     assert "service" not in bag
     assert "cut.mcap is damaged or was cut short" in damaged
+    assert bag.startswith(str(tmp_path / "runs" / "bag"))
     assert main(["info", str(tmp_path / "none")]) == 2
     assert "no such file or folder" in capsys.readouterr().err

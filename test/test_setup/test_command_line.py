@@ -11,9 +11,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from contact_dynamics.command_line import INTERRUPTED, VERBS, main
+from contact_dynamics.command_line import BROKEN_PIPE, INTERRUPTED, VERBS, main
 from contact_dynamics.nodes.parameters import described_server_parameters
 from contact_dynamics.nodes.visualizer_parameters import VISUALIZER_PARAMETERS
+from contact_dynamics.recording import BagWriter
 
 ROOT = Path(__file__).parents[2]
 BROUGHT = ("numpy", "numpy.libs", "scipy", "scipy.libs", "mcap", "lz4", "zstandard", "typing_extensions.py")
@@ -188,6 +189,27 @@ def test_an_interrupted_verb_ends_without_a_traceback(
     monkeypatch.setattr("contact_dynamics.cases.run.main", interrupted)
     assert main(["cases"]) == INTERRUPTED
     assert capsys.readouterr().err == "\nstopped\n"
+
+
+@pytest.mark.parametrize("arguments", [("--help",), ("cases", "--list"), ("replay", "info", "FOLDER")])
+def test_a_reader_of_the_output_that_goes_ends_a_verb_without_a_word(
+    tmp_path: Path, arguments: tuple[str, ...]
+) -> None:
+    """As `head` does: here nobody reads."""
+    with BagWriter(tmp_path / "log", run={}) as writer:
+        writer.add_topic("/pose", "geometry_msgs/msg/PoseStamped")
+    command = [str(tmp_path) if word == "FOLDER" else word for word in arguments]
+    read, write = os.pipe()
+    os.close(read)
+    done = subprocess.run(
+        [sys.executable, "-m", "contact_dynamics", *command],
+        stdout=write,
+        stderr=subprocess.PIPE,
+        text=True,
+        check=False,
+    )
+    os.close(write)
+    assert (done.stderr, done.returncode) == ("", BROKEN_PIPE)
 
 
 def test_the_quick_start_names_every_verb() -> None:
