@@ -8,6 +8,7 @@ the direction.
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Final, Literal, TypeAlias
 
 from contact_dynamics.errors import InvalidFieldError
@@ -62,6 +63,15 @@ def mode_in_words(mode: str) -> str:
     words += "".join(f", {count} {LETTERS[kind][count > 1]}" for kind, count in others)
     # A rigid body of which one contact stays fixed can only turn about it.
     return f"it tips ({words})" if set(kinds) == {SEPARATES, STICKS} else words
+
+
+def margin_in_words(mode: str, margin: float, modes_beyond: Collection[str]) -> str:
+    """Return words for a mode, the change of the wrench that ends it, N, and the modes that follow."""
+    if not math.isfinite(margin):
+        ends = "its margin is unknown" if math.isnan(margin) else "no change of the wrench ends that"
+        return f"{mode_in_words(mode)}, and {ends}"
+    then = " or ".join(map(mode_in_words, modes_beyond)) or "no mode is consistent"
+    return f"{mode_in_words(mode)} up to a change of {margin:.3g} N, then {then}"
 
 
 def check_modes(modes: Collection[str], count: int, letters: tuple[Letter, ...]) -> None:

@@ -4,13 +4,14 @@
 from __future__ import annotations
 
 import inspect
+import math
 import pydoc
 
 import pytest
 
 import contact_dynamics as cd
 from contact_dynamics.contact_modes import Certainty
-from contact_dynamics.contact_modes.letters import mode_in_words
+from contact_dynamics.contact_modes.letters import margin_in_words, mode_in_words
 from contact_dynamics.errors import InvalidFieldError
 
 CRATE = cd.Body.box((0.4, 0.3, 0.3), mass=5.0)
@@ -74,3 +75,9 @@ def test_help_lists_every_member_with_its_text(kind: type) -> None:
 def test_letters_that_there_are_not_are_an_error(mode: str) -> None:
     with pytest.raises(InvalidFieldError, match="mode must be letters of s, l, r, f, c, got"):
         mode_in_words(mode)
+
+
+def test_a_margin_that_is_no_number_is_told_in_words() -> None:
+    assert margin_in_words("ff", math.inf, ()) == "it stays fixed, and no change of the wrench ends that"
+    assert margin_in_words("ff", math.nan, ()) == "it stays fixed, and its margin is unknown"
+    assert margin_in_words("ff", 1.0, ()).endswith(" up to a change of 1 N, then no mode is consistent")

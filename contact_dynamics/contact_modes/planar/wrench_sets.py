@@ -15,7 +15,7 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final, NamedTuple
 
-from contact_dynamics.contact_modes.letters import PLANAR_LETTERS, check_modes
+from contact_dynamics.contact_modes.letters import PLANAR_LETTERS, check_modes, margin_in_words
 from contact_dynamics.contact_modes.planar.answer import planar_contact_modes
 from contact_dynamics.contact_modes.planar.enumeration import kinematic_cells
 from contact_dynamics.contact_modes.planar.judgement import judge_all
@@ -155,6 +155,10 @@ class PlanarModeMargin(Record):
     change: PlanarWrench
     verdict_beyond: ModeVerdict
     modes_beyond: tuple[str, ...]
+
+    def in_short(self) -> str:
+        """Return the mode, the change of the wrench that ends it, and what then follows."""
+        return f"{type(self).__name__}: {margin_in_words(self.mode, self.margin, self.modes_beyond)}"
 
 
 def planar_mode_margins(

@@ -31,7 +31,7 @@ from typing import TYPE_CHECKING, Final, cast
 
 import numpy as np
 
-from contact_dynamics.contact_modes.letters import STAYS, STICKS
+from contact_dynamics.contact_modes.letters import STAYS, STICKS, margin_in_words
 from contact_dynamics.contact_modes.result import ModeVerdict, Refusal, RefusedMode, check_length
 from contact_dynamics.contact_modes.spatial.answer import evidence_of, spatial_contact_modes, verdict_of
 from contact_dynamics.contact_modes.spatial.exact_modes import letters_of
@@ -96,7 +96,8 @@ class SpatialModeMargin(Record):
         margin: N, the size of the least change that leaves the mode, in |f|^2 + |torque / length|^2. It is
             infinite where no change does that, and NaN where it is unknown (`spatial_mode_margins`).
         length: m, the length in that metric.
-        change_W: (6,), N and N m, the least change itself, world axes; zero where there is none.
+        change_W: (6,), the least change itself: force, N, and torque about the centre of mass, N m, world
+            axes. It is zero where there is none.
         verdict_beyond: The verdict just behind the boundary, or the present one where there is no boundary.
         modes_beyond: The letters of the consistent modes there, each once.
     """
@@ -107,6 +108,11 @@ class SpatialModeMargin(Record):
     change_W: FloatArray
     verdict_beyond: ModeVerdict
     modes_beyond: tuple[str, ...]
+
+    def in_short(self) -> str:
+        """Return the mode, the change of the wrench that ends it, and what then follows."""
+        words = margin_in_words(self.mode, self.margin, self.modes_beyond)
+        return f"{type(self).__name__}: {words} (change_W in N and N m)"
 
 
 def spatial_mode_margins(

@@ -156,12 +156,12 @@ class LargestLoad(Record):
     def in_short(self) -> str:
         """Return how much it bears, and what then follows."""
         if math.isinf(self.factor):
-            return "LargestLoad: it stays fixed under any"
+            return "LargestLoad: it stays fixed under any multiple of the load"
         then = " or ".join(map(mode_in_words, self.modes_beyond)) or "no mode is consistent"
-        fixed = f"it stays fixed up to {self.factor:.6g} of the load"
+        fixed = f"it stays fixed up to {self.factor:.3g} times the load"
         if self.only_rest < self.factor:  # beyond it another mode is consistent too
             surely = f"it surely stays fixed up to {self.only_rest:.3g}"
-            fixed = f"{surely} and may up to {self.factor:.6g} of the load"
+            fixed = f"{surely} and may up to {self.factor:.3g} times the load"
         return f"LargestLoad: {fixed}, then {then}"
 
 

@@ -47,13 +47,14 @@ def test_a_crate_on_its_feet(friction: float, push: dict[str, list[float]], fact
     assert found.factor == pytest.approx(factor, rel=1e-10)
     assert found.only_rest == pytest.approx(factor, rel=1e-10)
     assert (found.verdict_beyond, found.modes_beyond) == (ModeVerdict.UNIQUE, (mode,))
+    assert f"it stays fixed up to {factor:.3g} times the load, then " in found.in_short()
 
 
 def test_a_push_within_the_friction_cone_may_become_any() -> None:
     found = largest_load(on_floor(0.5), force_W=[0.4, 0, -1.0], at_W=[0, 0, 0])
     assert (found.factor, found.modes_beyond) == (math.inf, ())
     assert found.only_rest == math.inf
-    assert "under any" in found.in_short()
+    assert "under any multiple of the load" in found.in_short()
 
 
 def test_a_body_that_moves_and_a_load_that_is_none_are_errors() -> None:
