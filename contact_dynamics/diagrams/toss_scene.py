@@ -33,7 +33,7 @@ MAX_OUTLINES: Final = 4
 """Outlines of the body along the toss, at its first strikes. Many small rebounds follow at nearly one place.
 """
 
-MAX_GHOSTS: Final = 8
+MAX_GHOSTS: Final = 12
 """Outlines of the body along its way on paper, where nothing moves. They are equally far apart."""
 
 MAX_STRIKING: Final = 6
@@ -53,18 +53,22 @@ _SAMPLES: Final = Paint(palette.PREDICTED, paper.SKY)
 _TREE: Final = Paint(palette.AFTER_IMPACT, paper.GREY)
 
 
-def toss_marks(shape: Shape, toss: Toss | TossAnswer, *, up_W: FloatArray) -> list[Mark]:
+def toss_marks(
+    shape: Shape, toss: Toss | TossAnswer, *, up_W: FloatArray, told: TossDistribution | None = None
+) -> list[Mark]:
     """Return the marks of a toss or of the answer to a question about one.
 
-    Labels are above what they name: ``up_W``, (3,), is the unit vector up.
+    Labels are above what they name: ``up_W``, (3,), is the unit vector up. ``told`` has the samples of a
+    toss; an answer has its own.
     """
+    rests = (toss if isinstance(toss, Toss) else toss.toss).end == TossEnd.RESTS
     if isinstance(toss, Toss):
-        events, told, rests = toss.events, None, False
+        events = toss.events
         first, *others = (
             each.at(np.linspace(0.0, each.seconds, MAX_POINTS)) for each in (toss, *toss.alternatives)
         )
     else:
-        events, told, rests = toss.toss.events, toss.distribution, toss.toss.end == TossEnd.RESTS
+        events, told = toss.toss.events, toss.distribution
         first, *others = (path.trajectory for path in toss.paths)
     strikes = [event for event in events if event.kind == TossEventKind.STRIKES]
     points = np.array([point for event in strikes for point in event.p_WC_W]).reshape(-1, 3)
@@ -78,7 +82,9 @@ def toss_marks(shape: Shape, toss: Toss | TossAnswer, *, up_W: FloatArray) -> li
         Lines("ghosts", _GHOSTS, _ghosts(shape, first), width=_THIN, legend="the body", in_viewer=False),
         Lines("path", _PATH, [first.p_WB_W], width=1.9, legend="the toss"),
         Lines("begin", _PATH, list(outline(shape, *begin)), on_paper=False),
-        Lines("end", _PATH, list(outline(shape, *end)), width=0.9),
+        Lines(
+            "end", _PATH, list(outline(shape, *end)), width=0.9, legend="at rest" if rests else "at the end"
+        ),
         Lines("outlines", _STRIKES, struck, on_paper=False),
         Points("strikes", _STRIKES, points, size=5.0, legend="strikes"),
         *([solid(shape, "rest/faces", _PATH, *end, opacity=0.25, on_paper=False)] if rests else []),
@@ -91,7 +97,7 @@ def _ghosts(shape: Shape, way: Trajectory) -> list[FloatArray]:
     lengths = np.concatenate([[0.0], np.cumsum(steps)])
     apart = max(shape.size, lengths[-1] / MAX_GHOSTS)
     count = int(lengths[-1] / apart) if apart > 0.0 else 0
-    chosen = np.searchsorted(lengths, apart * np.arange(count))
+    chosen = np.searchsorted(lengths, np.linspace(0.0, lengths[-1], count, endpoint=False))
     return _outlines(shape, zip(way.p_WB_W[chosen], way.q_WB[chosen], strict=True))
 
 

@@ -163,7 +163,15 @@ def draw_poinsot(axes: Any, picture: Poinsot, curves: RollingCurves, state: Body
     draw_diagram(axes, poinsot_diagram(picture, curves, state))
 
 
-def draw_toss(axes: Axes, toss: Toss | TossAnswer, shape: Shape, *, across: str = "x", up: str = "z") -> None:
+def draw_toss(
+    axes: Axes,
+    toss: Toss | TossAnswer,
+    shape: Shape,
+    *,
+    across: str = "x",
+    up: str = "z",
+    distribution: TossDistribution | None = None,
+) -> None:
     """Draw a toss seen along one of the world's axes: path, strikes, pose at the end, other ways, samples.
 
     Args:
@@ -172,8 +180,10 @@ def draw_toss(axes: Axes, toss: Toss | TossAnswer, shape: Shape, *, across: str 
         shape: the body's shape, for its outline.
         across: the world's axis, "x", "y" or "z", to the right.
         up: the one upwards.
+        distribution: samples of a toss, or None. An answer has its own.
     """
-    draw_seen(axes, toss_marks(shape, toss, up_W=np.array([0.0, 0.0, 1.0])), across=across, up=up)
+    marks = toss_marks(shape, toss, up_W=np.array([0.0, 0.0, 1.0]), told=distribution)
+    draw_seen(axes, marks, across=across, up=up)
 
 
 def draw_event_tree(axes: Axes, told: TossDistribution) -> None:

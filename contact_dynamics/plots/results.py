@@ -24,21 +24,24 @@ from contact_dynamics.validation_types import checks_types
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from contact_dynamics.toss.result import Toss
+    from contact_dynamics.toss import Toss, TossDistribution
     from contact_dynamics.world import Body
 
 
 @checks_types
-def toss(toss: Toss, body: Body | None = None) -> Figure:
+def toss(toss: Toss, body: Body | None = None, *, distribution: TossDistribution | None = None) -> Figure:
     """Return a figure of a toss, from the side and from above, with other ways that it has followed.
 
     Args:
         toss: What `contact_dynamics.toss.toss` returns.
-        body: The body, whose outline is drawn where it ends, or None for the path alone.
+        body: The body, whose outline is drawn on its way and where it ends, or None for the path alone.
+        distribution: What `sampled_toss` returns, whose samples are drawn too, or None.
     """
     outline = drawn_shape(NO_SHAPE if body is None else body.shape)
-    figure = from_side_and_above(lambda axes, up: draw_toss(axes, toss, outline, across="x", up=up))
-    figure.suptitle(toss.in_short())
+    figure = from_side_and_above(
+        lambda axes, up: draw_toss(axes, toss, outline, across="x", up=up, distribution=distribution)
+    )
+    figure.suptitle(f"Toss: {toss.end} at {toss.seconds:.4g} s")
     return figure
 
 

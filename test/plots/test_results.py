@@ -47,7 +47,11 @@ def test_a_toss_is_drawn_from_its_first_state_to_rest_and_saved(tmp_path: Path) 
     assert (across[0], up[0]) == pytest.approx((0.0, 0.3))
     assert (across[-1], up[-1]) == pytest.approx(tuple(went.state.p_WB_W[[0, 2]]))
     assert (side.get_ylabel(), top.get_ylabel()) == ("z, m", "y, m")
-    assert figure.get_suptitle() == went.in_short()
+    assert figure.get_suptitle() == f"Toss: RESTS at {went.seconds:.4g} s"
+    assert "at rest" in [text.get_text() for text in side.get_legend().get_texts()]
+    samples = cd.sampled_toss(CUBE, went.state_at(0.0), WORLD, count=2, strikes=1)
+    drawn = {line.get_gid() for line in plots.toss(went, CUBE, distribution=samples).axes[0].lines}
+    assert drawn - lines.keys() == {"samples/ways"}
     plots.save_figure(figure, str(tmp_path / "toss.svg"))
     assert "strikes" in (tmp_path / "toss.svg").read_text(encoding="utf-8")
 
