@@ -93,7 +93,8 @@ def _own_function(chapter: types.ModuleType) -> Any:
 def check_types_of(page: dict[str, Any]) -> None:
     """Make the functions that a chapter's page offers check the types of their arguments.
 
-    A page that offers a function of its own name can be called as that function.
+    A page that offers a function of its own name can be called as that function, and has its help. The page's
+    own text is for those who read the source.
 
     Args:
         page: The page's ``globals()``, with ``__all__``.
@@ -107,8 +108,9 @@ def check_types_of(page: dict[str, Any]) -> None:
     function = _own_function(chapter)
     if inspect.isfunction(function):
         chapter.__class__ = CallableChapter
-        call = f"{function.__name__}{inspect.signature(function)}"  # help shows the call first
-        chapter.__doc__ = f"{inspect.getdoc(function)}\n\n{call}\n\n{chapter.__doc__}"
+        call = f"{function.__name__}{inspect.signature(function)}".replace("'", "")
+        gist, _, more = (inspect.getdoc(function) or "").partition("\n\n")
+        chapter.__doc__ = f"{gist}\n\n{call}\n\n{more}"  # help of the chapter is that of the function
 
 
 def checks_types(function: Callable[P, R]) -> Callable[P, R]:

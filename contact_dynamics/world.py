@@ -55,7 +55,7 @@ class Body(HasMassProperties):
     Attributes:
         name: The name by which questions refer to it.
         mass_properties: Mass and angular inertia about the centre of mass.
-        p_FB_F: (3,), m, centre of mass in the published frame F.
+        p_FB_F: (3,), m, centre of mass in the published frame F. By default it is the origin.
         vertices_B: (k, 3), m, corners of the shape, body axes. Give them instead of a shape that is the
             polyhedron of these corners. Corners that show a concave body cause a `ConcaveShapeWarning`.
         shape: The shape that can touch, body axes.
@@ -339,7 +339,7 @@ class World(Record):
     Attributes:
         bodies: The bodies, by names that differ.
         surfaces: Flats without end, and obstacles.
-        gravity_W: (3,), m/s^2, world axes.
+        gravity_W: (3,), m/s^2, world axes. The default is (0, 0, -9.80665).
 
     Raises:
         InvalidFieldError: two bodies have one name, or gravity is not three finite numbers.

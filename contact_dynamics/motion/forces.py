@@ -33,8 +33,8 @@ class ConstantWrench(Record):
     """A constant force through the centre of mass and a constant torque about it.
 
     Attributes:
-        force: (3,), N, in `axes`.
-        torque: (3,), N m, in `axes`.
+        force: (3,), N, in `axes`, by default zero.
+        torque: (3,), N m, in `axes`, by default zero.
         axes: Whether force and torque are given in world or in body axes.
 
     Raises:

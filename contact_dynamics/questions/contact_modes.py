@@ -103,8 +103,8 @@ class ContactModeQuestion(Question["ContactModeAnswer"]):
         state: Its state, or a reference to a published one.
         contacts: The contacts. If it is None, they are found from the body's shape and the known world's
             surfaces.
-        force_W: (3,), N, applied besides gravity and contact forces, world axes.
-        torque_W: (3,), N m, applied about the centre of mass, world axes.
+        force_W: (3,), N, applied besides gravity and contact forces, world axes. The default is zero.
+        torque_W: (3,), N m, applied about the centre of mass, world axes. The default is zero.
         gravity_W: (3,), m/s^2, world axes. If it is None, the known world's gravity acts.
         problem: Whether to solve the problem in a plane of motion, in space, or in whichever suits.
         plane: The plane of motion. If it is None, the best fitting plane is found.

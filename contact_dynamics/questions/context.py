@@ -47,7 +47,8 @@ class Context(Record):
 
     Attributes:
         world: Bodies that questions can name, the surfaces they meet, and gravity.
-        states: The states that were published, by body. A question about the newest one reads them here.
+        states: The states that were published, by body. A question about the newest one reads them here. By
+            default there are none.
         defaults: Values for what a question leaves out.
         now_ns: A function that returns the present time, ns, on the clock of the states' stamps, so that an
             old state is refused. If it is None or returns None, there is no clock yet, and the newest state

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import ast
 import importlib
 import inspect
 import subprocess
@@ -72,7 +73,7 @@ def test_a_chapters_page_names_its_files(chapter: str) -> None:
     """Every file and folder of it stands in its docstring, and nothing that is no longer there."""
     module = door(chapter)
     folder = Path(module.__file__ or "").parent
-    page = module.__doc__ or ""
+    page = ast.get_docstring(ast.parse(Path(module.__file__ or "").read_text(encoding="utf-8"))) or ""
     for path in folder.iterdir():
         if path.stem not in {"__init__", "__pycache__"} and (path.suffix == ".py" or path.is_dir()):
             assert f"`{path.stem}`" in page, f"{chapter}: {path.stem}"
@@ -101,7 +102,9 @@ def test_a_chapter_with_a_function_of_its_name_is_called_as_it() -> None:
             assert chapter in {"contact_modes", "toss"}
             called = getattr(contact_dynamics, chapter)
             assert inspect.signature(called) == inspect.signature(function)
-            assert inspect.getdoc(called).startswith(inspect.getdoc(function)), "help shows the call first"
+            gist, more = inspect.getdoc(function).split("\n\n", 1)
+            call = f"{chapter}{inspect.signature(function)}".replace("'", "")
+            assert inspect.getdoc(called) == f"{gist}\n\n{call}\n\n{more}", "help shows the call first"
             assert sys.modules[f"contact_dynamics.{chapter}"] is called
             with pytest.raises(TypeError, match=r"^(body|problem) must be a "):
                 called(*["no question"] * sum(one.default is one.empty for one in _parameters(function)))

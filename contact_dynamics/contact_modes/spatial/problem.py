@@ -86,7 +86,7 @@ class SpatialContactProblem(Record):
         contacts: Contacts of any kind. At most `MAX_DYNAMIC_CONTACTS` of them touch.
         force_W: (3,), N, on the body besides its contact forces, gravity included, world axes.
         torque_W: (3,), N m, on the body besides that of its contact forces, about the centre of mass, world
-            axes.
+            axes. The default is zero.
         friction_facets: The number of edges of the pyramid that stands for a friction cone, >= 3, in statics
             and wrench sets, and in the modes if ``sharpen`` is false.
         sharpen: Whether the modes are those of Coulomb's round cones, with friction exactly against the
