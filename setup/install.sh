@@ -14,6 +14,10 @@ progress() { # one line: how far pip is
         echo "unpacking: $(du -sm "$venv" | cut -f 1) MB in $venv so far"
     elif tail -n 1 "$log" | grep -q 'Retrying'; then
         echo "the network does not answer; pip tries again"
+    elif tail -n 1 "$log" | grep -Eq '^ *(Building|Preparing|Installing build|Getting requirements)'; then
+        echo "building the package and its compiled core"
+    elif ! grep -q '^Collecting ' "$log"; then
+        echo "starting pip"
     else
         echo "$(grep -c '^Collecting ' "$log" || true) packages fetched, now $(sed -n 's/^Collecting \([^ ]*\).*/\1/p' "$log" | tail -n 1)"
     fi

@@ -61,13 +61,15 @@ def report(evaluation: Evaluation) -> str:
     found = ", ".join(f"{events[kind]} {kind.value}" for kind in EventKind if events[kind]) or "none"
     lines = [
         (
-            f"{len(done)} recordings, {sum(result.states for result in done)} states, "
+            f"{_recordings(len(done))}, {sum(result.states for result in done)} states, "
             f"{sum(result.seconds for result in done):.1f} s of motion; {evaluation.configuration}"
         ),
         f"events: {found}",
         *_gaps(evaluation),
     ]
     rows = [row for result in done for row in result.comparisons]
+    if any(row.distance is not None for row in rows):
+        lines.append("inside: share of measured values, %, in the regions predicted with these probabilities")
     for (kind, body, surface), summaries in groupby(
         summarise(rows), key=lambda each: (each.kind, each.body, each.surface)
     ):
@@ -165,6 +167,10 @@ def _named(source: str, problem: str) -> str:
     return problem if problem.startswith(f"{source}: ") else f"{source}: {problem}"
 
 
+def _recordings(count: int) -> str:
+    return f"{count} recording{'' if count == 1 else 's'}"
+
+
 def _problems(evaluation: Evaluation) -> list[str]:
     bad = [result for result in evaluation.results if result.problem]
     lines = [f"  {_named(result.source, result.problem)}" for result in bad[:MAX_PROBLEMS]]
@@ -176,4 +182,4 @@ def _problems(evaluation: Evaluation) -> list[str]:
         lines.append(f"  and {len(damaged) - MAX_PROBLEMS} more damaged recordings")
     if not lines:
         return []
-    return ["", f"not evaluated: {len(bad)} recordings; damaged: {len(damaged)}", *lines]
+    return ["", f"not evaluated: {_recordings(len(bad))}; damaged: {len(damaged)}", *lines]

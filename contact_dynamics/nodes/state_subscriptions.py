@@ -140,7 +140,8 @@ class StateTopic:
             self._anew_after = _ANEW_AFTER_S
         elif self.traffic.silence > self._anew_after:
             self._anew_after = min(2.0 * self._anew_after, self.traffic.silence + _ANEW_AT_LEAST_EVERY_S)
-            text = f"no message arrives from {publishers} publishers, subscribing again"
+            some = f"{publishers} publisher{'s' if publishers > 1 else ''}"
+            text = f"{some} but no messages: subscribing again"
             self._faults.add(self.name, "subscribed anew", 1, text)
             self._subscription = self._node.subscribe_anew(self._subscription)
         return present

@@ -99,7 +99,7 @@ def test_a_folder_is_searched_and_what_is_bad_in_it_is_named(
     (tmp_path / "bad.mcap").write_bytes(b"no log")
     assert main([str(tmp_path), str(tmp_path / "nowhere"), *QUICK]) == 1
     printed = capsys.readouterr().out
-    assert printed.startswith("1 recordings, 480 states")
+    assert printed.startswith("1 recording, 480 states")
     assert "not evaluated: 2 recordings" in printed
     assert f"{tmp_path / 'bad.mcap'}: NotALogError" in printed
     assert says(printed, f"{tmp_path / 'nowhere'} must be ..., got no such file or folder")
