@@ -12,8 +12,8 @@ import numpy as np
 
 from contact_dynamics.contact_modes import SpatialMode, SpatialModeMargin, SpatialWrenchSet
 from contact_dynamics.contact_modes.letters import SLIDES_LEFT, SLIDES_RIGHT
-from contact_dynamics.contact_modes.result import PlanarMode
 from contact_dynamics.contact_modes.planar.wrench_sets import PlanarWrenchSet, WrenchHalfSpace
+from contact_dynamics.contact_modes.result import PlanarMode
 from contact_dynamics.plane.lifting import equal_shares
 from contact_dynamics.plane.plane_search import project_onto_best_plane
 from contact_dynamics.plane.projection import PlanarProblem, PlaneOfMotion, project_onto_plane
