@@ -79,7 +79,7 @@ NOT_MEASURED: dict[
     ],
     "docs/notation.md": ["−90°", "0.1 µs"],  # of a double at 1.8e9 s
     "docs/quick-start-ros.md": ["slide at 4.9 N"],  # half its weight
-    "docs/replay.md": ["the next 50 ms", "again within 50 ms", "steps by 0.1 s", "every 0.1 s"],
+    "docs/replay.md": ["the next 50 ms", "again within 50 ms", "advances by 0.1 s", "every 0.1 s"],
     "docs/several-contacts.md": [
         "A coin of 24 mm",
         "flat at 1 m/s",
