@@ -40,6 +40,10 @@ NOT_MEASURED: dict[
         "1e-9 m/s",
         "1e-6 m",
         "than 1e-3 rad",  # which modes count as one
+        "above 1e-5 rad",  # CLEAR_ROWS, CLEAR_ROWS_OF_MANY and SAME_ROWS
+        "(1e-6 rad if",
+        "down to 1e-11 rad",
+        "within 1e-11 rad",
         "8 % of friction",
         "2 % with 16",
     ],  # 1 - cos(pi / n)
