@@ -415,7 +415,7 @@ class _Work(PyramidPrograms):
         if _takes_power(modes):
             self._count()
             return bool(modes.ranges)
-        implied = _implied(modes)
+        implied = _implied(modes, sharply=self.examined > FEW_PROGRAMS)
         ranges = None if implied is None else _met(implied, modes.ranges)
         widest, width = _widest(turning, ranges or {})
         forces = None
@@ -549,16 +549,17 @@ def _widest(turning: list[int], ranges: Ranges) -> tuple[int, float]:
     return widest, widths[widest]
 
 
-def _implied(modes: _Set) -> Ranges | None:
+def _implied(modes: _Set, *, sharply: bool) -> Ranges | None:
     """Return the ranges of directions that follow from the region of a set, and from those that it demands.
 
-    It is None if the region has no such motions.
+    It is None if the region has no such motions. What follows from demanded ranges is only worth its time in
+    a search that takes long, and is left out unless it is done ``sharply``.
     """
     region, flat = modes.region, modes.flat
     if region is None or flat is None:
         return {}
     maps = flat.image.maps
-    if modes.ranges:
+    if sharply and modes.ranges:
         rows = [
             across @ maps[k]
             for k, i in enumerate(modes.turning)
