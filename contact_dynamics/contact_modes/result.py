@@ -326,8 +326,8 @@ class SpatialMode(AnyMode):
 class SpatialModeAnswer(AnyModeAnswer):
     """The answer to one question about contact modes in space.
 
-    Refused letters are not listed: there are as many as cells in the arrangement of all sectors, and groups
-    of them are refused at once. Strings of contacting and separating have their reasons (`margins`).
+    Rejected letters are not listed: there are as many as cells in the arrangement of all sectors, and the
+    search rejects whole groups. `margins` gives reasons for each choice of separating contacts.
 
     Attributes:
         verdict: On the whole contact set.

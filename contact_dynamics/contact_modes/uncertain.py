@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 _FAILED: Final = 4
-"""After so many proofs that failed the smallest box is tried. If its proof fails too, all others would."""
+"""After this many failed proofs the smallest box is tried. If its proof fails, all others would fail too."""
 
 
 _TRIED_FIRST: Final = 6
@@ -150,9 +150,9 @@ def _says_otherwise(one: AnyModeAnswer, other: AnyModeAnswer) -> bool:
 
 
 def _first(low: int, high: int, happens: Callable[[int], bool]) -> int:
-    """Return the first step from ``low`` on at which something happens that goes on to happen, by bisection.
+    """Return the first step from ``low`` on at which a condition holds that then keeps holding, by bisection.
 
-    Returns ``high`` if it does not happen before.
+    It is ``high`` if the condition does not hold before.
     """
     while low < high:
         middle = (low + high) // 2

@@ -98,7 +98,7 @@ class ServiceFront:
         Args:
             node: the node.
             served: the service.
-            core: what is known and configured, and what is told when a question comes.
+            core: the configuration, the published states, and the time at which each request arrives.
             workers: they answer what takes long. Without them, this process does.
             log: takes the service events.
             answered: sees each response after it was sent, so that nobody waits for it.

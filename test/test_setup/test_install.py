@@ -72,7 +72,7 @@ def test_a_full_disk_is_named(tmp_path: Path) -> None:
     [
         ("Collecting numpy>=1.26", "1 packages fetched, now numpy>=1.26"),
         ("  Building editable for contact_dynamics: started", "building the package and its compiled core"),
-        ("Looking in indexes: https://pypi.org/simple", "starting pip"),
+        ("Looking in indexes: https://example.org/simple", "starting pip"),
         ("WARNING: Retrying (Retry(total=4)) after connection broken", "the network does not answer"),
         ("Installing collected packages: numpy", "unpacking: "),
     ],

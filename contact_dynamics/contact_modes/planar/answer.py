@@ -347,7 +347,7 @@ def _fixed(axes: _ContactAxes) -> _Solution | _Failure:
     if excess > axes.tolerance(square, terms_t + axes.friction * terms_n):
         return _Failure(Refusal.OUTSIDE_CONE, excess)
     f_n = max(f_n, 0.0)
-    edge = axes.friction * f_n  # the force is moved by its rounding, so that it does not leave the cone
+    edge = axes.friction * f_n  # rounding error must not move the force out of the cone
     return _Solution(max(-edge, min(edge, f_t)), f_n, 0.0, 0.0, unique=True)
 
 

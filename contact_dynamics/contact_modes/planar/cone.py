@@ -13,8 +13,8 @@ So the same class finds the faces of the accelerations that do not penetrate, an
 The sets are small, so plain floats are fast: most rows change nothing, and finding this out takes three
 multiplications for each ray. For many rows, arrays find those that change nothing. Floats decide what is zero
 to rounding, and what clearly is not. If a number lies between the two, as for contacts that nearly coincide,
-the cone is built again in decimals. They have so many digits that every decision is right for the rows as
-they are given. The formulas at the end of this file work for both.
+the cone is built again in decimals, with enough digits to decide every case correctly for the given rows.
+The formulas at the end of this file work for both.
 """
 
 from __future__ import annotations
@@ -60,7 +60,7 @@ class Sector(NamedTuple):
     start: Vector3  # the first ray, a unit vector
     end: Vector3  # the last ray, a unit vector
     tight: int  # the bit set of the rows that vanish on the whole sector
-    halved: bool = False  # whether it is the first half of a wide sector, so that its end lies inside a face
+    halved: bool = False  # whether it is the first half of a wide sector, whose end lies inside a face
 
 
 class PolyhedralCone:

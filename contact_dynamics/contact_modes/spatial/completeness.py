@@ -552,8 +552,9 @@ def _widest(turning: list[int], ranges: Ranges) -> tuple[int, float]:
 def _implied(modes: _Set, *, sharply: bool) -> Ranges | None:
     """Return the ranges of directions that follow from the region of a set, and from those that it demands.
 
-    It is None if the region has no such motions. What follows from demanded ranges is only worth its time in
-    a search that takes long, and is left out unless it is done ``sharply``.
+    It is None if the region has no such motions. Only if done ``sharply`` do demanded ranges restrict the
+    region too. Searches of ordinary length do without: other steps would change the last digits of their
+    answers, on which tosses in degenerate positions depend.
     """
     region, flat = modes.region, modes.flat
     if region is None or flat is None:

@@ -11,7 +11,7 @@ no farther. A nearer one would have to lie outside of the pyramids.
 Other modes in which contacts at rest begin to slide have the margins of `margins_of_sliding`.
 
 A mode that the wrench does not bring about has a reason. A string of letters s (separates) and c (stays,
-sticking or sliding) is refused if no mode of it is consistent. Where nothing that stays has friction to
+sticking or sliding) is rejected if none of its modes is consistent. Where nothing that stays has friction to
 choose, the forces that it needs are known, and so is what contradicts it: a contact pulls, or one that should
 separate penetrates. Otherwise the reason is how far the applied wrench is from those under which some forces
 inside the friction cones let the contacts stay and separate like that: the least change in |f|^2 + |torque /
