@@ -131,17 +131,18 @@ class ServiceFront:
         """Take the service from the node."""
         self._node.destroy_service(self._service)
 
-    def refuse_all(self) -> None:
-        """Refuse the questions that workers answer at present, whose answers nobody will wait for."""
+    def refuse_all(self) -> int:
+        """Refuse the questions that workers answer at present; return how many these are."""
         message = "the server ended, or was cleaned up, before the answer was there"
 
         def refuse() -> None:
             raise BusyError(message)
 
-        for answering in self._under_way:
+        refused, self._under_way = self._under_way, set()
+        for answering in refused:
             self._finish(answering, refuse)
             self._send(answering)
-        self._under_way.clear()
+        return len(refused)
 
     def take_events(self) -> None:
         """Take the events of requests and responses that wait, for the log."""

@@ -59,6 +59,10 @@ LOOK_EVERY_S: Final = 1.0
 STOOD_STILL_S: Final = 2.0
 """s. A process that has not looked for so long was stopped or starved, and heard nothing for that reason."""
 
+_SENT_AGAIN_FOR_S: Final = 1.0
+"""s. Many answers at once overflow the socket of a client that a busy machine stops meanwhile. DDS sends them
+again, for as long as the service is there."""
+
 
 class Serving:
     """Receives states, answers questions and writes the log, for a node."""
@@ -208,9 +212,9 @@ class Serving:
             self._look()
 
     def refuse_all(self) -> None:
-        """Refuse the questions whose answers are not there yet."""
-        for front in self._fronts:
-            front.refuse_all()
+        """Refuse the questions whose answers are not there yet, and stay until that has reached the clients."""
+        if sum(front.refuse_all() for front in self._fronts) > 0:
+            time.sleep(_SENT_AGAIN_FOR_S)
 
     def close(self) -> str:
         """End the workers, and finish the log; return in words where that is."""
