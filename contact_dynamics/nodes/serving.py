@@ -212,7 +212,7 @@ class Serving:
             self._look()
 
     def refuse_all(self) -> None:
-        """Refuse the questions whose answers are not there yet, and stay until that has reached the clients."""
+        """Refuse the questions whose answers are not there yet, and stay until clients have that."""
         if sum(front.refuse_all() for front in self._fronts) > 0:
             time.sleep(_SENT_AGAIN_FOR_S)
 
