@@ -635,6 +635,9 @@ CONE_CREEPS: Final = 1e-6
 """Relative to the largest velocity. Where impulses of contacts against each other creep on from sweep to
 sweep, and hardly change the velocities, a sweep that changes less is the last."""
 
+SHORT_STEP_CREEPS: Final = 1e-4
+"""The same in short steps (`toss.short_step`). Their own error, of first order, is larger."""
+
 BEGINNING_ROUNDING: Final = 1e-7
 """Relative to gravity. Where a contact begins to slide, its acceleration may be off the direction of friction
 by this much. Accelerations carry the rounding of forces, `FORCE_ROUNDING`, times some ten."""

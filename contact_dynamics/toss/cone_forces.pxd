@@ -31,6 +31,8 @@ cdef class ConeForces:
     cpdef (double, double, double) alone(self, int i) noexcept
     @cython.locals(scale=cython.double, change=cython.double)
     cpdef bint solve(self, double per_mass, double enough) except -1
+    @cython.locals(n=cython.int, k=cython.int)
+    cpdef bint solve_without_friction(self) except -1
     @cython.locals(m=cython.double[::1], change=cython.double, n=cython.int, k=cython.int)
     cdef double _sweep(self) noexcept
     @cython.locals(least=cython.double)

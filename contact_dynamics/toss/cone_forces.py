@@ -22,6 +22,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from contact_dynamics.numerics.lemke import solve_complementarity
 from contact_dynamics.tolerances import CONE_SWEEPS_CONVERGED, FORCE_ROUNDING, SWEEPS_CHANGE_ALIKE
 from contact_dynamics.toss import vectors as vec
 from contact_dynamics.toss.forces import Equations
@@ -136,6 +137,23 @@ class ConeForces:
                     return True
                 seen = [self._go_to_limit(seen)]
         return False
+
+    def solve_without_friction(self) -> bool:
+        """Find the pushes without friction, after `solve`, and return whether they were found.
+
+        These exist if some motion keeps the body out of the world. Pivots find them also where sweeps creep.
+        """
+        n = 3 * self.count
+        matrix = np.array(self.equations.matrix[: n * n]).reshape(n, n)
+        alone = np.array([self.alone(i)[2] for i in range(self.count)])
+        found = solve_complementarity(matrix[2::3, 2::3], alone)
+        if found is None:
+            return False
+        for i, push in enumerate(found.tolist()):
+            k = _WIDTH * i + 7
+            self.numbers[k], self.numbers[k + 1], self.numbers[k + 2] = 0.0, 0.0, push
+        self._move()
+        return True
 
     def _sweep(self) -> float:
         """Solve the problem of each contact in turn, and return the largest change of its own motion."""

@@ -18,6 +18,9 @@ cdef double CONE_CREEPS, STRIKES
 
 @cython.locals(pose=Pose, flat=Flat, one=Strike, surface=cython.int, corner=cython.int, outcome=cython.int)
 cpdef routh(Solid solid, list y, tuple touch, law, double friction)
-@cython.locals(pose=Pose, cones=ConeForces, flat=Flat, surface=cython.int, corner=cython.int, i=cython.int)
+@cython.locals(pose=Pose, cones=ConeForces)
 cpdef inelastic_impact(Solid solid, list y, list touching, list room=*)
-
+@cython.locals(arm=(double, double, double), cones=ConeForces, surface=cython.int, corner=cython.int, i=cython.int)
+cdef ConeForces _cones_of(Solid solid, Pose pose, list touching, list room)
+@cython.locals(flat=Flat, surface=cython.int, corner=cython.int, i=cython.int)
+cdef _pushed(Solid solid, list y, Pose pose, list touching, ConeForces cones)

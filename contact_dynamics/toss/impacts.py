@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from contact_dynamics.contact.contact import ContactSet
     from contact_dynamics.impact.law import ImpactOutcome
     from contact_dynamics.numerics.vectors import Vector3
-    from contact_dynamics.toss.solid import Numbers, Solid, Touch
+    from contact_dynamics.toss.solid import Numbers, Pose, Solid, Touch
 
 
 class Struck(NamedTuple):
@@ -172,12 +172,40 @@ def inelastic_impact(
     ``room`` has the speeds, m/s, with which contacts may approach, as those do that are not down yet. Motions
     are relative to that.
     """
-    pose, cones = pose_of(solid, y), ConeForces(len(touching))
+    pose = pose_of(solid, y)
+    cones = _cones_of(solid, pose, touching, room)
+    return _pushed(solid, y, pose, touching, cones) if cones.solve(1.0 / solid.mass, CONE_CREEPS) else None
+
+
+def sure_impact(
+    solid: Solid,
+    y: Numbers,
+    touching: list[Touch],
+    room: list[float] | None = None,
+    enough: float = CONE_CREEPS,
+) -> Inelastic:
+    """Return the impact without restitution. Where none is found, friction is left out, or the body stops.
+
+    ``enough`` is the error of velocities that is allowed, relative to the largest one.
+    """
+    pose = pose_of(solid, y)
+    cones = _cones_of(solid, pose, touching, room)
+    if cones.solve(1.0 / solid.mass, enough) or cones.solve_without_friction():
+        return _pushed(solid, y, pose, touching, cones)
+    none = [(0.0, 0.0, 0.0)] * len(touching)
+    return Inelastic([*y[:7], *[0.0] * 6], none, none)
+
+
+def _cones_of(solid: Solid, pose: Pose, touching: list[Touch], room: list[float] | None) -> ConeForces:
+    cones = ConeForces(len(touching))
     for i, (surface, corner) in enumerate(touching):
         arm = pose.arm(surface, corner)
         cones.add(pose, arm, solid.flats[surface], pose.velocity(arm), 0.0 if room is None else room[i])
-    if not cones.solve(1.0 / solid.mass, CONE_CREEPS):
-        return None
+    return cones
+
+
+def _pushed(solid: Solid, y: Numbers, pose: Pose, touching: list[Touch], cones: ConeForces) -> Inelastic:
+    """Return what the pushes do to the body."""
     after, impulses = list(y), []
     for i, (surface, corner) in enumerate(touching):
         p, q, r = cones.push(i)
@@ -198,17 +226,3 @@ def inelastic_impact(
         after[12] += turning[2]
         impulses.append(impulse)
     return Inelastic(after, impulses, [cones.motion(i) for i in range(len(touching))])
-
-
-def sure_impact(
-    solid: Solid, y: Numbers, touching: list[Touch], *, room: list[float] | None = None
-) -> Inelastic:
-    """Return the impact without restitution. Where none is found, friction is left out, or the body stops."""
-    impact = inelastic_impact(solid, y, touching, room=room)
-    if impact is None:
-        smooth = solid.among(tuple([flat.with_frictions(0.0, 0.0, 0.0) for flat in solid.flats]))
-        impact = inelastic_impact(smooth, y, touching, room=room)
-    if impact is None:
-        none = [(0.0, 0.0, 0.0)] * len(touching)
-        impact = Inelastic([*y[:7], *[0.0] * 6], none, none)
-    return impact

@@ -13,7 +13,12 @@ import math
 from typing import TYPE_CHECKING, NamedTuple
 
 from contact_dynamics.rotations.one import normalised
-from contact_dynamics.tolerances import DISTANCE_TOLERANCE, SHORTEST_SHORT_STEP, SLIDING_STOPPED
+from contact_dynamics.tolerances import (
+    DISTANCE_TOLERANCE,
+    SHORT_STEP_CREEPS,
+    SHORTEST_SHORT_STEP,
+    SLIDING_STOPPED,
+)
 from contact_dynamics.toss import vectors as vec
 from contact_dynamics.toss.forces import out_of_flats, pushed_by_contacts
 from contact_dynamics.toss.impacts import sure_impact
@@ -57,7 +62,7 @@ def short_step(solid: Solid, y: Numbers, *, start: float, span: float) -> ShortS
     reached = DISTANCE_TOLERANCE + 2.0 * span * (vec.norm(pose.v) + solid.reach * vec.norm(pose.w))
     near = [(max(height, 0.0) / span, touch) for height, _, touch in listed if height <= reached]
     touching = [touch for _, touch in near]
-    impact = sure_impact(solid, pushed, touching, room=[room for room, _ in near])
+    impact = sure_impact(solid, pushed, touching, [room for room, _ in near], SHORT_STEP_CREEPS)
     v, w = impact.y[7:10], impact.y[10:]
     rates = [*pushed_by_contacts(solid, impact.y, ()).rates[:7], *[0.0] * 6]
     after = [a + span * b for a, b in zip(impact.y, rates, strict=True)]

@@ -415,7 +415,7 @@ class _Work(PyramidPrograms):
         if _takes_power(modes):
             self._count()
             return bool(modes.ranges)
-        implied = _implied(modes, sharply=self.examined > FEW_PROGRAMS)
+        implied = _implied(modes)
         ranges = None if implied is None else _met(implied, modes.ranges)
         widest, width = _widest(turning, ranges or {})
         forces = None
@@ -549,18 +549,16 @@ def _widest(turning: list[int], ranges: Ranges) -> tuple[int, float]:
     return widest, widths[widest]
 
 
-def _implied(modes: _Set, *, sharply: bool) -> Ranges | None:
+def _implied(modes: _Set) -> Ranges | None:
     """Return the ranges of directions that follow from the region of a set, and from those that it demands.
 
-    It is None if the region has no such motions. Only if done ``sharply`` do demanded ranges restrict the
-    region too. Searches of ordinary length do without: other steps would change the last digits of their
-    answers, on which tosses in degenerate positions depend.
+    It is None if the region has no such motions.
     """
     region, flat = modes.region, modes.flat
     if region is None or flat is None:
         return {}
     maps = flat.image.maps
-    if sharply and modes.ranges:
+    if modes.ranges:
         rows = [
             across @ maps[k]
             for k, i in enumerate(modes.turning)
