@@ -57,6 +57,9 @@ FAR_CONTACT: Final = 0.01
 SAME_FACTOR: Final = 1e-9
 """Relative: factors of a load that differ by less are one."""
 
+STRAIGHT_ARC: Final = 1e-4
+"""rad. A wrench that turns by less is off a straight path by about 1e-9 of it."""
+
 NEXT_TO_A_LIMIT: Final = 1e-6
 """Relative: this far from the largest factor of a load is what follows it, or goes before it."""
 

@@ -127,9 +127,12 @@ NEVER = {
     "across",
     "semi_axes",
     "stable_disturbance",
+    "factor",
+    "only_rest",
+    "frictions",
 }
 """Fields that may be infinite: a stop that never comes, a corner's curvature, an axis without inertia, a load
-that no friction yields to."""
+that no friction yields to, and friction that is never enough."""
 
 NAN_ALLOWED = {"flips_of_many", "next_flips of a body that flips"}
 """Calls that answer NaN for the time of a flip that never comes, or for a deviation without a covariance."""

@@ -3,9 +3,11 @@
 
 You state a `PlanarContactProblem` or a `SpatialContactProblem`, and pass it to the functions of
 `plane_or_space`. `contact_modes` finds every consistent mode. `mode_margins` says how far the wrench is from
-leaving each of them, `largest_load` how large a push in space may become, `geometry_margins` how far contacts
-are from another verdict, and `refused_modes` says why the other modes are not consistent. `wrench_sets`
-returns the wrenches of each mode. `statics` says whether a body at rest stays at rest.
+leaving each of them, `geometry_margins` how far contacts are from another verdict, and `refused_modes` says
+why the other modes are not consistent. `wrench_sets` returns the wrenches of each mode. `statics` says
+whether a body at rest stays at rest. In space, the functions of `largest_load` say how large a push may
+become, how far a tray may accelerate, tilt or spin, how little friction is enough, and whether a grasp has
+closure.
 
 A mode is a string with one of the `letters` for each contact. `result` has the types of answers.
 
@@ -64,17 +66,29 @@ from contact_dynamics.contact_modes.result import (
     VerdictsWithin,
 )
 from contact_dynamics.contact_modes.spatial.kinematic import spatial_kinematic_modes, spatial_sliding_modes
+from contact_dynamics.contact_modes.spatial.largest_load import (
+    Closure,
+    LargestLoad,
+    LeastFriction,
+    closure,
+    largest_acceleration,
+    largest_load,
+    largest_spin,
+    largest_tilt,
+    least_friction,
+)
 from contact_dynamics.contact_modes.spatial.margins import SpatialModeMargin
 from contact_dynamics.contact_modes.spatial.problem import SpatialContactProblem
-from contact_dynamics.contact_modes.spatial.statics import LargestLoad, largest_load
 from contact_dynamics.contact_modes.spatial.wrench_sets import SpatialWrenchSet
 from contact_dynamics.validation_types import check_types_of
 
 __all__ = [
     "BodyStatics",
     "Certainty",
+    "Closure",
     "GeometryMargin",
     "LargestLoad",
+    "LeastFriction",
     "Letter",
     "ModeProbability",
     "ModeVerdict",
@@ -92,9 +106,14 @@ __all__ = [
     "SpatialWrenchSet",
     "VerdictsWithin",
     "WrenchHalfSpace",
+    "closure",
     "contact_modes",
     "geometry_margins",
+    "largest_acceleration",
     "largest_load",
+    "largest_spin",
+    "largest_tilt",
+    "least_friction",
     "mode_margins",
     "refused_modes",
     "spatial_kinematic_modes",

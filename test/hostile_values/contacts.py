@@ -25,6 +25,13 @@ from contact_dynamics.contact import (
     linearised_cone,
     spatial_contact_velocities,
 )
+from contact_dynamics.contact_modes import (
+    closure,
+    largest_acceleration,
+    largest_spin,
+    largest_tilt,
+    least_friction,
+)
 from contact_dynamics.landing import first_contact
 from hostile_values.rigid_bodies import HAMMER
 from hostile_values.shared import (
@@ -113,6 +120,17 @@ CALLS_WITH_CONTACTS: Calls = {
         largest_load,
         {"problem": HELD, "force_W": [1.0, 0.0, 0.0], "torque_W": [0.0, 0.1, 0.0], "at_W": [0.0, 0.0, 0.1]},
     ),
+    "largest_acceleration": (largest_acceleration, {"problem": HELD, "direction_W": [1.0, 0.0, 0.0]}),
+    "largest_spin": (
+        largest_spin,
+        {"problem": HELD, "axis_W": [0.0, 0.0, 1.0], "at_W": [1.0, 0.0, 0.0]},
+    ),
+    "largest_tilt": (
+        largest_tilt,
+        {"problem": HELD, "axis_W": [0.0, 1.0, 0.0], "gravity_W": [0.0, 0.0, -9.8]},
+    ),
+    "least_friction": (least_friction, {"problem": HELD}),
+    "closure": (closure, {"contacts": CONTACTS}),
     "ContactUncertainty": (ContactUncertainty, {"points": 1e-3, "normals": 1e-3, "frictions": 0.1}),
     "ContactSet.of": (ContactSet.of, {"contacts": [CONTACT]}),
     "Curvatures": (Curvatures, {"along": [1.0], "across": [2.0], "directions_W": [[1.0, 0.0, 0.0]]}),

@@ -1,0 +1,492 @@
+# SPDX-License-Identifier: Apache-2.0
+"""How much contacts hold: the largest load, acceleration, tilt and spin, the least friction, and closure.
+
+All of it is that of Coulomb's round cones, whose sum is a convex cone of wrenches (`wrenches.RoundSum`). A
+wrench outside of it is separated from it by a plane. Where the plane meets the path of the wrenches, the next
+wrench is tried, which is nearer to the last one that the contacts hold, until they do.
+
+A tray or turntable that accelerates, tilts or spins is at rest in its own frame, in which gravity is less its
+acceleration. So a tilt turns gravity, and a spin adds a centrifugal force and a gyroscopic torque.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from contact_dynamics.constants import STANDARD_GRAVITY_W
+from contact_dynamics.contact_modes.letters import STICKS, mode_in_words
+from contact_dynamics.contact_modes.result import ModeVerdict
+from contact_dynamics.contact_modes.spatial.answer import spatial_contact_modes
+from contact_dynamics.contact_modes.spatial.wrenches import RoundSum
+from contact_dynamics.errors import InvalidFieldError
+from contact_dynamics.numerics.vectors import tangents
+from contact_dynamics.records import Record
+from contact_dynamics.tolerances import (
+    ANY_LOAD,
+    LARGEST_NUMBER,
+    NEAREST_REACHED,
+    NEXT_TO_A_LIMIT,
+    ONLY_REST_WITHIN,
+    SAME_FACTOR,
+    STRAIGHT_ARC,
+)
+from contact_dynamics.validation import check_magnitude, check_vector3
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import ArrayLike
+
+    from contact_dynamics.contact.contact import ContactSet
+    from contact_dynamics.contact_modes.result import SpatialModeAnswer
+    from contact_dynamics.contact_modes.spatial.problem import SpatialContactProblem
+    from contact_dynamics.validation import FloatArray
+
+_TURN: Final = 2.0 * math.pi
+
+_UNITS: Final = {
+    "times the load": "under any multiple of the load",
+    "m/s^2": "at any acceleration",
+    "rad": "at any tilt",
+    "rad/s": "at any spin",
+}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
+class LargestLoad(Record):
+    """How much of a load a body at rest bears, as factors of that load, or how far its support may move.
+
+    Attributes:
+        factor: Up to this factor rest is consistent, >= 0. It is infinite if rest is consistent under any.
+        only_rest: Up to this factor rest is the only consistent mode, <= ``factor``. If it is less, it was
+            found by halving, to 1 %, and a mode that comes and goes again below it is not looked for. It is 0
+            if rest is not alone without the load.
+        verdict_beyond: The verdict just beyond ``factor``, or UNIQUE if it is infinite.
+        modes_beyond: The modes that are consistent just beyond it.
+        unit: What the factors count: "times the load", "m/s^2", "rad" or "rad/s".
+    """
+
+    factor: float
+    only_rest: float
+    verdict_beyond: ModeVerdict
+    modes_beyond: tuple[str, ...]
+    unit: str = "times the load"
+
+    def in_short(self) -> str:
+        """Return how much it bears, and what then follows."""
+        if math.isinf(self.factor):
+            return f"LargestLoad: it stays fixed {_UNITS[self.unit]}"
+        then = " or ".join(map(mode_in_words, self.modes_beyond)) or "no mode is consistent"
+        fixed = f"it stays fixed up to {self.factor:.3g} {self.unit}"
+        if self.only_rest < self.factor:  # beyond it another mode is consistent too
+            surely = f"it surely stays fixed up to {self.only_rest:.3g}"
+            fixed = f"{surely} and may up to {self.factor:.3g} {self.unit}"
+        return f"LargestLoad: {fixed}, then {then}"
+
+
+def largest_load(
+    problem: SpatialContactProblem,
+    *,
+    force_W: ArrayLike = (0.0, 0.0, 0.0),
+    torque_W: ArrayLike = (0.0, 0.0, 0.0),
+    at_W: ArrayLike | None = None,
+) -> LargestLoad:
+    """Return how much of a load a body bears besides the problem's own wrench before it moves.
+
+    With a load of 1 N, the factors are newtons; with m times 1 m/s^2, they are the deceleration of a truck in
+    m/s^2. Friction cones are round, and ``factor`` is exact to about 1e-10. A flush rim is eight contacts, so
+    that a cup may seem to tip at 92 % of the true load.
+
+    Args:
+        problem: The problem, with the wrench without the load, such as the weight alone. Rest is consistent.
+        force_W: (3,), N, of the load, world axes.
+        torque_W: (3,), N m, of the load about the centre of mass, besides that of the force, world axes.
+        at_W: (3,), m, where the force acts, world axes, or None for the centre of mass.
+
+    Raises:
+        InvalidFieldError: rest is not consistent without the load, or the load is zero or not finite.
+    """
+    force, torque = check_vector3("force_W", force_W), check_vector3("torque_W", torque_W)
+    if at_W is not None:
+        torque = torque + np.cross(check_vector3("at_W", at_W) - problem.state.p_WB_W, force)
+    load = np.concatenate([force, torque])
+    if not load.any():
+        raise InvalidFieldError("force_W", "no load", "a load, or torque_W")
+
+    def wrench(factor: float) -> FloatArray:
+        return load if math.isinf(factor) else problem.wrench_W + factor * load
+
+    def nearer(plane: FloatArray, factor: float) -> float:  # noqa: ARG001  a line meets a plane once
+        return -float(plane @ problem.wrench_W) / float(plane @ load)
+
+    far = ANY_LOAD * max(1.0, float(np.linalg.norm(problem.wrench_W) / np.linalg.norm(load)))
+    _check_rests(problem)
+    factor = _last_held(_Held.of(problem), wrench, nearer, math.inf)
+    return _followed(problem, wrench, factor, far=far)
+
+
+def largest_acceleration(problem: SpatialContactProblem, direction_W: ArrayLike) -> LargestLoad:
+    """Return how hard the support of a body, such as a tray or a truck, may accelerate before the body moves.
+
+    Args:
+        problem: The problem while nothing accelerates. All its contacts belong to the support.
+        direction_W: (3,), of the acceleration, world axes. Its length is ignored. A truck that drives
+            forward and brakes accelerates backward.
+
+    Returns:
+        The largest acceleration, m/s^2.
+
+    Raises:
+        InvalidFieldError: the body does not stay fixed before, or the direction is zero or not finite.
+    """
+    direction = _direction("direction_W", direction_W)
+    found = largest_load(problem, force_W=-problem.body.mass * direction)
+    return replace(found, unit="m/s^2")
+
+
+def largest_spin(
+    problem: SpatialContactProblem, axis_W: ArrayLike, *, at_W: ArrayLike = (0.0, 0.0, 0.0)
+) -> LargestLoad:
+    """Return how fast the support of a body, such as a turntable, may spin steadily before the body moves.
+
+    Args:
+        problem: The problem while nothing spins. All its contacts belong to the support.
+        axis_W: (3,), the direction of the axis, world axes. Its length is ignored.
+        at_W: (3,), m, a point of the axis, world axes.
+
+    Returns:
+        The largest angular velocity, rad/s.
+
+    Raises:
+        InvalidFieldError: the body does not stay fixed before, the axis is zero or not finite, or a spin
+            about it does not load the body.
+    """
+    axis = _direction("axis_W", axis_W)
+    arm = problem.state.p_WB_W - check_vector3("at_W", at_W)
+    outward = arm - (arm @ axis) * axis
+    body = problem.body
+    turning = -np.cross(axis, body.inertia_in_world(problem.state.R_WB) @ axis)
+    load = np.concatenate([body.mass * outward, turning])
+    size = float(np.linalg.norm(load))  # of the load at 1 rad/s
+    if size == 0.0:
+        raise InvalidFieldError("axis_W, at_W", axis.tolist(), "an axis a spin about which loads the body")
+    found = largest_load(problem, force_W=load[:3] / size, torque_W=load[3:] / size)
+    return replace(
+        found,
+        factor=math.sqrt(found.factor / size),
+        only_rest=math.sqrt(found.only_rest / size),
+        unit="rad/s",
+    )
+
+
+def largest_tilt(
+    problem: SpatialContactProblem, axis_W: ArrayLike, *, gravity_W: ArrayLike = STANDARD_GRAVITY_W
+) -> LargestLoad:
+    """Return how far the support of a body, such as a tray, may be tilted before the body moves.
+
+    Args:
+        problem: The problem before the tilt. All its contacts belong to the support, and its wrench includes
+            the weight. What the wrench has besides turns with the support.
+        axis_W: (3,), about which the support turns, by the right-hand rule, world axes. Its length is
+            ignored.
+        gravity_W: (3,), m/s^2, world axes.
+
+    Returns:
+        The largest angle, rad, which is reached slowly. Rest is consistent at all angles below it. It is
+        infinite if that holds for a whole turn.
+
+    Raises:
+        InvalidFieldError: the body does not stay fixed before, the axis is zero or not finite, or gravity is
+            along it.
+    """
+    axis, gravity = _direction("axis_W", axis_W), check_vector3("gravity_W", gravity_W)
+    mass = problem.body.mass
+    along = mass * (axis @ gravity) * axis
+    down, side = mass * gravity - along, -mass * np.cross(axis, gravity)
+    if np.linalg.norm(down) <= SAME_FACTOR * np.linalg.norm(mass * gravity):
+        raise InvalidFieldError("axis_W, gravity_W", axis.tolist(), "an axis at an angle to gravity")
+    still, turning = problem.wrench_W - _of_force(down), np.array([_of_force(down), _of_force(side)])
+
+    def wrench(angle: float) -> FloatArray:
+        found: FloatArray = still + np.array([math.cos(angle), math.sin(angle)]) @ turning
+        return found
+
+    def nearer(plane: FloatArray, angle: float) -> float:
+        """Return the smaller angle at which c + a cos + b sin, of the plane, falls through zero."""
+        a, b = (turning @ plane).tolist()
+        size = math.hypot(a, b)
+        if size == 0.0:
+            return 0.0
+        ahead = math.acos(max(-1.0, min(1.0, -float(still @ plane) / size)))
+        further = (math.atan2(b, a) + ahead - angle) % _TURN
+        # Near the limit, rounding may turn the plane so that this is a little further.
+        return angle if further <= STRAIGHT_ARC else max(0.0, angle - _TURN + further)
+
+    _check_rests(problem)
+    held = _Held.of(problem)
+    angle = _last_held(held, wrench, nearer, _TURN)
+    while (between := _not_held(held, wrench, 0.0, angle)) > 0.0:
+        angle = _last_held(held, wrench, nearer, between)
+    return _followed(problem, wrench, math.inf if angle == _TURN else angle, far=math.pi, unit="rad")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
+class LeastFriction(Record):
+    """How little friction holds a body at rest.
+
+    Attributes:
+        factor: The given coefficients times this are the least with which rest is consistent. It is 0 if the
+            body rests without friction, and infinite if no friction holds it.
+        frictions: (n,), these coefficients.
+        verdict_below: The verdict with 1e-6 less of them, or UNIQUE if the factor is 0.
+        modes_below: The modes that are then consistent.
+    """
+
+    factor: float
+    frictions: tuple[float, ...]
+    verdict_below: ModeVerdict
+    modes_below: tuple[str, ...]
+
+    def in_short(self) -> str:
+        """Return the coefficients, and what follows with less friction."""
+        if math.isinf(self.factor):
+            return "LeastFriction: no friction holds it"
+        if self.factor == 0.0:
+            return "LeastFriction: it stays fixed without friction"
+        low, high = min(self.frictions), max(self.frictions)
+        needed = f"{high:.3g}" if low == high else f"{low:.3g} to {high:.3g}"
+        then = " or ".join(map(mode_in_words, self.modes_below)) or "no mode is consistent"
+        return f"LeastFriction: it may stay fixed with a friction of {needed}; with less, {then}"
+
+
+def least_friction(problem: SpatialContactProblem) -> LeastFriction:
+    """Return the least friction with which a body may stay at rest under the problem's wrench.
+
+    All coefficients of friction are scaled alike, and the body is taken to be at rest. The factor is exact to
+    about 1e-7. With this friction and more, rest is consistent; `contact_modes` says whether it is the only
+    answer.
+
+    Args:
+        problem: The problem, with coefficients of friction > 0 where there is friction.
+    """
+    state = replace(problem.state, v_WB_W=np.zeros(3), w_WB_W=np.zeros(3))
+    below = None
+
+    def scaled(factor: float) -> SpatialContactProblem:
+        contacts = replace(problem.contacts, frictions=factor * problem.contacts.frictions)
+        return replace(problem, state=state, contacts=contacts)
+
+    def slips(factor: float) -> bool:
+        return bool(_Held.of(scaled(factor)).against(problem.wrench_W).any())
+
+    low, factor = 0.0, 1.0 if slips(0.0) else 0.0
+    while factor * SAME_FACTOR < 1.0 and slips(factor):
+        low, factor = factor, 2.0 * factor
+    if factor * SAME_FACTOR >= 1.0:
+        factor = math.inf
+    while math.isfinite(factor) and factor - low > SAME_FACTOR * factor:
+        middle = 0.5 * (low + factor)
+        low, factor = (middle, factor) if slips(middle) else (low, middle)
+    if math.isinf(factor):
+        below = spatial_contact_modes(scaled(1.0))
+    elif factor > 0.0:
+        below = spatial_contact_modes(scaled(factor * (1.0 - NEXT_TO_A_LIMIT)))
+    return LeastFriction(
+        factor=factor,
+        frictions=tuple(
+            (factor * friction if friction else 0.0) for friction in problem.contacts.frictions.tolist()
+        ),
+        verdict_below=ModeVerdict.UNIQUE if below is None else below.verdict,
+        modes_below=() if below is None else tuple(mode.mode for mode in below.modes),
+    )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
+class Closure(Record):
+    """Whether contacts hold a body against every wrench.
+
+    Attributes:
+        form: Whether they do without friction, so that the body cannot move: first-order form closure.
+        force: Whether they do with friction, if they are pressed hard enough: force closure.
+    """
+
+    form: bool
+    force: bool
+
+    def in_short(self) -> str:
+        """Return which of the two there is."""
+        found = [name for name, there in (("form", self.form), ("force", self.force)) if there]
+        return f"Closure: {' and '.join(found) if found else 'neither form nor force'} closure"
+
+
+def closure(contacts: ContactSet) -> Closure:
+    """Return whether contacts have form closure and force closure (lecture 26).
+
+    Contacts have closure if the wrenches that their forces can have, however large, are all of R^6. Whether
+    fingers press hard enough is another question.
+    """
+    if len(contacts) == 0:
+        return Closure(form=False, force=False)
+    points = check_magnitude("contacts.p_WC_W", contacts.p_WC_W)
+    arms = points - points.mean(axis=0)
+    length = float(np.linalg.norm(arms, axis=1).max()) or 1.0
+
+    def closes(share: float) -> bool:
+        held = _Held(contacts, arms, length, share)
+        return not any(held.against(wrench).any() for wrench in (*held.units, *-held.units))
+
+    force = closes(1.0)
+    return Closure(form=force and closes(0.0), force=force)
+
+
+class _Held:
+    """The wrenches that forces at contacts can balance.
+
+    Wrenches are forces, N, and torques, N m.
+    """
+
+    def __init__(self, contacts: ContactSet, arms: FloatArray, length: float, share: float = 1.0) -> None:
+        """Take contacts, arms (n, 3), m, a length, m, that compares both, and a factor of friction."""
+        self._scale = np.array([1.0, 1.0, 1.0, length, length, length])
+        self.units = np.diag(self._scale)
+        along = np.array([tangents((x, y, z)) for x, y, z in contacts.normals_W.tolist()]).reshape(-1, 2, 3)
+        lean = share * np.minimum(contacts.frictions, LARGEST_NUMBER)[:, None, None] * along
+        self._sum = RoundSum(
+            rays=np.zeros((0, 6)),
+            axes=np.hstack([contacts.normals_W, np.cross(arms, contacts.normals_W)]) / self._scale,
+            leans=np.concatenate([lean, np.cross(arms[:, None], lean)], axis=2) / self._scale,
+        )
+
+    @classmethod
+    def of(cls, problem: SpatialContactProblem) -> _Held:
+        """Return those of a problem."""
+        arms = problem.contacts.p_WC_W - problem.state.p_WB_W
+        return cls(problem.contacts, arms, problem.body.mean_radius_of_gyration)
+
+    def against(self, wrench_W: FloatArray) -> FloatArray:
+        """Return a plane, (6,), that separates a wrench from all that can be balanced, or zeros if it can be.
+
+        The plane's product with the wrench is negative, and with those that can be balanced it is not.
+        """
+        target = -wrench_W / self._scale
+        rest = self._sum.rest(target)
+        apart = NEAREST_REACHED * np.linalg.norm(target) * np.linalg.norm(rest)
+        return rest / self._scale if rest @ target > apart else np.zeros(6)
+
+
+def _last_held(
+    held: _Held,
+    wrench: Callable[[float], FloatArray],
+    nearer: Callable[[FloatArray, float], float],
+    start: float,
+) -> float:
+    """Return the largest factor up to ``start`` at which a wrench is held; below it, others may not be.
+
+    Args:
+        held: What is held.
+        wrench: The wrench at a factor.
+        nearer: The largest smaller factor at which the wrench is in a plane.
+        start: The factor to begin with.
+    """
+    factor = start
+    plane = held.against(wrench(factor))
+    while plane.any():
+        before = nearer(plane, factor)
+        if not before < factor * (1.0 - SAME_FACTOR):
+            break
+        factor = before
+        plane = held.against(wrench(factor))
+    return max(factor, 0.0)
+
+
+def _not_held(held: _Held, wrench: Callable[[float], FloatArray], first: float, last: float) -> float:
+    """Return an angle between two at which a wrench that turns is not held, or 0 if there is none.
+
+    Both are held. The wrenches between them are in the triangle with the point where the tangents of their
+    arc meet, and what is held is convex.
+    """
+    if last - first <= STRAIGHT_ARC:
+        return 0.0
+    middle = 0.5 * (first + last)
+    half = wrench(middle)
+    if last - first <= 0.5 * math.pi:
+        chord = 0.5 * (wrench(first) + wrench(last))
+        corner = chord + (half - chord) * (1.0 + 1.0 / math.cos(middle - first))
+        if not held.against(corner).any():
+            return 0.0
+    if held.against(half).any():
+        return middle
+    return _not_held(held, wrench, first, middle) or _not_held(held, wrench, middle, last)
+
+
+def _followed(
+    problem: SpatialContactProblem,
+    wrench: Callable[[float], FloatArray],
+    factor: float,
+    *,
+    far: float,
+    unit: str = "times the load",
+) -> LargestLoad:
+    """Return up to which factor rest is the only consistent mode, and what follows beyond the largest one."""
+    rest = STICKS * len(problem.contacts)
+
+    def answer(factor: float) -> SpatialModeAnswer:
+        wrench_W = wrench(factor)
+        return spatial_contact_modes(replace(problem, force_W=wrench_W[:3], torque_W=wrench_W[3:]))
+
+    def rests_alone(factor: float) -> bool:
+        found = answer(factor)
+        return found.verdict == ModeVerdict.UNIQUE and found.modes[0].mode == rest
+
+    if math.isinf(factor):
+        alone = math.inf if rests_alone(far) else _last(rests_alone, far)
+        return LargestLoad(
+            factor=factor, only_rest=alone, verdict_beyond=ModeVerdict.UNIQUE, modes_beyond=(), unit=unit
+        )
+    after, inside = answer(factor * (1.0 + NEXT_TO_A_LIMIT)), factor * (1.0 - NEXT_TO_A_LIMIT)
+    return LargestLoad(
+        factor=factor,
+        only_rest=factor if rests_alone(inside) else _last(rests_alone, inside),
+        verdict_beyond=after.verdict,
+        modes_beyond=tuple(mode.mode for mode in after.modes),
+        unit=unit,
+    )
+
+
+def _check_rests(problem: SpatialContactProblem) -> None:
+    found = spatial_contact_modes(problem)
+    if STICKS * len(problem.contacts) not in {mode.mode for mode in found.modes}:
+        raise InvalidFieldError(
+            "problem", found.in_short(), "one of a body that stays fixed without the load"
+        )
+
+
+def _direction(name: str, vector: ArrayLike) -> FloatArray:
+    """Return a vector as a unit vector."""
+    checked = check_vector3(name, vector)
+    size = float(np.linalg.norm(checked))
+    if size == 0.0:
+        raise InvalidFieldError(name, checked.tolist(), "a direction")
+    return checked / size
+
+
+def _of_force(force: FloatArray) -> FloatArray:
+    return np.concatenate([force, np.zeros(3)])
+
+
+def _last(holds: Callable[[float], bool], beyond: float) -> float:
+    """Return a factor below ``beyond`` up to which something holds, by halving, or 0 if it does not at 0."""
+    if not holds(0.0):
+        return 0.0
+    inside = 0.0
+    while beyond - inside > ONLY_REST_WITHIN * beyond:
+        middle = 0.5 * (inside + beyond)
+        if holds(middle):
+            inside = middle
+        else:
+            beyond = middle
+    return inside
