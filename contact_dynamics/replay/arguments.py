@@ -117,7 +117,10 @@ def _add_verify(parser: argparse.ArgumentParser) -> None:
 
 
 def _add_table(parser: argparse.ArgumentParser) -> None:
-    parser.epilog = "docs/replay.md explains the columns."
+    parser.epilog = (
+        "Error columns compare the predicted with the measured state at the predicted time; `evaluate` "
+        "reports errors of landing times. docs/replay.md explains the columns."
+    )
     parser.add_argument(
         "logs", nargs="+", metavar="LOG", help="a log of the server, or a recording with --config"
     )
@@ -163,9 +166,10 @@ def _add_view(parser: argparse.ArgumentParser) -> None:
 
 def _add_publish(parser: argparse.ArgumentParser) -> None:
     parser.epilog = (
-        "The space bar pauses, and a dot steps by 0.1 s. The exit code is 0 if the log was published "
-        "and, with --requests, every answer equals the logged one; 1 if nothing was published, or an answer "
-        "differs or is missing; 2 if there is no such log or part of it. ROS arguments follow --ros-args."
+        "The space bar pauses and resumes playback; while paused, the key '.' advances by 0.1 s. The exit "
+        "code is 0 if the log was published and, with --requests, every answer equals the logged one; 1 if "
+        "nothing was published, or an answer differs or is missing; 2 if there is no such log or part of it. "
+        "ROS arguments follow --ros-args."
     )
     parser.add_argument("log", metavar="LOG", help="a log of the server, or any recording with --all-topics")
     parser.add_argument(

@@ -184,7 +184,8 @@ def publish(given: argparse.Namespace, of_ros: list[str], *, span: Span) -> int:
             )
             publisher.wait_for_listeners(given.wait)
             if given.paused:
-                print(f"{path}: paused: the space bar goes on, a dot steps", file=sys.stderr, flush=True)
+                keys = "press the space bar to resume, or '.' to advance by 0.1 s"
+                print(f"{path}: paused: {keys}", file=sys.stderr, flush=True)
             while publisher.play(pacing, progress) and given.loop:
                 pass
             complete = stop.is_set() or (publisher.wait_for_answers() and publisher.has_published)

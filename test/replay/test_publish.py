@@ -203,7 +203,7 @@ def test_the_space_bar_lets_time_stand_still(tmp_path: Path) -> None:
     write_flight(tmp_path / "bag")
     started, outside = in_a_terminal(tmp_path / "bag")
     try:
-        wait_for(started, "paused: the space bar goes on")
+        wait_for(started, "paused: press the space bar to resume")
         with pytest.raises(subprocess.TimeoutExpired):
             started.wait(4.0)  # what is left takes a second
         os.write(outside, b" ")
