@@ -113,11 +113,11 @@ def expected(body: BodySources, publishers: int | None = None) -> str:
             replayed, where this is not compared.
     """
     topics = " and ".join(dict.fromkeys(topic.full_name for each in body.sources for topic in each.topics))
-    instead = "set state_source: 1 (STATE_EXPLICIT) and give state"
+    instead = "or set state_source: 1 (STATE_EXPLICIT) and provide the field state"
     if not topics:
-        return f"no topic of its states is configured, as body.{body.body_name}.odometry_topic; {instead}"
+        return f"no topic is configured for its states; set body.{body.body_name}.odometry_topic, {instead}"
     count = "" if publishers is None else f" ({publishers} publisher{'s' * (publishers != 1)})"
-    return f"none was published yet on {topics}{count}; publish there, or {instead}"
+    return f"none has been received on {topics}{count}; publish states there, {instead}"
 
 
 def adapter_of(name: str, *, parameter: str) -> StateAdapter:

@@ -52,24 +52,24 @@ class Arrivals:
     rejected_ns: int | None = None
     newest_is_rejected: bool = False
     discarded: str = ""
-    expected: str = "none was published yet"
+    expected: str = "none has been received yet"
 
     def why_none(self, now_ns: int | None) -> str:
         """Return in words why there is no state at the present time, ns."""
         if not self.came:
             return self.expected
-        fate = "they could not be read"
+        count = f"{self.came} message{'s' * (self.came != 1)} received"
         if self.discarded:
-            fate = f"they were discarded when {self.discarded}"
-        elif self.reason:
-            fate = f"the last was rejected{self._ago(now_ns)} because {self.reason}"
-        return f"none of {self.came} messages was kept: {fate}"
+            return f"{count}; the stored states were discarded when {self.discarded}"
+        if self.reason:
+            return f"{count}; the last was rejected{self._ago(now_ns)} because {self.reason}"
+        return f"{count}; none could be read"
 
     def why_old(self, now_ns: int) -> str:
         """Return in words what became of states since the newest that is kept, or nothing if none came."""
         if not self.newest_is_rejected:
             return ""
-        return f"; states that came since were rejected, the last{self._ago(now_ns)} because {self.reason}"
+        return f"; later messages were rejected, the last{self._ago(now_ns)} because {self.reason}"
 
     def _ago(self, now_ns: int | None) -> str:
         """Return how long ago the last one was rejected, which may have been by a program that has ended."""
@@ -197,7 +197,8 @@ class StateStore:
         """Return the newest state. Without the present time, ns, it may be of any age.
 
         Raises:
-            NoStateError: none was published yet, or none that came is kept; the message says why.
+            NoStateError: none has been received yet, or none of those received is stored; the message
+                contains the reason.
             StaleStateError: it is older than the timeout.
         """
         if now_ns is not None:
@@ -205,7 +206,7 @@ class StateStore:
         track = self._tracks.get(body_name, _Track())
         state = track.last(len(track.stamps))
         if state is None:
-            message = f"state of {body_name!r}: {self.arrivals(body_name).why_none(now_ns)}"
+            message = f"no state of {body_name!r}: {self.arrivals(body_name).why_none(now_ns)}"
             raise NoStateError(message)
         return state if now_ns is None else self._fresh(body_name, state, now_ns)
 
@@ -235,8 +236,8 @@ class StateStore:
         if earlier is None:
             oldest = track.first(0)
             none = self.arrivals(body_name).why_none(now_ns)
-            kept = none if oldest is None else f"the oldest kept has {oldest.stamp_ns} ns"
-            message = f"state of {body_name!r} at {stamp_ns} ns: {kept}"
+            kept = none if oldest is None else f"the oldest stored state is at {oldest.stamp_ns} ns"
+            message = f"no state of {body_name!r} at {stamp_ns} ns: {kept}"
             raise NoStateError(message)
         if earlier.stamp_ns == stamp_ns:
             return earlier, None
@@ -246,7 +247,7 @@ class StateStore:
         gap_ns = later.stamp_ns - earlier.stamp_ns
         if gap_ns > self._timeout_ns:
             message = (
-                f"state of {body_name!r} at {stamp_ns} ns: the states around it must be at most "
+                f"state of {body_name!r} at {stamp_ns} ns: the states before and after it must be at most "
                 f"{to_seconds(self._timeout_ns):g} s apart (state_timeout), got {to_seconds(gap_ns):.3f} s"
             )
             raise StaleStateError(message)
@@ -360,7 +361,7 @@ class StateStore:
         age_ns = asked_ns - state.stamp_ns
         if age_ns > self._timeout_ns:
             message = (
-                f"state of {body_name!r}: the newest must be at most {to_seconds(self._timeout_ns):g} s old "
+                f"the newest state of {body_name!r} must be at most {to_seconds(self._timeout_ns):g} s old "
                 f"(state_timeout), got {to_seconds(age_ns):.3f} s"
             )
             raise StaleStateError(message + self.arrivals(body_name).why_old(asked_ns))

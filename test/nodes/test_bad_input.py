@@ -232,7 +232,7 @@ CASES = [
         PredictImpact,
         put("other_body_name", "brick"),
         "NO_STATE",
-        "none was published yet on /brick/odometry (0 pub",
+        "none has been received on /brick/odometry (0 pub",
     ),
     (
         PredictImpact,
@@ -417,7 +417,7 @@ def test_no_state_published_yet(client: Client, service: Any) -> None:
         request.times = [0.0]
     answer = client.ask(request)
     assert answer.status == answer.NO_STATE
-    assert "state of 'brick': none was published yet on /brick/odometry (0 publishers)" in answer.message
+    assert "no state of 'brick': none has been received on /brick/odometry (0 publishers)" in answer.message
     assert says_nothing(answer)
 
 

@@ -36,9 +36,9 @@ def test_after_a_jump_forwards_states_are_stale_and_after_one_backwards_gone_unt
             clock = client.publisher(Clock, "/clock")
             states = client.publisher(Odometry, "/brick/odometry")
             for hour, said in (
-                (2, "none was published yet"),
+                (2, "none has been received on"),
                 (3, "(state_timeout), got 3600.000 s"),
-                (1, "they were discarded when the clock was set back"),
+                (1, "states were discarded when the clock was set back"),
             ):
                 clock.publish(Clock(clock=stamp_to_msg(hour * HOUR_NS)))
                 client.spin_until(lambda said=said: said in newest(client).message)

@@ -54,30 +54,26 @@ def test_no_state_says_what_became_of_those_that_came(tmp_path: Path) -> None:
 
             clock.publish(Clock(clock=stamp_to_msg(2 * HOUR_NS)))
             wait_for(
-                "state of 'brick': none was published yet on /brick/odometry (1 publisher); publish there, "
-                "or set state_source: 1 (STATE_EXPLICIT) and give state"
+                "no state of 'brick': none has been received on /brick/odometry (1 publisher); "
+                "publish states there, or set state_source: 1 (STATE_EXPLICIT) and provide the field state"
             )
-            assert says(asked(client, "parcel").message, "no topic ... as body.parcel.odometry_topic; set")
+            assert says(
+                asked(client, "parcel").message, "no topic ... set body.parcel.odometry_topic, or set"
+            )
             states.publish(odometry(2 * HOUR_NS, frame="map"))
-            wait_for(
-                "none of 1 messages was kept: the last was rejected ... s ago because header.frame_id must be"
-            )
+            wait_for("1 message received; the last was rejected ... s ago because header.frame_id must be")
             states.publish(b"\0\1\0\0no message at all")
-            wait_for("none of 2 messages was kept: ... ago because data must be a..., got 24 bytes")
+            wait_for("2 messages received; ... ago because data must be a..., got 24 bytes")
             states.publish(odometry(4 * HOUR_NS))
-            wait_for(
-                "none of 3 messages was kept: the last was rejected ... because stamp must be ..., got 7200"
-            )
+            wait_for("3 messages received; the last was rejected ... because stamp must be ..., got 7200")
             states.publish(odometry(2 * HOUR_NS))
             client.spin_until(lambda: newest(client).status == 0)
             states.publish(odometry(2 * HOUR_NS, frame="map"))
             clock.publish(Clock(clock=stamp_to_msg(2 * HOUR_NS + 1_000_000_000)))
-            wait_for("the newest must be at most 0.5 s old (state_timeout), got 1.000 s")
-            wait_for(
-                "states that came since were rejected, the last ... s ago because header.frame_id must be"
-            )
+            wait_for("the newest state of 'brick' must be at most 0.5 s old (state_timeout), got 1.000 s")
+            wait_for("later messages were rejected, the last ... s ago because header.frame_id must be")
             clock.publish(Clock(clock=stamp_to_msg(HOUR_NS)))
-            wait_for("none of 5 messages was kept: they were discarded when the clock was set back")
+            wait_for("5 messages received; the stored states were discarded when the clock was set back")
         finally:
             client.close()
     (log,) = tmp_path.iterdir()

@@ -87,11 +87,11 @@ def test_a_stamp_in_a_gap_is_refused_and_that_of_a_state_is_not() -> None:
     """In half a second without states the body may have struck something."""
     known = watching(0, 600 * MS, now_ns=5000 * MS)
     with pytest.raises(
-        StaleStateError, match=r"the states around it must be at most 0\.5 s apart .*, got 0\.600 s"
+        StaleStateError, match=r"the states before and after it must be at most 0\.5 s apart .*, got 0\.600 s"
     ):
         subject_of("cube", PublishedState(stamp_ns=300 * MS), known)
     assert subject_of("cube", PublishedState(stamp_ns=600 * MS), known).state.stamp_ns == 600 * MS
-    with pytest.raises(NoStateError, match="the oldest kept has 0 ns"):
+    with pytest.raises(NoStateError, match="the oldest stored state is at 0 ns"):
         subject_of("cube", PublishedState(stamp_ns=-1), known)
 
 
@@ -137,7 +137,7 @@ def test_a_load_is_interpolated_about_its_own_centre_of_mass() -> None:
 
 def test_an_old_state_is_refused_only_by_a_clock() -> None:
     late = 600 * MS
-    with pytest.raises(StaleStateError, match=r"the newest must be at most 0\.5 s old .*, got 0\.600 s"):
+    with pytest.raises(StaleStateError, match=r"must be at most 0\.5 s old .*, got 0\.600 s"):
         subject_of("cube", PublishedState(), watching(0, now_ns=late))
     assert subject_of("cube", PublishedState(), watching(0, now_ns=late - 200 * MS)).state.stamp_ns == 0
     assert subject_of("cube", PublishedState(), watching(0)).state.stamp_ns == 0
@@ -240,7 +240,7 @@ def test_a_state_that_is_said_needs_no_knowledge() -> None:
 
 def test_what_is_not_known_is_named() -> None:
     known = watching()
-    with pytest.raises(NoStateError, match="state of 'cube': none was published yet"):
+    with pytest.raises(NoStateError, match="no state of 'cube': none has been received yet"):
         subject_of("cube", PublishedState(), known)
     with pytest.raises(UnknownBodyError, match=r"must be one of the known bodies .'cube'., got 'dog'"):
         subject_of("dog", state(), known)

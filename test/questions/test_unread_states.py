@@ -72,9 +72,9 @@ def test_the_states_around_a_stamp_are_those_that_can_be_read() -> None:
 
 def test_of_a_body_whose_states_all_cannot_be_read_none_is_known() -> None:
     store = store_of(Reads(), [1, 2], broken=frozenset({1, 2}))
-    with pytest.raises(NoStateError, match="none of 2 messages was kept: they could not be read"):
+    with pytest.raises(NoStateError, match="2 messages received; none could be read"):
         store.newest("ball")
-    with pytest.raises(NoStateError, match="none of 2 messages was kept: they could not be read"):
+    with pytest.raises(NoStateError, match="2 messages received; none could be read"):
         store.around("ball", 5)
 
 
@@ -92,28 +92,30 @@ def missing(store: StateStore) -> str:
     with pytest.raises(NoStateError) as in_a_worker:
         store.excerpt([("ball", None, 1.0)]).newest("ball")
     assert str(in_a_worker.value) == str(caught.value)
-    return str(caught.value).removeprefix("state of 'ball': ")
+    return str(caught.value).removeprefix("no state of 'ball': ")
 
 
 def test_who_finds_no_state_is_told_how_many_came_and_what_became_of_them() -> None:
     store = StateStore(history=1.0, timeout=1.0)
-    assert missing(store) == "none was published yet"
+    assert missing(store) == "none has been received yet"
     store.clear()
-    assert missing(store) == "none was published yet"
+    assert missing(store) == "none has been received yet"
     store.refuse("ball", "stamp must be less, got 5 s")
     store.refuse("ball", "mass must be > 0, got -1")
-    refused = "none of 2 messages was kept: the last was rejected because mass must be > 0, got -1"
+    refused = "2 messages received; the last was rejected because mass must be > 0, got -1"
     assert missing(store) == refused
     store.clear()  # which changes nothing where none is kept
     assert missing(store) == refused
     for stamp_ns in (1, 2, 3):
         store.add("ball", state(stamp_ns))
     store.clear()
-    assert missing(store) == "none of 5 messages was kept: they were discarded when the clock was set back"
+    assert (
+        missing(store) == "5 messages received; the stored states were discarded when the clock was set back"
+    )
     store.add("ball", state(9_000_000_000))
     store.add("other", state(1), now_ns=1)
     with pytest.raises(
-        NoStateError, match=r"none of 6 .* when the clock turned out to be behind their stamps"
+        NoStateError, match=r"6 messages received; .* when the clock turned out to be behind their stamps"
     ):
         store.newest("ball", now_ns=1)
 
@@ -133,8 +135,8 @@ def test_a_state_that_is_too_old_says_whether_newer_ones_were_rejected() -> None
     assert "rejected" not in stale(store, now_ns=2_000_000_000)
     store.refuse("ball", "header.frame_id must be 'world', got 'map'")
     assert stale(store, now_ns=2_000_000_000).endswith(
-        "the newest must be at most 1 s old (state_timeout), got 2.000 s; "
-        "states that came since were rejected, the last because header.frame_id must be 'world', got 'map'"
+        "must be at most 1 s old (state_timeout), got 2.000 s; "
+        "later messages were rejected, the last because header.frame_id must be 'world', got 'map'"
     )
     store.refuse("ball", "it is NaN", now_ns=1_500_000_000)
     assert stale(store, now_ns=8_000_000_000).endswith("were rejected, the last 6.5 s ago because it is NaN")
