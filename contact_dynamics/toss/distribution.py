@@ -39,13 +39,13 @@ _SHOWN_FACES: Final = 6
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class Region(Record):
-    """Where samples of a quantity with k numbers lie.
+    """Region of the samples of a quantity with k components: an ellipsoid about their mean.
 
     Attributes:
-        mean: (k,), their mean.
-        covariance: (k, k), their covariance.
-        radii: (2,), the distances from the mean, in standard deviations by the covariance, within which half
-            and nine tenths of them are.
+        mean: (k,), mean of the samples.
+        covariance: (k, k), covariance of the samples.
+        radii: (2,), distances from the mean within which half and nine tenths of the samples lie, in standard
+            deviations of the covariance.
     """
 
     mean: FloatArray
@@ -53,28 +53,28 @@ class Region(Record):
     radii: FloatArray
 
     def distances(self, values: ArrayLike) -> FloatArray:
-        """Return how far values, (n, k), are from the mean, in standard deviations, (n,)."""
+        """Return the distances of values, (n, k), from the mean, in standard deviations, (n,)."""
         off = np.atleast_2d(np.asarray(values, dtype=np.float64)) - self.mean
         return _distances(off, self.covariance)
 
     def holds(self, values: ArrayLike) -> NDArray[np.bool_]:
-        """Return whether values, (n, k), are in the regions of 50 and 90 %, (n, 2)."""
+        """Return whether values, (n, k), are inside the regions of 50 and 90 %, (n, 2)."""
         held: NDArray[np.bool_] = self.distances(values)[:, None] <= self.radii
         return held
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class EventRegions(Record):
-    """When and where a strike happens, and with which velocities the body leaves it.
+    """Regions of the time and place of a strike, and of the velocities after it.
 
     Attributes:
-        probability: Share of all samples that have it. The regions are those of these samples.
-        seconds: s after the first state's stamp (k = 1).
-        position: m, of the centre of mass, world (k = 3).
-        q_WB: (4,), the mean attitude.
-        turn: rad, rotation vectors from the mean attitude, world axes (k = 3).
-        velocity: m/s, of the centre of mass after the strike, world axes (k = 3).
-        spin: rad/s, after the strike, world axes (k = 3).
+        probability: Share of all samples that have this strike. The regions are those of these samples.
+        seconds: Time, s after the initial state's stamp (k = 1).
+        position: Position of the centre of mass, m, world (k = 3).
+        q_WB: (4,), mean attitude.
+        turn: Rotation vectors from the mean attitude, rad, world axes (k = 3).
+        velocity: Velocity of the centre of mass after the strike, m/s, world axes (k = 3).
+        spin: Angular velocity after the strike, rad/s, world axes (k = 3).
     """
 
     probability: float
@@ -87,30 +87,31 @@ class EventRegions(Record):
 
 
 class BranchKind(NamedInt):
-    """What happens on a branch."""
+    """Event of a branch."""
 
     STRIKES = 0
     """A corner strikes."""
     STAYS = 1
-    """The contact of the strike before rebounds too little to be followed, and stays."""
+    """The contact of the previous strike rebounds too little to be followed, and stays closed."""
     FLIES = 2
-    """The body meets nothing until the horizon."""
+    """The body touches nothing until the horizon."""
     ENDS = 3
     """There is no further strike: the body rests, or slides and rolls until the horizon."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class Branch(Record):
-    """A branch of the tree of what can happen next.
+    """Branch of the tree of possible next events.
 
     Attributes:
-        parent: The index of the branch that it follows, or -1.
-        strike: Which strike it is about, from 1.
-        kind: What happens.
-        probability: Share of all samples that came this way.
-        corner: The index of the corner that strikes, or -1.
-        surface: The name of the surface that is struck, or nothing.
-        regions: Those of its samples; None where nothing strikes, or with fewer than `FEWEST` samples.
+        parent: Index of the branch that it follows, or -1 for the first strike.
+        strike: Number of the strike, from 1.
+        kind: Event of the branch.
+        probability: Share of all samples in this branch.
+        corner: Index of the corner that strikes, or -1.
+        surface: Name of the surface that is struck, or an empty string.
+        regions: Regions of the samples in this branch. None without a strike, or with fewer than `FEWEST`
+            samples.
     """
 
     parent: int
@@ -124,15 +125,16 @@ class Branch(Record):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class RestSpread(Record):
-    """When and where samples rest. The places need the friction where contact lasts (docs/toss.md).
+    """Distribution of the time and place of rest.
 
-    They are those of all samples that rest, on whichever face. `TossDistribution.ghosts` has single poses of
-    rest, whose attitudes tell the face.
+    The place depends on the friction of sustained contact (docs/toss.md). The distribution contains all
+    samples that rest, on any face. `TossDistribution.ghosts` contains single poses of rest, whose attitudes
+    determine the face.
 
     Attributes:
-        seconds: (5,), s, the quantiles 5, 25, 50, 75 and 95 % of the time of rest.
+        seconds: (5,), s, the 5, 25, 50, 75 and 95 % quantiles of the time of rest.
         positions: (5, 3), m, the same quantiles of each coordinate of the centre of mass, world.
-        position: Where the centre of mass rests, m (k = 3).
+        position: Region of the position of the centre of mass at rest, m (k = 3).
     """
 
     seconds: FloatArray
@@ -140,21 +142,21 @@ class RestSpread(Record):
     position: Region
 
     def in_short(self) -> str:
-        """Return which quantiles the numbers are."""
+        """Return a label with the quantiles."""
         return f"RestSpread, quantiles {', '.join(f'{q:.0%}' for q in QUANTILES)} of time (s) and place (m)"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class Ghosts(Record):
-    """Poses of some samples, for pictures.
+    """Poses of some samples, for visualization.
 
     Attributes:
-        samples: (m,), the number of each one's sample.
-        strikes: (m,), the number of the strike from 1, or 0 for rest.
+        samples: (m,), number of the sample of each pose.
+        strikes: (m,), number of the strike of each pose, from 1, or 0 at rest.
         p_WB_W: (m, 3), m, centres of mass.
         q_WB: (m, 4), unit quaternions.
-        v_WB_W: (m, 3), m/s, after the strike.
-        w_WB_W: (m, 3), rad/s, after the strike.
+        v_WB_W: (m, 3), m/s, velocities after the strike.
+        w_WB_W: (m, 3), rad/s, angular velocities after the strike.
     """
 
     samples: NDArray[np.int64]
@@ -167,20 +169,24 @@ class Ghosts(Record):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class TossDistribution(Record):
-    """What can happen in a toss.
+    """Distribution of the outcomes of an uncertain toss.
 
     Attributes:
-        samples: How many samples it is made of.
-        strikes: The next strikes, whichever corner has them, as far as any sample has them.
-        branches: The tree. Branches stand after those that they follow, and the probable ones first.
-        face_normals_B: (f, 3), unit, the normals of the surface below, body axes, one for each face on which
-            samples rest, the probable ones first.
-        face_probabilities: (f,), shares of all samples. What is missing to one did not come to rest.
-        rest: When and where samples rest; None if none does, or if they were not followed so far.
+        samples: Number of samples.
+        strikes: Regions of the next strikes, at any corner. The list ends before the first strike that no
+            sample has.
+        branches: Tree of the next events. Each branch is listed after the one that it follows, and more
+            probable branches are listed first.
+        face_normals_B: (f, 3), unit normals of the surface below, body axes, one for each face on which
+            samples rest, most probable first.
+        face_probabilities: (f,), shares of all samples. The sum is less than 1 if some samples do not come to
+            rest.
+        rest: Distribution of the time and place of rest. None if no sample rests, or if samples were not
+            followed to rest.
         ghosts: Poses of the first samples.
-        to_rest: Whether samples were followed to rest, or None if that is not recorded, as in a message.
-        exact: Which of friction, restitution and impact law are the same in all samples, since their
-            ``uncertainty`` was not given. None if that is not recorded.
+        to_rest: Whether samples were followed to rest. None if that is not recorded, as in a message.
+        exact: Names of those inputs among friction, restitution and impact law that are the same in all
+            samples, because ``uncertainty`` does not include them. None if that is not recorded.
     """
 
     samples: int
@@ -194,7 +200,7 @@ class TossDistribution(Record):
     exact: tuple[str, ...] | None = field(default=None, repr=False)
 
     def in_short(self) -> str:
-        """Return the number of samples, where they rest, and what was taken as exact."""
+        """Return the number of samples, the most probable resting faces, and the inputs taken as exact."""
         exact = f"; taken as exact: {', '.join(self.exact)}" if self.exact else ""
         return f"TossDistribution of {self.samples} samples{self._rests()}{exact}"
 
@@ -217,11 +223,12 @@ class TossDistribution(Record):
     def standard_error(self, probability: FloatArray) -> FloatArray: ...
 
     def standard_error(self, probability: float | FloatArray) -> float | FloatArray:
-        """Return the standard error of a probability, such as a branch's, by the number of samples.
+        """Return the standard error of a probability, such as a branch's, from the number of samples.
 
-        It is the error of sampling only, and does not contain that of inputs taken as exact (`exact`). Of
-        several probabilities, such as ``face_probabilities``, it returns an array. It is zero for 0 and 1,
-        which is not certainty: what no sample shows has a probability of at most 3 / samples, by 95 %.
+        It is the sampling error only, and does not include errors of inputs that were taken as exact
+        (`exact`). For several probabilities, such as ``face_probabilities``, it returns an array. For 0 and 1
+        the standard error is zero, which does not mean certainty: an outcome that no sample has, has a
+        probability of at most 3 / samples, with 95 % confidence.
         """
         if isinstance(probability, np.ndarray):
             return np.array([self.standard_error(share) for share in probability.ravel().tolist()]).reshape(
@@ -232,10 +239,11 @@ class TossDistribution(Record):
 
     @property
     def faces_on_top(self) -> tuple[str, ...]:
-        """Which body axis points away from the surface in each kind of rest: "+z", or its numbers.
+        """Return the body axis that points away from the surface for each resting face, such as "+z".
 
-        They are in the order of ``face_probabilities``. On a die it is the face on top. A face on which no
-        sample rests is not among them, and without ``to_rest`` there is none.
+        If no axis is nearly normal to the face, it is the components of the direction. The order is that of
+        ``face_probabilities``. For a die, it is the face on top. Faces on which no sample rests are not
+        listed; without ``to_rest`` the list is empty.
         """
         return tuple(axis_in_words(normal) for normal in self.face_normals_B)
 

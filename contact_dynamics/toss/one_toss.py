@@ -55,30 +55,31 @@ def toss(
     lasting_factors: ArrayLike = (),
     distance_tolerance: float = DISTANCE_TOLERANCE,
 ) -> Toss:
-    """Return the motion of a body from a state, in flight or in contact, until it rests.
+    """Return the motion of a body from an initial state, in flight or in contact, until it rests.
 
     Args:
         body: Mass properties and shape: corners, which may be rounded.
-        state: Pose and velocities.
-        world: Surfaces, which are flats, and gravity.
-        restitution_law: What the coefficients of restitution mean. ENERGETIC only goes with SEQUENTIAL.
-        several_contacts_law: The law for several contacts that strike at one instant.
-        horizon: s, > 0. How far the motion is followed.
-        max_events: How many events to follow at most, >= 1.
-        max_alternatives: How many other ways to follow at most, >= 0, where mechanics does not decide. Each
-            costs about as much as the toss itself. The toss lists these points in any case (`undecided`).
-        error: m, m/s, at least `LEAST_PHASE_ERROR`. The error that one step of a contact phase may have.
-            Angles count with the body's reach.
-        lasting_factors: (s,), >= 0, the friction of each surface where contact lasts, relative to that of
-            its strikes. Without any, those of the surfaces hold.
-        distance_tolerance: m, >= 0. The body may be in a surface by this much at first, or by 1e-6 m.
+        state: Initial pose and velocities.
+        world: Surfaces, which must be planes, and gravity.
+        restitution_law: Law of restitution. ENERGETIC requires SEQUENTIAL.
+        several_contacts_law: Law for several contacts that strike at one instant.
+        horizon: s, > 0. Duration of the longest motion that is followed.
+        max_events: Largest number of events, >= 1.
+        max_alternatives: Largest number of other branches to follow where mechanics does not determine the
+            motion, >= 0. Each takes about as long as the toss itself. The branch points are listed in any
+            case (`undecided`).
+        error: m, m/s, at least `LEAST_PHASE_ERROR`. Largest error of one step of a contact phase. Angles are
+            multiplied by the reach of the body (m).
+        lasting_factors: (s,), >= 0, friction of sustained contact with each surface, relative to that of
+            strikes. If it is empty, the factors of the surfaces are used.
+        distance_tolerance: m, >= 0. Largest initial penetration of a surface; 1e-6 m is always accepted.
 
     Raises:
         NoContactError: the body has no shape that could touch anything.
-        NotSupportedError: the shape has rims, or a surface is an obstacle.
-        InvalidFieldError: a number is not allowed, ENERGETIC and SIMULTANEOUS are asked for together, or the
-            body is deeper in a surface than the tolerance.
-        TooLargeError: a flight takes too many steps of the search for its end.
+        NotSupportedError: the shape has circular rims, or a surface is an obstacle.
+        InvalidFieldError: a number is out of range, ENERGETIC and SIMULTANEOUS are combined, or the body
+            penetrates a surface by more than the tolerance.
+        TooLargeError: the search for the end of a flight takes too many steps.
     """
     check_laws(restitution_law, several_contacts_law)
     factors = check_factors("lasting_factors", lasting_factors)

@@ -30,32 +30,34 @@ _TIMES = 3
 
 
 class TossEventKind(NamedInt):
-    """What happens at an event of a toss."""
+    """Kind of an event of a toss."""
 
     STRIKES = 0
-    """A contact strikes and rebounds, or stays without rebound."""
+    """A contact strikes and rebounds, or stays closed without a rebound."""
     SETTLES = 1
-    """The rebounds at a contact have become too low to be followed. The contact stays from then on."""
+    """The rebounds at a contact have become too low to be followed, and the contact stays closed from then
+    on."""
     NEW_MODE = 2
-    """The contacts that touch go on in a contact mode, sticking, rolling or sliding. Where they jam, the
-    motion goes on in short steps, and the mode is that of the first."""
+    """The touching contacts continue in a contact mode: sticking, rolling or sliding. If they jam, the motion
+    continues in short steps, and the mode is that of the first step."""
     LIFTS_OFF = 3
-    """The last contact leaves, and the body flies."""
+    """The last contact separates, and the body flies."""
     JAMS = 4
-    """No contact mode was consistent, and an impact without approach settled that (lectures 26 and 27)."""
+    """No contact mode was consistent, and an impact without approach resolved the case (lectures 26 and
+    27)."""
     RESTS = 5
-    """The body has come to rest."""
+    """The body comes to rest."""
 
 
 class TossEnd(NamedInt):
-    """Why a toss has no further event."""
+    """Reason for the end of a toss."""
 
     RESTS = 0
     """The body rests."""
     HORIZON = 1
-    """The time that was asked for is over, and the body still moves."""
+    """The requested time has passed, and the body still moves."""
     MAX_EVENTS = 2
-    """The bound on the number of events, or of steps in contact, was reached."""
+    """The limit on the number of events, or of steps in contact, was reached."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -63,16 +65,17 @@ class TossEvent(Record):
     """One event of a toss.
 
     Attributes:
-        seconds: s after the stamp of the state that the toss began with.
-        kind: What happens.
-        surfaces: The surfaces of the contacts that it happens at.
-        corners: The indices of the corners of the body's shape that touch there, as many as surfaces.
-        p_WC_W: (n, 3), m, where these contacts are, world.
-        impulse_W: (3,), N s, the impulse on the body, world axes. It is zero where nothing strikes.
-        outcome: What a striking contact did, or None. Contacts that strike at once under SIMULTANEOUS have
-            none.
-        mode: A letter for each contact: f sticks or rolls, c slides. It is empty where no mode follows.
-        state: The state after everything that happens at that time.
+        seconds: Time of the event, s after the stamp of the initial state.
+        kind: Kind of the event.
+        surfaces: Names of the surfaces at the contacts of the event.
+        corners: Indices of the corners of the body's shape at these contacts, one for each entry of
+            ``surfaces``.
+        p_WC_W: (n, 3), m, positions of these contacts, world.
+        impulse_W: (3,), N s, impulse on the body, world axes. It is zero if no contact strikes.
+        outcome: Outcome of the impact at a striking contact, or None. Contacts that strike at one instant
+            under SIMULTANEOUS have no outcome.
+        mode: One letter for each contact: f sticks or rolls, c slides. It is empty if no mode follows.
+        state: State after all events at that time.
     """
 
     seconds: float
@@ -88,13 +91,14 @@ class TossEvent(Record):
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class TossEnergy(Record):
-    """Where the energy of a toss goes, J. Energy is kinetic energy and that in uniform gravity together.
+    """Energy balance of a toss, J. Energy is the sum of the kinetic energy and the energy in uniform gravity.
 
     Attributes:
-        first: The energy at the beginning, above that of the last state.
-        lost_in_strikes: What strikes take. It is negative if a law of restitution creates energy.
-        lost_in_contact: What friction takes between strikes, at contacts that slide.
-        left: What the last state has, which is its kinetic energy.
+        first: Energy at the beginning, relative to the potential energy of the last state.
+        lost_in_strikes: Energy dissipated in strikes. It is negative if the law of restitution creates
+            energy.
+        lost_in_contact: Energy dissipated between strikes by friction at sliding contacts.
+        left: Energy of the last state, which is its kinetic energy.
     """
 
     first: float
@@ -104,24 +108,24 @@ class TossEnergy(Record):
 
 
 class UndecidedReason(NamedInt):
-    """Why mechanics does not decide how a toss goes on."""
+    """Reason for which mechanics does not determine the motion at a point of a toss."""
 
     STRIKE_TOGETHER = 0
-    """Several contacts approach at one instant, and their order is open."""
+    """Several contacts approach at one instant, and their order is not determined."""
     SEVERAL_MODES = 1
     """Several contact modes are consistent."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Undecided(Record):
-    """A point of a toss at which mechanics does not decide.
+    """Point of a toss at which mechanics does not determine the motion.
 
     Attributes:
-        seconds: s after the first state's stamp.
-        reason: What is open.
-        options: How many ways there are to go on, >= 2.
-        taken: Which way this toss took, from 0. Way 0 strikes the fastest approach first, with those that
-            approach as fast, or takes the first mode.
+        seconds: Time of the point, s after the initial state's stamp.
+        reason: Reason for the indeterminacy.
+        options: Number of possible continuations, >= 2.
+        taken: Index of the continuation of this toss, from 0. Option 0 strikes the fastest approach first,
+            together with those of equal approach speed, or follows the first mode.
     """
 
     seconds: float
@@ -155,25 +159,26 @@ Piece: TypeAlias = "FlightPiece | PhaseStep"
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class Toss(Record):
-    """The motion of a body from a state to rest.
+    """Motion of a body from an initial state to rest.
 
     Attributes:
-        restitution_law: The law of each strike.
-        end: Why there is no further event.
-        seconds: s after the first state's stamp, the time of rest, or how far the motion is known.
-        state: The state then. At rest its velocities are zero.
-        events: The events in the order of time. Strikes of one instant are in the order of resolution.
-        resting_corners: The indices of the corners on which the body rests, sorted; empty if it moves.
-        resting_normal_B: (3,), unit, the normal of the surface on which it rests, body axes, or zero. So a
-            box rests on the face whose outward normal is opposite.
-        energy: Where the energy goes.
-        undecided: The branch points: where mechanics does not decide, with time and the way taken. They are
-            all of this toss, whether other ways are followed or not.
-        alternatives: Tosses that took other ways there, up to ``max_alternatives``, which is 0 by default.
-        all_followed: Whether ``alternatives`` has all other ways.
-        pieces: The flights and the steps of contact phases, in the order of time.
-        starts: (n,), s, when each of them begins.
-        began_ns: ns, the stamp of the state that the toss began with.
+        restitution_law: Law of restitution of all strikes.
+        end: Reason for the end of the toss.
+        seconds: Time of rest, or time up to which the motion is predicted, s after the initial state's stamp.
+        state: State at that time. At rest its velocities are zero.
+        events: Events in the order of time. Strikes of one instant are in the order of resolution.
+        resting_corners: Indices of the corners on which the body rests, sorted. It is empty if the body
+            moves.
+        resting_normal_B: (3,), unit normal of the surface on which the body rests, body axes, or zero. A box
+            rests on the face whose outward normal is opposite.
+        energy: Energy balance.
+        undecided: Branch points of this toss, at which mechanics does not determine the motion. All of them
+            are listed, whether or not the other branches were followed.
+        alternatives: Tosses that follow other branches, up to ``max_alternatives``, which is 0 by default.
+        all_followed: Whether ``alternatives`` contains all other branches.
+        pieces: Flights and steps of contact phases, in the order of time.
+        starts: (n,), s, times at which the pieces begin.
+        began_ns: ns, stamp of the initial state.
     """
 
     restitution_law: RestitutionLaw
@@ -192,7 +197,7 @@ class Toss(Record):
     began_ns: int = field(repr=False)
 
     def in_short(self) -> str:
-        """Return how it ends and when, and at which times mechanics does not decide how it goes on."""
+        """Return the reason and the time of the end, and the times of the branch points."""
         words = [f"Toss: {self.end} at {self.seconds:.4g} s", f"{len(self.events)} events"]
         if self.undecided:
             times = [f"{point.seconds:.3g}" for point in self.undecided]
@@ -211,9 +216,10 @@ class Toss(Record):
         return tuple(event for event in self.events if event.kind in kinds)
 
     def at(self, seconds: ArrayLike) -> Trajectory:
-        """Return the motion at times (n,), s after the first state's stamp, in any order.
+        """Return the motion at times (n,), s after the initial state's stamp, in any order.
 
-        At the time of a strike it is the state after the strike. At rest the body stays.
+        At the time of a strike, the state is that after the strike. After the time of rest, it is the state
+        of rest.
 
         Raises:
             InvalidFieldError: a time is negative or not finite, or is after the end of a toss that does not
@@ -245,7 +251,7 @@ class Toss(Record):
         )
 
     def state_at(self, seconds: float) -> BodyState:
-        """Return the state at one time, s after the first state's stamp. It raises the errors of `at`."""
+        """Return the state at one time, s after the initial state's stamp. It raises the errors of `at`."""
         row = self.at([seconds])
         return BodyState(
             p_WB_W=row.p_WB_W[0],

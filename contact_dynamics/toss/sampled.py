@@ -85,48 +85,50 @@ def sampled_toss(
     processes: int | Executor = 1,
     distance_tolerance: float = DISTANCE_TOLERANCE,
 ) -> TossDistribution:
-    """Return what can happen in a toss whose state, parameters or impacts are not known exactly.
+    """Return the possible outcomes of a toss whose state, parameters or impacts are uncertain.
 
     Args:
-        body: The body with its best parameters. Its shape has corners, which may be rounded.
-        state: The best state.
-        world: Surfaces, which are flats, and gravity.
-        covariance: (12, 12), of the state, or None if the state is exact. Rows and columns are position (m),
-            rotation vector (rad, applied after the attitude), velocity of the centre of mass (m/s) and
-            angular velocity (rad/s), each as x, y, z in world axes. `rigid_body.state_covariance` makes one
-            from standard deviations.
-        by_gravity: s^2 and s, by how much the best position and velocity change with gravity, as
-            `FitResult.by_gravity`. A state that does not depend on gravity has zeros.
-        uncertainty: How uncertain friction, restitution, other parameters and the law of impact are. By
-            default all of them are exact. The uncertainty of the state is ``covariance``.
-        count: Number of samples, from 1 to `MAX_SAMPLES`. Standard errors of probabilities are at most
-            0.5 / sqrt(count), which is 0.035 for 200.
-        strikes: How many next strikes the tree has, from 1 to `MAX_STRIKES`.
-        to_rest: Whether samples are followed to rest. Otherwise no face and no place of rest is found.
-        seed: Samples are drawn from it, >= 0. The same seed draws the same ones.
-        restitution_law: What the coefficients of restitution mean. ENERGETIC only goes with SEQUENTIAL.
-        several_contacts_law: The law for several contacts that strike at one instant, in samples that go on
-            to rest.
-        horizon: s, > 0, how far samples are followed.
-        processes: How many processes share the samples that go on to rest, or an executor of
+        body: Body with the best estimate of its parameters. Its shape has corners, which may be rounded.
+        state: Best estimate of the state.
+        world: Surfaces, which must be planes, and gravity.
+        covariance: (12, 12), covariance of the state, or None if the state is exact. Rows and columns are
+            position (m), rotation vector (rad, applied after the attitude), velocity of the centre of mass
+            (m/s) and angular velocity (rad/s), each as x, y, z in world axes. `rigid_body.state_covariance`
+            makes one from standard deviations.
+        by_gravity: s^2 and s, derivatives of the estimated position and velocity with respect to gravity, as
+            in `FitResult.by_gravity`. Use zeros for a state that does not depend on gravity.
+        uncertainty: Uncertainty of friction, restitution, other parameters and the impact law. By default all
+            of them are exact. The uncertainty of the state is ``covariance``.
+        count: Number of samples, from 1 to `MAX_SAMPLES`. Standard errors of probabilities are at most 0.5 /
+            sqrt(count), which is 0.035 for 200.
+        strikes: Depth of the tree of next strikes, from 1 to `MAX_STRIKES`.
+        to_rest: Whether to follow samples to rest. Otherwise, the result contains no face and no place of
+            rest.
+        seed: Seed of the samples, >= 0. The same seed yields the same samples.
+        restitution_law: Law of restitution. ENERGETIC requires SEQUENTIAL.
+        several_contacts_law: Law for several contacts that strike at one instant, in samples that are
+            followed to rest.
+        horizon: s, > 0. Duration of the longest motion that is followed.
+        processes: Number of processes that share the samples followed to rest, or an executor of
             `concurrent.futures`, which keeps its processes from toss to toss. The answer is the same bit for
-            bit. Each process takes 100 samples at a time (`to_rest.PART`), so that more processes than such
-            parts are of no use. A number of processes is started anew by each call, which takes about
-            half a second. They import the main module, so a program does its work under
+            bit. Each process handles 100 samples at a time (`to_rest.PART`), so more processes than such
+            parts have no effect. With a number, each call starts new processes, which takes about half a
+            second. New processes import the main module, so put a program's work under
             ``if __name__ == "__main__":``, as with `multiprocessing`.
-        distance_tolerance: m, >= 0. The best state may be in a surface by this much, or by 1e-6 m. Samples
-            may be deeper.
+        distance_tolerance: m, >= 0. Largest initial penetration of a surface by the best state; 1e-6 m is
+            always accepted. Samples may penetrate by more.
 
     Raises:
         NoContactError: the body has no shape that could touch anything.
-        NotSupportedError: the shape has rims, or a surface is an obstacle.
-        TooLargeError: there are more samples than `MAX_SAMPLES`, or a flight takes too many steps of the
-            search for its end.
-        InvalidFieldError: a number is out of its range, the state's covariance is not positive semidefinite
-            or is larger than `MAX_SPREAD` squared, the parameters' covariance has another size than the
-            world's surfaces ask for, there are not as many factors as surfaces, or ``processes`` is neither a
-            whole number >= 1 nor an executor, or the body is deeper in a surface than the tolerance.
-        BrokenProcessPool: a process died, for example because the main module is not guarded as said above.
+        NotSupportedError: the shape has circular rims, or a surface is an obstacle.
+        TooLargeError: there are more samples than `MAX_SAMPLES`, or the search for the end of a flight takes
+            too many steps.
+        InvalidFieldError: a number is out of range, the state's covariance is not positive semidefinite or
+            exceeds `MAX_SPREAD` squared, the size of the parameters' covariance does not match the number of
+            surfaces, the number of factors differs from the number of surfaces, ``processes`` is neither a
+            whole number >= 1 nor an executor, or the body penetrates a surface by more than the tolerance.
+        BrokenProcessPool: a process died, for example because the main module is not guarded as described
+            above.
     """
     shared_by = check_processes(processes)
     if check_whole("count", count, 1) > MAX_SAMPLES:

@@ -43,27 +43,28 @@ MAX_INERTIA_SPREAD: Final = 10.0
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class TossUncertainty(Record):
-    """How uncertain parameters and the law of impact are.
+    """Uncertainty of the parameters and of the impact law of a toss.
 
     Attributes:
-        covariance: (2 s + 4, 2 s + 4) or (2 s + 7, 2 s + 7), of the parameters with s surfaces, in this
-            order: the friction of each surface, the restitution of each, the mass centre x, y, z in body
-            axes (m), the inertia as a relative change of all its entries, and, if it has them, the
-            components of gravity in world axes (m/s^2), for strikes and flights between them. Without rows
-            all of them are exact.
-        velocity: m/s, >= 0, the law's own spread of each component of a velocity after a strike. It is the
-            standard deviation of normal residuals with the same median (`law_spread`).
-        spin: rad/s, >= 0, the same of an angular velocity.
-        height: m, >= 0, standard deviation of how far each corner is from where the shape has it, along its
-            ray from the mass centre. It makes the time of a strike uncertain.
-        lasting_factors: (s,), >= 0, the friction of each surface where contact lasts, relative to that of
-            its strikes. Without any, those of the surfaces hold.
-        lasting_factor_stds: (s,), >= 0, their standard deviations, from toss to toss and by what is known of
-            them. Without any, the factors are exact.
+        covariance: (2 s + 4, 2 s + 4) or (2 s + 7, 2 s + 7), covariance of the parameters, with s surfaces,
+            in this order: the friction of each surface, the restitution of each surface, the centre of mass
+            x, y, z in body axes (m), and the inertia as a relative change of all its components. The larger
+            matrix also contains the components of gravity in world axes (m/s^2), which apply to strikes and
+            to the flights between them. If the matrix is empty, all parameters are exact.
+        velocity: m/s, >= 0, spread of the impact law in each component of the velocity after a strike. It is
+            the standard deviation of normal residuals with the same median (`law_spread`).
+        spin: rad/s, >= 0, the same for the angular velocity.
+        height: m, >= 0, standard deviation of the distance of each corner from the centre of mass. It makes
+            the time of a strike uncertain.
+        lasting_factors: (s,), >= 0, friction of sustained contact with each surface, relative to that of
+            strikes. If it is empty, the factors of the surfaces are used.
+        lasting_factor_stds: (s,), >= 0, standard deviations of these factors, which include the variation
+            from toss to toss and the uncertainty of the estimates. If it is empty, the factors are exact.
 
     Raises:
         InvalidFieldError: the matrix is not a covariance, a number is negative or not finite, a standard
-            deviation is larger than `MAX_SPREAD`, or there are not as many standard deviations as factors.
+            deviation is larger than `MAX_SPREAD`, or the numbers of standard deviations and of factors
+            differ.
         TooLargeError: the matrix has more than `MAX_PARAMETERS` rows.
     """
 
