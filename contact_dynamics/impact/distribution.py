@@ -48,17 +48,17 @@ MAX_VARIANCE: Final = 1e12
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class ImpactDistribution(Record):
-    """Where the velocities after an impact lie, for a state with a covariance.
+    """Distribution of the velocities after an impact, for a state with a covariance.
 
     Attributes:
-        mean: m/s and rad/s, the mean velocity afterwards. In the plane it is (3,) and holds v_x, v_y, w. In
-            space it is (6,) and holds linear and angular velocity, world axes.
-        covariance: In the plane it is (3, 3), of the numbers in ``mean``. In space it is (12, 12), of
-            position, rotation vector, linear and angular velocity.
-        probabilities: (7,), the probability of each ImpactOutcome, by its value. Together with ``missed``
-            they sum to 1.
-        missed: Probability that the contact separates, so that nothing strikes.
-        samples: How many states were drawn.
+        mean: m/s and rad/s, mean velocity after the impact: in the plane (3,), v_x, v_y, w; in space (6,),
+            linear then angular velocity, world axes.
+        covariance: In the plane (3, 3), covariance of the components of ``mean``. In space (12, 12),
+            covariance of position, rotation vector, linear and angular velocity.
+        probabilities: (7,), probability of each ImpactOutcome, by its value. The sum of these and of
+            ``missed`` is 1.
+        missed: Probability that the contact separates, without an impact.
+        samples: Number of sampled states.
     """
 
     mean: FloatArray
@@ -69,7 +69,7 @@ class ImpactDistribution(Record):
 
     @property
     def standard_errors(self) -> FloatArray:
-        """The standard errors of ``probabilities``, (7,), by the number of samples."""
+        """Return the standard errors of ``probabilities``, (7,), from the number of samples."""
         errors: FloatArray = np.sqrt(self.probabilities * (1.0 - self.probabilities) / self.samples)
         return errors
 
@@ -89,18 +89,19 @@ def planar_impact_distribution(
 
     Args:
         body: Mass and angular inertia.
-        velocity: Mean of the velocity just before.
-        contact: The contact, with its normal, friction and restitution.
-        covariance: (3, 3), the covariance of v_x, v_y (m/s) and w (rad/s) before.
-        restitution_law: What the coefficient of restitution means.
-        velocity_tolerance: m/s, >= 0. A component of the contact's velocity within it counts as zero.
-        samples: How many states to draw, an even number. Each takes about 0.2 us.
-        seed: Seed of the draw. The same question with the same seed has the same answer.
+        velocity: Mean velocity just before the impact.
+        contact: Contact with its normal, friction and restitution.
+        covariance: (3, 3), covariance of v_x, v_y (m/s) and w (rad/s) before the impact.
+        restitution_law: Law of restitution, which defines the coefficient of restitution.
+        velocity_tolerance: m/s, >= 0. Normal and tangential components of the contact's velocity up to it
+            count as zero.
+        samples: Number of sampled states, even. Each takes about 0.2 us.
+        seed: Seed of the samples. The same seed yields the same result.
 
     Raises:
-        InvalidFieldError: the covariance is not symmetric and positive semidefinite, the number of samples
-            is odd or outside [2, 1 000 000], a variance exceeds `MAX_VARIANCE`, or the seed is not an integer
-            >= 0.
+        InvalidFieldError: the covariance is not symmetric and positive semidefinite, the number of samples is
+            odd or outside [2, 1 000 000], a variance exceeds `MAX_VARIANCE`, or the seed is not an integer >=
+            0.
     """
     tolerance = check_not_negative("velocity_tolerance", velocity_tolerance)
     draws = np.array([*velocity.v, velocity.w]) + _draw(covariance, 3, samples, seed)
@@ -143,24 +144,24 @@ def spatial_impact_distribution(
 ) -> ImpactDistribution:
     """Return the distribution of the velocity after an impact in space.
 
-    The contact is a point of the body: it moves and turns with each drawn pose. The normal stays.
+    The contact is a point of the body and moves with each sampled pose. The normal is constant. The time of
+    the impact is not part of the distribution; `sampled_toss` returns the distribution of times of strikes.
 
     Args:
         body: A `Body`, or its `MassProperties`.
-        state: Mean of the state just before.
-        contact: The contact as it is at the mean pose, with its normal into the body, friction and
-            restitution.
-        covariance: (12, 12), the covariance of the state before. Rows are position (m), rotation vector (rad,
-            world axes, applied after the attitude), linear velocity (m/s) and angular velocity (rad/s), each
-            as x, y, z.
-        restitution_law: What the coefficient of restitution means.
-        velocity_tolerance: m/s, >= 0. A normal or tangential velocity of the contact within it counts as
-            zero.
-        samples: How many states to draw, an even number. 2000 take some 20 ms, 10 000 some 60 ms.
-        seed: Seed of the draw. The same question with the same seed has the same answer.
+        state: Mean state just before the impact.
+        contact: Contact at the mean pose, with its normal into the body, friction and restitution.
+        covariance: (12, 12), covariance of the state before the impact. Rows are position (m), rotation
+            vector (rad, world axes, applied after the attitude), linear velocity (m/s) and angular velocity
+            (rad/s), each as x, y, z.
+        restitution_law: Law of restitution, which defines the coefficient of restitution.
+        velocity_tolerance: m/s, >= 0. Normal and tangential components of the contact's velocity up to it
+            count as zero.
+        samples: Number of sampled states, even. 2000 take about 20 ms, 10 000 about 60 ms.
+        seed: Seed of the samples. The same seed yields the same result.
 
     Raises:
-        InvalidFieldError: `spatial_impact` refuses a number, the covariance is not symmetric and positive
+        InvalidFieldError: `spatial_impact` rejects a number, the covariance is not symmetric and positive
             semidefinite, the number of samples is odd or outside [2, 1 000 000], a variance exceeds
             `MAX_VARIANCE`, or the seed is not an integer >= 0.
     """

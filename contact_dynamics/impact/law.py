@@ -24,66 +24,68 @@ if TYPE_CHECKING:
 
 
 class RestitutionLaw(NamedInt):
-    """How the coefficient e decides where restitution ends.
+    """Law of restitution, which defines the coefficient of restitution e and the end of restitution.
 
-    The three laws give the same answer where the path is straight: without friction, or where the contact
-    slides in one direction throughout or sticks throughout, as it does for a body that falls without spin.
-    They differ where sliding stops or turns.
+    The three laws give the same result if the impulse path is straight: without friction, or if the contact
+    slides in one direction throughout or sticks throughout, as for a body that falls without spin. They
+    differ if sliding stops or changes its direction.
     """
 
     POISSON = 0
-    """e is the normal impulse of restitution over that of compression (lecture 27, eq. 2; Routh 1860)."""
+    """e is the ratio of the normal impulses in restitution and in compression (lecture 27, eq. 2; Routh
+    1860)."""
     NEWTON = 1
-    """e is the normal velocity of separation over that of approach (lecture 27, eq. 1). Can create energy
-    with friction."""
+    """e is the ratio of the normal velocities of separation and of approach (lecture 27, eq. 1). With
+    friction, this law can create energy."""
     ENERGETIC = 2
-    """e squared is the work that the normal impulse returns over the work that it took (Stronge 1990)."""
+    """e squared is the ratio of the works of the normal impulse in restitution and in compression (Stronge
+    1990)."""
 
 
 class ImpactOutcome(NamedInt):
-    """What the contact did while the impulse grew.
+    """Motion of the contact during an impact.
 
-    Stopping counts as during compression where it coincides with the end of compression, and as never where
-    it coincides with the end of the impact.
+    If sliding stops at the end of compression, it counts as stopping in compression. If it would stop at the
+    end of the impact, it counts as not stopping.
     """
 
     NO_IMPULSE = 0
     """The contact does not approach, and its sliding does not drive it into compression."""
     SLIDES = 1
-    """The contact slides until the end and never stops. A contact that is at rest at first slides at once if
+    """The contact slides throughout and does not stop. A contact that is initially at rest begins to slide if
     friction cannot hold it."""
     STICKS_IN_COMPRESSION = 2
-    """Sliding stops during compression, and friction holds the contact until the end."""
+    """Sliding stops during compression, and then the contact sticks."""
     STICKS_IN_RESTITUTION = 3
-    """Sliding stops during restitution, and friction holds the contact until the end."""
+    """Sliding stops during restitution, and then the contact sticks."""
     REVERSES_IN_COMPRESSION = 4
-    """Sliding stops during compression. Friction cannot hold the contact, so it slides on in another
-    direction, which is back in the plane."""
+    """Sliding stops during compression. Friction cannot hold the contact, so it slides in another direction,
+    in the plane backwards."""
     REVERSES_IN_RESTITUTION = 5
-    """Sliding stops during restitution. Friction cannot hold the contact, so it slides on in another
-    direction, which is back in the plane."""
+    """Sliding stops during restitution. Friction cannot hold the contact, so it slides in another direction,
+    in the plane backwards."""
     STICKS_THROUGHOUT = 6
-    """The contact does not slide at first, and friction holds it until the end."""
+    """The contact is initially at rest, and friction holds it throughout the impact."""
 
     @property
     def sticks(self) -> bool:
-        """Return whether the contact ends the impact without sliding."""
+        """Return whether the contact sticks at the end of the impact."""
         return self in _STICKING
 
 
 class PathEvent(NamedInt):
-    """What a vertex of the impulse path stands for."""
+    """Event at a vertex of the impulse path."""
 
     START = 0
-    """The contact begins: the impulse is zero."""
+    """The impact begins, and the impulse is zero."""
     SLIDING_STOPS = 1
-    """The contact stops sliding. It sticks from here on, or slides on in another direction."""
+    """Sliding stops. Then the contact sticks, or slides in another direction."""
     COMPRESSION_ENDS = 2
-    """The contact does not approach any more."""
+    """The contact no longer approaches."""
     RESTITUTION_ENDS = 3
-    """The contact separates: the impulse is complete."""
+    """The contact separates, and the impulse is complete."""
     SAMPLE = 4
-    """A point on a curved part of the path, which only paths in space have."""
+    """A point on a curved part of the path, which occurs only in space."""
 
 
 _STICKING = frozenset(

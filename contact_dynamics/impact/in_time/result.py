@@ -16,19 +16,19 @@ from contact_dynamics.validation import FloatArray
 
 
 class SequenceEnd(NamedInt):
-    """Why a sequence of strikes has no further one."""
+    """Reason for the end of a sequence of strikes."""
 
     NOTHING_STRIKES = 0
-    """Nothing strikes within the window after the last strike. The body flies, and may come down later."""
+    """There is no strike within the window after the last one. The body flies, and may land later."""
     STAYS = 1
-    """A contact neither approaches nor leaves, and free motion would press it in. So the flight is over."""
+    """A contact neither approaches nor separates, and free motion would penetrate, so the flight is over."""
     CHATTERS = 2
-    """A contact's rebounds shrink by a ratio and have no height any more. Infinitely many strikes end at the
-    limit time, and from then on the contact stays."""
+    """The rebounds of a contact shrink by a constant ratio until they have no height. Infinitely many strikes
+    end at the limit time, and from then on the contact stays closed."""
     MAX_STRIKES = 3
-    """The bound on the number of strikes was reached."""
+    """The limit on the number of strikes was reached."""
     WINDOW_ENDED = 4
-    """Nothing has struck within the window after the given state. The body may land later."""
+    """There is no strike within the window after the initial state. The body may land later."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -36,11 +36,11 @@ class TimedStrike(Record):
     """One strike of a sequence.
 
     Attributes:
-        seconds: s after the stamp of the state that the sequence began with.
-        contact: Index into the sequence's contacts.
-        p_WC_W: (3,), m, where the contact is then, world.
-        state_before: The state just before, stamped with the time of the strike.
-        impact: The impact at this one contact. Its ``state`` is the state just after.
+        seconds: Time of the strike, s after the stamp of the initial state.
+        contact: Index into the contacts of the sequence.
+        p_WC_W: (3,), m, position of the contact at that time, world.
+        state_before: State just before the strike, stamped with its time.
+        impact: Impact at this contact. Its ``state`` is the state just after the strike.
     """
 
     seconds: float
@@ -52,22 +52,22 @@ class TimedStrike(Record):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class ImpactSequence(Record):
-    """A landing as strikes in time, with free flight between them.
+    """Strikes of a landing at separate times, with free flight between them.
 
     Attributes:
-        restitution_law: The law of each strike.
-        window: s, the longest flight that was followed.
-        contacts: The contacts that were given. If they were found from geometry, those that struck or stay,
-            each where it first did.
-        strikes: The strikes in the order of time. Those of one instant are in the order of resolution.
-            Contacts that approach equally fast strike as one, each with its share of the impulse and the
-            state after all of them.
-        end: Why there is no further strike.
-        state: The state just after the last strike, or the first state if there is no strike.
-        staying: Indices of the contacts that stay, if ``end`` is STAYS or CHATTERS.
-        limit_seconds: s after the first state's stamp, the time from which on they stay, or None.
-        order_is_open: Whether several contacts approached at one instant, so that rigid-body mechanics allows
-            other orders of their strikes.
+        restitution_law: Law of restitution of all strikes.
+        window: s, longest flight that was followed.
+        contacts: The given contacts. If contacts were detected from the shape, those that strike or stay
+            closed, each at the position of the first such event.
+        strikes: Strikes in the order of time; those of one instant are in the order of resolution. Contacts
+            of equal approach speed strike as one, each with its share of the impulse and the state after all
+            of them.
+        end: Reason for which there is no further strike.
+        state: State just after the last strike, or the initial state if there is no strike.
+        staying: Indices of the contacts that stay closed, if ``end`` is STAYS or CHATTERS.
+        limit_seconds: Time from which these contacts stay closed, s after the initial state's stamp, or None.
+        order_is_open: Whether several contacts approached at one instant, so that rigid-body mechanics also
+            admits other orders of their strikes.
     """
 
     restitution_law: RestitutionLaw
@@ -82,12 +82,12 @@ class ImpactSequence(Record):
 
     @property
     def seconds(self) -> float:
-        """Return the time of the last strike, s after the first state's stamp, or 0 if there is no strike."""
+        """Return the time of the last strike, s after the initial state's stamp, or 0 without a strike."""
         return self.strikes[-1].seconds if self.strikes else 0.0
 
     @property
     def message(self) -> str:
-        """Return in words why there is no further strike, and which question would tell more."""
+        """Return a text with the reason for the end of the sequence, and a hint for the next call."""
         stay = ", ".join(map(str, self.staying))
         return {
             SequenceEnd.NOTHING_STRIKES: f"no further strike within the window of {self.window:g} s after "
@@ -102,19 +102,20 @@ class ImpactSequence(Record):
 
     @property
     def order(self) -> tuple[int, ...]:
-        """Return the contacts that were struck, in order."""
+        """Return the contacts that struck, in order."""
         return tuple(strike.contact for strike in self.strikes)
 
     @property
     def energy_change(self) -> float:
-        """Return the change of energy by all strikes, J. Flights between them keep the energy."""
+        """Return the change of energy in all strikes, J. Flights between them conserve energy."""
         return sum(strike.impact.energy_change for strike in self.strikes)
 
     @property
     def creates_energy(self) -> bool:
-        """Return whether a strike gave the body energy, beyond rounding. Only Newton's law can do that.
+        """Return whether a strike increased the energy by more than rounding error.
 
-        Contacts that strike as one count together, since one of them may give what another takes.
+        Only Newton's law can do this. Contacts that strike as one count together, since one can return energy
+        that another took.
         """
         return any(
             strikes[0].impact.creates_energy

@@ -73,19 +73,20 @@ def impact_sequence(
 
     Args:
         body: Mass properties and corners.
-        state: Pose and velocities. The first strike, too, must come within the window.
+        state: Initial pose and velocities. The first strike must also be within the window.
         world: Surfaces and gravity.
-        restitution_law: What the coefficients of restitution mean.
-        window: s, > 0. The longest flight after which a strike still belongs to the landing.
-        max_strikes: How many strikes to resolve at most, >= 1.
-        distance_tolerance: m, >= 0. A corner within it of a surface touches.
-        velocity_tolerance: m/s, > 0. A contact that approaches less fast does not strike.
-        hold_step: s, > 0. Where a contact stays, the sequence goes on in steps of this length. If it is None,
-            the sequence ends there.
+        restitution_law: Law of restitution, which defines the coefficient of restitution.
+        window: s, > 0. Longest flight between two strikes of one landing.
+        max_strikes: Largest number of strikes, >= 1.
+        distance_tolerance: m, >= 0. A corner within this distance of a surface touches it.
+        velocity_tolerance: m/s, > 0. A contact that approaches more slowly does not strike.
+        hold_step: s, > 0. Time step with which the sequence continues if a contact stays closed. If it is
+            None, the sequence ends there.
 
     Raises:
-        TooLargeError: the sequence has too many strikes, or too many steps over contacts that stay.
-        InvalidFieldError: a number is not allowed, or the body is deeper in a surface than the tolerance.
+        TooLargeError: the sequence takes too many strikes, or too many steps over contacts that stay closed.
+        InvalidFieldError: a number is out of range, or the body penetrates a surface by more than the
+            tolerance.
         NoContactError: the body has no shape that could touch anything.
     """
     tolerance = check_positive("velocity_tolerance", velocity_tolerance)
@@ -124,27 +125,28 @@ def impact_sequence_of(
     velocity_tolerance: float = VELOCITY_TOLERANCE,
     hold_step: float | None = None,
 ) -> ImpactSequence:
-    """Return the strikes at contacts that touch now. Each is a point of the body on the plane it touches.
+    """Return the strikes at given contacts. Each contact is a point of the body on the plane that it touches.
 
-    Each point strikes its own plane alone. It strikes now if it approaches, and again whenever it comes back.
+    Each point can strike only its own plane: immediately if it approaches, and whenever it returns to the
+    plane.
 
     Args:
         body: A `Body`, or its `MassProperties`.
-        state: Pose and velocities.
-        contacts: All contacts that touch, approaching or not.
+        state: Initial pose and velocities.
+        contacts: All touching contacts, whether or not they approach.
         gravity_W: (3,), m/s^2, world axes.
-        restitution_law: What the coefficients of restitution mean.
-        window: s, > 0. The longest flight after which a strike still belongs to the landing.
-        max_strikes: How many strikes to resolve at most, >= 1.
-        distance_tolerance: m, >= 0. A point within it of its plane touches.
-        velocity_tolerance: m/s, > 0. A contact that approaches less fast does not strike.
-        hold_step: s, > 0. Where a contact stays, the sequence goes on in steps of this length. If it is None,
-            the sequence ends there.
+        restitution_law: Law of restitution, which defines the coefficient of restitution.
+        window: s, > 0. Longest flight between two strikes of one landing.
+        max_strikes: Largest number of strikes, >= 1.
+        distance_tolerance: m, >= 0. A point within this distance of its plane touches it.
+        velocity_tolerance: m/s, > 0. A contact that approaches more slowly does not strike.
+        hold_step: s, > 0. Time step with which the sequence continues if a contact stays closed. If it is
+            None, the sequence ends there.
 
     Raises:
-        TooLargeError: the sequence has too many strikes, or too many steps over contacts that stay.
-        InvalidFieldError: a number is not allowed, or a contact has curvature, so that it is no fixed point
-            of the body.
+        TooLargeError: the sequence takes too many strikes, or too many steps over contacts that stay closed.
+        InvalidFieldError: a number is out of range, or a contact has a curvature, so that it is not a fixed
+            point of the body.
     """
     body = body.mass_properties
     tolerance = check_positive("velocity_tolerance", velocity_tolerance)

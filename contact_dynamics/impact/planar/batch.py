@@ -30,17 +30,17 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class PlanarImpacts(ManyEnergies):
-    """The answers to N planar impacts. Row i belongs to case i, and `PlanarImpact` explains the fields.
+    """Outcomes of N planar impacts. Row i belongs to case i; `PlanarImpact` explains the fields.
 
     Attributes:
-        restitution_law: The restitution law of all of them.
+        restitution_law: Law of restitution of all impacts.
         outcomes: (N,), values of ImpactOutcome.
-        v: (N, 2), m/s, of the centres of mass afterwards, axes of the plane.
-        w: (N,), rad/s, afterwards.
-        impulses_C: (N, 2), N s, contact axes.
-        compressions_C: (N, 2), N s, contact axes.
-        velocities_before_C: (N, 2), m/s, of the contacts, contact axes.
-        velocities_after_C: (N, 2), m/s, of the contacts, contact axes.
+        v: (N, 2), m/s, velocities of the centres of mass after the impacts, axes of the plane.
+        w: (N,), rad/s, angular velocities after the impacts.
+        impulses_C: (N, 2), N s, total impulses, contact axes.
+        compressions_C: (N, 2), N s, impulses up to the end of compression, contact axes.
+        velocities_before_C: (N, 2), m/s, velocities of the contacts before, contact axes.
+        velocities_after_C: (N, 2), m/s, velocities of the contacts after, contact axes.
     """
 
     restitution_law: RestitutionLaw
@@ -69,24 +69,25 @@ def planar_impacts(
     restitution_law: RestitutionLaw = RestitutionLaw.POISSON,
     velocity_tolerance: float = VELOCITY_TOLERANCE,
 ) -> PlanarImpacts:
-    """Return what N planar impacts do. Each answer is that of `planar_impact`.
+    """Return the outcomes of N planar impacts. Each is that of `planar_impact`.
 
     Args:
         masses: (N,) or one number, kg.
         inertias: (N,) or one number, kg m^2, about the centres of mass.
-        v: (N, 2) or (2,), m/s, of the centres of mass.
-        w: (N,) or one number, rad/s.
-        r: (N, 2) or (2,), m, from the centres of mass to the contacts.
-        normals: (N, 2) or (2,), unit, into the bodies.
+        v: (N, 2) or (2,), m/s, velocities of the centres of mass.
+        w: (N,) or one number, rad/s, angular velocities.
+        r: (N, 2) or (2,), m, positions of the contacts relative to the centres of mass.
+        normals: (N, 2) or (2,), unit normals into the bodies.
         frictions: (N,) or one number, >= 0.
         restitutions: (N,) or one number, in [0, 1].
-        restitution_law: What the coefficients of restitution mean.
-        velocity_tolerance: m/s, >= 0. A component of a contact's velocity within it counts as zero.
+        restitution_law: Law of restitution, which defines the coefficient of restitution.
+        velocity_tolerance: m/s, >= 0. Normal and tangential components of a contact's velocity up to it count
+            as zero.
 
     Raises:
         SeparatingContactError: a contact's normal velocity is above the tolerance; the message names the
-            first.
-        InvalidFieldError: a number is not allowed or beyond `LARGEST_NUMBER`, or a mass or an inertia is
+            first such contact.
+        InvalidFieldError: a number is out of range or exceeds `LARGEST_NUMBER`, or a mass or an inertia is
             below its inverse. The message names the field and the first row.
     """
     tolerance = check_not_negative("velocity_tolerance", velocity_tolerance)

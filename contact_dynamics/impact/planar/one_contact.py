@@ -31,19 +31,20 @@ def planar_impact(
     restitution_law: RestitutionLaw = RestitutionLaw.POISSON,
     velocity_tolerance: float = VELOCITY_TOLERANCE,
 ) -> PlanarImpact:
-    """Return what the impact of ``body`` at ``contact`` does.
+    """Return the outcome of a planar impact of ``body`` on the fixed world at one contact.
 
     Args:
         body: Mass and angular inertia.
-        velocity: The velocity of the body just before.
-        contact: The contact, with its normal, friction and restitution.
-        restitution_law: What the coefficient of restitution means.
-        velocity_tolerance: m/s, >= 0. A component of the contact's velocity within it counts as zero.
+        velocity: Velocity of the body just before the impact.
+        contact: Contact with its normal, friction and restitution.
+        restitution_law: Law of restitution, which defines the coefficient of restitution.
+        velocity_tolerance: m/s, >= 0. Normal and tangential components of the contact's velocity up to it
+            count as zero.
 
     Raises:
         SeparatingContactError: the contact's normal velocity is above the tolerance.
-        InvalidFieldError: the law is no member of RestitutionLaw, the tolerance is negative, or the numbers
-            are so large that the velocity overflows.
+        InvalidFieldError: the law is not a member of RestitutionLaw, the tolerance is negative, or the
+            numbers are so large that the velocity overflows.
 
     Source: lecture 27, eqs. 2 to 10; Routh 1860; Stronge 1990 for the energetic law.
     """

@@ -14,17 +14,19 @@ from contact_dynamics.records import Record
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class PlanarImpact(Record):
-    """The answer to one planar impact. Contact axes are tangent, then normal. Impulses act on the body.
+    """Outcome of one planar impact.
+
+    The contact axes are the tangent, then the normal. Impulses act on the body.
 
     Attributes:
-        restitution_law: The restitution law that was asked for.
-        velocity: m/s and rad/s, the velocity of the body afterwards, axes of the plane.
-        velocity_before_C: m/s, the contact's velocity before, relative to what it touches, contact axes. A
-            component within the tolerance is 0.
-        inverse_inertia: 1/kg, the contact's response to impulse.
-        contact_path: The impulse path and the contact's velocity afterwards, contact axes.
-        impulse: N s, the total impulse on the body, axes of the plane.
-        other_velocity: The velocity of the second body afterwards, or None for the fixed world.
+        restitution_law: Law of restitution.
+        velocity: Velocity of the body after the impact, m/s and rad/s, axes of the plane.
+        velocity_before_C: Velocity of the contact before the impact, relative to what the body touches, m/s,
+            contact axes. Components within the tolerance are 0.
+        inverse_inertia: Change of the contact's velocity per impulse, 1/kg.
+        contact_path: Impulse path, and the contact's velocity after the impact, contact axes.
+        impulse: Total impulse on the body, N s, axes of the plane.
+        other_velocity: Velocity of the second body after the impact, or None for the fixed world.
     """
 
     restitution_law: RestitutionLaw
@@ -37,17 +39,17 @@ class PlanarImpact(Record):
 
     @property
     def outcome(self) -> ImpactOutcome:
-        """Return what the contact did."""
+        """Return the motion of the contact during the impact."""
         return self.contact_path.outcome
 
     @property
     def jams(self) -> bool:
-        """Return whether sliding drove the contact into compression (the lecture's sliding rod; Painleve)."""
+        """Return whether sliding drove the contact into compression (lecture 27; Painleve's paradox)."""
         return self.contact_path.jams
 
     @property
     def velocity_after_C(self) -> Vector2:
-        """Return the contact's velocity afterwards, m/s, contact axes."""
+        """Return the contact's velocity after the impact, m/s, contact axes."""
         return (self.contact_path.v_t, self.contact_path.v_n)
 
     @property
@@ -68,9 +70,9 @@ class PlanarImpact(Record):
 
     @property
     def path(self) -> tuple[tuple[PathEvent, Vector2], ...]:
-        """Return the vertices of the impulse path in order, each with its meaning, N s, contact axes.
+        """Return the vertices of the impulse path in order, each with its event, N s, contact axes.
 
-        Without an impulse, the path is its start alone. Vertices that coincide are all listed.
+        Without an impulse, the path consists of its start. Coinciding vertices are all listed.
         """
         path = self.contact_path
         vertices: list[tuple[PathEvent, Vector2]] = [(PathEvent.START, (0.0, 0.0))]
@@ -94,5 +96,8 @@ class PlanarImpact(Record):
 
     @property
     def creates_energy(self) -> bool:
-        """Return whether the law gave the body energy, beyond rounding. Only Newton's law can do that."""
+        """Return whether the impact increased the energy by more than rounding error.
+
+        Only Newton's law can do this.
+        """
         return bool(law_created(self.impulse_C, self.velocity_before_C, self.velocity_after_C))

@@ -32,17 +32,18 @@ def planar_pair_impact(
     restitution_law: RestitutionLaw = RestitutionLaw.POISSON,
     velocity_tolerance: float = VELOCITY_TOLERANCE,
 ) -> PlanarImpact:
-    """Return what the impact of two planar bodies does.
+    """Return the outcome of an impact of two planar bodies.
 
     Args:
-        body: The first body, which the contact's normal points into.
-        velocity: The velocity of the first body just before.
-        other: The second body.
-        other_velocity: The velocity of the second body just before.
-        contact: The contact, given from the first body's centre of mass, with normal, friction, restitution.
-        other_r: m, from the second body's centre of mass to the contact.
-        restitution_law: What the coefficient of restitution means.
-        velocity_tolerance: m/s, >= 0. A component of the relative velocity within it counts as zero.
+        body: First body, into which the contact's normal points.
+        velocity: Velocity of the first body just before the impact.
+        other: Second body.
+        other_velocity: Velocity of the second body just before the impact.
+        contact: Contact relative to the first body's centre of mass, with its normal, friction and
+            restitution.
+        other_r: m, position of the contact relative to the second body's centre of mass.
+        restitution_law: Law of restitution, which defines the coefficient of restitution.
+        velocity_tolerance: m/s, >= 0. Components of the relative velocity up to it count as zero.
 
     Raises:
         SeparatingContactError: the contact's relative normal velocity is above the tolerance.

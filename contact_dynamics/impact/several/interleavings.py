@@ -90,20 +90,20 @@ def outcomes_over_interleavings(
     samples: int = 200,
     seed: int = 0,
 ) -> InterleavedOutcomes:
-    """Return outcomes of interleaved impacts at several contacts, under the energetic law, and their bounds.
+    """Return outcomes of interleaved impacts at several contacts under the energetic law, and bounds on them.
 
     Args:
         body: A `Body`, or its `MassProperties`.
-        state: Pose and velocities just before.
-        contacts: All contacts that touch. There is at least one.
-        velocity_tolerance: m/s, > 0. A contact that approaches less fast does not strike.
-        samples: How many interleavings to draw, from 1 to `MAX_INTERLEAVINGS`.
-        seed: Seed of the draw. The same question with the same seed has the same answer.
+        state: Pose and velocities just before the impact.
+        contacts: All touching contacts; at least one.
+        velocity_tolerance: m/s, > 0. A contact that approaches more slowly does not strike.
+        samples: Number of random interleavings, from 1 to `MAX_INTERLEAVINGS`.
+        seed: Seed of the samples. The same seed yields the same result.
 
     Raises:
-        SeparatingContactError: every contact separates.
-        InvalidFieldError: there are no contacts, the tolerance is not > 0, or a count is not allowed.
-        TooLargeError: the orders take more strikes together than `outcomes_over_orders` allows.
+        SeparatingContactError: all contacts separate.
+        InvalidFieldError: there are no contacts, the tolerance is not > 0, or a count is out of range.
+        TooLargeError: the orders take more strikes in total than `outcomes_over_orders` allows.
     """
     body = body.mass_properties
     tolerance = check_positive("velocity_tolerance", velocity_tolerance)

@@ -83,26 +83,29 @@ def jamming_impact(
     friction_facets: int = 8,
     velocity_tolerance: float = VELOCITY_TOLERANCE,
 ) -> SeveralImpact:
-    """Return the impact of contacts of which none approaches and for which no mode is consistent.
+    """Return the impact of contacts that do not approach and for which no contact mode is consistent.
 
-    The verdict is NOT_CONVERGED if no impulses were found that keep the body out of the world.
+    The verdict is NOT_CONVERGED if no impulses were found that prevent penetration.
 
     Args:
         body: A `Body`, or its `MassProperties`.
-        state: Pose and velocities just before.
-        contacts: All contacts that touch. There is at least one.
-        force_W: (3,), N, the force applied besides contact forces, gravity included, world axes.
-        torque_W: (3,), N m, the torque applied about the centre of mass, world axes.
-        plane_normal_W: (3,), unit, the normal of a plane of motion. Friction then acts in that plane, where
-            its two directions are exact. If it is None, friction acts in space, in a number of directions.
-        friction_facets: The number of directions of friction in space, >= 3. The first opposes the sliding.
-        velocity_tolerance: m/s, >= 0. A component of a contact's velocity within it counts as zero.
+        state: Pose and velocities just before the impact.
+        contacts: All touching contacts; at least one.
+        force_W: (3,), N, applied force, including gravity but not contact forces, world axes.
+        torque_W: (3,), N m, applied torque about the centre of mass, world axes.
+        plane_normal_W: (3,), unit normal of a plane of motion, or None. In a plane, friction has two
+            directions, which are exact. Without one, friction acts in space, in ``friction_facets``
+            directions.
+        friction_facets: Number of directions of friction in space, >= 3. The first one opposes the sliding.
+        velocity_tolerance: m/s, >= 0. Normal and tangential components of a contact's velocity up to it count
+            as zero.
 
     Raises:
-        InvalidFieldError: there are no contacts, a number is not finite or beyond `LARGEST_NUMBER`, the
-            tolerance is negative, the plane's normal is not unit, or the facets are no whole number >= 3.
+        InvalidFieldError: there are no contacts, a number is not finite or exceeds `LARGEST_NUMBER`, the
+            tolerance is negative, the normal of the plane is not a unit vector, or the number of facets is
+            not a whole number >= 3.
         TooLargeError: there are more than `MAX_JAMMED_CONTACTS` contacts, or more than `MAX_DIRECTIONS`
-            directions of friction over all of them.
+            directions of friction in total.
     """
     body = body.mass_properties
     tolerance = check_within("velocity_tolerance", velocity_tolerance, 0.0, LARGEST_NUMBER)

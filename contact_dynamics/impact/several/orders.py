@@ -69,20 +69,22 @@ def several_impact(
     restitution_law: RestitutionLaw = RestitutionLaw.POISSON,
     velocity_tolerance: float = VELOCITY_TOLERANCE,
 ) -> SeveralImpact:
-    """Return what the impact of ``body`` at all ``contacts`` does, under a named law.
+    """Return the outcome of an impact of ``body`` at all ``contacts``, under the chosen laws.
+
+    It applies to a landing on an edge or a face: pass the body, ``landing.state`` and ``landing.contacts``.
 
     Args:
         body: A `Body`, or its `MassProperties`.
-        state: Pose and velocities just before.
-        contacts: All contacts that touch, approaching or not. There is at least one.
-        several_contacts_law: The law for several contacts.
-        restitution_law: What the coefficients of restitution mean. ENERGETIC only goes with SEQUENTIAL.
-        velocity_tolerance: m/s, > 0. A contact that approaches less fast does not strike.
+        state: Pose and velocities just before the impact.
+        contacts: All touching contacts, whether or not they approach; at least one.
+        several_contacts_law: Law for several contacts.
+        restitution_law: Law of restitution. ENERGETIC requires SEQUENTIAL.
+        velocity_tolerance: m/s, > 0. A contact that approaches more slowly does not strike.
 
     Raises:
-        SeparatingContactError: every contact separates.
+        SeparatingContactError: all contacts separate.
         InvalidFieldError: there are no contacts, the tolerance is not > 0, or ENERGETIC and SIMULTANEOUS are
-            asked for together.
+            combined.
     """
     warn_if_far(body, state, contacts.p_WC_W)
     answer = bodies_impact(
@@ -118,24 +120,26 @@ def outcomes_over_orders(
 ) -> OrderedOutcomes:
     """Return the outcomes of the sequential law over its admissible orders.
 
-    An order follows a priority of the contacts. Each time, the first contact in it that approaches is struck.
-    Different priorities can come to the same order, which is listed once. The outcome of `several_impact`,
-    which strikes the fastest approach first, is always among them, and comes last if no priority leads to it.
-    Where it strikes tied contacts as one, it has an empty order, and comes first.
+    Each order follows from a priority of the contacts: at each step, the first approaching contact in the
+    priority strikes. Different priorities can lead to the same order, which is listed once. The outcome of
+    `several_impact`, in which the fastest approach strikes first, is always included; it is the last one if
+    no priority leads to it. If contacts of equal approach speed strike as one in it, it has an empty order
+    and is the first one.
 
     Args:
         body: A `Body`, or its `MassProperties`.
-        state: Pose and velocities just before.
-        contacts: All contacts that touch. There is at least one.
-        restitution_law: What the coefficients of restitution mean.
-        velocity_tolerance: m/s, > 0. A contact that approaches less fast does not strike.
-        max_orders: How many priorities to try, >= 1. The answer's ``complete`` says whether these were all.
+        state: Pose and velocities just before the impact.
+        contacts: All touching contacts; at least one.
+        restitution_law: Law of restitution, which defines the coefficient of restitution.
+        velocity_tolerance: m/s, > 0. A contact that approaches more slowly does not strike.
+        max_orders: Largest number of priorities to try, >= 1. ``complete`` of the result is true if these
+            were all.
 
     Raises:
-        SeparatingContactError: every contact separates.
-        InvalidFieldError: there are no contacts, the tolerance is not > 0, or ``max_orders`` is no whole
+        SeparatingContactError: all contacts separate.
+        InvalidFieldError: there are no contacts, the tolerance is not > 0, or ``max_orders`` is not a whole
             number >= 1.
-        TooLargeError: the orders take more strikes together than `MAX_STRIKES_OVER_ORDERS`.
+        TooLargeError: the orders take more strikes in total than `MAX_STRIKES_OVER_ORDERS`.
     """
     body = body.mass_properties
     tolerance = check_positive("velocity_tolerance", velocity_tolerance)
@@ -215,23 +219,24 @@ def outcomes_at_once(
     velocity_tolerance: float = VELOCITY_TOLERANCE,
     max_orders: int = MAX_ORDERS,
 ) -> OrderedOutcomes:
-    """Return the outcomes of several solutions of SIMULTANEOUS. If they differ, the law has no unique answer.
+    """Return several solutions of the law SIMULTANEOUS. If they differ, the law has no unique solution.
 
-    Each order of the contacts leads to a solution. The solution of `several_impact` depends on no order. It
-    comes first, with an empty order. Solutions that no order leads to are not found.
+    Each order of the contacts leads to a solution. The solution of `several_impact` does not depend on an
+    order; it is the first one, with an empty order. Solutions that no order leads to are not found.
 
     Args:
         body: A `Body`, or its `MassProperties`.
-        state: Pose and velocities just before.
-        contacts: All contacts that touch. There is at least one.
+        state: Pose and velocities just before the impact.
+        contacts: All touching contacts; at least one.
         restitution_law: Poisson's or Newton's law.
-        velocity_tolerance: m/s, > 0. A contact that approaches less fast does not strike.
-        max_orders: How many orders to try, >= 1. The answer's ``complete`` says whether these were all.
+        velocity_tolerance: m/s, > 0. A contact that approaches more slowly does not strike.
+        max_orders: Largest number of orders to try, >= 1. ``complete`` of the result is true if these were
+            all.
 
     Raises:
-        SeparatingContactError: every contact separates.
-        InvalidFieldError: there are no contacts, the tolerance is not > 0, ``max_orders`` is no whole number
-            >= 1, or the law is the energetic one.
+        SeparatingContactError: all contacts separate.
+        InvalidFieldError: there are no contacts, the tolerance is not > 0, ``max_orders`` is not a whole
+            number >= 1, or the law is ENERGETIC.
     """
     body = body.mass_properties
     tolerance = check_positive("velocity_tolerance", velocity_tolerance)

@@ -35,22 +35,21 @@ def planar_several_impact(
     velocity_tolerance: float = VELOCITY_TOLERANCE,
     axes_W: ArrayLike = _X_AND_Y,
 ) -> SeveralImpact:
-    """Return what the impact of a planar body at all its contacts does, under a named law.
+    """Return the outcome of an impact of a planar body at all its contacts, under the chosen laws.
 
     Args:
         body: Mass and angular inertia.
-        velocity: The velocity of the body just before.
-        contacts: All contacts that touch, approaching or not. There is at least one.
-        several_contacts_law: The law for several contacts.
-        restitution_law: What the coefficients of restitution mean. ENERGETIC only goes with SEQUENTIAL.
-        velocity_tolerance: m/s, > 0. A contact that approaches less fast does not strike.
-        axes_W: (2, 3), the plane's x and y axes in world axes. The answer is in world axes, and the centre
-            of mass is at the world's origin.
+        velocity: Velocity of the body just before the impact.
+        contacts: All touching contacts, whether or not they approach; at least one.
+        several_contacts_law: Law for several contacts.
+        restitution_law: Law of restitution. ENERGETIC requires SEQUENTIAL.
+        velocity_tolerance: m/s, > 0. A contact that approaches more slowly does not strike.
+        axes_W: (2, 3), the x and y axes of the plane in world axes. The result is in world axes, with the
+            centre of mass at the origin of the world.
 
     Raises:
-        SeparatingContactError: every contact separates.
-        InvalidFieldError: `several_impact` refuses a field, or the axes are not two unit vectors at right
-            angles.
+        SeparatingContactError: all contacts separate.
+        InvalidFieldError: `several_impact` rejects a field, or the axes are not orthogonal unit vectors.
     """
     spatial = planar_in_space(body, velocity, contacts, axes_W=axes_W)
     return several_impact(

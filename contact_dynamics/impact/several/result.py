@@ -21,38 +21,40 @@ from contact_dynamics.validation import FloatArray
 
 
 class SeveralContactsLaw(NamedInt):
-    """The law for several contacts at once."""
+    """Law for several contacts at one instant: one after the other, or all at once."""
 
     SEQUENTIAL = 0
     SIMULTANEOUS = 1
 
 
 class SeveralVerdict(NamedInt):
-    """Whether the law has an answer."""
+    """Whether the law converged."""
 
     RESOLVED = 0
-    """No contact approaches afterwards."""
+    """No contact approaches after the impact."""
     NOT_CONVERGED = 1
-    """The bound on strikes or iterations was reached. The answer's state is the last one."""
+    """The limit on strikes or iterations was reached. The state is the last one."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class SeveralImpact(Record):
-    """The answer for several contacts of one body. Contact i is row i, and axes are the world's.
+    """Outcome of an impact at several contacts of one body.
+
+    Row i belongs to contact i, and all axes are those of the world.
 
     Attributes:
-        several_contacts_law: The law for several contacts.
-        restitution_law: The law of restitution.
-        verdict: Whether the answer holds.
-        state: The state afterwards. It has the pose of before and new velocities.
+        several_contacts_law: Law for several contacts.
+        restitution_law: Law of restitution.
+        verdict: Whether the law converged.
+        state: State after the impact: the pose before it, with the new velocities.
         impulses_W: (n, 3), N s, total impulses on the body.
-        velocities_before_W: (n, 3), m/s, velocities of the contacts before.
-        velocities_after_W: (n, 3), m/s, velocities of the contacts afterwards.
-        strikes: Each contact that was struck, in order, with its impact. Contacts that approach equally fast
-            strike as one. They follow each other, each with its share of the impulse and the state after all
-            of them. SIMULTANEOUS has none.
-        order_is_open: Whether several contacts approached at one time under SEQUENTIAL, so that rigid-body
-            mechanics allows other orders. `outcomes_over_orders` gives what they lead to.
+        velocities_before_W: (n, 3), m/s, velocities of the contacts before the impact.
+        velocities_after_W: (n, 3), m/s, velocities of the contacts after the impact.
+        strikes: Contacts that struck, in order, with their impacts. Contacts of equal approach speed strike
+            as one: they are listed one after the other, each with its share of the impulse and the state
+            after all of them. Empty with SIMULTANEOUS.
+        order_is_open: Whether several contacts approached at the same time under SEQUENTIAL, so that
+            rigid-body mechanics also admits other orders. `outcomes_over_orders` returns their outcomes.
     """
 
     several_contacts_law: SeveralContactsLaw
@@ -78,21 +80,24 @@ class SeveralImpact(Record):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class BodiesImpact(Record):
-    """The answer for several contacts of several bodies. Contact i is row i, and axes are the world's.
+    """Outcome of an impact at several contacts of several bodies.
+
+    Row i belongs to contact i, and all axes are those of the world.
 
     Attributes:
-        several_contacts_law: The law for several contacts.
-        restitution_law: The law of restitution.
-        verdict: Whether the answer holds.
-        states: The state of each body afterwards. It has the pose of before and new velocities.
+        several_contacts_law: Law for several contacts.
+        restitution_law: Law of restitution.
+        verdict: Whether the law converged.
+        states: State of each body after the impact: the pose before it, with the new velocities.
         impulses_W: (n, 3), N s, total impulses on the first body of each contact.
-        velocities_before_W: (n, 3), m/s, velocities of the first body's points relative to the second's.
-        velocities_after_W: (n, 3), m/s, the same velocities afterwards.
-        strikes: Each contact that was struck, in order, with its impact. Contacts that approach equally fast
-            strike as one. They follow each other, each with its share of the impulse and the state after all
-            of them. SIMULTANEOUS has none.
-        order_is_open: Whether several contacts approached at one time under SEQUENTIAL, so that rigid-body
-            mechanics allows other orders. `outcomes_over_orders` gives what they lead to.
+        velocities_before_W: (n, 3), m/s, velocities of the first body's points relative to the second's,
+            before the impact.
+        velocities_after_W: (n, 3), m/s, the same velocities after the impact.
+        strikes: Contacts that struck, in order, with their impacts. Contacts of equal approach speed strike
+            as one: they are listed one after the other, each with its share of the impulse and the state
+            after all of them. Empty with SIMULTANEOUS.
+        order_is_open: Whether several contacts approached at the same time under SEQUENTIAL, so that
+            rigid-body mechanics also admits other orders. `outcomes_over_orders` returns their outcomes.
     """
 
     several_contacts_law: SeveralContactsLaw
@@ -130,14 +135,15 @@ def _energy_change(impact: SeveralImpact | BodiesImpact) -> float:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class OrderedOutcomes(Record):
-    """The outcomes that a law for several contacts reaches over orders. Row i belongs to order i.
+    """Outcomes of a law for several contacts over orders of the contacts. Row i belongs to order i.
 
     Attributes:
-        orders: The contacts struck in each sequence, or the order that led to a simultaneous solution. It is
-            empty for the law's own answer where that has no order, because contacts strike at once.
-        velocities_W: (m, 6), m/s and rad/s, linear then angular velocity afterwards, world axes.
+        orders: Contacts that struck in each sequence, or the order that led to a simultaneous solution. Empty
+            for the law's own solution if it has no order, because contacts strike at once.
+        velocities_W: (m, 6), m/s and rad/s, linear then angular velocity after the impact, world axes.
         complete: Whether every order of the contacts was tried.
-        not_converged: How many orders were left out because they reached the bound on strikes or iterations.
+        not_converged: Number of orders that are omitted because they reached the limit on strikes or
+            iterations.
     """
 
     orders: tuple[tuple[int, ...], ...]
@@ -147,21 +153,21 @@ class OrderedOutcomes(Record):
 
     @property
     def spread(self) -> FloatArray:
-        """Return the largest difference between outcomes, (6,), m/s and rad/s, axis by axis."""
+        """Return the largest difference between outcomes in each component, (6,), m/s and rad/s."""
         spread: FloatArray = np.ptp(self.velocities_W, axis=0)
         return spread
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class InterleavedOutcomes(Record):
-    """Outcomes of impacts that interleave, some of them and bounds on all. World axes.
+    """Outcomes of interleaved impacts, and bounds on the outcomes of all interleavings. World axes.
 
     Attributes:
         velocities_W: (m, 6), m/s and rad/s, linear then angular velocity after each interleaving that was
-            tried. The first are those of orders of the contacts. The others were drawn.
-        lowest_W: (6,), m/s and rad/s. No interleaving leads below it on any axis.
-        highest_W: (6,), m/s and rad/s. No interleaving leads above it on any axis.
-        not_converged: How many interleavings were left out because they reached the bound on increments.
+            tried. The first rows belong to orders of the contacts, and the others to random interleavings.
+        lowest_W: (6,), m/s and rad/s, lower bounds on the components after any interleaving.
+        highest_W: (6,), m/s and rad/s, upper bounds on the components after any interleaving.
+        not_converged: Number of interleavings that are omitted because they reached the limit on increments.
     """
 
     velocities_W: FloatArray
@@ -171,12 +177,12 @@ class InterleavedOutcomes(Record):
 
     @property
     def spread(self) -> FloatArray:
-        """Return the largest difference between outcomes that were found, (6,), m/s and rad/s, by axis."""
+        """Return the largest difference between the outcomes found, (6,), m/s and rad/s."""
         spread: FloatArray = np.ptp(self.velocities_W, axis=0)
         return spread
 
     @property
     def gap(self) -> FloatArray:
-        """Return by how much the bounds are wider than the spread, (6,), m/s and rad/s, axis by axis."""
+        """Return the amount by which the bounds are wider than the spread, (6,), m/s and rad/s."""
         gap: FloatArray = self.highest_W - self.lowest_W - self.spread
         return gap

@@ -58,22 +58,22 @@ def bodies_impact(
     restitution_law: RestitutionLaw = RestitutionLaw.POISSON,
     velocity_tolerance: float = VELOCITY_TOLERANCE,
 ) -> BodiesImpact:
-    """Return what an impact at all ``contacts`` of several bodies does, under a named law.
+    """Return the outcome of an impact of several bodies at all ``contacts``, under the chosen laws.
 
     Args:
         bodies: Each a `Body`, or its `MassProperties`.
-        states: Pose and velocities of each just before.
-        contacts: All contacts that touch, approaching or not. There is at least one.
-        pairs: For each contact, the body that its normal points into and the other one. Both are indices into
-            ``bodies``, and the second is None for the world.
-        several_contacts_law: The law for several contacts.
-        restitution_law: What the coefficients of restitution mean. ENERGETIC only goes with SEQUENTIAL.
-        velocity_tolerance: m/s, > 0. A contact that approaches less fast does not strike.
+        states: Pose and velocities of each body just before the impact.
+        contacts: All touching contacts, whether or not they approach; at least one.
+        pairs: For each contact, the body into which its normal points, and the other body. Both are indices
+            into ``bodies``; the second is None for the world.
+        several_contacts_law: Law for several contacts.
+        restitution_law: Law of restitution. ENERGETIC requires SEQUENTIAL.
+        velocity_tolerance: m/s, > 0. A contact that approaches more slowly does not strike.
 
     Raises:
-        SeparatingContactError: every contact separates.
-        InvalidFieldError: there are no contacts, lists differ in length, an index has no body, the tolerance
-            is not > 0, or ENERGETIC and SIMULTANEOUS are asked for together.
+        SeparatingContactError: all contacts separate.
+        InvalidFieldError: there are no contacts, lists differ in length, an index is out of range, the
+            tolerance is not > 0, or ENERGETIC and SIMULTANEOUS are combined.
     """
     masses = [each.mass_properties for each in bodies]
     tolerance = check_positive("velocity_tolerance", velocity_tolerance)

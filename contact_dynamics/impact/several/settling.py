@@ -44,24 +44,26 @@ def settling_impact(
     friction_facets: int = 8,
     velocity_tolerance: float = VELOCITY_TOLERANCE,
 ) -> SeveralImpact:
-    """Return one impact that stands for all jamming impacts until ``is_settled`` holds of the state.
+    """Return one impact that combines all jamming impacts until ``is_settled`` is true for the state.
 
     Its impulses are the sums over the impacts. The verdict is NOT_CONVERGED if the contacts are not settled
-    after `MAX_JAMS` impacts. The arguments without a word here mean what they mean in `jamming_impact`.
+    after `MAX_JAMS` impacts. The arguments are those of `jamming_impact`, except ``is_settled``.
 
     Args:
         body: A `Body`, or its `MassProperties`.
-        state: Pose and velocities just before.
-        contacts: All contacts that touch. There is at least one.
-        is_settled: A function that says whether some mode of a state is consistent, or a contact approaches.
-        force_W: (3,), N, the force applied besides contact forces, gravity included, world axes.
-        torque_W: (3,), N m, the torque applied about the centre of mass, world axes.
-        plane_normal_W: (3,), unit, the normal of a plane of motion, or None in space.
-        friction_facets: The number of directions of friction in space, >= 3.
-        velocity_tolerance: m/s, >= 0. A component of a contact's velocity within it counts as zero.
+        state: Pose and velocities just before the impact.
+        contacts: All touching contacts; at least one.
+        is_settled: Function of a state that returns whether a contact mode is consistent, or a contact
+            approaches.
+        force_W: (3,), N, applied force, including gravity but not contact forces, world axes.
+        torque_W: (3,), N m, applied torque about the centre of mass, world axes.
+        plane_normal_W: (3,), unit normal of a plane of motion, or None in space.
+        friction_facets: Number of directions of friction in space, >= 3.
+        velocity_tolerance: m/s, >= 0. Normal and tangential components of a contact's velocity up to it count
+            as zero.
 
     Raises:
-        InvalidFieldError: there are no contacts, or `jamming_impact` refuses a number.
+        InvalidFieldError: there are no contacts, or `jamming_impact` rejects a number.
         TooLargeError: there are more than `MAX_JAMMED_CONTACTS` contacts.
     """
     jam = partial(

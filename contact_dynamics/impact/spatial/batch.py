@@ -49,18 +49,20 @@ _CHUNK: Final = 8192
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class StrikingBodies(Record):
-    """Bodies that strike, at their contacts. Each field has a row for each case, or one row for all cases.
+    """Bodies at their contacts, just before impacts.
+
+    Each field has one row per case, or one row for all cases.
 
     Attributes:
         masses: (N,) or (), kg, > 0.
         inertias_B: (N, 3, 3) or (3, 3), kg m^2, about the centres of mass, body axes.
-        q_WB: (N, 4) or (4,), unit quaternions x, y, z, w, which take body into world coordinates.
+        q_WB: (N, 4) or (4,), unit quaternions x, y, z, w, which transform body into world coordinates.
         v_WB_W: (N, 3) or (3,), m/s, velocities of the centres of mass, world axes.
         w_WB_W: (N, 3) or (3,), rad/s, angular velocities, world axes.
         r_W: (N, 3) or (3,), m, from the centres of mass to the contacts, world axes.
 
     Raises:
-        InvalidFieldError: a number is not allowed; the message names the field and the first row.
+        InvalidFieldError: a number is out of range; the message names the field and the first row.
     """
 
     masses: FloatArray
@@ -82,7 +84,7 @@ class StrikingBodies(Record):
         w_WB_W: ArrayLike,
         p_WC_W: ArrayLike,
     ) -> StrikingBodies:
-        """Return one body in many states, each with its contact, or with one for all.
+        """Return one body in many states, with one contact per state or one contact for all states.
 
         Args:
             body: A `Body`, or its `MassProperties`.
@@ -152,20 +154,22 @@ class StrikingBodies(Record):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class SpatialImpacts(ManyEnergies):
-    """The answers to N impacts in space. Row i belongs to case i, and `SpatialImpact` explains the fields.
+    """Outcomes of N impacts in space. Row i belongs to case i; `SpatialImpact` explains the fields.
 
     Attributes:
         restitution_laws: (N,), values of RestitutionLaw.
         outcomes: (N,), values of ImpactOutcome.
-        v_WB_W: (N, 3), m/s, velocities of the centres of mass afterwards, world axes.
-        w_WB_W: (N, 3), rad/s, angular velocities afterwards, world axes.
+        v_WB_W: (N, 3), m/s, velocities of the centres of mass after the impacts, world axes.
+        w_WB_W: (N, 3), rad/s, angular velocities after the impacts, world axes.
         impulses_W: (N, 3), N s, total impulses.
         compressions_W: (N, 3), N s, impulses up to the end of compression.
-        velocities_before_W: (N, 3), m/s, velocities of the contacts before, relative to what they touch.
-        velocities_after_W: (N, 3), m/s, velocities of the contacts afterwards, relative to what they touch.
+        velocities_before_W: (N, 3), m/s, velocities of the contacts before, relative to what the bodies
+            touch.
+        velocities_after_W: (N, 3), m/s, velocities of the contacts after, relative to what the bodies touch.
         other_v_WB_W: (N, 3), m/s, velocities of the second bodies' centres of mass, or None if the bodies
             strike the fixed world.
-        other_w_WB_W: (N, 3), rad/s, angular velocities of the second bodies, or None if the world is struck.
+        other_w_WB_W: (N, 3), rad/s, angular velocities of the second bodies, or None if the bodies strike the
+            fixed world.
     """
 
     restitution_laws: NDArray[np.int64]
@@ -194,23 +198,24 @@ def spatial_impacts(
     velocity_tolerance: float = VELOCITY_TOLERANCE,
     skip_separating: bool = False,
 ) -> SpatialImpacts:
-    """Return what N impacts in space do. Each answer is that of `spatial_impact` or `spatial_pair_impact`.
+    """Return the outcomes of N impacts in space. Each is that of `spatial_impact` or `spatial_pair_impact`.
 
     Args:
-        bodies: The bodies that the normals point into, just before.
+        bodies: Bodies into which the normals point, just before the impacts.
         normals_W: (N, 3) or (3,), unit, world axes.
         frictions: (N,) or one number, >= 0.
         restitutions: (N,) or one number, in [0, 1].
-        others: The bodies that they strike, or None if they strike the fixed world.
-        restitution_laws: (N,) or one, values of RestitutionLaw.
-        velocity_tolerance: m/s, >= 0. A normal or tangential velocity of a contact within it counts as zero.
-        skip_separating: Whether a contact that separates is answered instead of refused. Its outcome is then
-            NO_IMPULSE, and its velocities stay what they are.
+        others: Bodies that they strike, or None if they strike the fixed world.
+        restitution_laws: (N,) or one value of RestitutionLaw.
+        velocity_tolerance: m/s, >= 0. Normal and tangential components of a contact's velocity up to it count
+            as zero.
+        skip_separating: Whether to accept contacts that separate. Their outcome is NO_IMPULSE, and their
+            velocities are unchanged.
 
     Raises:
         SeparatingContactError: a contact's normal velocity is above the tolerance, and ``skip_separating`` is
-            false; the message names the first.
-        InvalidFieldError: a number is not allowed; the message names the field and the first row.
+            false; the message names the first such contact.
+        InvalidFieldError: a number is out of range; the message names the field and the first row.
     """
     tolerance = check_not_negative("velocity_tolerance", velocity_tolerance)
     fields = {

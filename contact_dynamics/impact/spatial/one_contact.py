@@ -46,23 +46,26 @@ def spatial_impact(
     restitution_law: RestitutionLaw = RestitutionLaw.POISSON,
     velocity_tolerance: float = VELOCITY_TOLERANCE,
 ) -> SpatialImpact:
-    """Return what the impact of ``body`` does; `impact.spatial_impacts` does it for many at once.
+    """Return the outcome of an impact of ``body`` on the fixed world at one contact, in space.
 
-    A `FarContactWarning` reports a contact that is out of reach of the body's shape.
+    If several contacts strike at once, as when a box lands on an edge or a face, use `several_impact` with
+    all of them. `spatial_impacts` computes many impacts at once. A `FarContactWarning` reports a contact
+    beyond the body's shape.
 
     Args:
         body: A `Body`, or its `MassProperties`.
-        state: Pose and velocities just before.
-        contact: The contact, with its normal into the body, friction and restitution. Curvatures play no part
-            in an impact. If several strike at once, as where a box lands on a face, use `several_impact`.
-        restitution_law: What the coefficient of restitution means.
-        velocity_tolerance: m/s, >= 0. A normal or tangential velocity of the contact within it counts as
-            zero.
+        state: Pose and velocities just before the impact.
+        contact: Contact with its normal into the body, friction and restitution. Its curvatures have no
+            effect on the impact.
+        restitution_law: Law of restitution, which defines the coefficient of restitution.
+        velocity_tolerance: m/s, >= 0. Normal and tangential components of the contact's velocity up to it
+            count as zero.
 
     Raises:
         SeparatingContactError: the contact's normal velocity is above the tolerance.
-        InvalidFieldError: the tolerance is negative, a velocity or the contact's distance from a centre of
-            mass is beyond `LARGEST_NUMBER`, or a mass or moment of inertia is, or is below its inverse.
+        InvalidFieldError: the tolerance is negative; or a velocity, a mass, a moment of inertia or the
+            distance of the contact from a centre of mass exceeds `LARGEST_NUMBER`, or a mass or moment of
+            inertia is below its inverse.
     """
     warn_if_far(body, state, contact.p_WC_W)
     body = body.mass_properties
@@ -81,21 +84,25 @@ def spatial_pair_impact(
     restitution_law: RestitutionLaw = RestitutionLaw.POISSON,
     velocity_tolerance: float = VELOCITY_TOLERANCE,
 ) -> SpatialImpact:
-    """Return what the impact of two bodies in space does. The contact transmits no moment.
+    """Return the outcome of an impact of two bodies at one contact, in space.
+
+    The contact transmits no moment.
 
     Args:
-        body: The first body, which the normal points into.
-        state: The state of the first body just before.
-        other: The second body.
-        other_state: The state of the second body just before.
-        contact: The contact, with its normal into the first body, friction and restitution.
-        restitution_law: What the coefficient of restitution means.
-        velocity_tolerance: m/s, >= 0. A normal or tangential relative velocity within it counts as zero.
+        body: First body, into which the normal points.
+        state: State of the first body just before the impact.
+        other: Second body.
+        other_state: State of the second body just before the impact.
+        contact: Contact with its normal into the first body, friction and restitution.
+        restitution_law: Law of restitution, which defines the coefficient of restitution.
+        velocity_tolerance: m/s, >= 0. Normal and tangential components of the relative velocity up to it
+            count as zero.
 
     Raises:
         SeparatingContactError: the contact's relative normal velocity is above the tolerance.
-        InvalidFieldError: the tolerance is negative, a velocity or the contact's distance from a centre of
-            mass is beyond `LARGEST_NUMBER`, or a mass or moment of inertia is, or is below its inverse.
+        InvalidFieldError: the tolerance is negative; or a velocity, a mass, a moment of inertia or the
+            distance of the contact from a centre of mass exceeds `LARGEST_NUMBER`, or a mass or moment of
+            inertia is below its inverse.
     """
     warn_if_far(body, state, contact.p_WC_W)
     warn_if_far(other, other_state, contact.p_WC_W)

@@ -14,22 +14,23 @@ from contact_dynamics.validation import FloatArray
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class SpatialImpact(Record):
-    """The answer to one impact in space. Impulses act on the body, and all arrays are in world axes.
+    """Outcome of one impact in space. Impulses act on the body, and all arrays are in world axes.
 
     Attributes:
-        restitution_law: The restitution law that was asked for.
-        outcome: What the contact did.
-        jams: Whether sliding drove the contact into compression at first.
-        state: The state of the body afterwards. It has the pose of before and new velocities.
-        impulse_W: (3,), N s, the total impulse.
-        compression_W: (3,), N s, the impulse up to the end of compression.
-        path_W: (k, 3), N s, points of the impulse path. Those at a SAMPLE lie on a curve.
-        path_events: (k,), the meaning of each point.
-        velocity_before_W: (3,), m/s, the contact's velocity before, relative to what it touches. Normal and
-            tangential parts within the tolerance are 0.
-        velocity_after_W: (3,), m/s, the contact's velocity afterwards, relative to what it touches.
-        inverse_inertia_W: (3, 3), 1/kg, the contact's change of velocity per impulse.
-        other_state: The state of the second body afterwards, or None for the fixed world.
+        restitution_law: Law of restitution.
+        outcome: Motion of the contact during the impact.
+        jams: Whether sliding initially drove the contact into compression.
+        state: State of the body after the impact: the pose before it, with the new velocities.
+        impulse_W: (3,), N s, total impulse.
+        compression_W: (3,), N s, impulse up to the end of compression.
+        path_W: (k, 3), N s, points of the impulse path. Points with the event SAMPLE are on curved parts.
+        path_events: (k,), event at each point.
+        velocity_before_W: (3,), m/s, velocity of the contact before the impact, relative to what the body
+            touches. Normal and tangential components within the tolerance are 0.
+        velocity_after_W: (3,), m/s, velocity of the contact after the impact, relative to what the body
+            touches.
+        inverse_inertia_W: (3, 3), 1/kg, change of the contact's velocity per impulse.
+        other_state: State of the second body after the impact, or None for the fixed world.
     """
 
     restitution_law: RestitutionLaw
@@ -58,7 +59,7 @@ class SpatialImpact(Record):
 
     @property
     def creates_energy(self) -> bool:
-        """Return whether the law gave the body energy, beyond rounding."""
+        """Return whether the impact increased the energy by more than rounding error."""
         return bool(law_created(*self._at_contact()))
 
     def _at_contact(self) -> tuple[list[float], list[float], list[float]]:
