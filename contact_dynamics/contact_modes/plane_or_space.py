@@ -40,14 +40,15 @@ def contact_modes(problem: SpatialContactProblem) -> SpatialModeAnswer: ...
 def contact_modes(
     problem: PlanarContactProblem | SpatialContactProblem,
 ) -> PlanarModeAnswer | SpatialModeAnswer:
-    """Return the verdict on a contact set and all consistent modes, with accelerations and forces.
+    """Return the verdict on a contact problem and all consistent modes.
+
+    Each mode contains its accelerations and contact forces.
 
     Args:
-        problem: The question, such as SpatialContactProblem.of(body, state, world, force_W=push).
+        problem: The contact problem, such as SpatialContactProblem.of(body, state, world, force_W=push).
 
     Raises:
-        TooLargeError: the problem is in space, and more contacts touch than are answered, or the search takes
-            too many trials.
+        TooLargeError: in space, more contacts touch than are supported, or the search takes too many trials.
 
     Source: lecture 26.
     """
@@ -82,21 +83,21 @@ def mode_margins(
     *,
     margin_length: float | None = None,
 ) -> tuple[PlanarModeMargin, ...] | tuple[SpatialModeMargin, ...]:
-    """Return how far the applied wrench is from leaving each of its consistent modes, in their order.
+    """Return the margin of each consistent mode, in the order of the modes.
 
-    The margin is the size of the least change of the wrench that leaves the mode, N, where the size is the
-    root of |f|^2 + |torque / length|^2. No margin is returned if a contact approaches. In space, margins are
-    those of round cones, and NaN for some modes in which contacts begin to slide (`spatial_mode_margins`).
+    The margin is the size of the smallest change of the wrench that leaves the mode, N: the root of |f|^2 +
+    |torque / length|^2. The list is empty if a contact approaches. In space, margins are those of round
+    friction cones, and NaN for some modes in which contacts begin to slide (`spatial_mode_margins`).
 
     Args:
-        problem: The question.
-        answer: The answer to that question, if it is known. It saves a search.
-        margin_length: m, > 0. It makes a torque comparable with a force. If it is None, it is the radius of
-            gyration, and in space the root mean square of the radii about the axes.
+        problem: The contact problem.
+        answer: Answer to that problem, if available. It saves a search.
+        margin_length: m, > 0. Length that makes torque comparable with force. If it is None, it is the radius
+            of gyration, in space the root mean square of the radii about the axes.
 
     Raises:
-        InvalidFieldError: ``answer`` is of another kind of problem, or the length is not > 0.
-        UndecidedError: contacts in space are so nearly the same that rounding decides the boundaries.
+        InvalidFieldError: ``answer`` belongs to another kind of problem, or the length is not > 0.
+        UndecidedError: contacts in space are so nearly equal that rounding error prevents a decision.
         TooLargeError: as for `contact_modes`.
     """
     if isinstance(problem, PlanarContactProblem) and not isinstance(answer, SpatialModeAnswer):
@@ -118,20 +119,20 @@ def refused_modes(
     *,
     margin_length: float | None = None,
 ) -> tuple[RefusedMode, ...]:
-    """Return the modes that kinematics allows and mechanics refuses, each with the first reason found.
+    """Return the kinematically possible modes that are not consistent, each with the first reason found.
 
-    In the plane the answer has them already. In space there are too many letters with a way of sliding to
-    list. The modes are then strings of contacting (`c`) and separating (`s`), and each takes a millisecond.
+    In the plane, the answer already contains them. In space there are too many sliding directions to list;
+    the modes are then strings of `c` (stays closed) and `s` (separates), each of which takes a millisecond.
 
     Args:
-        problem: The question.
-        answer: The answer to that question.
-        margin_length: m, > 0. It makes a torque comparable with a force where the reason is a distance. If it
-            is None, it is the root mean square of the radii of gyration about the axes. Only in space.
+        problem: The contact problem.
+        answer: Answer to that problem.
+        margin_length: m, > 0, only in space. Length that makes torque comparable with force if the reason is
+            a distance. If it is None, it is the root mean square of the radii of gyration about the axes.
 
     Raises:
-        InvalidFieldError: ``answer`` is of another kind of problem, the length is not > 0, or a length is
-            given in the plane.
+        InvalidFieldError: ``answer`` belongs to another kind of problem, the length is not > 0, or a length
+            is given in the plane.
         TooLargeError: as for `contact_modes`.
     """
     if isinstance(problem, PlanarContactProblem) and isinstance(answer, PlanarModeAnswer):
@@ -154,23 +155,23 @@ def wrench_sets(
 def wrench_sets(
     problem: PlanarContactProblem | SpatialContactProblem, *, modes: Collection[str] | None = None
 ) -> tuple[PlanarWrenchSet, ...] | tuple[SpatialWrenchSet, ...]:
-    """Return the applied wrenches that can bring each mode about, in alphabetical order of the modes.
+    """Return the applied wrenches that can cause each mode, in alphabetical order of the modes.
 
-    Together the sets are the map of modes. In the plane the problem's own wrench plays no part. In space it
-    says how the friction pyramids lie. There a mode has a set for each way of sliding, and their number grows
-    with the square or cube of `friction_facets`. A box on four feet has 200 to 350 sets with 4 facets and
-    some 1300 with 8, and each takes a millisecond or two. You save time if you ask for few modes, or with
-    `dataclasses.replace(problem, friction_facets=4)`.
+    Together, the sets form the map of modes. In the plane, the problem's own wrench has no effect. In space,
+    it determines the orientation of the friction pyramids; a mode has one set for each combination of sliding
+    directions, and the number of sets grows with the square or cube of `friction_facets`. A box on four feet
+    has 200 to 350 sets with 4 facets and about 1300 with 8, and each set takes a millisecond or two. To save
+    time, request few modes, or use `dataclasses.replace(problem, friction_facets=4)`.
 
     Args:
-        problem: The question.
-        modes: The modes that are wanted, with one letter for each contact. If it is None, all are returned.
+        problem: The contact problem.
+        modes: Requested modes, with one letter for each contact. If it is None, all are returned.
 
     Raises:
-        InvalidFieldError: a mode is not a string of its letters.
-        UndecidedError: contacts in space are so nearly the same that rounding decides the sets.
-        TooLargeError: A problem in space has too many contacts, edges of friction pyramids, ways of sliding
-            or sets.
+        InvalidFieldError: a mode is not a string of valid letters.
+        UndecidedError: contacts in space are so nearly equal that rounding error prevents a decision.
+        TooLargeError: a problem in space has too many contacts, edges of friction pyramids, combinations of
+            sliding directions, or sets.
 
     Source: lecture 26, "Force dual for dynamic contact problem" and "Contact modes for wrench in tray".
     """
@@ -191,19 +192,19 @@ def geometry_margins(
     problem: PlanarContactProblem | SpatialContactProblem,
     answer: PlanarModeAnswer | SpatialModeAnswer | None = None,
 ) -> tuple[GeometryMargin, ...]:
-    """Return how far points, normals and frictions would have to be off for another verdict or UNIQUE mode.
+    """Return the errors of points, normals and friction that change the verdict or the UNIQUE mode.
 
-    Each margin is given from both sides: within one size the answer is proven, and at another size contacts
-    were found that have another answer. There are proofs for bodies at rest, in space on at most four
-    contacts. All margins take about a second for two contacts in the plane or three in space, and several
-    for four. There are no margins if a contact approaches.
+    Each margin has two bounds: the answer is proven for errors up to one size, and contacts with a different
+    answer were found at another size. Proofs require bodies at rest and, in space, at most four contacts. All
+    margins take about a second for two contacts in the plane or three in space, and several seconds for four.
+    The list is empty if a contact approaches.
 
     Args:
-        problem: The question. Its own uncertainty plays no part.
-        answer: The answer to that question, if it is known. It saves a search.
+        problem: The contact problem. Its own uncertainty has no effect.
+        answer: Answer to that problem, if available. It saves a search.
 
     Raises:
-        InvalidFieldError: ``answer`` is of another kind of problem.
+        InvalidFieldError: ``answer`` belongs to another kind of problem.
         TooLargeError: as for `contact_modes`.
     """
     if isinstance(problem, PlanarContactProblem) and not isinstance(answer, SpatialModeAnswer):
@@ -218,15 +219,15 @@ def geometry_margins(
 def statics(
     problem: PlanarContactProblem | SpatialContactProblem, *, margin_length: float | None = None
 ) -> BodyStatics:
-    """Return whether the body stays if it is at rest, and how well.
+    """Return whether the body stays at rest, with the size of the disturbance that it withstands.
 
     Args:
-        problem: The question. Its velocities play no part.
+        problem: The contact problem. Its velocities have no effect: the body is treated as at rest.
         margin_length: As for `mode_margins`.
 
     Raises:
         InvalidFieldError: the length is not > 0.
-        UndecidedError: contacts are so nearly the same that rounding decides the answer.
+        UndecidedError: contacts are so nearly equal that rounding error prevents a decision.
         TooLargeError: as for `contact_modes`, or the friction pyramids in space have more than 128 edges.
     """
     if isinstance(problem, PlanarContactProblem):

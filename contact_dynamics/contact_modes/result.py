@@ -30,49 +30,50 @@ _SHOWN: Final = 2
 
 
 class ModeVerdict(NamedInt):
-    """What rigid-body mechanics says about a contact set as a whole."""
+    """Verdict on the contact modes of all contacts together."""
 
     UNIQUE = 0
     """One mode is consistent."""
     INDETERMINATE = 1
-    """Several modes are consistent, and mechanics does not choose between them."""
+    """Several modes are consistent, and rigid-body mechanics does not determine which one occurs."""
     INCONSISTENT = 2
-    """No mode is consistent. An impact without approach settles the case (lectures 26 and 27)."""
+    """No mode is consistent. An impact without approach resolves the case (lectures 26 and 27)."""
     IMPACT = 3
-    """A contact approaches. Modes apply only after that impact."""
+    """A contact approaches. Contact modes apply only after the impact."""
     UNDECIDED = 4
-    """The modes that are listed are consistent. It could not be decided whether others are, and the answer
-    says why. There may be no mode in the list."""
+    """The listed modes are consistent, but others may exist; the answer contains the reason. The list may be
+    empty."""
 
 
 class Refusal(NamedInt):
-    """Why mechanics refuses a mode that is possible kinematically."""
+    """Reason for which a kinematically possible mode is not consistent."""
 
     PENETRATES = 0
     """The contact would penetrate. The amount is its normal acceleration, m/s^2, which is negative."""
     PULLS = 1
-    """The contact would have to pull. The amount is its normal force, N, which is negative."""
+    """The contact force would pull. The amount is the normal force, N, which is negative."""
     OUTSIDE_CONE = 2
-    """The contact force would leave the friction cone. The amount is |f_t| - mu f_n, N, which is positive."""
+    """The contact force would be outside the friction cone. The amount is |f_t| - mu f_n, N, which is
+    positive."""
     WRONG_MOTION = 3
-    """The contact would not move as its letter says. The amount is the acceleration, m/s^2, that contradicts
-    the letter. It is 0 if the letter demands more than 0."""
+    """The motion of the contact would contradict its letter. The amount is the acceleration, m/s^2, that
+    contradicts the letter, or 0 if the letter requires more than 0."""
     NO_SOLUTION = 4
-    """No contact forces give the mode's accelerations. For one contact the amount is the factor of the normal
-    force (1/kg, lecture 26, eq. 2), which is not positive. For several contacts it is the distance, N, from
-    the applied wrench to the wrenches that can bring the mode about, with torques divided by the radius of
+    """No contact forces cause the accelerations of the mode. For one contact the amount is the factor of the
+    normal force (1/kg, lecture 26, eq. 2), which is not positive. For several contacts it is the distance, N,
+    from the applied wrench to the wrenches that can cause the mode, with torques divided by the radius of
     gyration."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class RefusedMode(Record):
-    """A mode that is possible kinematically and refused by mechanics.
+    """Mode that is kinematically possible but not consistent with mechanics.
 
     Attributes:
-        mode: The mode, with one letter for each contact.
-        refusal: The first reason that was found.
-        contact: The index of the contact whose letter fails, or -1 if no single contact is the reason.
-        amount: By how much it fails, in the unit that the refusal states.
+        mode: One letter for each contact.
+        refusal: The first violated condition that was found.
+        contact: Index of the contact that violates it, or -1 if it is not a single contact.
+        amount: Amount of the violation, in the unit that the `Refusal` defines.
     """
 
     mode: str
@@ -83,16 +84,16 @@ class RefusedMode(Record):
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class VerdictsWithin(Record):
-    """The verdicts on contacts that are known only to some uncertainty.
+    """Verdicts that occur within the uncertainty of the contacts.
 
     Attributes:
-        uncertainty: The box in which the true contacts are.
-        verdicts: The verdicts that occur in the box, the one on the problem itself first. Each of the others
-            was found at some contacts in the box.
-        modes: The modes that are consistent at the problem itself or at some contacts that were found.
-        certain: Whether it is proven that no other verdict occurs in the box. If it is not, the verdicts are
-            those that samples have shown. If the verdict UNIQUE is certain, its mode is the same in the box.
-        samples: How many contact sets in the box were tried.
+        uncertainty: Box that contains the true contacts.
+        verdicts: Verdicts that occur in the box. The first one is that of the given contacts, and every other
+            one was found for some contacts in the box.
+        modes: Modes that are consistent for the given contacts or for contacts that were found.
+        certain: Whether it is proven that no other verdict occurs in the box, and that a UNIQUE mode is the
+            same in the whole box. If false, the verdicts are those of samples.
+        samples: Number of sampled contact sets in the box.
     """
 
     uncertainty: ContactUncertainty
@@ -104,11 +105,12 @@ class VerdictsWithin(Record):
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class ModeProbability(Record):
-    """How probable a mode is, by the noise of a measured state.
+    """Probability of a mode, given the noise of a measured state.
 
     Attributes:
-        mode: The mode, or nothing for an impact.
-        probability: The share of measurements of the state, drawn by its noise, under which it is consistent.
+        mode: The mode, or an empty string for an impact.
+        probability: Share of measurements, sampled from the noise of the state, for which the mode is
+            consistent.
     """
 
     mode: str
@@ -117,18 +119,18 @@ class ModeProbability(Record):
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class GeometryMargin(Record):
-    """How far the contacts would have to be off for another answer, in one of three ways.
+    """Error of the contacts that changes the answer, for one kind of error.
 
-    Another answer is another verdict, or another mode that is UNIQUE.
+    A change is another verdict, or another UNIQUE mode.
 
     Attributes:
-        kind: What is off: "points" (sizes are in m), "normals" (rad) or "frictions".
-        holds_within: It is proven that the answer is the same if all contacts are off by at most this. It is
-            0 if nothing could be proven.
-        changes_at: At some contacts that are off by at most this, another answer was found. It is infinite if
-            none was found.
-        verdict_beyond: The verdict there, or the present one if none was found.
-        modes_beyond: The consistent modes there, or none.
+        kind: Kind of error: "points" (sizes in m), "normals" (rad) or "frictions".
+        holds_within: Error of all contacts up to which the answer is proven not to change. It is 0 if nothing
+            could be proven.
+        changes_at: Error at which a change was found for some contacts. It is infinite if none was found.
+        verdict_beyond: Verdict of those contacts, or the verdict of the given contacts if no change was
+            found.
+        modes_beyond: Consistent modes of those contacts. Empty if no change was found.
     """
 
     kind: str
@@ -160,33 +162,33 @@ def check_length(margin_length: float | None, own: float) -> float:
 
 
 class Certainty(NamedInt):
-    """How surely rigid-body mechanics says yes."""
+    """Answer to a question of statics."""
 
     NO = 1
-    """It is not consistent."""
+    """It is not consistent with rigid-body mechanics."""
     POSSIBLE = 2
-    """It is consistent, and something else is consistent too."""
+    """It is consistent, but so is another mode."""
     CERTAIN = 3
-    """It is consistent, and nothing else is."""
+    """It is consistent, and no other mode is."""
     UNKNOWN = 4
-    """Rounding decides. In space it may stand for an answer beside the equilibrium."""
+    """Rounding error prevents a decision, which is possible in space only and not for the equilibrium."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class BodyStatics(Record):
-    """What holds a body at rest, and how well.
+    """Equilibrium of a body at rest.
 
     Attributes:
         equilibrium: Whether the body stays at rest.
         jammed: Whether friction alone keeps the body at rest.
         wedged: Whether the contacts can press against each other without an applied wrench, or None if
-            rounding decides.
-        stable_disturbance: N. Equilibrium stays possible under every change of the wrench up to this size. It
-            is infinite if equilibrium is possible under every wrench (force closure), and NaN if there is no
-            equilibrium. Infinite together with an ``equilibrium`` that is POSSIBLE means: contact forces that
-            hold the body exist whatever pushes it, but they depend on how hard the contacts are pressed
-            together (a wedged body). Rigid-body mechanics does not say that, so that the body may also move.
-        margin_length: m. The size of a change is measured in |f|^2 + (moment / length)^2 with this length.
+            rounding error prevents a decision.
+        stable_disturbance: N. Equilibrium remains possible under every change of the wrench up to this size.
+            It is infinite if equilibrium is possible under every wrench (force closure), and NaN without
+            equilibrium. If it is infinite and ``equilibrium`` is POSSIBLE, contact forces can balance any
+            wrench, but only if the contacts press against each other strongly enough (a wedged body).
+            Rigid-body mechanics does not determine that force, so the body may also move.
+        margin_length: m. The size of a change is the root of |f|^2 + (moment / length)^2 with this length.
     """
 
     equilibrium: Certainty
@@ -196,35 +198,38 @@ class BodyStatics(Record):
     margin_length: float
 
     def is_stable_against(self, disturbance: float) -> bool:
-        """Return whether equilibrium stays possible under every change of the wrench up to this size, N."""
+        """Return whether equilibrium remains possible under every change of the wrench up to this size, N."""
         return self.stable_disturbance >= check_not_negative("disturbance", disturbance)  # false for NaN
 
 
 class AnyMode(Record):
-    """What a mode that is consistent with mechanics says in words."""
+    """Consistent mode in the plane or in space, with text summaries."""
 
     __slots__ = ()
     mode: str
 
     @property
     def words(self) -> tuple[str, ...]:
-        """What each contact does: "separates", "stays fixed", "slides", "slides left" or "slides right"."""
+        """Return the motion of each contact.
+
+        It is "separates", "stays fixed", "slides", "slides left" or "slides right".
+        """
         return tuple(LETTERS[letter][0] for letter in self.mode)
 
     def in_short(self) -> str:
-        """Return the letters, and what the body does, or each kind of contact."""
+        """Return the letters, and a text label of the motion."""
         return f"{type(self).__name__} {self.mode}: {mode_in_words(self.mode)}"
 
 
 class AnyModeAnswer(Record):
-    """What an answer says in words."""
+    """Answer in the plane or in space, with a text summary."""
 
     __slots__ = ()
     verdict: ModeVerdict
     modes: Sequence[AnyMode]
 
     def in_short(self) -> str:
-        """Return the verdict, and what the first modes are in words."""
+        """Return the verdict, and text labels of the first modes."""
         shown = [f"{mode.mode}: {mode_in_words(mode.mode)}" for mode in self.modes[:_SHOWN]]
         more = [f"{len(self.modes) - _SHOWN} more"] if len(self.modes) > _SHOWN else []
         return f"{type(self).__name__}: {self.verdict}{', ' if shown else ''}{'; '.join([*shown, *more])}"
@@ -232,16 +237,16 @@ class AnyModeAnswer(Record):
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class PlanarMode(AnyMode):
-    """A mode that is consistent with mechanics, with accelerations and forces that realise it.
+    """Consistent mode, with its accelerations and contact forces.
 
     Attributes:
-        mode: The mode, with one letter for each contact.
-        acceleration: m/s^2, the acceleration of the centre of mass.
+        mode: One letter for each contact.
+        acceleration: Acceleration of the centre of mass, m/s^2.
         angular_acceleration: rad/s^2.
-        contact_forces: N, the force (f_t, f_n) on the body at each contact.
-        contact_accelerations: m/s^2, the acceleration (a_t, a_n) of the body's point at each contact.
-        forces_unique: Whether the forces above are the only ones with this mode.
-        motion_unique: Whether the accelerations above are the only ones with this mode.
+        contact_forces: Force (f_t, f_n) on the body at each contact, N.
+        contact_accelerations: Acceleration (a_t, a_n) of the body's point at each contact, m/s^2.
+        forces_unique: Whether no other contact forces are possible in this mode.
+        motion_unique: Whether no other accelerations are possible in this mode.
     """
 
     mode: str
@@ -255,22 +260,21 @@ class PlanarMode(AnyMode):
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class PlanarModeAnswer(AnyModeAnswer):
-    """The answer to one question about contact modes.
+    """Answer to a `PlanarContactProblem`.
 
     Attributes:
-        verdict: The verdict on the whole contact set.
+        verdict: Verdict on all contacts together.
         modes: All consistent modes.
-        refused: The modes that are possible kinematically and not consistent, each with the reason.
-        approaching: The indices of the contacts that approach. There are some exactly if the verdict is
-            IMPACT.
-        contact_velocities: m/s, the velocity (v_t, v_n) of the body's point at each contact. Values within
-            tolerance are 0.
-        velocity_tolerance: m/s. Velocities of contacts up to this size counted as zero.
-        acceleration_tolerance: m/s^2. Accelerations of the centre of mass up to this size counted as zero.
-        undecided: What could not be decided, and why. It is empty unless the verdict is UNDECIDED.
-        undecided_modes: The modes that are possible kinematically and neither consistent nor refused.
-        within: The verdicts that occur within the problem's uncertainty, or None if it has none.
-        problem: The `PlanarContactProblem` that is answered.
+        refused: Modes that are kinematically possible but not consistent, each with the reason.
+        approaching: Indices of the approaching contacts. Empty unless the verdict is IMPACT.
+        contact_velocities: Velocity (v_t, v_n) of the body's point at each contact, m/s. Components within
+            the tolerance are 0.
+        velocity_tolerance: m/s. Velocities of contacts up to this size count as zero.
+        acceleration_tolerance: m/s^2. Accelerations of the centre of mass up to this size count as zero.
+        undecided: The undecided cases and the reason. Empty unless the verdict is UNDECIDED.
+        undecided_modes: Kinematically possible modes that are neither consistent nor refused.
+        within: Verdicts that occur within the problem's uncertainty, or None without an uncertainty.
+        problem: The `PlanarContactProblem`.
     """
 
     verdict: ModeVerdict
@@ -287,7 +291,7 @@ class PlanarModeAnswer(AnyModeAnswer):
 
     @property
     def kinematic_modes(self) -> tuple[str, ...]:
-        """Return every mode that some acceleration realises without penetration, in alphabetical order."""
+        """Return all kinematically possible modes, in alphabetical order."""
         consistent = [found.mode for found in self.modes]
         refused = [found.mode for found in self.refused]
         return tuple(sorted([*consistent, *refused, *self.undecided_modes]))
@@ -295,20 +299,20 @@ class PlanarModeAnswer(AnyModeAnswer):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class SpatialMode(AnyMode):
-    """A mode that is consistent with mechanics, with accelerations and forces that realise it, in world axes.
+    """Consistent mode in space, with its accelerations and contact forces, in world axes.
 
     Attributes:
         mode: One letter for each contact: s, f or c.
-        acceleration_W: (3,), m/s^2, the acceleration of the centre of mass.
+        acceleration_W: (3,), m/s^2, acceleration of the centre of mass.
         angular_acceleration_W: (3,), rad/s^2.
-        contact_forces_W: (n, 3), N, the forces on the body.
-        contact_accelerations_W: (n, 3), m/s^2, the accelerations of the body's points in contact.
-        tangential_directions_W: (n, 3), unit, the direction in which a contact slides; zero where it does
-            not slide.
-        misdirection: rad, the largest angle between friction and the direction against the sliding. It is
-            rounding, unless the problem's ``sharpen`` is false.
-        forces_unique: Whether the forces are the only ones with this mode.
-        motion_unique: Whether the accelerations are the only ones with this mode.
+        contact_forces_W: (n, 3), N, contact forces on the body.
+        contact_accelerations_W: (n, 3), m/s^2, accelerations of the body's contact points.
+        tangential_directions_W: (n, 3), unit direction in which each contact slides, or zero if it does not
+            slide.
+        misdirection: rad, largest angle between friction and the direction opposite to sliding. It is at the
+            level of rounding error, unless the problem's ``sharpen`` is false.
+        forces_unique: Whether no other contact forces are possible in this mode.
+        motion_unique: Whether no other accelerations are possible in this mode.
     """
 
     mode: str
@@ -324,25 +328,26 @@ class SpatialMode(AnyMode):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class SpatialModeAnswer(AnyModeAnswer):
-    """The answer to one question about contact modes in space.
+    """Answer to a `SpatialContactProblem`.
 
-    Rejected letters are not listed: there are as many as cells in the arrangement of all sectors, and the
-    search rejects whole groups. `margins` gives reasons for each choice of separating contacts.
+    Refused modes are not listed, because there is one for each cell in the arrangement of all sliding
+    directions, and the search refutes whole groups. `refused_modes` returns the reason for each choice of
+    separating contacts.
 
     Attributes:
-        verdict: On the whole contact set.
-        modes: All consistent modes. Separating comes before sticking, and sticking before sliding.
-        approaching: The contacts that approach. It is not empty exactly where the verdict is IMPACT.
-        velocity_tolerance: m/s. A contact's velocity up to it counted as zero.
-        friction_facets: The number of edges of each friction pyramid.
-        examined: The number of cases, of one letter or of a group of letters, that were tried.
-        undecided: What could not be decided, and why. It is empty unless the verdict is UNDECIDED.
-        undecided_modes: The letters of modes that could be neither found nor refuted.
-        flush_within: rad, or a share of the reach. The modes are those of contacts whose normals and places
-            differ by no more than this from the given ones, in which flush ones are exactly flush
-            (`spatial.problem`). It is 0 where the modes are those of the given contacts.
-        within: The verdicts that occur within the problem's uncertainty, or None if it has none.
-        problem: The `SpatialContactProblem` that is answered.
+        verdict: Verdict on all contacts together.
+        modes: All consistent modes, sorted by their letters: separating, then sticking, then sliding.
+        approaching: Indices of the approaching contacts. Empty unless the verdict is IMPACT.
+        velocity_tolerance: m/s. Velocities of contacts up to this size count as zero.
+        friction_facets: Number of edges of each friction pyramid.
+        examined: Number of cases that were tried, each with one letter or a group of letters.
+        undecided: The undecided cases and the reason. Empty unless the verdict is UNDECIDED.
+        undecided_modes: Letters of modes that could be neither found nor refuted.
+        flush_within: rad, or relative to the largest lever arm. The modes are those of contacts whose normals
+            and positions differ by at most this from the given ones, in which nearly flush contacts are
+            exactly flush (`spatial.problem`). It is 0 if the modes are those of the given contacts.
+        within: Verdicts that occur within the problem's uncertainty, or None without an uncertainty.
+        problem: The `SpatialContactProblem`.
     """
 
     verdict: ModeVerdict

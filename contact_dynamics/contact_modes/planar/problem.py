@@ -53,24 +53,25 @@ AT_REST: Final = PlanarVelocity(v=(0.0, 0.0), w=0.0)
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class PlanarContactProblem(Record):
-    """A question about the contact modes of one planar body; its sister in space is `SpatialContactProblem`.
+    """Contact problem of one planar body. `SpatialContactProblem` is its counterpart in space.
 
     Attributes:
-        body: The mass and the angular inertia.
-        velocity: The velocity of the body.
-        contacts: The contacts. Any of them may coincide with another or oppose it.
-        wrench: The wrench on the body besides that of its contact forces. It includes gravity.
-        velocity_tolerance: m/s, >= 0. A component of a contact's velocity within it counts as zero. An
-            angular velocity counts as zero if it moves no contact relative to the centre of mass by more.
+        body: Mass and angular inertia.
+        velocity: Velocity of the body.
+        contacts: Contacts. They may coincide or oppose each other.
+        wrench: Applied wrench on the body: all loads except contact forces, so it includes gravity.
+        velocity_tolerance: m/s, >= 0. Components of a contact's velocity up to this size count as zero, and
+            so does an angular velocity that moves no contact relative to the centre of mass by more.
         acceleration_tolerance: >= 0, relative to the applied wrench and the centripetal terms. Forces and
-            accelerations count as zero if a change of the wrench by that share can turn their sign. Where
-            friction times the arm in radii of gyration exceeds `GRIP_TOLERANCE` over it, it is smaller.
-        uncertainty: How well the contacts are known. If they are not known exactly, the answer says which
-            verdicts occur.
+            accelerations count as zero if a change of the wrench by this share can change their sign. It is
+            reduced if the friction coefficient times the lever arm in radii of gyration exceeds
+            `GRIP_TOLERANCE` divided by it.
+        uncertainty: Errors of the contacts. If they are not exact, the answer also lists the verdicts that
+            occur within these errors.
 
     Raises:
-        InvalidFieldError: a tolerance is negative, or an uncertainty is of another number of contacts.
-        TooLargeError: more than `MAX_PLANAR_CONTACTS` contacts.
+        InvalidFieldError: a tolerance is negative, or the uncertainty has another number of contacts.
+        TooLargeError: there are more than `MAX_PLANAR_CONTACTS` contacts.
     """
 
     body: PlanarBody
@@ -98,7 +99,7 @@ class PlanarContactProblem(Record):
             object.__setattr__(self, "acceleration_tolerance", acceleration)
 
     def contact_velocities(self) -> tuple[Vector2, ...]:
-        """Return (v_t, v_n), m/s, of each contact, with values within the tolerance as an exact 0."""
+        """Return (v_t, v_n), m/s, of each contact. Values within the tolerance are exactly 0."""
         tolerance = self.velocity_tolerance
         (v_x, v_y), w = self.velocity.v, self.velocity.w
         found = []

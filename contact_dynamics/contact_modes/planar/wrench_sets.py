@@ -36,10 +36,10 @@ if TYPE_CHECKING:
 
 
 class WrenchHalfSpace(NamedTuple):
-    """The applied wrenches with a . (f_x, f_y, moment) <= b.
+    """Half-space of applied wrenches with a . (f_x, f_y, moment) <= b.
 
     Attributes:
-        a: Its units are (1, 1, 1/m). It is a unit vector if its third number is multiplied by the radius of
+        a: In units (1, 1, 1/m). It is a unit vector if its third component is multiplied by the radius of
             gyration.
         b: N.
     """
@@ -48,12 +48,12 @@ class WrenchHalfSpace(NamedTuple):
     b: float
 
     def depth(self, wrench: PlanarWrench, length: float) -> float:
-        """Return how far inside the wrench lies, N, in the metric of ``length``, m; < 0 is outside."""
+        """Return the depth of a wrench inside it, N, in the metric of ``length``, m; negative outside."""
         room = self.b - self.a[0] * wrench.f[0] - self.a[1] * wrench.f[1] - self.a[2] * wrench.moment
         return room / math.sqrt(self._square(length))
 
     def outward(self, length: float) -> PlanarWrench:
-        """Return the change that leads out the shortest way. Its size is 1 in the metric of ``length``."""
+        """Return the change that leaves it on the shortest path, of size 1 in the metric of ``length``."""
         size = math.sqrt(self._square(length))
         return PlanarWrench(f=(self.a[0] / size, self.a[1] / size), moment=self.a[2] * length * length / size)
 
@@ -63,13 +63,14 @@ class WrenchHalfSpace(NamedTuple):
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class PlanarWrenchSet(Record):
-    """The applied wrenches that can bring one mode about, as the closure of their set in two forms.
+    """Applied wrenches that can cause one mode, as a closed convex set in two representations.
 
     Attributes:
-        mode: The mode, with one letter for each contact.
-        vertices: The set has all sums of an average of vertices and a positive combination of generators.
-        generators: They may have any size.
-        half_spaces: Their intersection is the same set. If there are none, it has every wrench.
+        mode: One letter for each contact.
+        vertices: The set contains all convex combinations of the vertices plus all nonnegative combinations
+            of the generators.
+        generators: Their scale is arbitrary.
+        half_spaces: Half-spaces whose intersection is the same set. Empty if the set contains every wrench.
     """
 
     mode: str
@@ -78,10 +79,10 @@ class PlanarWrenchSet(Record):
     half_spaces: tuple[WrenchHalfSpace, ...]
 
     def depth(self, wrench: PlanarWrench, length: float) -> float:
-        """Return how far inside the set a wrench lies, N, in the metric of ``length``, m.
+        """Return the depth of a wrench inside the set, N, in the metric of ``length``, m.
 
-        It is infinite if the set has every wrench. It is negative outside of the set, and then bounds the
-        distance from below.
+        It is infinite if the set contains every wrench. It is negative outside the set, where its size is a
+        lower bound of the distance.
         """
         return min((side.depth(wrench, length) for side in self.half_spaces), default=math.inf)
 
@@ -136,17 +137,17 @@ _NO_WRENCH: Final = PlanarWrench(f=(0.0, 0.0))
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class PlanarModeMargin(Record):
-    """How far an applied wrench is from leaving one of its consistent modes, and where it would go.
+    """Smallest change of the applied wrench that ends a consistent mode, and the modes that follow.
 
     Attributes:
-        mode: The mode, with one letter for each contact.
-        margin: N, the size of the least change that leaves the mode, in the metric |f|^2 + (moment /
-            length)^2. It is infinite if no change does.
+        mode: One letter for each contact.
+        margin: N, size of the smallest change that leaves the mode: the root of |f|^2 + (moment / length)^2.
+            It is infinite if no change leaves the mode.
         length: m, the length in that metric.
-        change: The least change itself, or zero if no change leaves the mode.
-        verdict_beyond: The verdict where the wrench has changed by `BEYOND_MARGIN` more than that, or the
-            present one if there is no boundary. It holds further on only up to the next boundary.
-        modes_beyond: The consistent modes there.
+        change: The smallest change, or zero if no change leaves the mode.
+        verdict_beyond: Verdict after a change that is larger by `BEYOND_MARGIN`, or the present verdict if
+            there is no boundary. It is valid only up to the next boundary.
+        modes_beyond: Consistent modes there.
     """
 
     mode: str
@@ -157,7 +158,7 @@ class PlanarModeMargin(Record):
     modes_beyond: tuple[str, ...]
 
     def in_short(self) -> str:
-        """Return the mode, the change of the wrench that ends it, and what then follows."""
+        """Return the mode, the change of the wrench that ends it, and the modes that follow."""
         return f"{type(self).__name__}: {margin_in_words(self.mode, self.margin, self.modes_beyond)}"
 
 

@@ -64,20 +64,20 @@ that."""
 def spatial_kinematic_modes(
     state: BodyState, contacts: ContactSet, *, velocity_tolerance: float = VELOCITY_TOLERANCE
 ) -> tuple[str, ...]:
-    """Return every contacting/separating mode that some acceleration realises, in alphabetical order.
+    """Return all combinations of closed and separating contacts that are kinematically possible, sorted.
 
-    A mode has one letter for each contact, in the contacts' order: `c` if it stays in contact, `s` if it
-    separates. There are no modes where a contact approaches, and where every acceleration penetrates.
+    A mode has one letter for each contact, in the order of the contacts: `c` if it stays closed, `s` if it
+    separates. The list is empty if a contact approaches, or if every acceleration penetrates.
 
     Args:
-        state: The state of the body, with its origin at the centre of mass.
-        contacts: At most `MAX_SPATIAL_CONTACTS`.
-        velocity_tolerance: m/s, >= 0. A contact's normal velocity within it counts as zero, and so does an
-            angular velocity that moves no contact relative to the centre of mass by more than that.
+        state: State of the body, with its origin at the centre of mass.
+        contacts: At most `MAX_SPATIAL_CONTACTS` contacts.
+        velocity_tolerance: m/s, >= 0. Normal velocities of contacts up to this size count as zero, and so
+            does an angular velocity that moves no contact relative to the centre of mass by more.
 
     Raises:
         InvalidFieldError: the tolerance is negative.
-        TooLargeError: more than `MAX_SPATIAL_CONTACTS` contacts.
+        TooLargeError: there are more than `MAX_SPATIAL_CONTACTS` contacts.
     """
     tolerance = check_not_negative("velocity_tolerance", velocity_tolerance)
     n = len(contacts)
@@ -175,21 +175,21 @@ _WAYS: Final = "0123456789ABCDEF"
 
 
 def spatial_sliding_modes(contacts: ContactSet, *, planes: int = 2) -> tuple[str, ...]:
-    """Return every mode that some acceleration of a body at rest realises, in alphabetical order.
+    """Return all kinematically possible modes of a body at rest, with sectors of sliding directions, sorted.
 
     A mode has one letter for each contact: `s` if it separates, `f` if it sticks, and otherwise an upper-case
-    hexadecimal digit for the direction in which it slides. The angles are those of the frame of
+    hexadecimal digit for its sliding direction. Angles are measured in the frame of
     `numerics.vectors.tangents_towards`: the even digit 2 k is the direction of a line, at k pi / planes, and
     the odd digit 2 k + 1 is the sector between this line and the next.
 
     Args:
-        contacts: At most `MAX_SLIDING_CONTACTS`.
-        planes: The number of lines through each contact, from 2 to `MAX_PLANES`. They are the borders of the
+        contacts: At most `MAX_SLIDING_CONTACTS` contacts.
+        planes: Number of lines through each contact, from 2 to `MAX_PLANES`. They are the borders of the
             sectors of a friction pyramid with twice as many edges.
 
     Raises:
-        InvalidFieldError: too few or too many planes.
-        TooLargeError: more than `MAX_SLIDING_CONTACTS` contacts.
+        InvalidFieldError: the number of planes is out of range.
+        TooLargeError: there are more than `MAX_SLIDING_CONTACTS` contacts.
     """
     n = len(contacts)
     planes = check_whole("planes", planes, 2, MAX_PLANES)

@@ -58,16 +58,17 @@ _UNITS: Final = {
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class LargestLoad(Record):
-    """How much of a load a body at rest bears, as factors of that load, or how far its support may move.
+    """Largest load on a body at rest, as factors of a given load, or largest motion of its support.
 
     Attributes:
-        factor: Up to this factor rest is consistent, >= 0. It is infinite if rest is consistent under any.
-        only_rest: Up to this factor rest is the only consistent mode, <= ``factor``. If it is less, it was
-            found by halving, to 1 %, and a mode that comes and goes again below it is not looked for. It is 0
-            if rest is not alone without the load.
-        verdict_beyond: The verdict just beyond ``factor``, or UNIQUE if it is infinite.
-        modes_beyond: The modes that are consistent just beyond it.
-        unit: What the factors count: "times the load", "m/s^2", "rad" or "rad/s".
+        factor: Factor up to which rest is consistent, >= 0. It is infinite if rest is consistent under any
+            factor.
+        only_rest: Factor up to which rest is the only consistent mode, <= ``factor``. If it is less than
+            ``factor``, it was found by bisection, to 1 %, and modes that are consistent only in an interval
+            below it are not searched for. It is 0 if rest is not the only consistent mode without the load.
+        verdict_beyond: Verdict just beyond ``factor``, or UNIQUE if it is infinite.
+        modes_beyond: Modes that are consistent just beyond it.
+        unit: Unit of the factors: "times the load", "m/s^2", "rad" or "rad/s".
     """
 
     factor: float
@@ -77,7 +78,7 @@ class LargestLoad(Record):
     unit: str = "times the load"
 
     def in_short(self) -> str:
-        """Return how much it bears, and what then follows."""
+        """Return the largest load, and the modes that follow."""
         if math.isinf(self.factor):
             return f"LargestLoad: it stays fixed {_UNITS[self.unit]}"
         then = " or ".join(map(mode_in_words, self.modes_beyond)) or "no mode is consistent"
@@ -95,17 +96,19 @@ def largest_load(
     torque_W: ArrayLike = (0.0, 0.0, 0.0),
     at_W: ArrayLike | None = None,
 ) -> LargestLoad:
-    """Return how much of a load a body bears besides the problem's own wrench before it moves.
+    """Return the largest factor of a load, in addition to the problem's own wrench, before the body moves.
 
-    With a load of 1 N, the factors are newtons; with m times 1 m/s^2, they are the deceleration of a truck in
-    m/s^2. Friction cones are round, and ``factor`` is exact to about 1e-10. A flush rim is eight contacts, so
-    that a cup may seem to tip at 92 % of the true load.
+    With a load of 1 N, the factors are in newtons. Friction cones are round, and ``factor`` is exact to about
+    1e-10. A circular rim that lies flush is represented by eight contacts, so a cup may be predicted to tip
+    at 92 % of the true load.
 
     Args:
-        problem: The problem, with the wrench without the load, such as the weight alone. Rest is consistent.
-        force_W: (3,), N, of the load, world axes.
-        torque_W: (3,), N m, of the load about the centre of mass, besides that of the force, world axes.
-        at_W: (3,), m, where the force acts, world axes, or None for the centre of mass.
+        problem: The contact problem with the wrench without the load, such as the weight alone, under which
+            rest is consistent.
+        force_W: (3,), N, force of the load, world axes.
+        torque_W: (3,), N m, torque of the load about the centre of mass, in addition to that of the force,
+            world axes.
+        at_W: (3,), m, point at which the force acts, world axes, or None for the centre of mass.
 
     Raises:
         InvalidFieldError: rest is not consistent without the load, or the load is zero or not finite.
@@ -130,18 +133,18 @@ def largest_load(
 
 
 def largest_acceleration(problem: SpatialContactProblem, direction_W: ArrayLike) -> LargestLoad:
-    """Return how hard the support of a body, such as a tray or a truck, may accelerate before the body moves.
+    """Return the largest acceleration of a support, such as a tray or a truck, before the body moves on it.
 
     Args:
-        problem: The problem while nothing accelerates. All its contacts belong to the support.
-        direction_W: (3,), of the acceleration, world axes. Its length is ignored. A truck that drives
-            forward and brakes accelerates backward.
+        problem: The contact problem of the support at rest. All contacts belong to the support.
+        direction_W: (3,), direction of the acceleration, world axes. Its length is ignored. A truck that
+            drives forward and brakes accelerates backward.
 
     Returns:
         The largest acceleration, m/s^2.
 
     Raises:
-        InvalidFieldError: the body does not stay fixed before, or the direction is zero or not finite.
+        InvalidFieldError: rest is not consistent without the motion, or the direction is zero or not finite.
     """
     direction = _direction("direction_W", direction_W)
     found = largest_load(problem, force_W=-problem.body.mass * direction)
@@ -151,19 +154,19 @@ def largest_acceleration(problem: SpatialContactProblem, direction_W: ArrayLike)
 def largest_spin(
     problem: SpatialContactProblem, axis_W: ArrayLike, *, at_W: ArrayLike = (0.0, 0.0, 0.0)
 ) -> LargestLoad:
-    """Return how fast the support of a body, such as a turntable, may spin steadily before the body moves.
+    """Return the largest steady spin of a support, such as a turntable, before the body moves on it.
 
     Args:
-        problem: The problem while nothing spins. All its contacts belong to the support.
-        axis_W: (3,), the direction of the axis, world axes. Its length is ignored.
-        at_W: (3,), m, a point of the axis, world axes.
+        problem: The contact problem of the support at rest. All contacts belong to the support.
+        axis_W: (3,), direction of the axis, world axes. Its length is ignored.
+        at_W: (3,), m, point on the axis, world axes.
 
     Returns:
         The largest angular velocity, rad/s.
 
     Raises:
-        InvalidFieldError: the body does not stay fixed before, the axis is zero or not finite, or a spin
-            about it does not load the body.
+        InvalidFieldError: rest is not consistent without the motion, the axis is zero or not finite, or a
+            spin about it does not load the body.
     """
     axis = _direction("axis_W", axis_W)
     arm = problem.state.p_WB_W - check_vector3("at_W", at_W)
@@ -186,22 +189,21 @@ def largest_spin(
 def largest_tilt(
     problem: SpatialContactProblem, axis_W: ArrayLike, *, gravity_W: ArrayLike = STANDARD_GRAVITY_W
 ) -> LargestLoad:
-    """Return how far the support of a body, such as a tray, may be tilted before the body moves.
+    """Return the largest tilt of a support, such as a tray, before the body moves on it.
 
     Args:
-        problem: The problem before the tilt. All its contacts belong to the support, and its wrench includes
-            the weight. What the wrench has besides turns with the support.
-        axis_W: (3,), about which the support turns, by the right-hand rule, world axes. Its length is
-            ignored.
+        problem: The contact problem of the support before the tilt. All contacts belong to the support. The
+            wrench includes the weight; its other parts turn with the support.
+        axis_W: (3,), axis of the tilt by the right-hand rule, world axes. Its length is ignored.
         gravity_W: (3,), m/s^2, world axes.
 
     Returns:
-        The largest angle, rad, which is reached slowly. Rest is consistent at all angles below it. It is
-        infinite if that holds for a whole turn.
+        The largest angle of a slow tilt, rad. Rest is consistent at all angles below it. It is infinite if
+        rest is consistent throughout a full turn.
 
     Raises:
-        InvalidFieldError: the body does not stay fixed before, the axis is zero or not finite, or gravity is
-            along it.
+        InvalidFieldError: rest is not consistent without the motion, the axis is zero or not finite, or
+            gravity is along it.
     """
     axis, gravity = _direction("axis_W", axis_W), check_vector3("gravity_W", gravity_W)
     mass = problem.body.mass
@@ -236,7 +238,7 @@ def largest_tilt(
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class LeastFriction(Record):
-    """How little friction holds a body at rest.
+    """Smallest friction with which a body can stay at rest.
 
     Attributes:
         factor: The given coefficients times this are the least with which rest is consistent. It is 0 if the

@@ -89,17 +89,17 @@ _APART: Final = 0.9
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class SpatialModeMargin(Record):
-    """How far an applied wrench in space is from leaving one of its modes, and where it would go.
+    """Smallest change of the applied wrench that ends a mode in space, and the modes that follow.
 
     Attributes:
         mode: One letter for each contact.
-        margin: N, the size of the least change that leaves the mode, in |f|^2 + |torque / length|^2. It is
-            infinite where no change does that, and NaN where it is unknown (`spatial_mode_margins`).
+        margin: N, size of the smallest change that leaves the mode: the root of |f|^2 + |torque / length|^2.
+            It is infinite if no change leaves the mode, and NaN if it is unknown (`spatial_mode_margins`).
         length: m, the length in that metric.
-        change_W: (6,), the least change itself: force, N, and torque about the centre of mass, N m, world
-            axes. It is zero where there is none.
-        verdict_beyond: The verdict just behind the boundary, or the present one where there is no boundary.
-        modes_beyond: The letters of the consistent modes there, each once.
+        change_W: (6,), the smallest change: force, N, and torque about the centre of mass, N m, world axes.
+            It is zero if there is none.
+        verdict_beyond: Verdict just beyond the boundary, or the present verdict if there is no boundary.
+        modes_beyond: Letters of the consistent modes there, each listed once.
     """
 
     mode: str
@@ -110,7 +110,7 @@ class SpatialModeMargin(Record):
     modes_beyond: tuple[str, ...]
 
     def in_short(self) -> str:
-        """Return the mode, the change of the wrench that ends it, and what then follows."""
+        """Return the mode, the change of the wrench that ends it, and the modes that follow."""
         words = margin_in_words(self.mode, self.margin, self.modes_beyond)
         return f"{type(self).__name__}: {words} (change_W in N and N m)"
 

@@ -65,43 +65,42 @@ FRICTION_FACETS: Final = 8
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class SpatialContactProblem(Record):
-    """A question about the contact modes of one body in space; its sister is `PlanarContactProblem`.
+    """Contact problem of one body in space. `PlanarContactProblem` is its counterpart in the plane.
 
-    ``SpatialContactProblem.of(body, state, world, force_W=push)`` finds the contacts and adds the weight:
+    ``SpatialContactProblem.of(body, state, world, force_W=push)`` detects the contacts and adds the weight:
 
         crate = Body.box((0.4, 0.3, 0.6), mass=20.0)
         problem = SpatialContactProblem.of(crate, state, world, force_W=[90, 0, 0], at_W=[-0.2, 0, 0.5])
         print(contact_modes(problem))
 
-    The modes, their margins and the reasons of refused modes are those of round cones, whatever the number of
-    facets. In statics and wrench sets, friction cones of contacts at rest are pyramids, and 8 edges serve
-    most questions. The disturbance that a body can take is short by the part 1 - cos(pi / facets) of
-    friction, 8 % with 8 edges and 2 % with 16: state the problem with more edges where that matters. The sets
-    of wrenches grow as the square or cube of the edges, some 200 to 350 for a box on four feet with 4 edges
-    and 1300 with 8: state it with 4 for these (`dataclasses.replace`). Statics take 128 edges in all.
+    Modes, margins and the reasons of refused modes are those of round friction cones, regardless of the
+    number of facets. In statics and wrench sets, pyramids approximate the cones of contacts at rest. With the
+    default 8 facets, the largest disturbance that a body withstands is underestimated by 8 % of friction, 1 -
+    cos(pi / facets), and with 16 facets by 2 %. The number of wrench sets grows with the square or cube of
+    the facets: a box on four feet has about 200 to 350 sets with 4 facets and 1300 with 8, so use 4 facets
+    for wrench sets (`dataclasses.replace`). Statics support 128 edges in total.
 
     Attributes:
-        body: A `Body`, or its `MassProperties`, which are kept.
-        state: The state of the body, with its origin at the centre of mass.
-        contacts: Contacts of any kind. At most `MAX_DYNAMIC_CONTACTS` of them touch.
-        force_W: (3,), N, on the body besides its contact forces, gravity included, world axes.
-        torque_W: (3,), N m, on the body besides that of its contact forces, about the centre of mass, world
+        body: A `Body`, or its `MassProperties`, which are stored.
+        state: State of the body, with its origin at the centre of mass.
+        contacts: Contacts of any kind, of which at most `MAX_DYNAMIC_CONTACTS` touch.
+        force_W: (3,), N, applied force, including gravity but not contact forces, world axes.
+        torque_W: (3,), N m, applied torque about the centre of mass, without that of contact forces, world
             axes. The default is zero.
-        friction_facets: The number of edges of the pyramid that stands for a friction cone, >= 3, in statics
+        friction_facets: Number of edges of the pyramid that approximates a friction cone, >= 3, in statics
             and wrench sets, and in the modes if ``sharpen`` is false.
-        sharpen: Whether the modes are those of Coulomb's round cones, with friction exactly against the
-            sliding. Then modes with the same letters are one mode if their motion is
-            the same, or if one of them has no unique motion. Otherwise each sector of the pyramids is a mode
-            of its own, and there can be hundreds where the motion under many feet is not unique. Margins are
-            always those of the sharpened modes.
-        velocity_tolerance: m/s, >= 0. A component of a contact's velocity within it counts as zero, and so
-            does an angular velocity that moves no contact relative to the centre of mass by more than that.
-        uncertainty: How well the contacts are known. If they are not known exactly, the answer says which
-            verdicts occur.
+        sharpen: Whether the modes are those of round cones, with friction exactly opposite to sliding. Modes
+            with the same letters are then merged if their motion is the same, or if one of them has no unique
+            motion. If false, each sector of the pyramids is a separate mode, and there can be hundreds if the
+            motion on many feet is not unique. Margins always refer to the sharpened modes.
+        velocity_tolerance: m/s, >= 0. Components of a contact's velocity up to this size count as zero, and
+            so does an angular velocity that moves no contact relative to the centre of mass by more.
+        uncertainty: Errors of the contacts. If they are not exact, the answer also lists the verdicts that
+            occur within these errors.
 
     Raises:
-        InvalidFieldError: a wrench that is not finite, a negative tolerance, fewer than 3 facets or
-            more than 1000. Or the uncertainty is of another number of contacts.
+        InvalidFieldError: the wrench is not finite, the tolerance is negative, the number of facets is not
+            from 3 to 1000, or the uncertainty has another number of contacts.
     """
 
     body: MassProperties = field(metadata={"accepts": "HasMassProperties"})
@@ -154,21 +153,22 @@ class SpatialContactProblem(Record):
         at_W: ArrayLike | None = None,
         distance_tolerance: float = DISTANCE_TOLERANCE,
     ) -> SpatialContactProblem:
-        """Return the problem of a body that touches the world, under its weight and a push.
+        """Return the problem of a body that touches the world, under its weight and an additional load.
 
         Args:
-            body: The body, with a shape.
-            state: Its state. Where it touches is found as by `find_contacts`.
-            world: Surfaces and gravity. A tray or a truck that accelerates stands still in its own frame, in
-                which gravity is that of the world minus its acceleration.
-            force_W: (3,), N, the push besides gravity, world axes.
-            torque_W: (3,), N m, about the centre of mass, besides that of the push, world axes.
-            at_W: (3,), m, where the push acts, world axes, or None for the centre of mass.
+            body: Body with a shape.
+            state: State of the body. Contacts are detected as by `find_contacts`.
+            world: Surfaces and gravity. An accelerating tray or truck is at rest in its own frame, in which
+                gravity is that of the world minus its acceleration.
+            force_W: (3,), N, force of the load, without gravity, world axes.
+            torque_W: (3,), N m, torque of the load about the centre of mass, in addition to that of the
+                force, world axes.
+            at_W: (3,), m, point at which the force acts, world axes, or None for the centre of mass.
             distance_tolerance: m, >= 0, as in `find_contacts`.
 
         Raises:
             NoContactError: the body has no shape, or touches nothing.
-            InvalidFieldError: an error of `find_contacts`, or a number that is not finite.
+            InvalidFieldError: `find_contacts` rejects an argument, or a number is not finite.
         """
         contacts = find_contacts(body, state, world, distance_tolerance=distance_tolerance)
         if len(contacts) == 0:

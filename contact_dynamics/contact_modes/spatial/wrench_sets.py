@@ -57,20 +57,22 @@ MAX_WRENCH_SETS: Final = 2000
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class SpatialWrenchSet(Record):
-    """The applied wrenches that can bring about one mode with one way of sliding: a closed convex set.
+    """Applied wrenches that can cause one mode with one combination of sliding directions.
 
-    Wrenches are force, N, then torque about the centre of mass, N m, world axes.
+    The set is closed and convex. Wrenches are force, N, then torque about the centre of mass, N m, world
+    axes.
 
     Attributes:
         mode: One letter for each contact: s, f or c.
         sliding_from_W: (n, 3), unit. A contact that begins to slide does so in a direction between this one
-            and ``sliding_to_W``, anticlockwise about its normal. Both are zero where any direction will do.
+            and ``sliding_to_W``, counterclockwise about its normal. Both are zero if the direction is
+            arbitrary.
         sliding_to_W: (n, 3), unit, the other end of that range.
-        vertices: (k, 6), N and N m. The set consists of all averages of these, to which positive combinations
-            of the generators are added.
-        generators: (k, 6), of any scale.
-        half_spaces: (k, 7), the same set as conditions a . w <= b, with a before b. Every wrench is in the
-            set if there are none.
+        vertices: (k, 6), N and N m. The set contains all convex combinations of the vertices plus all
+            nonnegative combinations of the generators.
+        generators: (k, 6), of arbitrary scale.
+        half_spaces: (k, 7), half-spaces a . w <= b whose intersection is the same set, a then b. Empty if the
+            set contains every wrench.
     """
 
     mode: str
@@ -81,10 +83,10 @@ class SpatialWrenchSet(Record):
     half_spaces: FloatArray
 
     def depth(self, wrench_W: ArrayLike, length: float) -> float:
-        """Return how far inside the set a wrench, (6,), lies, N, in |f|^2 + |torque / length|^2.
+        """Return the depth of a wrench, (6,), inside the set, N, in the root of |f|^2 + |torque / length|^2.
 
-        The depth is infinite if the set contains every wrench. It is negative outside, and its size is then a
-        lower bound of the distance. It is zero or less where the set has no inner points.
+        It is infinite if the set contains every wrench. It is negative outside, where its size is a lower
+        bound of the distance, and zero or less if the set has no interior.
         """
         if len(self.half_spaces) == 0:
             return math.inf
