@@ -42,17 +42,21 @@ class Contact(Record):
     """One contact of a body in space. Vectors may be given as lists.
 
     Attributes:
-        p_WC_W: (3,), m, the contact point, world.
-        normal_W: (3,), unit, into the body, world axes.
-        friction: Coulomb's mu, >= 0.
-        restitution: Coefficient e, in [0, 1], which impacts need and contact modes do not use, or None.
-        surface: The surface that it touches, or empty if it is not known.
-        body_curvatures: Curvatures of the body there, one row, or None if a point of the body touches.
-        surface_curvatures: Curvatures of the world there, one row, or None if a flat is touched.
+        p_WC_W: (3,), m, contact point, world.
+        normal_W: (3,), unit normal into the body, world axes.
+        friction: Coefficient of Coulomb friction, >= 0.
+        restitution: Coefficient of restitution, in [0, 1], or None. Impacts require it; contact modes do not
+            use it.
+        surface: Name of the surface in contact, or an empty string if it is unknown.
+        body_curvatures: Curvatures of the body at the contact, one row, or None if a point of the body
+            touches.
+        surface_curvatures: Curvatures of the world at the contact, one row, or None if the body touches a
+            plane.
 
     Raises:
-        InvalidFieldError: a number is not finite, the normal is not unit, mu < 0, e is outside [0, 1], or the
-            curvatures have more than one row or do not let the sides touch in one point.
+        InvalidFieldError: a number is not finite, the normal is not a unit vector, the friction is negative,
+            the restitution is outside [0, 1], or the curvatures have more than one row or do not allow
+            contact at a single point.
     """
 
     p_WC_W: FloatArray
@@ -88,7 +92,7 @@ class Contact(Record):
 
     @property
     def impact_restitution(self) -> float:
-        """Return e, which an impact needs, or raise `InvalidFieldError` if it is not known."""
+        """Return the coefficient of restitution, or raise `InvalidFieldError` if there is none."""
         return known_restitution(self.restitution)
 
 
@@ -96,20 +100,22 @@ class Contact(Record):
 class ContactSet(Record):
     """Contacts of one body in space. Contact i is row i of each array, and `contacts[i]` is a `Contact`.
 
-    Arrays may be given as lists. One normal, or one friction or restitution, may be given for all contacts.
+    Arrays may be given as lists. The normals, frictions and restitutions may be one value for all contacts.
 
     Attributes:
         p_WC_W: (n, 3), m, contact points, world.
-        normals_W: (n, 3), unit, into the body, world axes.
-        frictions: (n,), Coulomb's mu, >= 0.
-        restitutions: (n,), e, in [0, 1], which impacts need and contact modes do not use, or None.
-        surfaces: The surface that each contact touches, or empty if it is not known.
+        normals_W: (n, 3), unit normals into the body, world axes.
+        frictions: (n,), coefficients of Coulomb friction, >= 0.
+        restitutions: (n,), coefficients of restitution, in [0, 1], or None. Impacts require them; contact
+            modes do not use them.
+        surfaces: Name of the surface at each contact, or an empty tuple if they are unknown.
         body_curvatures: Curvatures of the body at each contact, or None if points of the body touch.
-        surface_curvatures: Curvatures of the world at each contact, or None if flats are touched.
+        surface_curvatures: Curvatures of the world at each contact, or None if the body touches planes.
 
     Raises:
-        InvalidFieldError: arrays have unequal lengths, a number is not finite, a normal is not unit, mu < 0,
-            e is outside [0, 1], or curvatures do not let the sides touch in one point.
+        InvalidFieldError: arrays have different lengths, a number is not finite, a normal is not a unit
+            vector, a friction is negative, a restitution is outside [0, 1], or curvatures do not allow
+            contact at a single point.
         TooLargeError: there are more than `MAX_CONTACTS` contacts.
     """
 
@@ -162,7 +168,7 @@ class ContactSet(Record):
     @classmethod
     @checks_types
     def of(cls, contacts: Sequence[Contact]) -> ContactSet:
-        """Return the set of these contacts, in their order."""
+        """Return the set of the given contacts, in their order."""
         n = len(contacts)
         return cls(
             p_WC_W=np.array([one.p_WC_W for one in contacts]).reshape(n, 3),
@@ -176,7 +182,7 @@ class ContactSet(Record):
 
     @property
     def impact_restitutions(self) -> FloatArray:
-        """Return e of each contact, (n,), or raise `InvalidFieldError` if they are not known."""
+        """Return the coefficients of restitution, (n,), or raise `InvalidFieldError` if there are none."""
         if self.restitutions is None:
             raise InvalidFieldError("contacts.restitutions", "none", _NEEDED)
         return self.restitutions

@@ -69,15 +69,16 @@ def _with_infinity(field: str, value: ArrayLike, n: int) -> FloatArray:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class Curvatures(Record):
-    """Principal curvatures of one side, body or surface, of n contacts. They are positive where convex.
+    """Principal curvatures of the body or of the surface at n contacts, positive where convex.
 
     Attributes:
-        along: (n,), 1/m, along the direction. It is inf at a corner or across the edge of a blade.
-        across: (n,), 1/m, along the tangent at right angles to the direction.
-        directions_W: (n, 3), unit tangents, world axes, or zero where both curvatures are equal.
+        along: (n,), 1/m, curvature along the direction. It is infinite at a corner or across the edge of a
+            blade.
+        across: (n,), 1/m, curvature along the tangent orthogonal to the direction.
+        directions_W: (n, 3), unit tangents, world axes, or zero if both curvatures are equal.
 
     Raises:
-        InvalidFieldError: arrays have unequal lengths, or a number is NaN or minus infinity.
+        InvalidFieldError: arrays have different lengths, or a number is NaN or minus infinity.
     """
 
     along: FloatArray
@@ -102,7 +103,7 @@ class Curvatures(Record):
         return len(self.along)
 
     def subset(self, indices: Sequence[int]) -> Curvatures:
-        """Return those of some contacts, in their order."""
+        """Return the curvatures of the given contacts, in their order."""
         chosen = list(indices)
         return Curvatures(
             along=self.along[chosen], across=self.across[chosen], directions_W=self.directions_W[chosen]

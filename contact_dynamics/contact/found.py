@@ -42,19 +42,17 @@ def find_contacts(
     *,
     distance_tolerance: float = DISTANCE_TOLERANCE,
 ) -> ContactSet:
-    """Return the contacts of a body with the world's surfaces, in their order.
+    """Return the contacts of a body with the world's surfaces, in the order of the surfaces.
 
-    On a flat, rims come after corners.
-
-    A point touches if its height above the surface is at most ``distance_tolerance`` (m), or its depth below
-    it. Measured poses penetrate by their noise, so that they need a tolerance as large. A rim lies flush if
-    all of it touches. The set may be empty.
+    On a plane, points of rims follow corners. A point touches if its height above the surface, or its depth
+    below it, is at most ``distance_tolerance`` (m). Measured poses penetrate by their noise and require a
+    tolerance of this size. A circular rim lies flush if all of it touches. The set may be empty.
 
     Raises:
         NoContactError: the body has no shape that could touch anything.
-        InvalidFieldError: the body is deeper in a surface than the tolerance, or the tolerance is negative or
-            not finite.
-        NotSupportedError: a rim of the body is at an edge of an obstacle (`touches`).
+        InvalidFieldError: the body penetrates a surface by more than the tolerance, or the tolerance is
+            negative or not finite.
+        NotSupportedError: a rim of the body touches an edge of an obstacle (`touches`).
     """
     check_not_inside(body, state, world.surfaces, distance_tolerance=distance_tolerance)
     return contacts_within(body, state, world.surfaces, distance_tolerance)

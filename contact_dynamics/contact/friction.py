@@ -36,13 +36,13 @@ def linearised_cone(
 ) -> FloatArray:
     """Return the edges, (facets, 3), of a pyramid inside the round friction cone about a unit normal, (3,).
 
-    Each edge is the normal plus friction times a unit tangent. The tangents are evenly spread, so the pyramid
-    allows at least cos(pi / facets) of the cone's tangential force in every direction. The first edge leans
-    towards ``towards``, (3,), if given.
+    Each edge is the normal plus friction times a unit tangent. The tangents are evenly spaced, so the pyramid
+    allows at least cos(pi / facets) of the cone's tangential force in every direction. If ``towards``, (3,),
+    is given, the tangent of the first edge points towards it.
 
     Raises:
-        InvalidFieldError: ``facets`` is not a whole number from 3 to `MAX_FACETS`, the normal is not unit,
-            the friction is negative, or a number is not finite.
+        InvalidFieldError: ``facets`` is not a whole number from 3 to `MAX_FACETS`, the normal is not a unit
+            vector, the friction is negative, or a number is not finite.
     """
     unit = check_unit("normal", normal, 3)
     lean = None if towards is None else check_array("towards", towards, (3,))

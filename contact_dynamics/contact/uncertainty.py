@@ -29,18 +29,19 @@ Uncertain = float | tuple[float, ...]
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class ContactUncertainty(Record):
-    """How far the true contacts may be from those of a problem, in the plane or in space.
+    """Largest errors of the contacts of a problem, in the plane or in space.
 
-    Each field is one number for all contacts, or one for each contact in their order.
+    Each field is one number for all contacts, or one number per contact in their order.
 
     Attributes:
-        points: m, >= 0, the largest distance from a contact's point to its true place.
-        normals: rad, from 0 to pi / 2, the largest angle between a contact's normal and the true one.
-        frictions: >= 0, the largest difference of a coefficient of friction. No true coefficient is negative.
+        points: m, >= 0, largest distance of the true contact point from the given one.
+        normals: rad, from 0 to pi / 2, largest angle between the true normal and the given one.
+        frictions: >= 0, largest difference of the coefficient of friction. True coefficients are not
+            negative.
 
     Raises:
-        InvalidFieldError: a number is negative, not finite or beyond `LARGEST_NUMBER`, or the angle is larger
-            than pi / 2. Or two fields have numbers for different counts of contacts.
+        InvalidFieldError: a number is negative, not finite or exceeds `LARGEST_NUMBER`, an angle is larger
+            than pi / 2, or two fields have numbers for different counts of contacts.
     """
 
     points: Uncertain = 0.0
@@ -74,7 +75,7 @@ class ContactUncertainty(Record):
 
     @property
     def is_exact(self) -> bool:
-        """Return whether the contacts are exactly those of the problem."""
+        """Return whether all errors are zero."""
         if self is EXACT_CONTACTS:
             return True
         fields = (self.points, self.normals, self.frictions)

@@ -31,11 +31,11 @@ def spatial_contact_velocities(
 ) -> FloatArray:
     """Return the velocities of the body's contact points, (n, 3), m/s, world axes.
 
-    A normal or tangential part within ``velocity_tolerance``, m/s, is an exact 0.
+    Normal and tangential components up to ``velocity_tolerance``, m/s, are exactly 0.
 
     Raises:
         InvalidFieldError: the tolerance is negative, or a velocity or the distance of a contact from the
-            centre of mass is beyond `LARGEST_NUMBER`.
+            centre of mass exceeds `LARGEST_NUMBER`.
     """
     tolerance = check_not_negative("velocity_tolerance", velocity_tolerance)
     check_speeds(state, contacts)

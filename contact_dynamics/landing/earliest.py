@@ -44,13 +44,17 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class Landing(Record):
-    """The end of a flight: the body touches.
+    """End of a flight: the first contact of the body.
+
+    A landing on an edge or a face has several contacts. Pass all of them to `several_impact`;
+    `spatial_impact` takes one contact and ignores the others.
 
     Attributes:
-        seconds: Time of the landing, s after the state's stamp. It is 0 if the body touches already.
-        state: The state of the body at that time.
-        contacts: The contacts that touch and do not leave. An edge or a face has more than one.
-        velocities_W: (n, 3), m/s, velocities of the body's points at the contacts, world axes.
+        seconds: Time of the landing, s after the state's stamp. It is 0 if the body already touches.
+        state: State of the body at that time.
+        contacts: Contacts that touch and do not separate: one for a corner, two or more for an edge or a
+            face.
+        velocities_W: (n, 3), m/s, velocities of the body's contact points, world axes.
         strikes: Whether a contact approaches faster than the velocity tolerance, so that there is an impact.
     """
 
@@ -72,19 +76,19 @@ def next_landing(
     motion: Motion | None = None,
     work: SearchWork | None = None,
 ) -> Landing | None:
-    """Return where a body's flight ends within ``horizon`` (s), or None if it flies at least until then.
+    """Return the end of a body's flight within ``horizon`` (s), or None if it flies at least until then.
 
-    A point within ``distance_tolerance`` (m) of a surface touches it. A body that touches flies only if each
-    of its contacts leaves faster than ``velocity_tolerance`` (m/s). Then its next landing is sought.
-    ``motion`` is the flight, in closed form or under forces. By default it is the free flight from the state
-    in the world's gravity. ``work`` counts the steps of this search together with those of others. By default
-    this search has its own count.
+    A point within ``distance_tolerance`` (m) of a surface touches it. A touching body counts as flying only
+    if all of its contacts separate faster than ``velocity_tolerance`` (m/s); then its next landing is
+    returned. ``motion`` is the flight, in closed form or under forces; the default is the free flight from
+    the state under the world's gravity. ``work`` counts the steps of this search together with those of other
+    searches; by default, this search has its own count.
 
     Raises:
         NoContactError: the body has no shape that could touch anything.
-        InvalidFieldError: the body is deeper in a surface than ``distance_tolerance``, or a horizon or a
-            tolerance is negative or not finite.
-        TooLargeError: the search takes too many steps: the body spins too fast for the horizon.
+        InvalidFieldError: the body penetrates a surface by more than ``distance_tolerance``, or the horizon
+            or a tolerance is negative or not finite.
+        TooLargeError: the search takes too many steps, because the body spins too fast for the horizon.
     """
     check_not_negative("horizon", horizon)
     check_not_negative("velocity_tolerance", velocity_tolerance)

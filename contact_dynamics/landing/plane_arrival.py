@@ -61,14 +61,14 @@ _MAX_ROOT_STEPS: Final = 100
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class FirstContact(Record):
-    """A body's arrival at a plane.
+    """Arrival of a body at a plane.
 
     Attributes:
         seconds: Time of the arrival, s after the state's stamp, >= 0.
         vertices: Index of the part that arrives, then the indices of other parts within `GRAZING_DEPTH`.
             Corners are counted first, then rims.
-        p_WC_W: (3,), m, the point that arrives, world.
-        v_WC_W: (3,), m/s, its velocity, world axes.
+        p_WC_W: (3,), m, point that arrives, world.
+        v_WC_W: (3,), m/s, velocity of that point, world axes.
     """
 
     seconds: float
@@ -88,25 +88,25 @@ def first_contact(
 ) -> FirstContact | None:
     """Return the first time in [0, horizon] at which a body is on or below a plane and not rising, or None.
 
-    A part above the plane arrives when it comes down to the plane. A part on or below the plane at time 0
-    arrives at once if it sinks or rests. If it rises, it arrives when it comes down again.
+    A part above the plane arrives when it reaches the plane. A part on or below the plane at time 0 arrives
+    immediately if it sinks or rests; if it rises, it arrives when it returns to the plane.
 
     Args:
-        motion: the flight, in closed form or integrated (`motion_of`).
-        shape_B: the shape in body axes, from the centre of mass. It may also be the corners of a polyhedron,
-            (k, 3), m, or one point of the body.
+        motion: Flight, in closed form or integrated (`motion_of`).
+        shape_B: Shape in body axes, relative to the centre of mass; or the corners of a polyhedron, (k, 3),
+            m; or one point of the body.
         p_WS_W: (3,), m, a point of the plane, world.
-        normal_W: (3,), unit normal into the free side, world axes.
-        horizon: s after the state's stamp, how far to search.
-        work: the count of steps, which may be shared with other searches. By default this search alone may
-            take `MAX_SEARCH_STEPS`.
+        normal_W: (3,), unit normal towards the free side, world axes.
+        horizon: Look-ahead time, s after the state's stamp.
+        work: Count of steps, which may be shared with other searches. By default, this search may take
+            `MAX_SEARCH_STEPS` steps.
 
     Raises:
-        TooLargeError: the search takes too many steps: the body spins too fast, or is too large, for the
-            horizon.
-        InvalidFieldError: an array has another shape, a number is not finite or beyond `LARGEST_NUMBER`, the
-            normal is not unit, the shape has no corners or rims, the horizon is negative, or an integrated
-            motion does not reach as far as the search has to go.
+        TooLargeError: the search takes too many steps, because the body spins too fast, or is too large, for
+            the horizon.
+        InvalidFieldError: an array has a wrong shape, a number is not finite or exceeds `LARGEST_NUMBER`, the
+            normal is not a unit vector, the shape has no corners or rims, the horizon is negative, or an
+            integrated motion does not reach the horizon.
     """
     search = Descent(
         motion,

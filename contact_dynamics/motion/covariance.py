@@ -61,7 +61,7 @@ FEWEST_SAMPLES: Final = 50
 
 
 class PropagationMethod(enum.Enum):
-    """The method by which a covariance is carried along."""
+    """Method by which a covariance is propagated."""
 
     LINEARISED = "linearised"
     SAMPLED = "sampled"
@@ -69,14 +69,14 @@ class PropagationMethod(enum.Enum):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class CarriedCovariance(Record):
-    """The covariance of a body's state at n times.
+    """Covariance of a body's state at n times.
 
     Attributes:
-        seconds: (n,), s after the stamp of the state that the motion began with.
-        covariances: (n, 12, 12), in the module's order, with NaN where no double holds the number.
-        orientation_deviations: (n,), rad, largest standard deviation of orientation about any axis.
-        trusted: (n,), whether that deviation has been below TRUSTED_DEVIATION all the way from time 0.
-        method: How the covariance was carried along.
+        seconds: (n,), s after the stamp of the initial state.
+        covariances: (n, 12, 12), in the order of this module, with NaN where a number overflows.
+        orientation_deviations: (n,), rad, largest standard deviation of the orientation about any axis.
+        trusted: (n,), whether that deviation has remained below TRUSTED_DEVIATION since time 0.
+        method: Method of propagation.
     """
 
     seconds: FloatArray
@@ -95,7 +95,9 @@ def propagate_covariance(
     gravity_W: ArrayLike = STANDARD_GRAVITY_W,
     method: PropagationMethod = PropagationMethod.LINEARISED,
 ) -> CarriedCovariance:
-    """Return the covariance, (12, 12) at the state's stamp, at times (n,), s after it, of either sign.
+    """Return the covariance at times (n,), s after the state's stamp and of either sign.
+
+    The given covariance, (12, 12), is that at the stamp.
 
     Raises:
         InvalidFieldError: the matrix is not a covariance (see `check_covariance`), the times are not a flat
@@ -114,14 +116,15 @@ def covariance_along(
     samples: int = 400,
     seed: int = 0,
 ) -> CarriedCovariance:
-    """Return the covariance of the state along a motion that is given, as `propagate_covariance` does.
+    """Return the covariance of the state along a given motion, as `propagate_covariance` does.
 
-    Only sampling uses ``samples`` and ``seed``. It computes that many motions: for free ones this takes the
-    set-up, for forced ones the integration.
+    The covariance is that of the state at fixed times. It contains no standard deviation of the time of an
+    event such as a landing. ``samples`` and ``seed`` have an effect only if the covariance is sampled: free
+    motions are then set up, and forced ones integrated, for each sample.
 
     Raises:
-        InvalidFieldError: an error of `propagate_covariance`, or there are fewer samples than
-            `FEWEST_SAMPLES` or more than `MAX_SAMPLES`.
+        InvalidFieldError: `propagate_covariance` rejects an argument, or the number of samples is not from
+            `FEWEST_SAMPLES` to `MAX_SAMPLES`.
     """
     start = check_covariance("covariance", covariance)
     farthest = motion.farthest if isinstance(motion, FreeMotion) else LARGEST_NUMBER

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 class WrenchAxes(NamedInt):
-    """The axes in which a wrench is constant."""
+    """Axes in which a wrench is constant."""
 
     WORLD = 0
     BODY = 1  # it turns with the body
@@ -30,12 +30,12 @@ class WrenchAxes(NamedInt):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class ConstantWrench(Record):
-    """A constant force through the centre of mass and a constant torque about it.
+    """Constant force through the centre of mass and constant torque about it.
 
     Attributes:
-        force: (3,), N, in `axes`, by default zero.
-        torque: (3,), N m, in `axes`, by default zero.
-        axes: Whether force and torque are given in world or in body axes.
+        force: (3,), N, in `axes`, zero by default.
+        torque: (3,), N m, in `axes`, zero by default.
+        axes: Axes of force and torque: world or body.
 
     Raises:
         InvalidFieldError: force or torque is not three finite numbers, or the axes are not a `WrenchAxes`.

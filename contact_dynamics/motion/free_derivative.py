@@ -60,10 +60,10 @@ FARTHEST: Final = 300.0
 
 
 def state_derivatives(motion: FreeMotion, seconds: ArrayLike) -> FloatArray:
-    """Return the derivative of the state at times (n,), s, with respect to that at time 0: (n, 12, 12).
+    """Return the derivatives of the state at times (n,), s, with respect to the state at time 0: (n, 12, 12).
 
-    Order of rows and columns, and units: position (m), rotation vector (rad, world axes, a small rotation
-    applied after the attitude), linear velocity (m/s), angular velocity (rad/s, world axes).
+    Rows and columns are position (m), rotation vector (rad, world axes, a small rotation applied after the
+    attitude), linear velocity (m/s) and angular velocity (rad/s, world axes).
 
     Raises:
         InvalidFieldError: the times are not a flat list of finite numbers.

@@ -57,11 +57,11 @@ MAX_STATES: Final = 2000
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class StateNoise(Record):
-    """Standard deviations of published states, of each component, white.
+    """Standard deviations of each component of published states, as white noise.
 
     Attributes:
         position: m, > 0.
-        orientation: rad, > 0, of a rotation vector's components.
+        orientation: rad, > 0, of the components of a rotation vector.
         linear_velocity: m/s, > 0, or None if published linear velocities are not used.
         angular_velocity: rad/s, > 0, or None if published angular velocities are not used.
 
@@ -84,32 +84,34 @@ class StateNoise(Record):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class FitResult(Record):
-    """The best-fit state at the newest stamp, and how well it fits.
+    """Fitted state at the newest stamp, with the quality of the fit.
 
     Attributes:
-        state: The fitted state at the newest stamp.
-        covariance: (12, 12): position, rotation vector (world, after the attitude), both velocities.
-        position_residual: m, root mean square distance of the positions.
-        orientation_residual: rad, root mean square angle between the orientations.
+        state: Fitted state at the newest stamp.
+        covariance: (12, 12), covariance of position, rotation vector (world, applied after the attitude),
+            linear and angular velocity.
+        position_residual: m, root-mean-square distance of the positions.
+        orientation_residual: rad, root-mean-square angle between the orientations.
         count: Number of states.
-        rounds: Number of rounds of Gauss's and Newton's method.
-        converged: Whether the last round changed next to nothing, and the residuals fit the noise: their root
-            mean square is at most three of the given deviations or, if no noise is given, the orientations
-            miss by at most 0.1 rad. Never where the velocity jumps, nor where the body does not fall.
-        position_misses_W: (count, 3), m, the positions less the fitted ones, world axes.
+        rounds: Number of iterations of the Gauss-Newton method.
+        converged: Whether the last iteration changed next to nothing, and the residuals are consistent with
+            the noise: their root mean square is at most three given deviations or, without a given noise, the
+            orientation residual is at most 0.1 rad. It is false if the velocity jumps, or if the body does
+            not fall freely.
+        position_misses_W: (count, 3), m, positions minus fitted positions, world axes.
         orientation_misses_W: (count, 3), rad, rotation vectors from the fitted attitudes to those of the
             states, world axes.
-        by_gravity: By how much the fitted position (s^2) and velocity (s) change with gravity, each component
-            with its own. A fit to positions over a time T has about T^2 / 12 and T / 2. None means that it is
-            not known, as under wrenches.
-        turns_known: Whether the published angular velocities exclude motions that turn by whole turns more or
-            less from one state to the next. They do so if they are off by less than a third of a turn per
-            interval. Without them, as with velocities that are all zero of a body that turns, the fit takes
-            the fewest turns that fit, and other numbers of turns are possible.
-        alternatives: Other states at the newest stamp whose motions were found to fit as well. ``state`` and
-            its covariance are worth nothing where one of them may be true.
-        velocity_jump: s, < 0, from the newest stamp: when the velocity jumps, as in an impact. It is None if
-            the positions show no jump.
+        by_gravity: Derivatives of the fitted position (s^2) and velocity (s) with respect to gravity, in each
+            component. A fit to positions over a time T has about T^2 / 12 and T / 2. None means that they are
+            unknown, as under wrenches.
+        turns_known: Whether the published angular velocities exclude motions with a different number of whole
+            turns between states. They do if their errors are less than a third of a turn per interval.
+            Without angular velocities, or if all are zero although the body turns, the fit assumes the fewest
+            turns that are consistent with the states, and other numbers of turns are possible.
+        alternatives: Other states at the newest stamp whose motions fit equally well. ``state`` and its
+            covariance are meaningless if one of them may be true.
+        velocity_jump: Time of a jump of the velocity, as in an impact, s relative to the newest stamp, < 0.
+            None if the positions show no jump.
     """
 
     state: BodyState
@@ -134,18 +136,18 @@ def fit_free_motion(
     gravity_W: ArrayLike = STANDARD_GRAVITY_W,
     noise: StateNoise | None = None,
 ) -> FitResult:
-    """Return the free motion that fits ``states``, in order of time, best.
+    """Return the free motion that fits ``states``, in the order of time, best.
 
-    If ``noise`` is given, the covariance follows from it, and the fit uses the velocities for which it has a
-    deviation. Otherwise the fit uses poses alone, and the covariance follows from their residuals. Published
-    angular velocities say in either case how many whole turns there are between the states. Where neither
-    they nor the poses do, `FitResult.turns_known` is false.
+    If ``noise`` is given, the covariance follows from it, and the fit uses those velocities for which the
+    noise contains a deviation. Otherwise, the fit uses poses alone, and the covariance follows from their
+    residuals. In both cases, published angular velocities determine the number of whole turns between states.
+    If neither they nor the poses determine it, `FitResult.turns_known` is false.
 
     Raises:
-        InvalidFieldError: there are fewer than `FEWEST_STATES` states, their stamps do not ascend, the window
-            is so long that neighbours of the motion part beyond the range of doubles, or gravity is not
+        InvalidFieldError: there are fewer than `FEWEST_STATES` states, their stamps are not ascending, the
+            window is so long that neighbouring motions diverge beyond the range of doubles, or gravity is not
             three finite numbers.
-        TooLargeError: more than `MAX_STATES` states.
+        TooLargeError: there are more than `MAX_STATES` states.
     """
     body = body.mass_properties
     if len(states) < FEWEST_STATES:

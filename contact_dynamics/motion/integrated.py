@@ -56,7 +56,7 @@ MAX_STEPS: Final = 20_000
 
 
 class Method(NamedInt):
-    """The method by which a motion is computed. The numbers are those of PredictTumbling.srv."""
+    """Method by which a motion is computed. The values are those of PredictTumbling.srv."""
 
     CLOSED_FORM = 0  # exact to rounding, the error does not grow with time
     INTEGRATED = 1  # stepped by an integrator
@@ -64,18 +64,18 @@ class Method(NamedInt):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class ForcedMotion(Record):
-    """The motion of a body under forces. `forced_motion` makes it. Threads must not share it.
+    """Motion of a body under forces, made by `forced_motion`. It must not be shared by threads.
 
     Attributes:
         body: Mass and angular inertia.
-        state: The state of the body at time 0.
+        state: State of the body at time 0.
         gravity_W: (3,), m/s^2, world axes.
-        wrench: The constant wrench that acts besides gravity.
+        wrench: Constant wrench in addition to gravity.
         drag: Drag in still air.
-        wrench_of: The user's function of time and state that returns a wrench, or None.
-        law: The differential equations.
-        ahead: The steps into the future.
-        back: The steps into the past.
+        wrench_of: User-defined function of time and state that returns a wrench, or None.
+        law: Differential equations.
+        ahead: Steps into the future.
+        back: Steps into the past.
     """
 
     body: MassProperties
@@ -90,7 +90,7 @@ class ForcedMotion(Record):
 
     @property
     def rotates_freely(self) -> bool:
-        """Whether only forces act. The rotation, and so Poinsot's picture, is then that of `free_motion`."""
+        """Return whether only forces act, so that the rotation is that of `free_motion`."""
         angular_drag = self.drag.linear_angular or self.drag.quadratic_angular
         return not (self.wrench.torque.any() or angular_drag or self.wrench_of is not None)
 
@@ -98,17 +98,17 @@ class ForcedMotion(Record):
         """Return the motion at one time, s after the state's stamp, in plain floats.
 
         Raises:
-            InvalidFieldError: the integrator does not reach the time, because it needs too many steps, or
+            InvalidFieldError: the integrator does not reach the time, because it takes too many steps, or
                 because the motion grows without bounds before, as under drag into the past.
         """
         side = self.ahead if seconds >= 0.0 else self.back
         return self.law.sample(seconds, side.at(seconds).tolist())
 
     def step_at(self, seconds: float) -> IntegratedStep:
-        """Return the integrator's step that contains a time >= 0, s. Where two steps meet, it is the later.
+        """Return the step that contains a time >= 0, s. Where two steps meet, it is the later one.
 
         Raises:
-            InvalidFieldError: as `sample`.
+            InvalidFieldError: as for `sample`.
         """
         return self.ahead.step_at(seconds)
 
@@ -129,7 +129,7 @@ class ForcedMotion(Record):
         """Return the times, s, from 0 to ``seconds`` of either sign, between which the integrator steps.
 
         Raises:
-            InvalidFieldError: as `sample`.
+            InvalidFieldError: as for `sample`.
         """
         side = self.ahead if seconds >= 0.0 else self.back
         side.at(seconds)
@@ -141,7 +141,7 @@ class ForcedMotion(Record):
         """Return the body's state at one time, s after the state's stamp.
 
         Raises:
-            InvalidFieldError: the time is not finite, or beyond what `sample` reaches.
+            InvalidFieldError: the time is not finite, or beyond the range of `sample`.
         """
         check_within("seconds", seconds, -LARGEST_NUMBER, LARGEST_NUMBER)
         return self.sample(seconds).as_state(self.state.stamp_ns, seconds)
@@ -150,8 +150,8 @@ class ForcedMotion(Record):
         """Return the motion at times (n,), s after the state's stamp, of any sign and in any order.
 
         Raises:
-            InvalidFieldError: the times are not a flat list of finite numbers, or beyond what `sample`
-                reaches.
+            InvalidFieldError: the times are not a flat list of finite numbers, or are beyond the range of
+                `sample`.
         """
         times = check_magnitude("seconds", check_array("seconds", seconds, (None,)))
         values = np.empty((len(times), VARIABLES))
@@ -165,7 +165,7 @@ class ForcedMotion(Record):
 
 
 class ChosenMotion(NamedTuple):
-    """A motion and the method by which it is computed."""
+    """Motion, and the method by which it is computed."""
 
     motion: FreeMotion | ForcedMotion
     method: Method
@@ -181,9 +181,9 @@ def motion_of(
     wrench_of: WrenchFunction | None = None,
     max_steps: int = MAX_STEPS,
 ) -> ChosenMotion:
-    """Return a body's motion by the best method: in closed form where no torque and no drag acts.
+    """Return a body's motion: in closed form without torque and drag, and otherwise by integration.
 
-    A constant force in world axes is a change of gravity, and the motion is then still in closed form.
+    A constant force in world axes acts like a change of gravity, so the motion is still in closed form.
     Arguments and errors are those of `forced_motion`.
     """
     body = body.mass_properties
@@ -218,14 +218,14 @@ def forced_motion(
     wrench_of: WrenchFunction | None = None,
     max_steps: int = MAX_STEPS,
 ) -> ForcedMotion:
-    """Return the motion of a body under a constant wrench, drag and a user's function, by an integrator.
+    """Return the motion of a body under a constant wrench, drag and a user-defined function, by integration.
 
     Gravity is (3,), m/s^2, world axes. ``wrench_of(seconds, sample)`` returns a force, N, and a torque about
-    the centre of mass, N m, three numbers each, in world axes. Its seconds count from the state's stamp. The
-    motion refuses times that are further away than ``max_steps`` of the integrator.
+    the centre of mass, N m, three numbers each, in world axes; its seconds are relative to the state's stamp.
+    Times that require more than ``max_steps`` of the integrator raise an error.
 
     Raises:
-        InvalidFieldError: gravity is not three finite numbers; a number is beyond `LARGEST_NUMBER`; or the
+        InvalidFieldError: gravity is not three finite numbers; a number exceeds `LARGEST_NUMBER`; or the
             function does not return two vectors of three finite numbers, now or whenever the motion calls it.
     """
     body = body.mass_properties

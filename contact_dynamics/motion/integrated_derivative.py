@@ -53,13 +53,15 @@ P, THETA, V, W = (slice(0, 3), slice(3, 6), slice(6, 9), slice(9, 12))
 
 
 def forced_state_derivatives(motion: ForcedMotion, seconds: ArrayLike) -> FloatArray:
-    """Return the derivative of the state at times (n,), s, with respect to that at time 0: (n, 12, 12).
+    """Return the derivatives of the state at times (n,), s, with respect to the state at time 0: (n, 12, 12).
 
     Order and units are those of `contact_dynamics.motion.free_derivative.state_derivatives`.
 
     Raises:
-        InvalidFieldError: the times are not a flat list of finite numbers, or beyond what the motion reaches.
-        TooLargeError: so far, or under so strong a drag, that it takes more than `MAX_PIECES`.
+        InvalidFieldError: the times are not a flat list of finite numbers, or are beyond the range of the
+            motion.
+        TooLargeError: the times are so far away, or the drag is so strong, that it takes more than
+            `MAX_PIECES` pieces.
     """
     times = check_array("seconds", seconds, (None,))
     answers = np.tile(np.eye(12), (len(times), 1, 1))

@@ -57,15 +57,15 @@ def fit_motion(
     noise: StateNoise | None = None,
     max_steps: int = MAX_STEPS,
 ) -> FitResult:
-    """Return the motion that fits ``states``, in order of time, best under the forces that act.
+    """Return the best fit to ``states``, in the order of time, under the forces that act.
 
-    Where `contact_dynamics.motion_of` takes the closed form, this is `fit_free_motion`. The seconds of
-    ``wrench_of`` count from the newest state, and ``max_steps`` is as in `forced_motion`. If ``noise`` is
-    given, the covariance follows from it, and the fit uses the velocities for which it has a deviation.
-    Otherwise the fit uses poses alone, and the covariance follows from their residuals.
+    If `contact_dynamics.motion_of` uses the closed form, this is `fit_free_motion`. The seconds of
+    ``wrench_of`` are relative to the newest state, and ``max_steps`` is as in `forced_motion`. If ``noise``
+    is given, the covariance follows from it, and the fit uses those velocities for which the noise contains a
+    deviation. Otherwise, the fit uses poses alone, and the covariance follows from their residuals.
 
     Raises:
-        InvalidFieldError, TooLargeError: as in `fit_free_motion` and `forced_motion`, and where the motion
+        InvalidFieldError, TooLargeError: as for `fit_free_motion` and `forced_motion`, and if the motion
             grows without bounds into the past within the window.
     """
     body = body.mass_properties
