@@ -1,31 +1,33 @@
 # SPDX-License-Identifier: Apache-2.0
 """Contact modes, impacts, free tumbling and whole tosses of rigid bodies (Mason's lectures 24 to 27).
 
-This page has what most users need: bodies and their states, contacts, problems, and one call for each
-question. Everything else is in the chapters, which are listed in reading order. Each chapter's docstring says
-what is in it. All of it needs NumPy and SciPy, but no ROS.
+This package contains the names that most users need: bodies and their states, contacts, contact problems, and
+one function for each kind of prediction. All other names are in the chapters listed below, in reading order;
+the docstring of each chapter describes its contents. The library requires NumPy and SciPy, but not ROS.
 
-- `rigid_body`: mass properties, states, momenta and energies (lectures 24 and 25), and in it `inertia`: mass
-  properties from particles, shapes and meshes.
-- `tumbling`: where a free body will be, in closed form (`free_motion`); flips, Poinsot's picture (lecture
-  25).
+- `rigid_body`: mass properties, states, momenta and energies (lectures 24 and 25); in it `inertia`, mass
+  properties from particles, solids and meshes.
+- `tumbling`: free motion in closed form (`free_motion`), flips and Poinsot's construction (lecture 25).
 - `motion`: motion under wrenches and drag (`motion_of`), fits to published states, covariances.
-- `shapes`: spheres, cylinders, polyhedra; an `Obstacle`. A `World` has bodies, surfaces and gravity.
-- `contact`: a `Contact` and sets of them, given or found from geometry (`find_contacts`).
-- `plane`: a `PlanarBody` and its kin, and the way from space to a plane of motion and back.
-- `landing`: where a flight ends (`next_landing`).
-- `contact_modes`: does each contact separate, slide or stay (lecture 26)? State a `PlanarContactProblem` or
-  a `SpatialContactProblem`, and ask it: ``contact_modes(problem)``, `mode_margins`, `statics`,
-  `largest_load`.
-- `impact`: velocities after an impact (lecture 27): `planar_impact`, `spatial_impact`, several contacts at
-  once (`several_impact`) or one after the other in time (`impact_sequence`).
-- `toss`: the whole motion of a body from a state in flight to rest: ``toss(body, state, world)``, and with
-  uncertain inputs `sampled_toss`.
-- `questions`: what the services answer, asked in Python: one question with all its options, one answer.
+- `shapes`: spheres, cylinders, polyhedra, and `Obstacle`. A `World` contains bodies, surfaces and gravity.
+- `contact`: `Contact` and `ContactSet`, explicit or detected from shapes (`find_contacts`).
+- `plane`: `PlanarBody` and the other planar types, and the projection of spatial states onto a plane of
+  motion.
+- `landing`: the end of a flight (`next_landing`). A landing on an edge or a face has several contacts, all of
+  which `several_impact` takes.
+- `contact_modes`: whether each contact separates, slides or sticks (lecture 26). Make a
+  `PlanarContactProblem` or a `SpatialContactProblem`, and pass it to ``contact_modes(problem)``,
+  `mode_margins`, `statics` or `largest_load`.
+- `impact`: velocities after an impact (lecture 27): at one contact (`planar_impact`, `spatial_impact`), at
+  several contacts at one instant (`several_impact`) or one after the other in time (`impact_sequence`).
+- `toss`: the motion of a body from an initial state to rest: ``toss(body, state, world)``, and `sampled_toss`
+  for uncertain inputs.
+- `questions`: the requests and responses of the ROS services as Python objects: one question with all its
+  options, one answer.
 
-A chapter with a function of its name, `contact_modes` or `toss`, can be called as that function.
+The chapters `contact_modes` and `toss` can be called as the functions of the same name.
 
-`errors` has what misuse raises, and `tolerances` says what counts as zero.
+`errors` contains the exceptions, and `tolerances` the thresholds below which values count as zero.
 """
 
 import difflib
@@ -99,7 +101,7 @@ _CHAPTERS: Final = (*_HOMES, "questions", "tolerances")
 
 
 def __getattr__(name: str) -> Any:
-    """Import a chapter, or what this page has of it, where it is asked for."""
+    """Import a chapter, or a name of a chapter that this package exports, on first use."""
     if name in _CHAPTERS:
         return import_module(f"{__name__}.{name}")
     if name == "__version__":

@@ -17,6 +17,7 @@ import functools
 import inspect
 import re
 import sys
+import textwrap
 import types
 import typing
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
@@ -93,8 +94,8 @@ def _own_function(chapter: types.ModuleType) -> Any:
 def check_types_of(page: dict[str, Any]) -> None:
     """Make the functions that a chapter's page offers check the types of their arguments.
 
-    A page that offers a function of its own name can be called as that function, and has its help. The page's
-    own text is for those who read the source.
+    A page that offers a function of its own name can be called as that function, and has its help, with a
+    list of the other names. The page's own text is for those who read the source.
 
     Args:
         page: The page's ``globals()``, with ``__all__``.
@@ -110,7 +111,10 @@ def check_types_of(page: dict[str, Any]) -> None:
         chapter.__class__ = CallableChapter
         call = f"{function.__name__}{inspect.signature(function)}".replace("'", "")
         gist, _, more = (inspect.getdoc(function) or "").partition("\n\n")
-        chapter.__doc__ = f"{gist}\n\n{call}\n\n{more}"  # help of the chapter is that of the function
+        others = textwrap.fill(", ".join(name for name in page["__all__"] if name != function.__name__), 100)
+        internal = "The modules under PACKAGE CONTENTS are internal. Other public names are:"
+        # help of the chapter is that of the function
+        chapter.__doc__ = f"{gist}\n\n{call}\n\n{more}\n\n{internal}\n{others}"
 
 
 def checks_types(function: Callable[P, R]) -> Callable[P, R]:

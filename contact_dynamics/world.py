@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Questions are asked about a world: bodies with shapes, the surfaces they meet, and gravity.
+"""A world: bodies with shapes, the surfaces that they can touch, and gravity.
 
-Surfaces are flats without end (`Surface`), and convex solids and plates (`Obstacle`). They stand still.
+Surfaces are infinite planes (`Surface`), and convex solids and plates (`Obstacle`). They do not move.
 """
 
 from __future__ import annotations

@@ -1,11 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Contacts are given or found from shapes. They have curvatures, velocities and friction.
+"""Contacts, explicit or detected from shapes, with their friction, curvatures and velocities.
 
-`contact` has one contact and sets of them. `curvature` has the shapes of both sides where they touch, and
-what velocities add to the accelerations there. `found` finds contacts from geometry, with the points where a
-body touches a plane or a solid (`touches`). `velocities` says which contacts count as at rest, and warns of
-those that a body cannot have. `friction` makes pyramids from friction cones. `uncertainty` says how well
-contacts are known, and `noise` which of them touch and rest where the state is measured.
+`Contact` and `ContactSet` are the types, `find_contacts` detects the contacts of a body with the surfaces of
+a world, and `ContactUncertainty` contains the errors of contacts.
+
+The modules of this package are internal. `contact` contains one contact and sets of contacts. `curvature`
+contains the curvatures of body and surface at a contact, and the terms that velocities add to the
+accelerations there. `found` detects contacts, with the points at which a body touches a plane or a solid
+(`touches`). `velocities` determines which contacts count as at rest, and warns of contacts out of the body's
+reach. `friction` computes pyramids inside friction cones. `uncertainty` contains the errors of contacts, and
+`noise` determines which contacts touch and are at rest if the state is measured.
 """
 
 from contact_dynamics.contact.contact import Contact, ContactSet

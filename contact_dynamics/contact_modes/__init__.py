@@ -1,39 +1,44 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Contact modes (Mason, lecture 26): does the body, at each contact, separate, slide or stay fixed?
+"""Contact modes (Mason, lecture 26): whether the body separates, slides or sticks at each contact.
 
-You state a `PlanarContactProblem` or a `SpatialContactProblem`, and pass it to the functions of
-`plane_or_space`. `contact_modes` finds every consistent mode. `mode_margins` says how far the wrench is from
-leaving each of them, `geometry_margins` how far contacts are from another verdict, and `refused_modes` says
-why the other modes are not consistent. `wrench_sets` returns the wrenches of each mode. `statics` says
-whether a body at rest stays at rest. In space, the functions of `largest_load` say how large a push may
-become, how far a tray may accelerate, tilt or spin, how little friction is enough, and whether a grasp has
-closure.
+Make a `PlanarContactProblem` or a `SpatialContactProblem`, and pass it to one of these functions:
 
-A mode is a string with one of the `letters` for each contact. `result` has the types of answers.
+- `contact_modes` returns the verdict and all consistent modes, and `refused_modes` the reasons for which the
+  other modes are not consistent.
+- `mode_margins` returns the smallest change of the wrench that ends each mode, `largest_load` the largest
+  load of a body at rest in space, and `geometry_margins` the errors of the contacts that change the answer.
+- `wrench_sets` returns the wrenches that can cause each mode.
+- `statics` returns whether a body at rest stays at rest. `largest_acceleration`, `largest_tilt` and
+  `largest_spin` return how far its support may move, `least_friction` the smallest friction that is
+  sufficient, and `closure` whether contacts have form or force closure. All of these are in `largest_load`.
 
-Files of `planar` and `spatial` that do the same have the same name. `problem` has the question, and its case:
-the question in the coordinates in which it is answered. `answer` gives the verdict and all modes. `statics`
-and `wrench_sets` answer other questions. If contacts are uncertain, `uncertain` searches boxes of contacts
-for other verdicts; its namesakes say how much each contact may be off, and prove with `everywhere` that a
-mode holds in the whole box, and that no other does (in space `excluded`).
+A mode is a string with one of the `letters` for each contact. `result` contains the types of answers, and
+`plane_or_space` the functions above.
+
+The modules of this package are internal. In `planar` and `spatial`, files for the same purpose have the same
+name. `problem` contains the problem, and its case: the problem in the coordinates in which it is solved.
+`answer` computes the verdict and all modes. `statics` and `wrench_sets` contain further results. If contacts
+are uncertain, `uncertain` searches boxes of contacts for other verdicts. The files of the same name in
+`planar` and `spatial` determine the possible errors of each contact, and prove with `everywhere` that a mode
+is consistent in the whole box and that no other mode is (in space `excluded`).
 
 - In the plane, `answer` solves a single contact in closed form. For several contacts, `coincident` first
-  takes those together that coincide. `enumeration` then lists the modes that kinematics allows, which are
-  faces of a `cone`, and `judgement` decides which of them mechanics allows. If the equations of a mode are
-  independent, `determined` solves them. If they are not, `wrench_cone` decides by the cone of wrenches that
-  can bring the mode about.
-- In space, `kinematic` gives the strings of contacting, separating and ways of sliding. With mechanics, the
-  `likely_mode` comes first, for which a single contact at rest has its own file (`one_contact`).
-  `only_motion` may show that no other mode exists. Otherwise `completeness` finds or refutes all others, with
-  linear programs (`holding_programs`), ranges of directions with one solution (`only_solution`) and modes in
-  which contacts share loads (`shared_loads`). What this leaves undecided takes a `search` of all combinations
-  of `options`, in `regions` of common motions (`pyramid_programs`). The programs are solved by a
-  `dual_simplex` (`simplex_steps`), and as a `careful_program` if rounding may decide. Modes that were found
-  are made exact (`realised`, `exact_modes`, `exact_letters`), those that hold `narrowly` are found near
-  others, and `round_cones` decides whether forces hold contacts. `mode_with_forces` gives the accelerations.
-  The wrenches of a mode (`wrenches`, on a `cone`) come in ways of sliding. `margins` are distances to sums of
-  round cones, also of modes in which contacts begin to slide (`margins_of_sliding`), and so are the reasons
-  of refused modes.
+  merges those that coincide. `enumeration` then lists the kinematically possible modes, which are faces of a
+  `cone`, and `judgement` determines which of them are consistent with mechanics. If the equations of a mode
+  are independent, `determined` solves them; otherwise `wrench_cone` decides by the cone of wrenches that can
+  cause the mode.
+- In space, `kinematic` lists the strings of closed and separating contacts, and the sectors of sliding
+  directions. With mechanics, the `likely_mode` is tried first; a single contact at rest has its own file
+  (`one_contact`). `only_motion` may prove that no other mode exists. Otherwise `completeness` finds or
+  refutes all others, with linear programs (`holding_programs`), ranges of directions with one solution
+  (`only_solution`) and modes in which contacts share loads (`shared_loads`). The remaining cases require a
+  `search` of all combinations of `options`, in `regions` of common motions (`pyramid_programs`). The programs
+  are solved by a `dual_simplex` (`simplex_steps`), and as a `careful_program` if rounding error may matter.
+  The modes found are made exact (`realised`, `exact_modes`, `exact_letters`), modes that are consistent only
+  `narrowly` are found near others, and `round_cones` decides whether forces hold contacts. `mode_with_forces`
+  computes the accelerations. The wrenches of a mode (`wrenches`, on a `cone`) are divided by sliding
+  directions. `margins` are distances to sums of round cones, also for modes in which contacts begin to slide
+  (`margins_of_sliding`), and so are the amounts of refused modes.
 """
 
 from contact_dynamics.contact_modes.letters import Letter

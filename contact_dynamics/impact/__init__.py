@@ -1,18 +1,29 @@
 # SPDX-License-Identifier: Apache-2.0
-"""An impact (Mason, lecture 27) changes a body's velocity. These chapters say what it is afterwards.
+"""Impacts: the velocities of rigid bodies just after they collide, with friction (Mason, lecture 27).
 
-`law` has the laws of restitution and the outcomes. `energy` judges what these laws do to energy. `planar` and
-`spatial` treat one contact (`one_contact`) and many cases at once (`batch`), and each has a file for what its
-functions return (`result`). `several` treats several contacts at once. `in_time` treats strikes one after the
-other, with flight between them. `distribution` is for uncertain states.
+- One contact with the fixed world: `planar_impact`, `spatial_impact`; many cases at once: `planar_impacts`,
+  `spatial_impacts`.
+- One contact between two moving bodies: `planar_pair_impact`, `spatial_pair_impact`.
+- Several contacts at one instant, as in a landing on an edge or a face: `several_impact`,
+  `planar_several_impact`, `bodies_impact`. The result depends on the law, and its spread is returned by
+  `outcomes_over_orders`, `outcomes_at_once` and `outcomes_over_interleavings`.
+- Strikes at separate times, with flight between them: `impact_sequence`, `impact_sequence_of`.
+- Contacts that jam without approaching: `jamming_impact`, `settling_impact`.
+- Uncertain states: `planar_impact_distribution`, `spatial_impact_distribution`.
+
+The modules of this package are internal. `law` contains the laws of restitution and the outcomes, and
+`energy` checks the energy balance of each law. `planar` and `spatial` treat one contact (`one_contact`) and
+many cases (`batch`); `result` contains the types of their results. `several` treats several contacts at one
+instant, `in_time` strikes one after the other, and `distribution` uncertain states.
 
 - In the plane, the impulse path is Routh's construction (`routh`). In `two_bodies`, both bodies may move.
-- In space, a contact responds in all directions (`response`), and its sliding direction swerves, so that the
-  impulse `path` bends.
-- Several contacts strike in turn (`sequential`, in all `orders`) or at once (`simultaneous`), also in the
-  plane (`planar`). Their impulses may also interleave in any way (`interleavings`). Contacts that do not
-  approach can jam (`jamming`) until that is over (`settling`).
-- In time, `meetings` finds which contact strikes next, and `sequence` goes on from strike to strike
+- In space, a contact responds in all directions (`response`), and its sliding direction changes continuously,
+  so the impulse `path` is curved.
+- Several contacts strike one after the other (`sequential`, over all `orders`) or all at once
+  (`simultaneous`), also in the plane (`planar`). Their impulses may also interleave in any way
+  (`interleavings`). Contacts that do not approach can jam (`jamming`) until a mode is consistent
+  (`settling`).
+- In time, `meetings` finds the contact that strikes next, and `sequence` proceeds from strike to strike
   (`strike_by_strike`).
 """
 

@@ -1,8 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A flight ends at the first contact with planes and obstacles.
+"""The end of a flight: the first contact with planes and obstacles.
 
-`earliest` finds the next landing of a body in its world, with all contacts there. `plane_arrival` finds the
-first time at a plane. Both use `acceleration_bounds`, which says for how long nothing can touch.
+`next_landing` returns the next landing of a body in its world, with all contacts; a landing on an edge or a
+face has several. `first_contact` returns the first arrival at a plane.
+
+The modules of this package are internal. `earliest` contains `next_landing`, and `plane_arrival` contains
+`first_contact`. Both use `acceleration_bounds`, which bounds the time for which nothing can touch.
 `search_work` limits their work.
 """
 

@@ -1,13 +1,19 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Motion under gravity, wrenches and drag is integrated, differentiated and fitted here, with covariances.
+"""Motion under gravity, wrenches and drag: integration, derivatives, fits to states, and covariances.
 
-`forces` says what acts on a body besides gravity. `integrated` computes its motion, with the differential
-`equations`. Its function `motion_of` takes the closed form where no torque and no drag acts.
-`free_derivative` and `integrated_derivative` say how a motion changes with its first state, and `covariance`
-carries the covariance of that state along. `free_fit` and `integrated_fit` find the motion that fits some
-published states best, and `whole_turns` determines whether the states distinguish it from motions with more
-turns. `flight_check` finds impacts among them. `between_states` interpolates, and `velocity_estimate` finds
-velocities from poses.
+- Motion: `motion_of` chooses between the closed form and integration (`forced_motion`), under a
+  `ConstantWrench` and `Drag`.
+- Fits to published states: `fit_free_motion`, `fit_motion`, with the noise of the states as `StateNoise`.
+- Covariances: `covariance_along`, `propagate_covariance`. Derivatives: `state_derivatives`,
+  `forced_state_derivatives`.
+
+The modules of this package are internal. `forces` contains the loads on a body besides gravity. `integrated`
+computes its motion from the differential `equations`. `free_derivative` and `integrated_derivative` compute
+the derivatives of a motion with respect to its initial state, with which `covariance` propagates the
+covariance of that state. `free_fit` and `integrated_fit` find the motion that fits published states best, and
+`whole_turns` determines whether the states distinguish it from motions with more turns. `flight_check`
+detects impacts among the states. `between_states` interpolates, and `velocity_estimate` estimates velocities
+from poses.
 """
 
 from contact_dynamics.motion.covariance import (

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""This chapter has planar problems, and the way between space and a plane of motion.
+"""Planar problems, and the conversion between space and a plane of motion.
 
-`types` has a planar body, its velocity, contacts and wrench. `projection` turns a question in space into a
-planar one, or says by how much it is not planar; `plane_search` finds the plane for that. `lifting` brings a
-planar answer back to space, and makes a spatial problem from a planar one. `force_dual` is lecture 26's
-picture of planar wrenches.
+`types` contains a planar body, its velocity, contacts and wrench. `projection` converts a spatial problem to
+a planar one, or returns the deviation from the plane; `plane_search` finds that plane. `lifting` converts a
+planar answer back to space, and makes a spatial problem from a planar one. `force_dual` is the representation
+of planar wrenches in lecture 26.
 """
 
 from contact_dynamics.plane.lifting import planar_in_space

@@ -1,25 +1,26 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Questions as Python objects: what is asked, what is known when it is asked, and what the answer says.
+"""Questions and answers: the requests and responses of the services as Python objects.
 
-State a `TumblingQuestion`, an `ImpactQuestion`, a `ContactModeQuestion` or a `TossQuestion`, and `ask` it.
-`services` has `ask`, and a record for each kind, from which all programs derive what they do with it. A
-service's request becomes a question, and its answer becomes the response. A notebook, a test or a log asks
-the same question without ROS.
+Make a `TumblingQuestion`, an `ImpactQuestion`, a `ContactModeQuestion` or a `TossQuestion`, and pass it to
+`ask` with a `Context`. The services convert each request to a question, and its answer to the response. A
+notebook, a test or a log uses the same questions without ROS.
 
-Each kind has a file with its question, its answer and a function ``answer``. `tumbling` says where a free
-body will be (lectures 24, 25). `impact` says which velocities follow (lecture 27), and `impact_question` has
-its question and its answer. `contact_modes` says which contacts separate, slide or stay (lecture 26). `toss`
-says where all that ends.
+The modules of this package are internal. `services` contains `ask`, and a record for each kind of question,
+from which all programs derive their behaviour. Each kind has a file with its question, its answer and a
+function ``answer``: `tumbling` predicts the motion of a free body (lectures 24, 25), `impact` the velocities
+after an impact (lecture 27; `impact_question` contains its question and its answer), `contact_modes` the
+contacts that separate, slide or stick (lecture 26), and `toss` the motion to rest.
 
-The kinds share these files: `context` (the world, defaults, and in a `state_store` what was published),
-`subject` (which body, in which state, which may be an `uncertain_state`), `twist_axes` (whether published
-velocities are in the right axes), `sample_times` (when), `touching` (which contacts), `extent` (how large
-numbers may be) and `plane_of_motion` (in a plane or in space; modes of a plane in world axes, and back).
-Answers describe every impact in the same way (`resolving`). `settled_impact` has the impact that follows an
-inconsistency. `many` asks about many states at once, and `many_contact_modes` about many wrenches or sets of
-contacts.
+The kinds share these files: `context` (the world, defaults, and the published states in a `state_store`),
+`subject` (the body and its state, which may be an `uncertain_state`), `twist_axes` (the check of the axes of
+published velocities), `sample_times` (times of samples), `touching` (contacts), `extent` (limits of numbers)
+and `plane_of_motion` (the choice between plane and space, and the modes of a plane in world axes). All
+answers describe impacts in the same way (`resolving`). `settled_impact` computes the impact that follows an
+inconsistency. `many` contains questions about many states at once, and `many_contact_modes` about many
+wrenches or sets of contacts.
 
-`effort` determines whether a question is quick, and `workers` are processes that answer those that are not.
+`effort` determines whether a question is inexpensive, and `workers` are processes that answer the expensive
+ones.
 """
 
 from contact_dynamics.questions.contact_modes import ContactModeAnswer, ContactModeQuestion

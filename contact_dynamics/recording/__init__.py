@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The log: every state received and every request and response, in MCAP as rosbag2 of Jazzy lays it out.
+"""The log: all received states, requests and responses, in MCAP files in the layout of Jazzy's rosbag2.
 
 `BagWriter` writes a log from one thread, and `Recorder` writes it beside a server. `BagReader` and
-`service_calls` read it. `decode` makes messages with the classes of ROS, and `decode_without_ros` makes them
+`service_calls` read it. `decode` makes messages of the classes of ROS, and `decode_without_ros` makes them
 from the definitions in the log.
 """
 

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Rigid bodies have mass properties, states, momenta and energies (Mason, lectures 24 and 25).
+"""Rigid bodies: mass properties, states, momenta and energies (Mason, lectures 24 and 25).
 
-`body` has a body's mass properties, its state, and what follows from the two. `published_frame` converts
-between the frame that is published for a body and the one at its centre of mass. `inertia` makes mass
-properties from particles, shapes and meshes, and has principal axes.
+`body` contains a body's mass properties and its state, with the quantities that follow from them.
+`published_frame` converts between the published frame of a body and the frame at its centre of mass.
+`inertia` computes mass properties from particles, solids and meshes, and principal axes.
 """
 
 from contact_dynamics.rigid_body import inertia

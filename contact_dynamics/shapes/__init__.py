@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bodies and obstacles have convex shapes.
+"""Convex shapes of bodies and obstacles.
 
-`convex` has the shapes of bodies, from spheres to rounded polyhedra, and a function for each. An `obstacle`
-is a convex piece of the world with edges and corners. `concavity` warns of corners that are not those of a
-convex body. `hull_features` and `rim` have the parts of a shape that can touch. `files` reads bodies from
-URDF and SDF files and from meshes.
+`convex` contains the shapes of bodies, from spheres to rounded polyhedra, with a function for each. An
+`obstacle` is a convex part of the world with edges and corners. `concavity` warns of corners that are not
+those of a convex body. `hull_features` and `rim` contain the parts of a shape that can touch. `files` reads
+bodies from URDF and SDF files and from meshes.
 """
 
 from contact_dynamics.shapes.convex import (

@@ -1,26 +1,30 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Whole tosses: the motion of a body from a state in flight to rest, in one call.
+"""Tosses: the motion of a body from a state in flight to rest, in one call.
 
-`one_toss` is the call, and follows other ways where mechanics does not decide. `simulation` goes from event
-to event: each `flight` in closed form, strikes (`strike`), contact phases (`phase`), and rest. `history`
-keeps what happens, and `result` has what is returned.
+`toss` follows a single motion, and `sampled_toss` the motions of many samples of an uncertain state and
+uncertain parameters (`TossUncertainty`). `Toss` and `TossDistribution` are their results.
 
-- `solid` has the body and the flats in plain floats, and the points that touch. Corners that are very near to
-  each other are one (`distinct_corners`).
-- `strike` has the strikes of one instant, of the `impacts` at one contact, at contacts that have no order,
-  and without restitution, as where contacts jam.
-- `mode_choice` chooses the next contact mode. It tries the present one first, corrects it, seeks pushes in
-  friction cones (`cone_forces`), and asks `contact_modes` where there may be several modes.
-- `forces` has the accelerations in a mode, and keeps contacts where they are, and the body out of the flats.
+The modules of this package are internal. `one_toss` contains the call, and also follows the other branches
+where mechanics does not determine the motion. `simulation` proceeds from event to event: each `flight` in
+closed form, strikes (`strike`), contact phases (`phase`), and rest. `history` records the events, and
+`result` contains the types of the result.
+
+- `solid` contains the body and the planes in plain floats, and the points that touch. Corners that nearly
+  coincide are merged (`distinct_corners`).
+- `strike` resolves the strikes of one instant, with `impacts` at one contact, at contacts without an order,
+  and without restitution if contacts jam.
+- `mode_choice` chooses the next contact mode. It tries and corrects the present one first, searches for
+  forces in friction cones (`cone_forces`), and calls `contact_modes` where several modes may be consistent.
+- `forces` computes the accelerations in a mode, and keeps contacts closed and the body out of the planes.
   `phase` integrates the accelerations until the mode ends.
-- Where strikes and modes lead to one another at one instant, a `short_step` passes over that.
+- If strikes and modes alternate at one instant, a `short_step` continues beyond it.
 
-What is not known exactly (`uncertainty`) is sampled: `sampled` is the call, and `distribution` has what it
-returns. `next_strikes` has the next strikes of samples, and `law_spread` what the law of impact
-leaves open. `to_rest` has samples on their way to rest, each as a toss of its own, which several processes
-can share. `laid_flat` ends their rattling on a face.
+Uncertain inputs (`uncertainty`) are sampled: `sampled` contains the call, and `distribution` its result.
+`next_strikes` computes the next strikes of the samples, and `law_spread` the scatter of the impact law.
+`to_rest` follows samples to rest, each as a toss of its own, in one or several processes. `laid_flat` ends
+their rattling on a face.
 
-The modules with a `.pxd` are parts of the compiled core, which has `vectors` of its own.
+The modules with a `.pxd` file are parts of the compiled core, which has its own `vectors`.
 """
 
 from contact_dynamics.numerics.compiled import import_core

@@ -1,13 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Tumbling (Mason, lecture 25): where a free rigid body will be, at any time, in closed form.
+"""Tumbling (Mason, lecture 25): the motion of a free rigid body at any time, in closed form.
 
-`motion` answers for one body and `many` for many at once. `regime` says what kind of rotation it is. `flips`
-has the flips of a body that spins near its middle axis. `poinsot_construction` is Poinsot's picture: an
-ellipsoid that rolls on a plane.
+`free_motion` returns the motion of one body, and `states_of_many` and `rotations_of_many` those of many
+bodies. `Regime` is the kind of rotation, `next_flips` returns the flips of a body that spins near its middle
+axis, and `poinsot` Poinsot's construction: an ellipsoid that rolls on a plane.
 
-The method: `constants` computes the constants of a rotation from the principal axes (`rigid_body.inertia`)
-and from where it starts on its `polhode`, with `elliptic` integrals. The attitude consists of quotients of
-`theta` functions, which `attitude_form` sets up. `double_double` keeps their phases exact over many turns.
+The modules of this package are internal. `motion` treats one body and `many` many at once. `regime`, `flips`
+and `poinsot_construction` contain the other functions. `constants` computes the constants of a rotation from
+the principal axes (`rigid_body.inertia`) and from its initial point on the `polhode`, with `elliptic`
+integrals. The attitude consists of quotients of `theta` functions, which `attitude_form` sets up.
+`double_double` keeps their phases exact over many turns.
 """
 
 from contact_dynamics.numerics.arithmetic import Precision

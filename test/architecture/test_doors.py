@@ -104,7 +104,10 @@ def test_a_chapter_with_a_function_of_its_name_is_called_as_it() -> None:
             assert inspect.signature(called) == inspect.signature(function)
             gist, more = inspect.getdoc(function).split("\n\n", 1)
             call = f"{chapter}{inspect.signature(function)}".replace("'", "")
-            assert inspect.getdoc(called) == f"{gist}\n\n{call}\n\n{more}", "help shows the call first"
+            help_text, _, others = inspect.getdoc(called).partition(" Other public names are:\n")
+            assert help_text.startswith(f"{gist}\n\n{call}\n\n{more}\n\n"), "help shows the call first"
+            assert "The modules under PACKAGE CONTENTS are internal." in help_text
+            assert others.replace("\n", " ").split(", ") == [n for n in module.__all__ if n != chapter]
             assert sys.modules[f"contact_dynamics.{chapter}"] is called
             with pytest.raises(TypeError, match=r"^(body|problem) must be a "):
                 called(*["no question"] * sum(one.default is one.empty for one in _parameters(function)))
