@@ -12,17 +12,17 @@ from typing import Final
 
 
 class ContactDynamicsError(Exception):
-    """Root of all errors that this project raises on purpose."""
+    """Base class of all errors that this package raises intentionally."""
 
 
 class InvalidFieldError(ContactDynamicsError, ValueError):
-    """A field has a value that is not allowed: NaN, a negative mass, a quaternion that is not unit, ...
+    """A field has an invalid value: NaN, a negative mass, a quaternion that is not a unit quaternion.
 
     Attributes:
-        field: The field.
-        found: The value received.
-        allowed: What the field must be: the words of the message between "must be" and "got".
-        hint: What may be wrong or help, at the end of the message. It may be empty.
+        field: Name of the field.
+        found: Value received.
+        allowed: Allowed values: the part of the message between "must be" and "got".
+        hint: Hint at the end of the message, or an empty string.
     """
 
     def __init__(self, field: str, found: object, allowed: str, hint: str = "") -> None:
@@ -38,23 +38,23 @@ class InvalidFieldError(ContactDynamicsError, ValueError):
 
 
 class WrongTypeError(InvalidFieldError, TypeError):
-    """An argument or a field has another type than its annotation says: a `Body` for a `MassProperties`."""
+    """The type of an argument or a field differs from its annotation."""
 
 
 class UnknownArgumentError(ContactDynamicsError, TypeError):
-    """A call has no argument of that name, or requires another one. The message names what was meant."""
+    """A call has an argument of an unknown name, or lacks a required one. The message suggests a name."""
 
 
 class TooLargeError(InvalidFieldError):
-    """A list is longer than the stated limit."""
+    """A list is longer than its limit, or a computation exceeds a limit on its work."""
 
 
 class OutOfPlaneError(InvalidFieldError):
-    """A planar question is about something that leaves the plane of motion by more than the tolerance."""
+    """A planar problem deviates from its plane of motion by more than the tolerance."""
 
 
 class SeparatingContactError(InvalidFieldError):
-    """An impact was asked for at a contact whose bodies move apart."""
+    """An impact was requested at a contact that separates."""
 
 
 NORMAL_HINT: Final = "does the normal point into the first body?"
@@ -62,11 +62,11 @@ NORMAL_HINT: Final = "does the normal point into the first body?"
 
 
 class NoContactError(ContactDynamicsError):
-    """A question was asked about contacts, but nothing touches or will touch."""
+    """A question requires contacts, but nothing touches or will touch."""
 
 
 class NoShapeError(NoContactError):
-    """The body that was asked about has no shape that could touch anything."""
+    """The body has no shape that could touch anything."""
 
 
 class UnknownBodyError(ContactDynamicsError):
@@ -74,7 +74,7 @@ class UnknownBodyError(ContactDynamicsError):
 
 
 class NoStateError(ContactDynamicsError):
-    """No state of the body is known, or none at the time asked for."""
+    """No state of the body is available, or none at the requested time."""
 
 
 class StaleStateError(ContactDynamicsError):
@@ -82,35 +82,35 @@ class StaleStateError(ContactDynamicsError):
 
 
 class FrameMismatchError(ContactDynamicsError):
-    """A message's frame is not the one expected."""
+    """The frame of a message is not the expected one."""
 
 
 class NotSupportedError(ContactDynamicsError):
-    """The interface can carry the question, but this version does not answer it. The message says what."""
+    """This version does not support a part of the question, which the message names."""
 
 
 class UndecidedError(NotSupportedError):
-    """The answer depends on rounding, because the case is degenerate to the last digits."""
+    """Rounding error prevents a decision, because the case is degenerate up to the last digits."""
 
 
 class BusyError(ContactDynamicsError):
-    """So many questions wait already that another one would wait too long."""
+    """Too many questions are queued."""
 
 
 class TookTooLongError(ContactDynamicsError):
-    """The answer did not come within the time that it was given."""
+    """The answer took longer than its deadline."""
 
 
 class ConcaveShapeWarning(UserWarning):
-    """The corners are those of a concave body. Shapes are convex, and the convex hull is used."""
+    """The corners are those of a concave body. Shapes are convex, so the convex hull is used."""
 
 
 class ImplausibleBodyWarning(UserWarning):
-    """The mass of a body from a file cannot lie inside its shape, as where lengths are in millimetres."""
+    """The mass of a body from a file cannot lie inside its shape, as with lengths in millimetres."""
 
 
 class FarContactWarning(UserWarning):
-    """A contact is farther from a body than its shape reaches: the state or the contact is wrong."""
+    """A contact is beyond the reach of the body's shape: the state or the contact is wrong."""
 
 
 def frames_to_caller() -> int:

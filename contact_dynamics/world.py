@@ -46,24 +46,24 @@ LONGEST_NAME: Final = 256
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class Body(HasMassProperties):
-    """A rigid body with a name and a shape.
+    """Rigid body with a name and a shape.
 
-    `Body.box`, `Body.sphere`, `Body.cylinder`, `Body.capsule` and `Body.from_mesh` make a uniform one, whose
-    mass properties and shape agree. `Body.from_urdf` and `Body.from_sdf` read a link of a file. `Body.of`
+    `Body.box`, `Body.sphere`, `Body.cylinder`, `Body.capsule` and `Body.from_mesh` make uniform bodies, whose
+    mass properties match the shape. `Body.from_urdf` and `Body.from_sdf` read a link of a file. `Body.of`
     takes any distribution of mass, such as measured values or several parts of `inertia`.
 
     Attributes:
-        name: The name by which questions refer to it.
+        name: Name by which questions refer to the body.
         mass_properties: Mass and angular inertia about the centre of mass.
-        p_FB_F: (3,), m, centre of mass in the published frame F. By default it is the origin.
-        vertices_B: (k, 3), m, corners of the shape, body axes. Give them instead of a shape that is the
-            polyhedron of these corners. Corners that show a concave body cause a `ConcaveShapeWarning`.
-        shape: The shape that can touch, body axes.
+        p_FB_F: (3,), m, centre of mass in the published frame F. The default is its origin.
+        vertices_B: (k, 3), m, corners of a polyhedron, body axes, as an alternative to ``shape``. Corners of
+            a concave body cause a `ConcaveShapeWarning`.
+        shape: Shape for contacts, body axes.
 
     Raises:
         InvalidFieldError: a number is not finite, the centre of mass is beyond `LARGEST_NUMBER`, an array has
-            another shape, or both vertices and a shape are given.
-        TooLargeError: more vertices than `MAX_VERTICES`.
+            a wrong shape, or both vertices and a shape are given.
+        TooLargeError: there are more vertices than `MAX_VERTICES`.
     """
 
     name: str
@@ -108,10 +108,10 @@ class Body(HasMassProperties):
     ) -> Body:
         """Return a uniform box of full side lengths (3,), m, with its frame at the centre.
 
-        As for the other bodies, give either ``mass``, kg, or ``density``, kg/m^3. The centre of mass of such
-        a body is at its centre. For another one, or a measured inertia, use ``Body.of(name,
-        MassDistribution(mass=..., p_FB_F=..., I_B=...), shape_F=shapes.box(size))``, and correspondingly for
-        the other shapes.
+        As for the other uniform bodies, either ``mass``, kg, or ``density``, kg/m^3, is required. The centre
+        of mass is at the centre. For another centre of mass or a measured inertia, use
+        ``Body.of(name, MassDistribution(mass=..., p_FB_F=..., I_B=...), shape_F=shapes.box(size))``, and the
+        same with other shapes.
         """
         return cls.of(name, solids.box(size, mass=mass, density=density), shape_F=convex.box(size))
 
@@ -120,7 +120,7 @@ class Body(HasMassProperties):
     def sphere(
         cls, radius: float, mass: float | None = None, *, density: float | None = None, name: str = "sphere"
     ) -> Body:
-        """Return a uniform ball of a radius, m, with its frame at the centre. See also `Body.box`."""
+        """Return a uniform ball of the given radius, m, with its frame at the centre. See also `Body.box`."""
         return cls.of(name, solids.sphere(radius, mass=mass, density=density), shape_F=convex.sphere(radius))
 
     @classmethod
@@ -154,7 +154,7 @@ class Body(HasMassProperties):
     ) -> Body:
         """Return a uniform rod with round ends about z, with its frame at the centre.
 
-        ``length``, m, is between the centres of the two ends. See also `Body.box`.
+        ``length``, m, is the distance between the centres of the two ends. See also `Body.box`.
         """
         solid = solids.capsule(radius, length, mass=mass, density=density)
         return cls.of(name, solid, shape_F=convex.capsule(radius, length))
@@ -171,23 +171,24 @@ class Body(HasMassProperties):
         scale: float = 1.0,
         name: str = "mesh",
     ) -> Body:
-        """Return the uniform solid inside a closed mesh, in whose frame F it is published.
+        """Return the uniform solid inside a closed mesh, with the mesh's frame as its published frame F.
 
-        Its mass properties are those of the mesh. Its shape is the mesh's convex hull, with a
-        `ConcaveShapeWarning` where that differs.
+        The mass properties are those of the mesh. The shape is the convex hull of the mesh, with a
+        `ConcaveShapeWarning` if they differ.
 
         Args:
-            vertices_F: (n, 3), m. Or a file: STL, OBJ, PLY or glTF, which requires trimesh
+            vertices_F: (n, 3), m, or a file: STL, OBJ, PLY or glTF, which requires trimesh
                 (`pip install 'contact-dynamics[mesh]'`).
-            triangles: (m, 3), three indices of vertices each, counter-clockwise seen from outside. None for a
+            triangles: (m, 3), three indices of vertices each, counterclockwise seen from outside. None for a
                 file.
             mass: kg, or None if a density is given.
             density: kg/m^3, or None if a mass is given.
-            scale: The vertices are multiplied by it, as by 0.001 if they are in millimetres.
-            name: The name by which questions refer to it.
+            scale: Factor of the vertices, such as 0.001 if they are in millimetres.
+            name: Name by which questions refer to the body.
 
         Raises:
-            InvalidFieldError: as `inertia.mesh`. Or the file cannot be read, or trimesh is not installed.
+            InvalidFieldError: `inertia.mesh` rejects an argument, the file cannot be read, or trimesh is not
+                installed.
             TooLargeError: there are more vertices than `MAX_VERTICES`.
         """
         if isinstance(vertices_F, (str, Path)):
@@ -207,23 +208,23 @@ class Body(HasMassProperties):
         """Return a link of a URDF with its inertia and its collision shape. Its frame F is that of the link.
 
         The shape is a box, a cylinder, a sphere, a capsule, or the convex hull of a mesh, which requires
-        trimesh. Of several shapes the hull is taken, with a `ConcaveShapeWarning`. Friction and restitution
-        belong to surfaces here, and are not read.
+        trimesh. Several shapes are replaced by their common hull, with a `ConcaveShapeWarning`. Friction and
+        restitution are properties of surfaces in this package, and are not read.
 
         Args:
-            source: A file, or its text, as from ``robot_description``. Files of meshes are looked for beside
-                it, in the folders above, and in a sourced workspace (``package://``).
-            link: The link. It is not needed if only one has a mass.
-            name: The name by which questions refer to the body. By default it is the link's.
+            source: A file, or its text, as from ``robot_description``. Mesh files are searched for beside it,
+                in the parent folders, and in a sourced workspace (``package://``).
+            link: Name of the link. It is optional if only one link has a mass.
+            name: Name by which questions refer to the body. The default is that of the link.
 
         Raises:
             InvalidFieldError: the file cannot be read, it has no such link with a mass, an element is missing
-                or not supported, a number is no number, or no mass has the inertia.
+                or not supported, a number is invalid, or no distribution of mass has the inertia.
             TooLargeError: the shape has too many vertices.
 
         Warns:
-            ImplausibleBodyWarning: the mass cannot lie inside the shape, so that units or placeholders are
-                likely wrong.
+        ImplausibleBodyWarning: the mass cannot lie inside the shape, so units or placeholders are probably
+        wrong.
         """
         from contact_dynamics.shapes.files import body_of_link
 
@@ -246,15 +247,15 @@ class Body(HasMassProperties):
         vertices_F: ArrayLike | None = None,
         shape_F: ConvexShape = NO_SHAPE,
     ) -> Body:
-        """Return the body with a distribution of mass in the published frame F.
+        """Return the body with a given distribution of mass in the published frame F.
 
         Args:
-            name: The name by which questions refer to it.
+            name: Name by which questions refer to the body.
             mass: Mass, centre of mass and inertia, in F.
-            vertices_F: (k, 3), m, corners of its shape in F, instead of ``shape_F``. Their convex hull is
-                taken. Corners that show a concave body cause a `ConcaveShapeWarning`. Give
-                ``shape_F=polyhedron(vertices)`` to take the hull on purpose.
-            shape_F: Its shape in F.
+            vertices_F: (k, 3), m, corners of the shape in F, as an alternative to ``shape_F``. Their convex
+                hull is used. Corners of a concave body cause a `ConcaveShapeWarning`; to use the hull
+                intentionally, pass ``shape_F=polyhedron(vertices)``.
+            shape_F: Shape in F.
 
         Raises:
             InvalidFieldError: the mass is a point or a line, vertices are not finite or not of shape (k, 3),
@@ -279,20 +280,20 @@ class Body(HasMassProperties):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class Surface(Record):
-    """A flat of the world. Its normal points to the free side.
+    """Infinite plane of the world. Its normal points to the free side.
 
     Attributes:
-        name: The name by which contacts refer to it.
+        name: Name by which contacts refer to the surface.
         p_WS_W: (3,), m, a point of the surface, world.
-        normal_W: (3,), unit, into the free side, world axes.
-        friction: Coulomb's mu, >= 0, between this surface and any body.
-        restitution: Coefficient e, in [0, 1], between this surface and any body.
-        lasting_factor: Friction where contact lasts, relative to mu, >= 0. Whole tosses (`toss`) take it:
-            a body may slide on a face with another friction than its corners have when they strike.
+        normal_W: (3,), unit normal towards the free side, world axes.
+        friction: Coefficient of Coulomb friction between this surface and any body, >= 0.
+        restitution: Coefficient of restitution between this surface and any body, in [0, 1].
+        lasting_factor: Factor of the friction coefficient for sustained contact in tosses (`toss`), >= 0: the
+            friction of a sliding face can differ from that of striking corners.
 
     Raises:
-        InvalidFieldError: a number is not finite, the point is beyond `LARGEST_NUMBER`, the normal is not
-            unit, mu or the factor is negative, or e is outside [0, 1].
+        InvalidFieldError: a number is not finite, the point is beyond `LARGEST_NUMBER`, the normal is not a
+            unit vector, the friction or the factor is negative, or the restitution is outside [0, 1].
     """
 
     name: str
@@ -334,15 +335,15 @@ class Surface(Record):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class World(Record):
-    """Bodies by name, surfaces, and gravity.
+    """Bodies, surfaces and gravity.
 
     Attributes:
-        bodies: The bodies, by names that differ.
-        surfaces: Flats without end, and obstacles.
+        bodies: Bodies, with different names.
+        surfaces: Infinite planes, and obstacles.
         gravity_W: (3,), m/s^2, world axes. The default is (0, 0, -9.80665).
 
     Raises:
-        InvalidFieldError: two bodies have one name, or gravity is not three finite numbers.
+        InvalidFieldError: two bodies have the same name, or gravity is not three finite numbers.
     """
 
     bodies: tuple[Body, ...] = ()
@@ -369,7 +370,7 @@ class World(Record):
 
     @checks_types
     def body(self, name: str) -> Body:
-        """Return the body of that name, or raise `UnknownBodyError`, which lists the known names."""
+        """Return the body with this name, or raise `UnknownBodyError`, which lists the known names."""
         for body in self.bodies:
             if body.name == name:
                 return body

@@ -157,7 +157,7 @@ GUESSES: list[tuple[Any, dict[str, Any], str]] = [
     (
         Surface,
         {"name": "floor", "friction": 0.3, "normal_W": (0, 0, 1)},
-        "Surface requires p_WS_W ((3,), m, a point of the surface, world), restitution (Coefficient e, in ",
+        "Surface requires p_WS_W ((3,), m, a point of the surface, world), restitution (Coefficient of ",
     ),
 ]
 """Calls with a guessed name, and how the error begins that names the right one."""

@@ -74,14 +74,14 @@ class PlanarVelocity(Record):
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class PlanarWrench(Record):
-    """Force and moment applied to a planar body, besides those of its contacts.
+    """Force and moment applied to a planar body, without those of its contacts.
 
     Attributes:
         f: Force, N.
         moment: Moment about the centre of mass, N m.
 
     Raises:
-        InvalidFieldError: a number is not finite, or beyond `LARGEST_NUMBER`.
+        InvalidFieldError: a number is not finite, or exceeds `LARGEST_NUMBER`.
     """
 
     f: Vector2
@@ -99,24 +99,27 @@ _FLAT: Final = 0.0
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class PlanarContact(Record):
-    """A contact of a planar body: a point of the body on a flat of the world, or two curved sides.
+    """Contact of a planar body: a point of the body on a plane of the world, or two curved surfaces.
 
-    If a flat of the body touches a corner of the world, give ``body_curvature=0`` and
-    ``surface_curvature=math.inf``. For a disc of radius R on a floor, give ``body_curvature=1 / R``.
-    `contact.curvature` says what curvatures do.
+    If a plane of the body touches a corner of the world, use ``body_curvature=0`` and
+    ``surface_curvature=math.inf``. For a disc of radius R on a floor, use ``body_curvature=1 / R``.
+    `contact.curvature` describes the effect of curvatures.
 
     Attributes:
-        r: Position of the contact from the centre of mass, m.
+        r: Position of the contact relative to the centre of mass, m.
         normal: Unit normal into the body.
-        friction: Coulomb's mu, >= 0.
-        restitution: Coefficient e, in [0, 1], which impacts need and contact modes do not use, or None.
-        body_curvature: Curvature of the body there, 1/m, positive where convex, inf at a corner.
-        surface_curvature: Curvature of the surface there, 1/m, positive where convex, inf at a corner.
+        friction: Coefficient of Coulomb friction, >= 0.
+        restitution: Coefficient of restitution, in [0, 1], or None. Impacts require it; contact modes do not
+            use it.
+        body_curvature: Curvature of the body at the contact, 1/m, positive where convex, infinite at a
+            corner.
+        surface_curvature: Curvature of the surface at the contact, 1/m, positive where convex, infinite at a
+            corner.
 
     Raises:
-        InvalidFieldError: a number is not finite, the normal is not unit, mu < 0, e is outside [0, 1], or the
-            sides do not touch in one point with one normal: the sum of curvatures is <= 0, or both are
-            corners.
+        InvalidFieldError: a number is not finite, the normal is not a unit vector, the friction is negative,
+            the restitution is outside [0, 1], or body and surface do not touch at a single point with one
+            normal: the sum of curvatures is <= 0, or both are corners.
     """
 
     r: Vector2
@@ -145,7 +148,7 @@ class PlanarContact(Record):
 
     @property
     def impact_restitution(self) -> float:
-        """Return e, which an impact needs, or raise `InvalidFieldError` if it is not known."""
+        """Return the coefficient of restitution, or raise `InvalidFieldError` if there is none."""
         return known_restitution(self.restitution)
 
     def _check_curvatures(self) -> None:

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
 
 class HasMassProperties(Record):
-    """What a call takes that needs mass and inertia, but no shape: a `Body`, or its `MassProperties`."""
+    """Argument that provides mass and inertia: a `Body`, or its `MassProperties`."""
 
     __slots__ = ()
     ALLOWED: ClassVar[str] = "a Body or its MassProperties"
@@ -56,8 +56,8 @@ class MassProperties(HasMassProperties):
         I_B: (3, 3), kg m^2, about the centre of mass, in body axes.
 
     Raises:
-        InvalidFieldError: the mass is not > 0, or the inertia is not symmetric or not positive definite, or
-            it has principal moments that no distribution of mass has (I1 + I2 >= I3).
+        InvalidFieldError: the mass is not > 0, or the inertia is not symmetric, not positive definite, or has
+            principal moments that no distribution of mass has (I1 + I2 >= I3 is required).
     """
 
     mass: float
@@ -75,7 +75,7 @@ class MassProperties(HasMassProperties):
 
     @property
     def mass_properties(self) -> MassProperties:
-        """These mass properties, so that calls take them in the place of a `Body`."""
+        """Return these mass properties, so that functions accept them in place of a `Body`."""
         return self
 
     def inertia_in_world(self, R_WB: FloatArray) -> FloatArray:
@@ -93,27 +93,27 @@ class MassProperties(HasMassProperties):
 
     @property
     def mean_radius_of_gyration(self) -> float:
-        """The root mean square of the radii of gyration about three orthogonal axes, m."""
+        """Return the root mean square of the radii of gyration about three orthogonal axes, m."""
         return mean_radius_of_gyration(self.mass, self.I_B)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False, init=False)
 class BodyState(Record):
-    """Where a body is and how it moves at one time.
+    """Pose and velocities of a body at one time.
 
-    The arrays are read-only. ``state.R_WB @ vector`` rotates a vector. Functions that require writable arrays
-    take a copy, such as SciPy's ``Rotation.from_quat(state.q_WB.copy())``.
+    The arrays are read-only. ``state.R_WB @ vector`` rotates a vector. Pass copies to functions that require
+    writable arrays, such as SciPy's ``Rotation.from_quat(state.q_WB.copy())``.
 
     Attributes:
-        p_WB_W: (3,), m, centre of mass in the world.
-        q_WB: (4,), unit quaternion x, y, z, w: body coordinates into world coordinates.
+        p_WB_W: (3,), m, position of the centre of mass, world.
+        q_WB: (4,), unit quaternion x, y, z, w, which transforms body coordinates into world coordinates.
         v_WB_W: (3,), m/s, velocity of the centre of mass, world axes. The default is zero.
         w_WB_W: (3,), rad/s, angular velocity, world axes. The default is zero.
-        stamp_ns: The time of this state, ns, on the caller's clock.
+        stamp_ns: Time of this state, ns, on the caller's clock.
 
     Raises:
-        InvalidFieldError: a number is not finite, the quaternion is not unit, or the stamp is not a whole
-            number. Or the attitude is given in both orders, or in none.
+        InvalidFieldError: a number is not finite, the quaternion is not a unit quaternion, the stamp is not a
+            whole number, or the attitude is given in both orders or in none.
     """
 
     p_WB_W: FloatArray
@@ -132,7 +132,7 @@ class BodyState(Record):
         stamp_ns: int = 0,
         quaternion_wxyz: ArrayLike | None = None,
     ) -> None:
-        """Check all fields, and normalise the quaternion to rounding.
+        """Check all fields, and normalize the quaternion.
 
         Args:
             p_WB_W: As the attribute.
@@ -140,7 +140,7 @@ class BodyState(Record):
             v_WB_W: As the attribute.
             w_WB_W: As the attribute.
             stamp_ns: As the attribute.
-            quaternion_wxyz: (4,), the same as ``q_WB`` in the order w, x, y, z, in its place.
+            quaternion_wxyz: (4,), quaternion in the order w, x, y, z, as an alternative to ``q_WB``.
         """
         if q_WB is not None and quaternion_wxyz is None:
             q = check_unit("q_WB", q_WB, 4)
@@ -157,17 +157,17 @@ class BodyState(Record):
         object.__setattr__(self, "stamp_ns", check_stamp("stamp_ns", stamp_ns))
 
     def with_velocities(self, v_WB_W: ArrayLike, w_WB_W: ArrayLike) -> BodyState:
-        """Return the state of this pose and time with other velocities. Only these are checked again."""
+        """Return the state with the same pose and time and other velocities. Only these are checked."""
         v, w = check_array("v_WB_W", v_WB_W, (3,)), check_array("w_WB_W", w_WB_W, (3,))
         return _checked_state(self.p_WB_W, self.q_WB, v, w, self.stamp_ns)
 
     @property
     def R_WB(self) -> FloatArray:
-        """Rotation matrix, (3, 3), body coordinates into world coordinates."""
+        """Return the rotation matrix, (3, 3), which transforms body coordinates into world coordinates."""
         return rotation_matrix(self.q_WB)
 
     def velocity_of_point(self, p_WP_W: FloatArray) -> FloatArray:
-        """Return the velocities, (..., 3), m/s, world axes, of body points now at ``p_WP_W``: v + w x r."""
+        """Return the velocities, (..., 3), m/s, world axes, of body points at ``p_WP_W``: v + w x r."""
         velocity: FloatArray = self.v_WB_W + (p_WP_W - self.p_WB_W) @ cross_matrix(self.w_WB_W).T
         return velocity
 
@@ -228,7 +228,7 @@ def state_covariance(
 
     Args:
         position: m, >= 0, of the centre of mass.
-        rotation: rad, >= 0, of a small rotation that is applied after the attitude.
+        rotation: rad, >= 0, of a small rotation applied after the attitude.
         velocity: m/s, >= 0, of the centre of mass.
         angular_velocity: rad/s, >= 0.
     """

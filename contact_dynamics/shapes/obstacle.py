@@ -27,18 +27,18 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class Obstacle(Record):
-    """The hull of corners that stand still: a solid, or a plate (a convex polygon) with two sides.
+    """Convex hull of corners at rest: a solid, or a plate (a convex polygon) with two sides.
 
     Attributes:
-        name: The name by which contacts refer to it.
+        name: Name by which contacts refer to the obstacle.
         vertices_W: (k, 3), m, corners in the world.
-        friction: Coulomb's mu, >= 0, between this obstacle and any body.
-        restitution: Coefficient e, in [0, 1], between this obstacle and any body.
-        features: Its faces, edges and corners, which follow from the vertices.
+        friction: Coefficient of Coulomb friction between this obstacle and any body, >= 0.
+        restitution: Coefficient of restitution between this obstacle and any body, in [0, 1].
+        features: Faces, edges and corners, which follow from the vertices.
 
     Raises:
         InvalidFieldError: a number is not finite, a corner is beyond `LARGEST_NUMBER`, all corners are on a
-            line, mu < 0, or e is outside [0, 1].
+            line, the friction is negative, or the restitution is outside [0, 1].
         TooLargeError: there are more than `MAX_VERTICES` corners.
     """
 

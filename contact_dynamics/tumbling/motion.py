@@ -58,12 +58,12 @@ FEW: Final = 16
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class Trajectory(Rows):
-    """A motion at n times. Row i belongs to ``seconds[i]``.
+    """Motion at n times. Row i belongs to ``seconds[i]``.
 
     Attributes:
-        seconds: (n,), s after the stamp of the state that the motion began with.
-        p_WB_W: (n, 3), m, centre of mass in the world.
-        q_WB: (n, 4), unit quaternions x, y, z, w, body to world. Each has the sign nearer to the row before.
+        seconds: (n,), s after the stamp of the initial state.
+        p_WB_W: (n, 3), m, position of the centre of mass, world.
+        q_WB: (n, 4), unit quaternions x, y, z, w, body to world, with continuous signs.
         v_WB_W: (n, 3), m/s, velocity of the centre of mass, world axes.
         w_WB_W: (n, 3), rad/s, angular velocity, world axes.
     """
@@ -80,10 +80,10 @@ class Trajectory(Rows):
 
 
 class Sample(NamedTuple):
-    """A motion at one time, in plain floats: what `BodyState` holds, without the cost of its arrays.
+    """Motion at one time in plain floats: the contents of a `BodyState`, without the cost of arrays.
 
     Attributes:
-        p_WB_W: Position of the centre of mass in the world, m.
+        p_WB_W: Position of the centre of mass, world, m.
         q_WB: Unit quaternion x, y, z, w, body to world.
         v_WB_W: Velocity of the centre of mass, m/s, world axes.
         w_WB_W: Angular velocity, rad/s, world axes.
@@ -107,21 +107,21 @@ class Sample(NamedTuple):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class FreeMotion(Record):
-    """The motion of a body without torque. `free_motion` makes it.
+    """Motion of a body without torque, made by `free_motion`.
 
     Attributes:
         body: Mass and angular inertia.
-        state: The state of the body at time 0.
+        state: State of the body at time 0.
         gravity_W: (3,), m/s^2, world axes.
         frame: Principal moments and axes of the body.
         rotation: Constants of the rotation.
         form: Attitude about L as a function of time.
-        q_WL: Unit quaternion x, y, z, w: axes with z along L into world axes.
-        q_PB: Unit quaternion x, y, z, w: body axes into principal axes.
+        q_WL: Unit quaternion x, y, z, w, which transforms axes with z along L into world axes.
+        q_PB: Unit quaternion x, y, z, w, which transforms body axes into principal axes.
         w_along: Component of the angular velocity along L, rad/s, constant.
         w_across: L (1/I_1 - 1/I_2) and L (1/I_3 - 1/I_2), rad/s.
-        farthest: How far from time 0 times may be, on either side, s.
-        regime: What kind of rotation it is.
+        farthest: Largest distance of times from time 0, in both directions, s.
+        regime: Kind of rotation.
     """
 
     body: MassProperties
@@ -167,8 +167,8 @@ class FreeMotion(Record):
         """Return the body's state at one time, s after the state's stamp.
 
         Raises:
-            InvalidFieldError: the time is not finite, or by then the body has turned more than
-                `constants.MAX_TURNED`.
+            InvalidFieldError: the time is not finite, or the body has turned by more than
+                `constants.MAX_TURNED` by then.
         """
         check_within("seconds", seconds, -self.farthest, self.farthest)
         return self.sample(seconds).as_state(self.state.stamp_ns, seconds)
@@ -177,8 +177,8 @@ class FreeMotion(Record):
         """Return the motion at times (n,), s after the state's stamp, of any sign and in any order.
 
         Raises:
-            InvalidFieldError: the times are not a flat list of finite numbers, or by the farthest of them the
-                body has turned more than `constants.MAX_TURNED`.
+            InvalidFieldError: the times are not a flat list of finite numbers, or the body has turned by more
+                than `constants.MAX_TURNED` by the farthest of them.
         """
         times = check_magnitude("seconds", check_array("seconds", seconds, (None,)), self.farthest)
         if len(times) <= FEW:
@@ -253,16 +253,14 @@ def free_motion(
 ) -> FreeMotion:
     """Return the motion of a body without torque, in uniform gravity, from its state at one time.
 
-    ``free_motion(body, state).at(seconds)`` is the `Trajectory` at many times, ``.state_at(seconds)`` the
-    state at one.
-
-    Gravity is (3,), m/s^2, world axes. The precision is that of the motion's constants: double costs a third
-    of the time, and its errors grow with the angle turned. The constants of the last
-    `constants.REMEMBERED` rotations are kept.
+    ``free_motion(body, state).at(seconds)`` is the `Trajectory` at many times, and ``.state_at(seconds)`` the
+    state at one time. Gravity is (3,), m/s^2, world axes. The precision is that of the motion's constants:
+    double precision takes a third of the time, and its errors grow with the angle turned. The constants of
+    the last `constants.REMEMBERED` rotations are cached.
 
     Raises:
-        InvalidFieldError: gravity is not three finite numbers, or a number is beyond what doubles can square
-            (`LARGEST_NUMBER`).
+        InvalidFieldError: gravity is not three finite numbers, or a number exceeds `LARGEST_NUMBER`, beyond
+            which squares overflow.
     """
     body = body.mass_properties
     gravity = check_array("gravity_W", gravity_W, (3,))
