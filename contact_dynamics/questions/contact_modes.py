@@ -96,40 +96,42 @@ _TAKEN_AS_FLUSH: Final = (
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class ContactModeQuestion(Question["ContactModeAnswer"]):
-    """Which contacts separate, slide or stay, under an applied wrench?
+    """Question about the contact modes of a body under an applied wrench.
 
     Attributes:
-        body: The body, or the name of one of the known world.
-        state: Its state, or a reference to a published one.
-        contacts: The contacts. If it is None, they are found from the body's shape and the known world's
-            surfaces.
-        force_W: (3,), N, applied besides gravity and contact forces, world axes. The default is zero.
-        torque_W: (3,), N m, applied about the centre of mass, world axes. The default is zero.
-        gravity_W: (3,), m/s^2, world axes. If it is None, the known world's gravity acts.
-        problem: Whether to solve the problem in a plane of motion, in space, or in whichever suits.
-        plane: The plane of motion. If it is None, the best fitting plane is found.
-        out_of_plane_tolerance: m/s, >= 0. Motion out of the plane up to this counts as planar. None means the
-            default.
-        velocity_tolerance: m/s, >= 0. A slower contact counts as at rest. None means the default.
-        distance_tolerance: m, >= 0. A body with a smaller gap touches. None means the default.
-        friction_facets: Number of edges, 3 to 32, of the pyramid that stands for a friction cone at rest in
-            space, in margins, statics and wrench sets. None means 8 edges, and 4 in the wrench sets. The
-            modes do not depend on it.
-        margin_length: m, > 0. A torque divided by this length compares with a force in margins and statics.
-            If it is None, the radius of gyration serves.
-        include_margins: Whether the answer says how far the wrench is from another mode.
-        include_wrenches: Whether the answer has the applied wrenches of every kinematically possible mode.
-        include_statics: Whether the static questions are answered too.
-        include_impact: Whether the impact is resolved that settles an inconsistency or an approach.
-        uncertainty: How far the true contacts may be from the contacts. If they are not known exactly, the
-            answer says which verdicts occur.
-        include_geometry_margins: Whether the answer has the distance of the contacts from another verdict or
+        body: The body, or the name of a body of the context's world.
+        state: State of the body, or a reference to a published state.
+        contacts: Contacts. If it is None, they are detected from the body's shape and the surfaces of the
+            context's world.
+        force_W: (3,), N, applied force in addition to gravity and contact forces, world axes. The default is
+            zero.
+        torque_W: (3,), N m, applied torque about the centre of mass, world axes. The default is zero.
+        gravity_W: (3,), m/s^2, world axes. None means the gravity of the context's world.
+        problem: Whether to solve the problem in a plane of motion, in space, or to choose automatically.
+        plane: Plane of motion. If it is None, the plane that fits best is used.
+        out_of_plane_tolerance: m/s, >= 0. Largest motion out of the plane that counts as planar. None means
+            the default.
+        velocity_tolerance: m/s, >= 0. Speed below which a contact counts as at rest. None means the default.
+        distance_tolerance: m, >= 0. Largest gap at which a body counts as touching. None means the default.
+        friction_facets: Number of edges, 3 to 32, of the pyramid that approximates the friction cone of a
+            contact at rest in space, in statics and wrench sets. None means 8 edges, and 4 in wrench sets.
+            Modes, verdicts and margins do not depend on it.
+        margin_length: m, > 0. Length that makes torque comparable with force in margins and statics. None
+            means the radius of gyration.
+        include_margins: Whether the answer contains the margin of each mode.
+        include_wrenches: Whether the answer contains the applied wrenches of every kinematically possible
             mode.
-        include_probabilities: Whether the answer has the probability of each mode by the noise of the state,
-            which must have a covariance.
+        include_statics: Whether the answer contains statics.
+        include_impact: Whether to resolve the impact that follows from an inconsistency or an approach.
+        uncertainty: Errors of the contacts. If they are not exact, the answer lists the verdicts that occur
+            within these errors.
+        include_geometry_margins: Whether the answer contains the errors of the contacts that change the
+            verdict or mode.
+        include_probabilities: Whether the answer contains the probability of each mode under the noise of the
+            state, which must have a covariance.
 
     Raises:
-        InvalidFieldError: a number is out of its range or not finite, or the problem is not a `Problem`.
+        InvalidFieldError: a number is out of range or not finite, or the problem is not a `Problem`.
     """
 
     body: Body | str
@@ -198,50 +200,49 @@ class ContactModeQuestion(Question["ContactModeAnswer"]):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class ContactModeAnswer(Answer):
-    """What the contacts do: the verdict, all consistent modes with their evidence, and what else was asked.
+    """Verdict, all consistent modes with forces and accelerations, and the requested further results.
 
-    All vectors are in world axes, also those of a planar problem. Its modes have no
-    ``tangential_directions_W`` (the letters l and r say which way), its wrench sets no ``sliding_from_W``.
+    All vectors are in world axes, also those of a planar problem. The modes of a planar problem have no
+    ``tangential_directions_W``, because the letters l and r contain the direction, and its wrench sets no
+    ``sliding_from_W``.
 
     Attributes:
-        body_name: The body's name, which may be empty.
-        p_FB_F: (3,), m, its centre of mass in its published frame F.
-        state: The state that the question was answered for.
-        contacts: The contacts.
-        verdict: The verdict on the whole contact set.
-        undecided: What could not be decided, and why. It is empty unless the verdict is UNDECIDED.
+        body_name: Name of the body, which may be empty.
+        p_FB_F: (3,), m, centre of mass in the published frame F.
+        state: State for which the question was answered.
+        contacts: Contacts.
+        verdict: Verdict on all contacts together.
+        undecided: The undecided cases and the reason. Empty unless the verdict is UNDECIDED.
         modes: All consistent modes. In a plane, mirrored contacts share their forces equally.
-        margins: How far the wrench is from leaving each of these modes, in their order, or None if that was
-            not asked for.
-        approaching: The indices of the contacts that approach.
-        contact_velocities_W: (n, 3), m/s, velocities of the body's points. Parts within the tolerance are
-            zero.
-        refused: Modes that are kinematically possible and that mechanics refuses. In space they are listed
-            only with margins.
-        kinematic_modes: Every kinematically possible mode. In space these are strings of s and c alone.
-        wrench_sets: The applied wrenches of each mode, or None if they were not asked for.
-        statics: What holds the body at rest, or None if that was not asked for.
-        undecided_modes: Modes that may be consistent besides those that are listed, or not.
-        within: The verdicts that occur within the uncertainty of the contacts, or None if it has none.
-        geometry_margins: How far the contacts are from another answer, or None if that was not asked for.
-        probabilities: How probable each mode is by the noise of the state, the most probable first, or None
-            if that was not asked for. Those below `LEAST_PROBABILITY` are left out.
-        settled: The impact that settles the case, and the modes after it. It is None if it was not asked for
-            or is not needed.
+        margins: Margin of each mode, in the order of the modes, or None if not requested.
+        approaching: Indices of the approaching contacts.
+        contact_velocities_W: (n, 3), m/s, velocities of the body's contact points. Components within the
+            tolerance are zero.
+        refused: Modes that are kinematically possible but not consistent. In space they are listed only with
+            margins.
+        kinematic_modes: All kinematically possible modes. In space these are strings of s and c only.
+        wrench_sets: Applied wrenches of each mode, or None if not requested.
+        statics: Statics of the body at rest, or None if not requested.
+        undecided_modes: Modes for which it is undecided whether they are consistent.
+        within: Verdicts that occur within the uncertainty of the contacts, or None without an uncertainty.
+        geometry_margins: Errors of the contacts that change the answer, or None if not requested.
+        probabilities: Probability of each mode under the noise of the state, most probable first, or None if
+            not requested. Modes below `LEAST_PROBABILITY` are omitted.
+        settled: Impact that resolves the case, and the modes after it. None if not requested or not needed.
         problem: PLANAR or SPATIAL.
-        plane: The plane of motion, or None in space.
-        out_of_plane: m/s, the largest motion out of the plane, or NaN in space.
-        out_of_plane_reason: What left the plane, if AUTOMATIC became SPATIAL for that reason. It is empty
+        plane: Plane of motion, or None in space.
+        out_of_plane: m/s, largest motion out of the plane, or NaN in space.
+        out_of_plane_reason: Quantity that leaves the plane, if AUTOMATIC chose SPATIAL for that reason. Empty
             otherwise.
-        velocity_tolerance: m/s, the tolerance that was used.
-        acceleration_tolerance: m/s^2, the tolerance that was used, or NaN in space.
-        distance_tolerance: m, the tolerance that was used.
+        velocity_tolerance: m/s, tolerance that was used.
+        acceleration_tolerance: m/s^2, tolerance that was used, or NaN in space.
+        distance_tolerance: m, tolerance that was used.
         friction_facets: Number of edges of each friction pyramid in statics, or zero in the plane.
-        wrench_facets: Number of edges of each friction pyramid in the wrench sets in space, or zero if they
-            were not asked for.
-        warnings: What makes the answer doubtful, in words: a contact outside of the body's shape, contacts
-            that were taken as flush because the verdict is undecided otherwise, margins that are NaN,
-            margins in a plane that was found from the load, or a flush rim that counts as a few points.
+        wrench_facets: Number of edges of each friction pyramid in the wrench sets in space, or zero if not
+            requested.
+        warnings: Texts about limited validity: a contact outside the body's shape, contacts treated as flush
+            because the verdict would otherwise be undecided, margins that are NaN, margins in a plane that
+            was found from the load, or a flush rim that is represented by a few points.
     """
 
     body_name: str

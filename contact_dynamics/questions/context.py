@@ -15,17 +15,17 @@ from contact_dynamics.world import World
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Defaults(Record):
-    """Values for what a question leaves out.
+    """Values for fields that a question leaves out.
 
     Attributes:
-        velocity_tolerance: m/s, >= 0. A contact that is slower counts as at rest.
-        distance_tolerance: m, >= 0. A body with a smaller gap to a surface touches it.
-        out_of_plane_tolerance: m/s, >= 0. Motion out of a plane up to this still counts as planar.
-        horizon: s, >= 0. How far ahead a first contact is sought, and how long a trajectory is.
-        rate: Hz, > 0. Number of samples a second of a trajectory.
+        velocity_tolerance: m/s, >= 0. Speed below which a contact counts as at rest.
+        distance_tolerance: m, >= 0. Gap to a surface below which a body counts as touching.
+        out_of_plane_tolerance: m/s, >= 0. Largest motion out of a plane that counts as planar.
+        horizon: s, >= 0. Look-ahead time for a first contact, and duration of a trajectory.
+        rate: Sample rate of a trajectory, Hz, > 0.
 
     Raises:
-        InvalidFieldError: a number is out of its range or not finite.
+        InvalidFieldError: a number is out of range or not finite.
     """
 
     velocity_tolerance: float = VELOCITY_TOLERANCE
@@ -43,16 +43,15 @@ class Defaults(Record):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class Context(Record):
-    """What is known when a question is asked.
+    """World, published states and defaults with which questions are answered.
 
     Attributes:
-        world: Bodies that questions can name, the surfaces they meet, and gravity.
-        states: The states that were published, by body. A question about the newest one reads them here. By
-            default there are none.
-        defaults: Values for what a question leaves out.
-        now_ns: A function that returns the present time, ns, on the clock of the states' stamps, so that an
-            old state is refused. If it is None or returns None, there is no clock yet, and the newest state
-            counts as fresh.
+        world: Bodies to which questions can refer by name, surfaces, and gravity.
+        states: Published states, by body, for questions about the newest state. By default there are none.
+        defaults: Values for fields that a question leaves out.
+        now_ns: Function that returns the present time, ns, on the clock of the states' stamps, so that old
+            states are rejected. If it is None or returns None, there is no clock, and the newest state is
+            accepted at any age.
     """
 
     world: World = field(default_factory=World)

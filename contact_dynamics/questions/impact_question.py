@@ -38,13 +38,13 @@ class SequenceStrike(Record):
     """One of several strikes in time.
 
     Attributes:
-        seconds: s after the first strike.
+        seconds: Time of the strike, s after the first one.
         contact: Index into the answer's contacts.
-        outcome: What the contact did.
-        p_WC_W: (3,), m, where the contact is then, world.
-        impulse_W: (3,), N s, on the body, world axes.
-        state_before: The body just before.
-        state_after: The body just after.
+        outcome: Motion of the contact during the strike.
+        p_WC_W: (3,), m, position of the contact at that time, world.
+        impulse_W: (3,), N s, impulse on the body, world axes.
+        state_before: State of the body just before the strike.
+        state_after: State of the body just after the strike.
     """
 
     seconds: float
@@ -58,44 +58,44 @@ class SequenceStrike(Record):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class ResolvedImpact(Record):
-    """The result of an impact. Row i of an array belongs to contact i, and vectors are in world axes.
+    """Result of an impact. Row i of an array belongs to contact i, and vectors are in world axes.
 
     Attributes:
-        restitution_law: What the coefficients of restitution meant.
-        several_contacts_law: The law for several contacts of one instant.
-        outcome: What the contact did, or the contact with the largest impulse if there are several. It is
-            None if the law does not say (SIMULTANEOUS).
-        jams: Whether sliding drove that contact into compression although it did not approach.
-        converged: Whether the law came to an end. If not, it reached its bound, and the state is the last
-            one.
-        state: The body just after, with the pose from before and new velocities.
-        other_state: The second body just after, or None if the contact is with the world.
-        impulses_W: (n, 3), N s, on the body.
-        compression_impulses_W: (n, 3), N s, up to the end of compression. It has no rows if the law does not
-            say.
-        velocities_before_W: (n, 3), m/s, of the contact points relative to what they touch, just before.
-        velocities_after_W: (n, 3), m/s, the same just after.
-        path_W: (k, 3), N s, vertices of the impulse path. Several strikes come one after the other, each from
-            the impulse that its contact had before. It has no rows if the law does not say.
-        path_events: (k,), what each vertex stands for.
-        path_contacts: (k,), the contact that each vertex belongs to.
-        kinetic_energy_before: J, of all bodies that move, just before.
-        kinetic_energy_after: J, the same just after.
-        creates_energy: Whether there is more energy after the impact than before, beyond rounding.
-        orders: (m,), the contacts struck, in each admissible order. It is empty if that was not asked for.
+        restitution_law: Law of restitution.
+        several_contacts_law: Law for several contacts.
+        outcome: Motion of the contact, or of the contact with the largest impulse if there are several. None
+            if the law does not define it (SIMULTANEOUS).
+        jams: Whether sliding drove this contact into compression although it did not approach.
+        converged: Whether the law converged. If false, it reached its iteration limit, and the state is the
+            last one.
+        state: State of the body just after the impact: the pose before it, with the new velocities.
+        other_state: State of the second body just after the impact, or None if the contact is with the world.
+        impulses_W: (n, 3), N s, impulses on the body.
+        compression_impulses_W: (n, 3), N s, impulses up to the end of compression. It has no rows if the law
+            does not define them.
+        velocities_before_W: (n, 3), m/s, velocities of the contact points just before the impact, relative to
+            what they touch.
+        velocities_after_W: (n, 3), m/s, the same velocities just after the impact.
+        path_W: (k, 3), N s, vertices of the impulse path. Strikes in sequence are listed one after the other,
+            each from the impulse that its contact had before. It has no rows if the law does not define a
+            path.
+        path_events: (k,), event at each vertex.
+        path_contacts: (k,), index of the contact of each vertex.
+        kinetic_energy_before: J, kinetic energy of all moving bodies just before the impact.
+        kinetic_energy_after: J, the same just after the impact.
+        creates_energy: Whether the energy increased by more than rounding error.
+        orders: (m,), contacts that struck, for each admissible order. Empty if not requested.
         order_velocities_W: (m, 6), m/s and rad/s, linear then angular velocity after each order.
-        orders_complete: Whether every order was tried. It is False if that was not asked for.
-        orders_not_converged: How many orders were left out because they reached the bound on strikes.
-        covariance: (12, 12), of the state just after, in the order of `UncertainState`, or None if that was
-            not asked for.
-        outcome_probabilities: (7,), the probability of each outcome, by its value, or None if that was not
-            asked for.
-        miss_probability: Probability that the contact separates, so that nothing strikes, or NaN if that was
-            not asked for.
-        strikes: Strikes in time, in their order. It is empty if all happened at one instant.
-        end: Why there is no further strike, or None if all happened at one instant.
-        staying: The contacts that stay from then on.
-        limit_seconds: The time from which on they stay, s after the first strike, or None if none stays.
+        orders_complete: Whether every order was tried. False if not requested.
+        orders_not_converged: Number of orders that are omitted because they reached the limit on strikes.
+        covariance: (12, 12), covariance of the state just after the impact, in the order of `UncertainState`,
+            or None if not requested.
+        outcome_probabilities: (7,), probability of each outcome, by its value, or None if not requested.
+        miss_probability: Probability that the contact separates, without an impact, or NaN if not requested.
+        strikes: Strikes in the order of time. Empty if all contacts struck at one instant.
+        end: Reason for which there is no further strike, or None if all contacts struck at one instant.
+        staying: Indices of the contacts that stay closed at the end.
+        limit_seconds: Time from which they stay closed, s after the first strike, or None if none does.
     """
 
     restitution_law: RestitutionLaw
@@ -130,12 +130,12 @@ class ResolvedImpact(Record):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class StruckBody(Record):
-    """The second body of an impact, just before it.
+    """Second body of an impact, just before it.
 
     Attributes:
-        name: The body's name, which may be empty.
-        p_FB_F: (3,), m, its centre of mass in its published frame F.
-        state: Its state just before the impact.
+        name: Name of the body, which may be empty.
+        p_FB_F: (3,), m, centre of mass in the published frame F.
+        state: State just before the impact.
     """
 
     name: str
@@ -145,27 +145,27 @@ class StruckBody(Record):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class ImpactAnswer(Answer):
-    """The impact, and the state and contacts just before it.
+    """Impact, with the state and the contacts just before it.
 
     Attributes:
-        body_name: The body's name, which may be empty.
-        p_FB_F: (3,), m, its centre of mass in its published frame F.
-        state: Its state just before the impact, or before the first of several strikes in time.
-        fit: How well the motion fits the published states that the state was found from, or None without a
-            fit.
-        other: The second body just before, or None if the world is struck. Its state after the impact is in
-            ``impact``.
-        seconds_to_contact: s, from the question's state to the impact. It is zero if the body touches
-            already.
-        contacts: The contacts. For strikes in time, these are the contacts that strike or stay.
-        impact: The result of the impact.
+        body_name: Name of the body, which may be empty.
+        p_FB_F: (3,), m, centre of mass in the published frame F.
+        state: State just before the impact, or before the first of several strikes in time.
+        fit: Quality of the fit to published states, or None without a fit.
+        other: Second body just before the impact, or None if the body strikes the world. Its state after the
+            impact is in ``impact``.
+        seconds_to_contact: Time from the question's state to the impact, s. It is zero if the body already
+            touches.
+        contacts: Contacts of the impact. For strikes in time, these are the contacts that strike or stay
+            closed.
+        impact: Result of the impact.
         problem: PLANAR or SPATIAL.
-        plane: The plane of motion, or None in space.
-        out_of_plane: m/s, the largest motion out of the plane, or NaN in space.
-        velocity_tolerance: m/s, the tolerance that was used.
-        distance_tolerance: m, the tolerance that was used.
-        warnings: What makes the answer doubtful, in words: an order of strikes that mechanics does not
-            decide, a contact outside of the body's shape.
+        plane: Plane of motion, or None in space.
+        out_of_plane: m/s, largest motion out of the plane, or NaN in space.
+        velocity_tolerance: m/s, tolerance that was used.
+        distance_tolerance: m, tolerance that was used.
+        warnings: Texts about limited validity: an order of strikes that mechanics does not determine, or a
+            contact outside the body's shape.
     """
 
     body_name: str
@@ -185,33 +185,33 @@ class ImpactAnswer(Answer):
 
     @property
     def stamp_ns(self) -> int:
-        """The stamp, ns, of the state that the question was about, or 0 without one."""
+        """Return the stamp of the question's state, ns, or 0 without one."""
         stamp_ns = self.state.stamp_ns
         return stamp_ns and ns_after(stamp_ns, -self.seconds_to_contact)
 
     @property
     def predicted_state(self) -> BodyState:
-        """The state just after the impact."""
+        """Return the state just after the impact."""
         return self.impact.state
 
     @property
     def is_after_impact(self) -> bool:
-        """Whether the predicted state is just after an impact, which it is."""
+        """Return whether the predicted state is just after an impact, which is true."""
         return True
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class InTime(Record):
-    """A law for several contacts. They strike one after the other, with free flight in between.
+    """Law for several contacts that strike one after the other, with free flight between them.
 
     Attributes:
-        strike_window: s, > 0. The longest flight after which a strike still belongs to the same landing.
-        max_strikes: How many strikes are resolved at most, >= 1.
-        hold_step: s, > 0. Where a contact stays on its surface, the body goes on in steps of this length
-            until another corner strikes or it leaves. If it is None, the sequence ends there.
+        strike_window: s, > 0. Longest flight between two strikes of one landing.
+        max_strikes: Largest number of strikes, >= 1.
+        hold_step: s, > 0. Time step with which the sequence continues if a contact stays closed, until
+            another corner strikes or the contact separates. If it is None, the sequence ends there.
 
     Raises:
-        InvalidFieldError: a number is out of its range or not finite.
+        InvalidFieldError: a number is out of range or not finite.
     """
 
     strike_window: float = STRIKE_WINDOW
@@ -228,27 +228,29 @@ class InTime(Record):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class ImpactQuestion(Question[ImpactAnswer]):
-    """Which velocities does a body have just after an impact?
+    """Question about the velocities of a body just after an impact.
 
     Attributes:
-        body: The body, or the name of one of the known world.
-        state: Its state, with or without a covariance, or a reference to a published one.
-        other: A second moving body that the first one strikes, or None if it strikes the world.
-        other_state: The second body's state.
-        contacts: The contacts in the given state. If it is None, the body flies on to its first contact with
-            the known world, and the question is about the impact there.
-        horizon: s, >= 0. How far ahead to look for that first contact. None means the default.
-        restitution_law: What the coefficients of restitution mean.
-        several_contacts_law: The law for several contacts, which is one for a single instant, or strikes in
-            time.
+        body: The body, or the name of a body of the context's world.
+        state: State of the body, with or without a covariance, or a reference to a published state.
+        other: Second moving body that the first one strikes, or None if it strikes the world.
+        other_state: State of the second body.
+        contacts: Contacts in the given state. If it is None, the flight to the first contact with the
+            context's world is predicted, and the impact there.
+        horizon: s, >= 0. Look-ahead time for the first contact. None means the default.
+        restitution_law: Law of restitution.
+        several_contacts_law: Law for several contacts, such as those of an edge or a face that lands: at one
+            instant, or `InTime`.
         include_orders: Whether the answer lists the outcomes over the admissible orders of several contacts.
-        include_covariance: Whether the state's covariance is carried through flight and impact.
+        include_covariance: Whether to propagate the state's covariance through flight and impact. The answer
+            contains no standard deviation of the time of impact.
         problem: Whether to solve the problem in a plane of motion or in space.
-        plane: The plane of motion of a planar problem. If it is None, the best fitting plane is found.
-        out_of_plane_tolerance: m/s, >= 0. Motion out of the plane up to this counts as planar. None means the
+        plane: Plane of motion of a planar problem. If it is None, the plane that fits best is used.
+        out_of_plane_tolerance: m/s, >= 0. Largest motion out of the plane that counts as planar. None means
+            the default.
+        velocity_tolerance: m/s, >= 0. Speed of approach up to which a contact does not strike. None means the
             default.
-        velocity_tolerance: m/s, >= 0. A slower approach counts as none. None means the default.
-        distance_tolerance: m, >= 0. A body with a smaller gap touches. None means the default.
+        distance_tolerance: m, >= 0. Largest gap at which a body counts as touching. None means the default.
 
     Raises:
         InvalidFieldError: a number is negative or not finite, or a choice is not a member of its enumeration.

@@ -348,12 +348,12 @@ def ask(question: Question[Answer_co], context: Context | None = None) -> Answer
     """Answer a question, as the service of its kind does.
 
     Args:
-        question: What is asked.
-        context: What is known: bodies by name, surfaces, published states, defaults. If it is None, nothing
-            is known but what the question says.
+        question: The question.
+        context: Bodies by name, surfaces, published states and defaults. If it is None, the question must
+            contain everything.
 
     Raises:
-        ContactDynamicsError: something is asked for that is not known, not allowed or not supported. The
+        ContactDynamicsError: the question refers to something unknown, is invalid, or is not supported. The
             message names it.
     """
     return service_of(question).answer(question, context)  # type: ignore[return-value]  # of this question

@@ -73,23 +73,25 @@ class TossSampling(Record):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class TossQuestion(Question["TossAnswer"]):
-    """Where does a tossed body come to rest, and what happens on the way?
+    """Question about a toss: the motion of a body to rest.
 
     Attributes:
-        body: The body, or the name of one of the known world. Its shape has corners, which may be rounded.
-        state: Its state, with or without a covariance, or a reference to a published one.
-        restitution_law: What the coefficients of restitution mean.
-        several_contacts_law: The law for several contacts that strike at one instant.
-        horizon: s, > 0. How far the motion is followed. None means `constants.HORIZON`.
-        rate: Hz, > 0. Samples of the trajectory a second. None means the default.
-        max_alternatives: How many other ways are followed where mechanics does not decide. None means 0.
-        sampling: What to sample for a distribution, or None for none.
-        lasting_factors: (s,), >= 0, the friction of each known surface where contact lasts, relative to that
-            of its strikes. Without any, those of the sampling's uncertainty hold, and without these those of
-            the surfaces.
+        body: The body, or the name of a body of the context's world. Its shape has corners, which may be
+            rounded.
+        state: State of the body, with or without a covariance, or a reference to a published state.
+        restitution_law: Law of restitution.
+        several_contacts_law: Law for several contacts that strike at one instant.
+        horizon: s, > 0. Duration of the longest motion that is followed. None means `constants.HORIZON`.
+        rate: Sample rate of the trajectory, Hz, > 0. None means the default.
+        max_alternatives: Largest number of other branches to follow where mechanics does not determine the
+            motion. None means 0.
+        sampling: Samples of an uncertain toss, or None for no distribution.
+        lasting_factors: (s,), >= 0, friction of sustained contact with each surface, relative to that of
+            strikes. If it is empty, the factors of the sampling's uncertainty are used, and without these the
+            factors of the surfaces.
 
     Raises:
-        InvalidFieldError: a number is out of its range, a law is not a member of its enumeration, or the
+        InvalidFieldError: a number is out of range, a law is not a member of its enumeration, or the
             sampling's uncertainty has other factors.
     """
 
@@ -147,19 +149,18 @@ class TossPath(Record):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class TossAnswer(Answer):
-    """Where the body comes to rest, and what happens on the way.
+    """Motion of a tossed body to rest.
 
     Attributes:
-        body_name: The body's name, which may be empty.
-        p_FB_F: (3,), m, its centre of mass in its published frame F.
-        state: The question's state. Times count from its stamp.
-        fit: How well the motion fits the published states that the state was found from, or None without a
-            fit.
+        body_name: Name of the body, which may be empty.
+        p_FB_F: (3,), m, centre of mass in the published frame F.
+        state: State of the question. Times are relative to its stamp.
+        fit: Quality of the fit to published states, or None without a fit.
         toss: The toss.
-        alternatives: The ways in which it could go as well, where mechanics does not decide.
-        all_followed: Whether ``alternatives`` has all other ways.
-        distribution: What can happen if state, parameters and impacts are not known exactly, or None if no
-            samples were asked for.
+        alternatives: Tosses that follow other branches, where mechanics does not determine the motion.
+        all_followed: Whether ``alternatives`` contains all other branches.
+        distribution: Distribution of the outcomes under uncertain state, parameters and impacts, or None
+            without samples.
     """
 
     body_name: str
@@ -178,7 +179,7 @@ class TossAnswer(Answer):
 
     @property
     def predicted_motion(self) -> Trajectory:
-        """The motion up to rest."""
+        """Return the motion up to rest."""
         return self.toss.trajectory
 
 

@@ -63,21 +63,22 @@ MAX_CURVE_POINTS: Final = 10_000
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class TumblingQuestion(Question["TumblingAnswer"]):
-    """Where will a body be that nothing touches?
+    """Question about the free motion of a body.
 
     Attributes:
-        body: The body, or the name of one of the known world.
-        state: Its state, with or without a covariance, or a reference to a published one.
-        sampling: The times of the samples. By default they come at the default rate over the default horizon.
-        gravity_W: (3,), m/s^2, world axes. If it is None, the known world's gravity acts.
-        wrench: A constant wrench that acts besides gravity.
+        body: The body, or the name of a body of the context's world.
+        state: State of the body, with or without a covariance, or a reference to a published state.
+        sampling: Times of the samples. The default is the default sample rate over the default horizon.
+        gravity_W: (3,), m/s^2, world axes. None means the gravity of the context's world.
+        wrench: Constant wrench in addition to gravity.
         drag: Drag in still air.
-        include_covariance: Whether the answer has the state's covariance at each sample.
+        include_covariance: Whether the answer contains the state's covariance at each sample. It contains no
+            standard deviation of the time of an event.
         curve_points: Number of points of polhode and herpolhode in the answer, at most `MAX_CURVE_POINTS`.
 
     Raises:
         InvalidFieldError: gravity is not three finite numbers.
-        TooLargeError: too many points of the curves.
+        TooLargeError: the number of points of the curves is too large.
     """
 
     body: Body | str
@@ -117,22 +118,22 @@ class TumblingQuestion(Question["TumblingAnswer"]):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class TumblingAnswer(Answer):
-    """Where the body will be, and what is known of its rotation.
+    """Predicted motion of a free body, and properties of its rotation.
 
     Attributes:
-        body_name: The body's name, which may be empty.
-        p_FB_F: (3,), m, its centre of mass in its published frame F.
-        state: The question's state. Times count from its stamp.
-        fit: How well the motion fits the published states that the state was found from, or None without a
-            fit.
-        trajectory: The centre of mass, the orientation and the velocities at the times asked for.
-        covariance: The state's covariance at these times, or None if it was not asked for.
+        body_name: Name of the body, which may be empty.
+        p_FB_F: (3,), m, centre of mass in the published frame F.
+        state: State of the question. Times are relative to its stamp.
+        fit: Quality of the fit to published states, or None without a fit.
+        trajectory: Position of the centre of mass, orientation and velocities at the requested times.
+        covariance: Covariance of the state at these times, or None if not requested.
         method: Whether the motion is exact or integrated.
-        event: What ended the trajectory, or None if all samples that were asked for are there.
-        poinsot: Poinsot's picture of the rotation, or None if a torque acts, so that it does not apply.
-        flips: The next flips of the middle axis, or None if a torque acts.
-        curves: Polhode and herpolhode, or None if they were not asked for or a torque acts.
-        warnings: The flat surfaces that the body would be in at some of the times, since nothing stops it.
+        event: Event that ended the trajectory, or None if it contains all requested samples.
+        poinsot: Poinsot's construction of the rotation, or None if a torque acts.
+        flips: Next flips of the middle axis, or None if a torque acts.
+        curves: Polhode and herpolhode, or None if not requested or if a torque acts.
+        warnings: Planes that the body would penetrate at some of the times, since the motion is not stopped
+            by contacts.
     """
 
     body_name: str
@@ -150,15 +151,15 @@ class TumblingAnswer(Answer):
 
     @property
     def predicted_motion(self) -> Trajectory:
-        """The motion at the times asked for."""
+        """Return the motion at the requested times."""
         return self.trajectory
 
 
 def answer(question: TumblingQuestion, context: Context | None = None) -> TumblingAnswer:
-    """Answer a question about tumbling. Without ``context`` no body is known by name, and no surface.
+    """Answer a question about tumbling. Without ``context``, no named bodies and no surfaces exist.
 
     Raises:
-        ContactDynamicsError: something is asked for that is not known or not allowed. The message names it.
+        ContactDynamicsError: the question refers to something unknown, or is invalid. The message names it.
     """
     known = Context() if context is None else context
     forces = _Forces(

@@ -19,13 +19,13 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class UncertainState(Record):
-    """A state and how uncertain it is.
+    """State with a covariance.
 
     Attributes:
         state: The state.
-        covariance: (12, 12), in the order position of the centre of mass (m), rotation vector (rad, world
-            axes, a small rotation applied after the orientation), linear velocity (m/s), angular velocity
-            (rad/s).
+        covariance: (12, 12), of position of the centre of mass (m), rotation vector (rad, world axes, a small
+            rotation applied after the orientation), linear velocity (m/s) and angular velocity (rad/s), in
+            this order.
 
     Raises:
         InvalidFieldError: the matrix is not a covariance (`check_covariance`).
@@ -45,7 +45,7 @@ class UncertainState(Record):
 
     @property
     def stamp_ns(self) -> int:
-        """Time of the state, ns."""
+        """Return the time of the state, ns."""
         return self.state.stamp_ns
 
 
