@@ -65,17 +65,19 @@ def _distinct(vertices: FloatArray) -> FloatArray:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class ConvexShape(Record):
-    """The convex hull of points and circles, rolled over by a ball. Without points and circles it is empty.
+    """Convex hull of points and circles, rounded by a ball that rolls over it.
+
+    Without points and circles it is empty.
 
     Attributes:
-        vertices: (k, 3), m, corners in body axes. One that is given again, as in the triangles of a mesh,
-            stands where it was given first, and only there.
+        vertices: (k, 3), m, corners in body axes. Repeated corners, as in the triangles of a mesh, are stored
+            once, at their first position.
         rims: Circles in body axes.
-        rounding: The ball's radius, m, >= 0.
+        rounding: Radius of the ball, m, >= 0.
 
     Raises:
         InvalidFieldError: a number is not finite or beyond `LARGEST_NUMBER`, a radius is negative, or an axis
-            is not unit.
+            is not a unit vector.
         TooLargeError: there are more than `MAX_VERTICES` vertices or `MAX_RIMS` rims.
     """
 
@@ -103,12 +105,12 @@ class ConvexShape(Record):
 
     @property
     def is_empty(self) -> bool:
-        """Whether there is nothing that could touch."""
+        """Return whether the shape has no points and circles."""
         return len(self.vertices) == 0 and not self.rims
 
     @property
     def is_polyhedron(self) -> bool:
-        """Whether corners are all that can touch."""
+        """Return whether only corners can touch."""
         return not self.rims and self.rounding == 0.0
 
     def moved(self, offset: ArrayLike, q: ArrayLike = (0.0, 0.0, 0.0, 1.0)) -> ConvexShape:
@@ -136,7 +138,7 @@ NO_SHAPE: Final = ConvexShape()
 def polyhedron(vertices: ArrayLike) -> ConvexShape:
     """Return the hull of corners, (k, 3), m. They may lie in a plane (a plate) or on a line (a rod).
 
-    Points inside it are allowed: this is how to take the hull of a concave body on purpose.
+    Points inside the hull are allowed, so this function returns the hull of a concave body.
     """
     return ConvexShape(vertices=np.asarray(vertices))
 
@@ -165,7 +167,7 @@ def sphere(radius: float) -> ConvexShape:
 
 
 def capsule(radius: float, length: float) -> ConvexShape:
-    """Return a rod with round ends, about z. ``length``, m, >= 0, is between the centres of its two balls."""
+    """Return a rod with round ends, about z. ``length``, m, >= 0, is the distance of the two centres."""
     half = 0.5 * check_within("length", length, 0.0, LARGEST_NUMBER)
     return ConvexShape(
         vertices=np.array([[0.0, 0.0, -half], [0.0, 0.0, half]]), rounding=_positive("radius", radius)
@@ -186,7 +188,7 @@ def cone(radius: float, height: float) -> ConvexShape:
 
 
 def rounded(shape: ConvexShape, radius: float) -> ConvexShape:
-    """Return a shape with a ball of ``radius``, m, >= 0, rolled over it. It grows by that on all sides."""
+    """Return the shape rounded by a ball of ``radius``, m, >= 0, which enlarges it by this on all sides."""
     return replace(shape, rounding=shape.rounding + check_within("radius", radius, 0.0, LARGEST_NUMBER))
 
 

@@ -44,11 +44,11 @@ DRAWS: Final = 500
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class Flips(Record):
-    """The next flips of a body.
+    """Next flips of a body.
 
     Attributes:
-        seconds: (n,), s after the state's stamp, ascending. It is empty if there are none.
-        deviations: (n,), s, standard deviation of each time, or NaN if the state's covariance is not known.
+        seconds: (n,), times of the flips, s after the state's stamp, ascending. Empty if there are none.
+        deviations: (n,), s, standard deviation of each time, or NaN if the state has no covariance.
     """
 
     seconds: FloatArray
@@ -60,12 +60,12 @@ MAX_FLIPS: Final = 10_000
 
 
 def next_flips(motion: FreeMotion, count: int, *, covariance: ArrayLike | None = None) -> Flips:
-    """Return the next ``count`` flips, or fewer: one on the separatrix, none where the body does not flip.
+    """Return the next ``count`` flips, or fewer: one on the separatrix, and none if the body does not flip.
 
-    The covariance is (12, 12), of the state in the order position, rotation vector (rad, world axes, applied
-    after the attitude), linear and angular velocity. Flip times depend on the logarithm of the distance to
-    the separatrix, so the deviations are not linearised: they are those of `DRAWS` pairs of motions, always
-    the same pairs, around the given one.
+    The covariance is (12, 12), of position, rotation vector (rad, world axes, applied after the attitude),
+    linear and angular velocity. Flip times depend on the logarithm of the distance to the separatrix, so the
+    deviations are not linearized: they are those of `DRAWS` pairs of motions, always the same pairs, around
+    the given one.
 
     Raises:
         InvalidFieldError: the count is not a whole number from 0 to `MAX_FLIPS`, or the matrix is not a

@@ -55,23 +55,23 @@ def states_of_many(
     seconds: ArrayLike,
     gravity_W: ArrayLike = STANDARD_GRAVITY_W,
 ) -> Trajectory:
-    """Return where n bodies are, each from its own state at its own time: row i is body i.
+    """Return the states of n bodies, each from its own initial state at its own time: row i is body i.
 
-    Principal axes are found in doubles. If I_B is oblique, rounding its entries changes a needle's small
-    moment by 1e-16 of the large one.
+    Principal axes are computed in double precision. If I_B is not diagonal, rounding its entries changes the
+    small moment of a needle by 1e-16 of the large one.
 
     Args:
         I_B: (3, 3) for all bodies, or (n, 3, 3), kg m^2, about the centre of mass, body axes.
-        p_WB_W: (n, 3), m, centres of mass in the world.
+        p_WB_W: (n, 3), m, positions of the centres of mass, world.
         q_WB: (n, 4), unit quaternions x, y, z, w, body to world.
-        v_WB_W: (n, 3), m/s, of the centres of mass, world axes.
-        w_WB_W: (n, 3), rad/s, world axes.
-        seconds: (n,), or one number for all, s, of either sign.
+        v_WB_W: (n, 3), m/s, velocities of the centres of mass, world axes.
+        w_WB_W: (n, 3), rad/s, angular velocities, world axes.
+        seconds: (n,), or one number for all bodies, s, of either sign.
         gravity_W: (3,) for all bodies, or (n, 3), m/s^2, world axes.
 
     Raises:
-        InvalidFieldError: an array of another shape, a number that is not finite, a quaternion that is not
-            unit, an inertia that is not symmetric and positive definite.
+        InvalidFieldError: an array has a wrong shape, a number is not finite, a quaternion is not a unit
+            quaternion, or an inertia is not symmetric and positive definite.
     """
     start = _start(I_B, p_WB_W=p_WB_W, q_WB=q_WB, v_WB_W=v_WB_W, w_WB_W=w_WB_W, gravity_W=gravity_W)
     n = len(start.p)
@@ -194,17 +194,18 @@ def _principal(I_B: FloatArray) -> tuple[FloatArray, FloatArray]:
 def rotations_of_many(
     moments: ArrayLike, w_P: ArrayLike, seconds: ArrayLike
 ) -> tuple[FloatArray, FloatArray]:
-    """Return how bodies turn in given times: quaternions (n, 4), and angular velocities (n, 3) then, rad/s.
+    """Return the rotations of bodies: quaternions (n, 4), and angular velocities (n, 3), rad/s.
 
-    All in each body's principal axes P: the quaternion, x y z w, takes P as it is then into P at time 0.
+    All are in each body's principal axes P: the quaternion, x y z w, transforms P at that time into P at time
+    0.
 
     Args:
         moments: (3,) for all bodies, or (n, 3), kg m^2, principal moments in any order.
         w_P: (n, 3), rad/s, angular velocities at time 0, in right-handed principal axes in that order.
-        seconds: (n,), or one number for all, s.
+        seconds: (n,), or one number for all bodies, s.
 
     Raises:
-        InvalidFieldError: an array of another shape, a number that is not finite, a moment that is not > 0.
+        InvalidFieldError: an array has a wrong shape, a number is not finite, or a moment is not > 0.
     """
     w, given = _checked(moments, w_P)
     n = len(w)
@@ -218,10 +219,10 @@ def rotations_of_many(
 
 
 def flips_of_many(moments: ArrayLike, w_P: ArrayLike) -> tuple[FloatArray, FloatArray]:
-    """Return the times, s, (n,), of one flip of each body, and the times from flip to flip, (n,).
+    """Return the time, s, (n,), of one flip of each body, and the times between flips, (n,).
 
-    Every zero of the component along the middle axis counts as a flip here, whatever the rotation. Steady
-    spin has no flips, and its times are NaN. Arguments and errors are those of `rotations_of_many`.
+    Every zero of the component along the middle axis counts as a flip, in any regime. Steady spin has no
+    flips, and its times are NaN. Arguments and errors are those of `rotations_of_many`.
     """
     w, given = _checked(moments, w_P)
     with np.errstate(**_IN_STEADY_SPIN):

@@ -42,20 +42,22 @@ CONSTANT_RATE: Final = (Regime.AT_REST, Regime.SPHERICAL, Regime.PRINCIPAL_AXIS)
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class Poinsot(Record):
-    """The constants of a free rotation.
+    """Constants of a free rotation in Poinsot's construction.
 
     Attributes:
-        regime: What the rotation is called.
+        regime: Kind of rotation.
         rotational_energy: T, J.
         L_W: (3,), kg m^2/s, angular momentum, world axes: the normal of the invariable plane.
         invariable_plane_distance: rad/s, 2 T / |L|, or NaN at rest.
-        polhode_period: s. It is inf on the separatrix, and NaN where the angular velocity is constant.
+        polhode_period: s. It is infinite on the separatrix, and NaN if the angular velocity is constant.
         precession_per_period: Turn about L in one period, rad, or NaN without a period.
         principal_moments: (3,), kg m^2, ascending.
-        principal_axes_B: (3, 3), whose columns are their axes in body coordinates (`inertia.principal_axes`).
-        ellipsoid_semi_axes: (3,), rad/s, of the energy ellipsoid, along those axes: sqrt(2 T / I).
-        sensitivity: Attitude error for each rad turned and each unit of relative error of the rate, or NaN at
-            rest.
+        principal_axes_B: (3, 3), whose columns are the principal axes in body coordinates
+            (`inertia.principal_axes`).
+        ellipsoid_semi_axes: (3,), rad/s, semi-axes of the energy ellipsoid along the principal axes: sqrt(2 T
+            / I).
+        sensitivity: Attitude error per rad of rotation and per unit of relative error of the angular
+            velocity, or NaN at rest.
     """
 
     regime: Regime
@@ -77,7 +79,7 @@ class Poinsot(Record):
 
 
 def poinsot(motion: FreeMotion) -> Poinsot:
-    """Return Poinsot's picture of a free motion."""
+    """Return Poinsot's construction of a free motion."""
     rotation = motion.rotation
     L_W = angular_momentum(motion.body, motion.state)
     twice_energy = motion.w_along * math.hypot(*L_W.tolist())
@@ -178,12 +180,12 @@ MAX_POINTS: Final = 1_000_000
 class RollingCurves(Rows):
     """Polhode and herpolhode, which roll on each other. They touch in row i of both at ``seconds[i]``.
 
-    Arcs of the two between the same rows have equal length.
+    Arcs of the two curves between the same rows have equal length.
 
     Attributes:
-        seconds: (n,), s after the state's stamp, ascending. All are 0 if nothing moves.
+        seconds: (n,), s after the state's stamp, ascending. All are 0 if the body does not rotate.
         polhode_B: (n, 3), rad/s, angular velocity in body axes.
-        herpolhode_W: (n, 3), rad/s, the same in world axes, in the invariable plane.
+        herpolhode_W: (n, 3), rad/s, angular velocity in world axes, in the invariable plane.
     """
 
     seconds: FloatArray
@@ -192,15 +194,15 @@ class RollingCurves(Rows):
 
 
 def rolling_curves(motion: FreeMotion, count: int) -> RollingCurves:
-    """Return ``count`` points of the polhode, the times when the motion passes them, and the herpolhode then.
+    """Return ``count`` points of polhode and herpolhode, with the times at which the motion passes them.
 
-    They go once around the polhode, through the period that contains time 0. `polhode` says what it returns
-    where there is no period.
+    They go once around the polhode, over the period that contains time 0. `polhode` describes the result if
+    there is no period.
 
     Raises:
         TooLargeError: there are more than `MAX_POINTS` points.
-        InvalidFieldError: ``count`` is not a whole number >= 1, or the period is so long that doubles do not
-            tell turns apart in it, as it may be in bodies whose moments differ by their last digits.
+        InvalidFieldError: ``count`` is not a whole number >= 1, or the period is so long that double
+            precision does not distinguish turns in it, as for bodies whose moments differ in the last digits.
     """
     if check_whole("count", count, 1) > MAX_POINTS:
         raise TooLargeError("count", count, f"at most {MAX_POINTS}")

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class Regime(NamedInt):
-    """A name of a rotation for people. The formulas do not use it, and hold between the regimes as well."""
+    """Kind of rotation, as a label. The formulas do not use it, and are also valid between the regimes."""
 
     UNKNOWN = 0  # a torque acts: Poinsot's picture does not apply
     AT_REST = 1  # no rotation

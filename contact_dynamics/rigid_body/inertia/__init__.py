@@ -1,13 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Particles, shapes and meshes have mass properties, sums and principal axes (Mason, lectures 24 and 25).
+"""Mass properties of particles, solids and meshes, and principal axes (Mason, lectures 24 and 25).
 
-`from contact_dynamics import inertia`, then for a hammer: ``inertia.combined([inertia.cylinder(...),
-inertia.box(...).placed(p_GF_G=...)])``; `Body.of` makes a body of it for a `World`.
+For a hammer: `from contact_dynamics import inertia`, then
+``inertia.combined([inertia.cylinder(...), inertia.box(...).placed(p_GF_G=...)])``; `Body.of` makes a body of
+the result for a `World`.
 
-`distribution` is what all shapes become, and `composition` makes one of particles or of several parts. Mass
-properties come from `solids`, `sheets_and_wires` (each of a `mass_or_density`), or a `triangle_mesh`, which
-is checked by `closed_surface` and integrated by `polyhedron_integrals`. `axes_of_inertia`
-has principal axes and the inertia ellipsoid, `principal_frame` the same in extended precision.
+All functions return a `distribution` of mass, and `composition` makes one of particles or of several parts.
+Mass properties are those of `solids`, `sheets_and_wires` (each with a `mass_or_density`), or a
+`triangle_mesh`, which is checked by `closed_surface` and integrated by `polyhedron_integrals`.
+`axes_of_inertia` contains principal axes and the inertia ellipsoid, and `principal_frame` the same in
+extended precision.
 """
 
 from contact_dynamics.rigid_body.inertia.axes_of_inertia import (

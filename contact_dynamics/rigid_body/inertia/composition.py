@@ -25,8 +25,8 @@ if TYPE_CHECKING:
 def combined(parts: Iterable[MassDistribution]) -> MassDistribution:
     """Return all parts as one rigid mass.
 
-    All parts are given in the same frame F; `MassDistribution.placed` brings them there. Where parts overlap,
-    the mass counts twice.
+    All parts are in the same frame F; `MassDistribution.placed` converts them to it. If parts overlap, the
+    mass of the overlap counts twice.
 
     Raises:
         InvalidFieldError: there is no part.
@@ -47,11 +47,11 @@ def combined(parts: Iterable[MassDistribution]) -> MassDistribution:
 
 
 def without(whole: MassDistribution, part: MassDistribution) -> MassDistribution:
-    """Return what is left of ``whole`` when ``part``, in the same frame F, is taken out of it, as a bore is.
+    """Return ``whole`` without ``part``, such as a bore, in the same frame F.
 
     Raises:
-        InvalidFieldError: the part is not lighter than the whole, or no mass can have the inertia that is
-            left, because the part does not lie within the whole.
+        InvalidFieldError: the part is not lighter than the whole, or no mass has the remaining inertia,
+            because the part is not inside the whole.
     """
     mass = whole.mass - part.mass
     if mass <= 0.0:
@@ -76,11 +76,11 @@ def particles(masses: ArrayLike, p_FP_F: ArrayLike) -> MassDistribution:
 
     Args:
         masses: (n,), kg, >= 0 and not all zero.
-        p_FP_F: (n, 3), m, their places in F.
+        p_FP_F: (n, 3), m, positions in F.
 
     Raises:
-        InvalidFieldError: a mass is negative or all are zero, a number is not finite or beyond 1e60, the
-            lengths differ.
+        InvalidFieldError: a mass is negative, all masses are zero, a number is not finite or exceeds 1e60, or
+            the lengths differ.
     """
     m = check_magnitude("masses", check_array("masses", masses, (None,)))
     points = check_magnitude("p_FP_F", check_array("p_FP_F", p_FP_F, (len(m), 3)))

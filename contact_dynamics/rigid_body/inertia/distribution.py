@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class MassDistribution(Record):
-    """A rigid distribution of mass in a frame F.
+    """Rigid distribution of mass in a frame F.
 
     Attributes:
         mass: kg, > 0.
@@ -44,7 +44,8 @@ class MassDistribution(Record):
 
     Raises:
         InvalidFieldError: the mass is not > 0, a number is not finite, the centre is beyond `LARGEST_NUMBER`,
-            or no mass has the inertia: it is not symmetric, or its principal moments break I1 + I2 >= I3.
+            or no distribution of mass has the inertia: it is not symmetric, or its principal moments violate
+            I1 + I2 >= I3.
     """
 
     mass: float
@@ -128,7 +129,7 @@ class MassDistribution(Record):
         return MassDistribution(mass=self.mass, p_FB_F=M @ self.p_FB_F, I_B=_symmetric(M @ self.I_B @ M.T))
 
     def with_mass(self, mass: float) -> MassDistribution:
-        """Return the same shape with another mass, kg, for example the mass that a scale shows."""
+        """Return the same shape with another mass, kg, such as a measured one."""
         mass = check_size("mass", mass)
         return MassDistribution(mass=mass, p_FB_F=self.p_FB_F, I_B=self.I_B * (mass / self.mass))
 

@@ -41,18 +41,19 @@ def mesh(
 ) -> MassDistribution:
     """Return the solid inside a closed triangle mesh.
 
-    Several parts and cavities are allowed, and so are flat triangles and repeated vertices.
+    Several parts, cavities, degenerate triangles and repeated vertices are allowed.
 
     Args:
         p_FV_F: (n, 3), m, vertices in F.
-        triangles: (m, 3), whole numbers: three vertices each, counter-clockwise seen from outside.
+        triangles: (m, 3), whole numbers: three vertices each, counterclockwise seen from outside.
         mass: kg, or None if a density is given.
         density: kg/m^3, or None if a mass is given.
 
     Raises:
-        InvalidFieldError: the mesh is open, has edges of more than two triangles, is not wound one way, is
-            inside out or flat, or has a part within a solid: the message names the edge, triangle or volume.
-            Or a number is not finite, an index names no vertex, not exactly one of mass and density is given.
+        InvalidFieldError: the mesh is open, has edges of more than two triangles, has inconsistent windings,
+            is inside out or flat, or has a part within a solid (the message names the edge, triangle or
+            volume); a number is not finite, an index refers to no vertex, or not exactly one of mass and
+            density is given.
     """
     vertices = check_magnitude("p_FV_F", check_array("p_FV_F", p_FV_F, (None, 3)))
     surface = closed_surface(vertices, triangles)
