@@ -18,8 +18,9 @@ the docstring of each chapter describes its contents. The library requires NumPy
 - `contact_modes`: whether each contact separates, slides or sticks (lecture 26). Make a
   `PlanarContactProblem` or a `SpatialContactProblem`, and pass it to ``contact_modes(problem)``,
   `mode_margins`, `statics` or `largest_load`.
-- `impact`: velocities after an impact (lecture 27): at one contact (`planar_impact`, `spatial_impact`), at
-  several contacts at one instant (`several_impact`) or one after the other in time (`impact_sequence`).
+- `impact`: velocities after an impact (lecture 27): at one contact (`planar_impact`, `spatial_impact`), of a
+  mechanism such as a robot arm (`response_impact`), at several contacts at one instant (`several_impact`) or
+  one after the other in time (`impact_sequence`).
 - `toss`: the motion of a body from an initial state to rest: ``toss(body, state, world)``, and `sampled_toss`
   for uncertain inputs.
 - `questions`: the requests and responses of the ROS services as Python objects: one question with all its
@@ -61,6 +62,7 @@ if TYPE_CHECKING:  # the same as `_HOMES`
         RestitutionLaw,
         impact_sequence,
         planar_impact,
+        response_impact,
         several_impact,
         spatial_impact,
     )
@@ -84,7 +86,14 @@ _HOMES: Final = {
         "statics",
     ),
     "errors": ("ContactDynamicsError",),
-    "impact": ("RestitutionLaw", "impact_sequence", "planar_impact", "several_impact", "spatial_impact"),
+    "impact": (
+        "RestitutionLaw",
+        "impact_sequence",
+        "planar_impact",
+        "response_impact",
+        "several_impact",
+        "spatial_impact",
+    ),
     "landing": ("next_landing",),
     "motion": ("motion_of",),
     "plane": ("PlanarBody", "PlanarContact", "PlanarVelocity", "PlanarWrench"),
@@ -158,6 +167,7 @@ __all__ = [
     "planar_impact",
     "plane",
     "questions",
+    "response_impact",
     "rigid_body",
     "sampled_toss",
     "several_impact",

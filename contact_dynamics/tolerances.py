@@ -515,6 +515,10 @@ LARGEST_ARM: Final = 1e7
 of mass is refused in an impact. Its responses to impulses in different directions differ by the square of
 this, which leaves doubles two digits."""
 
+SINGULAR_RESPONSE: Final = 1e-11
+"""Relative to the largest response of a mechanism along a contact axis. A smaller one counts as none. The
+rounding of J M^-1 J^T is about 1e-12 for a mass matrix with a condition number of 1e4."""
+
 STRAIGHT: Final = 4e-15
 """Relative to the sliding law's scale. A direction that repels its neighbours counts as invariant if it turns
 more slowly at first. It then turns by the rounding of contact axes and inertia, which it would amplify."""

@@ -80,6 +80,8 @@ CALLS: dict[str, Callable[..., Any]] = {
         PLANAR_BODY, FALLING, [CONTACT], **law
     ),
     "spatial_impact": lambda **law: impact.spatial_impact(BODY, STATE, AT, **law),
+    "response_impact": lambda **law: impact.response_impact(np.eye(3), [0.3, 0.0, -1.0], AT, **law),
+    "response_impacts": lambda **law: impact.response_impacts(np.eye(3), [0.3, 0.0, -1.0], **TABLE, **law),
     "spatial_pair_impact": lambda **law: impact.spatial_pair_impact(BODY, STATE, BODY, RESTING, AT, **law),
     "spatial_impacts": lambda **law: impact.spatial_impacts(STRIKING, **TABLE, **law),
     "spatial_impact_distribution": lambda **law: impact.spatial_impact_distribution(
@@ -116,10 +118,11 @@ CHOICES = [
     *[
         (name, "restitution_law", RestitutionLaw)
         for name in CALLS
-        if name in {"spatial_impact", "spatial_pair_impact"}
+        if name in {"response_impact", "spatial_impact", "spatial_pair_impact"}
     ],
     ("spatial_impact_distribution", "restitution_law", RestitutionLaw),
     ("spatial_impacts", "restitution_laws", RestitutionLaw),
+    ("response_impacts", "restitution_laws", RestitutionLaw),
     *[
         (name, "several_contacts_law", SeveralContactsLaw)
         for name in ("several_impact", "planar_several_impact", "bodies_impact")
@@ -153,7 +156,11 @@ def public_choices() -> set[tuple[str, str]]:
 
 
 def test_no_argument_is_forgotten() -> None:
-    arrays_and_fields = {("spatial_impacts", "restitution_laws"), ("ConstantWrench", "axes")}
+    arrays_and_fields = {
+        ("spatial_impacts", "restitution_laws"),
+        ("response_impacts", "restitution_laws"),
+        ("ConstantWrench", "axes"),
+    }
     assert public_choices() == {(name, argument) for name, argument, _ in CHOICES} - arrays_and_fields
 
 

@@ -109,11 +109,14 @@ ALIASES = {
     "torque_W": ("applied torque",),
     "w": ("contact normal velocity",),
     "r": ("contact normal velocity",),
+    "velocity_W": ("contact normal velocity",),
+    "velocities_W": ("contact normal velocity",),
 }
 """Arguments that an error may name instead of the hostile one.
 
 A flat mesh is one of its triangles as much as of its vertices. Lists of unequal lengths are told of either.
-The count of a `TossSampling` has the name of its request's field. A contact of a large spin or arm separates.
+The count of a `TossSampling` has the name of its request's field. A contact of a large spin or arm
+separates, and so does one of a large velocity.
 """
 
 FUNCTIONS = {"wrench_of", "is_settled", "now_ns"}

@@ -3,6 +3,7 @@
 
 - One contact with the fixed world: `planar_impact`, `spatial_impact`; many cases at once: `planar_impacts`,
   `spatial_impacts`.
+- One contact of a mechanism, such as a robot arm, given by J M^-1 J^T: `response_impact`, `response_impacts`.
 - One contact between two moving bodies: `planar_pair_impact`, `spatial_pair_impact`.
 - Several contacts at one instant, as in a landing on an edge or a face: `several_impact`,
   `planar_several_impact`, `bodies_impact`. The result depends on the law, and its spread is returned by
@@ -18,7 +19,7 @@ instant, `in_time` strikes one after the other, and `distribution` uncertain sta
 
 - In the plane, the impulse path is Routh's construction (`routh`). In `two_bodies`, both bodies may move.
 - In space, a contact responds in all directions (`response`), and its sliding direction changes continuously,
-  so the impulse `path` is curved.
+  so the impulse `path` is curved. A mechanism, such as a robot arm, is known by its response alone.
 - Several contacts strike one after the other (`sequential`, over all `orders`) or all at once
   (`simultaneous`), also in the plane (`planar`). Their impulses may also interleave in any way
   (`interleavings`). Contacts that do not approach can jam (`jamming`) until a mode is consistent
@@ -54,9 +55,15 @@ from contact_dynamics.impact.several.result import (
 )
 from contact_dynamics.impact.several.sequential import bodies_impact
 from contact_dynamics.impact.several.settling import settling_impact
-from contact_dynamics.impact.spatial.batch import SpatialImpacts, StrikingBodies, spatial_impacts
-from contact_dynamics.impact.spatial.one_contact import spatial_impact, spatial_pair_impact
-from contact_dynamics.impact.spatial.result import SpatialImpact
+from contact_dynamics.impact.spatial.batch import (
+    ResponseImpacts,
+    SpatialImpacts,
+    StrikingBodies,
+    response_impacts,
+    spatial_impacts,
+)
+from contact_dynamics.impact.spatial.one_contact import response_impact, spatial_impact, spatial_pair_impact
+from contact_dynamics.impact.spatial.result import ResponseImpact, SpatialImpact
 from contact_dynamics.validation_types import check_types_of
 
 __all__ = [
@@ -71,6 +78,8 @@ __all__ = [
     "PathEvent",
     "PlanarImpact",
     "PlanarImpacts",
+    "ResponseImpact",
+    "ResponseImpacts",
     "RestitutionLaw",
     "SequenceEnd",
     "SeveralContactsLaw",
@@ -92,6 +101,8 @@ __all__ = [
     "planar_impacts",
     "planar_pair_impact",
     "planar_several_impact",
+    "response_impact",
+    "response_impacts",
     "settling_impact",
     "several_impact",
     "spatial_impact",

@@ -69,7 +69,7 @@ def routh(
     one.body.take(solid.mass, solid.inertia, (y[3], y[4], y[5], y[6]), arm, pose.v, pose.w)
     outcome = one.strike(flat.normal, friction, flat.restitution, False, STRIKES)  # noqa: FBT003  as compiled
     if outcome < 0:
-        refuse(one, STRIKES)
+        refuse(one, outcome, STRIKES)
     v, w = one.body.v, one.body.w
     after = [*y[:7], v[0], v[1], v[2], w[0], w[1], w[2]]
     return after, Struck(touch, one.impulse, OUTCOMES[outcome])

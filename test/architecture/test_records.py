@@ -30,9 +30,11 @@ def records() -> list[type[Record]]:
 
 @pytest.mark.parametrize("owner", records(), ids=lambda owner: owner.__name__)
 def test_every_field_is_in_the_docstring(owner: type[Record]) -> None:
-    text = inspect.getdoc(owner) or ""
-    section = text.partition("Attributes:\n")[2].partition("\n\n")[0]
-    described = set(re.findall(r"^    (\w+): \S", section, re.MULTILINE))
+    described = set()
+    for base in (one for one in owner.__mro__ if dataclasses.is_dataclass(one)):  # which define fields
+        text = inspect.cleandoc(vars(base).get("__doc__") or "")
+        section = text.partition("Attributes:\n")[2].partition("\n\n")[0]
+        described |= set(re.findall(r"^    (\w+): \S", section, re.MULTILINE))
     fields = {field.name for field in dataclasses.fields(owner) if not field.name.startswith("_")}  # type: ignore[arg-type]
     assert described == fields, f"missing {fields - described}, unknown {described - fields}"
 

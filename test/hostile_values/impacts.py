@@ -10,6 +10,7 @@ from contact_dynamics import (
     impact,
     impact_sequence,
     planar_impact,
+    response_impact,
     several_impact,
     spatial_impact,
 )
@@ -41,6 +42,26 @@ IMPACTS: Calls = {
     "spatial_impact": (
         spatial_impact,
         {**WHERE, "contact": CONTACT, "velocity_tolerance": 1e-9},
+    ),
+    "response_impact": (
+        response_impact,
+        {
+            "inverse_inertia_W": np.eye(3),
+            "velocity_W": [0.3, 0.0, -1.0],
+            "contact": CONTACT,
+            "velocity_tolerance": 1e-9,
+        },
+    ),
+    "response_impacts": (
+        impact.response_impacts,
+        {
+            "inverse_inertias_W": np.eye(3),
+            "velocities_W": [0.3, 0.0, -1.0],
+            "normals_W": [0.0, 0.0, 1.0],
+            "frictions": 0.5,
+            "restitutions": 0.5,
+            "velocity_tolerance": 1e-9,
+        },
     ),
     "several_impact": (several_impact, SEVERAL),
     "outcomes_over_orders": (

@@ -83,6 +83,15 @@ def response_bits(module: ModuleType) -> list[object]:
             done = module.Strike(law).strike_rows(*tables, 1e-9, True, outcomes.data, results.data)  # noqa: FBT003
             assert done == COUNT
             found += [outcomes.tolist(), results.tolist()]
+        # Mechanisms with one to three degrees of freedom.
+        ways = rng.normal(size=(COUNT, 3, 3)) * (np.arange(3) <= np.arange(COUNT)[:, None] % 3)[:, None, :]
+        velocities = np.einsum("ijk,ik->ij", ways, rng.normal(size=(COUNT, 3)))
+        mechanisms = np.hstack([(ways @ ways.transpose(0, 2, 1)).reshape(COUNT, 9), velocities])
+        for row, contact in zip(mechanisms, contacts, strict=True):
+            outcomes, results = np.empty(1, dtype=np.int64), np.zeros((1, 12))
+            tables = np.ascontiguousarray(row[None]).data, np.ascontiguousarray(contact[None]).data
+            module.Strike(law).strike_mechanism_rows(*tables, 1e-9, True, outcomes.data, results.data)  # noqa: FBT003
+            found += [outcomes.tolist(), results.tolist()]
     return found
 
 

@@ -8,6 +8,9 @@ The path obeys an ordinary differential equation in the normal impulse (lecture 
 direction stays constant. The impulses on two bodies are opposite, so only their relative velocity matters,
 and the contact's inverse inertia is the sum of both (`response`).
 
+Of anything else, such as a robot arm, the contact's inverse inertia and velocity are all that matters
+(`response_impact`).
+
 The contact transmits a force and no moment, so torsional friction and rolling resistance are left out.
 `impact.several` treats several contacts.
 """
@@ -15,7 +18,7 @@ The contact transmits a force and no moment, so torsional friction and rolling r
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -24,13 +27,13 @@ from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.impact.law import RestitutionLaw
 from contact_dynamics.impact.spatial.path import OUTCOMES
 from contact_dynamics.impact.spatial.response import BodyAtContact, Strike, refuse
-from contact_dynamics.impact.spatial.result import SpatialImpact
+from contact_dynamics.impact.spatial.result import ResponseImpact, SpatialImpact
 from contact_dynamics.tolerances import LARGEST_ARM, LARGEST_NUMBER, VELOCITY_TOLERANCE
-from contact_dynamics.validation import (
-    check_not_negative,
-)
+from contact_dynamics.validation import check_array, check_magnitude, check_not_negative, check_vector3
 
 if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
     from contact_dynamics.contact.contact import Contact
     from contact_dynamics.impact.law import PathEvent
     from contact_dynamics.numerics.vectors import Vector3
@@ -113,6 +116,85 @@ def spatial_pair_impact(
     )
 
 
+def response_impact(
+    inverse_inertia_W: ArrayLike,
+    velocity_W: ArrayLike,
+    contact: Contact,
+    *,
+    restitution_law: RestitutionLaw = RestitutionLaw.POISSON,
+    velocity_tolerance: float = VELOCITY_TOLERANCE,
+) -> ResponseImpact:
+    """Return what the impact of a mechanism does, such as a robot arm, a vehicle, or several joined bodies.
+
+    The mechanism is known by how its contact point responds to impulses, W = J M^-1 J^T, where M is the mass
+    matrix and J the Jacobian of the contact point. An impulse I changes the generalised velocities by
+    M^-1 J^T I. If two mechanisms strike each other, W is the sum of both, and the velocity is that of the
+    first relative to the second. Actuators and springs give no impulse, since the impact has no duration.
+
+    W may be singular. A planar arm, for example, cannot move across its plane. Friction along a tangent in
+    which the contact cannot move is not determined by the motion, and counts as zero while the contact
+    sticks. A response below `SINGULAR_RESPONSE` of the largest counts as none, and so does sliding along such
+    a tangent below this share of the velocity.
+
+    Args:
+        inverse_inertia_W: (3, 3), 1/kg, W, world axes, symmetric and positive semidefinite.
+        velocity_W: (3,), m/s, velocity of the contact point just before, world axes.
+        contact: The contact, with its normal into the mechanism, friction and restitution. Its position plays
+            no part, nor do curvatures.
+        restitution_law: What the coefficient of restitution means.
+        velocity_tolerance: m/s, >= 0. A normal or tangential velocity of the contact within it counts as
+            zero.
+
+    Raises:
+        SeparatingContactError: the contact's normal velocity is above the tolerance.
+        InvalidFieldError: the tolerance is negative, a velocity or W is beyond `LARGEST_NUMBER`, W is below
+            its inverse, is not symmetric or has a negative eigenvalue, or the mechanism cannot move along the
+            normal. Also if it wedges: friction holds the contact, which then cannot move along the normal
+            either, and by ``restitution_law`` it would have to leave, or still approaches.
+    """
+    response = check_array("inverse_inertia_W", inverse_inertia_W, (3, 3))
+    check_magnitude("inverse_inertia_W", response)
+    velocity = check_vector3("velocity_W", velocity_W)
+    restitution = contact.impact_restitution
+    tolerance = check_not_negative("velocity_tolerance", velocity_tolerance)
+    vertices: list[tuple[PathEvent, Vector3]] = []
+    strike = Strike(restitution_law, vertices)
+    outcome = strike.strike_mechanism(
+        tuple(response.ravel().tolist()),
+        tuple(velocity.tolist()),
+        tuple(contact.normal_W.tolist()),
+        contact.friction,
+        restitution,
+        tolerance,
+    )
+    if outcome < 0:
+        refuse(strike, outcome, tolerance, field="inverse_inertia_W")
+    return ResponseImpact(
+        inverse_inertia_W=0.5 * (response + response.T),
+        **_at_contact(strike, restitution_law, outcome, vertices),
+    )
+
+
+def _at_contact(
+    strike: Strike, law: RestitutionLaw, outcome: int, vertices: list[tuple[PathEvent, Vector3]]
+) -> dict[str, Any]:
+    """Return what happened at the contact, by the fields of `ResponseImpact`."""
+    impulse, compression, before, after = np.array(
+        (strike.impulse, strike.compression, strike.before, strike.after)
+    )
+    return {
+        "restitution_law": law,
+        "outcome": OUTCOMES[outcome],
+        "jams": strike.tracer.jams,
+        "impulse_W": impulse,
+        "compression_W": compression,
+        "path_W": np.array([vertex for _, vertex in vertices]) @ np.array((strike.t1, strike.t2, strike.n)),
+        "path_events": tuple(event for event, _ in vertices),
+        "velocity_before_W": before,
+        "velocity_after_W": after,
+    }
+
+
 def _impact(
     body: MassProperties,
     state: BodyState,
@@ -136,24 +218,13 @@ def _impact(
     n_x, n_y, n_z = contact.normal_W.tolist()
     outcome = strike.strike((n_x, n_y, n_z), contact.friction, restitution, has_other, tolerance)
     if outcome < 0:
-        refuse(strike, tolerance)
+        refuse(strike, outcome, tolerance)
     l1, l2, k1, k2, kn = strike.l1, strike.l2, strike.k1, strike.k2, strike.kn
     axes = np.array((strike.t1, strike.t2, strike.n))
     matrix = np.array(((l1, 0.0, k1), (0.0, l2, k2), (k1, k2, kn)))
-    impulse, compression, before, after = np.array(
-        (strike.impulse, strike.compression, strike.before, strike.after)
-    )
     return SpatialImpact(
-        restitution_law=law,
-        outcome=OUTCOMES[outcome],
-        jams=strike.tracer.jams,
+        **_at_contact(strike, law, outcome, vertices),
         state=state.with_velocities(strike.body.v, strike.body.w),
-        impulse_W=impulse,
-        compression_W=compression,
-        path_W=np.array([vertex for _, vertex in vertices]) @ axes,
-        path_events=tuple(event for event, _ in vertices),
-        velocity_before_W=before,
-        velocity_after_W=after,
         inverse_inertia_W=axes.T @ matrix @ axes,
         other_state=None
         if other_state is None

@@ -10,7 +10,7 @@ cdef extern from *:
         SOURCE_CRC
 
 cdef double AT_THE_STOP, ESCAPE_ARRIVED, EVENT_LOCATED, LARGEST_FRICTION, LAST_TERM, LEAST_FRICTION
-cdef double SETTLED_TURN, SLOW_TURNING, SMALLEST, STOPPED, STRAIGHT, TRUNCATION, UNCOUPLED
+cdef double SETTLED_TURN, SINGULAR_RESPONSE, SLOW_TURNING, SMALLEST, STOPPED, STRAIGHT, TRUNCATION, UNCOUPLED
 cdef double FARTHEST, LONGEST, SURE, TERMS_ROUNDING, _INFINITE
 cdef int ESCAPE_ROUNDS, MAX_ITERATIONS, MAX_STRETCHES, ORDER, ROUNDS, SLOW_TERMS, TERMS
 cdef int _START, _SLIDING_STOPS, _COMPRESSION_ENDS, _RESTITUTION_ENDS, _SAMPLE
@@ -21,8 +21,10 @@ cdef int _STICKS_IN_COMPRESSION, _REVERSES_IN_COMPRESSION, _STICKS_IN_RESTITUTIO
 @cython.final
 cdef class SlidingLaw:
     cdef readonly double l1, l2, k1, k2, kn, mu
+    cdef double x1, x2, rise
 
     cdef void take(self, double l1, double l2, double k1, double k2, double kn, double friction) noexcept nogil
+    cdef bint round_rise(self, double least) noexcept nogil
     cdef bint holds(self) noexcept nogil
     cdef double coupling(self) noexcept nogil
     cdef double scale(self) noexcept nogil
@@ -91,6 +93,7 @@ cdef class Progress:
     cdef double go_curved(self, SlidingSeries series, double begin, double end) noexcept nogil
     cdef bint jump(self, double i1, double i2, double p, double v_n, double work) noexcept nogil
     cdef void sample(self, int event) noexcept nogil
+    cdef bint stop_at(self, double v_n) noexcept nogil
     cdef void _add_vertex(self, int event) noexcept with gil
     cdef void _straight_step(self, double step, double rate1, double rate2, double lifting) noexcept nogil
     cdef double _curved_step(self, SlidingSeries series, double begin, double end, double v_n) noexcept nogil
@@ -133,7 +136,7 @@ cdef class Tracer:
     cdef double u1, u2
     cdef readonly bint jams
 
-    @cython.locals(held=cython.bint, in_compression=cython.bint)
+    @cython.locals(held=cython.bint, in_compression=cython.bint, kept=cython.double)
     cdef int trace(self, double u1, double u2, double v_n, double restitution) noexcept nogil
     @cython.locals(ends_before=cython.int)
     cdef bint _slide(self, double first_speed) noexcept nogil

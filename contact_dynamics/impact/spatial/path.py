@@ -25,6 +25,7 @@ from contact_dynamics.tolerances import (
     LAST_TERM,
     LEAST_FRICTION,
     SETTLED_TURN,
+    SINGULAR_RESPONSE,
     SLOW_TURNING,
     SMALLEST,
     STOPPED,
@@ -70,7 +71,7 @@ SLOW_TERMS: Final = 10
 
 _INFINITE: Final = math.inf
 _NOT_ENDED: Final = -1
-"""Stands for an outcome where a path has no end, which cannot be."""
+"""Stands for an outcome where a path has no end, which only singular mechanisms have: they can wedge."""
 
 # What the enumerations mean, as numbers that compiled code has at hand.
 _START: Final = PathEvent.START
@@ -158,12 +159,19 @@ class SlidingLaw:
     the length of (mu L + g)^-1 k falls from above 1 to 0 as g grows from 0. While it leaves, dv_n/dp > mu g >
     0, since the inverse inertia is positive definite.
 
+    A mechanism's inverse inertia may be singular. In a tangential direction in which it cannot move, l = k =
+    0, and friction that holds has no component there, which is the least that holds. If a contact that does
+    not slide cannot move along the normal either, ``rise`` is 0: the contact is wedged while it sticks.
+
     Attributes:
-        l1: 1/kg, first principal tangential inverse inertia, > 0.
-        l2: 1/kg, second principal tangential inverse inertia, > 0.
+        l1: 1/kg, first principal tangential inverse inertia, >= 0.
+        l2: 1/kg, second principal tangential inverse inertia, >= 0.
         k1: 1/kg, coupling of the first tangential direction with the normal.
         k2: 1/kg, coupling of the second tangential direction with the normal.
         kn: 1/kg, normal inverse inertia, > 0.
+        x1: The first tangential impulse for each normal one that keeps a stopped contact where it is.
+        x2: The second one.
+        rise: 1/kg, dv_n/dp of a stopped contact that friction holds, >= 0.
         mu: Coulomb's coefficient, with which the path is followed. It is 0 where friction is too small to
             change anything. Otherwise the path would be followed to a stop that is farther away than numbers
             reach.
@@ -175,12 +183,23 @@ class SlidingLaw:
     def take(self, l1: float, l2: float, k1: float, k2: float, kn: float, friction: float) -> None:
         """Take the numbers of another contact."""
         self.l1, self.l2, self.k1, self.k2, self.kn = l1, l2, k1, k2, kn
+        self.x1 = -k1 / l1 if l1 > 0.0 else 0.0
+        self.x2 = -k2 / l2 if l2 > 0.0 else 0.0
+        self.rise = kn + k1 * self.x1 + k2 * self.x2
         self.mu = min(friction, LARGEST_FRICTION) * (1.0 if friction >= LEAST_FRICTION else 0.0)
+
+    def round_rise(self, least: float) -> bool:
+        """Make a ``rise`` of 0 of one that is rounding, and return whether it is not negative.
+
+        A response, 1/kg, counts as none up to ``least``. The rise is that of the vector (x1, x2, 1).
+        """
+        if abs(self.rise) <= least * (1.0 + self.x1 * self.x1 + self.x2 * self.x2):
+            self.rise = 0.0
+        return self.rise >= 0.0
 
     def holds(self) -> bool:
         """Return whether friction can hold a contact that has stopped."""
-        x, y = self.k1 / self.l1, self.k2 / self.l2
-        return math.sqrt(x * x + y * y) <= self.mu
+        return math.sqrt(self.x1 * self.x1 + self.x2 * self.x2) <= self.mu
 
     def coupling(self) -> float:
         """Return the length of k, 1/kg."""
@@ -245,8 +264,7 @@ class SlidingLaw:
     def after_stop(self) -> tuple[float, float, float, float]:
         """Return d(I_1, I_2)/dp, dv_n/dp and d|u|/dp of a stopped contact. If it is held, the last is 0."""
         if self.holds():
-            i1, i2 = -self.k1 / self.l1, -self.k2 / self.l2
-            return i1, i2, self.kn + self.k1 * i1 + self.k2 * i2, 0.0
+            return self.x1, self.x2, self.rise, 0.0
         g = max(abs(self.k1) - self.mu * self.l1, abs(self.k2) - self.mu * self.l2, 0.0)
         d1, d2, step = self.escape_step(g)
         for _ in range(ESCAPE_ROUNDS):
@@ -614,6 +632,18 @@ class Progress:
         if self.keeps_vertices:
             self._add_vertex(event)
 
+    def stop_at(self, v_n: float) -> bool:
+        """Take the normal velocity at the stop, m/s, and return whether the impact can end with it.
+
+        It cannot if the contact approaches, or if it must leave faster by Newton's or the energetic law.
+        """
+        self.compressing = self.compressing or v_n < 0.0
+        if self.compressing and v_n >= 0.0:
+            self._end_compression()
+        self.v_n = v_n
+        end = self.rule.distance(v_n, 0.0, self.due, self.final_velocity)
+        return not self.compressing and end < _INFINITE
+
     def _add_vertex(self, event: int) -> None:
         if self.vertices is not None:
             self.vertices.append((_EVENTS[event], (self.i1, self.i2, self.p)))
@@ -705,6 +735,8 @@ class Stop:
         Returns:
             Whether a stop is near and a series converges.
         """
+        if law.l1 == 0.0 or law.l2 == 0.0:
+            return False  # sliding that turns keeps its velocity along that tangent, and does not stop
         speed = math.sqrt(u1 * u1 + u2 * u2)
         d1, d2 = u1 / speed, u2 / speed
         if turns_slowly(law, d1, d2, speed, first_speed):
@@ -732,6 +764,8 @@ class Stop:
         if law.speeding(d1, d2) >= 0.0 or law.attraction(d1, d2) >= 0.0:
             return False
         self._expand(law, d1, d2, TERMS)
+        if self.g[0] >= 0.0:
+            return False  # by rounding, where the response is singular
         found, left = self._regular_solution(angle - fixed, 1.0)
         if not found:
             return False
@@ -865,7 +899,7 @@ class Tracer:
         self.u1 = self.u2 = 0.0
         self.jams = False
 
-    def trace(self, u1: float, u2: float, v_n: float, restitution: float) -> int:
+    def trace(self, u1: float, u2: float, v_n: float, restitution: float) -> int:  # noqa: PLR0911
         """Follow the path of a contact with these velocities, m/s, and return its outcome."""
         self.u1, self.u2 = u1, u2
         speed = math.sqrt(u1 * u1 + u2 * u2)
@@ -883,8 +917,16 @@ class Tracer:
             in_compression = self.progress.compressing
             self.progress.sample(_SLIDING_STOPS)
         i1, i2, lifting, speeding = self.law.after_stop()
-        gone = self.progress.go_straight(_INFINITE, i1, i2, lifting)
         held = speeding == 0.0
+        if self.law.rise == 0.0:
+            # No impulse changes this part of the velocity, so it is the whole velocity when sliding stops.
+            part1, part2 = self.law.x1 * u1, self.law.x2 * u2
+            kept, size = v_n + part1 + part2, abs(v_n) + abs(part1) + abs(part2)
+            kept = kept if abs(kept) > SINGULAR_RESPONSE * size else 0.0
+            in_compression = in_compression or kept == 0.0
+            if not self.progress.stop_at(kept) and held:
+                return _NOT_ENDED
+        gone = self.progress.go_straight(_INFINITE, i1, i2, lifting)
         self.u1 = 0.0 if held else (self.law.k1 + self.law.l1 * i1) * gone
         self.u2 = 0.0 if held else (self.law.k2 + self.law.l2 * i2) * gone
         if speed == 0.0:
@@ -933,7 +975,7 @@ class Tracer:
             if self.progress.over:
                 return True
             self.progress.sample(_SAMPLE)
-        return False  # which cannot be: each stretch turns or slows the sliding by a fixed part
+        return False  # which cannot be for bodies: each stretch turns or slows the sliding by a fixed part
 
     def _jump_to_stop(self) -> bool:
         """Go to the stop that was found, unless compression or the impact ends before it."""

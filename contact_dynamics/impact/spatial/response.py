@@ -13,10 +13,18 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any, Final, NoReturn
 
+from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.impact.law import ImpactOutcome, PathEvent, RestitutionLaw
 from contact_dynamics.impact.planar.one_contact import refuse_separating
 from contact_dynamics.impact.spatial.path import RULES, Progress, SlidingLaw, Tracer
-from contact_dynamics.tolerances import LARGEST_ARM, LARGEST_NUMBER, LEAST_PIVOT, SMALLEST
+from contact_dynamics.tolerances import (
+    LARGEST_ARM,
+    LARGEST_NUMBER,
+    LEAST_PIVOT,
+    SINGULAR_RESPONSE,
+    SMALLEST,
+    SYMMETRY_TOLERANCE,
+)
 
 if TYPE_CHECKING:
     from contact_dynamics.numerics.vectors import Vector3
@@ -27,19 +35,47 @@ Response = tuple[float, float, float, float, float, float]
 
 LEAST_NUMBER: Final = 1.0 / LARGEST_NUMBER
 
+# Stand for outcomes where there is none. The first is that of `path`.
+_NOT_ENDED: Final = -1
 _SEPARATES: Final = -2
+_NO_RESPONSE: Final = -3
+_NOT_POSITIVE: Final = -4
+_NOT_SYMMETRIC: Final = -5
 _NO_IMPULSE: Final = ImpactOutcome.NO_IMPULSE
 
 
-def refuse(strike: Strike, tolerance: float, case: str = "") -> NoReturn:
+def refuse(strike: Strike, outcome: int, tolerance: float, case: str = "", field: str = "") -> NoReturn:
     """Raise the error of a strike without an outcome.
+
+    Args:
+        strike: The strike.
+        outcome: What it returned, below 0.
+        tolerance: m/s.
+        case: The words of an error for which strike of several it is.
+        field: The name of a mechanism's inverse inertia in an error.
 
     Raises:
         SeparatingContactError: the contact's normal velocity is above the tolerance, m/s.
+        InvalidFieldError: a mechanism's inverse inertia is not positive semidefinite, does not let the
+            contact move along the normal, or wedges it.
     """
-    if strike.v_n <= tolerance:
-        raise AssertionError  # each stretch of a path turns or slows the sliding by a fixed part
-    refuse_separating(strike.v_n, tolerance, case)
+    if outcome == _SEPARATES:
+        refuse_separating(strike.v_n, tolerance, case)
+    if not field:
+        raise AssertionError  # each stretch of a body's path turns or slows the sliding by a fixed part
+    found, allowed = {
+        _NOT_ENDED: (
+            "a mechanism that wedges: no impulse separates this contact once it sticks",
+            "one whose contact can separate (or restitution 0 or POISSON, if it only has to stop)",
+        ),
+        _NO_RESPONSE: (
+            f"{strike.kn:g} 1/kg along the normal",
+            f"at least {LEAST_NUMBER:g} 1/kg along the normal, where the mechanism must be able to move",
+        ),
+        _NOT_SYMMETRIC: ("an asymmetric matrix", "symmetric, as J M^-1 J^T is"),
+        _NOT_POSITIVE: ("a matrix with a negative eigenvalue", "positive semidefinite, as J M^-1 J^T is"),
+    }[outcome]
+    raise InvalidFieldError(field, found, allowed)
 
 
 class BodyAtContact:
@@ -141,6 +177,8 @@ class BodyAtContact:
 class Strike:
     """One impact after the other, at one contact each.
 
+    What strikes is a body, two bodies, or a mechanism that is known by its inverse inertia alone.
+
     Attributes:
         body: The body that the normal points into. After a strike it has its new velocities.
         other: The body that it strikes, if there is one. After a strike it has its new velocities too.
@@ -190,15 +228,96 @@ class Strike:
             tolerance: m/s. A normal or tangential velocity within it counts as zero.
             skips: Whether nothing happens to a contact that separates.
         """
-        self.find_axes(normal, has_other)
+        a, b = first_tangent(normal), second_tangent(normal)
+        aa, ab, an, bb, bn, nn = self.body.response(a, b, normal)
         self.before = self.body.velocity()
         if has_other:
+            more = self.other.response(a, b, normal)
+            aa, ab, an = aa + more[0], ab + more[1], an + more[2]
+            bb, bn, nn = bb + more[3], bn + more[4], nn + more[5]
             second = self.other.velocity()
             self.before = (
                 self.before[0] - second[0],
                 self.before[1] - second[1],
                 self.before[2] - second[2],
             )
+        self.find_axes(a, b, normal, (aa, ab, an, bb, bn, nn))
+        self.law.take(self.l1, self.l2, self.k1, self.k2, self.kn, friction)
+        outcome = self.follow(restitution, tolerance, skips)
+        if outcome > _NO_IMPULSE:
+            self.body.push(self.impulse)
+            if has_other:
+                self.other.push((-self.impulse[0], -self.impulse[1], -self.impulse[2]))
+        return outcome
+
+    def strike_mechanism(  # noqa: PLR0917
+        self,
+        inverse_inertia: Inertia,
+        velocity: Vector3,
+        normal: Vector3,
+        friction: float,
+        restitution: float,
+        tolerance: float,
+        skips: bool = False,  # noqa: FBT001, FBT002  C has no keywords
+    ) -> int:
+        """Strike at a contact whose inverse inertia is given, and return the outcome as `strike` does.
+
+        Args:
+            inverse_inertia: The nine numbers of a (3, 3), 1/kg, world axes. It may be singular.
+            velocity: m/s, of the contact, world axes.
+            normal: As of `strike`.
+            friction: As of `strike`.
+            restitution: As of `strike`.
+            tolerance: As of `strike`.
+            skips: As of `strike`.
+        """
+        w = inverse_inertia
+        asymmetry = max(abs(w[1] - w[3]), abs(w[2] - w[6]), abs(w[5] - w[7]))
+        if asymmetry > SYMMETRY_TOLERANCE * max(
+            abs(w[1]), abs(w[2]), abs(w[5]), abs(w[0]), abs(w[4]), abs(w[8])
+        ):
+            return _NOT_SYMMETRIC
+        a, b = first_tangent(normal), second_tangent(normal)
+        of_a, of_b, of_n = turned(w, a), turned(w, b), turned(w, normal)
+        along = (dot(a, of_a), dot(b, of_a), dot(a, of_n), dot(b, of_b), dot(b, of_n), dot(normal, of_n))
+        self.before = velocity
+        self.find_axes(a, b, normal, along)
+        # What is below the rounding of the inverse inertia is none, or else it would be divided by.
+        least = SINGULAR_RESPONSE * max(self.l1, self.l2, abs(self.kn))
+        if not self.kn > max(least, LEAST_NUMBER):
+            return _NO_RESPONSE
+        self.l1, self.k1 = self.possible(self.l1, self.k1, least)
+        self.l2, self.k2 = self.possible(self.l2, self.k2, least)
+        size = abs(velocity[0]) + abs(velocity[1]) + abs(velocity[2])
+        if self.l1 == 0.0:
+            self.drop_sliding(self.t1, size)
+        if self.l2 == 0.0:
+            self.drop_sliding(self.t2, size)
+        self.law.take(self.l1, self.l2, self.k1, self.k2, self.kn, friction)
+        if min(self.l1, self.l2) < 0.0 or not self.law.round_rise(least):
+            return _NOT_POSITIVE
+        outcome = self.follow(restitution, tolerance, skips)
+        if outcome > _NO_IMPULSE and not self.progress.p * least <= size:
+            return _NOT_ENDED
+        return outcome
+
+    def possible(self, response: float, coupling: float, least: float) -> tuple[float, float]:
+        """Return the response along a tangent and its coupling with the normal, without rounding below 0."""
+        if abs(response) <= least:
+            if abs(coupling) <= least:
+                return 0.0, 0.0
+            response = max(response, coupling * coupling / self.kn)
+        return response, coupling
+
+    def drop_sliding(self, tangent: Vector3, size: float) -> None:
+        """Set the velocity along a tangent in which the contact cannot move to 0 if it is rounding, m/s."""
+        along = dot(self.before, tangent)
+        if abs(along) <= SINGULAR_RESPONSE * size:
+            v = self.before
+            self.before = (v[0] - along * tangent[0], v[1] - along * tangent[1], v[2] - along * tangent[2])
+
+    def follow(self, restitution: float, tolerance: float, skips: bool) -> int:  # noqa: FBT001
+        """Follow the impulse path from a response and a velocity that are known, and return the outcome."""
         u1, u2, v_n = dot(self.t1, self.before), dot(self.t2, self.before), dot(self.n, self.before)
         self.v_n = v_n
         if not v_n <= tolerance:
@@ -214,14 +333,10 @@ class Strike:
             v_n = 0.0
         if still or rests:
             self.before = self.in_world(u1, u2, v_n)
-        self.law.take(self.l1, self.l2, self.k1, self.k2, self.kn, friction)
         outcome = self.tracer.trace(u1, u2, v_n, restitution)
         self.impulse = self.in_world(self.progress.i1, self.progress.i2, self.progress.p)
         self.compression = self.in_world(self.progress.c1, self.progress.c2, self.progress.c)
         self.after = self.in_world(self.tracer.u1, self.tracer.u2, self.progress.v_n)
-        self.body.push(self.impulse)
-        if has_other:
-            self.other.push((-self.impulse[0], -self.impulse[1], -self.impulse[2]))
         return outcome
 
     def strike_rows(  # noqa: PLR0917
@@ -253,28 +368,58 @@ class Strike:
                 take_row(self.other, others, i)
             normal = vector_of(contacts, i, 0)
             outcome = self.strike(normal, contacts[i, 3], contacts[i, 4], has_other, tolerance, skips)
+            outcomes[i] = outcome
             if outcome < 0:
                 return i
-            outcomes[i] = outcome
             put(results, i, 0, self.body.v)
             put(results, i, 3, self.body.w)
-            put(results, i, 6, self.impulse)
-            put(results, i, 9, self.compression)
-            put(results, i, 12, self.before)
-            put(results, i, 15, self.after)
+            self.put_contact(results, i, 6)
             if has_other:
                 put(results, i, 18, self.other.v)
                 put(results, i, 21, self.other.w)
         return len(outcomes)
 
-    def find_axes(self, normal: Vector3, has_other: bool) -> None:  # noqa: FBT001
-        """Find the contact's axes and its response, of `body` against the fixed world or against `other`."""
-        a, b = first_tangent(normal), second_tangent(normal)
-        aa, ab, an, bb, bn, nn = self.body.response(a, b, normal)
-        if has_other:
-            more = self.other.response(a, b, normal)
-            aa, ab, an = aa + more[0], ab + more[1], an + more[2]
-            bb, bn, nn = bb + more[3], bn + more[4], nn + more[5]
+    def strike_mechanism_rows(  # noqa: PLR0917
+        self,
+        mechanisms: Any,
+        contacts: Any,
+        tolerance: float,
+        skips: bool,  # noqa: FBT001  C has no keywords
+        outcomes: Any,
+        results: Any,
+    ) -> int:
+        """Strike at the contact of each row as `strike_rows` does.
+
+        Rows of ``mechanisms``, (n, 12), are inverse inertias and then velocities. Rows of ``results``,
+        (n, 12), are impulse, compression, and the contact's velocity before and after.
+        """
+        for i in range(len(outcomes)):
+            x, y, z = vector_of(mechanisms, i, 0), vector_of(mechanisms, i, 3), vector_of(mechanisms, i, 6)
+            outcome = self.strike_mechanism(
+                (x[0], x[1], x[2], y[0], y[1], y[2], z[0], z[1], z[2]),
+                vector_of(mechanisms, i, 9),
+                vector_of(contacts, i, 0),
+                contacts[i, 3],
+                contacts[i, 4],
+                tolerance,
+                skips,
+            )
+            outcomes[i] = outcome
+            if outcome < 0:
+                return i
+            self.put_contact(results, i, 0)
+        return len(outcomes)
+
+    def put_contact(self, results: Any, i: int, first: int) -> None:
+        """Write impulse, compression, and the velocities before and after into row ``i``."""
+        put(results, i, first, self.impulse)
+        put(results, i, first + 3, self.compression)
+        put(results, i, first + 6, self.before)
+        put(results, i, first + 9, self.after)
+
+    def find_axes(self, a: Vector3, b: Vector3, normal: Vector3, response: Response) -> None:
+        """Find the principal tangents, and the response along them, from that in axes a, b and the normal."""
+        aa, ab, an, bb, bn, nn = response
         # Jacobi's rotation by the smaller angle.
         difference = bb - aa
         root = math.sqrt(difference * difference + 4.0 * ab * ab)
@@ -309,6 +454,17 @@ def vector_of(rows: Any, i: int, first: int) -> Vector3:
     """Return a vector of row ``i``, from column ``first`` on."""
     x, y, z = rows[i, first], rows[i, first + 1], rows[i, first + 2]
     return (x, y, z)
+
+
+def turned(matrix: Inertia, vector: Vector3) -> Vector3:
+    """Return the product of the symmetric part of a matrix, row by row, and a vector."""
+    m = matrix
+    xy, xz, yz = 0.5 * (m[1] + m[3]), 0.5 * (m[2] + m[6]), 0.5 * (m[5] + m[7])
+    return (
+        m[0] * vector[0] + xy * vector[1] + xz * vector[2],
+        xy * vector[0] + m[4] * vector[1] + yz * vector[2],
+        xz * vector[0] + yz * vector[1] + m[8] * vector[2],
+    )
 
 
 def is_small(vector: Vector3) -> bool:
