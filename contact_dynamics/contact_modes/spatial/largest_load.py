@@ -174,7 +174,7 @@ def largest_spin(
     body = problem.body
     turning = -np.cross(axis, body.inertia_in_world(problem.state.R_WB) @ axis)
     load = np.concatenate([body.mass * outward, turning])
-    size = float(np.linalg.norm(load))  # of the load at 1 rad/s
+    size = float(np.linalg.norm(load))  # at 1 rad/s
     if size == 0.0:
         raise InvalidFieldError("axis_W, at_W", axis.tolist(), "an axis a spin about which loads the body")
     found = largest_load(problem, force_W=load[:3] / size, torque_W=load[3:] / size)
