@@ -424,6 +424,11 @@ STRICT: Final = 1e-8
 """Relative to the largest acceleration. A strict inequality of a mode must hold by this, a thousand times
 `FEASIBLE`."""
 
+SURFACES_AS_ONE: Final = 1e-12
+"""Relative. Surfaces at contacts that move like one rigid body, to this share of their largest velocity and
+acceleration, count as one. An applied wrench that inertial terms cancel to this share counts as zero. It is
+some thousand roundings."""
+
 HIDDEN_BY_FORCES: Final = 1e-4
 """Relative to the largest acceleration. If `FEASIBLE` of what forces cause is more, they are so large that
 rounding hides the motion: a 50,000th of it is that rounding."""

@@ -7,11 +7,11 @@ Only constructors of domain types and public functions call these. The code behi
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, Final, TypeAlias
+from typing import TYPE_CHECKING, Any, ClassVar, Final, Protocol, TypeAlias
 
 import numpy as np
 
-from contact_dynamics.errors import InvalidFieldError
+from contact_dynamics.errors import InvalidFieldError, NotSupportedError
 from contact_dynamics.tolerances import LARGEST_NUMBER, LENGTH_ROUNDING, UNIT_LENGTH_TOLERANCE
 
 if TYPE_CHECKING:
@@ -141,6 +141,38 @@ def check_magnitude(field: str, value: FloatArray, most: float = LARGEST_NUMBER)
 def check_vector3(field: str, value: ArrayLike) -> FloatArray:
     """Return a vector, (3,), whose numbers are at most `LARGEST_NUMBER` in magnitude."""
     return check_magnitude(field, check_array(field, value, (3,)))
+
+
+class MayMove(Protocol):
+    """A world or contacts, whose surfaces may move."""
+
+    SURFACE_MOTION: ClassVar[tuple[str, ...]]
+    """The fields that say how they move."""
+
+    @property
+    def surfaces_move(self) -> bool:
+        """Whether any surface moves."""
+
+
+def check_at_rest(argument: str, value: MayMove, call: str) -> None:
+    """Raise `NotSupportedError` where surfaces move, in a call that takes only surfaces at rest."""
+    if value.surfaces_move:
+        *others, last = value.SURFACE_MOTION
+        message = f"{argument} must have surfaces at rest in {call}, got {', '.join(others)} or {last}"
+        raise NotSupportedError(message)
+
+
+def check_motion(field: str, value: ArrayLike | None, n: int | None = None) -> FloatArray | None:
+    """Return a velocity or acceleration, (3,), or one for each of n contacts, (n, 3), or None for rest.
+
+    One vector may be given for all contacts. Numbers are at most `LARGEST_NUMBER` in magnitude.
+    """
+    if value is None:
+        return None
+    if n is not None and np.ndim(value) == 1:
+        value = np.broadcast_to(value, (n, len(np.asarray(value))))
+    checked = check_array(field, value, (3,) if n is None else (n, 3))
+    return check_magnitude(field, checked) if checked.any() else None
 
 
 def check_unit(field: str, value: ArrayLike, length: int) -> FloatArray:

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """A world: bodies with shapes, the surfaces that they can touch, and gravity.
 
-Surfaces are infinite planes (`Surface`), and convex solids and plates (`Obstacle`). They do not move.
+Surfaces are infinite planes (`Surface`), which may move, and convex solids and plates (`Obstacle`), which do
+not move.
 """
 
 from __future__ import annotations
@@ -26,6 +27,7 @@ from contact_dynamics.validation import (
     FloatArray,
     check_array,
     check_magnitude,
+    check_motion,
     check_not_negative,
     check_positive,
     check_unit,
@@ -278,9 +280,19 @@ class Body(HasMassProperties):
         )
 
 
+_AT_REST: Final = np.zeros(3)
+_AT_REST.flags.writeable = False
+
+
+def _at_rest() -> FloatArray:
+    return _AT_REST
+
+
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class Surface(Record):
     """Infinite plane of the world. Its normal points to the free side.
+
+    A belt, a cart, a turntable or a tray moves as a rigid body. `contact_modes` takes surfaces that move.
 
     Attributes:
         name: Name by which contacts refer to the surface.
@@ -290,10 +302,16 @@ class Surface(Record):
         restitution: Coefficient of restitution between this surface and any body, in [0, 1].
         lasting_factor: Factor of the friction coefficient for sustained contact in tosses (`toss`), >= 0: the
             friction of a sliding face can differ from that of striking corners.
+        v_WS_W: (3,), m/s, velocity of the surface's material point at ``p_WS_W``, world axes.
+        w_WS_W: (3,), rad/s, angular velocity of the surface, world axes.
+        a_WS_W: (3,), m/s^2, acceleration of the surface's material point at ``p_WS_W``, world axes.
+        alpha_WS_W: (3,), rad/s^2, angular acceleration of the surface, world axes.
+        moves: Whether any of these four is not zero.
 
     Raises:
-        InvalidFieldError: a number is not finite, the point is beyond `LARGEST_NUMBER`, the normal is not a
-            unit vector, the friction or the factor is negative, or the restitution is outside [0, 1].
+        InvalidFieldError: a number is not finite, the point or a velocity or acceleration is beyond
+            `LARGEST_NUMBER`, the normal is not a unit vector, the friction or the factor is negative, or the
+            restitution is outside [0, 1].
     """
 
     name: str
@@ -302,6 +320,11 @@ class Surface(Record):
     friction: float
     restitution: float
     lasting_factor: float = 1.0
+    v_WS_W: FloatArray = field(default_factory=_at_rest)
+    w_WS_W: FloatArray = field(default_factory=_at_rest)
+    a_WS_W: FloatArray = field(default_factory=_at_rest)
+    alpha_WS_W: FloatArray = field(default_factory=_at_rest)
+    moves: bool = field(init=False, repr=False, default=False)
 
     if TYPE_CHECKING:
 
@@ -314,6 +337,10 @@ class Surface(Record):
             friction: float,
             restitution: float,
             lasting_factor: float = ...,
+            v_WS_W: ArrayLike = ...,
+            w_WS_W: ArrayLike = ...,
+            a_WS_W: ArrayLike = ...,
+            alpha_WS_W: ArrayLike = ...,
         ) -> None:
             """Take whatever NumPy makes arrays of."""
 
@@ -326,11 +353,22 @@ class Surface(Record):
         object.__setattr__(self, "friction", check_not_negative("friction", self.friction))
         object.__setattr__(self, "restitution", check_within("restitution", self.restitution, 0.0, 1.0))
         object.__setattr__(self, "lasting_factor", check_not_negative("lasting_factor", self.lasting_factor))
+        for name in ("v_WS_W", "w_WS_W", "a_WS_W", "alpha_WS_W"):
+            if (given := getattr(self, name)) is not _AT_REST:
+                moved = check_motion(name, given)
+                object.__setattr__(self, name, _AT_REST if moved is None else moved)
+                object.__setattr__(self, "moves", self.moves or moved is not None)
 
     def gaps(self, p_WP_W: FloatArray) -> FloatArray:
         """Return the heights, (...), m, of points, (..., 3), above the surface, negative below it."""
         heights: FloatArray = (p_WP_W - self.p_WS_W) @ self.normal_W
         return heights
+
+    def motion_at(self, p_WP_W: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return velocity, m/s, and acceleration, m/s^2, (..., 3), of its material points at (..., 3), m."""
+        r_W, w_W = p_WP_W - self.p_WS_W, self.w_WS_W
+        turning = np.cross(w_W, r_W)
+        return self.v_WS_W + turning, self.a_WS_W + np.cross(self.alpha_WS_W, r_W) + np.cross(w_W, turning)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -341,6 +379,7 @@ class World(Record):
         bodies: Bodies, with different names.
         surfaces: Infinite planes, and obstacles.
         gravity_W: (3,), m/s^2, world axes. The default is (0, 0, -9.80665).
+        surfaces_move: Whether any surface moves.
 
     Raises:
         InvalidFieldError: two bodies have the same name, or gravity is not three finite numbers.
@@ -349,6 +388,9 @@ class World(Record):
     bodies: tuple[Body, ...] = ()
     surfaces: tuple[Surface | Obstacle, ...] = ()
     gravity_W: FloatArray = field(default_factory=lambda: np.array(STANDARD_GRAVITY_W))
+    surfaces_move: bool = field(init=False, repr=False, default=False)
+
+    SURFACE_MOTION: ClassVar[tuple[str, ...]] = ("v_WS_W", "w_WS_W", "a_WS_W", "alpha_WS_W")
 
     if TYPE_CHECKING:
 
@@ -364,6 +406,8 @@ class World(Record):
     def __post_init__(self) -> None:
         """Check gravity and that names are unique."""
         object.__setattr__(self, "gravity_W", check_array("gravity_W", self.gravity_W, (3,)))
+        moves = any(isinstance(each, Surface) and each.moves for each in self.surfaces)
+        object.__setattr__(self, "surfaces_move", moves)
         names = [body.name for body in self.bodies]
         if len(set(names)) < len(names):
             raise InvalidFieldError("bodies", names, "different names")

@@ -12,6 +12,7 @@ import numpy as np
 from contact_dynamics.contact.contact import MAX_CONTACTS, ContactSet
 from contact_dynamics.contact.curvature import Curvatures, alike
 from contact_dynamics.errors import InvalidFieldError, NotSupportedError, TooLargeError
+from contact_dynamics.validation import check_at_rest
 from contact_dynamics_interfaces.msg import ContactSet as ContactSetMsg
 from msg_adapters.field_names import CONTACT_FIELDS, renamed
 
@@ -56,7 +57,12 @@ def contacts_from_msg(msg: ContactSetMsg) -> ContactSet:
 
 
 def contacts_to_msg(contacts: ContactSet, *, into: ContactSetMsg | None = None) -> ContactSetMsg:
-    """Return the contacts as a message, which is new unless an empty one to fill is given."""
+    """Return the contacts as a message, which is new unless an empty one to fill is given.
+
+    Raises:
+        NotSupportedError: a surface moves.
+    """
+    check_at_rest("contacts", contacts, "messages")
     msg = ContactSetMsg() if into is None else into
     msg.positions = flat(contacts.p_WC_W)
     msg.normals = flat(contacts.normals_W)

@@ -10,8 +10,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, ClassVar, Final
 
 import numpy as np
 
@@ -22,6 +22,7 @@ from contact_dynamics.tolerances import UNIT_LENGTH_TOLERANCE
 from contact_dynamics.validation import (
     FloatArray,
     check_array,
+    check_motion,
     check_not_negative,
     check_unit,
     check_within,
@@ -52,11 +53,18 @@ class Contact(Record):
             touches.
         surface_curvatures: Curvatures of the world at the contact, one row, or None if the body touches a
             plane.
+        surface_velocity_W: (3,), m/s, velocity of the surface's material point at the contact, world axes, or
+            None at rest.
+        surface_angular_velocity_W: (3,), rad/s, angular velocity of the surface, world axes, or None if it
+            does not turn.
+        surface_acceleration_W: (3,), m/s^2, acceleration of the surface's material point at the contact,
+            world axes, centripetal terms included, or None at rest.
 
     Raises:
         InvalidFieldError: a number is not finite, the normal is not a unit vector, the friction is negative,
             the restitution is outside [0, 1], or the curvatures have more than one row or do not allow
-            contact at a single point.
+            contact at a single point. Or a velocity or acceleration of the surface is beyond
+            `LARGEST_NUMBER`.
     """
 
     p_WC_W: FloatArray
@@ -66,6 +74,15 @@ class Contact(Record):
     surface: str = ""
     body_curvatures: Curvatures | None = None
     surface_curvatures: Curvatures | None = None
+    surface_velocity_W: FloatArray | None = None
+    surface_angular_velocity_W: FloatArray | None = None
+    surface_acceleration_W: FloatArray | None = None
+
+    SURFACE_MOTION: ClassVar[tuple[str, ...]] = (
+        "surface_velocity_W",
+        "surface_angular_velocity_W",
+        "surface_acceleration_W",
+    )
 
     if TYPE_CHECKING:  # what the constructor takes, beside what the fields then hold
 
@@ -79,6 +96,9 @@ class Contact(Record):
             surface: str = "",
             body_curvatures: Curvatures | None = None,
             surface_curvatures: Curvatures | None = None,
+            surface_velocity_W: ArrayLike | None = None,
+            surface_angular_velocity_W: ArrayLike | None = None,
+            surface_acceleration_W: ArrayLike | None = None,
         ) -> None: ...
 
     def __post_init__(self) -> None:
@@ -89,6 +109,16 @@ class Contact(Record):
         if self.restitution is not None:
             object.__setattr__(self, "restitution", check_within("restitution", self.restitution, 0.0, 1.0))
         _check_curvatures(self, self.normal_W[None])
+        _check_motion(self)
+
+    @property
+    def surfaces_move(self) -> bool:
+        """Whether the surface moves: one of its velocities or its acceleration is not zero."""
+        return (
+            self.surface_velocity_W is not None
+            or self.surface_acceleration_W is not None
+            or self.surface_angular_velocity_W is not None
+        )
 
     @property
     def impact_restitution(self) -> float:
@@ -111,11 +141,18 @@ class ContactSet(Record):
         surfaces: Name of the surface at each contact, or an empty tuple if they are unknown.
         body_curvatures: Curvatures of the body at each contact, or None if points of the body touch.
         surface_curvatures: Curvatures of the world at each contact, or None if the body touches planes.
+        surface_velocities_W: (n, 3), m/s, velocities of the surfaces' material points at the contacts, world
+            axes, or None if all surfaces are at rest. Here and below, one vector may be given for all
+            contacts.
+        surface_angular_velocities_W: (n, 3), rad/s, angular velocities of the surfaces, world axes, or None
+            if none turns.
+        surface_accelerations_W: (n, 3), m/s^2, accelerations of the surfaces' material points at the
+            contacts, world axes, centripetal terms included, or None if there are none.
 
     Raises:
         InvalidFieldError: arrays have different lengths, a number is not finite, a normal is not a unit
             vector, a friction is negative, a restitution is outside [0, 1], or curvatures do not allow
-            contact at a single point.
+            contact at a single point. Or a velocity or acceleration of a surface is beyond `LARGEST_NUMBER`.
         TooLargeError: there are more than `MAX_CONTACTS` contacts.
     """
 
@@ -126,6 +163,15 @@ class ContactSet(Record):
     surfaces: tuple[str, ...] = ()
     body_curvatures: Curvatures | None = None
     surface_curvatures: Curvatures | None = None
+    surface_velocities_W: FloatArray | None = None
+    surface_angular_velocities_W: FloatArray | None = None
+    surface_accelerations_W: FloatArray | None = None
+
+    SURFACE_MOTION: ClassVar[tuple[str, ...]] = (
+        "surface_velocities_W",
+        "surface_angular_velocities_W",
+        "surface_accelerations_W",
+    )
 
     if TYPE_CHECKING:  # what the constructor takes, beside what the fields then hold
 
@@ -139,6 +185,9 @@ class ContactSet(Record):
             surfaces: Sequence[str] = (),
             body_curvatures: Curvatures | None = None,
             surface_curvatures: Curvatures | None = None,
+            surface_velocities_W: ArrayLike | None = None,
+            surface_angular_velocities_W: ArrayLike | None = None,
+            surface_accelerations_W: ArrayLike | None = None,
         ) -> None: ...
 
     def __post_init__(self) -> None:
@@ -164,6 +213,7 @@ class ContactSet(Record):
         object.__setattr__(self, "restitutions", restitutions)
         object.__setattr__(self, "surfaces", tuple(self.surfaces))
         _check_curvatures(self, normals)
+        _check_motion(self, n)
 
     @classmethod
     @checks_types
@@ -178,6 +228,18 @@ class ContactSet(Record):
             surfaces=[one.surface for one in contacts] if any(one.surface for one in contacts) else (),
             body_curvatures=_together([one.body_curvatures for one in contacts], math.inf),
             surface_curvatures=_together([one.surface_curvatures for one in contacts], 0.0),
+            surface_velocities_W=_in_rows([one.surface_velocity_W for one in contacts]),
+            surface_angular_velocities_W=_in_rows([one.surface_angular_velocity_W for one in contacts]),
+            surface_accelerations_W=_in_rows([one.surface_acceleration_W for one in contacts]),
+        )
+
+    @property
+    def surfaces_move(self) -> bool:
+        """Whether any surface moves: one of the velocities or accelerations is not zero."""
+        return (
+            self.surface_velocities_W is not None
+            or self.surface_accelerations_W is not None
+            or self.surface_angular_velocities_W is not None
         )
 
     @property
@@ -195,7 +257,7 @@ class ContactSet(Record):
         """Return one contact, counted from the end if ``i`` is negative."""
         i = range(len(self))[i]
         body, surface = self.body_curvatures, self.surface_curvatures
-        return Contact(
+        contact = Contact(
             p_WC_W=self.p_WC_W[i],
             normal_W=self.normals_W[i],
             friction=float(self.frictions[i]),
@@ -203,6 +265,14 @@ class ContactSet(Record):
             surface=self.surfaces[i] if self.surfaces else "",
             body_curvatures=None if body is None else body.subset([i]),
             surface_curvatures=None if surface is None else surface.subset([i]),
+        )
+        if not self.surfaces_move:
+            return contact
+        return replace(
+            contact,
+            surface_velocity_W=_rows(self.surface_velocities_W, i),
+            surface_angular_velocity_W=_rows(self.surface_angular_velocities_W, i),
+            surface_acceleration_W=_rows(self.surface_accelerations_W, i),
         )
 
     def __iter__(self) -> Iterator[Contact]:
@@ -212,7 +282,7 @@ class ContactSet(Record):
     def subset(self, indices: Sequence[int]) -> ContactSet:
         """Return the contacts with the given indices, in their order."""
         chosen = list(indices)
-        return ContactSet(
+        contacts = ContactSet(
             p_WC_W=self.p_WC_W[chosen],
             normals_W=self.normals_W[chosen],
             frictions=self.frictions[chosen],
@@ -222,6 +292,14 @@ class ContactSet(Record):
             surface_curvatures=(
                 None if self.surface_curvatures is None else self.surface_curvatures.subset(chosen)
             ),
+        )
+        if not self.surfaces_move:
+            return contacts
+        return replace(
+            contacts,
+            surface_velocities_W=_rows(self.surface_velocities_W, chosen),
+            surface_angular_velocities_W=_rows(self.surface_angular_velocities_W, chosen),
+            surface_accelerations_W=_rows(self.surface_accelerations_W, chosen),
         )
 
 
@@ -257,6 +335,25 @@ def _together(curvatures: list[Curvatures | None], otherwise: float) -> Curvatur
         across=np.concatenate([one.across for one in each]),
         directions_W=np.concatenate([one.directions_W for one in each]),
     )
+
+
+def _in_rows(vectors: list[FloatArray | None]) -> FloatArray | None:
+    """Return the vectors of contacts as rows, zero where one has none, or None where none has any."""
+    if all(one is None for one in vectors):
+        return None
+    return np.array([np.zeros(3) if one is None else one for one in vectors])
+
+
+def _rows(vectors: FloatArray | None, which: int | list[int]) -> FloatArray | None:
+    """Return some of the contacts' vectors, or None where there are none."""
+    return None if vectors is None else vectors[which]
+
+
+def _check_motion(contacts: Contact | ContactSet, n: int | None = None) -> None:
+    """Check the motion of the surfaces of one contact, or of n. What is all zero becomes None."""
+    if contacts.surfaces_move:
+        for name in contacts.SURFACE_MOTION:
+            object.__setattr__(contacts, name, check_motion(name, getattr(contacts, name), n))
 
 
 def _check_curvatures(contacts: Contact | ContactSet, normals_W: FloatArray) -> None:

@@ -28,8 +28,9 @@ surface eta + v. The known kinds follow:
 The sliding velocity of a contact at rest (v = 0) changes by the acceleration of the material point plus
 w x eta, because another point becomes the point of contact. The tangential part of this term is w_n n x eta.
 
-Not covered: pairs that touch along a line or a face (give its extreme points), a corner on a corner, which
-has no normal, and surfaces that move.
+Where a surface moves, v, w and the acceleration are those relative to it, in its own frame (`velocities`).
+Not covered: pairs that touch along a line or a face (give its extreme points), and a corner on a corner,
+which has no normal.
 """
 
 from __future__ import annotations

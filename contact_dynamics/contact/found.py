@@ -16,6 +16,7 @@ the shape, and along a rim of radius R whose plane is tilted by theta, sin(theta
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -103,7 +104,7 @@ def contacts_within(
         else:
             touches += touches_of(shape, state.p_WB_W, R_WB, surface, distance_tolerance)
         owners += [surface] * (len(touches) - len(owners))
-    return ContactSet(
+    found = ContactSet(
         p_WC_W=np.array([touch.p_WC_W for touch in touches]).reshape(-1, 3),
         normals_W=np.array([touch.normal_W for touch in touches]).reshape(-1, 3),
         frictions=np.array([owner.friction for owner in owners]),
@@ -112,6 +113,7 @@ def contacts_within(
         body_curvatures=_sides([touch.body for touch in touches]),
         surface_curvatures=_sides([touch.surface for touch in touches]),
     )
+    return _on_moving(found, owners)
 
 
 def nearest_surface(
@@ -148,18 +150,33 @@ def _sides(sides: list[Side]) -> Curvatures:
     )
 
 
+def _on_moving(contacts: ContactSet, owners: Sequence[Surface | Obstacle]) -> ContactSet:
+    """Return contacts with the motion of the surfaces that they touch."""
+    moving = [(i, each) for i, each in enumerate(owners) if isinstance(each, Surface) and each.moves]
+    if not moving:
+        return contacts
+    v, w, a = np.zeros((3, len(owners), 3))
+    for i, surface in moving:
+        v[i], a[i] = surface.motion_at(contacts.p_WC_W[i])
+        w[i] = surface.w_WS_W
+    return replace(
+        contacts, surface_velocities_W=v, surface_angular_velocities_W=w, surface_accelerations_W=a
+    )
+
+
 def _corners(points: FloatArray, surfaces: Sequence[Surface], distance_tolerance: float) -> ContactSet:
     touching = [points[surface.gaps(points) <= distance_tolerance] for surface in surfaces]
     owners = [surface for surface, found in zip(surfaces, touching, strict=True) for _ in range(len(found))]
     if not owners:
         return NO_CONTACTS
-    return ContactSet(
+    found = ContactSet(
         p_WC_W=touching[0] if len(surfaces) == 1 else np.concatenate(touching),
         normals_W=np.array([owner.normal_W for owner in owners]),
         frictions=np.array([owner.friction for owner in owners]),
         restitutions=np.array([owner.restitution for owner in owners]),
         surfaces=tuple([owner.name for owner in owners]),
     )
+    return _on_moving(found, owners)
 
 
 NO_CONTACTS: Final = ContactSet(

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 def spatial_contact_velocities(
     state: BodyState, contacts: ContactSet, *, velocity_tolerance: float = VELOCITY_TOLERANCE
 ) -> FloatArray:
-    """Return the velocities of the body's contact points, (n, 3), m/s, world axes.
+    """Return the velocities of the body's contact points relative to their surfaces, (n, 3), m/s, world axes.
 
     Normal and tangential components up to ``velocity_tolerance``, m/s, are exactly 0.
 
@@ -39,7 +39,7 @@ def spatial_contact_velocities(
     """
     tolerance = check_not_negative("velocity_tolerance", velocity_tolerance)
     check_speeds(state, contacts)
-    velocities = state.velocity_of_point(contacts.p_WC_W)
+    velocities = relative_velocities(state, contacts)
     along = np.einsum("ij,ij->i", velocities, contacts.normals_W)
     across = velocities - along[:, None] * contacts.normals_W
     along[np.abs(along) <= tolerance] = 0.0
@@ -48,18 +48,32 @@ def spatial_contact_velocities(
     return cleaned
 
 
+def relative_velocities(state: BodyState, contacts: ContactSet) -> FloatArray:
+    """Return the velocities of the body's contact points relative to their surfaces, (n, 3), m/s."""
+    velocities = state.velocity_of_point(contacts.p_WC_W)
+    return velocities if contacts.surface_velocities_W is None else velocities - contacts.surface_velocities_W
+
+
 def velocity_accelerations(contacts: ContactSet, velocities_W: FloatArray, w_W: FloatArray) -> FloatArray:
     """Return what velocities add to the accelerations of the body's points at contacts, (n, 3), m/s^2.
 
     With them, the acceleration along the normal is the gap's second derivative. At a contact at rest, the
-    tangential acceleration is the rate of its sliding velocity.
+    tangential acceleration is the rate of its sliding velocity. A surface that moves adds what makes the
+    acceleration relative to it: -a_S - 2 W x v, where v is the relative velocity.
 
     Args:
         contacts: n contacts.
-        velocities_W: (n, 3), m/s, of the body's points there, world axes. Normal parts are not used.
+        velocities_W: (n, 3), m/s, of the body's points there, relative to the surfaces, world axes. For the
+            shapes of curved sides, normal parts are not used.
         w_W: (3,), rad/s, angular velocity of the body, world axes.
     """
     added = np.zeros((len(contacts), 3))
+    turning_W = np.broadcast_to(w_W, added.shape)
+    if contacts.surface_accelerations_W is not None:
+        added -= contacts.surface_accelerations_W
+    if contacts.surface_angular_velocities_W is not None:
+        turning_W = w_W - contacts.surface_angular_velocities_W
+        added -= 2.0 * np.cross(contacts.surface_angular_velocities_W, velocities_W)
     if contacts.body_curvatures is None and contacts.surface_curvatures is None:
         return added
     n = len(contacts)
@@ -68,7 +82,7 @@ def velocity_accelerations(contacts: ContactSet, velocities_W: FloatArray, w_W: 
     for i in np.flatnonzero(np.isfinite(mine[0]) | (theirs != 0.0).any(axis=0)).tolist():  # not point on flat
         normal = contacts.normals_W[i]
         frame = tangent_rows(normal)
-        m = frame @ np.cross(normal, w_W)
+        m = frame @ np.cross(normal, turning_W[i])
         v = frame @ velocities_W[i]
         found = rolling(
             side_of(contacts.body_curvatures, i, frame, math.inf),
@@ -78,7 +92,7 @@ def velocity_accelerations(contacts: ContactSet, velocities_W: FloatArray, w_W: 
         )
         if found is not None:  # which `check_pairs` has made sure of
             eta_W = np.array(found.eta) @ frame
-            added[i] = found.gap * normal + float(normal @ w_W) * np.cross(normal, eta_W)
+            added[i] += found.gap * normal + float(normal @ turning_W[i]) * np.cross(normal, eta_W)
     return added
 
 

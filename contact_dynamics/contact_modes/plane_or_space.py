@@ -22,6 +22,13 @@ from contact_dynamics.contact_modes.spatial.problem import SpatialContactProblem
 from contact_dynamics.contact_modes.spatial.statics import spatial_statics
 from contact_dynamics.contact_modes.spatial.uncertain import spatial_boxes
 from contact_dynamics.contact_modes.spatial.wrench_sets import spatial_wrench_sets
+from contact_dynamics.contact_modes.surface_frame import (
+    check_as_one,
+    planar_frame,
+    seen_in_plane,
+    seen_in_space,
+    spatial_frame,
+)
 from contact_dynamics.errors import InvalidFieldError
 
 if TYPE_CHECKING:
@@ -49,18 +56,27 @@ def contact_modes(
 
     Raises:
         TooLargeError: in space, more contacts touch than are supported, or the search takes too many trials.
+        NotSupportedError: in the plane, surfaces move in different ways (`surface_frame`), or in space they
+            do so and contacts are uncertain.
 
     Source: lecture 26.
     """
     if isinstance(problem, PlanarContactProblem):
-        answer = planar_contact_modes(problem)
-        if problem.uncertainty.is_exact:
-            return answer
-        return replace(answer, within=planar_boxes(problem, answer).verdicts_within(problem.uncertainty))
-    in_space = spatial_contact_modes(problem)
-    if problem.uncertainty.is_exact:
-        return in_space
-    return replace(in_space, within=spatial_boxes(problem, in_space).verdicts_within(problem.uncertainty))
+        frame = planar_frame(problem)
+        seen = problem if frame is None else frame.problem
+        answer = planar_contact_modes(seen)
+        if not problem.uncertainty.is_exact:
+            within = planar_boxes(seen, answer).verdicts_within(problem.uncertainty)
+            answer = replace(answer, within=within)
+        return answer if frame is None else frame.answer_in_world(answer, problem)
+    in_frame = spatial_frame(problem)
+    there = problem if in_frame is None else in_frame.problem
+    in_space = spatial_contact_modes(there)
+    if not problem.uncertainty.is_exact:
+        check_as_one(there, "uncertain contacts")
+        verdicts = spatial_boxes(there, in_space).verdicts_within(problem.uncertainty)
+        in_space = replace(in_space, within=verdicts)
+    return in_space if in_frame is None else in_frame.answer_in_world(in_space, problem)
 
 
 @overload
@@ -98,12 +114,12 @@ def mode_margins(
     Raises:
         InvalidFieldError: ``answer`` belongs to another kind of problem, or the length is not > 0.
         UndecidedError: contacts in space are so nearly equal that rounding error prevents a decision.
-        TooLargeError: as for `contact_modes`.
+        TooLargeError, NotSupportedError: as for `contact_modes`.
     """
     if isinstance(problem, PlanarContactProblem) and not isinstance(answer, SpatialModeAnswer):
-        return planar_mode_margins(problem, answer, margin_length=margin_length)
+        return planar_mode_margins(seen_in_plane(problem), answer, margin_length=margin_length)
     if isinstance(problem, SpatialContactProblem) and not isinstance(answer, PlanarModeAnswer):
-        return spatial_mode_margins(problem, answer, margin_length=margin_length)
+        return spatial_mode_margins(seen_in_space(problem), answer, margin_length=margin_length)
     raise _other_answer(problem, answer)
 
 
@@ -140,7 +156,7 @@ def refused_modes(
             raise InvalidFieldError("margin_length", margin_length, "None in the plane")
         return answer.refused
     if isinstance(problem, SpatialContactProblem) and isinstance(answer, SpatialModeAnswer):
-        return spatial_refused_modes(problem, answer, margin_length=margin_length)
+        return spatial_refused_modes(seen_in_space(problem), answer, margin_length=margin_length)
     raise _other_answer(problem, answer)
 
 
@@ -176,8 +192,14 @@ def wrench_sets(
     Source: lecture 26, "Force dual for dynamic contact problem" and "Contact modes for wrench in tray".
     """
     if isinstance(problem, PlanarContactProblem):
-        return planar_wrench_sets(problem, modes=modes)
-    return spatial_wrench_sets(problem, modes=modes)
+        in_plane = planar_frame(problem)
+        if in_plane is None:
+            return planar_wrench_sets(problem, modes=modes)
+        return in_plane.sets_in_world(planar_wrench_sets(in_plane.problem, modes=modes))
+    frame = spatial_frame(problem)
+    if frame is None:
+        return spatial_wrench_sets(problem, modes=modes)
+    return frame.sets_in_world(spatial_wrench_sets(frame.problem, modes=modes))
 
 
 @overload
@@ -206,11 +228,14 @@ def geometry_margins(
     Raises:
         InvalidFieldError: ``answer`` belongs to another kind of problem.
         TooLargeError: as for `contact_modes`.
+        NotSupportedError: surfaces do not move as one rigid body.
     """
     if isinstance(problem, PlanarContactProblem) and not isinstance(answer, SpatialModeAnswer):
+        problem = seen_in_plane(problem)
         found = planar_contact_modes(problem) if answer is None else answer
         return planar_boxes(problem, found).margins()
     if isinstance(problem, SpatialContactProblem) and not isinstance(answer, PlanarModeAnswer):
+        problem = seen_in_space(problem, as_one="geometry_margins")
         in_space = spatial_contact_modes(problem) if answer is None else answer
         return spatial_boxes(problem, in_space).margins()
     raise _other_answer(problem, answer)
@@ -221,6 +246,8 @@ def statics(
 ) -> BodyStatics:
     """Return whether the body stays at rest, with the size of the disturbance that it withstands.
 
+    On surfaces that move, rest is relative to them, under what inertia adds to the wrench.
+
     Args:
         problem: The contact problem. Its velocities have no effect: the body is treated as at rest.
         margin_length: As for `mode_margins`.
@@ -229,10 +256,12 @@ def statics(
         InvalidFieldError: the length is not > 0.
         UndecidedError: contacts are so nearly equal that rounding error prevents a decision.
         TooLargeError: as for `contact_modes`, or the friction pyramids in space have more than 128 edges.
+        NotSupportedError: surfaces do not move as one rigid body.
     """
     if isinstance(problem, PlanarContactProblem):
-        return planar_statics(problem, margin_length=margin_length)
-    return spatial_statics(problem, margin_length=margin_length)
+        return planar_statics(seen_in_plane(problem, resting=True), margin_length=margin_length)
+    seen = seen_in_space(problem, as_one="statics", resting=True)
+    return spatial_statics(seen, margin_length=margin_length)
 
 
 def _other_answer(problem: object, answer: object) -> InvalidFieldError:

@@ -244,7 +244,8 @@ class PlanarMode(AnyMode):
         acceleration: Acceleration of the centre of mass, m/s^2.
         angular_acceleration: rad/s^2.
         contact_forces: Force (f_t, f_n) on the body at each contact, N.
-        contact_accelerations: Acceleration (a_t, a_n) of the body's point at each contact, m/s^2.
+        contact_accelerations: Acceleration (a_t, a_n) of the body's point at each contact relative to the
+            surface, m/s^2.
         forces_unique: Whether no other contact forces are possible in this mode.
         motion_unique: Whether no other accelerations are possible in this mode.
     """
@@ -267,8 +268,8 @@ class PlanarModeAnswer(AnyModeAnswer):
         modes: All consistent modes.
         refused: Modes that are kinematically possible but not consistent, each with the reason.
         approaching: Indices of the approaching contacts. Empty unless the verdict is IMPACT.
-        contact_velocities: Velocity (v_t, v_n) of the body's point at each contact, m/s. Components within
-            the tolerance are 0.
+        contact_velocities: Velocity (v_t, v_n) of the body's point at each contact relative to the surface,
+            m/s. Components within the tolerance are 0.
         velocity_tolerance: m/s. Velocities of contacts up to this size count as zero.
         acceleration_tolerance: m/s^2. Accelerations of the centre of mass up to this size count as zero.
         undecided: The undecided cases and the reason. Empty unless the verdict is UNDECIDED.
@@ -306,9 +307,10 @@ class SpatialMode(AnyMode):
         acceleration_W: (3,), m/s^2, acceleration of the centre of mass.
         angular_acceleration_W: (3,), rad/s^2.
         contact_forces_W: (n, 3), N, contact forces on the body.
-        contact_accelerations_W: (n, 3), m/s^2, accelerations of the body's contact points.
-        tangential_directions_W: (n, 3), unit direction in which each contact slides, or zero if it does not
-            slide.
+        contact_accelerations_W: (n, 3), m/s^2, accelerations of the body's contact points relative to the
+            surfaces, in their axes, which turn with them.
+        tangential_directions_W: (n, 3), unit direction in which each contact slides on its surface, or zero
+            if it does not slide.
         misdirection: rad, largest angle between friction and the direction opposite to sliding. It is at the
             level of rounding error, unless the problem's ``sharpen`` is false.
         forces_unique: Whether no other contact forces are possible in this mode.

@@ -28,6 +28,7 @@ from contact_dynamics.tolerances import SYMMETRY_TOLERANCE, VELOCITY_TOLERANCE
 from contact_dynamics.validation import (
     FloatArray,
     check_array,
+    check_at_rest,
     check_magnitude,
     check_not_negative,
     check_whole,
@@ -103,6 +104,7 @@ def planar_impact_distribution(
             odd or outside [2, 1 000 000], a variance exceeds `MAX_VARIANCE`, or the seed is not an integer >=
             0.
     """
+    check_at_rest("contact", contact, "planar_impact_distribution")
     tolerance = check_not_negative("velocity_tolerance", velocity_tolerance)
     draws = np.array([*velocity.v, velocity.w]) + _draw(covariance, 3, samples, seed)
     v, w = draws[:, :2], draws[:, 2]
@@ -166,6 +168,7 @@ def spatial_impact_distribution(
             `MAX_VARIANCE`, or the seed is not an integer >= 0.
     """
     body = body.mass_properties
+    check_at_rest("contact", contact, "spatial_impact_distribution")
     tolerance = check_not_negative("velocity_tolerance", velocity_tolerance)
     check_striking(body, state, contact.p_WC_W)
     draws = _draw(covariance, 12, samples, seed)

@@ -30,7 +30,7 @@ from contact_dynamics.rotations.one import rotation_matrix
 from contact_dynamics.shapes.obstacle import Obstacle
 from contact_dynamics.tolerances import DISTANCE_TOLERANCE, GRAZING_DEPTH, LEAVING_STEP, VELOCITY_TOLERANCE
 from contact_dynamics.tumbling import free_motion
-from contact_dynamics.validation import check_not_negative
+from contact_dynamics.validation import check_at_rest, check_not_negative
 
 if TYPE_CHECKING:
     from contact_dynamics.contact.contact import ContactSet
@@ -117,6 +117,7 @@ def landing_from(
     work: SearchWork | None = None,
 ) -> Landing | None:
     """Return the landing as `next_landing` does, however deep the body is in a surface."""
+    check_at_rest("world", world, "next_landing")
     now = _touching(body, state, world, distance_tolerance)
     if now is not None and (now.approach <= velocity_tolerance).any():
         return now.landing(0.0, state, velocity_tolerance)

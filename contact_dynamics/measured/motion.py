@@ -23,6 +23,7 @@ from contact_dynamics.records import Record
 from contact_dynamics.rigid_body.body import states_of_rows
 from contact_dynamics.rotations.many import rotation_vectors
 from contact_dynamics.tolerances import LEAST_ORIENTATION_NOISE, LEAST_POSITION_NOISE
+from contact_dynamics.validation import check_at_rest
 from contact_dynamics.world import Surface
 
 if TYPE_CHECKING:
@@ -118,6 +119,10 @@ class MeasuredMotion(Record):
     rate: float
     position_noise: float
     orientation_noise: float
+
+    def __post_init__(self) -> None:
+        """Refuse a world that moves."""
+        check_at_rest("world", self.world, "measured motions")
 
     def __len__(self) -> int:
         """Return the number of states."""

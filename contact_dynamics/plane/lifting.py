@@ -120,16 +120,21 @@ def planar_in_space(
     unit = np.abs(axes).max() <= 1.0 + UNIT_LENGTH_TOLERANCE
     if not unit or np.abs(axes @ axes.T - np.eye(2)).max() > UNIT_LENGTH_TOLERANCE:
         raise InvalidFieldError("axes_W", axes.tolist(), "two unit vectors at right angles")
+    normal = np.cross(axes[0], axes[1])
     state = BodyState(
         p_WB_W=np.zeros(3),
         q_WB=np.array([0.0, 0.0, 0.0, 1.0]),
         v_WB_W=np.array(velocity.v) @ axes,
-        w_WB_W=velocity.w * np.cross(axes[0], axes[1]),
+        w_WB_W=velocity.w * normal,
     )
     touching = ContactSet(
         p_WC_W=np.array([contact.r for contact in contacts]).reshape(-1, 2) @ axes,
         normals_W=np.array([contact.normal for contact in contacts]).reshape(-1, 2) @ axes,
         frictions=np.array([contact.friction for contact in contacts]),
         restitutions=all_or_none([contact.restitution for contact in contacts]),
+        surface_velocities_W=np.array([one.surface_velocity for one in contacts]).reshape(-1, 2) @ axes,
+        surface_angular_velocities_W=np.outer([one.surface_angular_velocity for one in contacts], normal),
+        surface_accelerations_W=np.array([one.surface_acceleration for one in contacts]).reshape(-1, 2)
+        @ axes,
     )
     return MassProperties(mass=body.mass, I_B=body.inertia * np.eye(3)), state, touching

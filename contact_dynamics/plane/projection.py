@@ -29,6 +29,7 @@ from contact_dynamics.rigid_body.body import BodyState, HasMassProperties, MassP
 from contact_dynamics.tolerances import OUT_OF_PLANE_RATIO, OUT_OF_PLANE_SPEED
 from contact_dynamics.validation import (
     FloatArray,
+    check_at_rest,
     check_not_negative,
     check_unit,
     check_vector3,
@@ -157,6 +158,7 @@ class PlaneFit(NamedTuple):
 
 def in_floats(body: MassProperties, state: BodyState, contacts: ContactSet) -> ProblemInFloats:
     """Return a problem in plain floats."""
+    check_at_rest("contacts", contacts, "a plane of motion")
     return ProblemInFloats(
         body=body,
         R_WB=state.R_WB,
@@ -251,6 +253,7 @@ def _curvatures_in(plane: PlaneOfMotion, contacts: ContactSet) -> list[tuple[flo
 
 def out_of_plane_speed(plane: PlaneOfMotion, state: BodyState, contacts: ContactSet) -> float:
     """Return the largest speed out of the plane, m/s, at contacts and centre of mass."""
+    check_at_rest("contacts", contacts, "out_of_plane_speed")
     check_speeds(state, contacts)
     arms = rows_of(contacts.p_WC_W - state.p_WB_W)
     return _speed_out_of(three_of(plane.normal_W), three_of(state.v_WB_W), three_of(state.w_WB_W), arms)

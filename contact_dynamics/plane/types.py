@@ -12,8 +12,8 @@ Numbers are plain floats, because one planar answer is cheaper without arrays.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-from typing import Any, Final, TypeAlias
+from dataclasses import dataclass, field
+from typing import Any, ClassVar, Final, TypeAlias
 
 from contact_dynamics.contact.contact import known_restitution
 from contact_dynamics.contact.curvature import planar_gap_acceleration
@@ -96,6 +96,9 @@ class PlanarWrench(Record):
 _FLAT: Final = 0.0
 """1/m, the curvature of a flat surface."""
 
+_NONE: Final = (0.0, 0.0)
+"""The velocity and acceleration of a surface at rest."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class PlanarContact(Record):
@@ -115,11 +118,17 @@ class PlanarContact(Record):
             corner.
         surface_curvature: Curvature of the surface at the contact, 1/m, positive where convex, infinite at a
             corner.
+        surface_velocity: Velocity of the surface's material point at the contact, m/s.
+        surface_angular_velocity: Angular velocity of the surface, rad/s, positive from x to y.
+        surface_acceleration: Acceleration of the surface's material point at the contact, m/s^2, centripetal
+            terms included.
+        surfaces_move: Whether any of these three is not zero.
 
     Raises:
         InvalidFieldError: a number is not finite, the normal is not a unit vector, the friction is negative,
             the restitution is outside [0, 1], or body and surface do not touch at a single point with one
-            normal: the sum of curvatures is <= 0, or both are corners.
+            normal: the sum of curvatures is <= 0, or both are corners. Or a velocity or
+            acceleration of the surface is beyond `LARGEST_NUMBER`.
     """
 
     r: Vector2
@@ -128,6 +137,16 @@ class PlanarContact(Record):
     restitution: float | None = None
     body_curvature: float = math.inf
     surface_curvature: float = _FLAT
+    surface_velocity: Vector2 = _NONE
+    surface_angular_velocity: float = 0.0
+    surface_acceleration: Vector2 = _NONE
+    surfaces_move: bool = field(init=False, repr=False, default=False)
+
+    SURFACE_MOTION: ClassVar[tuple[str, ...]] = (
+        "surface_velocity",
+        "surface_angular_velocity",
+        "surface_acceleration",
+    )
 
     def __post_init__(self) -> None:
         """Check all fields and normalise the normal to rounding."""
@@ -145,6 +164,12 @@ class PlanarContact(Record):
             object.__setattr__(self, "restitution", check_within("restitution", self.restitution, 0.0, 1.0))
         if self.body_curvature is not math.inf or self.surface_curvature is not _FLAT:
             self._check_curvatures()
+        if (
+            self.surface_velocity is not _NONE
+            or self.surface_acceleration is not _NONE
+            or self.surface_angular_velocity != 0.0
+        ):
+            self._check_motion()
 
     @property
     def impact_restitution(self) -> float:
@@ -163,6 +188,15 @@ class PlanarContact(Record):
                 f"{one} of the body, {other} of the surface, 1/m",
                 "a sum > 0, and at most one corner",
             )
+
+    def _check_motion(self) -> None:
+        v = check_vector2("surface_velocity", self.surface_velocity)
+        w = _check_number("surface_angular_velocity", self.surface_angular_velocity)
+        a = check_vector2("surface_acceleration", self.surface_acceleration)
+        object.__setattr__(self, "surface_velocity", v)
+        object.__setattr__(self, "surface_angular_velocity", w)
+        object.__setattr__(self, "surface_acceleration", a)
+        object.__setattr__(self, "surfaces_move", (*v, w, *a) != (0.0,) * 5)
 
     def gap_acceleration(self, v_t: float, w: float) -> float:
         """Return the gap's second derivative less the contact point's a_n, m/s^2.

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from contact_dynamics.questions.state_store import StateStore
 from contact_dynamics.records import Record
 from contact_dynamics.tolerances import DISTANCE_TOLERANCE, OUT_OF_PLANE_SPEED, VELOCITY_TOLERANCE
-from contact_dynamics.validation import check_not_negative, check_positive
+from contact_dynamics.validation import check_at_rest, check_not_negative, check_positive
 from contact_dynamics.world import World
 
 
@@ -52,6 +52,9 @@ class Context(Record):
         now_ns: Function that returns the present time, ns, on the clock of the states' stamps, so that old
             states are rejected. If it is None or returns None, there is no clock, and the newest state is
             accepted at any age.
+
+    Raises:
+        NotSupportedError: a surface moves.
     """
 
     world: World = field(default_factory=World)
@@ -60,7 +63,8 @@ class Context(Record):
     now_ns: Callable[[], int | None] | None = None
 
     def __post_init__(self) -> None:
-        """Leave the fields as they are, now that `Record` has checked their types."""
+        """Refuse a world that moves."""
+        check_at_rest("world", self.world, "questions")
 
 
 def or_default(asked: float | None, default: float) -> float:

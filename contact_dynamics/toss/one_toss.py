@@ -27,7 +27,7 @@ from contact_dynamics.toss.simulation import Simulation, TossSettings
 from contact_dynamics.toss.solid import numbers_of, solid_of
 from contact_dynamics.toss.uncertainty import check_factors
 from contact_dynamics.tumbling.motion import check_extent
-from contact_dynamics.validation import check_positive, check_whole, check_within
+from contact_dynamics.validation import check_at_rest, check_positive, check_whole, check_within
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -84,6 +84,7 @@ def toss(
     check_laws(restitution_law, several_contacts_law)
     factors = check_factors("lasting_factors", lasting_factors)
     check_extent(body.mass_properties, state, world.gravity_W)
+    check_at_rest("world", world, "toss")
     check_not_inside(body, state, world.surfaces, distance_tolerance=distance_tolerance)
     body, indices = with_distinct_corners(body)
     solid = solid_of(body, world, indices=indices, lasting_factors=factors)

@@ -41,7 +41,13 @@ from contact_dynamics.toss.solid import solid_of
 from contact_dynamics.toss.to_rest import check_processes, followed_to_rest
 from contact_dynamics.toss.uncertainty import EXACT, MAX_SPREAD, TossUncertainty, draw, exact_inputs
 from contact_dynamics.tumbling.motion import check_extent
-from contact_dynamics.validation import check_array, check_magnitude, check_positive, check_whole
+from contact_dynamics.validation import (
+    check_array,
+    check_at_rest,
+    check_magnitude,
+    check_positive,
+    check_whole,
+)
 from contact_dynamics.validation_batches import check_covariance
 
 if TYPE_CHECKING:
@@ -138,6 +144,7 @@ def sampled_toss(
     if covariance is not None:
         covariance = check_covariance("covariance", covariance)
     check_extent(body.mass_properties, state, world.gravity_W)
+    check_at_rest("world", world, "sampled_toss")
     check_not_inside(body, state, world.surfaces, distance_tolerance=distance_tolerance)
     check_laws(restitution_law, several_contacts_law)
     body, indices = with_distinct_corners(body)

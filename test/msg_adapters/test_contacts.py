@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -134,3 +135,8 @@ def test_moving_surfaces_are_refused_by_name(field: str) -> None:
     setattr(msg, field, [0.0] * 8 + [0.1])
     with pytest.raises(NotSupportedError, match=field):
         contacts_from_msg(msg)
+
+
+def test_contacts_on_a_moving_surface_do_not_become_a_message() -> None:
+    with pytest.raises(NotSupportedError, match="contacts must have surfaces at rest in messages"):
+        contacts_to_msg(replace(contacts(), surface_velocities_W=[0.1, 0.0, 0.0]))

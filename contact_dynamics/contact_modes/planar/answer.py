@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Every mode of a planar body that is consistent with mechanics (Mason, lecture 26).
 
-The model is a rigid body in the plane that touches the fixed world with Coulomb friction, under an applied
+The model is a rigid body in the plane that touches the world with Coulomb friction, under an applied
 wrench. A contact is a point of the body on a flat of the world, unless its curvatures say otherwise
 (`PlanarContact`). A mode says which contact equations hold. It is kept if the accelerations that follow
 contradict none of its letters. The lecture's table decides, and is as strict: a normal force may be zero,
@@ -18,7 +18,7 @@ contact's acceleration is affine in the contact force,
 where w is the acceleration without a contact force, with the terms of velocities. Each letter adds two
 equations, and their solution is kept if it contradicts no inequality of the letter.
 
-Moving surfaces and elastic contacts are not covered.
+Elastic contacts are not covered. Problems whose surfaces move are seen from these (`surface_frame`).
 """
 
 from __future__ import annotations

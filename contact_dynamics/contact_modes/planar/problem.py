@@ -99,7 +99,10 @@ class PlanarContactProblem(Record):
             object.__setattr__(self, "acceleration_tolerance", acceleration)
 
     def contact_velocities(self) -> tuple[Vector2, ...]:
-        """Return (v_t, v_n), m/s, of each contact. Values within the tolerance are exactly 0."""
+        """Return (v_t, v_n), m/s, of each contact relative to its surface.
+
+        Values within the tolerance are exactly 0.
+        """
         tolerance = self.velocity_tolerance
         (v_x, v_y), w = self.velocity.v, self.velocity.w
         found = []
@@ -107,6 +110,9 @@ class PlanarContactProblem(Record):
             n_x, n_y = contact.normal
             c_x = v_x - w * contact.r[1]
             c_y = v_y + w * contact.r[0]
+            if contact.surfaces_move:
+                c_x -= contact.surface_velocity[0]
+                c_y -= contact.surface_velocity[1]
             v_t = c_x * n_y - c_y * n_x
             v_n = c_x * n_x + c_y * n_y
             found.append((0.0 if abs(v_t) <= tolerance else v_t, 0.0 if abs(v_n) <= tolerance else v_n))

@@ -32,7 +32,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from contact_dynamics.contact.velocities import check_speeds, velocity_accelerations
+from contact_dynamics.contact.velocities import check_speeds, relative_velocities, velocity_accelerations
 from contact_dynamics.contact_modes.letters import SEPARATES, STAYS, STICKS
 from contact_dynamics.contact_modes.spatial.cone import cone_of
 from contact_dynamics.errors import TooLargeError
@@ -45,7 +45,7 @@ from contact_dynamics.tolerances import (
     SMALLEST,
     VELOCITY_TOLERANCE,
 )
-from contact_dynamics.validation import check_magnitude, check_not_negative, check_whole
+from contact_dynamics.validation import check_at_rest, check_magnitude, check_not_negative, check_whole
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -84,7 +84,7 @@ def spatial_kinematic_modes(
     if n > MAX_SPATIAL_CONTACTS:
         raise TooLargeError("contacts", f"{n} contacts", f"at most {MAX_SPATIAL_CONTACTS}")
     check_speeds(state, contacts)
-    velocities = state.velocity_of_point(contacts.p_WC_W)
+    velocities = relative_velocities(state, contacts)
     v_n = np.sum(contacts.normals_W * velocities, axis=1)
     if np.any(v_n < -tolerance):
         return ()
@@ -191,6 +191,7 @@ def spatial_sliding_modes(contacts: ContactSet, *, planes: int = 2) -> tuple[str
         InvalidFieldError: the number of planes is out of range.
         TooLargeError: there are more than `MAX_SLIDING_CONTACTS` contacts.
     """
+    check_at_rest("contacts", contacts, "spatial_sliding_modes")
     n = len(contacts)
     planes = check_whole("planes", planes, 2, MAX_PLANES)
     if n > MAX_SLIDING_CONTACTS:

@@ -22,6 +22,7 @@ from contact_dynamics.contact_modes.letters import STICKS, mode_in_words
 from contact_dynamics.contact_modes.result import ModeVerdict
 from contact_dynamics.contact_modes.spatial.answer import spatial_contact_modes
 from contact_dynamics.contact_modes.spatial.wrenches import RoundSum
+from contact_dynamics.contact_modes.surface_frame import seen_in_space
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.numerics.vectors import tangents
 from contact_dynamics.records import Record
@@ -34,7 +35,7 @@ from contact_dynamics.tolerances import (
     SAME_FACTOR,
     STRAIGHT_ARC,
 )
-from contact_dynamics.validation import check_magnitude, check_vector3
+from contact_dynamics.validation import check_at_rest, check_magnitude, check_vector3
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -104,7 +105,7 @@ def largest_load(
 
     Args:
         problem: The contact problem with the wrench without the load, such as the weight alone, under which
-            rest is consistent.
+            rest is consistent. On surfaces that move this is rest relative to them.
         force_W: (3,), N, force of the load, world axes.
         torque_W: (3,), N m, torque of the load about the centre of mass, in addition to that of the force,
             world axes.
@@ -112,7 +113,9 @@ def largest_load(
 
     Raises:
         InvalidFieldError: rest is not consistent without the load, or the load is zero or not finite.
+        NotSupportedError: surfaces do not move as one rigid body.
     """
+    problem = seen_in_space(problem, as_one="largest_load")
     force, torque = check_vector3("force_W", force_W), check_vector3("torque_W", torque_W)
     if at_W is not None:
         torque = torque + np.cross(check_vector3("at_W", at_W) - problem.state.p_WB_W, force)
@@ -168,6 +171,7 @@ def largest_spin(
         InvalidFieldError: rest is not consistent without the motion, the axis is zero or not finite, or a
             spin about it does not load the body.
     """
+    check_at_rest("problem.contacts", problem.contacts, "largest_spin")
     axis = _direction("axis_W", axis_W)
     arm = problem.state.p_WB_W - check_vector3("at_W", at_W)
     outward = arm - (arm @ axis) * axis
@@ -205,6 +209,7 @@ def largest_tilt(
         InvalidFieldError: rest is not consistent without the motion, the axis is zero or not finite, or
             gravity is along it.
     """
+    check_at_rest("problem.contacts", problem.contacts, "largest_tilt")
     axis, gravity = _direction("axis_W", axis_W), check_vector3("gravity_W", gravity_W)
     mass = problem.body.mass
     along = mass * (axis @ gravity) * axis
@@ -275,6 +280,7 @@ def least_friction(problem: SpatialContactProblem) -> LeastFriction:
     Args:
         problem: The problem, with coefficients of friction > 0 where there is friction.
     """
+    problem = seen_in_space(problem, as_one="least_friction", resting=True)
     state = replace(problem.state, v_WB_W=np.zeros(3), w_WB_W=np.zeros(3))
     below = None
 

@@ -24,7 +24,7 @@ import numpy as np
 from contact_dynamics.contact.found import find_contacts
 from contact_dynamics.contact.friction import check_facets
 from contact_dynamics.contact.uncertainty import EXACT_CONTACTS, ContactUncertainty
-from contact_dynamics.contact.velocities import velocity_accelerations, warn_if_far
+from contact_dynamics.contact.velocities import relative_velocities, velocity_accelerations, warn_if_far
 from contact_dynamics.contact_modes.spatial.pyramid_programs import Touching
 from contact_dynamics.contact_modes.spatial.search import Search
 from contact_dynamics.errors import NoContactError, TooLargeError
@@ -158,8 +158,7 @@ class SpatialContactProblem(Record):
         Args:
             body: Body with a shape.
             state: State of the body. Contacts are detected as by `find_contacts`.
-            world: Surfaces and gravity. An accelerating tray or truck is at rest in its own frame, in which
-                gravity is that of the world minus its acceleration.
+            world: Surfaces, which may move, and gravity.
             force_W: (3,), N, force of the load, without gravity, world axes.
             torque_W: (3,), N m, torque of the load about the centre of mass, in addition to that of the
                 force, world axes.
@@ -198,6 +197,7 @@ class AccelerationMap:
         w_W: FloatArray,
         wrench_W: FloatArray,
         rolling_W: FloatArray,
+        at_rest: bool,
     ) -> None:
         # J maps (a, alpha) to the accelerations of the contact points, its transpose forces to wrenches.
         J = point_jacobians(r_W).reshape(-1, 6)
@@ -206,10 +206,10 @@ class AccelerationMap:
         self.inertia = inertia
         self.points = J
         # (n, 3), m/s^2, the part that a and alpha do not cause: of the points, and of contact that wanders
-        # over curved sides.
-        self.at_rest = not np.any(w_W)
+        # over curved sides, less the motion of surfaces.
+        self.at_rest = at_rest
         self.turning, self.wrench = rolling_W, wrench_W
-        if not self.at_rest:
+        if np.any(w_W):
             self.turning = np.cross(w_W, np.cross(w_W, r_W)) + rolling_W
             self.wrench = wrench_W - np.concatenate([np.zeros(3), np.cross(w_W, inertia @ w_W)])
         self.of_forces = inverse @ J.T  # (6, 3 n)
@@ -230,7 +230,7 @@ class SpatialCase(NamedTuple):
 
     motion: AccelerationMap
     contacts: ContactSet
-    sliding: FloatArray  # (n, 3), m/s, tangential velocities; zero for a contact at rest
+    sliding: FloatArray  # (n, 3), m/s, tangential velocities on the surfaces; zero for a contact at rest
     touching: NDArray[np.intp]  # the numbers of the contacts that neither approach nor leave
     given: SpatialCase | None = None  # that of the contacts as they were given, or None if these are flush
 
@@ -244,7 +244,7 @@ def spatial_case(problem: SpatialContactProblem, *, within: float = 0.0) -> Spat
         TooLargeError: more contacts touch than `MAX_DYNAMIC_CONTACTS`.
     """
     state, contacts, tolerance = problem.state, problem.contacts, problem.velocity_tolerance
-    velocities = state.velocity_of_point(contacts.p_WC_W)
+    velocities = relative_velocities(state, contacts)
     v_n = np.sum(contacts.normals_W * velocities, axis=1)
     if np.any(v_n < -tolerance):
         return tuple(int(i) for i in np.flatnonzero(v_n < -tolerance))
@@ -259,7 +259,7 @@ def spatial_case(problem: SpatialContactProblem, *, within: float = 0.0) -> Spat
 def _case_of(
     problem: SpatialContactProblem, contacts: ContactSet, velocities: FloatArray, touching: NDArray[np.intp]
 ) -> SpatialCase:
-    """Return the case of contacts whose points have given velocities, (n, 3)."""
+    """Return the case of contacts whose points have given velocities, (n, 3), relative to the surfaces."""
     body, state, tolerance = problem.body, problem.state, problem.velocity_tolerance
     r_W = contacts.p_WC_W - state.p_WB_W
     v_n = np.sum(contacts.normals_W * velocities, axis=1)
@@ -268,13 +268,19 @@ def _case_of(
     w = state.w_WB_W
     if len(r_W) > 0 and np.linalg.norm(w) * _reach(body, r_W, contacts) <= tolerance:
         w = np.zeros(3)
+    relative = sliding
+    if contacts.surfaces_move:  # where contacts leave, normal parts count too
+        relative = velocities.copy()
+        relative[touching] = sliding[touching]
+    rolling = velocity_accelerations(contacts, relative, w)
     motion = AccelerationMap(
         body.mass,
         body.inertia_in_world(state.R_WB),
         r_W=r_W,
         w_W=w,
         wrench_W=problem.wrench_W,
-        rolling_W=velocity_accelerations(contacts, sliding, w),
+        rolling_W=rolling,
+        at_rest=not (np.any(w) or (contacts.surfaces_move and np.any(rolling[touching]))),
     )
     return SpatialCase(motion, contacts, sliding, touching)
 

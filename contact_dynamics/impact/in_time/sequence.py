@@ -38,6 +38,7 @@ from contact_dynamics.tolerances import (
 )
 from contact_dynamics.validation import (
     check_array,
+    check_at_rest,
     check_not_negative,
     check_positive,
 )
@@ -91,6 +92,7 @@ def impact_sequence(
     """
     tolerance = check_positive("velocity_tolerance", velocity_tolerance)
     held = None if hold_step is None else check_positive("hold_step", hold_step)
+    check_at_rest("world", world, "impact_sequence")
     check_not_inside(body, state, world.surfaces, distance_tolerance=distance_tolerance)
     work = SearchWork("strike_window")
     meetings = FoundMeetings(
@@ -153,6 +155,7 @@ def impact_sequence_of(
     held = None if hold_step is None else check_positive("hold_step", hold_step)
     if contacts.body_curvatures is not None or contacts.surface_curvatures is not None:
         raise InvalidFieldError("contacts.curvatures", "some", "none: a point of the body on a plane")
+    check_at_rest("contacts", contacts, "impact_sequence_of")
     _ = contacts.impact_restitutions
     gravity = check_array("gravity_W", gravity_W, (3,))
     work = SearchWork("strike_window")

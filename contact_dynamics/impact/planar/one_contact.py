@@ -20,7 +20,7 @@ from contact_dynamics.impact.planar.result import PlanarImpact
 from contact_dynamics.impact.planar.routh import PlanarStrike
 from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity
 from contact_dynamics.tolerances import VELOCITY_TOLERANCE
-from contact_dynamics.validation import check_not_negative
+from contact_dynamics.validation import check_at_rest, check_not_negative
 
 
 def planar_impact(
@@ -48,6 +48,7 @@ def planar_impact(
 
     Source: lecture 27, eqs. 2 to 10; Routh 1860; Stronge 1990 for the energetic law.
     """
+    check_at_rest("contact", contact, "planar_impact")
     restitution = contact.impact_restitution
     tolerance = check_not_negative("velocity_tolerance", velocity_tolerance)
     strike = PlanarStrike(restitution_law)

@@ -18,7 +18,7 @@ from contact_dynamics.impact.planar.result import PlanarImpact
 from contact_dynamics.impact.planar.routh import impulse_path, pair_inverse_inertia
 from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, Vector2, check_vector2
 from contact_dynamics.tolerances import VELOCITY_TOLERANCE
-from contact_dynamics.validation import check_not_negative
+from contact_dynamics.validation import check_at_rest, check_not_negative
 
 
 def planar_pair_impact(
@@ -49,6 +49,7 @@ def planar_pair_impact(
         SeparatingContactError: the contact's relative normal velocity is above the tolerance.
         InvalidFieldError: a number is not finite, or the tolerance is negative.
     """
+    check_at_rest("contact", contact, "planar_pair_impact")
     restitution = contact.impact_restitution
     tolerance = check_not_negative("velocity_tolerance", velocity_tolerance)
     n_x, n_y = contact.normal

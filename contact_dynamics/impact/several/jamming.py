@@ -34,7 +34,7 @@ from contact_dynamics.numerics.lemke import solve_complementarity
 from contact_dynamics.numerics.vectors import point_jacobians, tangents_towards
 from contact_dynamics.rigid_body.body import BodyState, HasMassProperties, inverse_mass_matrix
 from contact_dynamics.tolerances import HELD_INDEPENDENT, LARGEST_NUMBER, SHORT_TIMES, VELOCITY_TOLERANCE
-from contact_dynamics.validation import check_array, check_magnitude, check_unit, check_within
+from contact_dynamics.validation import check_array, check_at_rest, check_magnitude, check_unit, check_within
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -127,6 +127,7 @@ def jamming_impact(
             f"{facets}, with {len(contacts)} contacts",
             f"at most {MAX_DIRECTIONS} over all contacts",
         )
+    check_at_rest("contacts", contacts, "jamming_impact")
     restitutions = contacts.impact_restitutions
     w, inertia = state.w_WB_W, body.inertia_in_world(state.R_WB)
     arms = contacts.p_WC_W - state.p_WB_W

@@ -33,7 +33,7 @@ from contact_dynamics.impact.several.tied import (
 )
 from contact_dynamics.impact.spatial.one_contact import check_striking, spatial_impact, spatial_pair_impact
 from contact_dynamics.tolerances import TIED_APPROACH, VELOCITY_TOLERANCE
-from contact_dynamics.validation import check_positive
+from contact_dynamics.validation import check_at_rest, check_positive
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -126,6 +126,7 @@ def check_touching(touching: Touching, states: Sequence[BodyState]) -> FloatArra
     contacts, tolerance = touching.contacts, touching.tolerance
     if len(contacts) == 0:
         raise InvalidFieldError("contacts", "none", "at least one contact")
+    check_at_rest("contacts", contacts, "impacts at several contacts")
     _ = contacts.impact_restitutions
     for index, (body, state) in enumerate(zip(touching.bodies, states, strict=True)):
         check_striking(body, state, contacts.p_WC_W[[i for i, p in enumerate(touching.pairs) if index in p]])

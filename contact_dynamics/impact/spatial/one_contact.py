@@ -29,7 +29,13 @@ from contact_dynamics.impact.spatial.path import OUTCOMES
 from contact_dynamics.impact.spatial.response import BodyAtContact, Strike, refuse
 from contact_dynamics.impact.spatial.result import ResponseImpact, SpatialImpact
 from contact_dynamics.tolerances import LARGEST_ARM, LARGEST_NUMBER, VELOCITY_TOLERANCE
-from contact_dynamics.validation import check_array, check_magnitude, check_not_negative, check_vector3
+from contact_dynamics.validation import (
+    check_array,
+    check_at_rest,
+    check_magnitude,
+    check_not_negative,
+    check_vector3,
+)
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -206,6 +212,7 @@ def _impact(
     velocity_tolerance: float,
 ) -> SpatialImpact:
     """Return the impact of a body on ``other``, or on the fixed world if ``other`` is None."""
+    check_at_rest("contact", contact, "spatial_impact" if other is None else "spatial_pair_impact")
     restitution = contact.impact_restitution
     tolerance = check_not_negative("velocity_tolerance", velocity_tolerance)
 

@@ -23,7 +23,7 @@ from contact_dynamics.contact_modes import (
     largest_tilt,
     least_friction,
 )
-from contact_dynamics.errors import InvalidFieldError
+from contact_dynamics.errors import InvalidFieldError, NotSupportedError
 
 G = 9.80665
 MASS = 2.0
@@ -147,6 +147,18 @@ def test_a_body_in_a_vice_stays_at_any_tilt_where_friction_wedges_it() -> None:
 def test_what_cannot_be_asked(call: Callable[[SpatialContactProblem], LargestLoad], message: str) -> None:
     with pytest.raises(InvalidFieldError, match=message):
         call(on_tray(0.5))
+
+
+def test_a_tray_that_accelerates_already() -> None:
+    problem = on_tray(0.8)
+    moving = replace(problem, contacts=replace(problem.contacts, surface_accelerations_W=[2.0, 0.0, 0.0]))
+    assert largest_acceleration(moving, [1, 0, 0]).factor == pytest.approx(TIPS * G - 2.0, rel=1e-9)
+    assert least_friction(moving).frictions == pytest.approx([2.0 / G] * 4, rel=1e-7)
+    for call in (largest_tilt, largest_spin):
+        with pytest.raises(
+            NotSupportedError, match=rf"^problem\.contacts must have surfaces at rest in {call.__name__}"
+        ):
+            call(moving, [0, 1, 0])
 
 
 def test_the_least_friction_of_a_ladder() -> None:

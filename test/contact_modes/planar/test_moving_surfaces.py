@@ -1,0 +1,322 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Contact modes in the plane on surfaces that move."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+import pytest
+
+from contact_dynamics.contact import ContactUncertainty
+from contact_dynamics.contact_modes import (
+    PlanarContactProblem,
+    PlanarMode,
+    PlanarModeAnswer,
+    SpatialContactProblem,
+    contact_modes,
+    geometry_margins,
+    mode_margins,
+    refused_modes,
+    statics,
+    wrench_sets,
+)
+from contact_dynamics.errors import NotSupportedError
+from contact_dynamics.plane import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
+from contact_dynamics.plane.lifting import planar_in_space
+from contact_modes.evidence import check_forces
+from oracles.contact_mode_cases import FloatCase, draw, rounded
+from sweeps import sweep
+
+G, MU = 9.81, 0.4
+BLOCK = PlanarBody(mass=2.0, inertia=0.05)
+WEIGHT = PlanarWrench(f=(0.0, -2.0 * G))
+
+
+class Motion(NamedTuple):
+    """A rigid motion in the plane; the velocity and acceleration are those of the origin."""
+
+    v: tuple[float, float] = (0.0, 0.0)
+    w: float = 0.0
+    a: tuple[float, float] = (0.0, 0.0)
+    alpha: float = 0.0
+
+    def carried(self, contact: PlanarContact) -> PlanarContact:
+        """Return the contact with a surface that moves like this."""
+        x, y = contact.r
+        return replace(
+            contact,
+            surface_velocity=(self.v[0] - self.w * y, self.v[1] + self.w * x),
+            surface_angular_velocity=self.w,
+            surface_acceleration=(
+                self.a[0] - self.alpha * y - self.w**2 * x,
+                self.a[1] + self.alpha * x - self.w**2 * y,
+            ),
+        )
+
+
+def feet(width: float = 0.3, height: float = 0.2, friction: float = MU) -> list[PlanarContact]:
+    return [
+        PlanarContact(r=(x, -height / 2), normal=(0.0, 1.0), friction=friction)
+        for x in (-width / 2, width / 2)
+    ]
+
+
+def problem_on(motion: Motion, velocity: PlanarVelocity, *contacts: PlanarContact) -> PlanarContactProblem:
+    return PlanarContactProblem(
+        body=BLOCK, velocity=velocity, contacts=[motion.carried(one) for one in contacts], wrench=WEIGHT
+    )
+
+
+def only_mode(problem: PlanarContactProblem) -> PlanarMode:
+    answer = contact_modes(problem)
+    assert answer.problem is problem
+    (mode,) = answer.modes
+    return mode
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_a_block_rides_on_a_cart_up_to_mu_g(sign: float) -> None:
+    for a, letters in ((0.999 * MU * G, "ff"), (1.001 * MU * G, "ll" if sign > 0 else "rr")):
+        cart = Motion(v=(3.0, 0.0), a=(sign * a, 0.0))
+        mode = only_mode(problem_on(cart, PlanarVelocity(v=(3.0, 0.0), w=0.0), *feet()))
+        assert mode.mode == letters
+        assert mode.acceleration == pytest.approx((sign * min(a, MU * G), 0.0), abs=1e-12)
+        assert mode.contact_accelerations[0] == pytest.approx((sign * min(0.0, MU * G - a), 0.0), abs=1e-12)
+        assert mode.contact_forces[0][0] + mode.contact_forces[1][0] == pytest.approx(
+            sign * 2.0 * min(a, MU * G), abs=1e-11
+        )
+
+
+def test_a_tall_block_tips_on_a_cart_before_it_slips() -> None:
+    width, height = 0.1, 0.5
+    tips = G * width / height
+    for share, letters in ((0.999, "ff"), (1.001, "sf")):
+        cart = Motion(a=(-share * tips, 0.0))
+        assert (
+            only_mode(problem_on(cart, PlanarVelocity(v=(0, 0), w=0.0), *feet(width, height))).mode == letters
+        )
+
+
+def test_a_load_on_a_swing_feels_no_force_along_it() -> None:
+    """A swing as a pendulum to the centre of mass: the seat pulls along the ropes only."""
+    length, angle, rate = 1.5, 0.5, 1.2
+    n = (-math.sin(angle), math.cos(angle))  # along the ropes, up
+    t = (math.cos(angle), math.sin(angle))
+    alpha = -G / length * math.sin(angle)
+    swing = Motion(
+        v=(rate * length * t[0], rate * length * t[1]),
+        w=rate,
+        a=tuple(alpha * length * t[k] + rate**2 * length * n[k] for k in (0, 1)),  # type: ignore[arg-type]
+        alpha=alpha,
+    )
+    seat = [
+        PlanarContact(r=(x * t[0] - 0.1 * n[0], x * t[1] - 0.1 * n[1]), normal=n, friction=1e-3)
+        for x in (-0.15, 0.15)
+    ]
+    mode = only_mode(problem_on(swing, PlanarVelocity(v=swing.v, w=rate), *seat))
+    assert mode.mode == "ff"
+    f_t = sum(force[0] for force in mode.contact_forces)
+    f_n = sum(force[1] for force in mode.contact_forces)
+    assert f_t == pytest.approx(0.0, abs=1e-11)
+    assert f_n == pytest.approx(2.0 * (G * math.cos(angle) + rate**2 * length), abs=1e-11)
+    assert mode.acceleration == pytest.approx(swing.a, abs=1e-12)
+    assert mode.angular_acceleration == pytest.approx(alpha, abs=1e-11)
+
+
+def test_a_block_between_two_belts_is_dragged_by_both() -> None:
+    """The lower belt runs to the right under it, and the upper one, pressed down, to the left."""
+    low, high = feet(), [replace(one, r=(one.r[0], 0.1), normal=(0.0, -1.0)) for one in feet()]
+    right, left = Motion(v=(1.0, 0.0)), Motion(v=(-2.0, 0.0))
+    contacts = [*map(right.carried, low), *map(left.carried, high)]
+    for v, letters, a in ((0.0, "llss", MU * G), (1.5, "rrss", -MU * G), (1.0, "ffss", 0.0)):
+        moving = PlanarVelocity(v=(v, 0.0), w=0.0)
+        problem = PlanarContactProblem(body=BLOCK, velocity=moving, contacts=contacts, wrench=WEIGHT)
+        answer = contact_modes(problem)
+        assert answer.contact_velocities[2] == pytest.approx((-(v + 2.0), 0.0))  # right is towards -x above
+        assert {mode.mode[:2] for mode in answer.modes} == {letters[:2]}
+        assert {round(mode.acceleration[0], 9) for mode in answer.modes} == {round(a, 9)}
+    # A cart that carries both adds its acceleration to all.
+    cart = [replace(one, surface_acceleration=(-0.5 * MU * G, 0.0)) for one in contacts]
+    carried = PlanarContactProblem(
+        body=BLOCK, velocity=PlanarVelocity(v=(1.0, 0.0), w=0.0), contacts=cart, wrench=WEIGHT
+    )
+    modes = contact_modes(carried).modes
+    assert {mode.mode[:2] for mode in modes} == {"ff"}
+    assert modes[0].acceleration[0] == pytest.approx(-0.5 * MU * G)
+
+
+def test_a_box_is_held_between_a_belt_and_a_wall() -> None:
+    wall = [PlanarContact(r=(0.15, y), normal=(-1.0, 0.0), friction=0.0) for y in (-0.1, 0.1)]
+    contacts = [*map(Motion(v=(1.0, 0.0)).carried, feet()), *wall]
+    problem = PlanarContactProblem(body=BLOCK, contacts=contacts, wrench=WEIGHT)
+    for mode in contact_modes(problem).modes:
+        assert mode.mode[:2] == "ll"
+        assert mode.acceleration == pytest.approx((0.0, 0.0), abs=1e-12)
+        assert sum(force[1] for force in mode.contact_forces[2:]) == pytest.approx(MU * 2.0 * G, abs=1e-11)
+
+
+def drawn_motion(seed: int) -> Motion:
+    chance = np.random.default_rng(seed)
+    (v_x, v_y, w, a_x, a_y, alpha) = chance.normal(size=6).tolist()
+    return Motion((v_x, v_y), w, (a_x, a_y), alpha)
+
+
+def seen(case: FloatCase, motion: Motion) -> PlanarContactProblem:
+    """Return a problem whose surfaces, body and wrench are carried by a motion, with its pseudo-forces."""
+    body, velocity, contacts, wrench = case
+    (v_x, v_y), w = velocity.v, velocity.w
+    x, y = pseudo(velocity, motion)
+    return PlanarContactProblem(
+        body=body,
+        velocity=PlanarVelocity(v=(v_x + motion.v[0], v_y + motion.v[1]), w=w + motion.w),
+        contacts=[motion.carried(one) for one in contacts],
+        wrench=PlanarWrench(
+            f=(wrench.f[0] + body.mass * x, wrench.f[1] + body.mass * y),
+            moment=wrench.moment + body.inertia * motion.alpha,
+        ),
+    )
+
+
+def pseudo(velocity: PlanarVelocity, motion: Motion) -> tuple[float, float]:
+    """Return the acceleration of the frame at the centre of mass, with Coriolis' part."""
+    return (
+        motion.a[0] - 2.0 * motion.w * velocity.v[1],
+        motion.a[1] + 2.0 * motion.w * velocity.v[0],
+    )
+
+
+def letters(answer: PlanarModeAnswer) -> tuple[object, ...]:
+    return answer.verdict, sorted(mode.mode for mode in answer.modes), answer.kinematic_modes
+
+
+@pytest.mark.parametrize("seed", sweep(60, whole=1000))
+def test_modes_are_those_of_a_still_problem_with_explicit_pseudo_forces(seed: int) -> None:
+    case, motion = rounded(draw(seed, most_contacts=4)), drawn_motion(seed)
+    body, velocity, contacts, wrench = case
+    tolerances = {"velocity_tolerance": 1e-7, "acceleration_tolerance": 1e-7}
+    still = PlanarContactProblem(body=body, velocity=velocity, contacts=contacts, wrench=wrench, **tolerances)
+    moving = replace(seen(case, motion), **tolerances)
+    first, second = contact_modes(still), contact_modes(moving)
+    assert letters(second) == letters(first)
+    check_forces(second, body, moving.contacts, moving.wrench)
+    x, y = pseudo(velocity, motion)
+    found = {mode.mode: mode for mode in second.modes}
+    for one in first.modes:
+        two = found[one.mode]
+        if not (one.motion_unique and one.forces_unique):
+            continue
+        size = 1e-6 * (1.0 + max(abs(part) for force in one.contact_forces for part in force))
+        assert two.acceleration == pytest.approx((one.acceleration[0] + x, one.acceleration[1] + y), abs=size)
+        assert two.angular_acceleration == pytest.approx(
+            one.angular_acceleration + motion.alpha, abs=size / body.radius_of_gyration
+        )
+        np.testing.assert_allclose(two.contact_accelerations, one.contact_accelerations, atol=size)
+    for one_margin, two_margin in zip(mode_margins(still), mode_margins(moving, second), strict=True):
+        assert two_margin.mode == one_margin.mode
+        assert two_margin.margin == pytest.approx(one_margin.margin, rel=1e-5, abs=1e-5)
+    assert refused_modes(moving, second) == second.refused
+    for still_set, moving_set in zip(wrench_sets(still), wrench_sets(moving), strict=True):
+        assert moving_set.mode == still_set.mode
+        depths = still_set.depth(wrench, 1.0), moving_set.depth(moving.wrench, 1.0)
+        assert depths[1] == pytest.approx(depths[0], rel=1e-5, abs=1e-5)
+        for vertex in moving_set.vertices:
+            assert moving_set.depth(vertex, 1.0) >= -1e-6 * (1.0 + abs(vertex.f[0]) + abs(vertex.f[1]))
+
+
+@pytest.mark.parametrize("seed", sweep(20, whole=300))
+def test_the_plane_agrees_with_space(seed: int) -> None:
+    """The same bodies on surfaces that move as one, in the plane and in space, away from ties."""
+    chance = np.random.default_rng(seed)
+    motion, width = drawn_motion(seed), chance.uniform(0.1, 0.4)
+    contacts = [motion.carried(one) for one in feet(width, 0.2, float(chance.uniform(0.1, 1.0)))]
+    slide, turn = (chance.normal(), 0.0) if seed % 2 else (0.0, chance.uniform(0.0, 2.0))
+    first = contacts[0].r  # it slides on both feet, or turns about the first one and lifts the other
+    velocity = PlanarVelocity(
+        v=(motion.v[0] + slide + turn * first[1], motion.v[1] - turn * first[0]), w=motion.w + turn
+    )
+    f_x, f_y, moment = chance.normal(size=3).tolist()
+    problem = PlanarContactProblem(
+        body=BLOCK,
+        velocity=velocity,
+        contacts=contacts,
+        wrench=PlanarWrench(f=(5 * f_x, 10 * f_y - 20), moment=moment),
+    )
+    body, state, lifted = planar_in_space(BLOCK, velocity, contacts, axes_W=[[1, 0, 0], [0, 1, 0]])
+    wrench = problem.wrench
+    in_space = contact_modes(
+        SpatialContactProblem(
+            body=body, state=state, contacts=lifted, force_W=[*wrench.f, 0], torque_W=[0, 0, wrench.moment]
+        )
+    )
+    in_plane = contact_modes(problem)
+    as_in_space = str.maketrans("lr", "cc")
+    assert [one.mode.translate(as_in_space) for one in in_plane.modes] == [one.mode for one in in_space.modes]
+    for one, two in zip(in_plane.modes, in_space.modes, strict=True):
+        np.testing.assert_allclose(two.acceleration_W, [*one.acceleration, 0.0], atol=1e-10)
+        np.testing.assert_allclose(two.angular_acceleration_W[2], one.angular_acceleration, atol=1e-9)
+
+
+def test_statics_and_geometry_are_seen_from_the_cart() -> None:
+    cart = Motion(v=(2.0, 1.0), a=(1.0, 0.5))
+    moving = problem_on(cart, PlanarVelocity(v=(2.0, 1.0), w=0.0), *feet())
+    still = replace(
+        moving,
+        velocity=PlanarVelocity(v=(0, 0), w=0.0),
+        contacts=feet(),
+        wrench=PlanarWrench(f=(-2.0, -2.0 * (G + 0.5))),
+    )
+    assert statics(moving).to_dict() == pytest.approx(statics(still).to_dict())
+    other_velocity = replace(moving, velocity=PlanarVelocity(v=(7.0, 1.0), w=0.3))
+    assert statics(other_velocity).to_dict() == pytest.approx(statics(still).to_dict())
+    for one, two in zip(geometry_margins(moving), geometry_margins(still), strict=True):
+        assert one.to_dict() == two.to_dict()
+    off = ContactUncertainty(points=1e-5)
+    within = contact_modes(replace(moving, uncertainty=off)).within
+    assert within is not None
+    assert within.certain
+
+
+REST, TURNING = PlanarVelocity(v=(0.0, 0.0), w=0.0), PlanarVelocity(v=(0.0, 0.0), w=0.5)
+LEFT, RIGHT = feet()
+MIDDLE = [replace(LEFT, r=(0.0, y), normal=(0.0, -math.copysign(1.0, y))) for y in (-0.1, 0.1)]
+FAST, FASTER = Motion(v=(1.0, 0.0)), Motion(v=(2.0, 0.0))
+BELTS = [FAST.carried(LEFT), FASTER.carried(RIGHT)]
+
+
+@pytest.mark.parametrize(
+    ("contacts", "velocity"),
+    [
+        ([LEFT, Motion(a=(0.0, -1.0)).carried(MIDDLE[0]), RIGHT], REST),
+        ([*BELTS, Motion(a=(0.5, 0.0)).carried(MIDDLE[0])], REST),
+        ([LEFT, replace(RIGHT, surface_angular_velocity=1.0)], REST),
+        ([FAST.carried(MIDDLE[0]), FASTER.carried(MIDDLE[1])], TURNING),
+        ([*BELTS[:1], replace(BELTS[1], surface_curvature=2.0)], REST),
+    ],
+    ids=["bends", "one accelerates", "one turns", "the body turns", "curved"],
+)
+def test_what_the_plane_does_not_answer_points_to_space(
+    contacts: Sequence[PlanarContact], velocity: PlanarVelocity
+) -> None:
+    problem = PlanarContactProblem(body=BLOCK, velocity=velocity, contacts=contacts, wrench=WEIGHT)
+    calls: list[Callable[[], object]] = [lambda: contact_modes(problem), lambda: mode_margins(problem)]
+    for call in calls:
+        with pytest.raises(NotSupportedError, match=r"belts with equal accelerations.*SpatialContactProblem"):
+            call()
+
+
+def test_statics_need_one_motion() -> None:
+    problem = PlanarContactProblem(body=BLOCK, contacts=BELTS, wrench=WEIGHT)
+    assert contact_modes(problem).verdict.name == "UNIQUE"
+    with pytest.raises(NotSupportedError, match="contacts must have surfaces that move as one rigid body"):
+        statics(problem)
+
+
+def test_a_surface_that_comes_is_an_impact_whatever_the_others_do() -> None:
+    contacts = [Motion(v=(0.0, 0.1)).carried(LEFT), MIDDLE[0], Motion(a=(0.5, 0.0)).carried(RIGHT)]
+    answer = contact_modes(PlanarContactProblem(body=BLOCK, contacts=contacts, wrench=WEIGHT))
+    assert answer.verdict.name == "IMPACT"
+    assert answer.approaching == (0,)
