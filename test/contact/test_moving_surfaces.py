@@ -19,12 +19,9 @@ from contact_dynamics.contact_modes import (
 )
 from contact_dynamics.errors import InvalidFieldError, NotSupportedError
 from contact_dynamics.impact import (
-    bodies_impact,
     impact_sequence_of,
     jamming_impact,
-    outcomes_at_once,
     outcomes_over_interleavings,
-    outcomes_over_orders,
     planar_impact_distribution,
     planar_pair_impact,
     planar_several_impact,
@@ -146,12 +143,7 @@ def test_motion_that_is_none_is_refused_by_its_name(make: Callable[[], object], 
 
 SPATIAL: dict[str, Callable[[], object]] = {
     "spatial_sliding_modes": lambda: spatial_sliding_modes(FEET),
-    "spatial_impact": lambda: cd.spatial_impact(CRATE, FALLING, FEET[0]),
     "spatial_pair_impact": lambda: spatial_pair_impact(CRATE, FALLING, CRATE, AT_REST, FEET[0]),
-    "several_impact": lambda: cd.several_impact(CRATE, FALLING, FEET),
-    "bodies_impact": lambda: bodies_impact([CRATE], [FALLING], FEET, [(0, None)] * 4),
-    "outcomes_over_orders": lambda: outcomes_over_orders(CRATE, FALLING, FEET),
-    "outcomes_at_once": lambda: outcomes_at_once(CRATE, FALLING, FEET),
     "outcomes_over_interleavings": lambda: outcomes_over_interleavings(CRATE, FALLING, FEET),
     "jamming_impact": lambda: jamming_impact(CRATE, AT_REST, FEET, force_W=[0, 0, -20]),
     "spatial_impact_distribution": lambda: spatial_impact_distribution(
@@ -175,7 +167,6 @@ SPATIAL: dict[str, Callable[[], object]] = {
     ),
 }
 PLANAR_CALLS: dict[str, Callable[[], object]] = {
-    "planar_impact": lambda: cd.planar_impact(PLANAR, DOWN, FOOT),
     "planar_pair_impact": lambda: planar_pair_impact(PLANAR, DOWN, PLANAR, DOWN, FOOT, other_r=(0.0, 0.3)),
     "planar_several_impact": lambda: planar_several_impact(PLANAR, DOWN, [FOOT]),
     "planar_impact_distribution": lambda: planar_impact_distribution(

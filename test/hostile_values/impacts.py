@@ -117,6 +117,7 @@ IMPACTS: Calls = {
             "normals_W": [0.0, 0.0, 1.0],
             "frictions": 0.5,
             "restitutions": 0.5,
+            "surface_velocities_W": [0.1, 0.0, 0.2],
             "velocity_tolerance": 1e-9,
         },
     ),

@@ -20,7 +20,7 @@ from contact_dynamics.impact.planar.result import PlanarImpact
 from contact_dynamics.impact.planar.routh import PlanarStrike
 from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity
 from contact_dynamics.tolerances import VELOCITY_TOLERANCE
-from contact_dynamics.validation import check_at_rest, check_not_negative
+from contact_dynamics.validation import check_not_negative
 
 
 def planar_impact(
@@ -31,7 +31,10 @@ def planar_impact(
     restitution_law: RestitutionLaw = RestitutionLaw.POISSON,
     velocity_tolerance: float = VELOCITY_TOLERANCE,
 ) -> PlanarImpact:
-    """Return the outcome of a planar impact of ``body`` on the fixed world at one contact.
+    """Return the outcome of a planar impact of ``body`` on the fixed world, or on a moving surface.
+
+    A surface of the world that moves keeps its velocity. The velocity afterwards is absolute, and the
+    contact's velocities and the change of energy are relative to the surface.
 
     Args:
         body: Mass and angular inertia.
@@ -48,25 +51,29 @@ def planar_impact(
 
     Source: lecture 27, eqs. 2 to 10; Routh 1860; Stronge 1990 for the energetic law.
     """
-    check_at_rest("contact", contact, "planar_impact")
     restitution = contact.impact_restitution
     tolerance = check_not_negative("velocity_tolerance", velocity_tolerance)
+    (v_x, v_y), (s_x, s_y) = velocity.v, contact.surface_velocity
     strike = PlanarStrike(restitution_law)
     if not strike.strike(
         body.mass,
         body.inertia,
         contact.friction,
         restitution,
-        *velocity.v,
+        v_x - s_x,
+        v_y - s_y,
         velocity.w,
         *contact.r,
         *contact.normal,
         tolerance,
     ):
         refuse_separating(strike.v_n_before, tolerance)
+    after = strike.v_x, strike.v_y
+    if s_x != 0.0 or s_y != 0.0:
+        after = v_x + (strike.v_x - (v_x - s_x)), v_y + (strike.v_y - (v_y - s_y))
     return PlanarImpact(
         restitution_law=restitution_law,
-        velocity=PlanarVelocity(v=(strike.v_x, strike.v_y), w=strike.w),
+        velocity=PlanarVelocity(v=after, w=strike.w),
         velocity_before_C=(strike.v_t_before, strike.v_n_before),
         inverse_inertia=strike.response,
         contact_path=strike.path,

@@ -91,7 +91,10 @@ class PlanarImpact(Record):
 
     @property
     def energy_change(self) -> float:
-        """Return the change of kinetic energy, J: the impulse times the contact's mean velocity."""
+        """Return the change of kinetic energy, J: the impulse times the contact's mean velocity.
+
+        The work of a moving surface, the impulse times its velocity, is not part of it.
+        """
         return energy_change(self.impulse_C, self.velocity_before_C, self.velocity_after_C)
 
     @property

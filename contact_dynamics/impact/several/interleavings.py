@@ -31,7 +31,7 @@ from contact_dynamics.numerics.nonnegative_least_squares import nearest_combinat
 from contact_dynamics.numerics.vectors import point_jacobians
 from contact_dynamics.rigid_body.body import HasMassProperties, inverse_mass_matrix
 from contact_dynamics.tolerances import LARGEST_GRIP, NOTHING_DUE, VELOCITY_TOLERANCE
-from contact_dynamics.validation import check_positive, check_whole
+from contact_dynamics.validation import check_at_rest, check_positive, check_whole
 
 if TYPE_CHECKING:
     from typing import Any
@@ -105,6 +105,7 @@ def outcomes_over_interleavings(
         InvalidFieldError: there are no contacts, the tolerance is not > 0, or a count is out of range.
         TooLargeError: the orders take more strikes in total than `outcomes_over_orders` allows.
     """
+    check_at_rest("contacts", contacts, "outcomes_over_interleavings")
     body = body.mass_properties
     tolerance = check_positive("velocity_tolerance", velocity_tolerance)
     samples = check_whole("samples", samples, 1, MAX_INTERLEAVINGS)

@@ -48,8 +48,10 @@ class SeveralImpact(Record):
         verdict: Whether the law converged.
         state: State after the impact: the pose before it, with the new velocities.
         impulses_W: (n, 3), N s, total impulses on the body.
-        velocities_before_W: (n, 3), m/s, velocities of the contacts before the impact.
-        velocities_after_W: (n, 3), m/s, velocities of the contacts after the impact.
+        velocities_before_W: (n, 3), m/s, velocities of the contacts before the impact, relative to their
+            surfaces.
+        velocities_after_W: (n, 3), m/s, velocities of the contacts after the impact, relative to their
+            surfaces.
         strikes: Contacts that struck, in order, with their impacts. Contacts of equal approach speed strike
             as one: they are listed one after the other, each with its share of the impulse and the state
             after all of them. Empty with SIMULTANEOUS.
@@ -69,7 +71,10 @@ class SeveralImpact(Record):
 
     @property
     def energy_change(self) -> float:
-        """Return the change of kinetic energy, J: the impulses times the contacts' mean velocities."""
+        """Return the change of kinetic energy, J: the impulses times the contacts' mean velocities.
+
+        The work of moving surfaces, the impulses times their velocities, is not part of it.
+        """
         return _energy_change(self)
 
     @property
@@ -90,8 +95,8 @@ class BodiesImpact(Record):
         verdict: Whether the law converged.
         states: State of each body after the impact: the pose before it, with the new velocities.
         impulses_W: (n, 3), N s, total impulses on the first body of each contact.
-        velocities_before_W: (n, 3), m/s, velocities of the first body's points relative to the second's,
-            before the impact.
+        velocities_before_W: (n, 3), m/s, velocities of the first body's points relative to the second's, or
+            to the surface, before the impact.
         velocities_after_W: (n, 3), m/s, the same velocities after the impact.
         strikes: Contacts that struck, in order, with their impacts. Contacts of equal approach speed strike
             as one: they are listed one after the other, each with its share of the impulse and the state
@@ -112,7 +117,10 @@ class BodiesImpact(Record):
 
     @property
     def energy_change(self) -> float:
-        """Return the change of kinetic energy, J: the impulses times the contacts' mean velocities."""
+        """Return the change of kinetic energy, J: the impulses times the contacts' mean velocities.
+
+        The work of moving surfaces, the impulses times their velocities, is not part of it.
+        """
         return _energy_change(self)
 
     @property

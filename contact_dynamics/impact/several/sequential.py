@@ -33,7 +33,7 @@ from contact_dynamics.impact.several.tied import (
 )
 from contact_dynamics.impact.spatial.one_contact import check_striking, spatial_impact, spatial_pair_impact
 from contact_dynamics.tolerances import TIED_APPROACH, VELOCITY_TOLERANCE
-from contact_dynamics.validation import check_at_rest, check_positive
+from contact_dynamics.validation import check_positive
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -126,7 +126,13 @@ def check_touching(touching: Touching, states: Sequence[BodyState]) -> FloatArra
     contacts, tolerance = touching.contacts, touching.tolerance
     if len(contacts) == 0:
         raise InvalidFieldError("contacts", "none", "at least one contact")
-    check_at_rest("contacts", contacts, "impacts at several contacts")
+    if contacts.surface_velocities_W is not None:
+        for i, (surface, (_, second)) in enumerate(
+            zip(contacts.surface_velocities_W, touching.pairs, strict=True)
+        ):
+            if second is not None and surface.any():
+                between = f"zero between bodies {touching.pairs[i]}, since only surfaces of the world move"
+                raise InvalidFieldError(f"contacts.surface_velocities_W[{i}]", surface.tolist(), between)
     _ = contacts.impact_restitutions
     for index, (body, state) in enumerate(zip(touching.bodies, states, strict=True)):
         check_striking(body, state, contacts.p_WC_W[[i for i, p in enumerate(touching.pairs) if index in p]])
@@ -247,9 +253,12 @@ def strike_at_once(
     The solution is the one that an ``order`` of the contacts leads to. If ``order`` is None, it depends on no
     order.
     """
-    response = response_of(touching.bodies, states, touching.contacts.p_WC_W, touching.pairs)
+    contacts = touching.contacts
+    response = response_of(
+        touching.bodies, states, contacts.p_WC_W, touching.pairs, contacts.surface_velocities_W
+    )
     impulses, converged = simultaneous_impulses(
-        touching.contacts,
+        contacts,
         touching.restitution_law,
         jacobian=response.jacobian,
         inverse_mass=response.inverse_mass,
@@ -262,9 +271,11 @@ def strike_at_once(
 
 
 def _relative_velocities(touching: Touching, states: Sequence[BodyState]) -> FloatArray:
-    """Return the velocities, (n, 3), m/s, of the first body of each contact relative to the second."""
+    """Return the velocities, (n, 3), m/s, of the first body of each contact relative to what it touches."""
     contacts, pairs = touching.contacts, touching.pairs
     velocities = np.zeros((len(contacts), 3))
+    if contacts.surface_velocities_W is not None:
+        velocities -= contacts.surface_velocities_W
     for index, state in enumerate(states):
         for sign, rows in (
             (1.0, [i for i, (first, _) in enumerate(pairs) if first == index]),

@@ -42,6 +42,9 @@ if TYPE_CHECKING:
 class Response(NamedTuple):
     """How bodies respond to impulses at contacts.
 
+    If surfaces move, a last column of the Jacobian has their velocities, negative, and the twist has a 1 for
+    it, which no impulse changes.
+
     Attributes:
         jacobian: (n, 3, 6 k), takes the velocities of the k bodies (v then w of each) into those of contacts.
         inverse_mass: (6 k, 6 k), 1/kg and 1/(kg m^2), takes impulses and their moments into velocities.
@@ -58,10 +61,16 @@ def response_of(
     states: Sequence[BodyState],
     points_W: FloatArray,
     pairs: Sequence[tuple[int, int | None]],
+    surface_velocities_W: FloatArray | None = None,
 ) -> Response:
-    """Return how bodies respond to impulses at points, (n, 3), m, where pairs of them meet."""
-    size = 6 * len(bodies)
+    """Return how bodies respond to impulses at points, (n, 3), m, where pairs of them meet.
+
+    Surfaces of the world have velocities there, (n, 3), m/s, or None if all are at rest.
+    """
+    size = 6 * len(bodies) + (surface_velocities_W is not None)
     jacobian = np.zeros((len(points_W), 3, size))
+    if surface_velocities_W is not None:
+        jacobian[:, :, -1] = -surface_velocities_W
     for i, pair in enumerate(pairs):
         for index, sign in zip(pair, (1.0, -1.0), strict=True):
             if index is not None:
@@ -71,7 +80,8 @@ def response_of(
     for index, (body, state) in enumerate(zip(bodies, states, strict=True)):
         own = slice(6 * index, 6 * index + 6)
         inverse_mass[own, own] = inverse_mass_matrix(body.mass, body.inertia_in_world(state.R_WB))
-    twist = np.concatenate([part for state in states for part in (state.v_WB_W, state.w_WB_W)])
+    parts = [part for state in states for part in (state.v_WB_W, state.w_WB_W)]
+    twist = np.concatenate(parts if surface_velocities_W is None else [*parts, [1.0]])
     return Response(jacobian, inverse_mass, twist)
 
 
@@ -134,7 +144,7 @@ def strike_as_one(
         law: What the coefficient of restitution means.
         tolerance: m/s. A contact that slides less fast does not slide.
     """
-    response = response_of(bodies, states, contacts.p_WC_W, pairs)
+    response = response_of(bodies, states, contacts.p_WC_W, pairs, contacts.surface_velocities_W)
     (restitution, friction), *_ = materials_of(contacts)
     path, axes = shared_path(
         response, contacts.normals_W, restitution, friction, law=law, tolerance=tolerance

@@ -201,6 +201,7 @@ def spatial_impacts(
     frictions: ArrayLike,
     restitutions: ArrayLike,
     others: StrikingBodies | None = None,
+    surface_velocities_W: ArrayLike | None = None,
     restitution_laws: ArrayLike = RestitutionLaw.POISSON,
     velocity_tolerance: float = VELOCITY_TOLERANCE,
     skip_separating: bool = False,
@@ -213,6 +214,8 @@ def spatial_impacts(
         frictions: (N,) or one number, >= 0.
         restitutions: (N,) or one number, in [0, 1].
         others: Bodies that they strike, or None if they strike the fixed world.
+        surface_velocities_W: (N, 3) or (3,), m/s, velocities of the world's surfaces at the contacts, world
+            axes, or None if all are at rest.
         restitution_laws: (N,) or one value of RestitutionLaw.
         velocity_tolerance: m/s, >= 0. Normal and tangential components of a contact's velocity up to it count
             as zero.
@@ -228,8 +231,14 @@ def spatial_impacts(
     fields |= {f"bodies.{name}": rows for name, rows in bodies.fields.items()}
     if others is not None:
         fields |= {f"others.{name}": rows for name, rows in others.fields.items()}
+    if surface_velocities_W is not None:
+        if others is not None:
+            raise InvalidFieldError("surface_velocities_W", "some", "None where bodies strike others")
+        name = "surface_velocities_W"
+        fields[name] = check_magnitude(name, check_rows(name, surface_velocities_W, (3,)))
     count = common_length(fields)
-    tables = [_table(bodies, count), np.empty((0, 23)) if others is None else _table(others, count)]
+    surfaces = fields.get("surface_velocities_W", np.zeros((1, 3)))
+    tables = [_table(bodies, count, surfaces), np.empty((0, 23)) if others is None else _table(others, count)]
     found, vectors = _struck(
         Strike.strike_rows,
         tables,
@@ -239,8 +248,12 @@ def spatial_impacts(
         velocity_tolerance=velocity_tolerance,
         skip_separating=skip_separating,
     )
+    after = vectors[0]
+    if surfaces.any():
+        moved = bodies.v_WB_W + (after - (bodies.v_WB_W - surfaces))
+        after = np.where(np.abs(surfaces).max(axis=1, keepdims=True) > 0.0, moved, after)
     return SpatialImpacts(
-        v_WB_W=vectors[0],
+        v_WB_W=after,
         w_WB_W=vectors[1],
         other_v_WB_W=None if others is None else vectors[6],
         other_w_WB_W=None if others is None else vectors[7],
@@ -358,12 +371,10 @@ def _at_contacts(
     }
 
 
-def _table(bodies: StrikingBodies, count: int) -> FloatArray:
-    """Return the rows that `Strike.strike_rows` takes."""
-    inertias = bodies.inertias_B.reshape(len(bodies.inertias_B), 9)
-    return _columns(
-        (bodies.masses[:, None], inertias, bodies.q_WB, bodies.r_W, bodies.v_WB_W, bodies.w_WB_W), count
-    )
+def _table(bodies: StrikingBodies, count: int, surfaces: FloatArray | float = 0.0) -> FloatArray:
+    """Return the rows that `Strike.strike_rows` takes, with velocities relative to those of surfaces, m/s."""
+    inertias, v = bodies.inertias_B.reshape(len(bodies.inertias_B), 9), bodies.v_WB_W - surfaces
+    return _columns((bodies.masses[:, None], inertias, bodies.q_WB, bodies.r_W, v, bodies.w_WB_W), count)
 
 
 def _columns(parts: Sequence[FloatArray], count: int) -> FloatArray:

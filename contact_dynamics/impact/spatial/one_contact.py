@@ -55,7 +55,10 @@ def spatial_impact(
     restitution_law: RestitutionLaw = RestitutionLaw.POISSON,
     velocity_tolerance: float = VELOCITY_TOLERANCE,
 ) -> SpatialImpact:
-    """Return the outcome of an impact of ``body`` on the fixed world at one contact, in space.
+    """Return the outcome of an impact of ``body`` on the fixed world, or on a moving surface, in space.
+
+    A surface of the world that moves keeps its velocity. The state afterwards is absolute, and the contact's
+    velocities and the change of energy are relative to the surface.
 
     If several contacts strike at once, as when a box lands on an edge or a face, use `several_impact` with
     all of them. `spatial_impacts` computes many impacts at once. A `FarContactWarning` reports a contact
@@ -144,7 +147,8 @@ def response_impact(
 
     Args:
         inverse_inertia_W: (3, 3), 1/kg, W, world axes, symmetric and positive semidefinite.
-        velocity_W: (3,), m/s, velocity of the contact point just before, world axes.
+        velocity_W: (3,), m/s, velocity of the contact point just before, world axes. If the contact has a
+            moving surface, the velocities of the result are relative to the surface.
         contact: The contact, with its normal into the mechanism, friction and restitution. Its position plays
             no part, nor do curvatures.
         restitution_law: What the coefficient of restitution means.
@@ -161,6 +165,8 @@ def response_impact(
     response = check_array("inverse_inertia_W", inverse_inertia_W, (3, 3))
     check_magnitude("inverse_inertia_W", response)
     velocity = check_vector3("velocity_W", velocity_W)
+    if contact.surface_velocity_W is not None:
+        velocity = velocity - contact.surface_velocity_W
     restitution = contact.impact_restitution
     tolerance = check_not_negative("velocity_tolerance", velocity_tolerance)
     vertices: list[tuple[PathEvent, Vector3]] = []
@@ -212,13 +218,17 @@ def _impact(
     velocity_tolerance: float,
 ) -> SpatialImpact:
     """Return the impact of a body on ``other``, or on the fixed world if ``other`` is None."""
-    check_at_rest("contact", contact, "spatial_impact" if other is None else "spatial_pair_impact")
+    if other is not None:
+        check_at_rest("contact", contact, "spatial_pair_impact")
     restitution = contact.impact_restitution
     tolerance = check_not_negative("velocity_tolerance", velocity_tolerance)
 
     vertices: list[tuple[PathEvent, Vector3]] = []
     strike = Strike(law, vertices)
-    _take(strike.body, body, state, contact.p_WC_W)
+    relative = state
+    if contact.surface_velocity_W is not None:
+        relative = state.with_velocities(state.v_WB_W - contact.surface_velocity_W, state.w_WB_W)
+    _take(strike.body, body, relative, contact.p_WC_W)
     has_other = other is not None and other_state is not None
     if other is not None and other_state is not None:
         _take(strike.other, other, other_state, contact.p_WC_W)
@@ -229,9 +239,12 @@ def _impact(
     l1, l2, k1, k2, kn = strike.l1, strike.l2, strike.k1, strike.k2, strike.kn
     axes = np.array((strike.t1, strike.t2, strike.n))
     matrix = np.array(((l1, 0.0, k1), (0.0, l2, k2), (k1, k2, kn)))
+    v: ArrayLike = strike.body.v
+    if relative is not state:
+        v = state.v_WB_W + (np.array(v) - relative.v_WB_W)
     return SpatialImpact(
         **_at_contact(strike, law, outcome, vertices),
-        state=state.with_velocities(strike.body.v, strike.body.w),
+        state=state.with_velocities(v, strike.body.w),
         inverse_inertia_W=axes.T @ matrix @ axes,
         other_state=None
         if other_state is None

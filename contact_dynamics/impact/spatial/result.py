@@ -49,7 +49,10 @@ class ResponseImpact(Record):
 
     @property
     def energy_change(self) -> float:
-        """Return the change of kinetic energy, J: the impulse times the contact's mean velocity."""
+        """Return the change of kinetic energy, J: the impulse times the contact's mean velocity.
+
+        The work of a moving surface, the impulse times its velocity, is not part of it.
+        """
         return energy_change(*self._at_contact())
 
     @property
