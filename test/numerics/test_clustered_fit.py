@@ -115,6 +115,32 @@ def test_90_percent_regions_hold_the_truth_in_85_to_95_percent(noise: float, sha
     assert 0.85 <= held / sets <= 0.95
 
 
+@pytest.mark.parametrize(("apart", "directions"), [(0.02, 1), (0.5, 0)])
+def test_parameters_that_replace_each_other_are_undetermined(apart: float, directions: int) -> None:
+    """A height, and one that differs from it by a share: each has 1 / apart times the error of their sum."""
+    values = 3.0 + np.random.default_rng(7).standard_normal(200)
+    design = np.column_stack([np.ones(200), 1.0 + apart * PLACES])
+    scale = 1e3  # so much data that each direction is known far better than what is plausible
+    found = fit_clustered(
+        np.zeros(2),
+        groups_at=lambda x: [
+            Group(
+                residuals=(design @ x * scale - values)[:, None],
+                derivatives=scale * design[:, None, :],
+                clusters=CLUSTERS,
+            )
+        ],
+        lower=np.full(2, -np.inf),
+        upper=np.full(2, np.inf),
+        clusters=40,
+    )
+    assert len(found.undetermined) == directions
+    assert scale * found.parameters.sum() == pytest.approx(3.0, abs=0.3)
+    if directions:
+        assert np.abs(found.undetermined[0]) == pytest.approx(np.sqrt([0.5, 0.5]), abs=1e-3)
+        assert found.parameters[0] == pytest.approx(found.parameters[1], rel=0.05)
+
+
 def test_outliers_count_for_nothing() -> None:
     random = np.random.default_rng(2)
     values = 3.0 - 2.0 * PLACES + random.standard_normal(200)
