@@ -74,7 +74,7 @@ def run() -> None:
         found[count] = calibrate_observed(
             Model(given[0].motion.body, given[0].motion.surfaces),
             given,
-            free=(*STANDARD, Free.SURFACE_HEIGHT),
+            free=[each for each in STANDARD if each is not Free.ROUNDING],
             with_paths=False,
         )
         seconds = time.process_time() - begin

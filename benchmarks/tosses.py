@@ -39,7 +39,7 @@ from benchmarks._toss_strikes import Early, strikes
 from benchmarks.calibration import _observed
 from contact_dynamics.calibration import calibrate_observed
 from contact_dynamics.calibration.first_flights import gravity_and_center
-from contact_dynamics.calibration.free import STANDARD, Free
+from contact_dynamics.calibration.free import STANDARD
 from contact_dynamics.calibration.model import Model
 from contact_dynamics.calibration.toss_uncertainty import toss_uncertainty
 from contact_dynamics.impact import RestitutionLaw
@@ -88,7 +88,7 @@ def run() -> None:
         return
     split = json.loads((Path(__file__).parent / "cube_split.json").read_text(encoding="utf-8"))
     seen = _observed(path, split["fit"])
-    free = (*STANDARD, Free.ROUNDING, Free.SURFACE_HEIGHT)
+    free = STANDARD
     model = Model(seen[0].motion.body, seen[0].motion.surfaces)
     found = calibrate_observed(model, seen, free=free, with_paths=False)
     world = World(bodies=(found.body,), surfaces=found.surfaces, gravity_W=found.gravity_W)

@@ -18,8 +18,8 @@ def calibrate_parser() -> argparse.ArgumentParser:
         usage="%(prog)s [options] RECORDING [RECORDING ...]",
         description="Estimate friction, restitution, centre of mass, inertia and more from recorded "
         "tosses of one body. ROS is not required. docs/calibrate.md explains the results.",
-        epilog="The exit code is 0 on success, 1 if a parameter remains undetermined, which the "
-        "report lists, and 2 if nothing could be estimated or an argument is invalid.",
+        epilog="The exit code is 0 on success, 1 if a parameter remains undetermined or the report names "
+        "a problem, and 2 if nothing could be estimated or an argument is invalid.",
     )
     add_recordings(parser)
     add_config(parser)
@@ -29,7 +29,6 @@ def calibrate_parser() -> argparse.ArgumentParser:
     parser.add_argument(
         "--free",
         type=_groups,
-        default=STANDARD,
         metavar="NAME,NAME",
         help=f"parameters to estimate: {', '.join(each.value for each in Free)}, or all (default: "
         f"{standard})",

@@ -4,19 +4,29 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from contact_dynamics.calibration.estimation import Data, Fitting, extra_spread
-from contact_dynamics.calibration.first_flights import RATIO_STEP, gravity_and_center, ratios_of_moments
-from contact_dynamics.calibration.free import STANDARD, Free
+from contact_dynamics.calibration.first_flights import gravity_and_center, ratios_of_moments
+from contact_dynamics.calibration.free import BY_STRIKES, Free
 from contact_dynamics.calibration.heights import at_rests, at_strikes
 from contact_dynamics.calibration.impacts import jump_covariances, jumps
-from contact_dynamics.calibration.model import Model
+from contact_dynamics.calibration.model import RATIO_STEP, Model
 from contact_dynamics.calibration.observed import observe
 from contact_dynamics.calibration.paths import Paths
-from contact_dynamics.calibration.problems import bent_surfaces, check_that_it_flies, problems_of, warnings_of
+from contact_dynamics.calibration.problems import (
+    bent_surfaces,
+    check_that_it_flies,
+    problems_of,
+    recordings_apart,
+    unlikely,
+    warnings_of,
+)
+from contact_dynamics.calibration.relabelled import relabelled
 from contact_dynamics.calibration.result import Calibration, Estimate, MeasuredGravity, Outlier
 from contact_dynamics.calibration.slides import lasting_frictions
 from contact_dynamics.calibration.strikes import strikes_of
@@ -36,6 +46,9 @@ if TYPE_CHECKING:
     from contact_dynamics.calibration.slides import LastingFriction
     from contact_dynamics.validation import FloatArray
 
+MAX_RATIOS: Final = 4
+"""Bound on how often rotations of first flights are made linear anew, at the ratios of moments found last."""
+
 DIRECTION_SHARE: Final = 0.2
 """Least component, in standard units, with which a parameter takes part in an undetermined direction."""
 
@@ -44,7 +57,7 @@ def calibrate(
     motions: Sequence[MeasuredMotion],
     *,
     names: Sequence[str] = (),
-    free: Sequence[Free] = STANDARD,
+    free: Sequence[Free] | None = None,
     with_paths: bool = True,
     tell: Callable[[str, int, int], None] | None = None,
 ) -> Calibration:
@@ -53,7 +66,7 @@ def calibrate(
     Args:
         motions: Measured states of one body in one world.
         names: How the motions are named in the result; the default is their numbers.
-        free: What may change. The rest keeps its configured value.
+        free: What may change; the default is `Model.standard`. The rest keeps its configured value.
         with_paths: Whether the second way, by whole trajectories, is gone too. It takes most of the time.
         tell: Is told what is done, how much of it, and how much there is.
 
@@ -79,25 +92,27 @@ def calibrate_observed(
     model: Model,
     observed: Sequence[Observed],
     *,
-    free: Sequence[Free] = STANDARD,
+    free: Sequence[Free] | None = None,
     with_paths: bool = True,
     tell: Callable[[str, int, int], None] | None = None,
 ) -> Calibration:
     """Return what tosses say whose events have been found. Arguments and errors are those of `calibrate`."""
     check_that_it_flies(observed)
+    free = model.standard if free is None else free
     data = _data(model, observed, free)
-    fitting = Fitting(model, data, free)
     covariances = jump_covariances(model, model.configured, data.strikes, data.gravity)
     if tell is not None:
         tell("fitting velocities at strikes", 0, 2)
-    first = fitting.estimate(lambda x, spread: fitting.whitened_jumps(x, spread, covariances))
+    fitting, first = _first_way(model, data, free, observed, covariances)
     second = None
     if with_paths and len(data.strikes):
         if tell is not None:
             tell("fitting trajectories through strikes", 1, 2)
         paths = Paths(fitting, observed)
         second = fitting.estimate(paths.groups_at, spread=first.spread, start=first.fit.parameters)
-    estimates, covariance, by_paths_covariance = _estimates(fitting, first, second)
+    choice = fitting.choice(first, covariances)
+    estimates, covariance, by_paths_covariance = _estimates(fitting, first, second, choice)
+    outliers = _outliers(data, observed, first)
     described = model.describe(first.values)
     gravity = _gravity(data.gravity, first.values[:3], first.spread.flight) if Free.GRAVITY in free else None
     gravity_W = observed[0].motion.gravity_W if gravity is None else gravity.mean_W
@@ -118,14 +133,18 @@ def calibrate_observed(
         residual_stds=np.sqrt(np.einsum("nii->ni", covariances)),
         strike_recordings=data.strikes.recordings,
         observed=tuple(observed),
-        outliers=_outliers(data, observed, first),
+        outliers=outliers,
         warnings=tuple(
             warnings_of(
                 estimates, clusters=first.fit.clusters, by_cluster=first.fit.by_cluster, free=len(estimates)
             )
         ),
         problems=(
-            *problems_of(observed, data, gravity, left, model.half_size),
+            *problems_of(
+                observed, data, gravity, left, model.half_size, by_strikes=bool(set(free) & BY_STRIKES)
+            ),
+            *unlikely(estimates, first.spread, len(data.strikes), model.half_size),
+            *recordings_apart(observed, outliers, relabelled(fitting, first, covariances)),
             *bent_surfaces(data, described, [s.name for s in model.surfaces], model.half_size),
         ),
         clusters=first.fit.clusters,
@@ -133,19 +152,31 @@ def calibrate_observed(
     )
 
 
+def _first_way(
+    model: Model,
+    data: Data,
+    free: Sequence[Free],
+    observed: Sequence[Observed],
+    covariances: FloatArray,
+) -> tuple[Fitting, Estimation]:
+    """Return the estimate from velocities, repeated where ratios of moments end far from where they began."""
+    ratios, start = model.configured[4:6], None
+    for _ in range(MAX_RATIOS):
+        fitting = Fitting(model, data, free)
+        first = fitting.estimate(partial(fitting.whitened_jumps, covariances=covariances), start=start)
+        start = first.fit.parameters
+        if data.ratios is None or np.abs(first.values[4:6] - ratios).max() <= RATIO_STEP:
+            break
+        ratios = first.values[4:6]
+        data = replace(data, ratios=ratios_of_moments(observed, model, first.values))
+    return fitting, first
+
+
 def _data(model: Model, observed: Sequence[Observed], free: Sequence[Free]) -> Data:
     gravity, center = gravity_and_center(observed, gravity_is_free=Free.GRAVITY in free)
     with_ratios = Free.INERTIA_RATIOS in free
-    strikes = strikes_of(observed, with_ratios=with_ratios)
-    ratios = None
-    if with_ratios:
-        at = [(0.0, 0.0), (-RATIO_STEP, 0.0), (RATIO_STEP, 0.0), (0.0, -RATIO_STEP), (0.0, RATIO_STEP)]
-        inertias = []
-        for pair in at:
-            values = model.configured.copy()
-            values[4:6] = pair
-            inertias.append(model.describe(values).I_B)
-        ratios = ratios_of_moments(observed, inertias)
+    strikes = strikes_of(observed, ratios=model.near_ratios(model.configured) if with_ratios else None)
+    ratios = ratios_of_moments(observed, model, model.configured) if with_ratios else None
     described = model.describe(model.configured)
     return Data(
         clusters=len(observed),
@@ -159,11 +190,17 @@ def _data(model: Model, observed: Sequence[Observed], free: Sequence[Free]) -> D
 
 
 def _estimates(
-    fitting: Fitting, first: Estimation, second: Estimation | None
+    fitting: Fitting, first: Estimation, second: Estimation | None, choice: FloatArray
 ) -> tuple[tuple[Estimate, ...], FloatArray, FloatArray | None]:
-    """Return the estimates as they are reported, and the covariances of both ways."""
+    """Return the estimates as they are reported, and the covariances of both ways.
+
+    ``choice``, (f,), is by how much another choice of free parameters moves them, in standard units. It
+    counts as one standard deviation.
+    """
     model, fit = fitting.model, first.fit
     vague = np.abs(fit.undetermined).max(axis=0, initial=0.0) > DIRECTION_SHARE
+    choice = np.where(vague, 0.0, choice)
+    covariance = _for_few(fitting, first) * fit.covariance + np.outer(choice, choice)
     scale, estimates = [], []
     for k, number in enumerate(fitting.at):
         parameter = model.parameters[number]
@@ -178,10 +215,10 @@ def _estimates(
 
         value = shown(float(first.values[number]))
         scale.append(float(fitting.steps[k]) * (value if parameter.is_factor else 1.0))
-        there, spread_there, apart = math.nan, math.nan, math.nan
+        value_there, spread_there, apart = math.nan, math.nan, math.nan
         if second is not None:
-            there = shown(float(second.values[number]))
-            spread_there = scale[k] * math.sqrt(second.fit.covariance[k, k])
+            value_there = shown(float(second.values[number]))
+            spread_there = scale[k] * math.sqrt(_for_few(fitting, second) * second.fit.covariance[k, k])
             moved = fit.influences[:, k] - second.fit.influences[:, k]
             if len(moved) > 1:  # one toss has no scatter that would tell by how much the ways may differ
                 apart = scale[k] * math.sqrt(float(moved @ moved))
@@ -191,8 +228,8 @@ def _estimates(
                 unit=parameter.unit,
                 configured=shown(parameter.configured),
                 value=value,
-                std=math.nan if vague[k] else scale[k] * math.sqrt(fit.covariance[k, k]),
-                by_paths=there,
+                std=math.nan if vague[k] or fit.at_bound[k] else scale[k] * math.sqrt(covariance[k, k]),
+                by_paths=value_there,
                 by_paths_std=spread_there,
                 difference_std=apart,
                 determined=not vague[k],
@@ -201,7 +238,22 @@ def _estimates(
         )
     scales = np.array(scale) * ~vague
     units = np.outer(scales, scales)
-    return tuple(estimates), fit.covariance * units, None if second is None else second.fit.covariance * units
+    there = None if second is None else _for_few(fitting, second) * second.fit.covariance * units
+    return tuple(estimates), covariance * units, there
+
+
+def _for_few(fitting: Fitting, found: Estimation) -> float:
+    """Return by how much variances are larger that are not those of the scatter between tosses.
+
+    The size of the residuals is then that of few strikes, so that Student's t takes the place of the normal
+    distribution: the 90 % interval of as many tosses as have strikes becomes that of the stated deviation.
+    """
+    from scipy.stats import norm, t
+
+    if found.fit.by_cluster:
+        return 1.0
+    tosses = len(np.unique(fitting.data.strikes.recordings)) or found.fit.clusters
+    return float(t.isf(0.05, max(tosses - 1, 1)) / norm.isf(0.05)) ** 2
 
 
 def _undetermined(fitting: Fitting, found: Estimation) -> tuple[str, ...]:

@@ -38,6 +38,8 @@ SPREAD_ROUNDS: Final = 3
 """Fits, each with the spreads of the one before. The third changes estimates by a small part of their
 errors."""
 
+ALIKE: Final = 1.25
+"""Ratio of the robust sums of squares below which two choices of free parameters fit the data alike."""
 
 FRICTIONS: Final = (1.0, 0.4)
 """Shares of the configured friction from which the first fit starts."""
@@ -179,6 +181,29 @@ class Fitting:
             fit = min(fits, key=lambda each: each.cost)
             x = fit.parameters
         return Estimation(fit=fit, values=self.values(x), spread=weighed, kinds=tuple(kinds))
+
+    def choice(self, found: Estimation, covariances: FloatArray) -> FloatArray:
+        """Return by how much the estimate moves, (f,), if size and surface height change places.
+
+        A body that is a little smaller and a surface that is a little lower explain the same heights. Where
+        one of them is free beside the rounding, and the other fits nearly as well (`ALIKE`), nothing in the
+        data says which it is.
+        """
+        moved: FloatArray = np.zeros(len(self.at))
+        swap = {Free.SIZE: Free.SURFACE_HEIGHT, Free.SURFACE_HEIGHT: Free.SIZE}
+        if (
+            Free.ROUNDING not in self.free
+            or len(set(swap) & set(self.free)) != 1
+            or not len(self.data.struck.stds)
+        ):
+            return moved
+        other = Fitting(self.model, self.data, [swap.get(each, each) for each in self.free])
+        there = other.estimate(
+            lambda x, spread: other.whitened_jumps(x, spread, covariances), spread=found.spread
+        )
+        if there.fit.cost < ALIKE * found.fit.cost:
+            moved = (there.values - found.values)[self.at] / self.steps * ~found.fit.at_bound
+        return moved
 
     def _starts(self, x: FloatArray) -> list[FloatArray]:
         """Return where to start: as configured, and with less friction.

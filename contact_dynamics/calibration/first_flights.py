@@ -13,7 +13,7 @@ projected the same way.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final, TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,19 +24,17 @@ from contact_dynamics.questions.uncertain_state import state_of
 from contact_dynamics.records import Record
 from contact_dynamics.rigid_body.body import MassProperties
 from contact_dynamics.rotations.many import matrices_of
+from contact_dynamics.tolerances import SMALLEST
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from contact_dynamics.calibration.model import Model
     from contact_dynamics.calibration.observed import Observed
     from contact_dynamics.validation import FloatArray
 
 IntArray: TypeAlias = NDArray[np.intp]
 """Numbers of recordings, surfaces or corners."""
-
-RATIO_STEP: Final = 0.05
-"""Logarithm. Step of the numerical derivative by a ratio of moments, over which residuals are nearly
-straight."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -119,15 +117,18 @@ def gravity_and_center(
     return Gravity(gravity_W=gravities, by_center=by_center, std=std), found
 
 
-def ratios_of_moments(observed: Sequence[Observed], inertia_at: Sequence[FloatArray]) -> Straightness:
+def ratios_of_moments(observed: Sequence[Observed], model: Model, values: FloatArray) -> Straightness:
     """Return residuals in the logarithms of two ratios of moments, from rotations of first flights.
 
-    Args:
-        observed: The recordings.
-        inertia_at: The inertia, (3, 3), kg m^2, body axes, at the present ratios, and with each of both
-            ratios smaller and larger by `RATIO_STEP`: five matrices.
+    They are linear near those of ``values``, (p,), all parameters.
     """
     rows, slopes, numbers = [], [], []
+    near = model.near_ratios(values)
+    inertias = [model.describe(values).I_B]
+    for k, log in np.ndindex(2, 2):
+        there = values.copy()
+        there[4 + k] = near[k, log]
+        inertias.append(model.describe(there).I_B)
     for number, each in enumerate(observed):
         if each.first is None:
             continue
@@ -139,10 +140,11 @@ def ratios_of_moments(observed: Sequence[Observed], inertia_at: Sequence[FloatAr
             fit_free_motion(
                 MassProperties(mass=mass, I_B=I_B), states, gravity_W=motion.gravity_W, noise=noise
             ).orientation_misses_W.ravel()
-            for I_B in inertia_at
+            for I_B in inertias
         ]
-        by_ratio = [(misses[k + 1] - misses[k]) / (2.0 * RATIO_STEP) for k in (1, 3)]
-        small = triangle_of(np.column_stack([*by_ratio, misses[0]])) / motion.orientation_noise
+        by_ratio = [(misses[2 * k + 2] - misses[2 * k + 1]) / max(np.ptp(near[k]), SMALLEST) for k in (0, 1)]
+        at_zero = misses[0] - np.column_stack(by_ratio) @ values[4:6]
+        small = triangle_of(np.column_stack([*by_ratio, at_zero])) / motion.orientation_noise
         slopes.append(small[:3, :2])
         rows.append(small[:3, 2])
         numbers.append(number)

@@ -36,8 +36,21 @@ class Free(Enum):
     """Gravity as a vector, for each recording by itself."""
 
 
-STANDARD: Final = (Free.FRICTION, Free.RESTITUTION, Free.CENTER_OF_MASS, Free.INERTIA, Free.GRAVITY)
-"""What is free if nobody says otherwise."""
+STANDARD: Final = (
+    Free.FRICTION,
+    Free.RESTITUTION,
+    Free.CENTER_OF_MASS,
+    Free.INERTIA,
+    Free.GRAVITY,
+    Free.ROUNDING,
+    Free.SURFACE_HEIGHT,
+)
+"""What is free if nobody says otherwise. Corners of real bodies are round, and a surface's height in the
+frame of the tracking is seldom known to a millimetre: if they are not free, both end up in the inertia and
+the centre of mass. The rounding of a shape without faces is its radius, and keeps its configured value."""
+
+BY_STRIKES: Final = frozenset({Free.FRICTION, Free.RESTITUTION, Free.INERTIA})
+"""What strikes alone tell."""
 
 GEOMETRY: Final = (
     Free.ROUNDING,

@@ -14,11 +14,12 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import product
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from contact_dynamics.calibration.free import Free
+from contact_dynamics.calibration.free import STANDARD, Free
 from contact_dynamics.errors import NotSupportedError
 from contact_dynamics.numerics.convex_hull import hull_of
 from contact_dynamics.numerics.vectors import tangents_near_x
@@ -47,8 +48,16 @@ PLAUSIBLE_ANGLE: Final = 0.2
 LARGEST_RATIO: Final = 1.0
 """Logarithm. No ratio of moments is looked for farther off."""
 
-SMALLEST_RATIO: Final = 0.02
-"""Logarithm. A body so near to being flat keeps its ratios."""
+RATIO_STEP: Final = 0.05
+"""Logarithm. Step of the numerical derivative by a ratio of moments, over which residuals are nearly
+straight. An estimate that is farther away is repeated there."""
+
+RATIO_GROWTH: Final = 0.02
+"""Logarithm by which the range of the ratios grows at a time."""
+
+ROUND: Final = 0.5
+"""Share of the ball that fits into the shape. Corners that are rounder belong to a body that is described as
+round: an estimate beyond it is a sign of poor data, such as too few frames a second."""
 
 AXES: Final = ("x", "y", "z")
 
@@ -130,10 +139,10 @@ class Model:
         length = PLAUSIBLE_SHARE * self.half_size
         found = _along_axes("center_of_mass", Free.CENTER_OF_MASS, step=length, unit="m")
         found.append(_factor("inertia", Free.INERTIA))
-        most = _largest_ratio(self.body.mass_properties.I_B)
+        bounds = _bounds_of_ratios(self.body.mass_properties.I_B)
         found += [
-            _factor(f"inertia_ratio.{axis}", Free.INERTIA_RATIOS, lower=-most, upper=most)
-            for axis in AXES[1:]
+            _factor(f"inertia_ratio.{axis}", Free.INERTIA_RATIOS, lower=lower, upper=upper)
+            for axis, (lower, upper) in zip(AXES[1:], bounds.tolist(), strict=True)
         ]
         found.append(
             Parameter(
@@ -142,7 +151,7 @@ class Model:
                 configured=self.body.shape.rounding,
                 step=length,
                 lower=0.0,
-                upper=0.9 * self.half_size,
+                upper=self._largest_rounding(),
                 unit="m",
             )
         )
@@ -153,21 +162,46 @@ class Model:
             found += _of_surface(surface, length)
         return found
 
+    @property
+    def standard(self) -> tuple[Free, ...]:
+        """The groups of `STANDARD`, without the rounding of a shape that has no faces."""
+        return tuple(each for each in STANDARD if each is not Free.ROUNDING or self._planes.size)
+
     def chosen(self, free: Sequence[Free]) -> FloatArray:
         """Return the numbers, (f,), of the parameters of some groups."""
         return np.array([i for i, p in enumerate(self.parameters) if p.group in free], dtype=int)
 
     @cached_property
+    def _planes(self) -> FloatArray:
+        """The planes of the faces, (f, 4), normals outwards and offsets; none for a flat shape or a ball."""
+        if len(self.vertices) < 4 or np.linalg.matrix_rank(self.vertices - self.middle) < 3:
+            return np.zeros((0, 4))
+        return np.unique(np.round(hull_of("vertices", self.vertices).equations, 9), axis=0)
+
+    @cached_property
     def _inwards(self) -> FloatArray:
         """For each corner, (k, 3), where it goes for each metre of rounding."""
-        if len(self.vertices) < 4 or np.linalg.matrix_rank(self.vertices - self.middle) < 3:
-            return np.zeros_like(self.vertices)
-        planes = np.unique(np.round(hull_of("vertices", self.vertices).equations, 9), axis=0)
-        moves = []
-        for corner in self.vertices:
-            at = np.abs(planes[:, :3] @ corner + planes[:, 3]) < SAME_FACE * self.half_size
-            moves.append(np.linalg.lstsq(planes[at, :3], -np.ones(int(at.sum())), rcond=None)[0])
-        return np.array(moves)
+        moves = np.zeros_like(self.vertices)
+        for corner, move in zip(self.vertices, moves, strict=True):
+            at = np.abs(self._planes[:, :3] @ corner + self._planes[:, 3]) < SAME_FACE * self.half_size
+            if at.any():
+                move[:] = np.linalg.lstsq(self._planes[at, :3], -np.ones(int(at.sum())), rcond=None)[0]
+        return moves
+
+    def _largest_rounding(self) -> float:
+        """Return the largest radius that is looked for, m: `ROUND` of that of the ball that fits in."""
+        if not self._planes.size:
+            return 0.9 * self.half_size
+        inside = self.body.shape.rounding - float(
+            (self._planes[:, :3] @ self.middle + self._planes[:, 3]).max()
+        )
+        return max(ROUND * inside, min(inside, 2.0 * self.body.shape.rounding))
+
+    def near_ratios(self, values: FloatArray) -> FloatArray:
+        """Return logarithms of both ratios of moments below and above those of ``values``, (2, 2)."""
+        both = self.parameters[4:6]
+        near = values[4:6, None] + [-RATIO_STEP, RATIO_STEP]
+        return np.clip(near, [[each.lower] for each in both], [[each.upper] for each in both])
 
     def describe(self, values: FloatArray) -> Described:
         """Return what a vector of all parameters, (p,), says."""
@@ -215,20 +249,24 @@ def _factor(name: str, group: Free, *, lower: float = -math.inf, upper: float = 
     )
 
 
-def _largest_ratio(I_B: FloatArray) -> float:
-    """Return the largest logarithm that both ratios of moments may have, up or down, so that a body has them.
+def _bounds_of_ratios(I_B: FloatArray) -> FloatArray:
+    """Return the least and largest logarithms of both ratios of moments, (2, 2), that bodies have.
 
-    No moment may exceed the sum of the other two.
+    No moment may exceed the sum of the other two. Each side of the range grows as far as all its corners are
+    moments of a body, so that a body that is nearly flat can become thicker, but not flatter.
     """
-    most = LARGEST_RATIO
-    signs = ((-1.0, -1.0), (-1.0, 1.0), (1.0, -1.0), (1.0, 1.0))
-    while most > SMALLEST_RATIO:
-        changes = [np.diag(np.exp(0.5 * most * np.array([0.0, *sign]))) for sign in signs]
-        moments = np.linalg.eigvalsh([E @ I_B @ E for E in changes])
-        if (moments[:, 0] + moments[:, 1] > moments[:, 2]).all():
-            return most
-        most *= 0.8
-    return 0.0
+    bounds, grows = np.zeros((2, 2)), np.array([[-1.0, 1.0], [-1.0, 1.0]])
+    while grows.any():
+        for side in np.argwhere(grows):
+            wider = bounds.copy()
+            wider[tuple(side)] += RATIO_GROWTH * grows[tuple(side)]
+            changes = [np.diag(np.exp(0.5 * np.array([0.0, *pair]))) for pair in product(*wider)]
+            moments = np.linalg.eigvalsh([E @ I_B @ E for E in changes])
+            if (moments[:, 0] + moments[:, 1] > moments[:, 2]).all() and np.abs(wider).max() < LARGEST_RATIO:
+                bounds = wider
+            else:
+                grows[tuple(side)] = 0.0
+    return bounds
 
 
 def _of_surface(surface: Surface, length: float) -> list[Parameter]:

@@ -68,7 +68,7 @@ def _row(each: Estimate) -> str:
     text = f"{each.name:28} {each.configured:11.5g} "
     if not each.determined:
         return text + "not determined"
-    text += f"{each.value:11.5g} {each.std:9.2g}"
+    text += f"{each.value:11.5g} {'at bound' if each.at_bound else format(each.std, '.2g'):>9}"
     if not math.isnan(each.by_paths):
         text += f"   {each.by_paths:11.5g} {each.by_paths_std:9.2g}"
         if each.difference_std > 0.0:

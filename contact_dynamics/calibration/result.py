@@ -36,13 +36,17 @@ class Estimate(Record):
         unit: m, rad, m/s^2, or empty. Factors have none.
         configured: The value before.
         value: The estimate from velocities before and after strikes.
-        std: Its standard deviation, by the scatter between tosses; NaN where the data say too little.
+        std: Its standard deviation, by the scatter between tosses and by the choice between free size and
+            free surface height where they explain the data alike; NaN where the data say too little, and at
+            a bound.
         by_paths: The estimate from whole trajectories through strikes; NaN if that was not asked for.
         by_paths_std: Its standard deviation.
         difference_std: Standard deviation of the difference of both estimates, which come from the same data;
             NaN for a single toss.
-        determined: Whether the data say anything of it. If not, the value is what was configured.
-        at_bound: Whether it lies at the end of what is possible, such as friction 0.
+        determined: Whether the data say it, alone and not only together with others. If not, the value is
+            what was configured, or one of many that fit alike.
+        at_bound: Whether it lies at the end of what is possible, such as friction 0. It is then no estimate,
+            unless it was configured so.
     """
 
     name: str

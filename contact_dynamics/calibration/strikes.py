@@ -14,11 +14,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from contact_dynamics.calibration.first_flights import RATIO_STEP
 from contact_dynamics.measured.flight_fit import fit_flight
 from contact_dynamics.records import Record
 from contact_dynamics.rigid_body.body import MassProperties
 from contact_dynamics.rotations.many import matrices_of
+from contact_dynamics.tolerances import SMALLEST
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -90,12 +90,16 @@ class Strikes(Record):
         return len(self.times)
 
 
-def strikes_of(observed: Sequence[Observed], *, with_ratios: bool) -> Strikes:
-    """Return the strikes of all recordings, in their order."""
+def strikes_of(observed: Sequence[Observed], *, ratios: FloatArray | None) -> Strikes:
+    """Return the strikes of all recordings, in their order.
+
+    ``ratios``, (2, 2), are the logarithms of both ratios of moments between which derivatives by them are
+    taken, or None where these are not free.
+    """
     found = [(number, each, strike) for number, each in enumerate(observed) for strike in each.strikes]
     states = [(strike.before, strike.after) for _, _, strike in found]
     before, after = (
-        _side([_fitted(each.motion, frames(strike), strike.time, with_ratios) for _, each, strike in found])
+        _side([_fitted(each.motion, frames(strike), strike.time, ratios) for _, each, strike in found])
         for frames in (attrgetter("frames_before"), attrgetter("frames_after"))
     )
     places = [0.5 * (before.state.p_WB_W + after.state.p_WB_W) for before, after in states]
@@ -116,7 +120,7 @@ def _place_std(before: MeasuredState, after: MeasuredState) -> float:
     return 0.5 * float(np.hypot(before.position_std, after.position_std))
 
 
-def _fitted(motion: MeasuredMotion, frames: slice, time: float, with_ratios: bool) -> tuple[Any, ...]:  # noqa: FBT001
+def _fitted(motion: MeasuredMotion, frames: slice, time: float, ratios: FloatArray | None) -> tuple[Any, ...]:
     """Return a row of each field of a `Side`."""
     since = motion.times[frames] - time
     slope = np.linalg.pinv(np.column_stack([np.ones_like(since), since]))[1]
@@ -124,14 +128,12 @@ def _fitted(motion: MeasuredMotion, frames: slice, time: float, with_ratios: boo
     reference = int(np.argmin(np.abs(since))) + frames.start
     found = fit_flight(motion, frames, reference=reference).at(time)
     by_ratio = np.zeros((3, 2))
-    if with_ratios:
-        for k in range(2):
-            spins = [
-                fit_flight(_with_ratio(motion, k, sign * RATIO_STEP), frames, reference=reference).at(time)
-                for sign in (-1.0, 1.0)
-            ]
-            change = spins[1].state.w_WB_W - spins[0].state.w_WB_W
-            by_ratio[:, k] = change / (2.0 * RATIO_STEP)
+    for k, near in enumerate([] if ratios is None else ratios.tolist()):
+        low, high = (
+            fit_flight(_with_ratio(motion, k, log), frames, reference=reference).at(time).state.w_WB_W
+            for log in near
+        )
+        by_ratio[:, k] = (high - low) / max(near[1] - near[0], SMALLEST)
     unit = float(np.linalg.norm(slope))  # a velocity has this noise where positions have 1
     factors = [
         found.velocity_std / (unit * motion.position_noise),

@@ -9,12 +9,13 @@ import pytest
 from calibration.made_tosses import Truth, made_tosses
 from contact_dynamics.calibration.calibrate import _data
 from contact_dynamics.calibration.estimation import Fitting, Spread
-from contact_dynamics.calibration.free import STANDARD
+from contact_dynamics.calibration.free import GEOMETRY, STANDARD
 from contact_dynamics.calibration.model import Model
 from contact_dynamics.calibration.observed import observe
 from contact_dynamics.calibration.paths import BETWEEN, Paths
 
 TRUTH = Truth(law_velocity=0.01, law_spin=0.1)
+SHARP = [each for each in STANDARD if each not in GEOMETRY]
 SPREAD = Spread(velocity=0.01, spin=0.1)
 
 
@@ -23,7 +24,7 @@ def strikes() -> tuple[Fitting, Paths]:
     motions = made_tosses(TRUTH, 5, 1001)
     model = Model(motions[0].body, motions[0].surfaces)
     observed = [each for number, motion in enumerate(motions) for each in observe(str(number), motion)]
-    fitting = Fitting(model, _data(model, observed, STANDARD), STANDARD)
+    fitting = Fitting(model, _data(model, observed, SHARP), SHARP)
     return fitting, Paths(fitting, observed)
 
 
