@@ -292,8 +292,8 @@ def _at_rest() -> FloatArray:
 class Surface(Record):
     """Infinite plane of the world. Its normal points to the free side.
 
-    A belt, a cart, a turntable or a tray moves as a rigid body. Contact modes and impacts accept such surfaces;
-    other functions raise an error.
+    A belt, a cart, a turntable or a tray moves as a rigid body. Contact modes and impacts accept such
+    surfaces; other functions raise an error.
 
     Attributes:
         name: Name by which contacts refer to the surface.

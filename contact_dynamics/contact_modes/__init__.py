@@ -13,7 +13,8 @@ Make a `PlanarContactProblem` or a `SpatialContactProblem`, and pass it to one o
   sufficient, and `closure` whether contacts have form or force closure. All of these are in `largest_load`.
 
 A mode is a string with one of the `letters` for each contact. `result` contains the types of answers, and
-`plane_or_space` the functions above.
+`plane_or_space` the functions above. Problems on surfaces that move are transformed to the frame of the
+surfaces (`surface_frame`).
 
 The modules of this package are internal. In `planar` and `spatial`, files for the same purpose have the same
 name. `problem` contains the problem, and its case: the problem in the coordinates in which it is solved.
