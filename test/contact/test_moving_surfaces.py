@@ -24,7 +24,6 @@ from contact_dynamics.impact import (
     outcomes_over_interleavings,
     planar_impact_distribution,
     planar_pair_impact,
-    planar_several_impact,
     spatial_impact_distribution,
     spatial_pair_impact,
 )
@@ -168,7 +167,6 @@ SPATIAL: dict[str, Callable[[], object]] = {
 }
 PLANAR_CALLS: dict[str, Callable[[], object]] = {
     "planar_pair_impact": lambda: planar_pair_impact(PLANAR, DOWN, PLANAR, DOWN, FOOT, other_r=(0.0, 0.3)),
-    "planar_several_impact": lambda: planar_several_impact(PLANAR, DOWN, [FOOT]),
     "planar_impact_distribution": lambda: planar_impact_distribution(
         PLANAR, DOWN, FOOT, covariance=np.zeros((3, 3))
     ),

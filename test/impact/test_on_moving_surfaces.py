@@ -18,6 +18,7 @@ from contact_dynamics.impact import (
     bodies_impact,
     outcomes_at_once,
     outcomes_over_orders,
+    planar_several_impact,
     spatial_impacts,
     spatial_pair_impact,
 )
@@ -254,3 +255,21 @@ def test_two_bodies_have_no_moving_surface_between_them() -> None:
         [BRICK, BRICK], [LEANING, other], replace(FEET, surface_velocities_W=belt), pairs
     ).velocities_after_W
     assert (after[:, 2] >= -1e-8).all()
+
+
+def test_several_contacts_in_the_plane_are_relative_to_their_surfaces() -> None:
+    body = cd.PlanarBody(mass=2.0, inertia=0.1)
+    feet = [
+        cd.PlanarContact(r=(x, -0.3), normal=(0.0, 1.0), friction=0.5, restitution=0.3) for x in (-0.2, 0.3)
+    ]
+    still = planar_several_impact(body, cd.PlanarVelocity(v=(0.5, -1.0), w=0.2), feet)
+    belt = [replace(foot, surface_velocity=(1.5, 0.4)) for foot in feet]
+    moving = planar_several_impact(body, cd.PlanarVelocity(v=(2.0, -0.6), w=0.2), belt)
+    np.testing.assert_allclose(moving.impulses_W, still.impulses_W, atol=1e-12)
+    np.testing.assert_allclose(
+        moving.state.v_WB_W, still.state.v_WB_W + np.array([1.5, 0.4, 0.0]), atol=1e-12
+    )
+    np.testing.assert_allclose(moving.velocities_after_W, still.velocities_after_W, atol=1e-12)
+    one = cd.planar_impact(body, cd.PlanarVelocity(v=(2.0, -0.6), w=0.2), belt[0])
+    alone = planar_several_impact(body, cd.PlanarVelocity(v=(2.0, -0.6), w=0.2), belt[:1])
+    np.testing.assert_allclose(alone.state.v_WB_W[:2], one.velocity.v, atol=1e-12)
