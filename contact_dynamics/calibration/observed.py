@@ -20,7 +20,7 @@ import numpy as np
 
 from contact_dynamics.measured.events import REST_SPAN, find_rest
 from contact_dynamics.measured.flight_fit import FEWEST_FRAMES
-from contact_dynamics.measured.flights import find_flights, find_strikes
+from contact_dynamics.measured.flights import ALONE, find_flights, find_strikes
 from contact_dynamics.records import Record
 from contact_dynamics.rotations.many import matrices_of
 
@@ -32,9 +32,6 @@ if TYPE_CHECKING:
     from contact_dynamics.measured.motion import MeasuredMotion
     from contact_dynamics.validation import FloatArray
     from contact_dynamics.world import Surface
-
-ALONE: Final = 0.1
-"""Share of the body's largest half size by which the second corner is higher in a strike of a single one."""
 
 NEAR: Final = 1.0
 """Largest distance of a striking corner from a surface, in half sizes. Beyond it, something else was

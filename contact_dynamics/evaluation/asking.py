@@ -115,6 +115,7 @@ def compare_event(
                 method=method,
                 law=law,
                 measured_mode=event.mode,
+                several=event.several,
             )
             try:
                 yield _ANSWERS[event.kind](row, event, known, settings)

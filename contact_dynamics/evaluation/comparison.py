@@ -31,7 +31,7 @@ class Comparison(Record):
         kind: What happened.
         body: The body's name.
         surface: The surface's name; empty for a flight.
-        time: When the event was, s after the recording's first state.
+        time: When the event was, s after the recording's first state; for a toss, as its file has it.
         horizon: How long before it was asked, s.
         method: What the prediction was made from.
         law: The law of the impact. It is None where no impact was asked about.
@@ -47,6 +47,7 @@ class Comparison(Record):
         distance: How far the answer is off in standard deviations (Mahalanobis), by its own covariance and
             that of the measurement.
         degrees: Number of components that ``distance`` is over.
+        several: Whether an impact may be that of several corners, as `FoundEvent` has it.
         predicted: (13,), position, quaternion, linear and angular velocity as predicted.
     """
 
@@ -69,6 +70,7 @@ class Comparison(Record):
     mode_is_right: bool | None = None
     distance: float | None = None
     degrees: int = 0
+    several: bool = False
     predicted: FloatArray | None = None
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from contact_dynamics.errors import NotSupportedError
-from contact_dynamics.evaluation.report import COLUMNS, TITLES, UNITS
+from contact_dynamics.evaluation.report import COLUMNS, SEVERAL, TITLES, UNITS
 from contact_dynamics.evaluation.settings import Law, Method
 from contact_dynamics.evaluation.summary import is_inside
 from contact_dynamics.measured.events import EventKind
@@ -47,13 +47,17 @@ def write_plots(folder: Path, evaluation: Evaluation) -> list[Path]:
     folder.mkdir(parents=True, exist_ok=True)
     rows = [row for _, row in evaluation.rows() if not row.refused]
     written = []
-    groups = {(row.kind, row.body, row.surface) for row in rows if row.kind in _DRAWN}
-    for kind, body, surface in sorted(groups, key=lambda group: (_DRAWN.index(group[0]), *group[1:])):
+    groups = {(row.kind, row.body, row.surface, row.several) for row in rows if row.kind in _DRAWN}
+    for kind, body, surface, several in sorted(
+        groups, key=lambda group: (_DRAWN.index(group[0]), *group[1:])
+    ):
         figure = Figure(figsize=(4.6 * len(COLUMNS[kind]), 4.8), layout="constrained")
-        figure.suptitle(f"{TITLES[kind]}  ({f'{body} on {surface}' if surface else body})")
-        of_group = [row for row in rows if (row.kind, row.body, row.surface) == (kind, body, surface)]
+        title = SEVERAL if several else TITLES[kind]
+        figure.suptitle(f"{title}  ({f'{body} on {surface}' if surface else body})")
+        which = (kind, body, surface, several)
+        of_group = [row for row in rows if (row.kind, row.body, row.surface, row.several) == which]
         _draw_errors(figure, kind, of_group)
-        name = _UNUSUAL.sub("_", "-".join(filter(None, (kind.value, body, surface))))
+        name = _UNUSUAL.sub("_", "-".join(filter(None, (kind.value, body, surface, "several" * several))))
         written.append(_save(figure, folder / f"{name}.png"))
     covered = [row for row in rows if row.distance is not None]
     if covered:

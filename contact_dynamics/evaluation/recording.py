@@ -85,8 +85,8 @@ def evaluate_recording(
 def recording_of_toss(toss: Toss) -> Recording:
     """Return a recorded toss as a recording. Each state was known at its stamp.
 
-    The tolerances are those of the demo: what lies within the noise of the measured velocities counts as
-    none.
+    Times are those of its file. The tolerances are those of the demo: what lies within the noise of the
+    measured velocities counts as none.
     """
     world = World(bodies=(toss.body,), surfaces=(toss.surface,), gravity_W=toss.gravity_W)
     states = [toss.state(sample) for sample in range(len(toss))]
@@ -99,6 +99,7 @@ def recording_of_toss(toss: Toss) -> Recording:
                 world,
                 StateColumns(states, [state.stamp_ns for state in states]),
                 noise=(toss.position_noise, toss.orientation_noise),
+                epoch_ns=0,
             )
         ),
         informed=Informed(world=world, defaults=defaults, state_timeout=0.5),

@@ -40,10 +40,13 @@ COLUMNS: Final = {
 TITLES: Final = {
     EventKind.FLIGHT: "flights: where is the body near the flight's end?",
     EventKind.LANDING: "first contacts: when, where and how does it land?",
-    EventKind.IMPACT: "impacts: which velocities does it have afterwards?",
+    EventKind.IMPACT: "impacts of one corner: which velocities does it have afterwards?",
     EventKind.REST: "rests: which contact mode?",
     EventKind.SLIDING: "slides: which contact mode?",
 }
+
+SEVERAL: Final = "impacts of several corners, or longer ones: which velocities does it have afterwards?"
+"""The title of impacts whose outcome depends on which corners strike, and when."""
 
 SIGNIFICANT: Final = 0.05
 """Probability below which a change is marked."""
@@ -70,11 +73,12 @@ def report(evaluation: Evaluation) -> str:
     rows = [row for result in done for row in result.comparisons]
     if any(row.distance is not None for row in rows):
         lines.append("inside: share of measured values, %, in the regions predicted with these probabilities")
-    for (kind, body, surface), summaries in groupby(
-        summarise(rows), key=lambda each: (each.kind, each.body, each.surface)
+    for (kind, body, surface, several), grouped in groupby(
+        summarise(rows), key=lambda each: (each.kind, each.body, each.surface, each.several)
     ):
-        where = f"{body} on {surface}" if surface else body
-        lines += ["", f"{TITLES[kind]}  ({where})", *_table(kind, list(summaries))]
+        where, summaries = f"{body} on {surface}" if surface else body, list(grouped)
+        title = SEVERAL if several else TITLES[kind]
+        lines += ["", f"{title}  ({where})", *_table(kind, summaries), *_conclusion(summaries)]
     lines += _problems(evaluation)
     return "\n".join(lines)
 
@@ -141,6 +145,25 @@ def _table(kind: EventKind, summaries: Sequence[Summary]) -> Iterator[str]:
         yield (
             f"  {1e3 * each.horizon:>9.0f}  {_method(each):<18}{each.asked:>6}{each.refused:>9}"
             f"{cells}{covered:>20}"
+        )
+
+
+def _conclusion(summaries: Sequence[Summary]) -> Iterator[str]:
+    """Yield what the table of impacts says about the laws, in words."""
+    nearest = [each for each in summaries if each.horizon == summaries[0].horizon and each.errors]
+    without = [each for each in nearest if each.method is Method.NO_IMPACT]
+    laws = [each for each in nearest if each.method is Method.FIT and each.law is not None]
+    if without and laws:
+        best = min(laws, key=lambda each: each.errors["velocity_error"].median)
+        yield (
+            f"  with the configured coefficients, {_method(best)} is best: of a change of velocity of "
+            f"{without[0].errors['velocity_error'].median:.2g} m/s in the median, it leaves "
+            f"{best.errors['velocity_error'].median:.2g} m/s unpredicted"
+        )
+    if summaries[0].several:
+        yield (
+            "  which corners strike here, and when, decides as much as the law: judge laws and coefficients "
+            "by impacts of one corner"
         )
 
 

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-FORMAT: Final = "contact_dynamics evaluation 1"
+FORMAT: Final = "contact_dynamics evaluation 2"
 """What the JSON of an evaluation says that it is."""
 
 _ENUMS: Final[dict[str, type[Enum]]] = {"kind": EventKind, "method": Method, "law": Law}

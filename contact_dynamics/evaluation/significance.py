@@ -104,8 +104,8 @@ def _pairs(first: Evaluation, second: Evaluation) -> Iterator[tuple[str, Compari
 
 
 def _what(row: Comparison) -> Group:
-    """Return the group of a comparison without its surface, whose name another configuration may change."""
-    return replace(group_of(row), surface="")
+    """Return the group of a comparison without what another configuration may change."""
+    return replace(group_of(row), surface="", several=False)
 
 
 def _change(group: Group, error: str, pairs: dict[str, list[tuple[float, float]]]) -> Change:

@@ -33,6 +33,7 @@ class Group(Record):
         kind: What happened.
         body: The body's name.
         surface: The surface's name; empty for flights.
+        several: Whether impacts may be those of several corners.
         horizon: s before the event.
         method: What the predictions were made from.
         law: The law of the impact. It is None where no impact was asked about.
@@ -41,6 +42,7 @@ class Group(Record):
     kind: EventKind
     body: str
     surface: str
+    several: bool
     horizon: float
     method: Method
     law: Law | None
@@ -144,12 +146,13 @@ def _summary(group: Group, rows: Sequence[Comparison]) -> Summary:
     )
 
 
-def _place(group: Group) -> tuple[int, str, str, float, int, int]:
+def _place(group: Group) -> tuple[int, str, str, bool, float, int, int]:
     kinds, methods, laws = list(EventKind), list(Method), [None, *Law]
     return (
         kinds.index(group.kind),
         group.body,
         group.surface,
+        group.several,
         group.horizon,
         methods.index(group.method),
         laws.index(group.law),

@@ -34,6 +34,7 @@ from contact_dynamics.constants import ns_after, to_ns
 from contact_dynamics.contact.found import contacts_within
 from contact_dynamics.measured.flight_fit import FEWEST_FRAMES, MeasuredState, fit_flight
 from contact_dynamics.measured.flights import (
+    ALONE,
     AT_ONCE,
     DEVIATIONS,
     ORIENTATION_SLACK,
@@ -112,6 +113,8 @@ class FoundEvent(MeasuredState):
             It is None without a flat.
         duration: s, from the first contact of an impact to the beginning of the flight after it; 0 otherwise.
         mode: The letters of the contacts of a rest or a slide, as measured; empty otherwise.
+        several: Whether an impact may be that of several corners: another one was lower than `ALONE` of the
+            body's size above the lowest one, or more than one frame lies between both flights.
     """
 
     kind: EventKind
@@ -124,6 +127,7 @@ class FoundEvent(MeasuredState):
     gap: float | None = None
     duration: float = 0.0
     mode: str = ""
+    several: bool = False
 
     def asked_ns(self, horizon: float) -> int:
         """Return when a question is asked that is ``horizon``, s, ahead of the event, ns."""
@@ -190,6 +194,7 @@ def _end(motion: MeasuredMotion, flight: slice, after: slice | None) -> Iterator
     if not contacts.near.any():
         return
     surface, gap = contacts.nearest(0)
+    low = contacts.gaps[0] < contacts.gaps[0].min() + ALONE * _reach(motion.body.shape)
     if gap is not None and gap < -LANDING_GAP:
         return
 
@@ -210,6 +215,7 @@ def _end(motion: MeasuredMotion, flight: slice, after: slice | None) -> Iterator
             angular_velocity_std=compared.angular_velocity_std,
             gap=gap,
             duration=max(0.0, compared.time - landing.time),
+            several=kind is EventKind.IMPACT and (strike is None or int(low.sum()) > 1),
         )
 
     yield event(EventKind.LANDING, landing)

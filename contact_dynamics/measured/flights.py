@@ -68,6 +68,9 @@ FIT_SPAN: Final = 0.08
 """s. The velocity is fitted over this much of a flight next to a strike. In a longer span, errors of the
 model, such as gravity off by 2 %, would be larger than the gain in noise."""
 
+ALONE: Final = 0.1
+"""Share of the body's largest half size by which the second corner is higher in a strike of a single one."""
+
 MAX_BETWEEN: Final = 1
 """Most frames between two flights that one strike may take. Such a frame shows the body in contact."""
 

@@ -240,6 +240,7 @@ def motions_of(
     states: StateColumns,
     *,
     noise: tuple[float, float] | None = None,
+    epoch_ns: int | None = None,
 ) -> list[MeasuredMotion]:
     """Return a body's states in stretches without gaps.
 
@@ -249,6 +250,7 @@ def motions_of(
         states: Its states in any order. Of several with one stamp, the last one counts.
         noise: Standard deviations of a position's coordinates, m, and of an orientation's components, rad.
             If it is None, they are estimated.
+        epoch_ns: The stamp from which times count, ns; the default is the first one.
     """
     stamps_ns, reverse = np.unique(states.stamps_ns[::-1], return_index=True)
     if len(stamps_ns) < FEWEST_STATES:
@@ -257,7 +259,7 @@ def motions_of(
     numbers, covariances = states.numbers[order], states.covariances
     steps_ns = np.diff(stamps_ns)
     spacing_ns = float(np.median(steps_ns))
-    epoch_ns = int(stamps_ns[0])
+    epoch_ns = int(stamps_ns[0]) if epoch_ns is None else epoch_ns
     whole = MeasuredMotion(
         body=body,
         world=world,

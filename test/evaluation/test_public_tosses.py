@@ -103,5 +103,6 @@ def test_all_tosses_by_one_command_printed_and_drawn(
         "flight-cube.png",
         "landing-cube-board.png",
         "impact-cube-board.png",
+        "impact-cube-board-several.png",
         "coverage.png",
     }

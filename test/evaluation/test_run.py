@@ -49,6 +49,9 @@ def test_everything_it_writes_has_the_same_rows(tmp_path: Path, capsys: pytest.C
     printed = capsys.readouterr().out
     assert "events: 4 flight, 4 landing, 3 impact, 1 rest, 1 sliding" in printed
     assert "first contacts: when, where and how does it land?  (brick on floor)" in printed
+    assert "impacts of one corner: which velocities does it have afterwards?  (brick on floor)" in printed
+    assert "coefficients, poisson is best: of a change of velocity of 2.6 m/s in the median" in printed
+    assert "impacts of several corners" not in printed
     rows = read_evaluation(names["json"]).results[0].comparisons
     with names["csv"].open(encoding="utf-8") as stream:
         listed = list(csv.DictReader(stream))

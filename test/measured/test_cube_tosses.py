@@ -9,8 +9,12 @@ import numpy as np
 import pytest
 
 from contact_dynamics.errors import InvalidFieldError
+from contact_dynamics.evaluation.recording import evaluate_recording, recording_of_toss
+from contact_dynamics.evaluation.report import report
+from contact_dynamics.evaluation.result import Evaluation
+from contact_dynamics.evaluation.settings import Settings
 from contact_dynamics.measured.cube_tosses import HALF_SIDE, RATE
-from contact_dynamics.measured.events import find_rest
+from contact_dynamics.measured.events import EventKind, find_rest
 from contact_dynamics.measured.flights import corner_heights, find_strikes
 from contact_dynamics.measured.read_toss import read_toss
 from contact_dynamics.motion.velocity_estimate import FEWEST_FRAMES
@@ -42,6 +46,30 @@ def save(path: Path, *tables: np.ndarray) -> Path:
     offsets = np.cumsum([0, *(len(table) for table in tables)])
     np.savez(path, data=np.concatenate(tables), offsets=offsets, columns=np.array(["t"] * 14))
     return path
+
+
+def test_events_of_a_toss_have_the_times_of_its_file(tmp_path: Path) -> None:
+    """The first frames have no velocity, and are left out. Times do not begin anew after them."""
+    path = save(tmp_path / "t.npz", toss_table(tilt=1.0, flight=18, between=14))
+    (motion,) = recording_of_toss(read_toss(path)).motions
+    with np.load(path) as arrays:
+        assert motion.times == pytest.approx(arrays["data"][-len(motion) :, 0], abs=1e-9)
+    assert motion.times[0] > 0.02
+
+
+@pytest.mark.parametrize(("tilt", "several"), [(1.0, False), (0.0, True)])
+def test_impacts_of_one_corner_and_of_several_have_tables_of_their_own(
+    tmp_path: Path,
+    tilt: float,
+    several: bool,  # noqa: FBT001  a value of a parametrized test
+) -> None:
+    path = save(tmp_path / "t.npz", toss_table(tilt=tilt, flight=24, between=14))
+    found = evaluate_recording(recording_of_toss(read_toss(path, index=0)), Settings(horizons=(0.02,)))
+    assert [event.several for event in found.events if event.kind is EventKind.IMPACT] == [several]
+    printed = report(Evaluation(versions={}, configuration="", results=(found,)))
+    assert ("impacts of several corners, or longer ones" in printed) == several
+    assert ("impacts of one corner" in printed.replace("by impacts of one corner", "")) != several
+    assert ("judge laws and coefficients by impacts of one corner" in printed) == several
 
 
 def test_an_index_selects_a_toss(tmp_path: Path) -> None:
