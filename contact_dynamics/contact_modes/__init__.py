@@ -9,7 +9,7 @@ Make a `PlanarContactProblem` or a `SpatialContactProblem`, and pass it to one o
   load of a body at rest in space, and `geometry_margins` the errors of the contacts that change the answer.
 - `wrench_sets` returns the wrenches that can cause each mode.
 - `statics` returns whether a body at rest stays at rest. `largest_acceleration`, `largest_tilt` and
-  `largest_spin` return how far its support may move, `least_friction` the smallest friction that is
+  `largest_spin` return the largest motion of its support, `least_friction` the smallest friction that is
   sufficient, and `closure` whether contacts have form or force closure. All of these are in `largest_load`.
 
 A mode is a string with one of the `letters` for each contact. `result` contains the types of answers, and

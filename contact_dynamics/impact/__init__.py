@@ -19,7 +19,7 @@ instant, `in_time` strikes one after the other, and `distribution` uncertain sta
 
 - In the plane, the impulse path is Routh's construction (`routh`). In `two_bodies`, both bodies may move.
 - In space, a contact responds in all directions (`response`), and its sliding direction changes continuously,
-  so the impulse `path` is curved. A mechanism, such as a robot arm, is known by its response alone.
+  so the impulse `path` is curved. A mechanism, such as a robot arm, is described by its response alone.
 - Several contacts strike one after the other (`sequential`, over all `orders`) or all at once
   (`simultaneous`), also in the plane (`planar`). Their impulses may also interleave in any way
   (`interleavings`). Contacts that do not approach can jam (`jamming`) until a mode is consistent

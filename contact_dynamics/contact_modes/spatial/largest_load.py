@@ -246,11 +246,12 @@ class LeastFriction(Record):
     """Smallest friction with which a body can stay at rest.
 
     Attributes:
-        factor: The given coefficients times this are the least with which rest is consistent. It is 0 if the
-            body rests without friction, and infinite if no friction holds it.
-        frictions: (n,), these coefficients.
-        verdict_below: The verdict with 1e-6 less of them, or UNIQUE if the factor is 0.
-        modes_below: The modes that are then consistent.
+        factor: Smallest factor of the given coefficients with which rest is consistent. It is 0 if the body
+            rests without friction, and infinite if no friction holds it.
+        frictions: (n,), these smallest coefficients.
+        verdict_below: Verdict with coefficients that are smaller by 1e-6 of them, or UNIQUE if the factor is
+            0.
+        modes_below: Consistent modes with these coefficients.
     """
 
     factor: float
@@ -259,7 +260,7 @@ class LeastFriction(Record):
     modes_below: tuple[str, ...]
 
     def in_short(self) -> str:
-        """Return the coefficients, and what follows with less friction."""
+        """Return the coefficients, and the modes that follow with less friction."""
         if math.isinf(self.factor):
             return "LeastFriction: no friction holds it"
         if self.factor == 0.0:
@@ -271,14 +272,14 @@ class LeastFriction(Record):
 
 
 def least_friction(problem: SpatialContactProblem) -> LeastFriction:
-    """Return the least friction with which a body may stay at rest under the problem's wrench.
+    """Return the smallest friction with which a body can stay at rest under the problem's wrench.
 
-    All coefficients of friction are scaled alike, and the body is taken to be at rest. The factor is exact to
-    about 1e-7. With this friction and more, rest is consistent; `contact_modes` says whether it is the only
-    answer.
+    All coefficients of friction are scaled by the same factor, and the body is treated as at rest. The factor
+    is exact to about 1e-7. With this friction or more, rest is consistent; `contact_modes` determines whether
+    it is the only consistent mode.
 
     Args:
-        problem: The problem, with coefficients of friction > 0 where there is friction.
+        problem: The contact problem, with coefficients of friction > 0 at contacts with friction.
     """
     problem = seen_in_space(problem, as_one="least_friction", resting=True)
     state = replace(problem.state, v_WB_W=np.zeros(3), w_WB_W=np.zeros(3))
@@ -315,18 +316,19 @@ def least_friction(problem: SpatialContactProblem) -> LeastFriction:
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Closure(Record):
-    """Whether contacts hold a body against every wrench.
+    """Form closure and force closure: whether contacts hold a body against every wrench.
 
     Attributes:
         form: Whether they do without friction, so that the body cannot move: first-order form closure.
-        force: Whether they do with friction, if they are pressed hard enough: force closure.
+        force: Whether they do with friction, if the contacts are pressed together strongly enough: force
+            closure.
     """
 
     form: bool
     force: bool
 
     def in_short(self) -> str:
-        """Return which of the two there is."""
+        """Return the kinds of closure that the contacts have."""
         found = [name for name, there in (("form", self.form), ("force", self.force)) if there]
         return f"Closure: {' and '.join(found) if found else 'neither form nor force'} closure"
 
@@ -334,8 +336,8 @@ class Closure(Record):
 def closure(contacts: ContactSet) -> Closure:
     """Return whether contacts have form closure and force closure (lecture 26).
 
-    Contacts have closure if the wrenches that their forces can have, however large, are all of R^6. Whether
-    fingers press hard enough is another question.
+    Contacts have closure if their contact forces, of any size, can produce every wrench in R^6. Closure does
+    not imply that fingers press strongly enough.
     """
     if len(contacts) == 0:
         return Closure(form=False, force=False)

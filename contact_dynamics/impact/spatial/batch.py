@@ -272,23 +272,25 @@ def response_impacts(
     velocity_tolerance: float = VELOCITY_TOLERANCE,
     skip_separating: bool = False,
 ) -> ResponseImpacts:
-    """Return what N impacts of mechanisms do. Each answer is that of `response_impact`.
+    """Return the outcomes of N impacts of mechanisms. Each is that of `response_impact`.
 
     Args:
         inverse_inertias_W: (N, 3, 3) or (3, 3), 1/kg, J M^-1 J^T, world axes.
-        velocities_W: (N, 3) or (3,), m/s, velocities of the contact points just before, world axes.
-        normals_W: (N, 3) or (3,), unit, into the mechanisms, world axes.
+        velocities_W: (N, 3) or (3,), m/s, velocities of the contact points just before the impacts, world
+            axes.
+        normals_W: (N, 3) or (3,), unit normals into the mechanisms, world axes.
         frictions: (N,) or one number, >= 0.
         restitutions: (N,) or one number, in [0, 1].
-        restitution_laws: (N,) or one, values of RestitutionLaw.
-        velocity_tolerance: m/s, >= 0. A normal or tangential velocity of a contact within it counts as zero.
-        skip_separating: Whether a contact that separates is answered instead of refused, by NO_IMPULSE.
+        restitution_laws: (N,) or one value of RestitutionLaw.
+        velocity_tolerance: m/s, >= 0. Normal and tangential components of a contact's velocity up to it count
+            as zero.
+        skip_separating: Whether to accept contacts that separate, with the outcome NO_IMPULSE.
 
     Raises:
         SeparatingContactError: a contact's normal velocity is above the tolerance, and ``skip_separating`` is
-            false; the message names the first.
-        InvalidFieldError: a number is not allowed, or a mechanism wedges; the message names the field and the
-            first row.
+            false; the message names the first such contact.
+        InvalidFieldError: a number is out of range, or a mechanism wedges; the message names the field and
+            the first row.
     """
     fields = _checked(normals_W, frictions, restitutions, restitution_laws)
     for name, value, shape in (

@@ -133,34 +133,34 @@ def response_impact(
     restitution_law: RestitutionLaw = RestitutionLaw.POISSON,
     velocity_tolerance: float = VELOCITY_TOLERANCE,
 ) -> ResponseImpact:
-    """Return what the impact of a mechanism does, such as a robot arm, a vehicle, or several joined bodies.
+    """Return the outcome of an impact of a mechanism, such as a robot arm or several joined bodies.
 
-    The mechanism is known by how its contact point responds to impulses, W = J M^-1 J^T, where M is the mass
-    matrix and J the Jacobian of the contact point. An impulse I changes the generalised velocities by
-    M^-1 J^T I. If two mechanisms strike each other, W is the sum of both, and the velocity is that of the
-    first relative to the second. Actuators and springs give no impulse, since the impact has no duration.
+    The mechanism is described by the response of its contact point to impulses, W = J M^-1 J^T, where M is
+    the mass matrix and J the Jacobian of the contact point. An impulse I changes the generalized velocities
+    by M^-1 J^T I. If two mechanisms collide, W is the sum of both, and the velocity is that of the first
+    relative to the second. Actuators and springs contribute no impulse, since the impact is instantaneous.
 
-    W may be singular. A planar arm, for example, cannot move across its plane. Friction along a tangent in
-    which the contact cannot move is not determined by the motion, and counts as zero while the contact
-    sticks. A response below `SINGULAR_RESPONSE` of the largest counts as none, and so does sliding along such
-    a tangent below this share of the velocity.
+    W may be singular: a planar arm, for example, cannot move across its plane. Along a tangent in which the
+    contact cannot move, the motion does not determine friction, which is zero there while the contact sticks.
+    Responses below `SINGULAR_RESPONSE` of the largest count as zero, and so does sliding along such a tangent
+    below this share of the velocity.
 
     Args:
         inverse_inertia_W: (3, 3), 1/kg, W, world axes, symmetric and positive semidefinite.
-        velocity_W: (3,), m/s, velocity of the contact point just before, world axes. If the contact has a
-            moving surface, the velocities of the result are relative to the surface.
-        contact: The contact, with its normal into the mechanism, friction and restitution. Its position plays
-            no part, nor do curvatures.
-        restitution_law: What the coefficient of restitution means.
-        velocity_tolerance: m/s, >= 0. A normal or tangential velocity of the contact within it counts as
-            zero.
+        velocity_W: (3,), m/s, velocity of the contact point just before the impact, world axes. If the
+            contact has a moving surface, the velocities of the result are relative to the surface.
+        contact: Contact with its normal into the mechanism, friction and restitution. Its position and
+            curvatures have no effect.
+        restitution_law: Law of restitution, which defines the coefficient of restitution.
+        velocity_tolerance: m/s, >= 0. Normal and tangential components of the contact's velocity up to it
+            count as zero.
 
     Raises:
         SeparatingContactError: the contact's normal velocity is above the tolerance.
-        InvalidFieldError: the tolerance is negative, a velocity or W is beyond `LARGEST_NUMBER`, W is below
-            its inverse, is not symmetric or has a negative eigenvalue, or the mechanism cannot move along the
-            normal. Also if it wedges: friction holds the contact, which then cannot move along the normal
-            either, and by ``restitution_law`` it would have to leave, or still approaches.
+        InvalidFieldError: the tolerance is negative; a velocity or W exceeds `LARGEST_NUMBER`; W is below its
+            inverse, is not symmetric or has a negative eigenvalue; the mechanism cannot move along the
+            normal; or it wedges: friction holds the contact, which then cannot move along the normal either,
+            although by ``restitution_law`` it would have to separate, or it still approaches.
     """
     response = check_array("inverse_inertia_W", inverse_inertia_W, (3, 3))
     check_magnitude("inverse_inertia_W", response)

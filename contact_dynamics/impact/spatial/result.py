@@ -66,7 +66,9 @@ class ResponseImpact(Record):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class SpatialImpact(ResponseImpact):
-    """Outcome of one impact in space of a body, on which the impulses act. `ResponseImpact` has more fields.
+    """Outcome of one impact in space of a body, on which the impulses act.
+
+    `ResponseImpact` documents the other fields.
 
     Attributes:
         state: State of the body after the impact: the pose before it, with the new velocities.
