@@ -129,6 +129,24 @@ def test_a_brick_between_two_belts_ends_without_approaching_either(law: SeveralC
     assert found.impulses_W.sum(axis=0) == pytest.approx(momentum, abs=1e-9)
 
 
+@pytest.mark.parametrize("law", SeveralContactsLaw)
+def test_a_planar_body_lands_on_a_belt(law: SeveralContactsLaw) -> None:
+    body = cd.PlanarBody(mass=0.4, inertia=9e-4)
+    feet = [
+        cd.PlanarContact(r=(x, -0.03), normal=(0.0, 1.0), friction=0.4, restitution=0.5) for x in (-0.1, 0.1)
+    ]
+    belt = [replace(foot, surface_velocity=(3.0, 0.5)) for foot in feet]
+    still = planar_several_impact(
+        body, cd.PlanarVelocity(v=(0.4, -1.0), w=0.3), feet, several_contacts_law=law
+    )
+    found = planar_several_impact(
+        body, cd.PlanarVelocity(v=(3.4, -0.5), w=0.3), belt, several_contacts_law=law
+    )
+    assert found.impulses_W == pytest.approx(still.impulses_W, abs=1e-12)
+    assert found.state.v_WB_W - [3.0, 0.5, 0.0] == pytest.approx(still.state.v_WB_W, abs=1e-12)
+    assert found.velocities_after_W == pytest.approx(still.velocities_after_W, abs=1e-12)
+
+
 def test_a_face_that_lands_flat_on_a_rising_tray_bounces_level() -> None:
     tray = replace(FEET, surface_velocities_W=[0.4, 0.1, 0.6])
     found = cd.several_impact(BRICK, FLAT, tray)
