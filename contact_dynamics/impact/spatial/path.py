@@ -924,7 +924,8 @@ class Tracer:
             kept, size = v_n + part1 + part2, abs(v_n) + abs(part1) + abs(part2)
             kept = kept if abs(kept) > SINGULAR_RESPONSE * size else 0.0
             in_compression = in_compression or kept == 0.0
-            if not self.progress.stop_at(kept) and held:
+            # Without hold x1 and x2 may be large, and inexact: then the v_n of the path is right.
+            if (kept == 0.0 or held) and not self.progress.stop_at(kept) and held:
                 return _NOT_ENDED
         gone = self.progress.go_straight(_INFINITE, i1, i2, lifting)
         self.u1 = 0.0 if held else (self.law.k1 + self.law.l1 * i1) * gone

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
@@ -197,6 +197,7 @@ def drawn_mechanism(seed: int, rank: int) -> tuple[np.ndarray, np.ndarray, Conta
 @pytest.mark.parametrize("rank", [1, 2, 3])
 @settings(max_examples=40, deadline=None)
 @given(seed=st.integers(0, 2**32))
+@example(seed=1547015711)  # of rank 2, a normal almost in its plane
 def test_impacts_of_mechanisms_obey_their_laws(law: RestitutionLaw, rank: int, seed: int) -> None:
     response, velocity, contact = drawn_mechanism(seed, rank)
     normal, mu = contact.normal_W, contact.friction
@@ -214,8 +215,10 @@ def test_impacts_of_mechanisms_obey_their_laws(law: RestitutionLaw, rank: int, s
         assert response @ (normal + tangents @ friction) == pytest.approx([0, 0, 0], abs=1e-9)
         return
     speed, size = float(abs(velocity).max()), float(abs(found.impulse_W).max())
+    # Impulses that all but wedge are huge, and so are the terms whose sum is the velocity.
+    rounding = 1e-9 * speed + 1e-11 * size * float(abs(response).max())
     np.testing.assert_allclose(
-        found.velocity_after_W, velocity + response @ found.impulse_W, rtol=0, atol=1e-9 * speed
+        found.velocity_after_W, velocity + response @ found.impulse_W, rtol=0, atol=rounding
     )
     steps = np.diff(found.path_W, axis=0)
     along = steps @ normal
