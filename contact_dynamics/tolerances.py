@@ -476,6 +476,9 @@ wrenches, a thousand times `STRICT`."""
 NEAREST_GAIN: Final = 1e-10
 """Relative to the distance of a wrench from a sum of round cones. The distance is exact to this."""
 
+SQUEEZE_TRIED: Final = 1e5
+"""Relative to the wrench. Contacts that press against each other are tried with forces of this size."""
+
 NEAREST_REACHED: Final = 1e-11
 """Relative to the wrench. A sum this near to it counts as the wrench itself."""
 

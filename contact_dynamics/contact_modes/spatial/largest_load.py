@@ -17,7 +17,6 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from contact_dynamics.constants import STANDARD_GRAVITY_W
 from contact_dynamics.contact_modes.letters import STICKS, mode_in_words
 from contact_dynamics.contact_modes.result import ModeVerdict
 from contact_dynamics.contact_modes.spatial.answer import spatial_contact_modes
@@ -139,7 +138,8 @@ def largest_acceleration(problem: SpatialContactProblem, direction_W: ArrayLike)
     """Return the largest acceleration of a support, such as a tray or a truck, before the body moves on it.
 
     Args:
-        problem: The contact problem of the support at rest. All contacts belong to the support.
+        problem: The contact problem of the support at rest. All contacts belong to the support. If it moves,
+            the result is in addition to its present acceleration.
         direction_W: (3,), direction of the acceleration, world axes. Its length is ignored. A truck that
             drives forward and brakes accelerates backward.
 
@@ -149,6 +149,7 @@ def largest_acceleration(problem: SpatialContactProblem, direction_W: ArrayLike)
     Raises:
         InvalidFieldError: rest is not consistent without the motion, or the direction is zero or not finite.
     """
+    problem = seen_in_space(problem, as_one="largest_acceleration")
     direction = _direction("direction_W", direction_W)
     found = largest_load(problem, force_W=-problem.body.mass * direction)
     return replace(found, unit="m/s^2")
@@ -191,15 +192,15 @@ def largest_spin(
 
 
 def largest_tilt(
-    problem: SpatialContactProblem, axis_W: ArrayLike, *, gravity_W: ArrayLike = STANDARD_GRAVITY_W
+    problem: SpatialContactProblem, axis_W: ArrayLike, *, gravity_W: ArrayLike | None = None
 ) -> LargestLoad:
     """Return the largest tilt of a support, such as a tray, before the body moves on it.
 
     Args:
         problem: The contact problem of the support before the tilt. All contacts belong to the support. The
-            wrench includes the weight; its other parts turn with the support.
+            force includes the weight; other forces, and the torque, turn with the support.
         axis_W: (3,), axis of the tilt by the right-hand rule, world axes. Its length is ignored.
-        gravity_W: (3,), m/s^2, world axes.
+        gravity_W: (3,), m/s^2, world axes, or None if the force of the problem is the weight alone.
 
     Returns:
         The largest angle of a slow tilt, rad. Rest is consistent at all angles below it. It is infinite if
@@ -210,11 +211,11 @@ def largest_tilt(
             gravity is along it.
     """
     check_at_rest("problem.contacts", problem.contacts, "largest_tilt")
-    axis, gravity = _direction("axis_W", axis_W), check_vector3("gravity_W", gravity_W)
-    mass = problem.body.mass
-    along = mass * (axis @ gravity) * axis
-    down, side = mass * gravity - along, -mass * np.cross(axis, gravity)
-    if np.linalg.norm(down) <= SAME_FACTOR * np.linalg.norm(mass * gravity):
+    axis, weight = _direction("axis_W", axis_W), problem.force_W
+    if gravity_W is not None:
+        weight = problem.body.mass * check_vector3("gravity_W", gravity_W)
+    down, side = weight - (axis @ weight) * axis, -np.cross(axis, weight)
+    if np.linalg.norm(down) <= SAME_FACTOR * np.linalg.norm(weight):
         raise InvalidFieldError("axis_W, gravity_W", axis.tolist(), "an axis at an angle to gravity")
     still, turning = problem.wrench_W - _of_force(down), np.array([_of_force(down), _of_force(side)])
 
@@ -274,12 +275,18 @@ class LeastFriction(Record):
 def least_friction(problem: SpatialContactProblem) -> LeastFriction:
     """Return the smallest friction with which a body can stay at rest under the problem's wrench.
 
-    All coefficients of friction are scaled by the same factor, and the body is treated as at rest. The factor
-    is exact to about 1e-7. With this friction or more, rest is consistent; `contact_modes` determines whether
-    it is the only consistent mode.
+    All coefficients of friction are scaled by the same factor, and the body is treated as at rest. With this
+    friction or more, rest is consistent, with contact forces that may have any size: fingers that press on a
+    body from opposite sides have to press hard enough. `contact_modes` determines whether rest is the only
+    consistent mode. The factor is exact to about 1e-7, or too large by up to 1e-4 of it if contact forces
+    have to exceed the applied wrench many times.
 
     Args:
         problem: The contact problem, with coefficients of friction > 0 at contacts with friction.
+
+    Raises:
+        InvalidFieldError: no contact has friction, and the body does not rest without it.
+        NotSupportedError: surfaces do not move as one rigid body.
     """
     problem = seen_in_space(problem, as_one="least_friction", resting=True)
     state = replace(problem.state, v_WB_W=np.zeros(3), w_WB_W=np.zeros(3))
@@ -293,6 +300,8 @@ def least_friction(problem: SpatialContactProblem) -> LeastFriction:
         return bool(_Held.of(scaled(factor)).against(problem.wrench_W).any())
 
     low, factor = 0.0, 1.0 if slips(0.0) else 0.0
+    if factor > 0.0 and not problem.contacts.frictions.any():
+        raise InvalidFieldError("problem.contacts.frictions", "zeros", "> 0 where there is friction")
     while factor * SAME_FACTOR < 1.0 and slips(factor):
         low, factor = factor, 2.0 * factor
     if factor * SAME_FACTOR >= 1.0:

@@ -20,7 +20,7 @@ import numpy as np
 from contact_dynamics.contact_modes.letters import SEPARATES, STICKS
 from contact_dynamics.contact_modes.spatial.cone import cone_of, nearest_sum
 from contact_dynamics.numerics.linear_spaces import null_space
-from contact_dynamics.tolerances import NEAREST_GAIN, NEAREST_REACHED, ROW_TOLERANCE
+from contact_dynamics.tolerances import NEAREST_GAIN, NEAREST_REACHED, ROW_TOLERANCE, SQUEEZE_TRIED
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -206,7 +206,9 @@ class RoundSum(NamedTuple):
             best /= np.sqrt((best * best).sum(axis=1))[:, None]
             gains = best @ rest
             # No sum is nearer by more than the gain of all forces together, were they along the best edge.
-            if float(gains.max()) * float(shares.sum()) <= NEAREST_GAIN * left * left:
+            # Where contacts press against each other, these may be far larger than those found so far.
+            largest = max(float(shares.sum()), SQUEEZE_TRIED * size)
+            if float(gains.max()) * largest <= NEAREST_GAIN * left * left:
                 break
             helps = gains > 0.0
             shares[: len(rays)] = 1.0  # rays that do not act now may do so with further edges

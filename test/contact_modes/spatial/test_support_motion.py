@@ -13,7 +13,16 @@ from numpy.typing import NDArray
 from scipy.optimize import linprog
 from scipy.spatial.transform import Rotation
 
-from contact_dynamics import Body, BodyState, ContactSet, SpatialContactProblem, Surface, World, contact_modes
+from contact_dynamics import (
+    Body,
+    BodyState,
+    ContactSet,
+    MassProperties,
+    SpatialContactProblem,
+    Surface,
+    World,
+    contact_modes,
+)
 from contact_dynamics.contact import linearised_cone
 from contact_dynamics.contact_modes import (
     LargestLoad,
@@ -97,7 +106,7 @@ def test_rest_is_consistent_at_all_smaller_tilts_and_not_just_beyond(seed: int) 
         0.3,
     ]  # a steeper one may never end rest
     axis /= np.linalg.norm(axis)
-    found = largest_tilt(problem, axis)
+    found = largest_tilt(problem, axis, gravity_W=[0, 0, -G])
     assert 0.0 < found.factor < 2.0 * math.pi
     for share in (0.2, 0.4, 0.6, 0.8, 0.95, 1.0 - 1e-5):
         assert may_rest(tilted(problem, axis, share * found.factor))
@@ -107,10 +116,10 @@ def test_rest_is_consistent_at_all_smaller_tilts_and_not_just_beyond(seed: int) 
 def test_a_push_that_turns_with_the_tray() -> None:
     """A push along the tray takes up its friction, and the weight along the tray adds to it or opposes it."""
     problem = replace(on_tray(0.49), force_W=[0.4 * MASS * G, 0, -MASS * G])
-    found = largest_tilt(problem, [0, 1, 0])
+    found = largest_tilt(problem, [0, 1, 0], gravity_W=[0, 0, -G])
     limit = next(a for a in np.arange(0.0, 1.0, 1e-5) if 0.4 + math.sin(a) > 0.49 * math.cos(a))
     assert found.factor == pytest.approx(limit, abs=2e-5)
-    back = largest_tilt(problem, [0, -1, 0])
+    back = largest_tilt(problem, [0, -1, 0], gravity_W=[0, 0, -G])
     limit = next(a for a in np.arange(0.0, 3.0, 1e-5) if math.sin(a) - 0.4 > 0.49 * math.cos(a))
     assert back.factor == pytest.approx(limit, abs=2e-5)
 
@@ -159,6 +168,37 @@ def test_a_tray_that_accelerates_already() -> None:
             NotSupportedError, match=rf"^problem\.contacts must have surfaces at rest in {call.__name__}"
         ):
             call(moving, [0, 1, 0])
+
+
+def test_a_tilt_is_that_of_the_problems_own_weight() -> None:
+    moon = replace(on_tray(0.3), force_W=[0, 0, -MASS * 1.62])
+    assert largest_tilt(moon, [0, 1, 0]).factor == pytest.approx(math.atan(0.3), rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("fingers", "down", "turned"), [(3, 20.0, 0.0), (3, 5.0, 0.3), (4, 20.0, 0.3), (5, 10.0, 0.2)]
+)
+def test_fingers_that_press_a_part_down_need_the_friction_of_their_slope(
+    fingers: int, down: float, turned: float
+) -> None:
+    """However hard they press. It was 2 / sqrt(3) of that, since large forces were not tried."""
+    slope, angles = math.radians(down), turned + 2.0 * math.pi * np.arange(fingers) / fingers
+    out = np.column_stack([np.cos(angles), np.sin(angles), np.zeros(fingers)])
+    contacts = ContactSet(
+        p_WC_W=0.05 * out,
+        normals_W=-math.cos(slope) * out - [0.0, 0.0, math.sin(slope)],
+        frictions=0.5,
+    )
+    part = MassProperties(mass=0.2, I_B=1e-4 * np.eye(3))
+    held = BodyState(p_WB_W=[0, 0, 0], q_WB=[0, 0, 0, 1], v_WB_W=[0, 0, 0], w_WB_W=[0, 0, 0])
+    problem = SpatialContactProblem(body=part, state=held, contacts=contacts, force_W=[0, 0, -0.2 * G])
+    needed = least_friction(problem).frictions[0]
+    assert math.tan(slope) * (1.0 - 1e-7) <= needed <= math.tan(slope) * (1.0 + 1e-4)
+    smooth = replace(problem, contacts=replace(contacts, frictions=0.0))
+    with pytest.raises(
+        InvalidFieldError, match=r"^problem\.contacts\.frictions must be > 0 where there is friction"
+    ):
+        least_friction(smooth)
 
 
 def test_the_least_friction_of_a_ladder() -> None:
