@@ -30,7 +30,7 @@ from msg_adapters.stamps import stamp_to_msg
 from msg_adapters.status import report_error
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
 
     from contact_dynamics.nodes.calls import Call
     from contact_dynamics.nodes.inbox import InboxNode, Taken
@@ -132,17 +132,28 @@ class ServiceFront:
         self._node.destroy_service(self._service)
 
     def refuse_all(self) -> int:
-        """Refuse the questions that workers answer at present; return how many these are."""
+        """Refuse the questions that workers answer at present, and those that wait; return how many."""
         message = "the server ended, or was cleaned up, before the answer was there"
 
         def refuse() -> None:
             raise BusyError(message)
 
-        refused, self._under_way = self._under_way, set()
+        refused, self._under_way = [*self._under_way, *self._waiting()], set()
         for answering in refused:
             self._finish(answering, refuse)
             self._send(answering)
         return len(refused)
+
+    def _waiting(self) -> Iterator[_Answering]:
+        """Take the requests that have arrived and were not taken yet."""
+        while self._is_open():
+            with self._service.handle:
+                _, header = self._service.handle.service_take_request(self._served.service_type.Request)
+            if header is None:
+                return
+            call = self._times.begin()
+            response = self._served.service_type.Response()
+            yield _Answering(call=call, response=response, begun=time.perf_counter(), header=header)
 
     def take_events(self) -> None:
         """Take the events of requests and responses that wait, for the log."""

@@ -63,6 +63,9 @@ _SENT_AGAIN_FOR_S: Final = 1.0
 """s. Many answers at once overflow the socket of a client that a busy machine stops meanwhile. DDS sends them
 again, for as long as the service is there."""
 
+_REFUSES_FOR_S: Final = 3.0
+"""s. A server that ends refuses what still arrives for so long at most."""
+
 
 class Serving:
     """Receives states, answers questions and writes the log, for a node."""
@@ -213,8 +216,13 @@ class Serving:
 
     def refuse_all(self) -> None:
         """Refuse the questions whose answers are not there yet, and stay until clients have that."""
-        if sum(front.refuse_all() for front in self._fronts) > 0:
-            time.sleep(_SENT_AGAIN_FOR_S)
+        begun = until = time.monotonic()
+        while True:
+            if sum(front.refuse_all() for front in self._fronts) > 0:
+                until = min(time.monotonic() + _SENT_AGAIN_FOR_S, begun + _REFUSES_FOR_S)
+            if time.monotonic() >= until:
+                return
+            time.sleep(EVENTS_EVERY_S)
 
     def close(self) -> str:
         """End the workers, and finish the log; return in words where that is."""

@@ -131,7 +131,7 @@ def test_answers_that_are_ready_while_the_server_ends_do_not_make_it_fail() -> N
             answer = client.ask(slowed)  # a worker, which is ready from here on
             assert answer.status == answer.OK, answer.message
             pending = [client.begin_to_ask(slowed) for _ in range(500)]
-            client.spin_until(pending[20].done)
+            client.ask(quick())  # requests arrive in order, so that all of them are there once it is answered
             # A busy machine stops this process while the answers come, so that its socket drops most of them.
             me = os.getpid()
             stopped = f"kill -STOP {me}; kill -INT {server.pid}; sleep 0.3; kill -CONT {me}"
@@ -142,6 +142,23 @@ def test_answers_that_are_ready_while_the_server_ends_do_not_make_it_fail() -> N
             refused = pending[-1].result()
             assert refused.status == refused.BUSY
             assert refused.message == "the server ended, or was cleaned up, before the answer was there"
+        finally:
+            client.close()
+
+
+def test_requests_that_wait_when_the_server_is_told_to_end_are_answered_or_refused() -> None:
+    with process("server", *ARGUMENTS, *APART, ready="ready") as server:
+        client = Client(NAMESPACE)
+        try:
+            server.send_signal(signal.SIGSTOP)
+            pending = [client.begin_to_ask(quick()) for _ in range(20)]
+            time.sleep(0.2)  # they arrive
+            server.send_signal(signal.SIGINT)
+            server.send_signal(signal.SIGCONT)
+            client.spin_until(lambda: all(one.done() for one in pending))
+            codes = PredictTumbling.Response
+            assert {one.result().status for one in pending} <= {codes.OK, codes.BUSY}
+            assert server.wait(PATIENCE_S) == 0
         finally:
             client.close()
 
