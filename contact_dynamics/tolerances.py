@@ -789,6 +789,9 @@ ROUND_CONE_HELD: Final = 1e-11
 ROUND_CONE_NO_HELP: Final = 1e-12
 """A cosine, between the effect of a force and the remainder. A smaller one counts as rounding."""
 
+ROUND_CONE_ACROSS: Final = 1e-9
+"""The same cosine. Below it, rounding of the contacts' normals may decide whether a force helps."""
+
 ROUND_CONE_INDEPENDENT: Final = 1e-15
 """Ratio of singular values. Smaller ones count as rounding."""
 

@@ -23,6 +23,7 @@ from contact_dynamics.contact_modes.spatial.careful_program import merged
 from contact_dynamics.numerics.linear_spaces import row_space
 from contact_dynamics.tolerances import (
     LETTERS_NO_FORCE,
+    ROUND_CONE_ACROSS,
     ROUND_CONE_APART,
     ROUND_CONE_HELD,
     ROUND_CONE_INDEPENDENT,
@@ -39,8 +40,11 @@ if TYPE_CHECKING:
     from contact_dynamics.contact_modes.spatial.search import Search
     from contact_dynamics.validation import FloatArray
 
-_MAX_FORCE: Final = 1e3
+_MAX_FORCE: Final = 1e5
 """This is a multiple of the load. A motion separates if only larger forces could take its power."""
+
+_MAX_FORCE_ACROSS: Final = 1e3
+"""The same for forces that are so nearly across the motion that rounding may decide whether they help."""
 
 _MAX_EDGES: Final = 400
 """The largest number of edges that are tried. A dozen are enough, unless the load lies on the border of the
@@ -268,7 +272,8 @@ def _nearest(demand: _Demand, normals: FloatArray, frictions: FloatArray) -> Hel
         cosines = help_of_each / np.where(effects > 0.0, effects, 1.0)
         best = int(cosines.argmax()) if len(cosines) else -1
         helps = float(cosines[best]) if len(cosines) else 0.0
-        if helps * _MAX_FORCE * load <= left and left > ROUND_CONE_ROUNDING * load:
+        most = _MAX_FORCE if helps > ROUND_CONE_ACROSS else _MAX_FORCE_ACROSS
+        if helps * most * load <= left and left > ROUND_CONE_ROUNDING * load:
             return Held(None, certain=not wide or unbalanced > ROUND_CONE_WIDE)
         if helps <= ROUND_CONE_NO_HELP:
             break

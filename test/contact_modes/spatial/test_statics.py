@@ -17,6 +17,7 @@ from contact_dynamics.contact_modes import (
     Certainty,
     PlanarContactProblem,
     SpatialContactProblem,
+    contact_modes,
     statics,
 )
 from contact_dynamics.errors import InvalidFieldError, TooLargeError, UndecidedError
@@ -328,3 +329,22 @@ def test_what_rounding_hides_does_not_take_the_other_answers_with_it(decade: int
         assert (found.equilibrium, found.wedged) == (Certainty.CERTAIN, False)
         assert found.stable_disturbance > 1.0
         assert found.jammed in {Certainty.NO, Certainty.CERTAIN, Certainty.UNKNOWN}
+
+
+@pytest.mark.parametrize("friction", [0.0876, 0.0885, 0.0887, 0.2])
+def test_forces_far_beyond_the_weight_hold_a_body_in_a_slot_that_widens(friction: float) -> None:
+    """By 5 degrees on either side, whose tangent is 0.0875. It takes 5 to 1e4 times the weight."""
+    lean = math.radians(5.0)
+    contacts = ContactSet(
+        p_WC_W=[[side * 0.1, y, 0.0] for side in (-1, 1) for y in (-0.05, 0.05)],
+        normals_W=[[-side * math.cos(lean), 0.0, -math.sin(lean)] for side in (-1, 1) for _ in (-0.05, 0.05)],
+        frictions=friction,
+    )
+    problem = SpatialContactProblem(
+        body=MassProperties(mass=0.2, I_B=1e-4 * np.eye(3)),
+        state=BodyState(p_WB_W=[0, 0, 0], q_WB=[0, 0, 0, 1], v_WB_W=[0, 0, 0], w_WB_W=[0, 0, 0]),
+        contacts=contacts,
+        force_W=[0, 0, -1.962],
+    )
+    assert "ffff" in {mode.mode for mode in contact_modes(problem).modes}
+    assert statics(problem).equilibrium == Certainty.POSSIBLE

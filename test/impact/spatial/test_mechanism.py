@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import math
 import re
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -27,7 +28,6 @@ from contact_dynamics.impact import (
 )
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from impact.spatial.drawn_problem import random_body, random_problem, random_rotation, solve
-from running_server import ROOT
 
 UP = (0.0, 0.0, 1.0)
 
@@ -378,7 +378,9 @@ def test_turned_axes_turn_the_answer() -> None:
 
 
 RECIPES = re.findall(
-    r"```py\n(.*?)```\n\n```text\n(.*?)```", (ROOT / "docs" / "impact.md").read_text("utf-8"), re.DOTALL
+    r"```py\n(.*?)```\n\n```text\n(.*?)```",
+    (Path(__file__).parents[3] / "docs" / "impact.md").read_text("utf-8"),
+    re.DOTALL,
 )
 
 
