@@ -54,7 +54,7 @@ SEPARATED: Final = 10.0
 parameters of twenty published tosses, and 45 for rounding, size and surface height together."""
 
 APART: Final = 0.3
-"""Least part of an undetermined direction that is outside of the others, so that it counts beside them."""
+"""An undetermined direction is reported beside others if at least this share is outside of their span."""
 
 SHRINKING: Final = 5.0
 """Clusters for each parameter at which the scatter between clusters counts half against its mean. With it,

@@ -132,7 +132,7 @@ def test_answers_that_are_ready_while_the_server_ends_do_not_make_it_fail() -> N
             assert answer.status == answer.OK, answer.message
             pending = [client.begin_to_ask(slowed) for _ in range(500)]
             client.ask(quick())  # requests arrive in order, so that all of them are there once it is answered
-            # A busy machine stops this process while the answers come, so that its socket drops most of them.
+            # A busy machine stops this process while the answers arrive, and its socket drops most of them.
             me = os.getpid()
             stopped = f"kill -STOP {me}; kill -INT {server.pid}; sleep 0.3; kill -CONT {me}"
             subprocess.run(["sh", "-c", stopped], check=True)

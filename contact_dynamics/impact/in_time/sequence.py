@@ -147,7 +147,7 @@ def impact_sequence_of(
 
     Raises:
         TooLargeError: the sequence takes too many strikes, or too many steps over contacts that stay closed.
-        InvalidFieldError: a number is out of range, or a contact has a curvature, so that it is not a fixed
+        InvalidFieldError: a number is out of range, or a contact has a curvature and is therefore not a fixed
             point of the body.
     """
     body = body.mass_properties
