@@ -37,8 +37,6 @@ JOBS ?= $(shell n=$$(nproc 2>/dev/null || echo 1); [ "$$n" -gt 3 ] && n=3; echo 
 PROCESSES = $(if $(filter-out 1,$(JOBS)),-n $(JOBS) --dist loadfile)
 test: lint types $(MADE)/test ## lint, types and the tests; JOBS=1 runs them in one process
 	@$(BIN)/python -m pytest $(PROCESSES)
-	@echo "The impacts again, without the compiled core."
-	@CONTACT_DYNAMICS_PLAIN=1 $(BIN)/python -m pytest -q $(PROCESSES) test/impact
 
 test-matrix: ## the physics with the oldest and newest NumPy and SciPy, on every Python and several kinds of processors
 	@setup/matrix.sh $(VENV)-matrix
