@@ -234,9 +234,7 @@ def _in_processes(jobs: Sequence[Job], processes: int) -> Iterator[Done]:
 
 
 def _in_one_pool(jobs: dict[int, Job], processes: int) -> Iterator[Done]:
-    # Spawned: a fork would copy the locks of this process's threads.
-    context = multiprocessing.get_context("spawn")
-    with ProcessPoolExecutor(processes, mp_context=context) as pool:
+    with ProcessPoolExecutor(processes, mp_context=_clean_processes()) as pool:
         try:
             numbers = {pool.submit(run_job, job): number for number, job in jobs.items()}
             pending = set(numbers)
@@ -246,6 +244,19 @@ def _in_one_pool(jobs: dict[int, Job], processes: int) -> Iterator[Done]:
                     yield numbers[future], future.result()
         finally:
             pool.shutdown(cancel_futures=True)
+
+
+def _clean_processes() -> multiprocessing.context.BaseContext:
+    """Return a way to start processes without a copy of the locks of this one's threads.
+
+    They are forked from a process that has only imported this package, which takes most of the time of a
+    start. Where the system does not fork, each imports it itself.
+    """
+    if "forkserver" not in multiprocessing.get_all_start_methods():
+        return multiprocessing.get_context("spawn")
+    context = multiprocessing.get_context("forkserver")
+    context.set_forkserver_preload([__name__])
+    return context
 
 
 def _on_dask(jobs: Sequence[Job], address: str) -> Iterator[Done]:

@@ -133,6 +133,17 @@ def made_tosses(truth: Truth, count: int, seed: int) -> list[MeasuredMotion]:
     return [made_toss(truth, random) for _ in range(count)]
 
 
+def true_values(truth: Truth) -> np.ndarray:
+    """The values of the free parameters of a body with sharp corners on a floor whose height is known."""
+    return np.array([*truth.center, truth.inertia, truth.friction, truth.restitution])
+
+
+def true_standard(truth: Truth) -> np.ndarray:
+    """The values of the standard free parameters: corners are sharp, and the floor is where it should be."""
+    *others, friction, restitution = true_values(truth)
+    return np.array([*others, 0.0, friction, restitution, 0.0])
+
+
 def _unit(vector: np.ndarray) -> np.ndarray:
     unit: np.ndarray = vector / np.linalg.norm(vector)
     return unit

@@ -10,12 +10,11 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from calibration.made_tosses import BRICK, FLOOR, RATE, SIZE, Truth, made_tosses
+from calibration.made_tosses import BRICK, FLOOR, RATE, SIZE, Truth, made_tosses, true_standard, true_values
 from contact_dynamics.calibration import Calibration, Free, calibrate
 from contact_dynamics.calibration.free import GEOMETRY, STANDARD
 from contact_dynamics.calibration.model import Model
 from contact_dynamics.calibration.observed import observe
-from contact_dynamics.calibration.toss_uncertainty import toss_uncertainty
 from contact_dynamics.errors import InvalidFieldError, NotSupportedError
 from contact_dynamics.measured.motion import COLUMNS
 from contact_dynamics.rigid_body.body import MassProperties
@@ -28,86 +27,6 @@ NOISY = Truth(law_velocity=0.01, law_spin=0.1)
 
 SHARP = [each for each in STANDARD if each not in GEOMETRY]
 """What strikes of a body determine whose shape and floor are known."""
-
-
-def true_values(truth: Truth) -> np.ndarray:
-    """The values of the parameters `SHARP`."""
-    return np.array([*truth.center, truth.inertia, truth.friction, truth.restitution])
-
-
-def true_standard(truth: Truth) -> np.ndarray:
-    """The values of the standard free parameters: corners are sharp, and the floor is where it should be."""
-    *others, friction, restitution = true_values(truth)
-    return np.array([*others, 0.0, friction, restitution, 0.0])
-
-
-def test_it_finds_what_the_tosses_were_made_with(found: Calibration) -> None:
-    assert [each.name for each in found.estimates] == [
-        "center_of_mass.x",
-        "center_of_mass.y",
-        "center_of_mass.z",
-        "inertia",
-        "rounding",
-        "friction.floor",
-        "restitution.floor",
-        "surface_height.floor",
-    ]
-    # 99.9 % of estimates lie within: a wrong law, frame or sign misses by hundreds of standard deviations
-    assert found.distance(true_standard(TRUTH)) < found.region(0.999)
-    assert not found.problems
-    assert not found.undetermined
-
-
-def test_tosses_are_sampled_with_the_covariance_that_was_found(found: Calibration) -> None:
-    """Friction, restitution, mass centre, inertia: in another order, and the inertia as a relative change."""
-    uncertainty = toss_uncertainty(found)
-    names = ["friction.floor", "restitution.floor", *(f"center_of_mass.{axis}" for axis in "xyz")]
-    for k, name in enumerate(names):
-        assert math.sqrt(uncertainty.covariance[k, k]) == pytest.approx(found.estimate(name).std, rel=1e-9)
-    inertia = found.estimate("inertia")
-    assert math.sqrt(uncertainty.covariance[5, 5]) == pytest.approx(inertia.std / inertia.value, rel=1e-9)
-    at = [each.name for each in found.estimates].index("friction.floor")
-    assert uncertainty.covariance[0, 2] == pytest.approx(found.covariance[at, 0], rel=1e-9)
-    assert uncertainty.velocity == found.spread.velocity
-    assert found.gravity is not None
-    np.testing.assert_array_equal(uncertainty.covariance[6:, 6:], found.gravity.covariance_W)
-    sideways = math.hypot(found.gravity.turning, found.gravity.mean_std)
-    assert math.sqrt(uncertainty.covariance[6, 6]) == pytest.approx(sideways, rel=1e-3)
-
-
-def test_both_ways_find_it_and_agree(found: Calibration) -> None:
-    for each, truth in zip(found.estimates, true_standard(TRUTH), strict=True):
-        # sharp corners are the least rounding, at which it has no deviation
-        assert abs(each.by_paths - truth) <= 5.0 * each.by_paths_std, each.name
-        assert each.disagreement < 4.0, each.name
-    assert max(each.by_paths_std / each.std for each in found.estimates) < 1.5
-
-
-def test_gravity_is_found_toss_by_toss_with_its_tilt(found: Calibration) -> None:
-    assert found.gravity is not None
-    assert found.gravity.size == pytest.approx(TRUTH.gravity, abs=5.0 * found.gravity.size_std)
-    assert found.gravity.tilt == pytest.approx(TRUTH.tilt, rel=0.3)
-    assert found.gravity.expected_tilt < 0.5 * TRUTH.tilt
-    # A tilt of one size in any direction: each component has 1 / sqrt(2) of it, or 1 / 1.18 by the median.
-    assert 0.55 < found.gravity.turning / (TRUTH.gravity * TRUTH.tilt) < 1.0
-    assert found.gravity.changing < 0.3 * found.gravity.turning
-
-
-def test_configured_values_that_are_contradicted_are_said(found: Calibration) -> None:
-    text = "\n".join(found.warnings)
-    assert "friction.floor: configured is 0.3, the data say 0.2" in text
-    assert "restitution.floor: configured is 0.4" in text
-
-
-def test_the_calibrated_body_and_surface_have_the_estimates(found: Calibration) -> None:
-    assert found.body.p_FB_F == pytest.approx(np.array(TRUTH.center), abs=2e-4)
-    # rounded corners keep their outer faces
-    faces = found.body.shape.vertices + found.body.p_FB_F
-    assert np.allclose(faces + np.sign(faces) * found.body.shape.rounding, BRICK.shape.vertices)
-    assert found.surfaces[0].friction == found.estimate("friction.floor").value
-    assert found.body.mass_properties.I_B[0, 0] / BRICK.mass_properties.I_B[0, 0] == pytest.approx(
-        found.estimate("inertia").value
-    )
 
 
 def test_the_laws_own_spread_is_found_beside_the_noise() -> None:

@@ -5,17 +5,14 @@ from __future__ import annotations
 
 import importlib.util
 import json
-from dataclasses import replace
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 from calibration.made_tosses import Truth, made_tosses
-from contact_dynamics.calibration import Calibration, calibrate
+from contact_dynamics.calibration import calibrate
 from contact_dynamics.calibration.arguments import calibrate_parser
-from contact_dynamics.calibration.plots import write_plots
-from contact_dynamics.calibration.report import content_of, report, server_parameters
+from contact_dynamics.calibration.report import content_of
 from contact_dynamics.calibration.run import SOMETHING_OPEN, main
 from contact_dynamics.evaluation.command import NOTHING
 from contact_dynamics.measured.read_toss import DEFAULT_RECORDING
@@ -28,55 +25,11 @@ needs_yaml = pytest.mark.skipif(
 )
 
 
-@needs_yaml
-def test_the_server_takes_the_parameters_as_they_are(found: Calibration, tmp_path: Path) -> None:
-    """Read by the server's own reading, they describe the calibrated body and surface to the last bit."""
-    path = tmp_path / "calibrated.yaml"
-    found = replace(found, surfaces=(replace(found.surfaces[0], lasting_factor=1.4),))
-    path.write_text(server_parameters(found), encoding="utf-8")
-    world = read_server_parameters(ParameterFile(path)).world
-    body = world.body("brick")
-    assert body.p_FB_F.tolist() == found.body.p_FB_F.tolist()
-    assert body.mass_properties.I_B.tolist() == found.body.mass_properties.I_B.tolist()
-    # the corners go through the body's frame and back, which rounds
-    assert body.shape.vertices == pytest.approx(found.body.shape.vertices, abs=1e-15)
-    assert world.gravity_W.tolist() == found.gravity_W.tolist()
-    floor = world.surfaces[0]
-    calibrated = found.surfaces[0]
-    assert (floor.name, floor.friction, floor.restitution, floor.lasting_factor) == (
-        "floor",
-        calibrated.friction,
-        calibrated.restitution,
-        calibrated.lasting_factor,
-    )
-
-
-def test_the_report_says_what_was_used_found_and_contradicted(found: Calibration) -> None:
-    text = report(found)
-    assert f"first flights long enough, {len(found.residuals)} strikes of a single corner" in text
-    assert "length scale x clock rate squared is 0.9" in text
-    assert "Warning: restitution.floor: configured is 0.4" in text
-
-
-def test_the_content_is_plain_json_without_nan(found: Calibration) -> None:
-    content = json.loads(json.dumps(content_of(found), allow_nan=False))
-    assert [each["name"] for each in content["estimates"]] == [each.name for each in found.estimates]
-    assert np.allclose(content["covariance"], found.covariance)
-    assert len(content["strikes"]) == len(found.residuals) > 5
-
-
 def test_what_was_not_asked_for_is_nan_or_null_in_the_content() -> None:
     alone = calibrate(made_tosses(Truth(), 2, 0), with_paths=False)
     content = json.loads(json.dumps(content_of(alone), allow_nan=False))
     assert content["estimates"][0]["by_paths"] == "nan"
     assert content["by_paths_covariance"] is None
-
-
-def test_pictures_are_drawn(found: Calibration, tmp_path: Path) -> None:
-    pytest.importorskip("matplotlib")
-    written = write_plots(tmp_path, found)
-    assert [path.name for path in written] == ["residuals.png", "estimates.png"]
-    assert all(path.read_bytes().startswith(b"\x89PNG") for path in written)
 
 
 @needs_yaml

@@ -82,6 +82,7 @@ DIRECTIONS = DirectionChart(length=KEY.radius_of_gyration, resolution=200)
 DUALS = ForceDualChart(length=KEY.radius_of_gyration, half_side=2.0, resolution=200)
 
 
+@cache
 def tumbling() -> TumblingAnswer:
     """A brick in the air, with covariances and the curves of Poinsot's picture."""
     state = BodyState(
@@ -101,6 +102,7 @@ def tumbling() -> TumblingAnswer:
     return ask(question)
 
 
+@cache
 def impact(*, in_plane: bool) -> ImpactAnswer:
     """A rod that strikes the ground, and swerves in space."""
     return ask(
@@ -124,6 +126,7 @@ def impact(*, in_plane: bool) -> ImpactAnswer:
     )
 
 
+@cache
 def resting(*, in_plane: bool) -> ContactModeAnswer:
     """A brick on a table that is pushed."""
     corners = [[x, y, 0.0] for x in (-0.1, 0.1) for y in ((0.0,) if in_plane else (-0.05, 0.05))]
@@ -143,8 +146,8 @@ def resting(*, in_plane: bool) -> ContactModeAnswer:
             gravity_W=GRAVITY_W,
             problem=Problem.PLANAR if in_plane else Problem.SPATIAL,
             plane=PlaneOfMotion(normal_W=[0.0, -1.0, 0.0]) if in_plane else None,
-            include_margins=True,
-            include_wrenches=True,
+            include_margins=in_plane,
+            include_wrenches=in_plane,
         )
     )
 
@@ -178,6 +181,7 @@ def _resting(axes: Axes) -> None:
     draw_contact_forces(axes, answer.contacts, answer.modes[0])
 
 
+@cache
 def many_impacts() -> ManyImpactsAnswer:
     """Bricks side by side that strike ever more slantwise, and some that leave."""
     count = 24

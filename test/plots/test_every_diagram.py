@@ -10,8 +10,10 @@ import pytest
 
 pytest.importorskip("matplotlib", reason="matplotlib of requirements/test.txt is not installed")
 
+from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import to_rgb
+from matplotlib.figure import Figure
 from matplotlib.text import Text
 
 from contact_dynamics.diagrams import paper as colors
@@ -75,8 +77,15 @@ def test_the_measure_knows_colours_that_deuteranopes_confuse() -> None:
 
 
 @pytest.mark.parametrize("name", DIAGRAMS)
-def test_deuteranopes_tell_apart_what_means_different_things(name: str) -> None:
-    _, axes = drawn(name)
+def test_a_diagram_is_read_without_mistakes(name: str) -> None:
+    """Deuteranopes tell apart what means different things, axes have units, and words have room."""
+    figure, axes = drawn(name)
+    colours_are_told_apart(name, axes)
+    axes_have_names_with_units(name, axes)
+    words_do_not_overlap_and_are_not_cut_off(figure, axes)
+
+
+def colours_are_told_apart(name: str, axes: Axes) -> None:
     handles = axes.get_legend().legend_handles
     shown = {to_rgb(color_of(handle)) for handle in handles}
     assert len(shown) > 1
@@ -93,9 +102,7 @@ def test_every_two_modes_of_a_map_have_colours_apart() -> None:
         assert (bright + 0.05) / (dark + 0.05) >= 3.0, color
 
 
-@pytest.mark.parametrize("name", DIAGRAMS)
-def test_axes_have_names_with_units(name: str) -> None:
-    _, axes = drawn(name)
+def axes_have_names_with_units(name: str, axes: Axes) -> None:
     assert axes.get_xlabel()
     if name == "map of modes":
         return  # its places are directions, as the name of its axis says
@@ -105,9 +112,7 @@ def test_axes_have_names_with_units(name: str) -> None:
     }
 
 
-@pytest.mark.parametrize("name", DIAGRAMS)
-def test_words_do_not_overlap_and_are_not_cut_off(name: str) -> None:
-    figure, axes = drawn(name)
+def words_do_not_overlap_and_are_not_cut_off(figure: Figure, axes: Axes) -> None:
     canvas = FigureCanvasAgg(figure)
     canvas.draw()
     renderer = canvas.get_renderer()
