@@ -7,22 +7,23 @@ not move.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar, Final
 
 import numpy as np
 
 from contact_dynamics.constants import STANDARD_GRAVITY_W
-from contact_dynamics.errors import InvalidFieldError, UnknownBodyError
+from contact_dynamics.errors import InvalidFieldError, NotSupportedError, UnknownBodyError
 from contact_dynamics.records import Record
-from contact_dynamics.rigid_body.body import HasMassProperties, MassProperties
+from contact_dynamics.rigid_body.body import BodyState, HasMassProperties, MassProperties
 from contact_dynamics.rigid_body.inertia import solids
 from contact_dynamics.rigid_body.inertia.triangle_mesh import mesh
 from contact_dynamics.shapes import convex
 from contact_dynamics.shapes.concavity import warn_if_concave
 from contact_dynamics.shapes.convex import MAX_VERTICES, NO_SHAPE, ConvexShape, box_vertices, polyhedron
 from contact_dynamics.shapes.obstacle import Obstacle
+from contact_dynamics.tolerances import SURFACES_AS_ONE
 from contact_dynamics.validation import (
     FloatArray,
     check_array,
@@ -293,7 +294,8 @@ class Surface(Record):
     """Infinite plane of the world. Its normal points to the free side.
 
     A belt, a cart, a turntable or a tray moves as a rigid body. Contact modes and impacts accept such
-    surfaces; other functions raise an error.
+    surfaces. Landings accept them unless they tilt, and tosses and sequences of impacts if all surfaces move
+    alike without turning. Other functions raise an error.
 
     Attributes:
         name: Name by which contacts refer to the surface.
@@ -365,11 +367,108 @@ class Surface(Record):
         heights: FloatArray = (p_WP_W - self.p_WS_W) @ self.normal_W
         return heights
 
+    def after(self, seconds: float) -> Surface:
+        """Return the surface after a time, s. Its accelerations are constant.
+
+        It may turn about its normal, as a turntable does, if the axis is fixed. Then `p_WS_W` of the result
+        is on the axis.
+
+        Raises:
+            NotSupportedError: the surface tilts, or it turns about its normal and its axis moves sideways.
+        """
+        if not self.moves:
+            return self
+        v_W, a_W, p_WS_W = self.v_WS_W, self.a_WS_W, self.p_WS_W
+        if self.w_WS_W.any() or self.alpha_WS_W.any():
+            p_WS_W = self._point_of_axis()
+            v_W, a_W = _along(self.normal_W, v_W), _along(self.normal_W, a_W)
+        return replace(
+            self,
+            p_WS_W=p_WS_W + seconds * v_W + 0.5 * seconds**2 * a_W,
+            v_WS_W=v_W + seconds * a_W,
+            a_WS_W=a_W,
+            w_WS_W=self.w_WS_W + seconds * self.alpha_WS_W,
+        )
+
+    def _point_of_axis(self) -> FloatArray:
+        """Return the point of the axis, (3,), m, about which the surface turns in its own plane."""
+        n, w, alpha = self.normal_W, self.w_WS_W, self.alpha_WS_W
+        v, a = self.v_WS_W - _along(n, self.v_WS_W), self.a_WS_W - _along(n, self.a_WS_W)
+        for turning in (w, alpha):
+            if not _vanishes(turning - _along(n, turning), turning):
+                message = f"surface {self.name!r} must turn about its normal only, got {turning.tolist()}"
+                raise NotSupportedError(message)
+        # p_WS_W = c + r with v = w x r and a = alpha x r + w x v.
+        r = np.cross(v, w) / (w @ w) if w.any() else np.cross(a, alpha) / (alpha @ alpha)
+        centripetal = np.cross(w, v)
+        if not (
+            _vanishes(np.cross(w, r) - v, v)
+            and _vanishes(np.cross(alpha, r) + centripetal - a, a, centripetal)
+        ):
+            message = f"surface {self.name!r} must turn about a fixed axis, got an axis that moves sideways"
+            raise NotSupportedError(message)
+        return self.p_WS_W - r
+
     def motion_at(self, p_WP_W: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return velocity, m/s, and acceleration, m/s^2, (..., 3), of its material points at (..., 3), m."""
         r_W, w_W = p_WP_W - self.p_WS_W, self.w_WS_W
         turning = np.cross(w_W, r_W)
         return self.v_WS_W + turning, self.a_WS_W + np.cross(self.alpha_WS_W, r_W) + np.cross(w_W, turning)
+
+
+def _along(n: FloatArray, vector: FloatArray) -> FloatArray:
+    """Return the part of a vector along a unit vector."""
+    part: FloatArray = (n @ vector) * n
+    return part
+
+
+def _alike(one: Surface, other: Surface) -> bool:
+    """Return whether two surfaces have the same velocity and acceleration, and the second does not turn."""
+    turns = other.w_WS_W.any() or other.alpha_WS_W.any()
+    alike = np.array_equal(one.v_WS_W, other.v_WS_W) and np.array_equal(one.a_WS_W, other.a_WS_W)
+    return bool(alike and not turns)
+
+
+def _vanishes(difference: FloatArray, *terms: FloatArray) -> bool:
+    """Return whether a difference of some terms is nothing but rounding."""
+    largest = max(float(np.abs(term).max()) for term in terms)
+    return float(np.abs(difference).max()) <= SURFACES_AS_ONE * largest
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class SurfaceFrame(Record):
+    """A frame in which all surfaces are at rest. It coincides with the world's at time 0, and does not turn.
+
+    Attributes:
+        velocity_W: (3,), m/s, its velocity at time 0, world axes.
+        acceleration_W: (3,), m/s^2, its acceleration, which is constant, world axes.
+    """
+
+    velocity_W: FloatArray
+    acceleration_W: FloatArray
+
+    def displacement(self, seconds: FloatArray | float) -> FloatArray:
+        """Return by how much it has moved at times (...), s, as (..., 3), m."""
+        t = np.asarray(seconds)[..., None]
+        moved: FloatArray = t * self.velocity_W + 0.5 * t * t * self.acceleration_W
+        return moved
+
+    def velocity(self, seconds: FloatArray | float) -> FloatArray:
+        """Return its velocity at times (...), s, as (..., 3), m/s."""
+        gained: FloatArray = self.velocity_W + np.asarray(seconds)[..., None] * self.acceleration_W
+        return gained
+
+    def seen(self, state: BodyState) -> BodyState:
+        """Return a state of the world at time 0 as it is in the frame."""
+        return state.with_velocities(state.v_WB_W - self.velocity_W, state.w_WB_W)
+
+    def in_world(self, state: BodyState, seconds: float) -> BodyState:
+        """Return a state of the frame at a time, s, as it is in the world."""
+        return replace(
+            state,
+            p_WB_W=state.p_WB_W + self.displacement(seconds),
+            v_WB_W=state.v_WB_W + self.velocity(seconds),
+        )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -412,6 +511,37 @@ class World(Record):
         names = [body.name for body in self.bodies]
         if len(set(names)) < len(names):
             raise InvalidFieldError("bodies", names, "different names")
+
+    def after(self, seconds: float) -> World:
+        """Return the world after a time, s, with the surfaces where they have moved to (`Surface.after`)."""
+        if not self.surfaces_move:
+            return self
+        moved = [each.after(seconds) if isinstance(each, Surface) else each for each in self.surfaces]
+        return replace(self, surfaces=tuple(moved))
+
+    def seen_from_surfaces(self, call: str) -> tuple[World, SurfaceFrame | None]:
+        """Return the world in the frame in which its surfaces are at rest, and the frame if they move.
+
+        There, gravity is less by the acceleration of the frame.
+
+        Raises:
+            NotSupportedError: the surfaces do not all move with the same velocity and acceleration, or they
+                turn. The message names ``call``, which needs that.
+        """
+        if not self.surfaces_move:
+            return self, None
+        planes = [each for each in self.surfaces if isinstance(each, Surface)]
+        first = planes[0]
+        for each in self.surfaces:
+            if not (isinstance(each, Surface) and _alike(first, each)):
+                message = (
+                    f"world must have surfaces at rest in {call}, or surfaces that all move with the same "
+                    f"v_WS_W and a_WS_W and do not turn, got {each.name!r}, which turns or moves differently"
+                )
+                raise NotSupportedError(message)
+        at_rest = [replace(each, v_WS_W=_AT_REST, a_WS_W=_AT_REST) for each in planes]
+        frame = SurfaceFrame(velocity_W=first.v_WS_W, acceleration_W=first.a_WS_W)
+        return replace(self, surfaces=tuple(at_rest), gravity_W=self.gravity_W - first.a_WS_W), frame
 
     @checks_types
     def body(self, name: str) -> Body:

@@ -14,7 +14,7 @@ Not covered: a body that hovers so close and so long that the search needs more 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -29,8 +29,8 @@ from contact_dynamics.records import Record
 from contact_dynamics.rotations.one import rotation_matrix
 from contact_dynamics.shapes.obstacle import Obstacle
 from contact_dynamics.tolerances import DISTANCE_TOLERANCE, GRAZING_DEPTH, LEAVING_STEP, VELOCITY_TOLERANCE
-from contact_dynamics.tumbling import free_motion
-from contact_dynamics.validation import check_at_rest, check_not_negative
+from contact_dynamics.tumbling import FreeMotion, free_motion
+from contact_dynamics.validation import check_not_negative
 
 if TYPE_CHECKING:
     from contact_dynamics.contact.contact import ContactSet
@@ -55,7 +55,8 @@ class Landing(Record):
         contacts: Contacts that touch and do not separate: one for a corner, two or more for an edge or a
             face.
         velocities_W: (n, 3), m/s, velocities of the body's contact points, world axes.
-        strikes: Whether a contact approaches faster than the velocity tolerance, so that there is an impact.
+        strikes: Whether a contact approaches its surface faster than the velocity tolerance, so that there is
+            an impact.
     """
 
     seconds: float
@@ -84,10 +85,15 @@ def next_landing(
     the state under the world's gravity. ``work`` counts the steps of this search together with those of other
     searches; by default, this search has its own count.
 
+    Surfaces may move with constant accelerations, and turn about their normals: a body may land on a paddle
+    or a turntable. The contacts then have the velocities of the surfaces at the landing.
+
     Raises:
         NoContactError: the body has no shape that could touch anything.
         InvalidFieldError: the body penetrates a surface by more than ``distance_tolerance``, or the horizon
             or a tolerance is negative or not finite.
+        NotSupportedError: a surface tilts, or turns about an axis that moves sideways, or moves along its
+            normal while the body moves under forces; or as in `first_touch`.
         TooLargeError: the search takes too many steps, because the body spins too fast for the horizon.
     """
     check_not_negative("horizon", horizon)
@@ -117,7 +123,7 @@ def landing_from(
     work: SearchWork | None = None,
 ) -> Landing | None:
     """Return the landing as `next_landing` does, however deep the body is in a surface."""
-    check_at_rest("world", world, "next_landing")
+    world.after(0.0)  # raises where a surface moves in a way that is not supported
     now = _touching(body, state, world, distance_tolerance)
     if now is not None and (now.approach <= velocity_tolerance).any():
         return now.landing(0.0, state, velocity_tolerance)
@@ -133,7 +139,7 @@ def landing_from(
         return None
     seconds = min(arrivals)
     then = motion.state_at(seconds)
-    touching = _touching(body, then, world, max(distance_tolerance, DISTANCE_TOLERANCE))
+    touching = _touching(body, then, world.after(seconds), max(distance_tolerance, DISTANCE_TOLERANCE))
     return None if touching is None else touching.landing(seconds, then, velocity_tolerance)
 
 
@@ -142,8 +148,27 @@ def _arrival(
 ) -> float | None:
     if isinstance(surface, Obstacle):
         return first_touch(motion, body.shape, surface, horizon=horizon, work=work)
+    if surface.moves:
+        motion = _towards(motion, surface)
     found = first_contact(motion, body.shape, surface.p_WS_W, surface.normal_W, horizon=horizon, work=work)
     return None if found is None else found.seconds
+
+
+def _towards(motion: Motion, surface: Surface) -> Motion:
+    """Return a motion as it is seen from a surface that moves along its normal."""
+    n = surface.normal_W
+    speed, acceleration = float(n @ surface.v_WS_W), float(n @ surface.a_WS_W)
+    if speed == acceleration == 0.0:
+        return motion
+    if not isinstance(motion, FreeMotion):
+        message = (
+            f"surface {surface.name!r} must not move along its normal where a body moves under forces, "
+            f"got {speed:g} m/s and {acceleration:g} m/s^2"
+        )
+        raise NotSupportedError(message)
+    state = motion.state
+    seen = state.with_velocities(state.v_WB_W - speed * n, state.w_WB_W)
+    return replace(motion, state=seen, gravity_W=motion.gravity_W - acceleration * n)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -170,7 +195,9 @@ def _touching(body: Body, state: BodyState, world: World, distance_tolerance: fl
     if len(contacts) == 0:
         return None
     velocities = state.velocity_of_point(contacts.p_WC_W)
-    approach = np.einsum("ni,ni->n", velocities, contacts.normals_W)
+    surface = contacts.surface_velocities_W
+    relative = velocities if surface is None else velocities - surface
+    approach = np.einsum("ni,ni->n", relative, contacts.normals_W)
     return _Touching(contacts=contacts, velocities_W=velocities, approach=approach)
 
 

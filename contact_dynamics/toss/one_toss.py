@@ -27,7 +27,7 @@ from contact_dynamics.toss.simulation import Simulation, TossSettings
 from contact_dynamics.toss.solid import numbers_of, solid_of
 from contact_dynamics.toss.uncertainty import check_factors
 from contact_dynamics.tumbling.motion import check_extent
-from contact_dynamics.validation import check_at_rest, check_positive, check_whole, check_within
+from contact_dynamics.validation import check_positive, check_whole, check_within
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -60,7 +60,8 @@ def toss(
     Args:
         body: Mass properties and shape: corners, which may be rounded.
         state: Initial pose and velocities.
-        world: Surfaces, which must be planes, and gravity.
+        world: Surfaces, which must be planes, and gravity. Surfaces may move if all have the same velocity
+            and acceleration and none turns. The body then comes to rest relative to them.
         restitution_law: Law of restitution. ENERGETIC requires SEQUENTIAL.
         several_contacts_law: Law for several contacts that strike at one instant.
         horizon: s, > 0. Duration of the longest motion that is followed.
@@ -76,7 +77,8 @@ def toss(
 
     Raises:
         NoContactError: the body has no shape that could touch anything.
-        NotSupportedError: the shape has circular rims, or a surface is an obstacle.
+        NotSupportedError: the shape has circular rims, a surface is an obstacle, or surfaces move differently
+            or turn.
         InvalidFieldError: a number is out of range, ENERGETIC and SIMULTANEOUS are combined, or the body
             penetrates a surface by more than the tolerance.
         TooLargeError: the search for the end of a flight takes too many steps.
@@ -84,7 +86,8 @@ def toss(
     check_laws(restitution_law, several_contacts_law)
     factors = check_factors("lasting_factors", lasting_factors)
     check_extent(body.mass_properties, state, world.gravity_W)
-    check_at_rest("world", world, "toss")
+    world, frame = world.seen_from_surfaces("toss")
+    state = state if frame is None else frame.seen(state)
     check_not_inside(body, state, world.surfaces, distance_tolerance=distance_tolerance)
     body, indices = with_distinct_corners(body)
     solid = solid_of(body, world, indices=indices, lasting_factors=factors)
@@ -106,7 +109,7 @@ def toss(
         other = Simulation(settings, y, ways, began_ns).toss()
         others.append(other)
         waiting.extend(_other_ways(other, len(ways)))
-    return replace(main, alternatives=tuple(others), all_followed=not waiting)
+    return replace(main, alternatives=tuple(others), all_followed=not waiting).carried_by(frame)
 
 
 def _other_ways(one: Toss, decided: int) -> list[tuple[int, ...]]:

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, NamedTuple, TypeAlias
 
 import numpy as np
@@ -18,6 +18,7 @@ from contact_dynamics.toss.phase import PhaseStep
 from contact_dynamics.toss.solid import properties_of, state_of
 from contact_dynamics.tumbling import FreeMotion, Precision, Trajectory, free_motion
 from contact_dynamics.validation import FloatArray, check_array
+from contact_dynamics.world import SurfaceFrame
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -165,13 +166,13 @@ class Toss(Record):
         restitution_law: Law of restitution of all strikes.
         end: Reason for the end of the toss.
         seconds: Time of rest, or time up to which the motion is predicted, s after the initial state's stamp.
-        state: State at that time. At rest its velocities are zero.
+        state: State at that time. At rest its velocities are those of the surfaces.
         events: Events in the order of time. Strikes of one instant are in the order of resolution.
         resting_corners: Indices of the corners on which the body rests, sorted. It is empty if the body
             moves.
         resting_normal_B: (3,), unit normal of the surface on which the body rests, body axes, or zero. A box
             rests on the face whose outward normal is opposite.
-        energy: Energy balance.
+        energy: Energy balance. If the surfaces move, it is the energy relative to them.
         undecided: Branch points of this toss, at which mechanics does not determine the motion. All of them
             are listed, whether or not the other branches were followed.
         alternatives: Tosses that follow other branches, up to ``max_alternatives``, which is 0 by default.
@@ -179,6 +180,7 @@ class Toss(Record):
         pieces: Flights and steps of contact phases, in the order of time.
         starts: (n,), s, times at which the pieces begin.
         began_ns: ns, stamp of the initial state.
+        frame: Frame of surfaces that move, to which the pieces refer, or None.
     """
 
     restitution_law: RestitutionLaw
@@ -195,6 +197,27 @@ class Toss(Record):
     pieces: tuple[Piece, ...] = field(repr=False)
     starts: FloatArray = field(repr=False)
     began_ns: int = field(repr=False)
+    frame: SurfaceFrame | None = field(repr=False, default=None)
+
+    def carried_by(self, frame: SurfaceFrame | None) -> Toss:
+        """Return a toss that is described in the frame of moving surfaces as it is in the world."""
+        if frame is None:
+            return self
+        events = [
+            replace(
+                event,
+                p_WC_W=event.p_WC_W + frame.displacement(event.seconds),
+                state=frame.in_world(event.state, event.seconds),
+            )
+            for event in self.events
+        ]
+        return replace(
+            self,
+            state=frame.in_world(self.state, self.seconds),
+            events=tuple(events),
+            alternatives=tuple(other.carried_by(frame) for other in self.alternatives),
+            frame=frame,
+        )
 
     def in_short(self) -> str:
         """Return the reason and the time of the end, and the times of the branch points."""
@@ -219,7 +242,7 @@ class Toss(Record):
         """Return the motion at times (n,), s after the initial state's stamp, in any order.
 
         At the time of a strike, the state is that after the strike. After the time of rest, it is the state
-        of rest.
+        of rest, in which the body moves with the surfaces.
 
         Raises:
             InvalidFieldError: a time is negative or not finite, or is after the end of a toss that does not
@@ -234,6 +257,10 @@ class Toss(Record):
         rested = times >= self.seconds
         final = self.state
         rows[rested] = np.concatenate([final.p_WB_W, final.q_WB, final.v_WB_W, final.w_WB_W])
+        if self.frame is not None:  # it rests on surfaces that move on
+            beyond = times[rested]
+            rows[rested, :3] += self.frame.displacement(beyond) - self.frame.displacement(self.seconds)
+            rows[rested, 7:10] = self.frame.velocity(beyond)
         which = np.searchsorted(self.starts, times, side="right") - 1
         for k in np.unique(which[~rested]).tolist():
             mine = np.flatnonzero((which == k) & ~rested)
@@ -243,6 +270,9 @@ class Toss(Record):
                 rows[mine] = np.column_stack([flown.p_WB_W, flown.q_WB, flown.v_WB_W, flown.w_WB_W])
             else:
                 rows[mine] = [piece.at(time) for time in times[mine].tolist()]
+        if self.frame is not None:
+            rows[~rested, :3] += self.frame.displacement(times[~rested])
+            rows[~rested, 7:10] += self.frame.velocity(times[~rested])
         q = rows[:, 3:7] / np.linalg.norm(rows[:, 3:7], axis=1, keepdims=True)
         if len(q):
             make_continuous(q, q[0])

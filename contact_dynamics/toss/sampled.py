@@ -43,7 +43,6 @@ from contact_dynamics.toss.uncertainty import EXACT, MAX_SPREAD, TossUncertainty
 from contact_dynamics.tumbling.motion import check_extent
 from contact_dynamics.validation import (
     check_array,
-    check_at_rest,
     check_magnitude,
     check_positive,
     check_whole,
@@ -59,7 +58,7 @@ if TYPE_CHECKING:
     from contact_dynamics.toss.solid import Solid
     from contact_dynamics.toss.to_rest import Followed
     from contact_dynamics.validation import FloatArray
-    from contact_dynamics.world import Body, World
+    from contact_dynamics.world import Body, SurfaceFrame, World
 
 MAX_SAMPLES: Final = 2000
 """Most samples of one toss."""
@@ -96,7 +95,7 @@ def sampled_toss(
     Args:
         body: Body with the best estimate of its parameters. Its shape has corners, which may be rounded.
         state: Best estimate of the state.
-        world: Surfaces, which must be planes, and gravity.
+        world: Surfaces, which must be planes, and gravity. They may move as in `toss`.
         covariance: (12, 12), covariance of the state, or None if the state is exact. Rows and columns are
             position (m), rotation vector (rad, applied after the attitude), velocity of the centre of mass
             (m/s) and angular velocity (rad/s), each as x, y, z in world axes. `rigid_body.state_covariance`
@@ -126,7 +125,8 @@ def sampled_toss(
 
     Raises:
         NoContactError: the body has no shape that could touch anything.
-        NotSupportedError: the shape has circular rims, or a surface is an obstacle.
+        NotSupportedError: the shape has circular rims, a surface is an obstacle, or surfaces move differently
+            or turn.
         TooLargeError: there are more samples than `MAX_SAMPLES`, or the search for the end of a flight takes
             too many steps.
         InvalidFieldError: a number is out of range, the state's covariance is not positive semidefinite or
@@ -144,7 +144,8 @@ def sampled_toss(
     if covariance is not None:
         covariance = check_covariance("covariance", covariance)
     check_extent(body.mass_properties, state, world.gravity_W)
-    check_at_rest("world", world, "sampled_toss")
+    world, frame = world.seen_from_surfaces("sampled_toss")
+    state = state if frame is None else frame.seen(state)
     check_not_inside(body, state, world.surfaces, distance_tolerance=distance_tolerance)
     check_laws(restitution_law, several_contacts_law)
     body, indices = with_distinct_corners(body)
@@ -177,6 +178,8 @@ def sampled_toss(
         for i, one in followed.items():
             _add_strikes(many, i, one)
         rests = {i: one for i, one in followed.items() if one.rests}
+    if frame is not None:
+        _carry(many, rests, frame)
     faces, shares = _faces([each.normal_B for each in rests.values()], count)
     rest = None
     if rests:
@@ -206,6 +209,15 @@ def _add_strikes(many: ManyStrikes, i: int, followed: Followed) -> None:
         many.v_WB_W[k, i], many.w_WB_W[k, i] = y[7:10], y[10:]
         k += 1
     many.ends[i] = SampleEnd.FOLLOWED if k == len(many.seconds) else SampleEnd.ENDS
+
+
+def _carry(many: ManyStrikes, rests: dict[int, Followed], frame: SurfaceFrame) -> None:
+    """Transform strikes and states of rest from the frame of moving surfaces to the world."""
+    many.p_WB_W[:] += frame.displacement(many.seconds)
+    many.v_WB_W[:] += frame.velocity(many.seconds)
+    for one in rests.values():
+        one.y[:3] = (one.y[:3] + frame.displacement(one.seconds)).tolist()
+        one.y[7:10] = (one.y[7:10] + frame.velocity(one.seconds)).tolist()
 
 
 def _marginals(many: ManyStrikes, count: int) -> list[EventRegions]:

@@ -148,11 +148,7 @@ SPATIAL: dict[str, Callable[[], object]] = {
     "spatial_impact_distribution": lambda: spatial_impact_distribution(
         CRATE, FALLING, FEET[0], covariance=np.zeros((12, 12))
     ),
-    "impact_sequence": lambda: cd.impact_sequence(CRATE, FALLING, BELT),
     "impact_sequence_of": lambda: impact_sequence_of(CRATE, FALLING, FEET),
-    "next_landing": lambda: cd.next_landing(CRATE, FALLING, BELT),
-    "toss": lambda: cd.toss(CRATE, FALLING, BELT),
-    "sampled_toss": lambda: cd.sampled_toss(CRATE, FALLING, BELT, count=4),
     "a plane of motion": lambda: project_onto_plane(
         CRATE, AT_REST, FEET, plane=PlaneOfMotion(normal_W=[0, -1, 0]), force_W=UP, torque_W=[0, 0, 0]
     ),

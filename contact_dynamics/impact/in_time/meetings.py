@@ -22,14 +22,14 @@ if TYPE_CHECKING:
     from contact_dynamics.landing.search_work import SearchWork
     from contact_dynamics.rigid_body.body import BodyState, MassProperties
     from contact_dynamics.validation import FloatArray
-    from contact_dynamics.world import Body, World
+    from contact_dynamics.world import Body, SurfaceFrame, World
 
 
 class Meetings(Protocol):
     """A way to find where a flight ends, which remembers the contacts that were met so far."""
 
-    def next(self, state: BodyState, horizon: float) -> Landing | None:
-        """Return where free flight from a state ends within ``horizon``, s, or None."""
+    def next(self, state: BodyState, now: float, horizon: float) -> Landing | None:
+        """Return where free flight from a state at ``now``, s, ends within ``horizon``, s, or None."""
 
     def index(self, landing: Landing, row: int) -> int:
         """Return the number of the contact that is row ``row`` of a landing's contacts."""
@@ -40,25 +40,31 @@ class Meetings(Protocol):
 
 
 class FoundMeetings:
-    """Contacts found from a body's shape and the world's surfaces. They are numbered as they are met."""
+    """Contacts found from a body's shape and the world's surfaces. They are numbered as they are met.
+
+    With a ``frame``, the world and the states are those of its axes, and `contacts` are those of the world.
+    """
 
     def __init__(
         self,
         body: Body,
         world: World,
         *,
+        frame: SurfaceFrame | None,
         distance_tolerance: float,
         velocity_tolerance: float,
         work: SearchWork,
     ) -> None:
-        self._body, self._world, self._work = body, world, work
+        self._body, self._world, self._frame, self._work = body, world, frame, work
         self._distance_tolerance, self._velocity_tolerance = distance_tolerance, velocity_tolerance
         self._points_B: list[FloatArray] = []
         self._met: list[ContactSet] = []
+        self._met_at: list[float] = []
+        self._seconds = 0.0  # s, time of the newest landing
 
-    def next(self, state: BodyState, horizon: float) -> Landing | None:
-        """Return where free flight from a state ends within ``horizon``, s, or None."""
-        return landing_from(
+    def next(self, state: BodyState, now: float, horizon: float) -> Landing | None:
+        """Return where free flight from a state at ``now``, s, ends within ``horizon``, s, or None."""
+        landing = landing_from(
             self._body,
             state,
             self._world,
@@ -67,6 +73,8 @@ class FoundMeetings:
             velocity_tolerance=self._velocity_tolerance,
             work=self._work,
         )
+        self._seconds = now if landing is None else now + landing.seconds
+        return landing
 
     def index(self, landing: Landing, row: int) -> int:
         """Return the number of a contact. A contact that is met for the first time gets the next number."""
@@ -76,18 +84,27 @@ class FoundMeetings:
             if met.surfaces == contact.surfaces and float(abs(known_B - point_B).max()) <= DISTANCE_TOLERANCE:
                 return i
         self._met.append(contact)
+        self._met_at.append(self._seconds)
         self._points_B.append(point_B)
         return len(self._met) - 1
 
     @property
     def contacts(self) -> ContactSet:
         """All contacts that were met, each where it was when it was met first."""
+        points = np.concatenate([np.zeros((0, 3)), *(contact.p_WC_W for contact in self._met)])
+        velocities = accelerations = None
+        if self._frame is not None:
+            met_at = np.array(self._met_at)
+            points = points + self._frame.displacement(met_at)
+            velocities, accelerations = self._frame.velocity(met_at), self._frame.acceleration_W
         return ContactSet(
-            p_WC_W=np.concatenate([np.zeros((0, 3)), *(contact.p_WC_W for contact in self._met)]),
+            p_WC_W=points,
             normals_W=np.concatenate([np.zeros((0, 3)), *(contact.normals_W for contact in self._met)]),
             frictions=np.array([float(contact.frictions[0]) for contact in self._met]),
             restitutions=np.array([float(contact.impact_restitutions[0]) for contact in self._met]),
             surfaces=tuple(name for contact in self._met for name in contact.surfaces),
+            surface_velocities_W=velocities,
+            surface_accelerations_W=accelerations,
         )
 
 
@@ -122,11 +139,11 @@ class NamedMeetings:
         self._distance_tolerance, self._velocity_tolerance = distance_tolerance, velocity_tolerance
         self._rows: list[int] = []  # which contacts touch at the newest landing
 
-    def next(self, state: BodyState, horizon: float) -> Landing | None:
-        """Return where free flight from a state ends within ``horizon``, s, or None."""
-        now = self._touching(0.0, state, self._distance_tolerance)
-        if now is not None:
-            return now
+    def next(self, state: BodyState, now: float, horizon: float) -> Landing | None:  # noqa: ARG002
+        """Return where free flight from a state ends within ``horizon``, s, or None, whatever the time."""
+        touching = self._touching(0.0, state, self._distance_tolerance)
+        if touching is not None:
+            return touching
         motion = free_motion(self._body, state, gravity_W=self._gravity_W)
         arrivals = [
             found.seconds

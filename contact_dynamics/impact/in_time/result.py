@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import groupby
 
 from contact_dynamics.contact.contact import ContactSet
@@ -13,6 +13,7 @@ from contact_dynamics.impact.spatial.result import SpatialImpact
 from contact_dynamics.records import NamedInt, Record
 from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.validation import FloatArray
+from contact_dynamics.world import SurfaceFrame
 
 
 class SequenceEnd(NamedInt):
@@ -79,6 +80,25 @@ class ImpactSequence(Record):
     staying: tuple[int, ...]
     limit_seconds: float | None
     order_is_open: bool = False
+
+    def carried_by(self, frame: SurfaceFrame | None) -> ImpactSequence:
+        """Return a sequence in the frame of moving surfaces as it is in the world, except its contacts."""
+        if frame is None:
+            return self
+        after: dict[int, BodyState] = {}  # strikes as one share the state after them
+        strikes = []
+        for one in self.strikes:
+            state = after.setdefault(id(one.impact.state), frame.in_world(one.impact.state, one.seconds))
+            strikes.append(
+                replace(
+                    one,
+                    p_WC_W=one.p_WC_W + frame.displacement(one.seconds),
+                    state_before=frame.in_world(one.state_before, one.seconds),
+                    impact=replace(one.impact, state=state),
+                )
+            )
+        last = strikes[-1].impact.state if strikes else frame.in_world(self.state, 0.0)
+        return replace(self, strikes=tuple(strikes), state=last)
 
     @property
     def seconds(self) -> float:

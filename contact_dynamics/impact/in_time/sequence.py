@@ -75,7 +75,8 @@ def impact_sequence(
     Args:
         body: Mass properties and corners.
         state: Initial pose and velocities. The first strike must also be within the window.
-        world: Surfaces and gravity.
+        world: Surfaces and gravity. Surfaces may move if all have the same velocity and acceleration and none
+            turns.
         restitution_law: Law of restitution, which defines the coefficient of restitution.
         window: s, > 0. Longest flight between two strikes of one landing.
         max_strikes: Largest number of strikes, >= 1.
@@ -89,15 +90,18 @@ def impact_sequence(
         InvalidFieldError: a number is out of range, or the body penetrates a surface by more than the
             tolerance.
         NoContactError: the body has no shape that could touch anything.
+        NotSupportedError: surfaces move differently or turn.
     """
     tolerance = check_positive("velocity_tolerance", velocity_tolerance)
     held = None if hold_step is None else check_positive("hold_step", hold_step)
-    check_at_rest("world", world, "impact_sequence")
+    world, frame = world.seen_from_surfaces("impact_sequence")
+    state = state if frame is None else frame.seen(state)
     check_not_inside(body, state, world.surfaces, distance_tolerance=distance_tolerance)
     work = SearchWork("strike_window")
     meetings = FoundMeetings(
         body,
         world,
+        frame=frame,
         distance_tolerance=distance_tolerance,
         velocity_tolerance=tolerance,
         work=work,
@@ -111,7 +115,7 @@ def impact_sequence(
         hold_step=held,
         work=work,
     )
-    return sequence.run(state, check_positive("window", window), max_strikes)
+    return sequence.run(state, check_positive("window", window), max_strikes).carried_by(frame)
 
 
 def impact_sequence_of(

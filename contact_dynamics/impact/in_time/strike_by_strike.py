@@ -97,7 +97,7 @@ class StrikeByStrike:
         held = 0  # impulses, at this instant, that hold contacts
         while True:
             self.work.spend(ROUND, now)
-            landing = self.meetings.next(state, until - now)
+            landing = self.meetings.next(state, now, until - now)
             if self.chattering is not None and not self._strikes_elsewhere(landing, now):
                 self._stay(*self.chattering)
                 end, wait = SequenceEnd.CHATTERS, self.hold_step
