@@ -21,7 +21,6 @@ if TYPE_CHECKING:
 
     from rclpy.node import Node
 
-    from contact_dynamics.nodes.self_check import SelfCheck
     from contact_dynamics.nodes.topic_faults import TopicTraffic
     from contact_dynamics.recording.recorder import RecorderStatus
     from msg_adapters.status import Response
@@ -131,15 +130,6 @@ def values_of_topics(topics: Iterable[TopicTraffic], faults: Mapping[tuple[str, 
     for (topic, kind), count in faults.items():
         values[f"{topic}: {kind}"] = str(count)
     return values
-
-
-def values_of_self_check(check: SelfCheck, successions: int) -> dict[str, str]:
-    """Return what is reported of the self-check."""
-    return {
-        "checks received": str(check.heard),
-        "consecutive checks not received": str(check.unheard),
-        "times that the server rejoined": str(successions),
-    }
 
 
 def values_of_log(status: RecorderStatus | None) -> dict[str, str]:

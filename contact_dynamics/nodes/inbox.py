@@ -31,8 +31,6 @@ if TYPE_CHECKING:
     from rclpy.service import Service
     from rclpy.subscription import Subscription
 
-    from contact_dynamics.nodes.running import RunnableNode
-
 TAKE_EVERY_S: Final = 0.005
 """s, the least time between two rounds through all queues."""
 
@@ -60,11 +58,6 @@ class InboxNode(Node):
     Attributes:
         inbox: These subscriptions.
     """
-
-    @property
-    def successor(self) -> Callable[[], RunnableNode] | None:
-        """What makes the node that takes over in a participant of its own, or None while none has to."""
-        return None
 
     def __init__(self, *arguments: Any, **options: Any) -> None:
         """Begin without any, and find who is there; the arguments are those of `rclpy.node.Node`."""
@@ -138,21 +131,6 @@ class InboxNode(Node):
         self._in_rounds.insert(0, self._in_rounds.pop())  # states that are ahead of the clock are refused
         self._takes_time = True
         return subscription
-
-    def subscribe_anew(self, subscription: Subscription) -> Subscription:
-        """Put another subscription in the place of one, and return it."""
-        made = self.create_subscription(
-            subscription.msg_type,
-            subscription.topic_name,
-            subscription.callback,
-            subscription.qos_profile,
-            raw=True,
-        )
-        for each in (self.inbox, self._in_rounds):
-            if subscription in each:
-                each[each.index(subscription)] = made
-        self.destroy_subscription(subscription)
-        return made
 
     def end_services(self) -> None:
         """Take no more requests; see `RunnableNode`."""

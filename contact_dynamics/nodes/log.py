@@ -12,7 +12,7 @@ from contact_dynamics.nodes.parameter_reader import ConfigurationError
 from contact_dynamics.nodes.situations import RECENT_S, Present, Situation
 from contact_dynamics.recording.bag_writer import BagWriter
 from contact_dynamics.recording.errors import LogExistsError
-from contact_dynamics.recording.recorder import LogProblem, Recorder, RecorderStatus
+from contact_dynamics.recording.recorder import LogProblem, Recorder
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from rclpy.qos import QoSProfile
 
     from contact_dynamics.recording.limits import LogLimits
+    from contact_dynamics.recording.recorder import RecorderStatus
 
 _SITUATIONS: Final = {
     LogProblem.INTERRUPTED: Situation.LOG_INTERRUPTED,
@@ -41,7 +42,6 @@ class Log:
         limits: LogLimits,
         on_problem: Callable[[str], object],
         on_notice: Callable[[str], object],
-        is_needed: bool = True,
     ) -> None:
         """Create a folder in ``directory``, where empty means the current folder and None means no log.
 
@@ -52,23 +52,12 @@ class Log:
             on_problem: told, from the log's thread, what goes wrong.
             on_notice: told, from the log's thread, of each file that ``limits`` cost, and of what is missing
                 when a log that was interrupted goes on.
-            is_needed: whether it is an error that the folder cannot be made. Otherwise that is a problem.
 
         Raises:
             ConfigurationError: the folder cannot be made, so that a log that was asked for is never missing
                 silently.
         """
-        self._writer: BagWriter | None = None
-        self._missing = ""  # why there is none, where one was asked for
-        self._unlogged = 0  # messages that it does not have for that reason
-        if directory is not None:
-            try:
-                self._writer = _new_bag(directory, run, limits, on_notice)
-            except ConfigurationError as error:
-                if is_needed:
-                    raise
-                self._missing = f"no log is written: {error}"
-                on_problem(self._missing)
+        self._writer = None if directory is None else _new_bag(directory, run, limits, on_notice)
         self.folder = self._writer.folder if self._writer is not None else None
         self._recorder: Recorder | None = None
         self._on_problem = on_problem
@@ -100,8 +89,6 @@ class Log:
         if self._recorder is not None:
             when_ns = time.time_ns() if log_time_ns is None else log_time_ns
             self._recorder.record(topic, data, log_time_ns=when_ns, publish_time_ns=publish_time_ns)
-        elif self._missing:
-            self._unlogged += 1
 
     def settle(self) -> None:
         """Wait until the disk itself has all that was recorded so far, but for a second at most.
@@ -126,18 +113,10 @@ class Log:
     @property
     def status(self) -> RecorderStatus | None:
         """The state of the log now, or None if none is written."""
-        if self._recorder is not None:
-            return self._recorder.status
-        if not self._missing:
-            return None
-        return RecorderStatus(
-            written=0, lost=self._unlogged, waiting=0, max_waiting_bytes=0, is_interrupted=True, problems={}
-        )
+        return None if self._recorder is None else self._recorder.status
 
     def present(self) -> list[Present]:
         """Return what is wrong."""
-        if self._missing:
-            return [Situation.LOG_MISSING.present(problem=self._missing)]
         if self._recorder is None:
             return []
         status, now, present = self._recorder.status, time.monotonic(), list[Present]()

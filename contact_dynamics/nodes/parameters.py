@@ -59,7 +59,6 @@ class ServerParameters:
         worker_limits: What the processes may take that answer what takes long.
         log_before_answer: Whether an answer leaves only once it is on the disk.
         log_limits: How the log is cut into files, and which of them are kept.
-        self_check_period: s, from one self-check to the next, or None without.
     """
 
     world: World
@@ -79,7 +78,6 @@ class ServerParameters:
     log_directory: str
     log_before_answer: bool
     log_limits: LogLimits
-    self_check_period: float | None
 
 
 def described_server_parameters() -> tuple[DeclaredParameter, ...]:
@@ -219,13 +217,6 @@ def _read_parameters(
         ),
         log_before_answer=_read_log_before_answer(reader, is_logged=is_logged),
         log_limits=_read_log_limits(reader),
-        self_check_period=reader.zero_or(
-            "self_check_period",
-            60.0,
-            "Period of the check that messages reach the server, s. 0 disables the check.",
-            (0.5, 1e6),
-            unit="s",
-        ),
     )
 
 
@@ -290,7 +281,6 @@ def _bytes(megabytes: float | None) -> int | None:
 _FIXED: Final = {
     "world_frame": "world_frame",
     "static_topic": "tf_static_topic",
-    "self_check_period": "self_check_period",
     "log": "log",
     "log_before_answer": "log_before_answer",
     "log_directory": "log_directory",

@@ -48,10 +48,6 @@ class RunnableNode(Protocol):
     def end_services(self) -> None:
         """Take no more requests."""
 
-    @property
-    def successor(self) -> Callable[[], RunnableNode] | None:
-        """What makes the node that takes over in a participant of its own, or None while none has to."""
-
     def destroy_node(self) -> None:
         """End the node."""
 
@@ -92,7 +88,7 @@ def run_node(
             get_logger(verb).fatal(f"configuration: {error}")
             return 2
         try:
-            return _run(partial(make_node, args), args, verb, stop)
+            return _run(partial(make_node, args), verb, stop)
         finally:
             rclpy.try_shutdown()
 
@@ -115,35 +111,27 @@ def stop_signals() -> Iterator[threading.Event]:
             signal.signal(number, handler)
 
 
-def _run(make_node: Callable[[], RunnableNode], args: list[str], verb: str, stop: threading.Event) -> int:
-    complete = True
-    while True:
-        try:
-            with profile_of_fast_dds():
-                node = make_node()
-        except (ContactDynamicsError, OSError, ParameterException) as error:
-            get_logger(verb).fatal(f"configuration: {error}")
-            return 2
-        try:
-            successor = _spin(node, stop)
-        finally:
-            complete = node.close() and complete
-        if successor is None:
-            return 0 if complete else 1
-        get_logger(verb).error("messages do not reach this process any more, so it joins the domain anew")
-        node.destroy_node()
-        rclpy.shutdown()
-        rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.NO)
-        make_node = successor
+def _run(make_node: Callable[[], RunnableNode], verb: str, stop: threading.Event) -> int:
+    try:
+        with profile_of_fast_dds():
+            node = make_node()
+    except (ContactDynamicsError, OSError, ParameterException) as error:
+        get_logger(verb).fatal(f"configuration: {error}")
+        return 2
+    complete = False
+    try:
+        _spin(node, stop)
+    finally:
+        complete = node.close()
+    return 0 if complete else 1
 
 
-def _spin(node: RunnableNode, stop: threading.Event) -> Callable[[], RunnableNode] | None:
-    """Spin a node until it is to stop, or until another one has to take over; return what makes that."""
+def _spin(node: RunnableNode, stop: threading.Event) -> None:
+    """Spin a node until it is to stop, and then take what has come."""
     executor = EventsExecutor()
     executor.add_node(node)
     gc.freeze()  # the objects made so far stay, and to search them for garbage stalls an answer for 30 ms
-    successor: Callable[[], RunnableNode] | None = None
-    while not stop.is_set() and (successor := node.successor) is None:
+    while not stop.is_set():
         executor.spin_once(timeout_sec=_SPIN_S)
         node.attend()
     node.end_services()
@@ -152,4 +140,3 @@ def _spin(node: RunnableNode, stop: threading.Event) -> Callable[[], RunnableNod
         with suppress(InvalidHandle):  # a request that came to one of these services before it was destroyed
             executor.spin_once(timeout_sec=0.1 * _DRAIN_S)
         node.attend()
-    return successor

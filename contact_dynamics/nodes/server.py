@@ -11,8 +11,6 @@ waits for a lifecycle manager. Configured, it receives states and writes the log
 from __future__ import annotations
 
 import warnings
-from dataclasses import dataclass
-from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from rcl_interfaces.msg import SetParametersResult
@@ -33,7 +31,7 @@ from contact_dynamics.nodes.serving import Serving
 from contact_dynamics.nodes.visualizer_parameters import VISUALIZER_PARAMETERS
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Mapping, Sequence
 
     from rclpy.lifecycle import LifecycleState
 
@@ -41,36 +39,14 @@ if TYPE_CHECKING:
     from contact_dynamics.nodes.parameters import ServerParameters
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Predecessor:
-    """The state of a server that another one takes over from.
-
-    Attributes:
-        is_configured: Whether it was configured.
-        is_active: Whether it answered questions.
-        successions: How many times a server has taken over so far.
-    """
-
-    is_configured: bool
-    is_active: bool
-    successions: int
-
-
 class Server(InboxNode, LifecycleNode):
     """The node `contact_dynamics`."""
 
-    def __init__(
-        self,
-        *,
-        ros_arguments: Sequence[str] = (),
-        predecessor: Predecessor | None = None,
-        **node_options: Any,
-    ) -> None:
+    def __init__(self, *, ros_arguments: Sequence[str] = (), **node_options: Any) -> None:
         """Read the parameters, and configure and activate the node where ``autostart`` says so.
 
         Args:
             ros_arguments: ROS's arguments, as `rclpy.init` was given them.
-            predecessor: the node that this one takes over from, in whose state it begins.
             node_options: options of `rclpy.node.Node`.
 
         Raises:
@@ -79,36 +55,24 @@ class Server(InboxNode, LifecycleNode):
         self._serving: Serving | None = None
         self._problem: ContactDynamicsError | OSError | None = None
         self._configuration: ServerParameters | None = None
-        self._ros_arguments = ros_arguments
-        self._successions = 0 if predecessor is None else predecessor.successions + 1
         self._says_ready = False  # once the workers are
-        self._takes_over = predecessor is not None  # now, from a server that answered
         super().__init__(NODE_NAME, **node_options)
         refuse_lost_sections(self, ros_arguments)
         source = NodeParameters(
             self,
             ros_arguments=ros_arguments,
-            also_known=[
-                *VISUALIZER_PARAMETERS,  # one file may configure both nodes
-                # What a file says of bodies and surfaces that were taken away meanwhile was checked long ago.
-                *(self._parameter_overrides if predecessor is not None else ()),
-            ],
+            also_known=VISUALIZER_PARAMETERS,  # one file may configure both nodes
             read_only=False,
         )
         self._source = source
         self._configuration = self._read(source)
-        autostart = self._configuration.autostart
-        is_configured = autostart if predecessor is None else predecessor.is_configured
-        is_active = autostart if predecessor is None else predecessor.is_active
-        if not is_configured:
+        if not self._configuration.autostart:
             self.get_logger().info("waits to be configured and activated, since autostart is false")
             return
         self.trigger_configure()
         if self._problem is not None:
             raise self._problem
-        self._takes_over = False
-        if is_active:
-            self.trigger_activate()
+        self.trigger_activate()
 
     def _read(self, source: ParameterSource) -> ServerParameters:
         """Read every parameter, and tell in the log of bodies and obstacles that are not convex."""
@@ -119,36 +83,14 @@ class Server(InboxNode, LifecycleNode):
             self.get_logger().warning(str(each.message))
         return parameters
 
-    @property
-    def successor(self) -> Callable[[], Server] | None:
-        """What makes the node that takes over because this one is deaf, or None as long as it is not."""
-        if self._serving is None or not self._serving.is_deaf:
-            return None
-        predecessor = Predecessor(
-            is_configured=True, is_active=self._serving.is_active, successions=self._successions
-        )
-        values = {name: value for name, value in self._values().items() if value is not None}
-        return partial(
-            Server,
-            ros_arguments=self._ros_arguments,
-            predecessor=predecessor,
-            # Names alone may be an empty list, which ROS takes where it sets a parameter and not as a start.
-            parameter_overrides=[
-                Parameter(name, value=[""] if value == [] else value) for name, value in values.items()
-            ],
-        )
-
     def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:  # noqa: ARG002  it is known
         """Receive states, begin the log, and create the services."""
         self._problem = None
         configuration = self._configuration
         if configuration is None:  # nobody can ask for it before the parameters are read
             return TransitionCallbackReturn.FAILURE
-        run = self._run(self._values())
         try:
-            self._serving = Serving(
-                self, configuration, run=run, successions=self._successions, must_log=not self._takes_over
-            )
+            self._serving = Serving(self, configuration, run=self._run(self._values()))
         except (ContactDynamicsError, OSError) as error:
             self._problem = error
             self.get_logger().error(f"cannot be configured: {error}")
@@ -227,8 +169,7 @@ class Server(InboxNode, LifecycleNode):
 
     def _run(self, values: Mapping[str, Any]) -> dict[str, str]:
         """Return what the log says of the run."""
-        joined = {"joined_anew": str(self._successions)} if self._successions else {}
-        return {**run_record(values, self._source.topics), **joined}
+        return run_record(values, self._source.topics)
 
     def _values(self) -> dict[str, Any]:
         return {name: plain(self._parameters[name].value) for name in sorted(self._parameters)}

@@ -11,16 +11,9 @@ from rclpy.clock import JumpThreshold
 from rclpy.duration import Duration
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 
-from contact_dynamics.nodes.diagnostics import (
-    AnswerTimes,
-    Diagnostics,
-    values_of_log,
-    values_of_self_check,
-    values_of_topics,
-)
+from contact_dynamics.nodes.diagnostics import AnswerTimes, Diagnostics, values_of_log, values_of_topics
 from contact_dynamics.nodes.log import Log
 from contact_dynamics.nodes.run_record import CHANGE_TYPE, CHANGES
-from contact_dynamics.nodes.self_check import SelfCheck
 from contact_dynamics.nodes.server_core import ServerCore
 from contact_dynamics.nodes.service_front import EVENT_QOS, ServiceFront
 from contact_dynamics.nodes.situations import Part, Present, Situation
@@ -70,23 +63,13 @@ _REFUSES_FOR_S: Final = 3.0
 class Serving:
     """Receives states, answers questions and writes the log, for a node."""
 
-    def __init__(
-        self,
-        node: InboxNode,
-        parameters: ServerParameters,
-        *,
-        run: Mapping[str, str],
-        successions: int = 0,
-        must_log: bool = True,
-    ) -> None:
+    def __init__(self, node: InboxNode, parameters: ServerParameters, *, run: Mapping[str, str]) -> None:
         """Begin the log, subscribe and create the services, which refuse all questions for now.
 
         Args:
             node: the node.
             parameters: how it is configured.
             run: what the log says of the run.
-            successions: how many times the server has joined the domain anew.
-            must_log: whether it does not serve if the log cannot be begun.
 
         Raises:
             ConfigurationError: a source or the log's folder is not there.
@@ -118,7 +101,6 @@ class Serving:
             parameters.log_directory if parameters.log else None,
             run=run,
             limits=parameters.log_limits,
-            is_needed=must_log,
             on_problem=node.get_logger().error,
             on_notice=node.get_logger().warning,
         )
@@ -132,8 +114,6 @@ class Serving:
         self._workers = Workers(limits) if limits.count > 0 else None
         self._answer_times = AnswerTimes()
         self._diagnostics = Diagnostics(node)
-        self._self_check = SelfCheck(node, parameters.self_check_period)
-        self._successions = successions
         self._looked = time.monotonic()
         self._awake_since = self._looked
         self._took_events = 0.0
@@ -156,11 +136,6 @@ class Serving:
     def is_active(self) -> bool:
         """Whether questions are answered."""
         return all(front.is_active for front in self._fronts)
-
-    @property
-    def is_deaf(self) -> bool:
-        """Whether messages do not reach the node any more, as its self-check has found."""
-        return self._self_check.is_deaf
 
     @property
     def is_ready(self) -> bool:
@@ -242,8 +217,7 @@ class Serving:
         self._diagnostics.remove()
 
     def end_workers(self) -> None:
-        """End the processes that answer, and that of a self-check."""
-        self._self_check.end()
+        """End the processes that answer."""
         if self._workers is not None:
             self._workers.close()
 
@@ -255,17 +229,12 @@ class Serving:
 
     def _look(self) -> None:
         """Look at topics and other nodes, and tell how everything is."""
-        of_states = self._look_at_states()
-        problem = self._self_check.look(is_suspicious=any(topic.traffic.is_silent for topic in self._topics))
-        if problem:
-            self._faults.add(self._node.get_fully_qualified_name(), "self-check", 1, problem)
         present = [
-            *of_states,
+            *self._look_at_states(),
             *self._look_at_names(),
             *self._answer_times.look(),
             *self._look_at_workers(),
             *self._log.present(),
-            *self._self_check.present(),
         ]
         waiting = 0 if self._workers is None else self._workers.waiting
         self._diagnostics.publish(
@@ -273,7 +242,6 @@ class Serving:
                 Part.STATES: values_of_topics([each.traffic for each in self._topics], self._faults.counts),
                 Part.ANSWERS: {**self._answer_times.values(), "hard questions that wait": str(waiting)},
                 Part.LOG: values_of_log(self._log.status),
-                Part.SELF_CHECK: values_of_self_check(self._self_check, self._successions),
             },
             present,
         )

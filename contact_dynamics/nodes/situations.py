@@ -44,7 +44,6 @@ class Part(Enum):
     STATES = "states"
     ANSWERS = "answers"
     LOG = "log"
-    SELF_CHECK = "self-check"
 
 
 class Present(NamedTuple):
@@ -163,12 +162,6 @@ class Situation(Enum):
         "{ready} of {count} workers are ready",
         "test_hard_questions.py::test_a_server_is_ready_once_its_workers_are",
     )
-    LOG_MISSING = _Row(
-        Part.LOG,
-        Level.ERROR,
-        "{problem}",
-        "test_self_check.py::test_a_server_joins_anew_without_surfaces_and_without_a_disk",
-    )
     LOG_INTERRUPTED = _Row(
         Part.LOG,
         Level.ERROR,
@@ -192,18 +185,6 @@ class Situation(Enum):
         Level.WARN,
         "the disk took too long, and answers are sent before they are on it",
         "test_log_before_answer.py::test_a_disk_that_hangs_is_told_of_and_not_waited_for_again",
-    )
-    UNHEARD = _Row(
-        Part.SELF_CHECK,
-        Level.ERROR,
-        "messages may not arrive: {problem}",
-        "test_self_check.py::test_a_server_whose_ports_are_removed_joins_anew_with_its_parameters",
-    )
-    NOT_CHECKED = _Row(
-        Part.SELF_CHECK,
-        Level.WARN,
-        "{problem}",
-        "test_self_check.py::test_a_machine_without_room_for_the_process_of_a_check_does_not_end_the_server",
     )
 
     def present(self, **found: object) -> Present:

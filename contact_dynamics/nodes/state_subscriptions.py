@@ -45,8 +45,6 @@ LATCHED_QOS = QoSProfile(depth=1000, durability=DurabilityPolicy.TRANSIENT_LOCAL
 """The queue of transforms that stand still, which also takes those that were told before."""
 
 _EXAMINE_EVERY_NS: Final = NS_PER_S // 2
-_ANEW_AFTER_S: Final = 5.0  # that a topic is silent although somebody publishes
-_ANEW_AT_LEAST_EVERY_S: Final = 600.0
 _FRAME_AT: Final = 12  # bytes before a header's frame: encapsulation and stamp
 
 
@@ -103,7 +101,6 @@ class StateTopic:
         self._length = 0  # the last messages that were examined have it
         self._frame = b""  # and they have this frame
         self._examined_ns = 0
-        self._anew_after = _ANEW_AFTER_S
         self.publishers = 0
         qos = LATCHED_QOS if source.is_latched else STATE_QOS
         self._subscription = node.subscribe(
@@ -119,10 +116,6 @@ class StateTopic:
     def look(self, *, awake_for: float) -> list[Present]:
         """Look, once a second, at who publishes and for how long nothing came; return what is wrong.
 
-        Where somebody publishes and nothing comes, subscribe anew, after longer and longer times. A process
-        that stood still does not do so at once. What was sent meanwhile still waits, or its publisher sends
-        it again within the 3 s of a heartbeat of DDS, and a new subscription would have neither.
-
         Args:
             awake_for: s, for how long this process has run without standing still.
         """
@@ -136,14 +129,6 @@ class StateTopic:
                     topic=self.name, count=len(mismatches), publishers=len(found), reason=mismatches[0]
                 )
             )
-        if not (self.traffic.is_silent and publishers):
-            self._anew_after = _ANEW_AFTER_S
-        elif self.traffic.silence > self._anew_after:
-            self._anew_after = min(2.0 * self._anew_after, self.traffic.silence + _ANEW_AT_LEAST_EVERY_S)
-            some = f"{publishers} publisher{'s' if publishers > 1 else ''}"
-            text = f"{some} but no messages: subscribing again"
-            self._faults.add(self.name, "subscribed anew", 1, text)
-            self._subscription = self._node.subscribe_anew(self._subscription)
         return present
 
     def _mismatch(self, publisher: TopicEndpointInfo) -> str:

@@ -88,7 +88,6 @@ class TopicTraffic:
         lost: How many did not, as the numbers of those that came tell.
         age: s, since the newest message, at the last look. None while none came.
         rate: Hz, of the messages between the last two looks.
-        silence: s, for how long nothing came at the last look although the process could have heard it.
         is_silent: Whether nothing came for a while at the last look, where something had come before.
     """
 
@@ -100,7 +99,6 @@ class TopicTraffic:
     lost: int = 0
     age: float | None = None
     rate: float = 0.0
-    silence: float = 0.0
     is_silent: bool = False
     _newest: float = 0.0
     _number: int | None = None
@@ -146,12 +144,12 @@ class TopicTraffic:
             self.rate = (self.received - self._received_before) / max(now - self._looked, 1e-9)
         self._looked, self._received_before = now, self.received
         self.age = now - self._newest
-        self.silence = min(self.age, awake_for)
-        is_quiet = self.silence > self.faults.limits.silent_after
+        silence = min(self.age, awake_for)  # in which the process could have heard something
+        is_quiet = silence > self.faults.limits.silent_after
         was_silent, self.is_silent = self.is_silent, is_quiet and not self.may_rest
         if self.is_silent and not was_silent:
             if publishers:
-                self.faults.add(self.topic, "silent", 1, f"nothing came for {self.silence:.1f} s")
+                self.faults.add(self.topic, "silent", 1, f"nothing came for {silence:.1f} s")
             else:
                 self.faults.inform(f"{self.topic}: nobody publishes any more")
         if self.is_silent:

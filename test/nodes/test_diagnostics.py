@@ -224,7 +224,7 @@ def overloaded(
     tmp_path_factory: pytest.TempPathFactory,
 ) -> Iterator[tuple[subprocess.Popen[str], Monitor]]:
     """A server with one worker, for which no question waits."""
-    limits = {"workers": 1, "max_waiting": 0, "self_check_period": 0.0}
+    limits = {"workers": 1, "max_waiting": 0}
     arguments = ("--ros-args", "-p", "answer_deadline:=10.0")
     with monitored(tmp_path_factory.mktemp("config"), *arguments, log=False, **limits) as found:
         yield found

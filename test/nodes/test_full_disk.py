@@ -43,7 +43,7 @@ def give_room(server: subprocess.Popen[str], size: int) -> None:
 def test_the_log_goes_on_once_there_is_room_and_says_what_is_missing(tmp_path: Path) -> None:
     """A message that is none came long before, which once hid that the disk was full."""
     sent: list[int] = []
-    limits = {"log_directory": str(tmp_path), "self_check_period": 0.0, "silent_after": 1e6}
+    limits = {"log_directory": str(tmp_path), "silent_after": 1e6}
     with monitored(tmp_path, log=True, **limits) as (server, monitor):
         states = monitor.client.publisher(Odometry, "/brick/odometry")
 

@@ -339,7 +339,6 @@ WRONG = [
         put(log_size_limit=1.0, log_file_size=0.0),
         "log_size_limit must be 0 where log_file_size..., got 1 MB",
     ),
-    (put(self_check_period=1e-9), "self_check_period must be 0 or in [0.5, 1e+06] s..., got 1e-09 s"),
     (put(log=False, log_before_answer=True), "log_before_answer must be false where log is..., got true"),
 ]
 
