@@ -66,13 +66,16 @@ def process(
     """Start a verb of the command line; wait until it prints ``ready``; stop it with SIGINT, as it must.
 
     ``program`` is what Python runs, with ``settings`` in its environment. With ``group`` it leads a group of
-    processes, as one that was started in a terminal does. A server may take as long for an answer as tests
-    wait, unless the arguments say how long: on a busy machine the configured deadline of 5 s passes for
-    questions that take milliseconds elsewhere.
+    processes, as one that was started in a terminal does.
+
+    Unless the arguments say otherwise, a server may take as long for an answer as tests wait, since on a busy
+    machine the configured deadline of 5 s passes for questions that take milliseconds elsewhere. It has no
+    workers, which take longer to start than it does.
     """
     command = [sys.executable, *program, verb, *arguments]
-    if verb == "server" and not any(argument.startswith("answer_deadline") for argument in arguments):
-        command += ["--ros-args", "-p", f"answer_deadline:={PATIENCE_S}"]
+    for name, value in (("answer_deadline", PATIENCE_S), ("workers", 0)) if verb == "server" else ():
+        if not any(argument.startswith(f"{name}:=") for argument in arguments):
+            command += ["--ros-args", "-p", f"{name}:={value}"]
     started = subprocess.Popen(
         command,
         cwd=ROOT,

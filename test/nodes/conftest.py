@@ -21,5 +21,6 @@ def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Client]:
     It is in a domain of its own, beside the servers that other tests start. Tests that publish or change
     parameters have a server of their own.
     """
-    with server_and_client(tmp_path_factory.mktemp("log"), domain_id=claim_domain()) as client:
+    folder = tmp_path_factory.mktemp("log")
+    with server_and_client(folder, domain_id=claim_domain(), parameters=["workers:=2"]) as client:
         yield client

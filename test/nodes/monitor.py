@@ -106,7 +106,8 @@ def monitored(
     settings["/**"]["ros__parameters"] |= changes
     path = folder / "server.yaml"
     path.write_text(yaml.safe_dump(settings), encoding="utf-8")
-    given = ("--params-file", str(path), *arguments)
+    workers = ("--ros-args", "-p", f"workers:={changes.get('workers', 0)}")
+    given = ("--params-file", str(path), *arguments, *workers)
     with process("server", *given, ready=ready, domain_id=domain_id) as server:
         client = Client(domain_id=domain_id)
         try:

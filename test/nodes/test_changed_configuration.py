@@ -10,8 +10,9 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import pytest
+import yaml
 from lifecycle_msgs.msg import Transition
-from lifecycle_msgs.srv import ChangeState
+from lifecycle_msgs.srv import ChangeState, GetState
 from nav_msgs.msg import Odometry
 from rcl_interfaces.srv import GetParameters, ListParameters, SetParameters, SetParametersAtomically
 from rclpy.parameter import Parameter
@@ -20,9 +21,12 @@ from contact_dynamics.recording import BagReader
 from contact_dynamics.replay.verify import verify_log
 from contact_dynamics_interfaces.srv import PredictImpact, PredictTumbling
 from message_words import says
-from running_server import PATIENCE_S, PATIENT, ROOT, SERVICES, Client, environment, process
+from running_server import PATIENCE_S, ROOT, SERVICES, Client, environment, process
 
 NODE = "/contact_dynamics"
+FILE = ROOT / "config" / "server.yaml"
+UP = Transition.TRANSITION_CONFIGURE, Transition.TRANSITION_ACTIVATE
+DOWN = Transition.TRANSITION_DEACTIVATE, Transition.TRANSITION_CLEANUP
 
 
 class Configured(NamedTuple):
@@ -39,6 +43,12 @@ class Configured(NamedTuple):
         self.client.spin_until(future.done)
         self.client.node.destroy_client(caller)
         return future.result()
+
+    def move(self, *transitions: int) -> None:
+        """Make transitions of the life cycle."""
+        for each in transitions:
+            request = ChangeState.Request(transition=Transition(id=each))
+            assert self.call(ChangeState, "change_state", request).success
 
     def set(self, **values: Any) -> str:
         """Set parameters at once, with "__" for a point; return why they are refused, or nothing."""
@@ -61,16 +71,36 @@ class Configured(NamedTuple):
         return float(value.double_value)
 
 
-@pytest.fixture
-def configured(tmp_path: Path) -> Iterator[Configured]:
-    arguments = ["--params-file", str(ROOT / "config" / "server.yaml"), "--ros-args"]
-    arguments += ["-p", f"log_directory:={tmp_path}", "-p", PATIENT]
-    with process("server", *arguments, ready="ready"):
-        client = Client()
+@pytest.fixture(scope="module")
+def client() -> Iterator[Client]:
+    arguments = ["--params-file", str(FILE), "--ros-args", "-p", "autostart:=false"]
+    with process("server", *arguments, ready="autostart is false"):
+        client = Client(wait=False)
         try:
-            yield Configured(client, tmp_path)
+            yield client
         finally:
             client.close()
+
+
+@pytest.fixture
+def configured(client: Client, tmp_path: Path, request: pytest.FixtureRequest) -> Iterator[Configured]:
+    """The server as its file says, with a log of its own for each test."""
+    configured = Configured(client, tmp_path)
+    (settings,) = yaml.safe_load(FILE.read_text(encoding="utf-8")).values()
+    values = settings["ros__parameters"] | {
+        "state_timeout": 1000.0,
+        "log_directory": str(tmp_path),
+        "workers": 0,
+    }
+    values |= getattr(request, "param", {})
+    assert configured.set(**{name.replace(".", "__"): value for name, value in values.items()}) == ""
+    client.spin_until(lambda: client.ready() == 0)  # those of the test before are gone
+    configured.move(*UP)
+    client.spin_until(lambda: client.ready() == len(SERVICES))
+    client.wait_until_found()
+    yield configured
+    if configured.call(GetState, "get_state", GetState.Request()).current_state.label == "active":
+        configured.move(*DOWN)
 
 
 def slide() -> PredictImpact.Request:
@@ -180,11 +210,9 @@ def test_fewer_states_are_kept_from_now_on(configured: Configured) -> None:
 
 
 def test_what_stays_can_change_while_the_server_is_not_configured(configured: Configured) -> None:
-    for transition in (Transition.TRANSITION_DEACTIVATE, Transition.TRANSITION_CLEANUP):
-        change(configured, transition)
+    configured.move(*DOWN)
     assert configured.set(body__brick__odometry_topic="/other", surface__floor__friction=0.7) == ""
-    for transition in (Transition.TRANSITION_CONFIGURE, Transition.TRANSITION_ACTIVATE):
-        change(configured, transition)
+    configured.move(*UP)
     node = configured.client.node
     configured.client.spin_until(lambda: node.count_subscribers("/other") == 1)
     configured.client.spin_until(lambda: configured.client.ready() == len(SERVICES))
@@ -203,38 +231,25 @@ def test_ros_own_way_to_set_one_parameter_works(configured: Configured) -> None:
     assert refused.reason == "surface.floor.friction must be >= 0, got -0.9"
 
 
-def test_each_file_of_a_log_says_how_its_part_is_configured(tmp_path: Path) -> None:
-    arguments = ["--params-file", str(ROOT / "config" / "server.yaml"), "--ros-args"]
-    arguments += ["-p", f"log_directory:={tmp_path}", "-p", "log_file_duration:=1.0"]
-    with process("server", *arguments, ready="ready"):
-        client = Client()
-        try:
-            configured = Configured(client, tmp_path)
-            frictions = [0.3, 0.1]
-            client.ask(slide())
-            assert configured.set(surface__floor__friction=0.1) == ""
-            folder = next(tmp_path.iterdir())
-            client.spin_until(lambda: client.ask(slide()) and len(list(folder.glob("*.mcap"))) > 1)
-            client.ask(slide())
-        finally:
-            client.close()
+@pytest.mark.parametrize("configured", [{"log_file_duration": 1.0}], indirect=True)
+def test_each_file_of_a_log_says_how_its_part_is_configured(configured: Configured) -> None:
+    client = configured.client
+    client.ask(slide())
+    assert configured.set(surface__floor__friction=0.1) == ""
+    folder = next(configured.folder.iterdir())
+    client.spin_until(lambda: client.ask(slide()) and len(list(folder.glob("*.mcap"))) > 1)
+    client.ask(slide())
+    assert_reproduced(configured, questions=3)
     files = sorted(folder.glob("*.mcap"))
-    for path, friction in zip((files[0], files[-1]), frictions, strict=True):
+    for path, friction in zip((files[0], files[-1]), (0.3, 0.1), strict=True):
         assert f'"surface.floor.friction": {friction}' in BagReader(path).run()["parameters"]
-    for path in (folder, files[-1]):
-        tallies = verify_log(path).services.values()
-        assert sum(tally.equal for tally in tallies) == sum(tally.questions for tally in tallies) > 0
-
-
-def change(configured: Configured, transition: int) -> None:
-    request = ChangeState.Request(transition=Transition(id=transition))
-    assert configured.call(ChangeState, "change_state", request).success
+    tallies = verify_log(files[-1]).services.values()
+    assert sum(tally.equal for tally in tallies) == sum(tally.questions for tally in tallies) > 0
 
 
 def assert_reproduced(configured: Configured, *, questions: int) -> None:
     """End the server's log, and ask all of it again."""
-    for transition in (Transition.TRANSITION_DEACTIVATE, Transition.TRANSITION_CLEANUP):
-        change(configured, transition)
+    configured.move(*DOWN)
     found = verify_log(next(configured.folder.iterdir()))
     assert found.others == []
     assert sum(tally.equal for tally in found.services.values()) >= questions

@@ -80,56 +80,28 @@ def test_a_stamp_from_the_future_poisons_no_body_and_is_told_by_topic(tmp_path: 
             client.close()
 
 
-def test_before_the_first_clock_nothing_is_from_the_future_and_after_it_is(tmp_path: Path) -> None:
+def test_a_simulated_clock_judges_states_from_its_first_message_on(tmp_path: Path) -> None:
+    """Clocks that are no messages, or before zero, for which rclpy raises, are ignored and told."""
     arguments = ("--params-file", str(two_bodies(tmp_path)), "--ros-args", "-p", "use_sim_time:=true")
     with process("server", *arguments, ready="ready") as server:
         client = Client()
         try:
             states = client.publisher(Odometry, "/brick/odometry")
             clock = client.publisher(Clock, "/clock")
-            states.publish(odometry("brick", 5 * HOUR_NS))
+            states.publish(odometry("brick", 5 * HOUR_NS))  # nothing is from the future yet
             client.spin_until(lambda: newest_ns(client, "brick") == 5 * HOUR_NS)
+            clock.publish(serialize_message(Clock())[:5])
+            wait_for(server, "/clock: message ignored: ")
             clock.publish(Clock(clock=stamp_to_msg(HOUR_NS)))
             client.spin_until(lambda: newest_ns(client, "brick") == -1)  # it is ahead of the clock now
+            negative = Clock()
+            negative.clock.sec = -5
+            clock.publish(negative)
+            wait_for(server, "/clock: message ignored: clock.sec must be >= 0, got -5")
             states.publish(odometry("brick", 5 * HOUR_NS))
             states.publish(odometry("brick", HOUR_NS))
             client.spin_until(lambda: newest_ns(client, "brick") == HOUR_NS)
             wait_for(server, "got 14400.000 s ahead of the clock")
-        finally:
-            client.close()
-
-
-def test_a_clock_before_zero_is_ignored_and_told(tmp_path: Path) -> None:
-    """It is a time that rclpy raises for, which ended the server."""
-    arguments = ("--params-file", str(two_bodies(tmp_path)), "--ros-args", "-p", "use_sim_time:=true")
-    with process("server", *arguments, ready="ready") as server:
-        client = Client()
-        try:
-            states = client.publisher(Odometry, "/brick/odometry")
-            clock = client.publisher(Clock, "/clock")
-            for seconds in (3600, -5):
-                tick = Clock()
-                tick.clock.sec = seconds
-                clock.publish(tick)
-            wait_for(server, "/clock: message ignored: clock.sec must be >= 0, got -5")
-            states.publish(odometry("brick", HOUR_NS))
-            client.spin_until(lambda: newest_ns(client, "brick") == HOUR_NS)
-        finally:
-            client.close()
-
-
-def test_a_clock_that_is_no_message_is_ignored_and_told(tmp_path: Path) -> None:
-    arguments = ("--params-file", str(two_bodies(tmp_path)), "--ros-args", "-p", "use_sim_time:=true")
-    with process("server", *arguments, ready="ready") as server:
-        client = Client()
-        try:
-            states = client.publisher(Odometry, "/brick/odometry")
-            clock = client.publisher(Clock, "/clock")
-            clock.publish(serialize_message(Clock())[:5])
-            wait_for(server, "/clock: message ignored: ")
-            clock.publish(Clock(clock=stamp_to_msg(HOUR_NS)))
-            states.publish(odometry("brick", HOUR_NS))
-            client.spin_until(lambda: newest_ns(client, "brick") == HOUR_NS)
         finally:
             client.close()
 

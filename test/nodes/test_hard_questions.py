@@ -186,7 +186,7 @@ def test_a_signal_to_all_processes_meets_workers_that_still_start_without_a_trac
     number: signal.Signals,
 ) -> None:
     """Ctrl-C reaches all processes of a terminal, and a service manager stops all of a service."""
-    with process("server", *ARGUMENTS, *APART, group=True) as server:
+    with process("server", *ARGUMENTS, *APART, "-p", "workers:=2", group=True) as server:
         fork_server_of(server)
         os.killpg(server.pid, number)
         assert server.stdout is not None
@@ -210,7 +210,7 @@ def fork_server_of(server: subprocess.Popen[str]) -> int:
 
 def test_a_server_is_ready_once_its_workers_are(tmp_path: Path) -> None:
     """Quick questions are answered before. What starts the workers stands still here, as if it took long."""
-    with monitored(tmp_path, ready="", log=False) as (server, monitor):
+    with monitored(tmp_path, ready="", log=False, workers=2) as (server, monitor):
         fork_server = fork_server_of(server)
         os.kill(fork_server, signal.SIGSTOP)
         try:

@@ -16,19 +16,20 @@ from rcl_interfaces.msg import Parameter, ParameterValue
 from rcl_interfaces.srv import SetParameters
 from rosgraph_msgs.msg import Clock
 
+from contact_dynamics.demo.processes import claim_domain
 from contact_dynamics.nodes.log import Log
 from contact_dynamics.nodes.parameter_reader import ConfigurationError
 from contact_dynamics.recording import BagReader
 from contact_dynamics.recording.limits import UNLIMITED
 from contact_dynamics_interfaces.srv import PredictImpact, PredictTumbling
-from running_server import PATIENCE_S, ROOT, SERVICES, Client, process, wait_for
+from running_server import DOMAIN_ID, PATIENCE_S, ROOT, SERVICES, Client, process, wait_for
 
 
 class Manager:
     """A client that also moves the server between its states."""
 
-    def __init__(self) -> None:
-        self.client = Client(wait=False)
+    def __init__(self, *, domain_id: int = DOMAIN_ID) -> None:
+        self.client = Client(wait=False, domain_id=domain_id)
         node = self.client.node
         self._change = node.create_client(ChangeState, "/contact_dynamics/change_state")
         self._get = node.create_client(GetState, "/contact_dynamics/get_state")
@@ -50,17 +51,19 @@ class Manager:
         return future.result()
 
 
-@pytest.fixture
-def manager(tmp_path: Path) -> Iterator[Manager]:
-    arguments = (
-        "--params-file",
-        str(ROOT / "config" / "server.yaml"),
-        "--ros-args",
-        "-p",
-        "autostart:=false",
-    )
-    arguments += ("-p", f"log_directory:={tmp_path}", "-p", "state_timeout:=1000.0")
-    with process("server", *arguments, ready="autostart is false"):
+WAITS = ("--params-file", str(ROOT / "config" / "server.yaml"), "--ros-args", "-p", "autostart:=false")
+
+
+@pytest.fixture(scope="module")
+def logs(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("logs")
+
+
+@pytest.fixture(scope="module")
+def manager(logs: Path) -> Iterator[Manager]:
+    """Of a server that each test leaves as it is at first: unconfigured."""
+    limits = ("-p", "state_timeout:=1000.0", "-p", "workers:=2")
+    with process("server", *WAITS, "-p", f"log_directory:={logs}", *limits, ready="autostart is false"):
         manager = Manager()
         try:
             yield manager
@@ -68,13 +71,13 @@ def manager(tmp_path: Path) -> Iterator[Manager]:
             manager.client.close()
 
 
-def test_a_manager_brings_the_server_up_and_down_and_up_again(manager: Manager, tmp_path: Path) -> None:
+def test_a_manager_brings_the_server_up_and_down_and_up_again(manager: Manager, logs: Path) -> None:
     question = PredictTumbling.Request(body_name="brick", times=[0.0])
     assert manager.state() == State.PRIMARY_STATE_UNCONFIGURED
     assert manager.client.ready() == 0
     for run in (1, 2):
         assert manager.change(Transition.TRANSITION_CONFIGURE)
-        assert len(list(tmp_path.iterdir())) == run
+        assert len(list(logs.iterdir())) == run
         manager.client.spin_until(lambda: manager.client.ready() == len(SERVICES))
         states = manager.client.publisher(Odometry, "/brick/odometry")
         msg = Odometry(child_frame_id="brick")
@@ -92,15 +95,15 @@ def test_a_manager_brings_the_server_up_and_down_and_up_again(manager: Manager, 
         assert manager.state() == State.PRIMARY_STATE_UNCONFIGURED
         manager.client.node.destroy_publisher(states)
         manager.client.spin_until(lambda: manager.client.ready() == 0)
-    logs = [BagReader(folder) for folder in tmp_path.iterdir()]
-    assert all(any(message.topic == "/brick/odometry" for message in log.messages()) for log in logs)
-    assert all(log.damage is None for log in logs)
+    readers = [BagReader(folder) for folder in logs.iterdir()]
+    assert all(any(message.topic == "/brick/odometry" for message in log.messages()) for log in readers)
+    assert all(log.damage is None for log in readers)
 
 
 def test_a_question_that_is_being_answered_at_cleanup_is_refused(manager: Manager) -> None:
     spinning = PredictImpact.Request(body_name="brick", state_source=PredictImpact.Request.STATE_EXPLICIT)
     spinning.state.pose.position.z, spinning.state.angular_velocity.x = 1.0, 1e9  # it takes seconds
-    for _ in range(3):
+    for _ in range(2):
         assert manager.change(Transition.TRANSITION_CONFIGURE)
         assert manager.change(Transition.TRANSITION_ACTIVATE)
         manager.client.spin_until(lambda: manager.client.ready() == len(SERVICES))
@@ -147,16 +150,10 @@ def test_a_log_whose_disk_is_not_mounted_is_refused_and_written_once_it_is(tmp_p
     """The simulation begins anew meanwhile, of which a server that could not be configured hears, too."""
     disk = tmp_path / "disk"
     (tmp_path / "logs").symlink_to(disk)
-    arguments = (
-        "--params-file",
-        str(ROOT / "config" / "server.yaml"),
-        "--ros-args",
-        "-p",
-        "autostart:=false",
-    )
-    arguments += ("-p", f"log_directory:={tmp_path / 'logs'}", "-p", "use_sim_time:=true")
-    with process("server", *arguments, ready="autostart is false") as server:
-        manager = Manager()
+    arguments = ("-p", f"log_directory:={tmp_path / 'logs'}", "-p", "use_sim_time:=true")
+    domain_id = claim_domain()  # another server of this name is in that of this test run
+    with process("server", *WAITS, *arguments, ready="autostart is false", domain_id=domain_id) as server:
+        manager = Manager(domain_id=domain_id)
         try:
             clock = manager.client.publisher(Clock, "/clock")
             for _ in range(20):
@@ -180,13 +177,3 @@ def test_a_log_that_nobody_can_write_is_refused_by_name(where: str, tmp_path: Pa
     (tmp_path / "file").touch()
     with pytest.raises(ConfigurationError, match=r"log_directory must be a folder to write to.*, got .*"):
         Log(where.format(tmp_path), run={}, limits=UNLIMITED, on_problem=print, on_notice=print)
-
-
-def test_an_autostarted_server_is_active(tmp_path: Path) -> None:
-    arguments = ("--ros-args", "-p", f"log_directory:={tmp_path}")
-    with process("server", *arguments, ready="ready"):
-        manager = Manager()
-        try:
-            assert manager.state() == State.PRIMARY_STATE_ACTIVE
-        finally:
-            manager.client.close()

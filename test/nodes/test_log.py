@@ -142,7 +142,7 @@ def session(tmp_path_factory: pytest.TempPathFactory) -> Session:
     asked: dict[str, list[tuple[Any, Any]]] = {topic: [] for topic in EVENTS}
     file = str(ROOT / "config" / "server.yaml")
     arguments = ["--params-file", file, "--ros-args", "-p", f"log_directory:={directory}"]
-    arguments += ["-p", PATIENT]
+    arguments += ["-p", PATIENT, "-p", "workers:=2"]
     with process("server", *arguments, ready="ready") as server:
         client = Client()
         publisher = client.publisher(Odometry, STATES_TOPIC)

@@ -29,7 +29,7 @@ TUMBLING = SERVICES[PredictTumbling]
 def arguments(directory: Path) -> list[str]:
     file = str(ROOT / "config" / "server.yaml")
     given = ["--params-file", file, "--ros-args", "-p", f"log_directory:={directory}"]
-    return [*given, "-p", "log_before_answer:=true"]
+    return [*given, "-p", "log_before_answer:=true", "-p", "workers:=1"]
 
 
 def flight(number: int) -> Any:

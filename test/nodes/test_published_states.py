@@ -442,6 +442,17 @@ def test_time_comes_from_the_clock_topic(servers: Servers) -> None:
     check_state(answer_at(10.25, again, 0).state, again)
 
 
+def test_without_simulated_time_nobody_minds_a_clock_that_jumps(servers: Servers) -> None:
+    client, body = servers.brick, Body()
+    client.publisher(Odometry, "/brick/odometry").publish(body.odometry("brick"))
+    known(client, "brick", body.stamp_ns)
+    clock = client.node.create_publisher(Clock, "/clock", BEST_EFFORT)
+    for hour in (2, 3, 1):
+        clock.publish(Clock(clock=stamp_to_msg(hour * 3_600_000_000_000)))
+        answer = client.ask(PredictTumbling.Request(body_name="brick", times=[0.0]))
+        assert answer.status == answer.OK, answer.message
+
+
 def topics_of(folder: Path) -> set[str]:
     """Topics of the messages in a log that is still being written."""
     with pytest.warns(DamagedLogWarning):
