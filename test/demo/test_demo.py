@@ -389,14 +389,6 @@ def test_stopped_at_the_start_it_stops_all(tmp_path: Path, number: signal.Signal
     assert run.errors.strip() == "stopped"
 
 
-@pytest.mark.parametrize("verb", VERBS)
-def test_help_of_every_verb(capsys: pytest.CaptureFixture[str], verb: str) -> None:
-    with pytest.raises(SystemExit) as ended:
-        main([verb, "--help"])
-    assert ended.value.code == 0
-    assert f"usage: contact-dynamics {verb} " in capsys.readouterr().out
-
-
 def test_help_of_the_command_lists_the_verbs() -> None:
     done = subprocess.run(
         [sys.executable, "-m", "contact_dynamics", "--help"],

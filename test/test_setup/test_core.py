@@ -131,6 +131,7 @@ def test_compiled_and_plain_give_the_same_bits(monkeypatch: pytest.MonkeyPatch) 
     assert planar_bits(loaded(IMPACT / "planar" / "routh.py")) == planar_bits(routh)
 
 
+@pytest.mark.slow  # half a minute of compilation
 @pytest.mark.skipif(
     " fma " not in Path("/proc/cpuinfo").read_text(encoding="utf-8"), reason="the processor fuses nothing"
 )
