@@ -19,7 +19,7 @@ from contact_dynamics.shapes.convex import box, polyhedron
 from contact_dynamics.shapes.obstacle import Obstacle
 from contact_dynamics.tumbling import free_motion
 from contact_dynamics.world import Body, box_vertices
-from sweeps import sweep
+from sweeps import seeds
 
 if TYPE_CHECKING:
     from contact_dynamics.rigid_body.inertia import MassDistribution
@@ -77,7 +77,7 @@ def test_a_corner_inside_the_hull_warns_wherever_corners_are_given() -> None:
 
 
 @pytest.mark.filterwarnings("error")
-@pytest.mark.parametrize("seed", sweep(5, whole=200))
+@seeds(range(5), slow=range(5, 200))
 def test_a_convex_mesh_does_not_warn(seed: int) -> None:
     """A solid of drawn corners, turned, whose faces are divided, as float32."""
     rng = np.random.default_rng(seed)

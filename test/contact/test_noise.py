@@ -20,6 +20,7 @@ from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.shapes.convex import ConvexShape, cylinder, rounded, sphere
 from contact_dynamics.shapes.convex import box as box_of
 from contact_dynamics.world import Body, Surface, World
+from sweeps import seeds
 
 SIZE = np.array([0.15, 0.09, 0.05])
 DEVIATIONS = np.repeat([2e-4, 2e-3, 0.02, 0.2], 3)  # m, rad, m/s, rad/s
@@ -144,7 +145,7 @@ def test_without_noise_nothing_changes() -> None:
     assert resting(exact, contacts, **STILL).state is exact.state
 
 
-@pytest.mark.parametrize("seed", range(5))
+@seeds(range(5))
 def test_the_correction_is_the_least_one_by_the_covariance(seed: int) -> None:
     """A minimiser finds the same state from the conditions and a covariance of errors that hang together."""
     chance = np.random.default_rng(seed)

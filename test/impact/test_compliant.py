@@ -23,6 +23,7 @@ from contact_dynamics.impact import (
 from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from oracles import impact_compliant, impact_spring_plane, impact_spring_space
+from sweeps import seeds
 
 
 def random_problem(seed: int) -> impact_compliant.Problem:
@@ -246,8 +247,7 @@ def check_tenfold(first: np.ndarray, second: np.ndarray, changes: np.ndarray, ou
         assert np.median(second[chosen]) < 0.11 * np.median(first[chosen])
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("seed", range(60))
+@seeds((), slow=range(60))
 def test_a_stiff_spring_in_many_cases(seed: int) -> None:
     """The first 60 draws of each kind, whatever they come to."""
     for problem, (outcome, rigid) in (

@@ -16,6 +16,7 @@ from contact_dynamics.errors import InvalidFieldError, TooLargeError
 from contact_dynamics.motion.free_fit import FitResult, StateNoise, fit_free_motion
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.tumbling import FreeMotion, free_motion
+from sweeps import seeds
 from tumbling.known_motions import MOTIONS, motion_of
 
 WINDOW = 1.3 + np.linspace(0.0, 0.22, 12)
@@ -311,7 +312,7 @@ def test_gravity_is_finite() -> None:
         fit_free_motion(motion.body, published(motion, WINDOW, None), gravity_W=[0.0, 0.0, math.nan])
 
 
-@pytest.mark.parametrize("seed", range(6))
+@seeds(range(6))
 def test_needles_are_found_whose_spin_is_lost_in_their_momentum(seed: int) -> None:
     rng = np.random.default_rng(seed)
     slim = 10.0 ** rng.uniform(-5.0, -3.0)

@@ -18,7 +18,7 @@ from contact_dynamics.motion import ConstantWrench, Drag, StateNoise, fit_free_m
 from contact_dynamics.motion.between_states import state_between
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from oracles.tumbling_stepped import stepped
-from sweeps import sweep
+from sweeps import seeds
 
 BALL = MassProperties(mass=1.0, I_B=np.eye(3) * 4e-3)
 MOMENTS = {
@@ -79,7 +79,7 @@ def drawn(rng: np.random.Generator, *, with_velocities: bool) -> Draw:
     return Draw(body, states, rates[-1], noises[rng.integers(len(noises))], turns)
 
 
-@pytest.mark.parametrize("seed", sweep(1, whole=250))
+@seeds(range(1), slow=range(1, 250))
 def test_with_velocities_no_fit_has_another_number_of_turns(seed: int) -> None:
     """Of 12 draws. And nearly all are found, also where the body turns several times from state to state."""
     rng = np.random.default_rng(seed)
@@ -93,7 +93,7 @@ def test_with_velocities_no_fit_has_another_number_of_turns(seed: int) -> None:
     assert found >= 8
 
 
-@pytest.mark.parametrize("seed", sweep(1, whole=150))
+@seeds(range(1), slow=range(1, 150))
 def test_without_velocities_another_number_of_turns_is_never_certain(seed: int) -> None:
     """Nor is it silent: below half a turn every fit that converges is right or has an alternative."""
     rng = np.random.default_rng(1000 + seed)

@@ -16,7 +16,7 @@ from contact_dynamics.toss.phase import PhaseStep
 from contact_dynamics.toss.solid import heights_and_rates, solid_of
 from contact_dynamics.world import Body, Surface, World
 from oracles.held_motion import HeldBody, accelerations, held_motion
-from sweeps import sweep
+from sweeps import seeds
 
 SIZE = (0.1, 0.12, 0.07)
 MASS, GRAVITY = 0.4, 9.80665
@@ -74,7 +74,7 @@ def phases(went: Toss) -> list[tuple[tuple[int, ...], str, list[PhaseStep]]]:
 
 @pytest.mark.parametrize("error", [PHASE_ERROR, SAMPLED_PHASE_ERROR])
 @pytest.mark.parametrize("friction", [0.2, 0.6])
-@pytest.mark.parametrize("seed", sweep(4, whole=40))
+@seeds(range(4), slow=range(4, 40))
 def test_each_contact_phase_is_that_of_the_oracle(seed: int, friction: float, error: float) -> None:
     """Each step may be off by ``error``, m and m/s; what is off grows on, by less than ten times here.
 

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """Tosses among one to four flats: each comes to an end, gains no energy, and stays out of the flats.
 
-The whole sweep has 10,000 tosses in blocks of ten:
+The whole sweep has 10,000 tosses in blocks of a hundred:
 
     pytest -m "slow or not slow" test/toss/test_among_flats.py
 
-A part is named by a block, as in `test/toss/test_among_flats.py::test_a_block_of_tosses_ends[17]`.
+A part is named by a block, as in `test/toss/test_among_flats.py::test_tosses_end[slow17]`.
 """
 
 from __future__ import annotations
@@ -15,7 +15,6 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-import pytest
 from scipy.optimize import nnls
 from scipy.spatial.transform import Rotation
 
@@ -23,7 +22,7 @@ from contact_dynamics import Body, BodyState, Contact, ContactSet, Surface, Worl
 from contact_dynamics.contact_modes import SpatialContactProblem, contact_modes
 from contact_dynamics.shapes import capsule, polyhedron, rounded, sphere
 from contact_dynamics.toss import Toss, TossEnd, toss
-from sweeps import sweep
+from sweeps import seeds
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -226,16 +225,14 @@ def check_moves(went: Toss, world: World, horizon: float) -> None:
     assert went.seconds == horizon
 
 
-@pytest.mark.parametrize("block", sweep(1, whole=1000))
-def test_a_block_of_tosses_ends(block: int) -> None:
-    for seed in range(BLOCK * block, BLOCK * (block + 1)):
-        check_ends_well(*drawn(seed))
+@seeds(range(BLOCK), slow=range(BLOCK, 1000 * BLOCK))
+def test_tosses_end(seed: int) -> None:
+    check_ends_well(*drawn(seed))
 
 
-@pytest.mark.parametrize("block", sweep(1, whole=100))
-def test_a_block_of_tosses_of_round_bodies_ends(block: int) -> None:
-    for seed in range(BLOCK * block, BLOCK * (block + 1)):
-        check_ends_well(*drawn_round(seed), horizon=ROUND_HORIZON)
+@seeds(range(BLOCK), slow=range(BLOCK, 100 * BLOCK))
+def test_tosses_of_round_bodies_end(seed: int) -> None:
+    check_ends_well(*drawn_round(seed), horizon=ROUND_HORIZON)
 
 
 def test_a_body_that_only_forces_that_pull_would_hold_does_not_rest() -> None:

@@ -15,7 +15,7 @@ from contact_dynamics.shapes import polyhedron
 from contact_dynamics.toss import TossEnd, TossEventKind, toss
 from contact_dynamics.toss.forces import pushed_by_contacts
 from contact_dynamics.toss.solid import Held, numbers_of, solid_of
-from sweeps import sweep
+from sweeps import seeds
 
 G = 9.81
 TIP = np.array([0.0, 0.0, -0.2])
@@ -113,7 +113,7 @@ def test_a_tip_in_a_groove_turns_as_on_a_ball_joint() -> None:
     np.testing.assert_allclose(went.state.p_WB_W, -there.apply(TIP), atol=2e-6)
 
 
-@pytest.mark.parametrize("seed", sweep(12, whole=200))
+@seeds(range(12), slow=range(12, 200))
 def test_bodies_in_grooves_come_to_an_end_and_gain_no_energy(seed: int) -> None:
     """A toss that left a corner on both flats at once ended with a division by zero, one in forty."""
     rng = np.random.default_rng(seed)

@@ -24,7 +24,7 @@ from contact_dynamics.toss.solid import (
     numbers_of,
     solid_of,
 )
-from sweeps import sweep
+from sweeps import seeds, sweep
 
 G = 9.81
 SIZE = (0.1, 0.1, 0.1)
@@ -169,7 +169,7 @@ def test_a_body_without_friction_rests_in_a_corner() -> None:
     assert went.state.p_WB_W[2] == pytest.approx(0.05 * math.sqrt(2.0), abs=1e-6)
 
 
-@pytest.mark.parametrize("seed", sweep(20, whole=500))
+@seeds(range(20), slow=range(20, 500))
 def test_short_steps_gain_no_energy_and_stay_out_of_the_flats(seed: int) -> None:
     rng = np.random.default_rng(seed)
     q = rng.normal(size=4)

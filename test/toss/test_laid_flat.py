@@ -6,7 +6,6 @@ from __future__ import annotations
 import math
 
 import numpy as np
-import pytest
 
 from contact_dynamics.impact import RestitutionLaw
 from contact_dynamics.rigid_body import inertia
@@ -16,6 +15,7 @@ from contact_dynamics.toss import TossEnd, sampled_toss, toss
 from contact_dynamics.toss.laid_flat import RATTLING, laid_flat
 from contact_dynamics.toss.solid import heights_and_rates, numbers_of, solid_of
 from contact_dynamics.world import Body, Surface, World
+from sweeps import seeds
 
 FLOOR = Surface(name="floor", p_WS_W=[0, 0, 0], normal_W=[0, 0, 1], friction=0.2, restitution=0.3)
 GRAVITY = 9.80665
@@ -93,7 +93,7 @@ def test_only_a_body_near_one_flat_is_laid() -> None:
     assert laid(body, above, ceiling) is None
 
 
-@pytest.mark.parametrize("seed", range(8))
+@seeds(range(8))
 def test_a_sample_rests_where_the_toss_does(seed: int) -> None:
     """A box slides two to four decimetres and rattles for a tenth of a second."""
     body, chance = a_box(0.1, 0.12, 0.08), np.random.default_rng(seed)

@@ -12,7 +12,7 @@ from contact_dynamics.shapes import box_vertices, polyhedron
 from contact_dynamics.tolerances import SAME_CORNER
 from contact_dynamics.toss import TossEnd, sampled_toss, toss
 from contact_dynamics.validation import FloatArray
-from sweeps import sweep
+from sweeps import seeds
 
 FLOOR = Surface(name="floor", p_WS_W=[0, 0, 0], normal_W=[0, 0, 1], friction=0.25, restitution=0.2)
 SIZE = np.array([0.1, 0.08, 0.06])
@@ -75,7 +75,7 @@ def test_samples_tell_the_corners_of_the_list_that_was_given() -> None:
     ]
 
 
-@pytest.mark.parametrize("seed", sweep(12, whole=600))
+@seeds(range(12), slow=range(12, 600))
 def test_two_corners_in_place_of_each_at_any_distance_come_to_rest(seed: int) -> None:
     """From one corner to two that are seen, over all sizes between.
 

@@ -13,6 +13,7 @@ from contact_dynamics.errors import ContactDynamicsError, InvalidFieldError, Not
 from contact_dynamics.rigid_body.body import kinetic_energy
 from contact_dynamics.shapes import box, cylinder, sphere
 from contact_dynamics.toss import Toss, TossEnd, TossEventKind, UndecidedReason, toss
+from sweeps import seeds
 
 G = 9.81
 FLOOR = {"name": "floor", "p_WS_W": [0, 0, 0], "normal_W": [0, 0, 1]}
@@ -45,7 +46,7 @@ def energies(body: Body, went: Toss, times: np.ndarray) -> np.ndarray:
     return np.array([kinetic_energy(mass, one) + mass.mass * G * float(one.p_WB_W[2]) for one in states])
 
 
-@pytest.mark.parametrize("seed", range(12))
+@seeds(range(12))
 def test_energy_never_grows_nothing_penetrates_and_rest_is_rest(seed: int) -> None:
     body, state, world = drawn(seed)
     went = toss(body, state, world, max_alternatives=0)
@@ -70,7 +71,7 @@ def test_energy_never_grows_nothing_penetrates_and_rest_is_rest(seed: int) -> No
     assert after.stamp_ns == 1_000 + round(1e9 * (went.seconds + 100.0))
 
 
-@pytest.mark.parametrize("seed", range(6))
+@seeds(range(6))
 def test_the_motion_has_no_gaps_but_for_impulses(seed: int) -> None:
     body, state, world = drawn(seed)
     went = toss(body, state, world, max_alternatives=0)

@@ -22,6 +22,7 @@ from contact_dynamics.toss.next_strikes import FEWEST_AT_ONCE, SampleEnd, next_s
 from contact_dynamics.toss.solid import solid_of
 from contact_dynamics.toss.uncertainty import EXACT, draw
 from contact_dynamics.world import Body, Surface, World
+from sweeps import seeds
 
 SIZE = (0.1, 0.12, 0.07)
 BRICK = Body(
@@ -49,7 +50,7 @@ def told(state: BodyState, count: int = 200, **given: object) -> TossDistributio
     )  # type: ignore[arg-type]
 
 
-@pytest.mark.parametrize("seed", range(6))
+@seeds(range(6))
 def test_exact_samples_strike_as_the_toss_does(seed: int) -> None:
     """Corner, time and velocities of the next strikes, as the closed form and the single impact have them.
 

@@ -17,7 +17,7 @@ from contact_dynamics.toss import TossEnd, TossEventKind, UndecidedReason, toss
 from contact_dynamics.toss.forces import pushed_by_contacts
 from contact_dynamics.toss.mode_choice import choose_mode
 from contact_dynamics.toss.solid import Held, contacts_of, numbers_of, solid_of
-from sweeps import sweep
+from sweeps import seeds
 
 G = 9.81
 LEAN = 0.2  # by how much the right tip is higher, relative to the distance of the walls
@@ -72,7 +72,7 @@ def test_walls_press_as_little_as_friction_needs() -> None:
 
 @pytest.mark.parametrize("moving", [False, True])
 @pytest.mark.parametrize("facing", [False, True])
-@pytest.mark.parametrize("seed", sweep(1, whole=20))
+@seeds(range(1), slow=range(1, 20))
 def test_rods_between_flats_have_the_modes_that_the_whole_enumeration_finds(
     *, seed: int, facing: bool, moving: bool
 ) -> None:

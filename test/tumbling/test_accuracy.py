@@ -19,6 +19,7 @@ from contact_dynamics.tumbling.polhode import Tumble
 from oracles.tumbling_draws import BODIES, SPINS, Draw, draw
 from oracles.tumbling_exact import ExactMotion, rotation_matrix
 from oracles.tumbling_taylor import integrated
+from sweeps import seeds
 from tumbling.known_motions import MOTIONS, motion_of
 
 TARGET = 5e-15
@@ -92,7 +93,7 @@ def test_known_motions(name: str) -> None:
     assert max(errors(motion, [0.0, 1.0, -7.0, 1e3, -1e6, 1e9, 6e9])) <= TARGET
 
 
-@pytest.mark.parametrize("seed", range(12))
+@seeds(range(12))
 def test_drawn_motions(seed: int) -> None:
     rng = np.random.default_rng(seed)
     motion = motion_from(draw(rng))
@@ -116,8 +117,7 @@ def test_all_but_on_the_middle_axis(w: tuple[float, float, float]) -> None:
         assert max(truth.errors(t, motion.sample(t).q_WB)) <= TARGET
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("seed", range(1000, 3000))
+@seeds((), slow=range(1000, 3000))
 def test_many_drawn_motions(seed: int) -> None:
     rng = np.random.default_rng(seed)
     motion = motion_from(draw(rng))

@@ -13,9 +13,9 @@ from contact_dynamics.contact_modes.planar import wrench_cone as edges
 from contact_modes.evidence import check_evidence
 from oracles.contact_mode_cases import FloatCase, contact, draw, resting, rounded
 from oracles.contact_modes import ExactCase, consistent_modes, kinematic_modes, uniqueness
+from sweeps import seeds
 
 QUICK = range(240)
-SLOW = range(10_000, 13_000)
 
 DEGENERATE = {
     "one contact twice": resting(contact(1, -1), contact(1, -1)),
@@ -76,7 +76,7 @@ def test_degenerate_sets_made_by_hand(name: str) -> None:
     compare(exact, rounded(exact, angle=0.3))
 
 
-@pytest.mark.parametrize("seed", QUICK)
+@seeds(QUICK)
 def test_drawn_sets(seed: int) -> None:
     exact = draw(seed, most_contacts=4)
     answer = compare(exact, rounded(exact))
@@ -84,7 +84,7 @@ def test_drawn_sets(seed: int) -> None:
         assert (mode.forces_unique, mode.motion_unique) == uniqueness(exact, mode.mode)
 
 
-@pytest.mark.parametrize("seed", range(1000, 1040))
+@seeds(range(1000, 1040))
 def test_drawn_sets_turned_and_in_other_units(seed: int) -> None:
     exact = draw(seed, most_contacts=4)
     chance = random.Random(seed)
@@ -100,7 +100,7 @@ def test_drawn_sets_turned_and_in_other_units(seed: int) -> None:
     )
 
 
-@pytest.mark.parametrize("seed", range(2000, 2030))
+@seeds(range(2000, 2030))
 def test_drawn_sets_by_the_arrays_that_large_ones_need(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(cone, "MANY", 3)
     monkeypatch.setattr(edges, "MANY", 0)
@@ -122,8 +122,7 @@ def test_the_draws_reach_every_kind_of_answer() -> None:
     assert any(answer.contact_velocities[0][0] != 0.0 for answer in answers)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("seed", SLOW)
+@seeds((), slow=range(10_000, 13_000))
 def test_many_drawn_sets(seed: int) -> None:
     exact = draw(seed, most_contacts=6)
     answer = compare(exact, rounded(exact))

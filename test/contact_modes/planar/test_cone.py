@@ -13,6 +13,7 @@ import pytest
 from contact_dynamics.contact_modes.planar.cone import PolyhedralCone
 from contact_dynamics.numerics.linear_spaces import orthonormal
 from contact_dynamics.numerics.nonnegative_least_squares import least_force
+from sweeps import seeds
 
 Whole = tuple[int, int, int]
 
@@ -38,7 +39,7 @@ def rank(vectors: list) -> int:
     return int(np.linalg.matrix_rank(np.array(vectors, dtype=float), tol=1e-9)) if vectors else 0
 
 
-@pytest.mark.parametrize("seed", range(300))
+@seeds(range(300))
 def test_rays_of_drawn_cones(seed: int) -> None:
     chance = random.Random(seed)
     size = chance.choice([1, 1, 2, 5])
@@ -51,7 +52,7 @@ def test_rays_of_drawn_cones(seed: int) -> None:
 
 
 @pytest.mark.parametrize("exact", [False, True])
-@pytest.mark.parametrize("seed", range(60))
+@seeds(range(60))
 def test_rays_of_cones_of_many_rows(seed: int, *, exact: bool) -> None:
     chance = random.Random(seed)
     size, height = chance.choice([(2, 2), (3, 4), (9, 9), (9, 40)])

@@ -29,7 +29,7 @@ from contact_dynamics.plane import PlanarBody, PlanarContact, PlanarVelocity, Pl
 from contact_dynamics.plane.lifting import planar_in_space
 from contact_modes.evidence import check_forces
 from oracles.contact_mode_cases import FloatCase, draw, rounded
-from sweeps import sweep
+from sweeps import seeds
 
 G, MU = 9.81, 0.4
 BLOCK = PlanarBody(mass=2.0, inertia=0.05)
@@ -193,7 +193,7 @@ def letters(answer: PlanarModeAnswer) -> tuple[object, ...]:
     return answer.verdict, sorted(mode.mode for mode in answer.modes), answer.kinematic_modes
 
 
-@pytest.mark.parametrize("seed", sweep(60, whole=1000))
+@seeds(range(60), slow=range(60, 1000))
 def test_modes_are_those_of_a_still_problem_with_explicit_pseudo_forces(seed: int) -> None:
     case, motion = rounded(draw(seed, most_contacts=4)), drawn_motion(seed)
     body, velocity, contacts, wrench = case
@@ -227,7 +227,7 @@ def test_modes_are_those_of_a_still_problem_with_explicit_pseudo_forces(seed: in
             assert moving_set.depth(vertex, 1.0) >= -1e-6 * (1.0 + abs(vertex.f[0]) + abs(vertex.f[1]))
 
 
-@pytest.mark.parametrize("seed", sweep(20, whole=300))
+@seeds(range(20), slow=range(20, 300))
 def test_the_plane_agrees_with_space(seed: int) -> None:
     """The same bodies on surfaces that move as one, in the plane and in space, away from ties."""
     chance = np.random.default_rng(seed)

@@ -28,7 +28,7 @@ from contact_dynamics.errors import UndecidedError
 from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
 from contact_modes.evidence import check_evidence, check_forces
 from oracles.contact_modes import ExactCase, ExactContact, consistent_modes, kinematic_modes
-from sweeps import sweep
+from sweeps import seeds
 
 
 def near(chance: random.Random) -> float:
@@ -128,30 +128,14 @@ def check(problem: PlanarContactProblem, *, long_arms: bool = False) -> PlanarMo
     return answer
 
 
-@pytest.mark.parametrize("block", range(3))
-def test_a_load_that_contacts_hold_is_held(block: int) -> None:
-    for seed in range(40 * block, 40 * block + 40):
-        check(drawn(seed))
+@seeds(range(120), slow=range(10_000, 16_000))
+def test_a_load_that_contacts_hold_is_held(seed: int) -> None:
+    check(drawn(seed))
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("block", range(60))
-def test_many_loads_that_contacts_hold_are_held(block: int) -> None:
-    for seed in range(10_000 + 100 * block, 10_100 + 100 * block):
-        check(drawn(seed))
-
-
-@pytest.mark.parametrize("block", range(2))
-def test_friction_up_to_a_million_and_arms_up_to_ten_thousand_hold_their_load(block: int) -> None:
-    for seed in range(20 * block, 20 * block + 20):
-        check(gripping(seed), long_arms=True)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("block", range(30))
-def test_many_frictions_and_arms_hold_their_load(block: int) -> None:
-    for seed in range(5_000 + 50 * block, 5_050 + 50 * block):
-        check(gripping(seed), long_arms=True)
+@seeds(range(40), slow=range(5_000, 6_500))
+def test_friction_up_to_a_million_and_arms_up_to_ten_thousand_hold_their_load(seed: int) -> None:
+    check(gripping(seed), long_arms=True)
 
 
 def many(seed: int, most: int) -> PlanarContactProblem:
@@ -191,21 +175,19 @@ def compare_with_decimals(problem: PlanarContactProblem, monkeypatch: pytest.Mon
     assert [mode.mode for mode in answer.modes] == [mode.mode for mode in exact.modes]
 
 
-@pytest.mark.parametrize("seed", range(4))
+@seeds(range(4))
 def test_hundreds_of_contacts_are_told_apart_as_decimals_do(
     seed: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     compare_with_decimals(many(seed, 250), monkeypatch)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("block", range(30))
-def test_many_sets_of_up_to_a_thousand_contacts(block: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    for seed in range(100 + 4 * block, 104 + 4 * block):
-        compare_with_decimals(many(seed, 1000), monkeypatch)
+@seeds((), slow=range(100, 220))
+def test_many_sets_of_up_to_a_thousand_contacts(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    compare_with_decimals(many(seed, 1000), monkeypatch)
 
 
-@pytest.mark.parametrize("seed", range(60))
+@seeds(range(60))
 def test_the_order_of_contacts_does_not_matter(seed: int) -> None:
     problem = drawn(seed)
     order = list(range(len(problem.contacts)))
@@ -314,20 +296,19 @@ def beyond_all_grip(seed: int) -> PlanarContactProblem:
     return PlanarContactProblem(body=body, contacts=contacts, wrench=wrench, acceleration_tolerance=1e-15)
 
 
-@pytest.mark.parametrize("block", sweep(1, whole=20))
-def test_more_friction_than_can_be_told_apart_is_undecided_and_never_refused(block: int) -> None:
-    for seed in range(50 * block, 50 * block + 50):
-        problem = beyond_all_grip(seed)
-        answer = contact_modes(problem)
-        resting = "f" * len(problem.contacts)
-        assert resting not in {mode.mode for mode in answer.refused}
-        if resting in answer.undecided_modes:
-            assert answer.verdict == ModeVerdict.UNDECIDED
-            assert "friction beyond 1e+10" in answer.undecided
-        try:
-            assert statics(problem).equilibrium != Certainty.NO
-        except UndecidedError:
-            assert resting in answer.undecided_modes
+@seeds(range(50), slow=range(50, 1000))
+def test_more_friction_than_can_be_told_apart_is_undecided_and_never_refused(seed: int) -> None:
+    problem = beyond_all_grip(seed)
+    answer = contact_modes(problem)
+    resting = "f" * len(problem.contacts)
+    assert resting not in {mode.mode for mode in answer.refused}
+    if resting in answer.undecided_modes:
+        assert answer.verdict == ModeVerdict.UNDECIDED
+        assert "friction beyond 1e+10" in answer.undecided
+    try:
+        assert statics(problem).equilibrium != Certainty.NO
+    except UndecidedError:
+        assert resting in answer.undecided_modes
 
 
 def test_more_friction_than_can_be_told_from_less_is_not_called_inconsistent() -> None:

@@ -26,7 +26,7 @@ from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVeloci
 from contact_modes.evidence import planar_problem
 from oracles.contact_mode_cases import contact, draw, resting, rounded
 from oracles.contact_modes import ExactCase, consistent_modes, kinematic_modes
-from sweeps import sweep
+from sweeps import seeds
 
 # Fine enough for the angles between contact rows at these arms, and still far above rounding.
 ACCURACY = 1e-13
@@ -53,20 +53,19 @@ def compare(seed: int, power: int, most_contacts: int) -> None:
 
 
 @pytest.mark.parametrize("power", [-5, -3, -1, 1, 3])
-@pytest.mark.parametrize("seed", range(25))
+@seeds(range(25))
 def test_long_and_short_arms(seed: int, power: int) -> None:
     compare(seed, power, most_contacts=4)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("power", [-5, -4, -3, -2, 2, 3])
-@pytest.mark.parametrize("seed", range(5000, 5300))
+@seeds((), slow=range(5000, 5300))
 def test_many_long_and_short_arms(seed: int, power: int) -> None:
     compare(seed, power, most_contacts=5)
 
 
 @pytest.mark.parametrize("power", [6, 7, 8, 9, 10])
-@pytest.mark.parametrize("seed", [10, 62, 66, 90, 128, 207, 213, 220, 252, 286, *sweep(0, whole=400)])
+@seeds((10, 62, 66, 90, 128, 207, 213, 220, 252, 286), slow=range(400))
 def test_no_friction_up_to_the_limit_gives_a_wrong_verdict(seed: int, power: int) -> None:
     # Each of the first ten seeds had a wrong verdict at 1e9 or 1e10.
     exact = draw(seed, 4)
@@ -96,7 +95,7 @@ def test_a_body_on_two_feet_tips_where_its_weight_passes_a_foot(
     assert {mode.mode for mode in answer.modes} == consistent_modes(case, kinematic_modes(case))
 
 
-@pytest.mark.parametrize("seed", range(60))
+@seeds(range(60))
 def test_numbers_of_any_size_give_finite_evidence(seed: int) -> None:
     chance = random.Random(seed)
 

@@ -20,6 +20,7 @@ from contact_dynamics.contact_modes import (
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
 from oracles.contact_mode_cases import draw, rounded
+from sweeps import seeds
 
 BODY = PlanarBody(mass=2.0, inertia=0.5)
 AT_REST = PlanarVelocity(v=(0.0, 0.0), w=0.0)
@@ -37,7 +38,7 @@ def consistent(
     return {mode.mode for mode in answer.modes}
 
 
-@pytest.mark.parametrize("seed", range(60))
+@seeds(range(60))
 def test_the_map_says_what_the_modes_say(seed: int) -> None:
     body, velocity, contacts, _ = rounded(draw(seed, most_contacts=4))
     sets = wrench_sets(
@@ -76,7 +77,7 @@ def combination(one: PlanarWrenchSet, chance: random.Random) -> PlanarWrench:
     )
 
 
-@pytest.mark.parametrize("seed", range(60))
+@seeds(range(60))
 def test_what_the_generators_make_brings_the_mode_about(seed: int) -> None:
     body, velocity, contacts, _ = rounded(draw(seed, most_contacts=4))
     chance = random.Random(seed)
@@ -117,7 +118,7 @@ def test_the_margin_of_a_resting_block_to_tipping_and_sliding() -> None:
     assert sliding.modes_beyond in {("ll",), ("rr",)}
 
 
-@pytest.mark.parametrize("seed", range(100, 160))
+@seeds(range(100, 160))
 def test_the_margin_is_the_least_change_that_leaves_the_mode(seed: int) -> None:
     body, velocity, contacts, wrench = rounded(draw(seed, most_contacts=3))
     chance = random.Random(seed)
@@ -144,7 +145,7 @@ def test_the_margin_is_the_least_change_that_leaves_the_mode(seed: int) -> None:
                 assert margin.mode in consistent(body, velocity, contacts, pushed)
 
 
-@pytest.mark.parametrize("seed", range(300, 380))
+@seeds(range(300, 380))
 def test_just_inside_the_margin_the_mode_holds_and_just_outside_are_those_told(seed: int) -> None:
     body, velocity, contacts, wrench = rounded(draw(seed, most_contacts=4))
     length = body.radius_of_gyration * random.Random(seed).choice([0.1, 1.0, 10.0])
@@ -197,7 +198,7 @@ def test_a_wrench_in_a_tray_has_modes_like_rsrs() -> None:
     assert len(sets) <= 18
 
 
-@pytest.mark.parametrize("seed", range(200, 260))
+@seeds(range(200, 260))
 def test_margins_are_in_the_order_of_the_answer(seed: int) -> None:
     body, velocity, contacts, wrench = rounded(draw(seed, most_contacts=2))
     answer = contact_modes(

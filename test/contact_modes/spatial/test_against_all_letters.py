@@ -13,6 +13,7 @@ from contact_dynamics.contact.friction import linearised_cone
 from contact_dynamics.contact_modes import ModeVerdict, SpatialContactProblem, contact_modes
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from oracles.spatial_modes import consistent_combinations
+from sweeps import seeds
 
 BODY = MassProperties(mass=2.0, I_B=np.diag([0.3, 0.4, 0.5]))
 NONE = np.zeros(3)
@@ -147,7 +148,7 @@ def test_bodies_that_move(seed: int, motion: str) -> None:
     check(state(v, w), contacts, chance.normal(size=6), 4)
 
 
-@pytest.mark.parametrize("seed", range(6))
+@seeds(range(6))
 def test_bodies_that_pivot_about_an_edge(seed: int) -> None:
     # Both contacts are on the axis, at rest, with centripetal terms; in odd draws a third one turns about it.
     chance = np.random.default_rng(seed)
@@ -174,8 +175,7 @@ def test_ambiguous_and_inconsistent_sets(moving: float) -> None:
     assert numbers == ({0, 1, 2} if moving else {1, 2})
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("seed", range(40))
+@seeds((), slow=range(40))
 def test_drawn_sets_of_three(seed: int) -> None:
     chance = np.random.default_rng(seed)
     points = chance.integers(-1, 2, size=(3, 3)) if seed % 2 else chance.normal(size=(3, 3))

@@ -20,6 +20,7 @@ from contact_dynamics.errors import InvalidFieldError, TooLargeError
 from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from oracles.contact_mode_cases import FloatCase, draw, rounded
+from sweeps import seeds
 
 MASS = 2.0
 WEIGHT = MASS * 10.0
@@ -197,7 +198,7 @@ def in_space(case: FloatCase) -> tuple[MassProperties, BodyState, ContactSet, np
     )
 
 
-@pytest.mark.parametrize("seed", range(40))
+@seeds(range(40))
 def test_every_planar_mode_is_one_in_space(seed: int) -> None:
     case = rounded(draw(seed, most_contacts=2))
     body, now, contacts, wrench = in_space(case)
@@ -289,7 +290,7 @@ def drawn_feet(seed: int) -> tuple[ContactSet, np.ndarray]:
     return contacts, np.array([-15.0, 12.0, -WEIGHT, 0.0, 0.0, 0.0]) + chance.normal(size=6)
 
 
-@pytest.mark.parametrize("seed", range(10))
+@seeds(range(10))
 def test_sharpened_friction_is_coulombs_and_knows_no_facets(seed: int) -> None:
     contacts, wrench = drawn_feet(seed)
     answers = [
@@ -320,7 +321,7 @@ def test_sharpened_friction_is_coulombs_and_knows_no_facets(seed: int) -> None:
     assert few.misdirection <= 1e-8
 
 
-@pytest.mark.parametrize("seed", range(10))
+@seeds(range(10))
 def test_a_pyramid_turns_friction_by_half_a_sector_at_most(seed: int) -> None:
     contacts, wrench = drawn_feet(seed)
     for facets in (6, 24):

@@ -15,11 +15,12 @@ from contact_dynamics.contact_modes.result import applied_wrench
 from contact_dynamics.errors import NoContactError
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.world import Body, Surface, World
+from sweeps import seeds
 
 BODY = MassProperties(mass=0.7, I_B=np.diag([0.02, 0.05, 0.06]))
 
 
-@pytest.mark.parametrize("seed", range(20))
+@seeds(range(20))
 def test_the_applied_wrench_follows_from_each_mode(seed: int) -> None:
     """The body is turned and spins, and up to three contacts leave or stay."""
     random = np.random.default_rng(seed)

@@ -22,6 +22,7 @@ from contact_dynamics.contact_modes import (
 )
 from contact_dynamics.tolerances import FLUSH, FLUSH_ROUGHLY, STRICT
 from oracles.boxes_nearly_flush import MASS, Flush, flush
+from sweeps import seeds
 
 EXACT = 1e-9  # relative: what modes may miss mechanics by, beside what flush contacts differ by
 LEANS = 2.0  # times the tolerance: friction leans with the normal, and so does the sliding that it opposes
@@ -133,7 +134,7 @@ def test_two_thousand_boxes_of_each_decade_are_decided_and_soon(decade: int) -> 
     assert late <= MOST_LATE * BOXES
 
 
-@pytest.mark.parametrize("seed", range(200, 216))
+@seeds(range(200, 216))
 def test_noise_that_counts_as_none_changes_no_verdict_and_no_letter(seed: int) -> None:
     exact = contact_modes(problem_of(flush(seed, 0.0)))
     for noise in (1e-13, 1e-11, 3e-10):

@@ -18,6 +18,7 @@ from contact_dynamics.contact_modes import (
 )
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from oracles.equilibria_in_space import resting
+from sweeps import seeds
 
 AT_REST = BodyState(
     p_WB_W=np.zeros(3), q_WB=np.array([0.0, 0.0, 0.0, 1.0]), v_WB_W=np.zeros(3), w_WB_W=np.zeros(3)
@@ -154,23 +155,12 @@ def test_a_box_that_just_slides_has_one_mode_although_its_feet_share_the_load() 
     assert np.linalg.norm(answer.modes[0].acceleration_W) == pytest.approx(2.5e-5, rel=1e-6)
 
 
-@pytest.mark.parametrize("make", [pivoting, degenerate])
-@pytest.mark.parametrize("block", range(2))
-def test_modes_obey_the_laws(make: Callable[[int], SpatialContactProblem], block: int) -> None:
-    for seed in range(10 * block, 10 * block + 10):
-        check(make(seed))
+@pytest.mark.parametrize("make", [turned_feet, pivoting, degenerate])
+@seeds(range(20), slow=range(20, 1000))
+def test_modes_obey_the_laws(make: Callable[[int], SpatialContactProblem], seed: int) -> None:
+    check(make(seed))
 
 
 @pytest.mark.parametrize("seed", [775, 1306])
 def test_contacts_in_line_or_pinched_are_straight_or_undecided(seed: int) -> None:
     check(degenerate(seed))
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("make", [turned_feet, pivoting, degenerate])
-@pytest.mark.parametrize("block", range(20))
-def test_modes_obey_the_laws_in_a_thousand_draws(
-    make: Callable[[int], SpatialContactProblem], block: int
-) -> None:
-    for seed in range(50 * block, 50 * block + 50):
-        check(make(seed))

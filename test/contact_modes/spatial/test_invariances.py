@@ -9,9 +9,8 @@ import pytest
 from contact_dynamics.contact.contact import ContactSet
 from contact_dynamics.contact_modes import SpatialContactProblem, SpatialModeAnswer, contact_modes
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
-from sweeps import sweep
+from sweeps import seeds, sweep
 
-SEEDS = sweep(8, whole=60)
 INERTIA = np.diag([0.3, 0.4, 0.5])
 
 
@@ -71,7 +70,7 @@ def same_modes(one: SpatialModeAnswer, other: SpatialModeAnswer, turned: np.ndar
         assert min(np.abs(twin - expected).max() for twin in found) <= 1e-6 * (1.0 + np.abs(expected).max())
 
 
-@pytest.mark.parametrize("seed", SEEDS)
+@seeds(range(8), slow=range(8, 60))
 def test_renamed_contacts(seed: int) -> None:
     case = Case(seed)
     before = case.answer()
@@ -82,7 +81,7 @@ def test_renamed_contacts(seed: int) -> None:
     assert sorted(mode.mode for mode in after.modes) == renamed
 
 
-@pytest.mark.parametrize("seed", SEEDS)
+@seeds(range(8), slow=range(8, 60))
 def test_other_axes(seed: int) -> None:
     # A mirror image has its torques and angular accelerations reversed, as axial vectors are.
     mirrored = 1.0 if seed % 4 < 2 else -1.0
@@ -96,7 +95,7 @@ def test_other_axes(seed: int) -> None:
     same_modes(before, case.answer(facets=8), turned, mirrored)
 
 
-@pytest.mark.parametrize("seed", SEEDS)
+@seeds(range(8), slow=range(8, 60))
 def test_other_units_of_mass(seed: int) -> None:
     factor = (1e-6, 1e-2, 1e4)[seed % 3]
     case = Case(seed)

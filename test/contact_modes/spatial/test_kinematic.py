@@ -17,6 +17,7 @@ from contact_dynamics.contact_modes import spatial_kinematic_modes
 from contact_dynamics.contact_modes.spatial import cone as spatial_cone
 from contact_dynamics.errors import InvalidFieldError, TooLargeError
 from contact_dynamics.rigid_body.body import BodyState
+from sweeps import seeds
 
 POSITIVE = 1e-7  # slack, of accelerations up to 1, above which a linear program counts a string as possible
 
@@ -129,7 +130,7 @@ def test_cubes_at_walls(pairs: list) -> None:
     assert set(spatial_kinematic_modes(state(), contacts)) == all_strings(state(), contacts)
 
 
-@pytest.mark.parametrize("seed", range(30))
+@seeds(range(30))
 def test_drawn_sets(seed: int) -> None:
     chance = np.random.default_rng(seed)
     n = int(chance.integers(1, 8))
@@ -146,7 +147,7 @@ def test_drawn_sets(seed: int) -> None:
     assert set(spatial_kinematic_modes(state(), contacts)) == all_strings(state(), contacts)
 
 
-@pytest.mark.parametrize("seed", range(12))
+@seeds(range(12))
 def test_a_body_that_turns_about_its_contacts(seed: int) -> None:
     chance = np.random.default_rng(seed)
     centre = chance.normal(size=3)
@@ -162,7 +163,7 @@ def test_a_body_that_turns_about_its_contacts(seed: int) -> None:
     assert set(spatial_kinematic_modes(now, contacts)) == all_strings(now, contacts)
 
 
-@pytest.mark.parametrize("seed", range(8))
+@seeds(range(8))
 def test_a_spin_about_the_normal_changes_nothing_however_the_table_leans(seed: int) -> None:
     # Its centripetal terms lie in the table, but for rounding.
     turned = np.linalg.qr(np.random.default_rng(seed).normal(size=(3, 3)))[0]
@@ -203,12 +204,12 @@ def test_misuse_is_refused_by_name() -> None:
         spatial_kinematic_modes(state(), contact_set(TABLE), velocity_tolerance=-1.0)
 
 
-@pytest.mark.parametrize("draw", range(40))
-def test_rays_by_choice_are_those_of_a_hull(draw: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    rng = np.random.default_rng(draw)
+@seeds(range(40))
+def test_rays_by_choice_are_those_of_a_hull(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    rng = np.random.default_rng(seed)
     d, m = int(rng.integers(3, 7)), int(rng.integers(6, 10))
     inner = rng.standard_normal(d)
-    rows = rng.integers(-2, 3, (m, d)) if draw % 2 else rng.standard_normal((m, d))
+    rows = rng.integers(-2, 3, (m, d)) if seed % 2 else rng.standard_normal((m, d))
     rows = rows * np.sign(rows @ inner)[:, None]
     rows = rows[rows @ inner > 0.0]
     rows /= np.linalg.norm(rows, axis=1)[:, None]

@@ -9,7 +9,7 @@ import pytest
 from contact_dynamics import BodyState, ContactSet, MassProperties
 from contact_dynamics.contact_modes import SpatialContactProblem, contact_modes
 from contact_dynamics.contact_modes.result import SpatialModeAnswer
-from sweeps import sweep
+from sweeps import seeds
 
 CUBE = MassProperties(mass=1.0, I_B=np.eye(3) / 6.0)
 AT_REST = BodyState(p_WB_W=np.zeros(3), q_WB=[0.0, 0.0, 0.0, 1.0], v_WB_W=np.zeros(3), w_WB_W=np.zeros(3))
@@ -51,7 +51,7 @@ def least_by_projections(A: np.ndarray, b: np.ndarray, normals: np.ndarray, mu: 
     return x.reshape(-1, 3)
 
 
-@pytest.mark.parametrize("seed", sweep(12, whole=400))
+@seeds(range(12), slow=range(12, 400))
 def test_forces_of_a_body_at_rest_are_those_of_alternating_projections(seed: int) -> None:
     chance = np.random.default_rng(seed)
     n = int(chance.integers(3, 9))

@@ -13,6 +13,7 @@ from contact_dynamics.contact.friction import linearised_cone
 from contact_dynamics.contact_modes import ModeVerdict, SpatialContactProblem, contact_modes
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from oracles.pressed_feet import drawn_loads, motion_under
+from sweeps import seeds
 
 MASS, WEIGHT, FRICTION = 2.0, 20.0, 0.4
 BODY = MassProperties(mass=MASS, I_B=np.diag([0.3, 0.4, 0.5]))
@@ -81,7 +82,7 @@ def test_a_box_that_may_turn_on_32_feet_is_decided_in_few_trials() -> None:
     assert answer.examined <= 100 * 32  # with care throughout it would be 150, each of a millisecond
 
 
-@pytest.mark.parametrize("seed", range(4))
+@seeds(range(4))
 def test_one_mode_stands_for_all_with_its_letters(seed: int) -> None:
     chance = np.random.default_rng(seed)
     contacts = ring(7)

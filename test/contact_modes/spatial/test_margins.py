@@ -21,7 +21,7 @@ from contact_dynamics.contact_modes import (
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from oracles.modes_on_planes import INERTIA, MASS, made
-from sweeps import sweep
+from sweeps import seeds
 
 WEIGHT = 20.0
 BODY = MassProperties(mass=2.0, I_B=np.diag([0.3, 0.4, 0.5]))
@@ -138,7 +138,7 @@ def turning_case(seed: int) -> tuple[BodyState, ContactSet, np.ndarray]:
     return state(tuple(-np.cross(w, centre)), tuple(w)), contacts, 3.0 * chance.normal(size=6)
 
 
-@pytest.mark.parametrize("seed", range(12))
+@seeds(range(12))
 def test_no_smaller_change_ends_a_mode_and_the_stated_one_does(seed: int) -> None:
     now, contacts, wrench = turning_case(seed)
     chance = np.random.default_rng(seed + 100)
@@ -235,7 +235,7 @@ def check_margin(problem: SpatialContactProblem, margin: SpatialModeMargin, ways
         assert margin.mode in modes_at(problem, change)
 
 
-@pytest.mark.parametrize("seed", range(8))
+@seeds(range(8))
 def test_margins_of_a_foot_are_exact(seed: int) -> None:
     chance = np.random.default_rng(seed)
     foot = ContactSet(p_WC_W=chance.normal(size=(1, 3)), normals_W=[0.0, 0.0, 1.0], frictions=0.3)
@@ -267,7 +267,7 @@ def pushed_and_turned(seed: int) -> SpatialContactProblem:
     )
 
 
-@pytest.mark.parametrize("seed", sweep(3, whole=40))
+@seeds(range(3), slow=range(3, 40))
 def test_margins_of_boxes_that_begin_to_slide_and_to_turn_are_exact(seed: int) -> None:
     """Their feet can share the load in many ways, and the mode ends where the last of them does."""
     asked = pushed_and_turned(seed)
@@ -302,7 +302,7 @@ def on_cone(problem: SpatialContactProblem, change: np.ndarray, *, around: bool)
     return bool(found.status == 0)
 
 
-@pytest.mark.parametrize("seed", sweep(4, whole=60))
+@seeds(range(4), slow=range(4, 60))
 def test_margins_of_bodies_that_stick_are_between_those_of_fine_pyramids(seed: int) -> None:
     chance = np.random.default_rng(seed)
     n = int(chance.integers(3, 6))
@@ -328,7 +328,7 @@ def test_margins_of_bodies_that_stick_are_between_those_of_fine_pyramids(seed: i
         assert on_cone(asked, change, around=False)
 
 
-@pytest.mark.parametrize("seed", sweep(6, whole=100))
+@seeds(range(6), slow=range(6, 100))
 def test_margins_do_not_depend_on_the_facets(seed: int) -> None:
     case = made(seed, most=4)
     asked = SpatialContactProblem(

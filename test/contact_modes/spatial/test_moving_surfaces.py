@@ -21,7 +21,7 @@ from contact_dynamics.contact_modes import (
 )
 from contact_dynamics.errors import InvalidFieldError, NotSupportedError
 from oracles.relative_motion import RigidMotion, over
-from sweeps import sweep
+from sweeps import seeds
 
 G = 9.81
 UP = (0.0, 0.0, 1.0)
@@ -327,7 +327,7 @@ def check_laws(problem: cd.SpatialContactProblem, motions: list[RigidMotion], mo
 
 
 @pytest.mark.parametrize("one_motion", [True, False])
-@pytest.mark.parametrize("seed", sweep(25, whole=400))
+@seeds(range(25), slow=range(25, 400))
 def test_modes_obey_the_laws_by_how_points_move_over_their_surfaces(seed: int, *, one_motion: bool) -> None:
     problem, motions = moving_problem(seed, one_motion=one_motion)
     answer = cd.contact_modes(problem)
@@ -336,7 +336,7 @@ def test_modes_obey_the_laws_by_how_points_move_over_their_surfaces(seed: int, *
         check_laws(problem, motions, mode)
 
 
-@pytest.mark.parametrize("seed", sweep(15, whole=200))
+@seeds(range(15), slow=range(15, 200))
 def test_modes_are_those_of_a_still_problem_with_explicit_pseudo_forces(seed: int) -> None:
     """A still world, and the same seen from a frame that turns and accelerates, with its pseudo-forces."""
     chance = np.random.default_rng(1000 + seed)
@@ -391,7 +391,7 @@ def test_modes_are_those_of_a_still_problem_with_explicit_pseudo_forces(seed: in
 
 
 @pytest.mark.parametrize("one_motion", [True, False])
-@pytest.mark.parametrize("seed", sweep(6, whole=100))
+@seeds(range(6), slow=range(6, 100))
 def test_a_common_velocity_and_the_order_of_contacts_do_not_matter(seed: int, *, one_motion: bool) -> None:
     problem, _ = moving_problem(seed, one_motion=one_motion)
     first = cd.contact_modes(problem)
@@ -412,7 +412,7 @@ def test_a_common_velocity_and_the_order_of_contacts_do_not_matter(seed: int, *,
                 np.testing.assert_allclose(same.acceleration_W, mode.acceleration_W, atol=1e-6)
 
 
-@pytest.mark.parametrize("seed", sweep(20, whole=400))
+@seeds(range(20), slow=range(20, 400))
 def test_no_mode_is_missed_where_all_contacts_slide(seed: int) -> None:
     """Friction is then known, so that each string of s and c is one system of linear equations."""
     problem, motions = moving_problem(seed, one_motion=False)
@@ -460,7 +460,7 @@ def test_no_mode_is_missed_where_all_contacts_slide(seed: int) -> None:
 
 
 @pytest.mark.parametrize("one_motion", [True, False])
-@pytest.mark.parametrize("seed", sweep(8, whole=100))
+@seeds(range(8), slow=range(8, 100))
 def test_margins_end_the_mode_and_no_smaller_change_does(seed: int, *, one_motion: bool) -> None:
     problem, _ = moving_problem(seed, one_motion=one_motion)
     answer = cd.contact_modes(problem)
@@ -475,7 +475,7 @@ def test_margins_end_the_mode_and_no_smaller_change_does(seed: int, *, one_motio
 
 
 @pytest.mark.parametrize("one_motion", [True, False])
-@pytest.mark.parametrize("seed", sweep(3, whole=30))
+@seeds(range(3), slow=range(3, 30))
 def test_the_applied_wrench_lies_in_the_set_of_each_of_its_modes(seed: int, *, one_motion: bool) -> None:
     problem, _ = moving_problem(seed, one_motion=one_motion)
     problem = replace(problem, friction_facets=4, sharpen=False)

@@ -21,7 +21,7 @@ from contact_dynamics.contact_modes import (
 from contact_dynamics.errors import TooLargeError, UndecidedError
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from oracles.equilibria_in_space import KINDS, Resting, resting, rough
-from sweeps import sweep
+from sweeps import seeds
 
 AT_REST = BodyState(
     p_WB_W=np.zeros(3), q_WB=np.array([0.0, 0.0, 0.0, 1.0]), v_WB_W=np.zeros(3), w_WB_W=np.zeros(3)
@@ -58,19 +58,12 @@ def check_sticking(problem: SpatialContactProblem) -> None:
     assert np.abs(still[0].contact_accelerations_W).max() <= HELD * alone
 
 
-@pytest.mark.parametrize("seed", [*range(12), 2077])  # the last one went in circles in a linear program
+@seeds([*range(12), 2077], slow=range(12, 6000))  # 2077 went in circles in a linear program
 def test_a_body_at_rest_by_construction_may_stick(seed: int) -> None:
     check_sticking(problem_of(resting(seed)))
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("block", range(60))
-def test_thousands_of_bodies_at_rest_by_construction_may_stick(block: int) -> None:
-    for seed in range(100 * block, 100 * block + 100):
-        check_sticking(problem_of(resting(seed)))
-
-
-@pytest.mark.parametrize("seed", range(8))
+@seeds(range(8), slow=range(8, 1000))
 def test_friction_up_to_a_million_and_arms_of_ten_thousand_radii_of_gyration(seed: int) -> None:
     case, gyration = rough(seed)
     body = MassProperties(mass=1.0, I_B=gyration**2 * np.diag([0.6, 0.8, 1.0]))
@@ -83,15 +76,6 @@ def test_statics_do_not_deny_what_wide_cones_hold(seed: int) -> None:
     body = MassProperties(mass=1.0, I_B=gyration**2 * np.diag([0.6, 0.8, 1.0]))
     with contextlib.suppress(UndecidedError):
         assert statics(problem_of(case, body)).equilibrium != Certainty.NO
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("block", range(20))
-def test_any_friction_and_any_arms(block: int) -> None:
-    for seed in range(50 * block, 50 * block + 50):
-        case, gyration = rough(seed)
-        body = MassProperties(mass=1.0, I_B=gyration**2 * np.diag([0.6, 0.8, 1.0]))
-        check_sticking(problem_of(case, body))
 
 
 @pytest.mark.parametrize("angle", [1e-12, 1e-11, 1e-10, 1e-9, 1e-8, 1e-7, 1e-6, 1e-5, 1e-4])
@@ -118,7 +102,7 @@ def test_two_contacts_side_by_side_far_from_the_centre(gap: float) -> None:
     )
 
 
-@pytest.mark.parametrize("seed", sweep(len(KINDS), whole=4 * len(KINDS)))
+@seeds(range(len(KINDS)), slow=range(len(KINDS), 4 * len(KINDS)))
 def test_questions_about_one_case_do_not_contradict_each_other(seed: int) -> None:
     problem = problem_of(resting(seed, max_friction=1.0))
     n = len(problem.contacts)
@@ -142,7 +126,7 @@ def test_questions_about_one_case_do_not_contradict_each_other(seed: int) -> Non
         assert still.depth(problem.wrench_W, 1.0) >= -2.0 * short * float(np.abs(forces).sum())
 
 
-@pytest.mark.parametrize("seed", range(len(KINDS)))
+@seeds(range(len(KINDS)))
 def test_contacts_in_another_order_have_the_same_modes(seed: int) -> None:
     case = resting(seed)
     order = np.random.default_rng(seed).permutation(len(case.points))

@@ -27,6 +27,7 @@ from contact_dynamics.contact_modes import (
 from contact_dynamics.errors import TooLargeError, UndecidedError
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from oracles.equilibria_in_space import KINDS, resting
+from sweeps import seeds
 
 AT_REST = BodyState(
     p_WB_W=np.zeros(3), q_WB=np.array([0.0, 0.0, 0.0, 1.0]), v_WB_W=np.zeros(3), w_WB_W=np.zeros(3)
@@ -240,7 +241,7 @@ def test_hundreds_of_answers_do_not_contradict_each_other(block: int) -> None:
     assert undecided.count("") >= 10
 
 
-@pytest.mark.parametrize("seed", range(len(KINDS)))
+@seeds(range(len(KINDS)))
 def test_statics_do_not_depend_on_the_order_of_contacts(seed: int) -> None:
     problem = drawn(3 * seed).problem
     order = np.random.default_rng(seed).permutation(len(problem.contacts))

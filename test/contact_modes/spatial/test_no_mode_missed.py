@@ -18,7 +18,7 @@ from contact_dynamics.contact_modes import (
 )
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from oracles.modes_on_planes import INERTIA, MASS, Made, made, worst_violation
-from sweeps import sweep
+from sweeps import seeds
 
 NEAR = 0.01  # relative, of accelerations: modes whose directions of sliding differ by 1e-3 rad count as one
 EXACT = 1e-9
@@ -91,7 +91,7 @@ def test_a_body_that_slides_at_all_contacts_but_one_may_stick_there_or_begin_to_
     assert [mode.mode for mode in answer.modes] == modes
 
 
-@pytest.mark.parametrize("seed", sweep(12, whole=300))
+@seeds(range(12), slow=range(12, 300))
 def test_modes_are_listed_in_the_order_of_their_letters(seed: int) -> None:
     order = {"s": 0, "f": 1, "c": 2}
     keys = [[order[letter] for letter in mode.mode] for mode in contact_modes(problem_of(made(seed))).modes]
@@ -116,7 +116,7 @@ def test_no_mode_that_was_made_on_planes_is_missed_in_twenty_thousand_draws(bloc
     assert places["unproven"] <= 0.02 * BLOCK
 
 
-@pytest.mark.parametrize("seed", sweep(12, whole=300))
+@seeds(range(12), slow=range(12, 300))
 def test_the_answer_does_not_depend_on_the_facets(seed: int) -> None:
     case = made(seed)
     answers = [contact_modes(problem_of(case, facets)) for facets in (3, 8, 24)]

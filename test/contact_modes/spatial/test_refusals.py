@@ -18,7 +18,7 @@ from contact_dynamics.contact_modes import (
     spatial_kinematic_modes,
 )
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
-from sweeps import sweep
+from sweeps import seeds
 
 MASS, WEIGHT, HEIGHT = 2.0, 20.0, 0.2
 BODY = MassProperties(mass=MASS, I_B=np.diag([0.3, 0.4, 0.5]))
@@ -100,7 +100,7 @@ def test_feet_that_slide_already_have_known_forces() -> None:
         assert one.amount < 0.0
 
 
-@pytest.mark.parametrize("seed", sweep(4, whole=24))
+@seeds(range(4), slow=range(4, 24))
 def test_the_least_change_is_what_the_string_is_short_of(seed: int) -> None:
     # As in the definition: less than that in any direction leaves the string refused.
     chance = np.random.default_rng(seed)

@@ -18,7 +18,7 @@ from contact_dynamics.contact_modes import (
 )
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from oracles.one_contact_in_space import all_modes
-from sweeps import sweep
+from sweeps import seeds
 
 AT_REST = BodyState(
     p_WB_W=np.zeros(3), q_WB=np.array([0.0, 0.0, 0.0, 1.0]), v_WB_W=np.zeros(3), w_WB_W=np.zeros(3)
@@ -54,17 +54,9 @@ def check_one_contact(seed: int) -> None:
     assert all(mode.misdirection <= STRAIGHT for mode in answer.modes)
 
 
-@pytest.mark.parametrize("block", range(4))
-def test_one_contact_has_the_modes_of_its_round_cone(block: int) -> None:
-    for seed in range(25 * block, 25 * block + 25):
-        check_one_contact(seed)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("block", range(100))
-def test_one_contact_has_the_modes_of_its_round_cone_in_ten_thousand_draws(block: int) -> None:
-    for seed in range(100 * block, 100 * block + 100):
-        check_one_contact(seed)
+@seeds(range(100), slow=range(100, 10_000))
+def test_one_contact_has_the_modes_of_its_round_cone(seed: int) -> None:
+    check_one_contact(seed)
 
 
 def test_one_contact_sticks_with_friction_between_the_edges_of_a_pyramid() -> None:
@@ -99,7 +91,7 @@ def test_a_box_sticks_up_to_the_angle_of_friction_in_any_direction(
     assert holds == (Certainty.CERTAIN if mode == "ffff" else Certainty.NO)
 
 
-@pytest.mark.parametrize("seed", sweep(10, whole=60))
+@seeds(range(10), slow=range(10, 60))
 def test_friction_of_few_contacts_is_straight_against_their_sliding(seed: int) -> None:
     chance = np.random.default_rng(seed)
     n = int(chance.integers(2, 5))

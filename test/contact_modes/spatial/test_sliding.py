@@ -15,6 +15,7 @@ from contact_dynamics.contact_modes import spatial_kinematic_modes, spatial_slid
 from contact_dynamics.errors import InvalidFieldError, TooLargeError
 from contact_dynamics.numerics.vectors import tangents_towards
 from contact_dynamics.rigid_body.body import BodyState
+from sweeps import seeds
 
 X, Y, Z = np.eye(3)
 WAYS = "0123456789ABCDEF"
@@ -135,7 +136,7 @@ def test_a_box_at_two_walls_has_these_modes_and_no_others() -> None:
     assert seen <= set(modes)
 
 
-@pytest.mark.parametrize("seed", range(6))
+@seeds(range(6))
 def test_contacting_modes_are_those_without_the_ways(seed: int) -> None:
     contacts = drawn(seed)
     at_rest = BodyState(

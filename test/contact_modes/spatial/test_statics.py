@@ -23,6 +23,7 @@ from contact_dynamics.contact_modes import (
 from contact_dynamics.errors import InvalidFieldError, TooLargeError, UndecidedError
 from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarWrench
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
+from sweeps import seeds
 
 WEIGHT, MU, HEIGHT = 20.0, 0.5, 0.25
 BODY = MassProperties(mass=2.0, I_B=0.7 * np.eye(3))
@@ -149,7 +150,7 @@ def test_two_fingers_wedge_up_to_the_angle_of_friction_in_any_direction(heading:
     assert found.wedged == (more < 0.0)
 
 
-@pytest.mark.parametrize("seed", range(16))
+@seeds(range(16))
 def test_planar_cases_have_the_planes_answer(seed: int) -> None:
     """Contacts in pairs on both sides of the plane, and a wrench within it."""
     chance = np.random.default_rng(seed)
@@ -258,7 +259,7 @@ def can_balance(found: ContactSet, wrench: np.ndarray, share: float) -> bool:
     return bool(found_forces.status == 0)
 
 
-@pytest.mark.parametrize("seed", range(12))
+@seeds(range(12))
 def test_linear_programs_over_the_forces_agree(seed: int) -> None:
     """The answer lies between pyramids inside ours and cones around ours. There are many coincidences."""
     chance = np.random.default_rng(seed)

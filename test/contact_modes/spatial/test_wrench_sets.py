@@ -21,6 +21,7 @@ from contact_dynamics.contact_modes import (
 )
 from contact_dynamics.errors import InvalidFieldError, TooLargeError
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
+from sweeps import seeds
 
 BODY = MassProperties(mass=2.0, I_B=np.diag([0.3, 0.4, 0.5]))
 LENGTH = 0.45  # m, about the radius of gyration
@@ -119,7 +120,7 @@ def test_the_same_of_bodies_that_move(seed: int, kind: str) -> None:
     check(state(v, w), contact_set(points, normals, [0.5, 1.5]), 3.0 * chance.normal(size=6), 4)
 
 
-@pytest.mark.parametrize("seed", range(4))
+@seeds(range(4))
 def test_three_contacts_with_much_friction(seed: int) -> None:
     chance = np.random.default_rng(seed)
     contacts = contact_set(
@@ -283,7 +284,7 @@ def test_one_foot_has_sets_all_around() -> None:
     )
 
 
-@pytest.mark.parametrize("seed", range(6))
+@seeds(range(6))
 def test_depths_in_pyramids_inside_and_around_the_cones_bound_the_margins(seed: int) -> None:
     wrench = DOWN + np.random.default_rng(seed).normal(size=6)
     wider = 1.0 / math.cos(math.pi / 8)

@@ -15,6 +15,7 @@ from contact_dynamics.impact import (
 )
 from contact_dynamics.rigid_body.body import inverse_mass_matrix, kinetic_energy
 from oracles import impact_interleaved
+from sweeps import seeds
 
 
 def landing(seed: int) -> tuple[MassProperties, BodyState, ContactSet]:
@@ -62,7 +63,7 @@ def test_brute_force_never_leaves_the_bounds(seed: int) -> None:
         assert (after <= outcomes.highest_W + scale).all()
 
 
-@pytest.mark.parametrize("seed", range(3))
+@seeds(range(3))
 def test_what_is_drawn_is_within_the_bounds_and_creates_no_energy(seed: int) -> None:
     body, state, contacts = landing(seed)
     outcomes = outcomes_over_interleavings(body, state, contacts, samples=50)

@@ -26,6 +26,7 @@ from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVeloci
 from contact_dynamics.rigid_body.body import BodyState, MassProperties, kinetic_energy
 from contact_modes.evidence import planar_problem
 from oracles.contact_mode_cases import FloatCase, draw, rounded
+from sweeps import seeds
 
 AXES = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0))
 OUT = np.array([0.0, 0.0, 1.0])
@@ -232,7 +233,7 @@ def test_misuse_is_refused_by_name() -> None:
         jamming_impact(body, state, touching, force_W=(0, 0, -1), friction_facets=2)
 
 
-@pytest.mark.parametrize("seed", range(20))
+@seeds(range(20))
 def test_complementarity_of_positive_definite_problems(seed: int) -> None:
     chance = np.random.default_rng(seed)
     m = int(chance.integers(1, 12))

@@ -31,6 +31,7 @@ from contact_dynamics.rigid_body.body import (
     momentum,
 )
 from oracles import impact_in_turn
+from sweeps import seeds
 
 IDENTITY = np.array([0.0, 0.0, 0.0, 1.0])
 CUBE = MassProperties(mass=0.5, I_B=0.5 * 0.1**2 / 6.0 * np.eye(3))
@@ -371,7 +372,7 @@ def corners(seed: int, order: tuple[int, ...]) -> tuple[MassProperties, BodyStat
     return MassProperties(mass=1.0, I_B=np.diag([0.02, 0.03, 0.04])), state, contacts
 
 
-@pytest.mark.parametrize("seed", range(4))
+@seeds(range(4))
 def test_the_simultaneous_outcome_does_not_depend_on_the_list(seed: int) -> None:
     outcomes = []
     for order in ((0, 1, 2, 3), (3, 2, 1, 0), (2, 0, 3, 1)):
@@ -395,7 +396,7 @@ def test_solutions_at_once_are_told_with_their_spread() -> None:
     assert solutions.spread.max() > 0.01
 
 
-@pytest.mark.parametrize("seed", range(12))
+@seeds(range(12))
 def test_the_default_order_is_among_the_orders(seed: int) -> None:
     body, state, contacts = corners(seed, (0, 1, 2, 3))
     answer = several_impact(body, state, contacts)

@@ -18,7 +18,7 @@ from contact_dynamics.impact import (
     several_impact,
 )
 from contact_dynamics.rigid_body.body import BodyState, MassProperties, kinetic_energy
-from sweeps import sweep
+from sweeps import seeds
 
 LEVEL = [0.0, 0.0, 0.0, 1.0]
 MIRROR = np.array([-1.0, 1.0, 1.0])
@@ -64,7 +64,7 @@ def velocities(state: BodyState) -> np.ndarray:
     return np.concatenate([state.v_WB_W, state.w_WB_W])
 
 
-@pytest.mark.parametrize("seed", sweep(20, whole=402))
+@seeds(range(20), slow=range(20, 402))
 def test_ties_know_no_list_no_hand_and_no_axes_and_make_no_energy(seed: int) -> None:
     body, state, contacts = tied(seed)
     rng = np.random.default_rng(seed)

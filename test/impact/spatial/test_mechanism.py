@@ -28,6 +28,7 @@ from contact_dynamics.impact import (
 )
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from impact.spatial.drawn_problem import random_body, random_problem, random_rotation, solve
+from sweeps import seeds
 
 UP = (0.0, 0.0, 1.0)
 
@@ -63,7 +64,7 @@ def test_a_body_known_by_its_response_strikes_as_the_body_does(law: RestitutionL
         agrees(found, expected, 1e-11)  # paths that turn long amplify rounding
 
 
-@pytest.mark.parametrize("seed", range(10))
+@seeds(range(10))
 def test_the_responses_of_two_that_strike_each_other_add(seed: int) -> None:
     rng = np.random.default_rng(seed)
     bodies = [random_body(rng) for _ in range(2)]

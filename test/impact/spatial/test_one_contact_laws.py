@@ -12,6 +12,7 @@ from contact_dynamics.contact.contact import Contact
 from contact_dynamics.impact import PathEvent, RestitutionLaw, spatial_impact
 from contact_dynamics.rigid_body.body import BodyState, MassProperties, kinetic_energy
 from impact.spatial.drawn_problem import IDENTITY, random_problem, random_rotation, solve
+from sweeps import seeds
 
 
 @pytest.mark.parametrize("law", RestitutionLaw)
@@ -120,7 +121,7 @@ def test_mirrored_problems_have_mirrored_answers_to_the_last_bit(law: Restitutio
     assert other.state.w_WB_W.tolist() == (-answer.state.w_WB_W * mirror).tolist()
 
 
-@pytest.mark.parametrize("seed", range(40))
+@seeds(range(40))
 def test_the_laws_agree_where_a_body_falls_without_spin(seed: int) -> None:
     """The contact then slides in one direction throughout, or sticks throughout: the path is straight."""
     rng = np.random.default_rng(seed)
