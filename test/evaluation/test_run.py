@@ -40,12 +40,20 @@ def test_the_arguments_name_what_the_settings_have() -> None:
     assert evaluate_parser().parse_args(["--horizons", "20,50,100,200"]).horizons == default.horizons
 
 
-def test_everything_it_writes_has_the_same_rows(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+@pytest.fixture(scope="module")
+def evaluated(tmp_path_factory: pytest.TempPathFactory) -> list[str]:
+    """The arguments for the brick's recording, with a folder of results in which it is after the first."""
+    return [BRICK, *QUICK, "--results", str(tmp_path_factory.mktemp("results"))]
+
+
+def test_everything_it_writes_has_the_same_rows(
+    evaluated: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     parquet = pytest.importorskip("pyarrow.parquet", reason="pyarrow is not installed")
     pytest.importorskip("matplotlib", reason="matplotlib of requirements/test.txt is not installed")
     names = {kind: tmp_path / f"out.{kind}" for kind in ("json", "csv", "parquet")}
     files = [text for kind, path in names.items() for text in (f"--{kind}", str(path))]
-    assert main([BRICK, *QUICK, *files, "--plots", str(tmp_path / "plots")]) == 0
+    assert main([*evaluated, *files, "--plots", str(tmp_path / "plots")]) == 0
     printed = capsys.readouterr().out
     assert "events: 4 flight, 4 landing, 3 impact, 1 rest, 1 sliding" in printed
     assert "first contacts: when, where and how does it land?  (brick on floor)" in printed
@@ -68,8 +76,8 @@ def test_everything_it_writes_has_the_same_rows(tmp_path: Path, capsys: pytest.C
     assert all((tmp_path / "plots" / name).read_bytes().startswith(b"\x89PNG") for name in drawn)
 
 
-def test_the_picture_has_each_event_measured_and_predicted(tmp_path: Path) -> None:
-    assert main([BRICK, *QUICK, "--rerun", str(tmp_path / "events.rrd")]) == 0
+def test_the_picture_has_each_event_measured_and_predicted(evaluated: list[str], tmp_path: Path) -> None:
+    assert main([*evaluated, "--rerun", str(tmp_path / "events.rrd")]) == 0
     paths = read_drawn(tmp_path / "events.rrd").entities
     events = {path.split("/")[2] for path in paths if path.startswith("/events/")}
     assert len(events) == 6  # 4 landings, with their flights and impacts, a slide and a rest
@@ -85,11 +93,11 @@ def test_the_picture_has_each_event_measured_and_predicted(tmp_path: Path) -> No
 def test_a_folder_is_searched_and_what_is_bad_in_it_is_named(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    write_log(tmp_path / "deep" / "log")
+    write_log(tmp_path / "deep" / "log", until=BRIEF)
     (tmp_path / "bad.mcap").write_bytes(b"no log")
     assert main([str(tmp_path), str(tmp_path / "nowhere"), *QUICK]) == 1
     printed = capsys.readouterr().out
-    assert printed.startswith("1 recording, 480 states")
+    assert printed.startswith("1 recording, 193 states")
     assert "not evaluated: 2 recordings" in printed
     assert f"{tmp_path / 'bad.mcap'}: NotALogError" in printed
     assert says(printed, f"{tmp_path / 'nowhere'} must be ..., got no such file or folder")
@@ -100,7 +108,7 @@ def test_a_folder_is_searched_and_what_is_bad_in_it_is_named(
 
 
 def test_another_configuration_is_compared_on_the_same_events(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    evaluated: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """With no friction and no restitution the brick's impacts are predicted far worse, its flights alike."""
     toss = read_toss()
@@ -109,7 +117,7 @@ def test_another_configuration_is_compared_on_the_same_events(
     parameters[f"surface.{toss.surface.name}.restitution"] = 0.0
     other = tmp_path / "other.yaml"
     other.write_text(json.dumps({"/**": {"ros__parameters": parameters}}), encoding="utf-8")
-    assert main([BRICK, *QUICK, "--against", str(other)]) == 0
+    assert main([*evaluated, "--against", str(other)]) == 0
     lines = capsys.readouterr().out.splitlines()
     place = next(line.split() for line in lines if "flight, 50 ms, fit" in line and "place" in line)
     speed = next(line.split() for line in lines if "impact, 50 ms, poisson" in line and "velocity" in line)
@@ -118,10 +126,10 @@ def test_another_configuration_is_compared_on_the_same_events(
 
 
 def test_two_results_are_compared_and_equal_ones_do_not_differ(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    evaluated: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     before = tmp_path / "before.json"
-    assert main([BRICK, *QUICK, "--json", str(before)]) == 0
+    assert main([*evaluated, "--json", str(before)]) == 0
     assert main([BRICK, *QUICK, "--against", str(before)]) == 0
     table = capsys.readouterr().out.partition("from A, ")[2].splitlines()
     rows = [line for line in table if " ms, " in line and "error" not in line]

@@ -62,14 +62,14 @@ def test_chance_is_called_significant_as_often_as_stated() -> None:
     """Events of one recording share their luck; taken as independent, they would be called far too often."""
     random = np.random.default_rng(3)
     wrong = 0
-    for _ in range(200):
+    for _ in range(80):
         luck = random.standard_normal((10, 1))  # what a recording does to one of the two
         errors = 5.0 + random.standard_normal((10, 6))
         (found,) = changes(
             evaluation(errors), evaluation(errors + luck + 0.1 * random.standard_normal((10, 6)))
         )
         wrong += found.probability < 0.05
-    assert wrong <= 20  # of 200 at 5 %: 10, and three deviations more
+    assert wrong <= 10  # of 80 at 5 %: 4, and three deviations more
 
 
 def test_few_recordings_are_compared_by_events_and_it_is_said() -> None:

@@ -47,14 +47,14 @@ def test_without_noise_strikes_are_found_where_they_are() -> None:
 
 def test_errors_of_strikes_are_as_large_as_stated() -> None:
     states, times = [], []
-    for seed in range(25):
+    for seed in range(12):
         known = toss(LEGS, at_rest=0.2, p_noise=P_NOISE, q_noise=Q_NOISE, seed=seed)
         strikes = find_strikes(as_toss(known))
         assert len(strikes) == 2
         for strike, (time, before, after) in zip(strikes, known.strikes, strict=True):
             times.append((strike.time - time) / strike.time_std)
             states += [scores(strike.before, before), scores(strike.after, after)]
-    # 50 times; 100 states, of which one strike's two share its time, so that some 50 are independent
+    # 24 times; 48 states, of which one strike's two share its time, so that some 24 are independent
     assert 0.6 < np.std(times) < 1.4
     for part in np.split(np.array(states), 4, axis=1):
         assert 0.7 < part.std() < 1.25

@@ -13,6 +13,7 @@ import pytest
 
 pytest.importorskip("matplotlib", reason="matplotlib of requirements/test.txt is not installed")
 
+from contact_dynamics.command_line import main as command_line
 from contact_dynamics.diagrams.impulse_space import main_contact
 from contact_dynamics.impact.law import PathEvent
 from contact_dynamics.plots.run import NO_LOG, NOTHING_DRAWN, main
@@ -28,24 +29,14 @@ import sys
 class Missing:
     def find_spec(self, name, path=None, target=None):
         first = name.partition(".")[0]
-        if first in {names} or first.endswith(("_msgs", "_interfaces")):
-            raise ModuleNotFoundError(f"No module named {{name!r}}", name=name)
+        named = first in {"rclpy", "rpyutils", "ament_index_python", "rerun"}
+        if named or first.endswith(("_msgs", "_interfaces")):
+            raise ModuleNotFoundError(f"No module named {name!r}", name=name)
 sys.meta_path.insert(0, Missing())
 from contact_dynamics.command_line import main
 sys.exit(main(sys.argv[1:]))
 """
-"""The command line where some modules cannot be found, and no package of messages."""
-
-
-def without(names: set[str], *arguments: str | Path) -> subprocess.CompletedProcess[str]:
-    """Run `contact-dynamics plot` in a process that lacks these modules."""
-    return subprocess.run(
-        [sys.executable, "-c", BLOCKED.format(names=names), "plot", *map(str, arguments)],
-        capture_output=True,
-        text=True,
-        check=False,
-        env={**os.environ, "PYTHONPATH": str(ROOT), "AMENT_PREFIX_PATH": ""},
-    )
+"""The command line where neither ROS nor its messages nor rerun can be found."""
 
 
 @pytest.fixture(scope="module")
@@ -69,7 +60,7 @@ def log(tmp_path_factory: pytest.TempPathFactory) -> Path:
     )
     standing.state.pose.position.z = 0.025
     with server_and_client(folder, params_file=ROOT / "config" / "server.yaml") as client:
-        several = (tumbling, PredictImpact.Request(body_name="cat"), impact, standing, *about_many(0))
+        several = (standing, PredictImpact.Request(body_name="cat"), impact, tumbling, *about_many(0))
         for request in several:
             answer = client.ask(request)
             assert (answer.status == answer.OK) == (request.body_name == "brick"), answer.message
@@ -78,16 +69,21 @@ def log(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def test_each_answer_has_its_diagrams_without_ros(log: Path, tmp_path: Path) -> None:
-    names = {"rclpy", "rpyutils", "ament_index_python", "rerun"}
-    run = without(names, log, "--output", tmp_path / "out")
+    run = subprocess.run(
+        [sys.executable, "-c", BLOCKED, "plot", str(log), "--output", str(tmp_path / "out")],
+        capture_output=True,
+        text=True,
+        check=False,
+        env={**os.environ, "PYTHONPATH": str(ROOT), "AMENT_PREFIX_PATH": ""},
+    )
     assert run.returncode == 0, run.stderr
     files = {path.name for path in (tmp_path / "out").iterdir()}
     assert {
-        "001-tumbling-brick-motion.svg",
-        "001-tumbling-brick-poinsot.svg",
+        "004-tumbling-brick-motion.svg",
+        "004-tumbling-brick-poinsot.svg",
         "003-impact-brick-impulse-space.svg",
         "003-impact-brick-impulse-space-in-3d.svg",
-        "004-contact-modes-brick-contact-forces-1.svg",
+        "001-contact-modes-brick-contact-forces-1.svg",
         "005-impacts-of-many-brick-states.svg",
         "006-tumbling-of-many-brick-states.svg",
     } <= files
@@ -113,12 +109,18 @@ def test_pictures_and_few_answers(log: Path, tmp_path: Path, capsys: pytest.Capt
         assert path.read_bytes().startswith(b"\x89PNG"), path
 
 
-def test_a_missing_matplotlib_is_named_with_what_brings_it(tmp_path: Path) -> None:
-    run = without({"matplotlib"}, "log", "--output", tmp_path)
-    assert run.returncode == 3
-    assert "matplotlib" in run.stderr
-    assert "pip install matplotlib" in run.stderr
-    assert "ROS" not in run.stderr
+def test_a_missing_matplotlib_is_named_with_what_brings_it(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(sys.modules, "matplotlib", None)  # as Python marks a module that it does not find
+    with pytest.raises(SystemExit, match=r"^0$"):
+        command_line(["plot", "--help"])
+    assert "--output DIR" in capsys.readouterr().out
+    assert command_line(["plot", "log", "--output", str(tmp_path)]) == 3
+    said = capsys.readouterr().err
+    assert "matplotlib" in said
+    assert "pip install matplotlib" in said
+    assert "ROS" not in said
 
 
 def test_what_is_no_log_is_said(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 from __future__ import annotations
 
+import resource
+import subprocess
 import sys
 from pathlib import Path
 
@@ -8,7 +10,7 @@ import pytest
 import rerun as rr
 
 from contact_dynamics.errors import InvalidFieldError
-from contact_dynamics.viewing.ports import LOCAL
+from contact_dynamics.viewing.ports import local_url
 from contact_dynamics.viewing.sinks import NowhereToDrawError, OpenRecording, Sinks, ViewerMode
 from viewing.drawn import read_drawn
 
@@ -38,38 +40,13 @@ def test_a_file_that_cannot_be_written_is_told_at_once(tmp_path: Path) -> None:
 
 def test_a_viewer_that_is_not_there_leaves_the_file(tmp_path: Path, free_port: int) -> None:
     path, problems = tmp_path / "a.rrd", []
-    url = f"rerun+http://{LOCAL}:{free_port}/proxy"
+    url = local_url(free_port)
     sinks = Sinks(rrd_path=str(path), viewer=ViewerMode.CONNECT, url=url)
     recording = OpenRecording(sinks, on_problem=problems.append)
     draw(recording)
     assert recording.close()
     assert problems == [f"no viewer listens at {url}: [Errno 111] Connection refused"]
     assert recording.viewer_failed
-    assert holds_the_point(path)
-
-
-def test_a_viewer_that_hangs_does_not_keep_the_process(tmp_path: Path, silent_viewer: int) -> None:
-    """In a process of its own, because rerun waits for such a viewer when a process ends."""
-    import subprocess
-
-    path = tmp_path / "a.rrd"
-    script = f"""
-import os
-import rerun as rr
-from contact_dynamics.viewing.sinks import OpenRecording, Sinks, ViewerMode
-url = "rerun+http://{LOCAL}:{silent_viewer}/proxy"
-sinks = Sinks(rrd_path={str(path)!r}, viewer=ViewerMode.CONNECT, url=url)
-recording = OpenRecording(sinks, on_problem=lambda text: print(text, flush=True))
-for _ in range(1000):
-    recording.stream.log("point", rr.Points3D([[1.0, 2.0, 3.0]]), static=True)
-os._exit(7 if recording.close(timeout=0.5) else 0)
-"""
-    root = Path(__file__).parents[2]
-    done = subprocess.run(
-        [sys.executable, "-c", script], cwd=root, capture_output=True, text=True, timeout=300, check=False
-    )
-    assert done.returncode == 0, done.stderr
-    assert "the viewer did not take all that was drawn within 0.5 s" in done.stdout
     assert holds_the_point(path)
 
 
@@ -97,16 +74,16 @@ def test_a_taken_port_is_told(tmp_path: Path, silent_viewer: int) -> None:
 
 def test_a_viewer_alone_that_is_not_there_is_an_error(free_port: int) -> None:
     """To draw to nowhere would look like a success."""
-    url = f"rerun+http://{LOCAL}:{free_port}/proxy"
+    url = local_url(free_port)
     with pytest.raises(NowhereToDrawError, match=r"nowhere to draw to: no viewer listens at .*refused"):
         OpenRecording(Sinks(viewer=ViewerMode.CONNECT, url=url), on_problem=print)
 
 
-DRAWS_FOR_EVER = """
-import sys
+DRAWS_FOR_EVER_AND_TO_A_VIEWER_THAT_HANGS = """
+import os, sys
 from pathlib import Path
 from contact_dynamics.viewing.measured import set_time
-from contact_dynamics.viewing.sinks import OpenRecording, Sinks
+from contact_dynamics.viewing.sinks import OpenRecording, Sinks, ViewerMode
 import rerun as rr
 
 def resident():
@@ -123,26 +100,37 @@ for answer in range(4 * 60):
         pages.append(resident())
 recording.close()
 print((pages[3] - pages[1]) / (2 * 60))
+
+sinks = Sinks(rrd_path=sys.argv[2], viewer=ViewerMode.CONNECT, url=sys.argv[3])
+recording = OpenRecording(sinks, on_problem=lambda text: print(text, flush=True))
+for _ in range(1000):
+    recording.stream.log("point", rr.Points3D([[1.0, 2.0, 3.0]]), static=True)
+sys.stdout.flush()
+os._exit(7 if recording.close(timeout=0.5) else 0)
 """
 
 
-def test_memory_does_not_grow_with_the_answers_that_were_drawn(tmp_path: Path) -> None:
-    """What an answer of 20 things leaves behind in a process of its own.
+def test_a_process_neither_keeps_what_it_drew_nor_is_kept_by_a_viewer_that_hangs(
+    tmp_path: Path, silent_viewer: int
+) -> None:
+    """What an answer of 20 things leaves behind in memory, and what ends of itself, in a process of its own.
 
-    An index at the end of the file, which stays in memory until then, would make that 12 KB,
-    and 50 KB for the visualizer's own answers, which have many kinds of parts. Without it there are 0.1 KB.
+    An index at the end of the file, which stays in memory until then, would make that 12 KB an answer, and
+    50 KB for the visualizer's own answers, which have many kinds of parts. Without it there are 0.1 KB. And
+    rerun waits for a viewer that hangs when a process ends.
     """
-    import resource
-    import subprocess
-
-    path = tmp_path / "long.rrd"
-    command = [sys.executable, "-c", DRAWS_FOR_EVER, str(path)]
+    long, hung, url = tmp_path / "long.rrd", tmp_path / "hung.rrd", local_url(silent_viewer)
+    script = DRAWS_FOR_EVER_AND_TO_A_VIEWER_THAT_HANGS
+    command = [sys.executable, "-c", script, str(long), str(hung), url]
     root = Path(__file__).parents[2]
-    done = subprocess.run(command, cwd=root, capture_output=True, text=True, timeout=120, check=False)
+    done = subprocess.run(command, cwd=root, capture_output=True, text=True, timeout=300, check=False)
     assert done.returncode == 0, done.stderr
-    assert done.stderr == ""  # rerun warns of a file without an index, which is meant
-    assert float(done.stdout) * resource.getpagesize() < 2e3
-    assert len(read_drawn(path).values["/part_0", "LineStrips3D:strips"]) == 4 * 60
+    assert "file_sink" not in done.stderr  # rerun warns of a file without an index, which is meant
+    left, told = done.stdout.splitlines()
+    assert float(left) * resource.getpagesize() < 2e3
+    assert len(read_drawn(long).values["/part_0", "LineStrips3D:strips"]) == 4 * 60
+    assert told == "the viewer did not take all that was drawn within 0.5 s"
+    assert holds_the_point(hung)
 
 
 @pytest.mark.parametrize("memory", ["", "much", "1 GB", "-1GB", "1gb", "50 %"])
