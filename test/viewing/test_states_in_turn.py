@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""States wait for their turn, and an answer has those before it that it needs."""
+"""States wait for their turn, are drawn as often as they may cost, and are there before an answer."""
 
 from __future__ import annotations
 
+import time
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -10,7 +11,14 @@ import pytest
 
 from contact_dynamics.tumbling import free_motion
 from contact_dynamics.viewing.picture import Picture
-from contact_dynamics.viewing.states_in_turn import StatesInTurn
+from contact_dynamics.viewing.states_in_turn import (
+    LONGEST_S,
+    SHARE,
+    SHORTEST_S,
+    Pace,
+    StatesInTurn,
+    wait_after,
+)
 from contact_dynamics.world import World
 from viewing.answers import tumbling_answer
 from viewing.drawn import STAMP_NS
@@ -122,3 +130,38 @@ def test_states_that_wait_have_the_newest_stamp_too(
     add(states, state, 7, 6)
     assert states.newest_stamp_ns() == STAMP_NS + 7
     assert picture.newest_stamp_ns() == STAMP_NS + 5
+
+
+@pytest.mark.parametrize(
+    ("took", "wait"),
+    [
+        (0.0, SHORTEST_S),
+        (0.9 * SHARE * SHORTEST_S, SHORTEST_S),
+        (SHARE * 0.2, 0.2),
+        (1.1 * SHARE * LONGEST_S, LONGEST_S),
+        (10.0, LONGEST_S),
+    ],
+)
+def test_a_drawing_has_its_share_of_the_time(took: float, wait: float) -> None:
+    assert wait_after(took) == pytest.approx(wait)
+
+
+def test_a_dear_drawing_lets_the_next_wait() -> None:
+    pace, begun = Pace(), time.monotonic()
+    assert pace.is_due
+    with pace.drawing():
+        until = time.thread_time() + SHARE * 0.3
+        while time.thread_time() < until:
+            pass
+    assert 0.3 <= pace.wait_s <= LONGEST_S
+    was_due = pace.is_due
+    assert not was_due or time.monotonic() > begun + 0.3 - SHORTEST_S  # the machine stood still
+    time.sleep(pace.wait_s)
+    assert pace.is_due
+
+
+def test_a_drawing_that_fails_counts_too() -> None:
+    pace = Pace()
+    with pytest.raises(RuntimeError), pace.drawing():
+        raise RuntimeError
+    assert pace.wait_s == SHORTEST_S
