@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Reads and writes what requests of several services share: the body and its state, contacts, laws, numbers.
+"""Reads what requests of several services share: the body and its state, contacts, laws, numbers.
 
 A body is named, or described by an inertia, or both. Its state stands in the request, or was published. A
 number with its field's default (`LEFT_OUT`) is left out. A value in a field that has no effect, such as a
-horizon if the contacts are given, is an error (`rejected_fields`). A question with a gravity of its own has
-no request, and raises `NotSupportedError`.
+horizon if the contacts are given, is an error (`rejected_fields`).
 """
 
 from __future__ import annotations
@@ -14,23 +13,21 @@ from typing import TYPE_CHECKING, Final, Protocol, TypeVar
 
 import numpy as np
 
-from contact_dynamics.errors import InvalidFieldError, NotSupportedError, TooLargeError
+from contact_dynamics.errors import InvalidFieldError, TooLargeError
 from contact_dynamics.impact.law import RestitutionLaw
 from contact_dynamics.impact.several.result import SeveralContactsLaw
 from contact_dynamics.plane.projection import PlaneOfMotion
 from contact_dynamics.questions.plane_of_motion import Problem
 from contact_dynamics.questions.subject import NEWEST, PublishedState, changed_body
 from contact_dynamics.world import LONGEST_NAME, Body
-from msg_adapters.body_state import known_state_from_msg, known_state_to_msg
-from msg_adapters.contacts import contacts_from_msg, contacts_to_msg
+from msg_adapters.body_state import known_state_from_msg
+from msg_adapters.contacts import contacts_from_msg
 from msg_adapters.field_names import renamed
 from msg_adapters.geometry import (
     mass_properties_from_msg,
-    mass_properties_to_msg,
     vector_from_msg,
-    vector_to_msg,
 )
-from msg_adapters.stamps import stamp_ns_from_msg, stamp_to_msg
+from msg_adapters.stamps import stamp_ns_from_msg
 
 if TYPE_CHECKING:
     from builtin_interfaces.msg import Time
@@ -38,8 +35,6 @@ if TYPE_CHECKING:
 
     from contact_dynamics.contact.contact import ContactSet
     from contact_dynamics.numerics.vectors import Vector3 as Vector
-    from contact_dynamics.questions.contact_modes import ContactModeQuestion
-    from contact_dynamics.questions.impact_question import ImpactQuestion
     from contact_dynamics.questions.subject import StateSource
     from contact_dynamics.questions.uncertain_state import KnownState
     from contact_dynamics.rigid_body.body import MassProperties
@@ -66,13 +61,6 @@ class ContactRequest(Protocol):
     CONTACTS_EXPLICIT: int
     contact_source: int
     contacts: ContactSetMsg
-
-
-class ProblemRequest(Protocol):
-    """The fields about a plane of motion."""
-
-    problem: int
-    plane_normal: Vector3
 
 
 class GravityRequest(Protocol):
@@ -144,45 +132,6 @@ def _asked_law(field: str, kind: type[Law], value: int) -> Law:
         raise InvalidFieldError(field, value, allowed) from None
 
 
-def write_contacts(msg: ContactRequest, contacts: ContactSet | None) -> None:
-    """Write contacts, with None for those that are found from geometry."""
-    msg.contact_source = msg.CONTACTS_FROM_GEOMETRY if contacts is None else msg.CONTACTS_EXPLICIT
-    if contacts is not None:
-        contacts_to_msg(contacts, into=msg.contacts)
-
-
-def write_gravity(msg: GravityRequest, gravity_W: FloatArray | None) -> None:
-    """Write a gravity, with None for the configured one.
-
-    Raises:
-        NotSupportedError: it is neither the configured one nor zero.
-    """
-    if gravity_W is not None and gravity_W.any():
-        message = f"gravity_W must be the server's, or zero, got {gravity_W.tolist()}"
-        raise NotSupportedError(message)
-    msg.gravity = msg.GRAVITY_AS_CONFIGURED if gravity_W is None else msg.GRAVITY_NONE
-
-
-def write_problem(msg: ProblemRequest, question: ContactModeQuestion | ImpactQuestion) -> None:
-    """Write whether a question is about a plane, the plane, and the tolerances."""
-    msg.problem = int(question.problem)
-    if question.plane is not None:
-        msg.plane_normal = vector_to_msg(question.plane.normal_W)
-    write_given(
-        msg,
-        out_of_plane_tolerance=question.out_of_plane_tolerance,
-        velocity_tolerance=question.velocity_tolerance,
-        distance_tolerance=question.distance_tolerance,
-    )
-
-
-def write_given(msg: object, **numbers: float | None) -> None:
-    """Write the numbers that a question has. The others keep their fields' defaults, which leave them out."""
-    for field, number in numbers.items():
-        if number is not None:
-            setattr(msg, field, number)
-
-
 _REMEMBERED: Final = 16  # described bodies that are kept, since a client sends an inertia with every request
 
 
@@ -197,12 +146,6 @@ class _SubjectRequest(Protocol):
     state_source: int
     stamp: Time
     state: BodyStateMsg
-
-
-class _FittedRequest(_SubjectRequest, Protocol):
-    """Those and the window of a fit to published states."""
-
-    fit_window: float
 
 
 def asked_subject(
@@ -292,49 +235,3 @@ def _published(stamp_ns: int | None, fit_window: float = 0.0) -> PublishedState:
     if stamp_ns is None and fit_window == 0.0:
         return NEWEST
     return PublishedState(stamp_ns=stamp_ns, fit_window=fit_window)
-
-
-def write_fitted_subject(
-    msg: _FittedRequest, body: Body | str, source: StateSource, world: World, world_frame: str
-) -> None:
-    """Write what `write_subject` writes, and the window of the fit to published states."""
-    write_subject(msg, body, source, world, world_frame)
-    if isinstance(source, PublishedState):
-        msg.fit_window = source.fit_window
-
-
-def write_subject(
-    msg: _SubjectRequest, body: Body | str, source: StateSource, world: World, world_frame: str
-) -> None:
-    """Write the body that a request is about, and where its state comes from.
-
-    Raises:
-        UnknownBodyError: the world does not have the body.
-        NotSupportedError: the body has no request.
-    """
-    body = world.body(body) if isinstance(body, str) else body
-    msg.body_name = body.name
-    inertia = asked_inertia(body, world)
-    if inertia is not None:
-        msg.inertia = inertia
-    if isinstance(source, PublishedState):
-        msg.state_source = msg.STATE_NEWEST
-        if source.stamp_ns is not None:
-            msg.state_source = msg.STATE_AT_STAMP
-            msg.stamp = stamp_to_msg(source.stamp_ns)
-        return
-    msg.state_source = msg.STATE_EXPLICIT
-    known_state_to_msg(
-        source, body_name=body.name, world_frame=world_frame, p_FB_F=body.p_FB_F, into=msg.state
-    )
-
-
-def asked_inertia(body: Body, world: World) -> Inertia | None:
-    """Return the inertia of a body that differs from the known one, or None if the body is the known one."""
-    named = [known for known in world.bodies if known.name == body.name]
-    if body in named:
-        return None
-    if not named and (body.name or not body.shape.is_empty):
-        message = f"body must be one of the world's, or one without name and shape, got {body.name!r}"
-        raise NotSupportedError(message)
-    return mass_properties_to_msg(body.mass_properties, body.p_FB_F)

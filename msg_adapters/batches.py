@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Converts requests and responses about many states or candidates to questions and answers, and back.
+"""Converts requests about many states or candidates to questions, and answers to responses and back.
 
 The arrays of a request are read as they are. A length that is no multiple of the row's raises
 `InvalidFieldError` with the field.
@@ -28,13 +28,10 @@ from msg_adapters import fields
 from msg_adapters.asked_fields import (
     asked_body,
     asked_gravity,
-    asked_inertia,
     asked_restitution_law,
     optional,
-    write_given,
-    write_gravity,
 )
-from msg_adapters.contact_mode import asked_contact_modes, write_contact_modes
+from msg_adapters.contact_mode import asked_contact_modes
 from msg_adapters.contacts import flat
 from msg_adapters.field_names import renamed
 from msg_adapters.rejected_fields import CONTACT_MODE_BATCH
@@ -45,7 +42,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from contact_dynamics.validation import FloatArray
-    from contact_dynamics.world import Body, World
+    from contact_dynamics.world import World
 
 _STATE_FIELDS: Final = {
     "p_WB_W": "states.positions",
@@ -102,21 +99,6 @@ def tumblings_question_from_msg(
         raise renamed(error) from None
 
 
-def tumblings_question_to_msg(
-    question: ManyTumblingsQuestion,
-    *,
-    world: World,
-    world_frame: str,  # noqa: ARG001  all is in it
-) -> PredictTumblingBatch.Request:
-    """Return the request of a question about many tumblings."""
-    msg = PredictTumblingBatch.Request()
-    body = _write_body(msg, question.body, world)
-    body_states_to_msg(question.states, p_FB_F=body.p_FB_F, into=msg.states)
-    msg.times = flat(question.seconds)
-    write_gravity(msg, question.gravity_W)
-    return msg
-
-
 def impacts_question_from_msg(
     request: PredictImpactBatch.Request,
     *,
@@ -139,34 +121,6 @@ def impacts_question_from_msg(
         )
     except InvalidFieldError as error:
         raise renamed(error, {"p_WC_W": "contact_positions", "normals_W": "contact_normals"}) from None
-
-
-def impacts_question_to_msg(
-    question: ManyImpactsQuestion,
-    *,
-    world: World,
-    world_frame: str,  # noqa: ARG001  all is in it
-) -> PredictImpactBatch.Request:
-    """Return the request of a question about many impacts."""
-    msg = PredictImpactBatch.Request()
-    body = _write_body(msg, question.body, world)
-    body_states_to_msg(question.states, p_FB_F=body.p_FB_F, into=msg.states)
-    msg.contact_positions, msg.contact_normals = flat(question.p_WC_W), flat(question.normals_W)
-    msg.frictions, msg.restitutions = flat(question.frictions), flat(question.restitutions)
-    msg.restitution_law = int(question.restitution_law)
-    write_given(msg, velocity_tolerance=question.velocity_tolerance)
-    return msg
-
-
-def _write_body(
-    msg: PredictTumblingBatch.Request | PredictImpactBatch.Request, body: Body | str, world: World
-) -> Body:
-    found = world.body(body) if isinstance(body, str) else body
-    msg.body_name = found.name
-    inertia = asked_inertia(found, world)
-    if inertia is not None:
-        msg.inertia = inertia
-    return found
 
 
 def flat_rows(field: str, numbers: Sequence[float], width: int) -> FloatArray:
@@ -256,17 +210,6 @@ def contact_modes_question_from_msg(
         )
     except InvalidFieldError as error:
         raise renamed(error, {"forces_W": "forces", "torques_W": "torques"}) from None
-
-
-def contact_modes_question_to_msg(
-    question: ManyContactModesQuestion, *, world: World, world_frame: str
-) -> PredictContactModeBatch.Request:
-    """Return the request of a question about the contact modes of many candidates."""
-    msg = PredictContactModeBatch.Request()
-    write_contact_modes(msg, question.asked, world, world_frame)
-    msg.forces, msg.torques = flat(question.forces_W), flat(question.torques_W)
-    msg.contact_counts = list(question.contact_counts)
-    return msg
 
 
 _ANSWER: Final = fields.AnswerTable(

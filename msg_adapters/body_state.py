@@ -16,7 +16,6 @@ from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.rigid_body.published_frame import origin_of_published_frame, turned
 from contact_dynamics.validation import check_unit
 from contact_dynamics_interfaces.msg import BodyState as BodyStateMsg
-from msg_adapters.contacts import flat
 from msg_adapters.field_names import renamed
 from msg_adapters.geometry import quaternion_from_msg, vector_from_msg
 from msg_adapters.in_world import check_frame
@@ -118,19 +117,3 @@ def known_state_from_msg(
             f"{field}.covariance", f"{len(msg.covariance)} numbers", f"none or {_COVARIANCE_LENGTH}"
         )
     return UncertainState(state=state, covariance=np.array(msg.covariance).reshape(12, 12))
-
-
-def known_state_to_msg(
-    known: KnownState,
-    *,
-    body_name: str,
-    world_frame: str,
-    p_FB_F: FloatArray,
-    into: BodyStateMsg | None = None,
-) -> BodyStateMsg:
-    """Return the state as a message, a new one or the one to fill, with its covariance if that is known."""
-    state = known if isinstance(known, BodyState) else known.state
-    msg = body_state_to_msg(state, body_name=body_name, world_frame=world_frame, p_FB_F=p_FB_F, into=into)
-    if isinstance(known, UncertainState):
-        msg.covariance = flat(known.covariance)
-    return msg

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Converts questions and answers about contact modes to the service's request and response, and back.
+"""Converts requests about contact modes to questions, and answers to responses and back.
 
 All vectors are in world axes.
 """
@@ -26,11 +26,10 @@ from contact_dynamics.contact_modes.result import (
 )
 from contact_dynamics.contact_modes.spatial.margins import SpatialModeMargin
 from contact_dynamics.contact_modes.spatial.wrench_sets import SpatialWrenchSet
-from contact_dynamics.errors import InvalidFieldError, NotSupportedError
+from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.questions.contact_modes import ContactModeAnswer, ContactModeQuestion
 from contact_dynamics.questions.plane_of_motion import Problem
 from contact_dynamics.questions.settled_impact import SettledImpact
-from contact_dynamics.questions.subject import PublishedState
 from contact_dynamics_interfaces.msg import ContactMode, ModeWrenches
 from contact_dynamics_interfaces.msg import GeometryMargin as GeometryMarginMsg
 from contact_dynamics_interfaces.srv import PredictContactMode
@@ -42,14 +41,9 @@ from msg_adapters.asked_fields import (
     asked_problem,
     asked_subject,
     optional,
-    write_contacts,
-    write_given,
-    write_gravity,
-    write_problem,
-    write_subject,
 )
 from msg_adapters.field_names import WRENCH_FIELDS, renamed
-from msg_adapters.geometry import vector_from_msg, wrench_to_msg
+from msg_adapters.geometry import vector_from_msg
 from msg_adapters.impact import RESOLVED_IMPACT
 from msg_adapters.rejected_fields import CONTACT_MODE, check_unread
 
@@ -129,41 +123,6 @@ def asked_contact_modes(
         include_margins=request.include_margins,
         **own,  # type: ignore[arg-type]  # checked by the question
     )
-
-
-def contact_mode_question_to_msg(
-    question: ContactModeQuestion, *, world: World, world_frame: str
-) -> PredictContactMode.Request:
-    """Return the request of a question about contact modes, as in `tumbling_question_to_msg`."""
-    msg = PredictContactMode.Request()
-    write_contact_modes(msg, question, world, world_frame)
-    write_given(msg, friction_facets=question.friction_facets)
-    msg.applied_wrench = wrench_to_msg(question.force_W, question.torque_W)
-    msg.include_wrenches = question.include_wrenches
-    msg.include_statics = question.include_statics
-    msg.include_impact = question.include_impact
-    write_uncertainty(question.uncertainty, msg)
-    msg.include_geometry_margins = question.include_geometry_margins
-    msg.include_probabilities = question.include_probabilities
-    return msg
-
-
-def write_contact_modes(
-    msg: PredictContactMode.Request | PredictContactModeBatch.Request,
-    question: ContactModeQuestion,
-    world: World,
-    world_frame: str,
-) -> None:
-    """Write what requests about one candidate and about many have in common."""
-    write_subject(msg, question.body, question.state, world, world_frame)
-    if isinstance(question.state, PublishedState) and question.state.fit_window > 0.0:
-        message = f"fit_window must be 0 for contact modes, got {question.state.fit_window:g}"
-        raise NotSupportedError(message)
-    write_contacts(msg, question.contacts)
-    write_gravity(msg, question.gravity_W)
-    write_problem(msg, question)
-    write_given(msg, margin_length=question.margin_length)
-    msg.include_margins = question.include_margins
 
 
 def write_uncertainty(uncertainty: ContactUncertainty, msg: Side) -> None:

@@ -7,7 +7,7 @@ from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
-from geometry_msgs.msg import Inertia, Point, Pose, Quaternion, Vector3, Wrench
+from geometry_msgs.msg import Inertia, Point, Pose, Quaternion, Vector3
 
 from contact_dynamics.rigid_body.body import MassProperties
 from contact_dynamics.validation import check_array
@@ -29,18 +29,6 @@ def vector_to_msg(vector: Iterable[float], *, into: Vector3 | Point | None = Non
     msg = Vector3() if into is None else into
     msg.x, msg.y, msg.z = map(float, vector)
     return msg
-
-
-def point_to_msg(vector: Iterable[float]) -> Point:
-    """Return three coordinates as a message."""
-    msg = Point()
-    msg.x, msg.y, msg.z = map(float, vector)
-    return msg
-
-
-def wrench_to_msg(force: Iterable[float], torque: Iterable[float]) -> Wrench:
-    """Return a force and a torque as a message."""
-    return Wrench(force=vector_to_msg(force), torque=vector_to_msg(torque))
 
 
 def quaternion_from_msg(msg: Quaternion) -> FloatArray:

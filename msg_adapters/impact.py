@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Converts questions and answers about impacts to the service's request and response, and back.
+"""Converts requests about impacts to questions, and answers to responses and back.
 
 Messages are new, unless ``into`` is an empty one that a response has already. A message costs more to build
 than to fill.
@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from contact_dynamics.constants import ns_after
-from contact_dynamics.errors import InvalidFieldError, NotSupportedError
+from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.impact.in_time.result import SequenceEnd
 from contact_dynamics.impact.in_time.sequence import MAX_STRIKES, STRIKE_WINDOW
 from contact_dynamics.impact.law import ImpactOutcome, PathEvent, RestitutionLaw
@@ -27,7 +27,6 @@ from contact_dynamics.questions.impact_question import (
     StruckBody,
 )
 from contact_dynamics.questions.plane_of_motion import Problem
-from contact_dynamics.questions.subject import PublishedState
 from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.rigid_body.published_frame import centers_of_mass, origin_of_published_frame
 from contact_dynamics.world import World
@@ -36,19 +35,14 @@ from contact_dynamics_interfaces.srv import PredictImpact
 from msg_adapters import fields
 from msg_adapters.asked_fields import (
     asked_contacts,
-    asked_inertia,
     asked_other,
     asked_plane,
     asked_problem,
     asked_restitution_law,
     asked_subject,
     optional,
-    write_contacts,
-    write_fitted_subject,
-    write_given,
-    write_problem,
 )
-from msg_adapters.body_state import body_state_from_msg, body_state_to_msg, center_of_mass, known_state_to_msg
+from msg_adapters.body_state import body_state_from_msg, body_state_to_msg, center_of_mass
 from msg_adapters.contacts import flat, rows
 from msg_adapters.rejected_fields import IMPACT, check_unread
 from msg_adapters.stamps import stamp_ns_from_msg
@@ -56,9 +50,7 @@ from msg_adapters.stamps import stamp_ns_from_msg
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from contact_dynamics.questions.subject import StateSource
     from contact_dynamics.validation import FloatArray
-    from contact_dynamics.world import Body
     from contact_dynamics_interfaces.msg import BodyState as BodyStateMsg
 
 _NO_END: Final = ImpactMsg().sequence_end
@@ -109,48 +101,6 @@ def _several_contacts_law(request: PredictImpact.Request) -> SeveralContactsLaw 
     except ValueError:
         allowed = "SEQUENTIAL (0), SIMULTANEOUS (1), SEQUENTIAL_IN_TIME (2)"
         raise InvalidFieldError("several_contacts_law", value, allowed) from None
-
-
-def impact_question_to_msg(
-    question: ImpactQuestion, *, world: World, world_frame: str
-) -> PredictImpact.Request:
-    """Return the request of a question about an impact, with arguments as in `tumbling_question_to_msg`."""
-    msg = PredictImpact.Request()
-    write_fitted_subject(msg, question.body, question.state, world, world_frame)
-    if question.other is not None:
-        _write_other(msg, question.other, question.other_state, world, world_frame)
-    write_contacts(msg, question.contacts)
-    write_given(msg, horizon=question.horizon)
-    msg.restitution_law = int(question.restitution_law)
-    law = question.several_contacts_law
-    if isinstance(law, InTime):
-        msg.several_contacts_law = msg.SEQUENTIAL_IN_TIME
-        msg.strike_window, msg.max_strikes = law.strike_window, law.max_strikes
-        msg.hold_step = law.hold_step or 0.0
-    else:
-        msg.several_contacts_law = int(law)
-    msg.include_orders = question.include_orders
-    msg.include_covariance = question.include_covariance
-    write_problem(msg, question)
-    return msg
-
-
-def _write_other(
-    msg: PredictImpact.Request, body: Body | str, source: StateSource, world: World, world_frame: str
-) -> None:
-    """Write the second body of an impact."""
-    body = world.body(body) if isinstance(body, str) else body
-    msg.other_body_name = body.name
-    inertia = asked_inertia(body, world)
-    if inertia is not None:
-        msg.other_inertia = inertia
-    stamp_ns = stamp_ns_from_msg(msg.stamp) if msg.state_source == msg.STATE_AT_STAMP else None
-    if not isinstance(source, PublishedState):
-        state = known_state_to_msg(source, body_name=body.name, world_frame=world_frame, p_FB_F=body.p_FB_F)
-        msg.other_state = [state]
-    elif source.stamp_ns != stamp_ns or source.fit_window > 0.0:
-        message = "other_state must be that of the request's stamp, without a fit, got a published one"
-        raise NotSupportedError(message)
 
 
 def _write_law(msg: ImpactMsg, field: str, law: SeveralContactsLaw, _: fields.Frame) -> None:

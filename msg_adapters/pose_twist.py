@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Converts `geometry_msgs/PoseStamped` with `TwistStamped` to a body's state and back.
+"""Converts `geometry_msgs/PoseStamped` with `TwistStamped` to a body's state.
 
 The pose is that of the body's published frame in the world frame. The twist belongs to that frame's origin.
 Its own header says whether it is in the axes of the world or of the body.
@@ -14,16 +14,14 @@ from geometry_msgs.msg import PoseStamped, TwistStamped
 
 from contact_dynamics.errors import FrameMismatchError, InvalidFieldError
 from contact_dynamics.rigid_body.published_frame import (
-    origin_of_published_frame,
     state_of_center_of_mass,
-    velocity_of_published_frame,
 )
 from contact_dynamics.rotations.one import rotation_matrix
 from contact_dynamics.validation import check_unit
-from msg_adapters.geometry import pose_to_msg, quaternion_from_msg, vector_from_msg, vector_to_msg
+from msg_adapters.geometry import quaternion_from_msg, vector_from_msg
 from msg_adapters.in_world import check_frame, in_world
 from msg_adapters.published_covariance import covariance_from_msg, of_pose_and_twist, with_covariance
-from msg_adapters.stamps import stamp_ns_from_msg, stamp_to_msg
+from msg_adapters.stamps import stamp_ns_from_msg
 from msg_adapters.state_adapter import StateAdapter
 
 if TYPE_CHECKING:
@@ -117,19 +115,6 @@ POSE_TWIST_WITH_COVARIANCE: Final = StateAdapter(
     readers=partial(_readers, _joined_with_covariance),
     is_of_one_body=True,
 )
-
-
-def pose_twist_from_body_state(
-    state: BodyState, *, world_frame: str, p_FB_F: FloatArray
-) -> tuple[PoseStamped, TwistStamped]:
-    """Return the state as two messages of one stamp. The twist is at the frame's origin, in world axes."""
-    pose, twist = PoseStamped(), TwistStamped()
-    pose.header.stamp = twist.header.stamp = stamp_to_msg(state.stamp_ns)
-    pose.header.frame_id = twist.header.frame_id = world_frame
-    pose.pose = pose_to_msg(origin_of_published_frame(state, p_FB_F), state.q_WB)
-    twist.twist.linear = vector_to_msg(velocity_of_published_frame(state, p_FB_F))
-    twist.twist.angular = vector_to_msg(state.w_WB_W)
-    return pose, twist
 
 
 class Stamped(Protocol):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Converts questions and answers about whole tosses to the service's request and response, and back.
+"""Converts requests about whole tosses to questions, and answers to responses and back.
 
 The distribution of an uncertain toss has regions, the tree of events, and rest.
 """
@@ -44,11 +44,8 @@ from msg_adapters.asked_fields import (
     asked_restitution_law,
     asked_subject,
     optional,
-    write_fitted_subject,
-    write_given,
 )
 from msg_adapters.batches import body_states_from_msg, body_states_to_msg
-from msg_adapters.contacts import flat
 from msg_adapters.field_names import renamed
 from msg_adapters.rejected_fields import TOSS, check_unread
 from msg_adapters.tumbling import TRAJECTORY
@@ -188,25 +185,6 @@ def _uncertainty(request: PredictToss.Request) -> TossUncertainty:
         )
     except InvalidFieldError as error:
         raise renamed(error, names) from None
-
-
-def toss_question_to_msg(question: TossQuestion, *, world: World, world_frame: str) -> PredictToss.Request:
-    """Return the request of a question about a toss; see `tumbling_question_to_msg`."""
-    msg = PredictToss.Request()
-    write_fitted_subject(msg, question.body, question.state, world, world_frame)
-    msg.restitution_law = int(question.restitution_law)
-    msg.several_contacts_law = int(question.several_contacts_law)
-    write_given(msg, horizon=question.horizon, rate=question.rate, max_alternatives=question.max_alternatives)
-    msg.lasting_factors = flat(question.lasting_factors)
-    sampling = question.sampling
-    if sampling is not None:
-        msg.samples, msg.seed, msg.to_rest = sampling.count, sampling.seed, sampling.to_rest
-        write_given(msg, strikes=sampling.strikes)
-        msg.parameter_covariance = flat(sampling.uncertainty.covariance)
-        msg.velocity_spread, msg.spin_spread = sampling.uncertainty.velocity, sampling.uncertainty.spin
-        msg.height_spread = sampling.uncertainty.height
-        msg.lasting_factor_stds = flat(sampling.uncertainty.lasting_factor_stds)
-    return msg
 
 
 _UNDECIDED: Final = fields.Table(

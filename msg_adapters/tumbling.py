@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Converts questions and answers about tumbling to the service's request and response, and back.
+"""Converts requests about tumbling to questions, and answers to responses and back.
 
 A trajectory also becomes a `nav_msgs/Path`, which RViz draws.
 """
@@ -41,13 +41,10 @@ from msg_adapters.asked_fields import (
     asked_gravity,
     asked_subject,
     optional,
-    write_fitted_subject,
-    write_given,
-    write_gravity,
 )
 from msg_adapters.contacts import flat, rows
 from msg_adapters.field_names import WRENCH_FIELDS, renamed
-from msg_adapters.geometry import point_to_msg, pose_to_msg, vector_from_msg, vector_to_msg, wrench_to_msg
+from msg_adapters.geometry import pose_to_msg, vector_from_msg
 from msg_adapters.rejected_fields import TUMBLING, check_unread
 from msg_adapters.stamps import stamp_ns_from_msg, stamp_to_msg
 
@@ -144,52 +141,6 @@ def _sampling(request: PredictTumbling.Request) -> Sampling:
         )
     allowed = "AT_TIMES (0), AT_STAMPS (1), AT_RATE (2), UNTIL_CONTACT (3) or UNTIL_PLANE (4)"
     raise InvalidFieldError("sampling", request.sampling, allowed)
-
-
-def tumbling_question_to_msg(
-    question: TumblingQuestion, *, world: World, world_frame: str
-) -> PredictTumbling.Request:
-    """Return the request of a question about tumbling.
-
-    Args:
-        question: The question.
-        world: The bodies that the server knows by name.
-        world_frame: The frame of its world.
-
-    Raises:
-        UnknownBodyError: the question names a body that the world does not have.
-        NotSupportedError: the question has no request.
-    """
-    msg = PredictTumbling.Request()
-    write_fitted_subject(msg, question.body, question.state, world, world_frame)
-    _write_sampling(msg, question.sampling)
-    write_gravity(msg, question.gravity_W)
-    msg.applied_wrench = wrench_to_msg(question.wrench.force, question.wrench.torque)
-    msg.wrench_in_body_axes = question.wrench.axes is WrenchAxes.BODY
-    msg.linear_drag, msg.quadratic_drag = question.drag.linear, question.drag.quadratic
-    msg.linear_angular_drag = question.drag.linear_angular
-    msg.quadratic_angular_drag = question.drag.quadratic_angular
-    msg.include_covariance = question.include_covariance
-    msg.curve_points = question.curve_points
-    return msg
-
-
-def _write_sampling(msg: PredictTumbling.Request, sampling: Sampling) -> None:
-    if isinstance(sampling, AtTimes):
-        msg.sampling, msg.times = msg.AT_TIMES, sampling.times.tolist()
-        return
-    if isinstance(sampling, AtStamps):
-        msg.sampling, msg.stamps_ns = msg.AT_STAMPS, list(sampling.stamps_ns)
-        return
-    msg.sampling = msg.AT_RATE
-    if isinstance(sampling, UntilContact):
-        msg.sampling = msg.UNTIL_CONTACT
-    elif isinstance(sampling, UntilPlane):
-        msg.sampling = msg.UNTIL_PLANE
-        msg.plane_point = point_to_msg(sampling.plane_point)
-        msg.plane_normal = vector_to_msg(sampling.plane_normal)
-        msg.body_point = point_to_msg(sampling.body_point)
-    write_given(msg, rate=sampling.rate, duration=sampling.duration)
 
 
 def _write_trajectory(msg: object, field: str, trajectory: Trajectory, frame: fields.Frame) -> None:

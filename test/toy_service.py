@@ -83,18 +83,6 @@ def apex_question_from_msg(
     return ApexQuestion(body=body, state=state)
 
 
-def apex_question_to_msg(
-    question: ApexQuestion, *, world: World, world_frame: str
-) -> PredictTumbling.Request:
-    """Return the request of a question."""
-    from contact_dynamics_interfaces.srv import PredictTumbling
-    from msg_adapters.asked_fields import write_subject
-
-    msg = PredictTumbling.Request()
-    write_subject(msg, question.body, question.state, world, world_frame)
-    return msg
-
-
 def _answer_table() -> AnswerTable[ApexAnswer, PredictTumbling.Response]:
     from contact_dynamics_interfaces.srv import PredictTumbling
     from msg_adapters.fields import STATE, AnswerTable, Row

@@ -135,7 +135,7 @@ class Service:
         digest: The digest of its fields (`replay.of_log`). A test compares it with the interface.
         question_type: The import path of the class of its questions, "package.module:Class".
         answer_type: The import path of the class of its answers.
-        adapters: The import path of its adapters, "package.module:prefix". The names of the four functions
+        adapters: The import path of its adapters, "package.module:prefix". The names of the three functions
             begin with the prefix: ``prefix_question_from_msg`` and so on.
         answer: Answers a question. It is a function of a module, so that a worker can import it.
         is_quick: Returns whether a question is sure to be answered within 30 ms. By default, none is, and
@@ -146,7 +146,6 @@ class Service:
         figures: Yields the figures of an answer (`plots.figures`).
         cells: Yields the cells of each row of an answer in a table (`replay.rows`).
         question_from_msg: Makes a question of a request.
-        question_to_msg: Makes a request of a question.
         answer_to_msg: Makes a response of an answer.
         answer_from_msg: Makes an answer of a response.
     """
@@ -165,13 +164,12 @@ class Service:
     figures: ImportedOnUse[Iterator[tuple[str, object]]] | None = None
     cells: ImportedOnUse[Iterator[dict[str, str | int | float | None]]] | None = None
     question_from_msg: ImportedOnUse[Question[Answer]] = field(init=False)
-    question_to_msg: ImportedOnUse[object] = field(init=False)
     answer_to_msg: ImportedOnUse[object] = field(init=False)
     answer_from_msg: ImportedOnUse[Answer] = field(init=False)
 
     def __post_init__(self) -> None:
         """Find the adapters."""
-        for name in ("question_from_msg", "question_to_msg", "answer_to_msg", "answer_from_msg"):
+        for name in ("question_from_msg", "answer_to_msg", "answer_from_msg"):
             object.__setattr__(self, name, ImportedOnUse(f"{self.adapters}_{name}"))
 
     @property

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Whatever travels in a message comes back as it was: each message and service has a pair of adapters."""
+"""Whatever travels in an answer comes back as it was: each message and response has a pair of adapters."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 from types import SimpleNamespace
 from typing import Any
@@ -15,44 +15,30 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from architecture.test_interfaces import FILES
-from contact_dynamics.errors import NotSupportedError
-from contact_dynamics.questions import (
-    ContactModeQuestion,
-    ImpactQuestion,
-    PublishedState,
-)
 from contact_dynamics.questions.services import SERVICES, Service, service_of_type
-from contact_dynamics.questions.subject import NEWEST
-from contact_dynamics.questions.toss import TossQuestion, TossSampling
-from contact_dynamics.toss import TossUncertainty
 from contact_dynamics.world import Body, World
 from contact_dynamics_interfaces.msg import BodyStates as BodyStatesMsg
 from contact_dynamics_interfaces.msg import Poinsot as PoinsotMsg
 from contact_dynamics_interfaces.msg import Trajectory as TrajectoryMsg
 from message_values.contact_modes import (
     contact_mode_answers,
-    contact_mode_questions,
     geometry_margins,
     modes_and_margins,
     wrench_sets,
 )
-from message_values.impact import impact_answers, impact_questions, resolved_impacts
+from message_values.impact import impact_answers, resolved_impacts
 from message_values.many import (
     many_contact_modes_answers,
-    many_contact_modes_questions,
     many_impacts_answers,
-    many_impacts_questions,
     many_tumblings_answers,
-    many_tumblings_questions,
 )
 from message_values.shared import (
     BRICK,
     NO_OFFSET,
-    WORLD,
     contact_sets,
-    known_states,
     many_states,
     same,
+    states,
     trajectories,
 )
 from message_values.toss import (
@@ -63,21 +49,19 @@ from message_values.toss import (
     toss_distributions,
     toss_events,
     toss_paths,
-    toss_questions,
 )
-from message_values.tumbling import carried, rotations, tumbling_answers, tumbling_questions
+from message_values.tumbling import carried, rotations, tumbling_answers
 from msg_adapters.batches import STATES
-from msg_adapters.body_state import known_state_from_msg, known_state_to_msg
+from msg_adapters.body_state import body_state_from_msg, body_state_to_msg
 from msg_adapters.contact_mode import (
     GEOMETRY_MARGIN,
     MARGIN,
     MODE,
     WRENCH_SET,
-    contact_mode_question_to_msg,
 )
 from msg_adapters.contacts import contacts_from_msg, contacts_to_msg
 from msg_adapters.fields import Frame, Kind, Row, Table
-from msg_adapters.impact import RESOLVED_IMPACT, impact_question_from_msg, impact_question_to_msg
+from msg_adapters.impact import RESOLVED_IMPACT
 from msg_adapters.toss import (
     BRANCH,
     DISTRIBUTION,
@@ -85,8 +69,6 @@ from msg_adapters.toss import (
     EVENT_REGIONS,
     PATH,
     REGION,
-    toss_question_from_msg,
-    toss_question_to_msg,
 )
 from msg_adapters.tumbling import COVARIANCES, CURVES, FLIPS, POINSOT, TRAJECTORY
 
@@ -141,9 +123,9 @@ def _mode_to_msg(value: Any) -> Any:
 
 PAIRS: dict[str, Pair] = {
     "BodyState": Pair(
-        known_states(),
-        lambda value: known_state_to_msg(value, body_name="brick", **BODY),
-        lambda msg: known_state_from_msg(msg, **BODY),
+        states,
+        lambda value: body_state_to_msg(value, body_name="brick", **BODY),
+        lambda msg: body_state_from_msg(msg, **BODY),
     ),
     "ContactMode": Pair(
         modes_and_margins(),
@@ -165,26 +147,21 @@ PAIRS: dict[str, Pair] = {
     "TossPath": _of_table(PATH, toss_paths()),
 }
 
-VALUES = {
-    "PredictContactMode": (contact_mode_questions, contact_mode_answers),
-    "PredictImpact": (impact_questions, impact_answers),
-    "PredictTumbling": (tumbling_questions, tumbling_answers),
-    "PredictToss": (toss_questions, toss_answers),
-    "PredictImpactBatch": (many_impacts_questions, many_impacts_answers),
-    "PredictTumblingBatch": (many_tumblings_questions, many_tumblings_answers),
-    "PredictContactModeBatch": (many_contact_modes_questions, many_contact_modes_answers),
+ANSWERS = {
+    "PredictContactMode": contact_mode_answers,
+    "PredictImpact": impact_answers,
+    "PredictTumbling": tumbling_answers,
+    "PredictToss": toss_answers,
+    "PredictImpactBatch": many_impacts_answers,
+    "PredictTumblingBatch": many_tumblings_answers,
+    "PredictContactModeBatch": many_contact_modes_answers,
 }
-"""Questions to each service, and answers from it."""
+"""Answers from each service."""
 
 
 def _pairs_of(service: Service) -> dict[str, Pair]:
-    questions, answers = VALUES[service.type_name]
+    answers = ANSWERS[service.type_name]
     return {
-        f"{service.type_name}.Request": Pair(
-            questions(),
-            partial(service.question_to_msg, world=WORLD, **FRAME),
-            partial(service.question_from_msg, world=WORLD, **FRAME),
-        ),
         f"{service.type_name}.Response": Pair(
             answers(),
             partial(service.answer_to_msg, **FRAME),
@@ -198,13 +175,7 @@ for each in SERVICES:
 
 
 def test_each_interface_has_a_pair() -> None:
-    assert set(PAIRS) == {
-        name
-        for path in FILES
-        for name in (
-            [path.stem] if path.suffix == ".msg" else [f"{path.stem}.Request", f"{path.stem}.Response"]
-        )
-    }
+    assert set(PAIRS) == {path.stem if path.suffix == ".msg" else f"{path.stem}.Response" for path in FILES}
 
 
 @pytest.mark.parametrize("name", PAIRS)
@@ -227,7 +198,7 @@ def test_answers_find_the_centre_of_mass_in_the_world(name: str, data: st.DataOb
     """The message has the published frame: positions come back to rounding, all else as it was."""
     service = service_of_type(name)
     world = World(bodies=(Body(name="brick", mass_properties=BRICK.mass_properties, p_FB_F=CENTER),))
-    answers: Any = VALUES[name][1]
+    answers: Any = ANSWERS[name]
     answer = data.draw(answers(CENTER))
     back = service.answer_from_msg(service.answer_to_msg(answer, **FRAME), world=world)
     assert same(back, answer, rounding=ROUNDING)
@@ -237,50 +208,3 @@ def test_messages_check_their_fields() -> None:
     """Without ROS_PYTHON_CHECK_FIELDS a wrong type would travel through the tests above unseen."""
     with pytest.raises(AssertionError):
         PoinsotMsg(regime="tumbles")
-
-
-def brick(**fields: Any) -> ContactModeQuestion:
-    return ContactModeQuestion(**{"body": "brick", **fields})
-
-
-@pytest.mark.parametrize(
-    ("question", "words"),
-    [
-        (brick(gravity_W=[0.0, 0.0, -1.6]), "gravity_W must be the server's, or zero.*, got .*"),
-        (
-            brick(state=PublishedState(fit_window=0.1)),
-            "fit_window must be .*, got 0.1",
-        ),
-        (brick(body=replace(BRICK, name="cup")), "body must be one of the world's.*, got 'cup'"),
-    ],
-)
-def test_what_no_request_can_say_is_refused(question: ContactModeQuestion, words: str) -> None:
-    with pytest.raises(NotSupportedError, match=words):
-        contact_mode_question_to_msg(question, world=WORLD, world_frame="world")
-
-
-def test_a_published_state_of_the_second_body_has_the_requests_stamp() -> None:
-    question = ImpactQuestion(body="brick", other="bat")
-    msg = impact_question_to_msg(question, world=WORLD, world_frame="world")
-    assert msg.other_body_name == "bat"
-    assert impact_question_from_msg(msg, world=WORLD, world_frame="world").other_state is NEWEST
-    earlier = replace(question, other_state=PublishedState(stamp_ns=5))
-    with pytest.raises(NotSupportedError, match="must be that of the request's stamp"):
-        impact_question_to_msg(earlier, world=WORLD, world_frame="world")
-
-
-@pytest.mark.parametrize("sampled", [False, True])
-def test_a_friction_that_lasts_stands_in_a_request_with_samples_and_without(*, sampled: bool) -> None:
-    known = TossUncertainty(lasting_factors=[1.4], lasting_factor_stds=[0.1])
-    question = (
-        TossQuestion(body="brick", sampling=TossSampling(count=1, uncertainty=known))
-        if sampled
-        else TossQuestion(body="brick", lasting_factors=[1.4])
-    )
-    msg = toss_question_to_msg(question, world=WORLD, world_frame="world")
-    read = toss_question_from_msg(msg, world=WORLD, world_frame="world")
-    np.testing.assert_array_equal(read.lasting_factors, [1.4])
-    assert (read.sampling is not None) == sampled
-    if read.sampling is not None:
-        np.testing.assert_array_equal(read.sampling.uncertainty.lasting_factors, [1.4])
-        np.testing.assert_array_equal(read.sampling.uncertainty.lasting_factor_stds, [0.1])

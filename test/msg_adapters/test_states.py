@@ -19,7 +19,7 @@ from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics_interfaces.msg import BodyState as BodyStateMsg
 from msg_adapters.body_state import body_state_from_msg, body_state_to_msg, known_state_from_msg
 from msg_adapters.odometry import body_state_from_odometry, odometry_from_body_state
-from msg_adapters.pose_twist import body_state_from_pose_twist, pose_twist_from_body_state
+from msg_adapters.pose_twist import body_state_from_pose_twist
 
 ROUNDING = 1e-13  # of numbers up to 10, through two rotations each way: some tens of units in the last place
 
@@ -49,13 +49,6 @@ def test_odometry_there_and_back(state: BodyState, p_FB_F: np.ndarray) -> None:
     msg = odometry_from_body_state(state, world_frame="map", child_frame="brick", p_FB_F=p_FB_F)
     assert (msg.header.frame_id, msg.child_frame_id) == ("map", "brick")
     assert_same(body_state_from_odometry(msg, world_frame="map", p_FB_F=p_FB_F), state)
-
-
-@given(state=states, p_FB_F=vectors)
-def test_pose_and_twist_there_and_back(state: BodyState, p_FB_F: np.ndarray) -> None:
-    pose, twist = pose_twist_from_body_state(state, world_frame="map", p_FB_F=p_FB_F)
-    back = body_state_from_pose_twist(pose, twist, world_frame="map", body_frame="brick", p_FB_F=p_FB_F)
-    assert_same(back, state)
 
 
 @given(state=states, p_FB_F=vectors)
