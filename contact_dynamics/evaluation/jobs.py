@@ -29,7 +29,7 @@ from contact_dynamics.errors import InvalidFieldError, NotSupportedError
 from contact_dynamics.evaluation.log_states import parameters_of
 from contact_dynamics.evaluation.recording import evaluate_recording
 from contact_dynamics.evaluation.result import SourceResult, joined, source_result
-from contact_dynamics.nodes.given_parameters import ParameterFile
+from contact_dynamics.nodes.parameter_file import ParameterFile
 from contact_dynamics.nodes.run_record import versions_here
 from contact_dynamics.records import Record
 

@@ -16,7 +16,7 @@ from contact_dynamics.errors import ContactDynamicsError, InvalidFieldError
 from contact_dynamics.evaluation.asking import Informed
 from contact_dynamics.evaluation.recording import Recording
 from contact_dynamics.measured.motion import StateColumns, motions_of
-from contact_dynamics.nodes.given_parameters import ParameterFile
+from contact_dynamics.nodes.parameter_file import ParameterFile
 from contact_dynamics.nodes.parameters import ServerParameters, read_server_parameters
 from contact_dynamics.nodes.run_record import PARAMETERS, LoggedParameters
 from contact_dynamics.recording.bag_reader import BagReader
@@ -100,7 +100,7 @@ def _configuration(log: BagReader, path: Path, config: Path | None) -> Parameter
     if config is not None:
         return ParameterFile(config)
     run = log.run()
-    if PARAMETERS not in run and "world_frame" not in run:
+    if PARAMETERS not in run:
         raise NotALogError(
             f"{path}: --config is required, since the log has no record of its run's configuration"
             f"{f' ({log.damage})' if log.damage else ''}"

@@ -24,7 +24,7 @@ from contact_dynamics.evaluation.result import (
 from contact_dynamics.evaluation.settings import Law, Settings
 from contact_dynamics.evaluation.significance import changes
 from contact_dynamics.evaluation.sources import find_sources
-from contact_dynamics.nodes.given_parameters import ParameterFile
+from contact_dynamics.nodes.parameter_file import ParameterFile
 from contact_dynamics.replay.progress import Progress
 
 if TYPE_CHECKING:

@@ -12,7 +12,7 @@ import textwrap
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from contact_dynamics.nodes.parameter_mistakes import files_given
+from contact_dynamics.nodes.parameter_file import files_given
 from contact_dynamics.nodes.parameters import described_server_parameters
 from contact_dynamics.nodes.visualizer_parameters import VISUALIZER_PARAMETERS
 

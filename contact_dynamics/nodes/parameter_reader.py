@@ -1,21 +1,23 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Reads parameters from a source, and refuses what is not allowed by the parameter's name.
+"""Reads parameters of the nodes, and rejects by name what is not allowed and what no parameter has.
 
-This file imports no ROS. The values come from a `ParameterSource`: a node (`node_parameters`), or the log of
-a run that is over (`run_record`).
+This file imports no ROS. The values are plain ones by the parameters' names. They come from a node
+(`node_parameters`), from a file (`parameter_file`), or from the log of a run that is over (`run_record`).
 """
 
 from __future__ import annotations
 
+import difflib
+import re
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, Final, NamedTuple, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any, Final, NamedTuple, TypeVar
 
 from contact_dynamics.errors import ContactDynamicsError, InvalidFieldError
 from contact_dynamics.world import LONGEST_NAME
 from msg_adapters.field_names import renamed
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Mapping
+    from collections.abc import Callable, Collection, Iterable, Mapping
 
 T = TypeVar("T")
 
@@ -43,42 +45,6 @@ class DeclaredParameter(NamedTuple):
     bounds: tuple[float, float] | None = None
 
 
-class ParameterSource(Protocol):
-    """A source of the values of parameters."""
-
-    def value(
-        self, name: str, default: Any, description: str, bounds: tuple[float, float] | None = None
-    ) -> Any:
-        """Return a parameter's value, which has the type of the default.
-
-        Args:
-            name: the name of the parameter.
-            default: its value if none is given. A type, `float` or `list`, makes the parameter mandatory.
-            description: what it means, for people.
-            bounds: least and greatest value.
-
-        Raises:
-            ConfigurationError: there is no value, or it has another type or is out of bounds.
-        """
-
-    def resolved_topic(self, name: str, topic: str) -> str:
-        """Return the full name of the topic that a parameter names.
-
-        Raises:
-            ConfigurationError: the name is not that of a topic.
-        """
-
-    def refuse_unknown(self, early: Collection[str] | None = None) -> None:
-        """Refuse parameters that are given and that nothing has read.
-
-        Args:
-            early: the names of all parameters, where an error has left some unread.
-
-        Raises:
-            ConfigurationError: there are such. The message names each, with the most similar known one.
-        """
-
-
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ConfiguredTopic:
     """A topic as it is configured.
@@ -94,20 +60,73 @@ class ConfiguredTopic:
     parameter: str
 
 
-class ParameterReader:
-    """Reads parameters from a source. Every mistake becomes a `ConfigurationError`."""
+class ParameterSource:
+    """Values of parameters, from which they are read. Every mistake becomes a `ConfigurationError`.
 
-    def __init__(self, source: ParameterSource) -> None:
-        self._source = source
-        self.read = source.value
-        self._topics: dict[str, str] = {}  # the parameter of each topic, by the topic's full name
+    Attributes:
+        values: Plain values by the parameters' names.
+        read: The parameters that were read, by name, with their values.
+        topics: The full names of the topics that were read, by parameter.
+    """
+
+    def __init__(
+        self,
+        values: Mapping[str, Any],
+        *,
+        origin: str = "",
+        also_known: Iterable[str] = (),
+        resolve: Callable[[str, str], str] | None = None,
+    ) -> None:
+        """Take the values.
+
+        Args:
+            values: plain values by the parameters' names.
+            origin: where they come from, which begins each complaint.
+            also_known: names that may be given although nothing reads them.
+            resolve: finds the full name of a topic, as `resolved_topic`. Without it, nothing is remapped.
+        """
+        self.values = values
+        self.read: dict[str, DeclaredParameter] = {}
+        self.topics: dict[str, str] = {}
+        self._before = f"{origin}: " if origin else ""
+        self._also_known = frozenset(also_known)
+        self._resolve = resolve
+        self._single_topics: dict[str, str] = {}  # the parameter of each topic that only one may name
+
+    def value(
+        self, name: str, default: Any, description: str, bounds: tuple[float, float] | None = None
+    ) -> Any:
+        """Return a parameter's value, which has the type of the default.
+
+        Args:
+            name: the name of the parameter.
+            default: its value if none is given. The type `float` makes the parameter mandatory.
+            description: what it means, for people.
+            bounds: least and greatest value.
+
+        Raises:
+            ConfigurationError: there is no value, or it has another type or is out of bounds.
+        """
+        found = self.values.get(name)
+        if found is None and default is float:
+            meant = likely_misspelling(name, self.values)
+            message = f"{self._before}{name} is required ({description}){meant}"
+            raise ConfigurationError(message)
+        value, allowed = _as_default(default if found is None else found, default)
+        if not allowed and bounds is not None and not bounds[0] <= value <= bounds[1]:
+            allowed = f"in [{bounds[0]:g}, {bounds[1]:g}]"
+        if allowed:
+            message = f"{self._before}{name} must be {allowed} ({description}), got {found!r}"
+            raise ConfigurationError(message)
+        self.read[name] = DeclaredParameter(name, value, description, bounds)
+        return value
 
     def zero_or(
         self, name: str, default: float, description: str, bounds: tuple[float, float], *, unit: str
     ) -> float | None:
         """Return a number within bounds, or None for zero, which stands for none."""
         least, most = bounds
-        found: float = self.read(name, default, description, (0.0, most))
+        found: float = self.value(name, default, description, (0.0, most))
         if 0.0 < found < least:
             message = f"{name} must be 0 or in [{least:g}, {most:g}] {unit}, got {found:g} {unit}"
             raise ConfigurationError(message)
@@ -128,18 +147,18 @@ class ParameterReader:
             fields: The description and the bounds of each.
         """
         values = {
-            field: self.read((names or {}).get(field, field), getattr(default, field), description, bounds)
+            field: self.value((names or {}).get(field, field), getattr(default, field), description, bounds)
             for field, (description, bounds) in fields.items()
         }
         return replace(default, **values)  # type: ignore[type-var]  # only dataclasses are given
 
     def name(self, name: str, default: str, description: str) -> str:
         """Return a name of something, which cannot be empty."""
-        return _checked_name(name, self.read(name, default, description))
+        return _checked_name(name, self.value(name, default, description))
 
     def names(self, name: str, description: str) -> list[str]:
         """Return the names in a list. An empty one alone stands for none, since ROS knows no empty lists."""
-        given: list[str] = self.read(name, [""], description)
+        given: list[str] = self.value(name, [""], description)
         if given == [""]:
             return []
         found = [_checked_name(f"{name}[{i}]", each) for i, each in enumerate(given)]
@@ -150,27 +169,40 @@ class ParameterReader:
 
     def topic(self, name: str, description: str) -> ConfiguredTopic | None:
         """Return a topic that no other parameter names, or None if there is none."""
-        topic: str = self.read(name, "", description)
+        topic: str = self.value(name, "", description)
         if not topic:
             return None
         found = self._configured(name, topic)
-        if found.full_name in self._topics:
-            message = (
-                f"{name} must be another topic than that of {self._topics[found.full_name]}, got {topic!r}"
-            )
+        other = self._single_topics.setdefault(found.full_name, name)
+        if other != name:
+            message = f"{name} must be another topic than that of {other}, got {topic!r}"
             raise ConfigurationError(message)
-        self._topics[found.full_name] = name
         return found
 
-    def topics(self, name: str, description: str) -> tuple[ConfiguredTopic, ...]:
+    def topics_of(self, name: str, description: str) -> tuple[ConfiguredTopic, ...]:
         """Return the topics of a list, which several bodies may share."""
         return tuple(
             self._configured(f"{name}[{i}]", topic) for i, topic in enumerate(self.names(name, description))
         )
 
     def _configured(self, parameter: str, topic: str) -> ConfiguredTopic:
-        full_name = self._source.resolved_topic(parameter, topic)
+        full_name = self.resolved_topic(parameter, topic)
         return ConfiguredTopic(name=topic, full_name=full_name, parameter=parameter)
+
+    def resolved_topic(self, name: str, topic: str) -> str:
+        """Return the full name of the topic that a parameter names.
+
+        Raises:
+            ConfigurationError: the name is not that of a topic.
+        """
+        if self._resolve is not None:
+            resolved = self._resolve(name, topic)
+        elif topic.startswith("~"):
+            resolved = f"/{NODE_NAME}{topic[1:]}"
+        else:
+            resolved = topic if topic.startswith("/") else f"/{topic}"
+        self.topics[name] = resolved
+        return resolved
 
     @staticmethod
     def build(prefix: str, make: Callable[[], T]) -> T:
@@ -182,9 +214,95 @@ class ParameterReader:
             message = f"{prefix}.{told}" if prefix else str(told)
             raise ConfigurationError(message) from None
 
+    def refuse_unknown(self, early: Collection[str] | None = None) -> None:
+        """Refuse parameters that are given and that nothing has read.
+
+        Args:
+            early: the names of all parameters, where an error has left some unread. Topics are not known
+                then, and overrides of their quality of service are not refused.
+
+        Raises:
+            ConfigurationError: there are such. The message names each, with the most similar known one.
+        """
+        known = {*self.read, *self._also_known, *_qos_overrides_of(self.topics.values()), *(early or ())}
+        is_allowed = _OF_ROS.fullmatch if early is None else is_of_ros
+        unknown = sorted(name for name in self.values if name not in known and not is_allowed(name))
+        if unknown:
+            told = "\n".join(self._unknown(name, known) for name in unknown)
+            message = f"{self._before}{told}"
+            raise ConfigurationError(message)
+
+    def _unknown(self, name: str, known: Collection[str]) -> str:
+        kind, _, rest = name.partition(".")
+        listing = _LISTED_BY.get(kind)
+        if listing and rest:
+            own_name = rest.rpartition(".")[0] or rest
+            allowed = [each for each in self.values.get(listing, []) if each]
+            if own_name not in allowed:
+                return (
+                    f"{name} must be about one of the names in {listing} {allowed}, got {kind} {own_name!r}"
+                )
+        group, _, last = name.rpartition(".")
+        meant = f"{group}.{_MEANT.get(last, '')}"
+        nearest = meant if meant in known else difflib.get_close_matches(name, known, n=1, cutoff=0.0)[0]
+        return f"{name}: there is no such parameter; the nearest is {nearest}"
+
+
+_IN_WORDS: Final = {
+    bool: "true or false",
+    int: "a whole number",
+    float: "a number",
+    str: "a text",
+    list: "a list, such as [1.0]",
+}
+"""The types of parameters, in the words of an error."""
+
+
+def _as_default(value: Any, default: Any) -> tuple[Any, str]:
+    """Return a value as one of the type of a default, or what it would have to be."""
+    kind: type[Any] = default if isinstance(default, type) else type(default)
+    if kind is float and type(value) is int:
+        return float(value), ""
+    if type(value) is not kind:
+        return value, _IN_WORDS[kind]
+    if kind is list and default:
+        found = [_as_default(each, default[0]) for each in value]
+        wrong = next((allowed for _, allowed in found if allowed), "")
+        return [each for each, _ in found], f"a list of which each is {wrong}" if wrong else ""
+    return value, ""
+
 
 def _checked_name(parameter: str, name: str) -> str:
     if name and name == name.strip() and len(name) <= LONGEST_NAME:
         return name
     allowed = f"a name of 1 to {LONGEST_NAME} letters, without blanks around it"
     raise ConfigurationError(str(InvalidFieldError(parameter, repr(name), allowed)))
+
+
+_OF_ROS: Final = re.compile(r"use_sim_time|start_type_description_service")
+_QOS: Final = "qos_overrides"
+_POLICIES: Final = ("history", "depth", "reliability")
+"""What ROS lets parameters override of a subscription, unless a node asks for more."""
+_LIKELY: Final = 0.7
+"""Similarity from which on a name counts as a misspelled one, by `difflib`. One letter in four makes 0.75."""
+_MEANT: Final = {"radius": "sphere", "size": "box", "com": "center_of_mass", "mu": "friction"}
+"""Names that others have for a parameter, with ours."""
+_LISTED_BY: Final = {"body": "bodies", "surface": "surfaces"}
+
+
+def is_of_ros(name: str) -> bool:
+    """Tell whether a parameter is one that ROS gives every node."""
+    return _OF_ROS.fullmatch(name) is not None or name.startswith(f"{_QOS}.")
+
+
+def _qos_overrides_of(topics: Iterable[str]) -> set[str]:
+    """Return the parameters that override the quality of service of subscriptions to topics."""
+    return {f"{_QOS}.{topic}.subscription.{policy}" for topic in topics for policy in _POLICIES}
+
+
+def likely_misspelling(missing: str, given: Iterable[str]) -> str:
+    """Return words about a given name that is probably meant by the missing one, or nothing."""
+    group, _, last = missing.rpartition(".")
+    beside = [name.rpartition(".")[2] for name in given if name.rpartition(".")[0] == group]
+    close = difflib.get_close_matches(last, beside, n=1, cutoff=_LIKELY)
+    return f" Given is {group}.{close[0]}, which may be misspelled." if close else ""

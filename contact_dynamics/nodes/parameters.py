@@ -14,8 +14,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 from contact_dynamics.constants import STANDARD_GRAVITY_W
-from contact_dynamics.nodes.given_parameters import GivenParameters
-from contact_dynamics.nodes.parameter_reader import ConfigurationError, ParameterReader
+from contact_dynamics.nodes.parameter_reader import ConfigurationError, ParameterSource
 from contact_dynamics.nodes.situations import FaultLimits
 from contact_dynamics.nodes.world_parameters import read_body, read_surface
 from contact_dynamics.questions.context import Defaults
@@ -34,7 +33,7 @@ from contact_dynamics.world import World
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from contact_dynamics.nodes.parameter_reader import ConfiguredTopic, DeclaredParameter, ParameterSource
+    from contact_dynamics.nodes.parameter_reader import ConfiguredTopic, DeclaredParameter
     from contact_dynamics.nodes.world_parameters import BodySources
 
 MEGABYTE: Final = 1_000_000
@@ -82,7 +81,7 @@ class ServerParameters:
 
 def described_server_parameters() -> tuple[DeclaredParameter, ...]:
     """Return the parameters of a server with a body NAME and a surface NAME, without values if required."""
-    source = GivenParameters(
+    source = ParameterSource(
         {
             "bodies": ["NAME"],
             "surfaces": ["NAME"],
@@ -118,11 +117,10 @@ def read_server_parameters(source: ParameterSource) -> ServerParameters:
         ConfigurationError: a parameter is missing, has another type, or a value that is not allowed. The
             message names it.
     """
-    reader = ParameterReader(source)
-    body_names = reader.names("bodies", "Names of the configured bodies.")
-    surface_names = reader.names("surfaces", "Names of the surfaces: planes and obstacles.")
+    body_names = source.names("bodies", "Names of the configured bodies.")
+    surface_names = source.names("surfaces", "Names of the surfaces: planes and obstacles.")
     try:
-        parameters = _read_parameters(reader, body_names, surface_names)
+        parameters = _read_parameters(source, body_names, surface_names)
     except ConfigurationError as error:  # whose cause may be a name that is not known
         try:
             source.refuse_unknown(_known_names(body_names, surface_names))
@@ -135,51 +133,53 @@ def read_server_parameters(source: ParameterSource) -> ServerParameters:
 
 
 def _read_parameters(
-    reader: ParameterReader, body_names: Sequence[str], surface_names: Sequence[str]
+    source: ParameterSource, body_names: Sequence[str], surface_names: Sequence[str]
 ) -> ServerParameters:
-    bodies = [read_body(reader, name) for name in body_names]
-    gravity = reader.read(
+    bodies = [read_body(source, name) for name in body_names]
+    gravity = source.value(
         "gravity", list(STANDARD_GRAVITY_W), "Acceleration of gravity, m/s^2, world axes: x, y, z."
     )
-    is_logged = reader.read("log", default=True, description="Log every state, request and response to MCAP.")
+    is_logged = source.value(
+        "log", default=True, description="Log every state, request and response to MCAP."
+    )
 
     def build_world() -> World:
         world = World(
             bodies=tuple(body for body, _ in bodies),
-            surfaces=tuple(read_surface(reader, name) for name in surface_names),
+            surfaces=tuple(read_surface(source, name) for name in surface_names),
             gravity_W=gravity,
         )
         check_vector("gravity", world.gravity_W)
         return world
 
     return ServerParameters(
-        world=reader.build("", build_world),
+        world=source.build("", build_world),
         sources=tuple(sources for _, sources in bodies),
-        static_topic=reader.topic(
+        static_topic=source.topic(
             "tf_static_topic",
             "Topic of tf2_msgs/TFMessage with static transforms. Not used if empty.",
         ),
-        world_frame=reader.name("world_frame", "world", "Frame of states and responses."),
-        state_timeout=reader.read("state_timeout", 0.5, "Largest age of the newest state, s.", (1e-3, 1e6)),
-        state_history=reader.read("state_history", 5.0, "Length of the history of states, s.", (0.0, 1e4)),
-        future_tolerance=reader.read(
+        world_frame=source.name("world_frame", "world", "Frame of states and responses."),
+        state_timeout=source.value("state_timeout", 0.5, "Largest age of the newest state, s.", (1e-3, 1e6)),
+        state_history=source.value("state_history", 5.0, "Length of the history of states, s.", (0.0, 1e4)),
+        future_tolerance=source.value(
             "future_tolerance",
             FUTURE_TOLERANCE,
             "Largest lead of a state's stamp over the node's clock, s. States further ahead are rejected.",
             (0.0, 1e6),
         ),
-        max_states=reader.read(
+        max_states=source.value(
             "max_states", MAX_STATES, "Largest number of states kept for a body.", (1, 10_000_000)
         ),
-        fault_limits=reader.filled(
+        fault_limits=source.filled(
             FaultLimits(),
             warn_every=("Shortest time between two warnings of the same kind about a topic, s.", (0.0, 1e6)),
             silent_after=("Time without a message after which a topic counts as silent, s.", (0.1, 1e6)),
         ),
-        client_gone_for=reader.read(
+        client_gone_for=source.value(
             "client_gone_for", 1.0, "How long to drop old requests of a lost client, s.", (0.0, 3600.0)
         ),
-        defaults=reader.filled(
+        defaults=source.filled(
             Defaults(),
             velocity_tolerance=("Speed below which a contact counts as at rest, m/s.", (0.0, 1e3)),
             distance_tolerance=(
@@ -193,7 +193,7 @@ def _read_parameters(
             horizon=("Look-ahead time for a first contact, s.", (0.0, 1e4)),
             rate=("Sample rate of trajectories, Hz.", (1e-6, 1e6)),
         ),
-        worker_limits=reader.filled(
+        worker_limits=source.filled(
             WorkerLimits(),
             {"count": "workers", "deadline": "answer_deadline", "memory": "worker_memory"},
             count=(
@@ -204,24 +204,24 @@ def _read_parameters(
             memory=("Memory limit of a worker, MB.", (100, 1_000_000)),
             max_waiting=("Largest number of queued requests.", (0, 1000)),
         ),
-        autostart=reader.read(
+        autostart=source.value(
             "autostart",
             default=True,
             description="Whether the node configures and activates itself when it starts.",
         ),
         log=is_logged,
-        log_directory=reader.read(
+        log_directory=source.value(
             "log_directory",
             "",
             "Parent folder of the log's folder. An empty text means the working directory.",
         ),
-        log_before_answer=_read_log_before_answer(reader, is_logged=is_logged),
-        log_limits=_read_log_limits(reader),
+        log_before_answer=_read_log_before_answer(source, is_logged=is_logged),
+        log_limits=_read_log_limits(source),
     )
 
 
-def _read_log_before_answer(reader: ParameterReader, *, is_logged: bool) -> bool:
-    is_before: bool = reader.read(
+def _read_log_before_answer(source: ParameterSource, *, is_logged: bool) -> bool:
+    is_before: bool = source.value(
         "log_before_answer",
         default=False,
         description="Whether a response is sent only once it is on the disk, with its request and states.",
@@ -232,31 +232,31 @@ def _read_log_before_answer(reader: ParameterReader, *, is_logged: bool) -> bool
     return is_before
 
 
-def _read_log_limits(reader: ParameterReader) -> LogLimits:
+def _read_log_limits(source: ParameterSource) -> LogLimits:
     names = [each.value for each in Compression]
     allowed = ", ".join(names)
-    compression = reader.read(
+    compression = source.value(
         "log_compression", Compression.ZSTD.value, f"Compression of the log: {allowed}."
     )
     if compression not in names:
         message = f"log_compression must be one of {allowed}, got {compression!r}"
         raise ConfigurationError(message)
     least = LEAST_FILE_BYTES / MEGABYTE
-    file_size = reader.zero_or(
+    file_size = source.zero_or(
         "log_file_size",
         1000.0,
         "Size limit of a file of the log, MB. 0 means no limit.",
         (least, 1e8),
         unit="MB",
     )
-    file_duration = reader.zero_or(
+    file_duration = source.zero_or(
         "log_file_duration",
         1800.0,
         "Duration of a file of the log, s. 0 means no limit.",
         (LEAST_FILE_SECONDS, 1e8),
         unit="s",
     )
-    size_limit = reader.zero_or(
+    size_limit = source.zero_or(
         "log_size_limit",
         0.0,
         "Size limit of the log, above which its oldest files are deleted, MB. 0 means no limit.",

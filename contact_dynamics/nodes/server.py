@@ -19,11 +19,9 @@ from rclpy.parameter import Parameter
 
 from contact_dynamics.errors import ConcaveShapeWarning, ContactDynamicsError
 from contact_dynamics.nodes.arguments import server_parser
-from contact_dynamics.nodes.given_parameters import GivenParameters
 from contact_dynamics.nodes.inbox import InboxNode
 from contact_dynamics.nodes.node_parameters import NodeParameters, refuse_lost_sections
-from contact_dynamics.nodes.parameter_mistakes import is_of_ros
-from contact_dynamics.nodes.parameter_reader import NODE_NAME
+from contact_dynamics.nodes.parameter_reader import NODE_NAME, ParameterSource, is_of_ros
 from contact_dynamics.nodes.parameters import check_change, read_server_parameters
 from contact_dynamics.nodes.run_record import event_of_change, plain, run_record
 from contact_dynamics.nodes.running import run_node
@@ -35,7 +33,6 @@ if TYPE_CHECKING:
 
     from rclpy.lifecycle import LifecycleState
 
-    from contact_dynamics.nodes.parameter_reader import ParameterSource
     from contact_dynamics.nodes.parameters import ServerParameters
 
 
@@ -137,7 +134,7 @@ class Server(InboxNode, LifecycleNode):
             return super().set_parameters_atomically(parameter_list)
         before = self._values()
         proposed = {**before, **{each.name: plain(each.value) for each in parameter_list}}
-        given = GivenParameters(proposed, also_known=before, resolve=self._source.resolved_topic)
+        given = ParameterSource(proposed, also_known=before, resolve=self._source.resolved_topic)
         try:
             configuration = self._read(given)
             if self._serving is not None:

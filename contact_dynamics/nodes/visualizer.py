@@ -25,10 +25,9 @@ from rclpy.qos import QoSProfile
 from rclpy.serialization import deserialize_message
 
 from contact_dynamics.nodes.arguments import visualizer_parser
-from contact_dynamics.nodes.given_parameters import GivenParameters
 from contact_dynamics.nodes.inbox import InboxNode
 from contact_dynamics.nodes.node_parameters import NodeParameters, refuse_lost_sections
-from contact_dynamics.nodes.parameter_reader import ConfigurationError
+from contact_dynamics.nodes.parameter_reader import ConfigurationError, ParameterSource
 from contact_dynamics.nodes.parameters import check_change, read_server_parameters
 from contact_dynamics.nodes.run_record import CHANGES, changed_values, plain
 from contact_dynamics.nodes.running import run_node
@@ -234,7 +233,7 @@ class Visualizer(InboxNode):
         if event.node != self._server:
             return
         self._values.update(changed_values(event))
-        given = GivenParameters(self._values, also_known=self._values, resolve=self._source.resolved_topic)
+        given = ParameterSource(self._values, also_known=self._values, resolve=self._source.resolved_topic)
         try:
             before, after = self._core.parameters, read_server_parameters(given)
             check_change(before, after)

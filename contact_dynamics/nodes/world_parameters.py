@@ -24,7 +24,7 @@ from contact_dynamics.world import Body, Surface
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from contact_dynamics.nodes.parameter_reader import ConfiguredTopic, ParameterReader
+    from contact_dynamics.nodes.parameter_reader import ConfiguredTopic, ParameterSource
     from contact_dynamics.rigid_body.inertia import MassDistribution
     from contact_dynamics.validation import FloatArray
 
@@ -69,42 +69,42 @@ class BodySources:
     sources: tuple[ConfiguredSource, ...]
 
 
-def read_body(reader: ParameterReader, name: str) -> tuple[Body, BodySources]:
+def read_body(source: ParameterSource, name: str) -> tuple[Body, BodySources]:
     """Return a body and the sources of its states.
 
     Raises:
         ConfigurationError: a parameter is missing or not allowed.
     """
     key = f"body.{name}"
-    mass = reader.read(f"{key}.mass", float, "Mass, kg.")
-    inertia = reader.read(
+    mass = source.value(f"{key}.mass", float, "Mass, kg.")
+    inertia = source.value(
         f"{key}.inertia",
         [0.0],
         "Angular inertia about the centre of mass, kg m^2, in the axes of the body's frame: "
         "ixx, iyy, izz, ixy, ixz, iyz. [0.0] means that the mass fills the shape evenly.",
     )
-    offset = reader.read(
+    offset = source.value(
         f"{key}.center_of_mass", [0.0, 0.0, 0.0], "Centre of mass in the body's frame, m: x, y, z."
     )
-    shape = _read_shape(reader, key)
-    body = reader.build(key, lambda: _body(name, mass, inertia, offset, shape))
+    shape = _read_shape(source, key)
+    body = source.build(key, lambda: _body(name, mass, inertia, offset, shape))
     return body, BodySources(
         body_name=name,
-        frame=reader.name(f"{key}.frame", name, "Frame of the body, whose pose is published."),
-        velocity_window=reader.read(
+        frame=source.name(f"{key}.frame", name, "Frame of the body, whose pose is published."),
+        velocity_window=source.value(
             f"{key}.velocity_window",
             0.05,
             "Length of the window for velocities where only poses are published, s.",
             (1e-3, 10.0),
         ),
-        state_deviations=_read_deviations(reader, key),
-        sources=_read_sources(reader, key),
+        state_deviations=_read_deviations(source, key),
+        sources=_read_sources(source, key),
     )
 
 
-def _read_deviations(reader: ParameterReader, key: str) -> tuple[float, ...]:
+def _read_deviations(source: ParameterSource, key: str) -> tuple[float, ...]:
     name = f"{key}.state_deviations"
-    found = reader.read(
+    found = source.value(
         name,
         [0.0],
         "Standard deviations of states that are published without a covariance: position, m, orientation, "
@@ -118,23 +118,23 @@ def _read_deviations(reader: ParameterReader, key: str) -> tuple[float, ...]:
     return tuple(found)
 
 
-def _read_sources(reader: ParameterReader, key: str) -> tuple[ConfiguredSource, ...]:
+def _read_sources(source: ParameterSource, key: str) -> tuple[ConfiguredSource, ...]:
     """Return the sources of a body's states: the usual ones, each by its topics, and one by its name."""
-    odometry = reader.topic(
+    odometry = source.topic(
         f"{key}.odometry_topic", "Topic of the body's states as nav_msgs/Odometry. Not used if empty."
     )
-    pose = reader.topic(
+    pose = source.topic(
         f"{key}.pose_topic", "Topic of the body's geometry_msgs/PoseStamped. Not used if empty."
     )
-    twist = reader.topic(
+    twist = source.topic(
         f"{key}.twist_topic",
         "Topic of the body's geometry_msgs/TwistStamped. If empty, velocities are estimated from poses.",
     )
     if twist is not None and pose is None:
         message = f"{key}.twist_topic must be none without a pose_topic, got {twist.name!r}"
         raise ConfigurationError(message)
-    name = reader.read(f"{key}.source", "", "Name of another source of states. Not used if empty.")
-    topics = reader.topics(f"{key}.source_topics", "Topics of this source.")
+    name = source.value(f"{key}.source", "", "Name of another source of states. Not used if empty.")
+    topics = source.topics_of(f"{key}.source_topics", "Topics of this source.")
     if bool(name) != bool(topics):
         found = f"{name!r} and {[topic.name for topic in topics]}"
         message = f"{key}.source and {key}.source_topics must be both or none, got {found}"
@@ -177,16 +177,16 @@ def _body(name: str, mass: float, inertia: list[float], offset: list[float], sha
     return Body(name=name, mass_properties=mass_properties, p_FB_F=center_of_mass, shape=shape_B)
 
 
-def _read_shape(reader: ParameterReader, key: str) -> ShapeParameters:
+def _read_shape(source: ParameterSource, key: str) -> ShapeParameters:
     return ShapeParameters(
-        numbers={name: reader.read(f"{key}.{name}", [0.0], text) for name, text in DESCRIPTIONS.items()},
-        rounding=reader.read(
+        numbers={name: source.value(f"{key}.{name}", [0.0], text) for name, text in DESCRIPTIONS.items()},
+        rounding=source.value(
             f"{key}.rounding", 0.0, "Radius of a ball that rolls over the shape, m.", (0.0, 1e3)
         ),
-        position=reader.read(
+        position=source.value(
             f"{key}.shape_position", [0.0, 0.0, 0.0], "Position of the shape in the body's frame, m: x, y, z."
         ),
-        orientation=reader.read(
+        orientation=source.value(
             f"{key}.shape_orientation",
             [0.0, 0.0, 0.0, 1.0],
             "Orientation of the shape in the body's frame: unit quaternion x, y, z, w.",
@@ -194,21 +194,21 @@ def _read_shape(reader: ParameterReader, key: str) -> ShapeParameters:
     )
 
 
-def read_surface(reader: ParameterReader, name: str) -> Surface | Obstacle:
+def read_surface(source: ParameterSource, name: str) -> Surface | Obstacle:
     """Return a flat, or an obstacle with corners; it raises as `read_body` does."""
     key = f"surface.{name}"
-    point = reader.read(
+    point = source.value(
         f"{key}.point", [0.0, 0.0, 0.0], "A point of the plane, or the centre of the box, m, world: x, y, z."
     )
-    normal = reader.read(
+    normal = source.value(
         f"{key}.normal",
         [0.0, 0.0, 1.0],
         "Unit normal of the plane, towards its free side, world axes: x, y, z.",
     )
     shape = ShapeParameters(
         numbers={
-            "box": reader.read(f"{key}.box", [0.0], "Full side lengths of a box, m: x, y, z."),
-            "vertices": reader.read(
+            "box": source.value(f"{key}.box", [0.0], "Full side lengths of a box, m: x, y, z."),
+            "vertices": source.value(
                 f"{key}.vertices",
                 [0.0],
                 "Corners of a convex solid or plate, relative to the point, m: x, y, z.",
@@ -216,18 +216,18 @@ def read_surface(reader: ParameterReader, name: str) -> Surface | Obstacle:
         },
         rounding=0.0,
         position=point,
-        orientation=reader.read(
+        orientation=source.value(
             f"{key}.orientation",
             [0.0, 0.0, 0.0, 1.0],
             "Orientation of the box or the corners: unit quaternion x, y, z, w.",
         ),
         pose_names=("point", "orientation"),
     )
-    friction = reader.read(f"{key}.friction", float, "Coefficient of Coulomb friction with any body, >= 0.")
-    restitution = reader.read(
+    friction = source.value(f"{key}.friction", float, "Coefficient of Coulomb friction with any body, >= 0.")
+    restitution = source.value(
         f"{key}.restitution", float, "Coefficient of restitution with any body, 0 to 1."
     )
-    lasting_factor = reader.read(
+    lasting_factor = source.value(
         f"{key}.lasting_factor",
         1.0,
         "Factor of the friction coefficient for sustained contact in tosses, >= 0.",
@@ -249,7 +249,7 @@ def read_surface(reader: ParameterReader, name: str) -> Surface | Obstacle:
             lasting_factor=lasting_factor,
         )
 
-    return reader.build(key, build)
+    return source.build(key, build)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -67,7 +67,7 @@ def server_of_log(
         raise NotALogError(
             f"{path}: not a log of the server: no service of it in the log's types ({known}){damage}"
         )
-    if PARAMETERS not in run and "world_frame" not in run:
+    if PARAMETERS not in run:
         raise NotALogError(
             f"{path}: not a log of the server: it does not contain the server's configuration{damage}"
         )

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Final
 
 from contact_dynamics.constants import ns_after, to_seconds
 from contact_dynamics.errors import ContactDynamicsError, InvalidFieldError
-from contact_dynamics.nodes.given_parameters import ParameterFile, values_of
+from contact_dynamics.nodes.parameter_file import ParameterFile, values_of
 from contact_dynamics.nodes.run_record import LoggedParameters
 from contact_dynamics.recording.bag_reader import BagReader
 from contact_dynamics.recording.errors import DamagedLogWarning, NotALogError

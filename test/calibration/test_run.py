@@ -16,7 +16,7 @@ from contact_dynamics.calibration.report import content_of
 from contact_dynamics.calibration.run import SOMETHING_OPEN, main
 from contact_dynamics.evaluation.command import NOTHING
 from contact_dynamics.measured.read_toss import DEFAULT_RECORDING
-from contact_dynamics.nodes.given_parameters import ParameterFile
+from contact_dynamics.nodes.parameter_file import ParameterFile
 from contact_dynamics.nodes.parameters import read_server_parameters
 from message_words import says
 

@@ -11,7 +11,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from contact_dynamics.errors import ConcaveShapeWarning, WrongTypeError
-from contact_dynamics.nodes.given_parameters import GivenParameters
+from contact_dynamics.nodes.parameter_reader import ParameterSource
 from contact_dynamics.nodes.parameters import read_server_parameters
 from contact_dynamics.rigid_body import inertia
 from contact_dynamics.rigid_body.body import BodyState
@@ -129,7 +129,7 @@ def test_a_configured_bracket_warns() -> None:
             "body.bracket.vertices": corners("L").ravel().tolist(),
             **given,
         }
-        source = GivenParameters(values, also_known=(), resolve=lambda _, topic: topic)
+        source = ParameterSource(values, also_known=(), resolve=lambda _, topic: topic)
         with pytest.warns(
             ConcaveShapeWarning, match=r"body\.bracket\.vertices: 2 of 12 corners are in faces"
         ):
@@ -145,4 +145,4 @@ def test_a_configured_box_does_not_warn() -> None:
         "body.box.vertices": box_vertices((0.1, 0.2, 0.3)).ravel().tolist(),
     }
     with warnings.catch_warnings():
-        read_server_parameters(GivenParameters(values, also_known=(), resolve=lambda _, topic: topic))
+        read_server_parameters(ParameterSource(values, also_known=(), resolve=lambda _, topic: topic))

@@ -11,9 +11,8 @@ from rclpy.context import Context
 from rclpy.node import Node
 
 from contact_dynamics.nodes import server
-from contact_dynamics.nodes.given_parameters import GivenParameters, ParameterFile
-from contact_dynamics.nodes.parameter_mistakes import Section, check_sections, read_sections
-from contact_dynamics.nodes.parameter_reader import ConfigurationError
+from contact_dynamics.nodes.parameter_file import ParameterFile, Section, check_sections, read_sections
+from contact_dynamics.nodes.parameter_reader import ConfigurationError, ParameterSource
 from contact_dynamics.nodes.parameters import read_server_parameters
 from contact_dynamics.nodes.state_sources import state_sources
 from message_words import says
@@ -182,7 +181,7 @@ def test_two_bodies_of_one_frame_on_one_topic_are_refused() -> None:
     known = {"mass": 1.0, "inertia": [1.0, 1.0, 1.0, 0.0, 0.0, 0.0], "frame": "cup", "source": "tf"}
     values = {f"body.{body}.{name}": value for body in ("a", "b") for name, value in known.items()}
     topics = {f"body.{body}.source_topics": ["/tf"] for body in ("a", "b")}
-    parameters = read_server_parameters(GivenParameters({"bodies": ["a", "b"], **values, **topics}))
+    parameters = read_server_parameters(ParameterSource({"bodies": ["a", "b"], **values, **topics}))
     with pytest.raises(
         ConfigurationError,
         match=r"body\.b\.frame must be another frame than that of body\.a.*, got 'cup'",

@@ -1,0 +1,283 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Reads files of parameters without ROS, and finds the mistakes in them that ROS does not report.
+
+ROS gives a node the parameters of all sections whose name fits its full name, and says nothing of the others,
+so a misspelled name costs all parameters of its section. YAML forbids repeated keys, but ROS silently takes
+the last one. A later section counts more than an earlier. Nested names are joined by points: ``body: {brick:
+{mass: 0.4}}`` is ``body.brick.mass``.
+"""
+
+from __future__ import annotations
+
+import difflib
+import json
+import re
+from itertools import pairwise
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
+
+from contact_dynamics.nodes.parameter_reader import NODE_NAME, ConfigurationError, ParameterSource
+from contact_dynamics.nodes.visualizer_parameters import VISUALIZER_PARAMETERS
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Sequence
+    from pathlib import Path
+
+ANY_NODE: Final = "/**"
+"""The name of a section that is for every node."""
+
+_VALUES: Final = "ros__parameters"
+_MERGE: Final = "<<"  # a key of YAML itself
+_ALIKE: Final = 0.9  # the share of equal letters; a name of 16 letters with two that are swapped has 0.94
+_NUMBER: Final = re.compile(r"[_\d]+$")
+_FILE: Final = "--params-file"
+_GIVEN: Final = re.compile(r"(?:([^:=]+):)?([^:=]+):=(.*)", re.DOTALL)
+
+
+class Section(NamedTuple):
+    """The parameters for the nodes of one name.
+
+    Attributes:
+        node: The name as ROS understands it, with a leading slash. It may have `*` and `/**`.
+        values: The values by their names, which may be nested.
+        repeated: The parameters that stand in it more than once, in words.
+    """
+
+    node: str
+    values: dict[str, Any]
+    repeated: tuple[str, ...] = ()
+
+    def is_for(self, full_name: str) -> bool:
+        """Tell whether a node of this full name gets the parameters."""
+        # The replacement makes "(/\w+)*" of "/**", which is what that means.
+        return re.fullmatch(self.node.replace("/*", r"(/\w+)"), full_name) is not None
+
+
+def read_sections(path: Path) -> tuple[Section, ...]:
+    """Return the sections of a file.
+
+    Raises:
+        ConfigurationError: the file cannot be read, is no YAML, or has something else than sections, or one
+            of them twice.
+    """
+    import yaml  # only who is configured by a file needs it
+
+    try:
+        text = path.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        message = f"{path}: cannot be read: {error}"
+        raise ConfigurationError(message) from None
+    try:
+        loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)(text)  # the former is ten times as fast
+        root = loader.get_single_node()
+        if _items(root):
+            return tuple(_sections(path, root, "", construct=loader.construct_document))
+    except yaml.YAMLError as error:
+        message = f"{path}: no YAML: {error}"
+        raise ConfigurationError(message) from None
+    message = f"{path} must have parameters of {ANY_NODE} or of a node by its name, got none"
+    raise ConfigurationError(message)
+
+
+def _sections(
+    path: Path, mapping: Any, above: str, *, construct: Callable[[Any], dict[str, Any]]
+) -> Iterator[Section]:
+    """Yield the sections in a mapping of names, as nodes of PyYAML."""
+    lines: dict[str, int] = {}
+    for key, inner in mapping.value:
+        name, line = f"{above}{absolute(str(key.value))}", key.start_mark.line + 1
+        if lines.setdefault(name, line) != line:
+            message = f"{path}: {name.lstrip('/')} must appear once, got lines {lines[name]} and {line}"
+            raise ConfigurationError(message)
+        parameters = [value for key, value in _items(inner) if key.value == _VALUES]
+        if parameters and parameters[0].id == "mapping":
+            yield Section(name, construct(parameters[0]), tuple(_repeated(parameters[0])))
+        elif _items(inner) and not parameters:
+            yield from _sections(path, inner, name, construct=construct)
+        else:
+            message = f"{path}: {name.lstrip('/')} must have {_VALUES} (names with values)"
+            raise ConfigurationError(message)
+
+
+def _items(node: Any) -> list[tuple[Any, Any]]:
+    """Return the keys and values of a node of PyYAML, of which one that is no mapping has none."""
+    return node.value if getattr(node, "id", "") == "mapping" else []
+
+
+def _repeated(parameters: Any) -> Iterator[str]:
+    """Yield in words which parameter, or which group of them, stands in a section more than once.
+
+    A parameter can be written in one word or nested: ``body.brick.mass: 1.0`` and
+    ``body: {brick: {mass: 2.0}}`` are the same one. A group may be opened in both ways.
+    """
+    lines: dict[str, int] = {}
+    for path, line, is_leaf in _keys(parameters, ()):
+        name = ".".join(path)
+        if (first := lines.setdefault(name if is_leaf else "/".join(("", *path)), line)) != line:
+            yield f"{name} must appear once, got lines {first} and {line}"
+
+
+def _keys(node: Any, above: tuple[str, ...]) -> Iterator[tuple[tuple[str, ...], int, bool]]:
+    """Yield each key of a node with those above it, its line, and whether its value is no mapping."""
+    for key, value in _items(node):
+        if key.value != _MERGE:
+            path = (*above, str(key.value))
+            yield path, key.start_mark.line + 1, value.id != "mapping"
+            yield from _keys(value, path)
+
+
+def check_sections(path: Path, sections: Sequence[Section], full_name: str) -> str:
+    """Return a warning of a section that was probably meant for a node and misses it, or an empty text.
+
+    Args:
+        path: the file.
+        sections: its sections.
+        full_name: the name of the node with its namespace.
+
+    Raises:
+        ConfigurationError: the file has no section for the node, so that it says nothing to it, or one of
+            them has a parameter twice, of which ROS would take the last.
+    """
+    twice = [each for section in sections if section.is_for(full_name) for each in section.repeated]
+    if twice:
+        message = f"{path}: {'; '.join(twice)}"
+        raise ConfigurationError(message)
+    others = [section.node for section in sections if not section.is_for(full_name)]
+    if len(others) == len(sections):
+        nearest = _nearest(others, full_name)
+        message = (
+            f"{path} must have parameters of {ANY_NODE} or {full_name}, got only those of "
+            f"{' and of '.join(others)}, which do not apply to this node; {nearest} is the nearest name"
+        )
+        raise ConfigurationError(message)
+    misspelled = [name for name in others if _is_misspelled(name, full_name)]
+    if not misspelled:
+        return ""
+    return (
+        f"{path}: the parameters of {' and of '.join(misspelled)} do not apply to this node, "
+        f"whose name is {full_name}"
+    )
+
+
+def files_given(arguments: Sequence[str]) -> list[str]:
+    """Return the files of parameters that ROS's arguments name."""
+    return [path for flag, path in pairwise(arguments) if flag == _FILE]
+
+
+def nodes_given(arguments: Sequence[str]) -> list[str]:
+    """Return the names of nodes in ROS's arguments of the form `-p NODE:PARAMETER:=VALUE`."""
+    return [absolute(match[1]) for match in _given(arguments) if match[1] is not None]
+
+
+def values_given(arguments: Sequence[str], full_name: str) -> dict[str, Any]:
+    """Return the values of the parameters that ROS's arguments give to a node of this full name."""
+    return {
+        match[2]: _value_of(match[3].strip())
+        for match in _given(arguments)
+        if match[1] is None or Section(absolute(match[1]), {}).is_for(full_name)
+    }
+
+
+def _given(arguments: Sequence[str]) -> Iterator[re.Match[str]]:
+    """Yield the node, if any, the name and the value of each parameter in ROS's arguments."""
+    for flag, text in pairwise(arguments):
+        match = _GIVEN.fullmatch(text) if flag in {"-p", "--param"} else None
+        if match is not None:
+            yield match
+
+
+def _nearest(names: Sequence[str], full_name: str) -> str:
+    return difflib.get_close_matches(full_name, names, n=1, cutoff=0.0)[0]
+
+
+def _is_misspelled(name: str, full_name: str) -> bool:
+    """Tell whether a name is nearly that of a node; several nodes may be numbered, or differ in namespace."""
+    own, wanted = name.rpartition("/")[2], full_name.rpartition("/")[2]
+    if _NUMBER.sub("", own) == _NUMBER.sub("", wanted):
+        return False
+    return difflib.SequenceMatcher(None, own, wanted).ratio() >= _ALIKE
+
+
+def absolute(name: str) -> str:
+    """Return a node's name with its leading slash."""
+    return name if name.startswith("/") else f"/{name}"
+
+
+_NODE: Final = f"/{NODE_NAME}"
+
+
+class ParameterFile(ParameterSource):
+    """The values in a file, with other topics for some bodies."""
+
+    def __init__(self, path: Path, topics: Sequence[str] = ()) -> None:
+        """Read the file.
+
+        Args:
+            path: a file of parameters, as `config/server.yaml`.
+            topics: where states are, as "BODY=ODOMETRY_TOPIC" or "BODY=POSE_TOPIC,TWIST_TOPIC". This counts
+                before what the file says.
+
+        Raises:
+            ConfigurationError: it is missing, no YAML, or has no parameters of the server; or it has those of
+                a node whose name is nearly the server's; or a text in ``topics`` has another form.
+        """
+        sections = read_sections(path)
+        warning = check_sections(path, sections, _NODE)
+        if warning:
+            raise ConfigurationError(warning)  # nobody else is configured by what is read here
+        values: dict[str, Any] = {}
+        for section in sections:
+            if section.is_for(_NODE):
+                values.update(_flat(section.values))
+        for text in topics:
+            values.update(_topics(text))
+        # One file may configure both nodes.
+        super().__init__(values, origin=str(path), also_known=VISUALIZER_PARAMETERS)
+
+
+def _flat(given: dict[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:
+    for name, value in given.items():
+        if isinstance(value, dict):
+            yield from _flat(value, f"{prefix}{name}.")
+        else:
+            yield f"{prefix}{name}", value
+
+
+def values_of(config: Path | None, settings: Sequence[str]) -> dict[str, Any]:
+    """Return the values of a file of parameters and of texts "name:=value", which count more.
+
+    Raises:
+        ConfigurationError: the file has no parameters, or a text has another form.
+    """
+    values = {} if config is None else dict(ParameterFile(config).values)
+    for text in settings:
+        name, separator, value = text.partition(":=")
+        if not name or not separator:
+            message = f"--set must be NAME:=VALUE, got {text!r}"
+            raise ConfigurationError(message)
+        values[name] = _value_of(value)
+    return values
+
+
+def _value_of(text: str) -> Any:
+    """Return the value of a text of the command line. What is no value of a parameter stays a text."""
+    import yaml
+
+    try:
+        found = json.loads(text)  # it knows 1e3 as a number, and YAML does not
+    except ValueError:
+        try:
+            found = yaml.safe_load(text)
+        except yaml.YAMLError:
+            return text
+    return found if isinstance(found, (bool, int, float, str, list)) and found != [] else text
+
+
+def _topics(text: str) -> dict[str, str]:
+    body, _, names = text.partition("=")
+    found = names.split(",")
+    if not body or not all(found) or len(found) > 2:
+        message = f"--topics must be BODY=ODOMETRY or BODY=POSE,TWIST, got {text!r}"
+        raise ConfigurationError(message)
+    odometry, pose, twist = ("", *found) if len(found) == 2 else (found[0], "", "")
+    key = f"body.{body}"
+    return {f"{key}.odometry_topic": odometry, f"{key}.pose_topic": pose, f"{key}.twist_topic": twist}
