@@ -367,6 +367,19 @@ class Surface(Record):
         heights: FloatArray = (p_WP_W - self.p_WS_W) @ self.normal_W
         return heights
 
+    @property
+    def is_steady(self) -> bool:
+        """Return whether place and velocities are the same at all times, as of a belt or a turntable."""
+        if not self.moves:
+            return True
+        n, v, w = self.normal_W, self.v_WS_W, self.w_WS_W
+        return (
+            not self.alpha_WS_W.any()
+            and _vanishes(_along(n, v), v)
+            and _vanishes(w - _along(n, w), w)
+            and _vanishes(self.a_WS_W - np.cross(w, v), self.a_WS_W, np.cross(w, v))
+        )
+
     def after(self, seconds: float) -> Surface:
         """Return the surface after a time, s. Its accelerations are constant.
 
@@ -489,8 +502,6 @@ class World(Record):
     surfaces: tuple[Surface | Obstacle, ...] = ()
     gravity_W: FloatArray = field(default_factory=lambda: np.array(STANDARD_GRAVITY_W))
     surfaces_move: bool = field(init=False, repr=False, default=False)
-
-    SURFACE_MOTION: ClassVar[tuple[str, ...]] = ("v_WS_W", "w_WS_W", "a_WS_W", "alpha_WS_W")
 
     if TYPE_CHECKING:
 

@@ -5,14 +5,13 @@ from __future__ import annotations
 
 import math
 from array import array
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from contact_dynamics.contact.contact import MAX_CONTACTS, ContactSet
 from contact_dynamics.contact.curvature import Curvatures, alike
-from contact_dynamics.errors import InvalidFieldError, NotSupportedError, TooLargeError
-from contact_dynamics.validation import check_at_rest
+from contact_dynamics.errors import InvalidFieldError, TooLargeError
 from contact_dynamics_interfaces.msg import ContactSet as ContactSetMsg
 from msg_adapters.field_names import CONTACT_FIELDS, renamed
 
@@ -24,6 +23,10 @@ if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
 
 
+_MOTION: Final = ("surface_velocities", "surface_angular_velocities", "surface_accelerations")
+"""The fields of a surface that moves. In a contact set, their names end in the world's axes."""
+
+
 def contacts_from_msg(msg: ContactSetMsg) -> ContactSet:
     """Return the contacts.
 
@@ -31,16 +34,12 @@ def contacts_from_msg(msg: ContactSetMsg) -> ContactSet:
         InvalidFieldError: arrays have unequal lengths, curvatures are without the kind CURVED, or an error of
             `ContactSet`.
         TooLargeError: there are more than `MAX_CONTACTS` contacts.
-        NotSupportedError: a surface moves.
     """
     n = len(msg.frictions)
     if max(n, len(msg.positions) // 3, len(msg.normals) // 3) > MAX_CONTACTS:
         raise TooLargeError(
             "contacts", f"{max(n, len(msg.positions) // 3)} contacts", f"at most {MAX_CONTACTS}"
         )
-    for field in ("surface_velocities", "surface_accelerations"):
-        if any(getattr(msg, field)):
-            raise NotSupportedError(f"contacts.{field} must be none in this version, got numbers")
     body_curvatures, surface_curvatures = _sides(msg)
     try:
         return ContactSet(
@@ -51,18 +50,16 @@ def contacts_from_msg(msg: ContactSetMsg) -> ContactSet:
             surfaces=tuple(msg.surface_names),
             body_curvatures=body_curvatures,
             surface_curvatures=surface_curvatures,
+            **{
+                f"{field}_W": _optional_rows(f"contacts.{field}", getattr(msg, field), n) for field in _MOTION
+            },
         )
     except InvalidFieldError as error:
         raise renamed(error, CONTACT_FIELDS) from None
 
 
 def contacts_to_msg(contacts: ContactSet, *, into: ContactSetMsg | None = None) -> ContactSetMsg:
-    """Return the contacts as a message, which is new unless an empty one to fill is given.
-
-    Raises:
-        NotSupportedError: a surface moves.
-    """
-    check_at_rest("contacts", contacts, "messages")
+    """Return the contacts as a message, which is new unless an empty one to fill is given."""
     msg = ContactSetMsg() if into is None else into
     msg.positions = flat(contacts.p_WC_W)
     msg.normals = flat(contacts.normals_W)
@@ -70,6 +67,10 @@ def contacts_to_msg(contacts: ContactSet, *, into: ContactSetMsg | None = None) 
     if contacts.restitutions is not None:
         msg.restitutions = flat(contacts.restitutions)
     msg.surface_names = list(contacts.surfaces)
+    if contacts.surfaces_move:
+        for field in _MOTION:
+            if (motion := getattr(contacts, f"{field}_W")) is not None:
+                setattr(msg, field, flat(motion))
     if contacts.body_curvatures is None and contacts.surface_curvatures is None:
         return msg
     n = len(contacts)
@@ -159,6 +160,10 @@ def _curvatures(msg: ContactSetMsg, side: str, kinds: NDArray[np.uint8], *, poin
     except InvalidFieldError as error:
         names = zip(("along", "across", "directions_W"), fields, strict=True)
         raise renamed(error, {ours: f"contacts.{field}" for ours, field in names}) from None
+
+
+def _optional_rows(field: str, values: array[float], n: int) -> FloatArray | None:
+    return _rows(field, values, n) if values else None
 
 
 def _rows(field: str, values: array[float], n: int) -> FloatArray:

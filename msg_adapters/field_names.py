@@ -42,6 +42,9 @@ CONTACT_FIELDS: Final = {
     "surfaces": "contacts.surface_names",
     "body_curvatures": "contacts.body_curvatures",
     "surface_curvatures": "contacts.surface_curvatures",
+    "surface_velocities_W": "contacts.surface_velocities",
+    "surface_angular_velocities_W": "contacts.surface_angular_velocities",
+    "surface_accelerations_W": "contacts.surface_accelerations",
 }
 """The fields of the message of contacts, by those of a contact set."""
 

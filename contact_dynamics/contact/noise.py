@@ -14,7 +14,7 @@ already, the likeliest first. In the same way, all points that may touch a flat 
 each beside those that touch already.
 
 Not covered: gaps to obstacles, whose contacts are found at the pose as it is; the effect of the pose's noise
-on velocities, which is a product of two errors for a body that is nearly at rest.
+on velocities, also of a turntable, which is a product of two errors for a body that is nearly at rest.
 """
 
 from __future__ import annotations
@@ -26,6 +26,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import numpy as np
 
 from contact_dynamics.contact.touches import flat_touches
+from contact_dynamics.contact.velocities import relative_velocities
 from contact_dynamics.numerics.vectors import point_jacobians, tangent_rows
 from contact_dynamics.rotations.many import turned
 from contact_dynamics.tolerances import NO_NOISE
@@ -125,7 +126,7 @@ def resting(noisy: NoisyState, contacts: ContactSet, *, velocity_tolerance: floa
 
     def that_zero(which: Sequence[int], axes: slice, beside: NoisyState) -> _Hypothesis:
         """Return the hypothesis that components of velocities are zero, beside what holds already."""
-        velocities = beside.state.velocity_of_point(contacts.p_WC_W[which])
+        velocities = relative_velocities(beside.state, contacts)[which]
         violation = np.einsum("cij,cj->ci", frames[which], velocities)[:, axes]
         return _hypothesis(
             rows[which, axes].reshape(-1, 12), violation.ravel(), noisy, beside, velocity_tolerance
@@ -159,7 +160,7 @@ def possible_motions(
     found = resting(noisy, contacts, velocity_tolerance=velocity_tolerance).state
 
     def velocities(state: BodyState) -> FloatArray:
-        along: FloatArray = np.einsum("cij,cj->ci", frames, state.velocity_of_point(contacts.p_WC_W))
+        along: FloatArray = np.einsum("cij,cj->ci", frames, relative_velocities(state, contacts))
         return along.ravel()
 
     whole = rows.reshape(-1, 12) @ noisy.root

@@ -22,6 +22,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from contact_dynamics.contact.velocities import relative_velocities
 from contact_dynamics.diagrams import palette, paper
 from contact_dynamics.diagrams.marks import Axis, Diagram, Faces, Lines, Points
 from contact_dynamics.diagrams.palette import Paint
@@ -235,7 +236,7 @@ def contact_axes(answer: ImpactAnswer, contact: int) -> FloatArray:
     if answer.plane is not None:
         candidates = [np.cross(normal_W, answer.plane.normal_W)]
     else:
-        slip_W = answer.state.velocity_of_point(answer.contacts.p_WC_W[contact])
+        slip_W = relative_velocities(answer.state, answer.contacts)[contact]
         candidates = [answer.impact.impulses_W[contact], -slip_W]
     for vector_W in (*candidates, tangents_near_x(normal_W)[0]):
         tangent_W = across(vector_W, normal_W)
@@ -337,6 +338,8 @@ def _contact_motion(
     )  # the last vertex of each contact
     pushes = [(answer.contacts.p_WC_W[i], impulse_W) for i, impulse_W in struck_W.items()]
     velocity_W = _velocity_of_point(body, state, p_WC_W, pushes)
+    if (surfaces_W := answer.contacts.surface_velocities_W) is not None:
+        velocity_W = velocity_W - surfaces_W[contact]
     response_W = contact_inverse_inertia(body, state, p_WC_W - state.p_WB_W)
     if answer.other is not None and other is not None:
         struck = answer.other.state

@@ -6,12 +6,18 @@ A shape is one of several primitives, with its pose and the mass that fills it.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Final, TypeAlias
 
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.nodes.parameter_reader import ConfigurationError
-from contact_dynamics.questions.extent import MAX_IN_CONTACT, check_friction, check_mass, check_place
+from contact_dynamics.questions.extent import (
+    MAX_IN_CONTACT,
+    check_friction,
+    check_mass,
+    check_place,
+    check_vector,
+)
 from contact_dynamics.rigid_body import inertia
 from contact_dynamics.rigid_body.body import MassProperties
 from contact_dynamics.shapes import convex as convex_shape
@@ -227,6 +233,17 @@ def read_surface(source: ParameterSource, name: str) -> Surface | Obstacle:
     restitution = source.value(
         f"{key}.restitution", float, "Coefficient of restitution with any body, 0 to 1."
     )
+    velocity = source.value(
+        f"{key}.velocity",
+        [0.0, 0.0, 0.0],
+        "Velocity of a plane that moves in itself, such as a conveyor belt, m/s, world axes: x, y, z.",
+    )
+    rate = source.value(
+        f"{key}.angular_velocity",
+        0.0,
+        "Angular velocity of a turntable about the normal through the point, rad/s, counterclockwise "
+        "seen from the free side.",
+    )
     lasting_factor = source.value(
         f"{key}.lasting_factor",
         1.0,
@@ -238,16 +255,29 @@ def read_surface(source: ParameterSource, name: str) -> Surface | Obstacle:
         check_friction("lasting_factor", lasting_factor * max(friction, 1.0))
         solid = shape.shape_F()
         if not solid.is_empty:
+            for field, motion in (("velocity", any(velocity)), ("angular_velocity", rate)):
+                if motion:
+                    raise InvalidFieldError(field, "numbers", "zero for an obstacle, which is at rest")
             return Obstacle(name=name, vertices_W=solid.vertices, friction=friction, restitution=restitution)
         check_place("point", check_array("point", point, (3,)))
-        return Surface(
+        check_vector("velocity", check_array("velocity", velocity, (3,)))
+        check_vector("angular_velocity", check_array("angular_velocity", [rate], (1,)))
+        surface = Surface(
             name=name,
             p_WS_W=point,
             normal_W=normal,
             friction=friction,
             restitution=restitution,
             lasting_factor=lasting_factor,
+            v_WS_W=velocity,
         )
+        if rate and any(velocity):
+            raise InvalidFieldError("velocity", velocity, "zero for a turntable, which turns about its point")
+        if not surface.is_steady:
+            raise InvalidFieldError(
+                "velocity", velocity, "along the plane, since a configured plane stays in place"
+            )
+        return replace(surface, w_WS_W=rate * surface.normal_W) if rate else surface
 
     return source.build(key, build)
 

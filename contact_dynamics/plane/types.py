@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import Any, ClassVar, Final, TypeAlias
+from typing import Any, Final, TypeAlias
 
 from contact_dynamics.contact.contact import known_restitution
 from contact_dynamics.contact.curvature import planar_gap_acceleration
@@ -141,12 +141,6 @@ class PlanarContact(Record):
     surface_angular_velocity: float = 0.0
     surface_acceleration: Vector2 = _NONE
     surfaces_move: bool = field(init=False, repr=False, default=False)
-
-    SURFACE_MOTION: ClassVar[tuple[str, ...]] = (
-        "surface_velocity",
-        "surface_angular_velocity",
-        "surface_acceleration",
-    )
 
     def __post_init__(self) -> None:
         """Check all fields and normalise the normal to rounding."""

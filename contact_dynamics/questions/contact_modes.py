@@ -84,6 +84,8 @@ LEAST_PROBABILITY: Final = 0.01
 IMPACT: Final = ""
 """What stands instead of a mode in the probabilities where a contact approaches."""
 
+_MOVING: Final = "contacts must have surfaces at rest in a plane of motion, got surfaces that move"
+
 _UNCERTAIN: Final = (
     "contacts must be exact to be in a plane, got uncertain points or normals, whose errors may leave it"
 )
@@ -398,6 +400,8 @@ def _in_plane(
     ):
         return None, _UNCERTAIN
     state, contacts = case.subject.state, case.contacts
+    if question.problem is Problem.AUTOMATIC and contacts.surfaces_move:
+        return None, _MOVING
     try:
         problem = planar_problem_of(
             case.subject.body.mass_properties,

@@ -6,11 +6,12 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
+from contact_dynamics.errors import NotSupportedError
 from contact_dynamics.questions.state_store import StateStore
 from contact_dynamics.records import Record
 from contact_dynamics.tolerances import DISTANCE_TOLERANCE, OUT_OF_PLANE_SPEED, VELOCITY_TOLERANCE
-from contact_dynamics.validation import check_at_rest, check_not_negative, check_positive
-from contact_dynamics.world import World
+from contact_dynamics.validation import check_not_negative, check_positive
+from contact_dynamics.world import Surface, World
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
@@ -46,7 +47,8 @@ class Context(Record):
     """World, published states and defaults with which questions are answered.
 
     Attributes:
-        world: Bodies to which questions can refer by name, surfaces, and gravity.
+        world: Bodies to which questions can refer by name, surfaces, and gravity. Surfaces may move if their
+            motion is steady (`Surface.is_steady`), since questions are about states at different times.
         states: Published states, by body, for questions about the newest state. By default there are none.
         defaults: Values for fields that a question leaves out.
         now_ns: Function that returns the present time, ns, on the clock of the states' stamps, so that old
@@ -54,7 +56,7 @@ class Context(Record):
             accepted at any age.
 
     Raises:
-        NotSupportedError: a surface moves.
+        NotSupportedError: the motion of a surface is not steady.
     """
 
     world: World = field(default_factory=World)
@@ -63,8 +65,14 @@ class Context(Record):
     now_ns: Callable[[], int | None] | None = None
 
     def __post_init__(self) -> None:
-        """Refuse a world that moves."""
-        check_at_rest("world", self.world, "questions")
+        """Refuse surfaces whose places or velocities depend on the time."""
+        for surface in self.world.surfaces:
+            if isinstance(surface, Surface) and not surface.is_steady:
+                message = (
+                    "world must have surfaces that are at rest or move steadily in their own plane in "
+                    f"questions, such as belts and turntables, got {surface.name!r}"
+                )
+                raise NotSupportedError(message)
 
 
 def or_default(asked: float | None, default: float) -> float:

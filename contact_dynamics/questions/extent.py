@@ -91,8 +91,11 @@ def check_friction(name: str, friction: float) -> None:
 
 
 def check_contacts(contacts: ContactSet) -> None:
-    """Refuse contacts that are too far away, and name the first."""
+    """Refuse contacts that are too far away, or whose surfaces move too fast, and name the first."""
     check_place("contacts.p_WC_W", contacts.p_WC_W)
+    for name in contacts.SURFACE_MOTION if contacts.surfaces_move else ():
+        if (motion := getattr(contacts, name)) is not None:
+            check_vector(f"contacts.{name}", motion.ravel())
     check_friction("contacts.frictions", float(contacts.frictions.max(initial=0.0)))
 
 
@@ -110,7 +113,7 @@ def check_wrench(force_W: FloatArray, torque_W: FloatArray) -> None:
 
 
 def check_vector(name: str, vector: FloatArray) -> None:
-    """Refuse a vector, (3,), with a number that is too large, by that name."""
+    """Refuse a vector, (n,), with a number that is too large, by that name."""
     largest = max(map(abs, vector.tolist()))
     if not largest <= MAX_IN_CONTACT:
         raise InvalidFieldError(name, f"{largest:g}", f"at most {MAX_IN_CONTACT:g} for contacts")

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Final, TypeAlias
 import numpy as np
 
 from contact_dynamics.contact.contact import ContactSet
+from contact_dynamics.contact.velocities import relative_velocities
 from contact_dynamics.errors import NORMAL_HINT, NoContactError, NotSupportedError, SeparatingContactError
 from contact_dynamics.impact import (
     SequenceEnd,
@@ -208,7 +209,7 @@ def _in_time(question: ImpactQuestion, law: InTime, strike: _Strike, context: Co
     if not sequence.strikes:
         allowed = f"one that approaches or comes back within the strike_window of {law.strike_window:g} s"
         if question.contacts is not None:
-            velocities = strike.state.velocity_of_point(strike.contacts.p_WC_W)
+            velocities = relative_velocities(strike.state, strike.contacts)
             speeds = np.einsum("ij,ij->i", velocities, strike.contacts.normals_W)
             if (speeds > strike.velocity_tolerance).any():
                 allowed += f" ({NORMAL_HINT})"
@@ -258,7 +259,7 @@ def _in_space(question: ImpactQuestion, law: SeveralContactsLaw, strike: _Strike
             restitution_law=question.restitution_law,
             velocity_tolerance=strike.velocity_tolerance,
         )
-    return several_resolved(several, *strike.before)
+    return several_resolved(several, *strike.before, surfaces_W=contacts.surface_velocities_W)
 
 
 def _problem(question: ImpactQuestion, strike: _Strike, context: Context) -> PlanarProblem:

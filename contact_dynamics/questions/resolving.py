@@ -107,10 +107,16 @@ def planar_resolved(impact: PlanarImpact, problem: PlanarProblem, before: Before
     )
 
 
-def several_resolved(impact: SeveralImpact | BodiesImpact, *before: Before) -> ResolvedImpact:
-    """Return an impact at several contacts in space, of one body with the world, or of two bodies."""
+def several_resolved(
+    impact: SeveralImpact | BodiesImpact, *before: Before, surfaces_W: FloatArray | None = None
+) -> ResolvedImpact:
+    """Return an impact at several contacts in space, of one body with the world, or of two bodies.
+
+    ``surfaces_W``, (n, 3), m/s, are velocities of surfaces that move. Their work is not energy of the law.
+    """
     after = impact.states if isinstance(impact, BodiesImpact) else (impact.state,)
     energy_before, energy_after = _energies(before, after)
+    work = 0.0 if surfaces_W is None else float(np.sum(impact.impulses_W * surfaces_W))
     told = _told_by(impact.strikes, len(impact.impulses_W)) if impact.strikes else _NOT_TOLD
     return ResolvedImpact(
         restitution_law=impact.restitution_law,
@@ -123,7 +129,7 @@ def several_resolved(impact: SeveralImpact | BodiesImpact, *before: Before) -> R
         velocities_after_W=impact.velocities_after_W,
         kinetic_energy_before=energy_before,
         kinetic_energy_after=energy_after,
-        creates_energy=created(energy_after - energy_before, energy_before),
+        creates_energy=created(energy_after - energy_before - work, energy_before + abs(work)),
         **told._asdict(),
     )
 

@@ -122,7 +122,12 @@ def settled_in_space(case: ModeCase, verdict: ModeVerdict) -> SettledImpact | No
             verdict,
             is_settled=lambda state: modes_after(state).verdict != ModeVerdict.INCONSISTENT,
         )
-        resolved = _with_orders(several_resolved(several, before), case, (*before, contacts), verdict)
+        resolved = _with_orders(
+            several_resolved(several, before, surfaces_W=contacts.surface_velocities_W),
+            case,
+            (*before, contacts),
+            verdict,
+        )
     then = modes_after(resolved.state)
     return SettledImpact(impact=resolved, verdict=then.verdict, modes=then.modes)
 

@@ -18,7 +18,6 @@ from contact_dynamics.questions.extent import check_extent
 from contact_dynamics.shapes.hull_features import RIM_CORNERS, features_of
 from contact_dynamics.shapes.obstacle import closest_points
 from contact_dynamics.tolerances import DISTANCE_TOLERANCE
-from contact_dynamics.validation import check_at_rest
 
 if TYPE_CHECKING:
     from contact_dynamics.contact.contact import ContactSet
@@ -40,13 +39,11 @@ def contacts_of(
 
     Raises:
         NoContactError: there is none.
-        NotSupportedError: a surface moves.
     """
     if named is not None:
         if len(named) == 0:
             message = "contacts must be at least one, got none"
             raise NoContactError(message)
-        check_at_rest("contacts", named, "questions")
         return named
     body = subject.body
     check_has_shape(body)

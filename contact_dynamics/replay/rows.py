@@ -77,6 +77,7 @@ _OF_A_SET: Final = {
     "restitutions": 1,
     "surface_names": 1,
     "surface_velocities": 3,
+    "surface_angular_velocities": 3,
     "surface_accelerations": 3,
     "kinds": 1,
     "body_curvatures": 1,

@@ -153,13 +153,6 @@ SPATIAL: dict[str, Callable[[], object]] = {
         CRATE, AT_REST, FEET, plane=PlaneOfMotion(normal_W=[0, -1, 0]), force_W=UP, torque_W=[0, 0, 0]
     ),
     "out_of_plane_speed": lambda: out_of_plane_speed(PlaneOfMotion(normal_W=[0, -1, 0]), AT_REST, FEET),
-    "a context": lambda: Context(world=BELT),
-    "questions about modes": lambda: ask(
-        ContactModeQuestion(body=CRATE, state=AT_REST, contacts=FEET, force_W=[0, 0, -20]), Context()
-    ),
-    "questions about impacts": lambda: ask(
-        ImpactQuestion(body=CRATE, state=FALLING, contacts=FEET), Context()
-    ),
 }
 PLANAR_CALLS: dict[str, Callable[[], object]] = {
     "planar_pair_impact": lambda: planar_pair_impact(PLANAR, DOWN, PLANAR, DOWN, FOOT, other_r=(0.0, 0.3)),
@@ -173,6 +166,42 @@ PLANAR_CALLS: dict[str, Callable[[], object]] = {
 def test_calls_that_take_only_surfaces_at_rest_say_so(call: Callable[[], object]) -> None:
     with pytest.raises(NotSupportedError, match=r"(contacts?|world) must have surfaces at rest in"):
         call()
+
+
+@pytest.mark.parametrize(
+    ("motion", "steady"),
+    [
+        ({"v_WS_W": [1, 2, 0]}, True),
+        ({"w_WS_W": [0, 0, 2]}, True),
+        ({"w_WS_W": [0, 0, 2], "v_WS_W": [1, 0, 0], "a_WS_W": [0, 2, 0]}, True),
+        ({"w_WS_W": [0, 0, 2], "v_WS_W": [1, 0, 0]}, False),
+        ({"v_WS_W": [1, 0, 0.1]}, False),
+        ({"a_WS_W": [1, 0, 0]}, False),
+        ({"w_WS_W": [0.1, 0, 2]}, False),
+        ({"alpha_WS_W": [0, 0, 1]}, False),
+    ],
+)
+def test_questions_take_belts_and_turntables(motion: dict[str, list[float]], steady: bool) -> None:  # noqa: FBT001
+    still = cd.Surface(name="disc", p_WS_W=[1, 2, 0], normal_W=UP, friction=0.5, restitution=0.3)
+    surface = replace(still, **{name: np.array(value, dtype=float) for name, value in motion.items()})
+    assert surface.is_steady is steady
+    world = cd.World(bodies=(CRATE,), surfaces=(surface,))
+    if not steady:
+        with pytest.raises(
+            NotSupportedError, match="world must have surfaces that are at rest or move steadily"
+        ):
+            Context(world=world)
+        return
+    later = surface.after(0.7)
+    points = np.array([[0.3, 0.2, 0.0], [4.0, -1.0, 0.0]])
+    np.testing.assert_allclose(later.motion_at(points)[0], surface.motion_at(points)[0], atol=1e-14)
+    np.testing.assert_allclose(later.gaps(points), 0.0, atol=1e-15)
+    asked = ask(ContactModeQuestion(body="crate", state=AT_REST), Context(world=world))
+    problem = cd.SpatialContactProblem.of(CRATE, AT_REST, world)
+    assert [mode.mode for mode in asked.modes] == [mode.mode for mode in cd.contact_modes(problem).modes]
+    hit = ask(ImpactQuestion(body="crate", state=FALLING), Context(world=world))
+    impact = cd.several_impact(CRATE, FALLING, cd.find_contacts(CRATE, FALLING, world))
+    np.testing.assert_array_equal(hit.impact.state.v_WB_W, impact.state.v_WB_W)
 
 
 def copied(value: object) -> Any:

@@ -13,7 +13,7 @@ from rclpy.serialization import deserialize_message, serialize_message
 
 from contact_dynamics.contact.contact import ContactSet
 from contact_dynamics.contact.curvature import Curvatures, alike
-from contact_dynamics.errors import InvalidFieldError, NotSupportedError, TooLargeError
+from contact_dynamics.errors import InvalidFieldError, TooLargeError
 from contact_dynamics_interfaces.msg import ContactSet as ContactSetMsg
 from msg_adapters.contacts import contacts_from_msg, contacts_to_msg
 
@@ -129,14 +129,27 @@ def test_what_is_incomplete_or_impossible_is_refused_by_name(changes: dict[str, 
         contacts_from_msg(msg)
 
 
-@pytest.mark.parametrize("field", ["surface_velocities", "surface_accelerations"])
-def test_moving_surfaces_are_refused_by_name(field: str) -> None:
+MOTION = ("surface_velocities", "surface_angular_velocities", "surface_accelerations")
+
+
+def test_moving_surfaces_come_back_as_they_went() -> None:
+    assert not any(getattr(contacts_to_msg(contacts()), field) for field in MOTION)
+    values = np.arange(27.0).reshape(3, 3, 3)
+    there = replace(contacts(), **{f"{field}_W": values[i] for i, field in enumerate(MOTION)})
+    back = contacts_from_msg(contacts_to_msg(there))
+    for i, field in enumerate(MOTION):
+        np.testing.assert_array_equal(getattr(back, f"{field}_W"), values[i])
+    one = contacts_from_msg(contacts_to_msg(replace(contacts(), surface_velocities_W=[0.1, 0.0, 0.0])))
+    assert one.surface_accelerations_W is None
+
+
+@pytest.mark.parametrize("field", MOTION)
+def test_motion_that_is_incomplete_or_no_number_is_refused_by_name(field: str) -> None:
     msg = contacts_to_msg(contacts())
-    setattr(msg, field, [0.0] * 8 + [0.1])
-    with pytest.raises(NotSupportedError, match=field):
-        contacts_from_msg(msg)
-
-
-def test_contacts_on_a_moving_surface_do_not_become_a_message() -> None:
-    with pytest.raises(NotSupportedError, match="contacts must have surfaces at rest in messages"):
-        contacts_to_msg(replace(contacts(), surface_velocities_W=[0.1, 0.0, 0.0]))
+    for numbers, words in (
+        ([0.1] * 8, r"must be 9, three for each of 3 frictions, got 8"),
+        ([math.nan] * 9, "nan"),
+    ):
+        setattr(msg, field, numbers)
+        with pytest.raises(InvalidFieldError, match=rf"contacts\.{field} .*{words}"):
+            contacts_from_msg(msg)

@@ -14,7 +14,6 @@ from changed_requests import put
 from contact_dynamics.errors import (
     FrameMismatchError,
     InvalidFieldError,
-    NotSupportedError,
     TooLargeError,
     UnknownBodyError,
 )
@@ -253,11 +252,4 @@ def test_an_error_names_the_field_of_the_request(
         setattr(request, field, asked)
     put(path, value)(request)
     with pytest.raises(error, match=words):
-        read(request)
-
-
-def test_moving_surfaces_are_not_supported() -> None:
-    request = PredictContactMode.Request(body_name="cube", contact_source=1)
-    request.contacts.surface_velocities = [1.0, 0.0, 0.0]
-    with pytest.raises(NotSupportedError, match="surface_velocities"):
         read(request)

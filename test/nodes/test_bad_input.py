@@ -53,6 +53,12 @@ def published(request: Any) -> None:
     request.state_source, request.state = request.STATE_NEWEST, BodyState()
 
 
+def moving_in_a_plane(request: Any) -> None:
+    """A belt in a problem that is to be planar."""
+    request.problem = request.PLANAR
+    request.contacts.surface_velocities = [1.0, 0.0, 0.0]
+
+
 def from_geometry(request: Any) -> None:
     """Ask for contacts of a body without a shape."""
     request.contact_source, request.contacts = request.CONTACTS_FROM_GEOMETRY, ContactSet()
@@ -143,7 +149,12 @@ CONTACTS = [
         "contacts.restitutions[0] must be in [0, 1]..., got 1.5",
     ),
     (put("contacts.restitutions", [-0.5]), "INVALID_FIELD", "contacts.restitutions[0]"),
-    (put("contacts.surface_velocities", [1.0, 0.0, 0.0]), "NOT_SUPPORTED", "contacts.surface_velocities"),
+    (
+        put("contacts.surface_velocities", [1.0, 0.0]),
+        "INVALID_FIELD",
+        "contacts.surface_velocities must be 3",
+    ),
+    (moving_in_a_plane, "NOT_SUPPORTED", "contacts must have surfaces at rest in a plane of motion"),
     (put("contacts.kinds", [3]), "INVALID_FIELD", "contacts.kinds[0] must be ..., got 3"),
     (put("contacts.kinds", [2]), "INVALID_FIELD", "contacts.body_curvatures must be ..., got 0 numbers"),
     (put("contact_source", 9), "INVALID_FIELD", "contact_source must be ..., got 9"),

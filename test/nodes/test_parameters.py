@@ -304,6 +304,17 @@ WRONG = [
     (drop("surface.floor.friction"), "surface.floor.friction is required ("),
     (put(surface__floor__friction=-0.1), "surface.floor.friction must be >= 0..., got -0.1"),
     (put(surface__floor__restitution=1.5), "surface.floor.restitution must be ..., got 1.5"),
+    (put(surface__floor__velocity=[1.0, 0.0]), "surface.floor.velocity must be ..., got shape (2,)"),
+    (put(surface__floor__velocity=[0.0, 0.0, 1.0]), "surface.floor.velocity must be along the plane..., got"),
+    (put(surface__floor__velocity=[1e20, 0.0, 0.0]), "surface.floor.velocity must be at most..., got 1e+20"),
+    (
+        put(surface__floor__velocity=[1.0, 0.0, 0.0], surface__floor__angular_velocity=2.0),
+        "surface.floor.velocity must be zero for a turntable",
+    ),
+    (
+        put(surface__floor__box=[1.0] * 3, surface__floor__angular_velocity=2.0),
+        "surface.floor.angular_velocity must be zero for an obstacle",
+    ),
     (put(surface__floor__lasting_factor=-1.0), "surface.floor.lasting_factor must be ..., got -1.0"),
     (put(surface__floor__lasting_factor=1e20), "surface.floor.lasting_factor must be at..., got 1e+20"),
     (
