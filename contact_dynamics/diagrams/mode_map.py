@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
@@ -48,6 +48,9 @@ LIVE_RESOLUTION: Final = 240
 _NAMED_FROM: Final = 0.045
 """Relative to a part's side. A region in which no circle of this radius fits has no room for its name."""
 
+_NAME: Final = (0.07, 0.19)
+"""Width of a letter and height of a name in the viewer, relative to a part's side. Paper has more room."""
+
 _SEEN: Final = 5e-3  # difference of unit normals that moves a border by one point
 _COARSE: Final = 4  # a step of this many points finds where a region is widest
 _EDGE: Final = 1e-9  # relative: what is outside by less is on the boundary
@@ -77,18 +80,19 @@ class ModeRegions:
     modes: tuple[tuple[str, ...], ...]
 
 
-class WidestPlace(NamedTuple):
+@dataclass(frozen=True, slots=True, eq=False)
+class WidestPlace:
     """The place at which a region has most room for its name.
 
     Attributes:
         region: Its class.
         place: (2,), points.
-        has_room: Whether the name fits.
+        room: Radius of the largest circle that fits, relative to a part's side.
     """
 
     region: int
     place: FloatArray
-    has_room: bool
+    room: float
 
 
 def mode_regions(sets: Sequence[PlanarWrenchSet], chart: WrenchChart) -> ModeRegions:
@@ -185,7 +189,7 @@ def widest_places(regions: ModeRegions, chart: WrenchChart) -> list[WidestPlace]
                 WidestPlace(
                     region=index,
                     place=_COARSE * np.array([begin + column + 0.5, -row - 0.5]),
-                    has_room=bool(room[row, column] * _COARSE >= _NAMED_FROM * chart.resolution),
+                    room=float(room[row, column]) * _COARSE / chart.resolution,
                 )
             )
     return found
@@ -237,44 +241,42 @@ def mode_map(
         Lines("borders", _BORDER, [s for one in sets for s in borders_of(one, chart)], width=0.6),
     ]
     widest = widest_places(regions, chart)
-    named = [one for one in widest if one.has_room]
-    kinds = [
-        "names_of_several"
-        if len(regions.modes[one.region]) != 1
-        else ("names_on_dark" if paints[one.region].paper in paper.DARK else "names")
-        for one in named
+    named = [one for one in widest if one.room >= _NAMED_FROM]
+    alone = [one for one in named if len(regions.modes[one.region]) == 1]
+    dark = [one for one in alone if paints[one.region].paper in paper.DARK]
+    readable = _apart(named, names, chart)
+    small = [one for one in widest if one not in readable]
+
+    def texts(some: Sequence[WidestPlace]) -> tuple[FloatArray, list[str]]:
+        return np.reshape([one.place for one in some], (-1, 2)), [names[one.region] for one in some]
+
+    on_dark = Paint(palette.NORMAL, paper.SEVERAL)
+    marks += [
+        Labels("names", _LINE, *texts(readable), on_paper=False),
+        Labels("names_on_light", _LINE, *texts([one for one in alone if one not in dark]), in_viewer=False),
+        Labels("names_on_dark", on_dark, *texts(dark), in_viewer=False),
     ]
-    for name, paint in (
-        ("names", _LINE),
-        ("names_on_dark", Paint(palette.NORMAL, paper.SEVERAL)),
-        ("names_of_several", _LINE),
-    ):
-        chosen = [one for one, kind in zip(named, kinds, strict=True) if kind == name]
-        marks.append(
-            Labels(
-                name,
-                paint,
-                np.reshape([one.place for one in chosen], (-1, 2)),
-                [names[one.region] for one in chosen],
-                on_paper=name != "names_of_several",
-            )
-        )
-    small = [one for one in widest if not one.has_room]
-    marks.append(
-        Points(
-            "small_regions",
-            _LINE,
-            np.reshape([one.place for one in small], (-1, 2)),
-            size=3.0,
-            labels=[names[one.region] for one in small],
-            on_paper=False,
-        )
-    )
+    places, labels = texts(small)
+    marks.append(Points("small_regions", _LINE, places, size=3.0, labels=labels, on_paper=False))
     title = "contact modes by applied wrench"
     title += "; white: several" * any(len(modes) > 1 for modes in regions.modes)
     title += "; black: none" * (NO_MODE in there)
     frame, axes = chart_frame(chart)
     return Diagram(marks=[*marks, *frame, *applied_marks(chart, applied, change)], axes=axes, title=title)
+
+
+def _apart(places: list[WidestPlace], names: Sequence[str], chart: WrenchChart) -> list[WidestPlace]:
+    """Return the places whose names cover none of a wider region in the viewer."""
+    chosen: list[WidestPlace] = []
+    for one in sorted(places, key=lambda each: -each.room):
+        for other in chosen:
+            across, up = np.abs(one.place - other.place) / chart.resolution
+            letters = 0.5 * (len(names[one.region]) + len(names[other.region]))
+            if across < letters * _NAME[0] and up < _NAME[1]:
+                break
+        else:
+            chosen.append(one)
+    return chosen
 
 
 def paint_of_modes(consistent: Sequence[str], every: Sequence[str]) -> Paint:

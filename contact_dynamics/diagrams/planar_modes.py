@@ -38,7 +38,7 @@ MAX_SETS: Final = 100
 """A map of more modes than this is not drawn, because its regions are too small to see and take seconds."""
 
 _AROUND: Final = 0.35  # room around body and contacts in each picture, relative to the body's size
-_WALL: Final = 0.15  # half of the length of a contact's flat, relative to the body's size
+_WALL: Final = 0.1  # half of the length of a contact's flat, relative to the body's size
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

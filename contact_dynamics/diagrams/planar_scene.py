@@ -31,13 +31,13 @@ CONE_LENGTH: Final = 0.2
 ARROW_LENGTH: Final = 0.4
 """Length of the longest arrow of a kind, relative to the body's size."""
 
-LABEL_OFFSET: Final = 0.07
+LABEL_OFFSET: Final = 0.11
 """Distance of a label from its contact, relative to the body's size."""
 
-_COVERED: Final = 0.13  # labels nearer than this would cover each other, relative to the body's size
+_COVERED: Final = 0.2  # labels nearer than this would cover each other, relative to the body's size
 _ALIGNED: Final = 0.95  # length of the mean of unit normals that are taken for those of one surface
 _SHOWN: Final = 1e-6  # arrows shorter than this are left out, relative to the longest
-_AROUND: Final = 0.15  # room around body and contacts, relative to the body's size
+_AROUND: Final = 0.24  # room around body and contacts, relative to the body's size
 
 _WALL: Final = Paint(palette.NORMAL, paper.AXIS)
 _BODY: Final = Paint(palette.MEASURED, paper.GREY)
@@ -181,7 +181,7 @@ def _place_of(contacts: list[int], points: FloatArray, normals: FloatArray, size
     if aligned > _ALIGNED or aligned < 1.0 - _ALIGNED:  # one surface, or two that face each other
         return np.asarray(points[contacts[0]] - LABEL_OFFSET * size * normals[contacts[0]])
     corner = points[contacts].mean(axis=0)
-    return np.asarray(corner + 2.0 * LABEL_OFFSET * size * outward / np.linalg.norm(outward))
+    return np.asarray(corner + 2.4 * LABEL_OFFSET * size * outward / np.linalg.norm(outward))
 
 
 def _same_places(places: FloatArray, size: float) -> list[list[int]]:

@@ -200,7 +200,12 @@ def _page(
     *,
     words: Sequence[rrb.View] = (),
 ) -> rrb.Horizontal:
-    """Return a page: the scene on the left, on the right a few words, diagrams and what stands below them."""
+    """Return a page: the scene on the left, on the right a few words, diagrams and what stands below them.
+
+    Two diagrams need all of the height, so that their words are apart. Then the rest is below the scene.
+    """
+    if len(diagrams) > 1:
+        scene, below = rrb.Vertical(scene, *below, row_shares=[5] + [1] * len(below)), ()
     shares = [1] * len(words) + [4] * len(diagrams) + [2] * len(below)
     aside = rrb.Vertical(*words, *diagrams, *below, row_shares=shares)
     return rrb.Horizontal(scene, aside, column_shares=[1 if diagrams else 2, 1], name=name)

@@ -4,7 +4,8 @@
 rerun has neither axes nor legends for spatial views. So axes with numbers are drawn with the diagram, the
 legend stands in a column on its left, and words about points in a column on its right, at lines to the
 points. Columns keep words apart. The room that words need is estimated, since the viewer does not fit a view
-to words: it is right for a panel that is 250 points high, and more than enough for a larger one.
+to words: it is right for a panel that is 300 points high with its title, and more than enough for a larger
+one.
 """
 
 from __future__ import annotations
@@ -32,14 +33,16 @@ _LEADER_WIDTH: Final = 0.8
 _TICKS: Final = 4  # numbers of an axis, at most
 _NO_COLOR: Final = (0, 0, 0, 0)
 
-_PANEL: Final = (400.0, 150.0)  # points, the part of a panel that the axes fill
+_PANEL: Final = (400.0, 275.0)  # points: the width of the axes, and the height of the axes with their words
 _LETTER: Final = 6.4  # points, width of a letter
 _LINE: Final = 23.0  # points, from one word to the one below
 _DROP: Final = 12.0  # points that the middle of a word is below its place
 _FURTHER: Final = 7.5  # the same, for each further line of it
+_BELOW: Final = 2.8  # lines below the axes, with numbers and a name
+_BELOW: Final = 2.8  # lines below the axes, with numbers and a name
 
-EYE: Final = np.array([0.8, -1.7, 1.15])
-TARGET: Final = np.array([0.0, 0.0, 0.4])
+EYE: Final = np.array([0.8, -1.7, 1.07])
+TARGET: Final = np.array([0.0, 0.0, 0.32])
 """The place of the eye that sees a diagram in three dimensions with its words, and where it looks."""
 _SPACE: Final = 115.0  # points, the height of a diagram in three dimensions
 _RIGHT: Final = np.array([0.906, 0.423, 0.0])  # on the screen, as seen from there
@@ -62,8 +65,8 @@ def draw_side_by_side(
 ) -> None:
     """Draw flat diagrams side by side in one view, numbered from 1, with the legend of the first."""
     recording.log(entity, rr.Clear(recursive=True))
-    pages = [_page_of(diagram.axes) for diagram in diagrams]
-    point = max(sum(page.width for page in pages) / _PANEL[0], *(page.height / _PANEL[1] for page in pages))
+    pages = [_page_of(diagram) for diagram in diagrams]
+    point = max(sum(page.width for page in pages) / _PANEL[0], *(page.point for page in pages))
     shift = 0.0
     for i, (diagram, page) in enumerate(zip(diagrams, pages, strict=True)):
         here = f"{entity}/{name}_{i + 1}"
@@ -87,7 +90,7 @@ def _draw_all(recording: rr.RecordingStream, marks: Sequence[Mark], diagram: Dia
     In three dimensions, the upright axis is drawn with length 1, so that the same eye suits every diagram.
     rerun's viewer would not take a transform at the time at which the one before it is cleared.
     """
-    page = _page_of(diagram.axes)
+    page = _page_of(diagram)
     frame, point = _frame_of(diagram, page), page.point
     if len(diagram.axes) == 3:
         scaled, point = np.eye(3) / page.height, point / page.height
@@ -240,11 +243,13 @@ class _Page(NamedTuple):
         return float((place - self.low) @ self.up) / self.point
 
 
-def _page_of(axes: tuple[Axis, ...]) -> _Page:
+def _page_of(diagram: Diagram) -> _Page:
+    axes = diagram.axes
     low, high = np.array([axis.low for axis in axes]), np.array([axis.high for axis in axes])
     if len(axes) == 2:
         width, height = (high - low).tolist()
-        point = max(width / _PANEL[0], height / _PANEL[1])
+        lines = _BELOW + 1.0 + bool(axes[1].name) + (diagram.title.count("\n") + 1 if diagram.title else 0)
+        point = max(width / _PANEL[0], height / (_PANEL[1] - _LINE * lines))
         return _Page(point, np.array([1.0, 0.0]), np.array([0.0, 1.0]), low, width, height)
     half = 0.5 * float(np.abs(_RIGHT) @ (high - low))
     middle = 0.5 * (low + high) * (1.0, 1.0, 0.0) + low * (0.0, 0.0, 1.0)
@@ -258,7 +263,7 @@ def _frame_of(diagram: Diagram, page: _Page, *, has_legend: bool = True) -> list
     marks = _axes_of(diagram.axes, page)
     top, across = page.height / page.point, page.width / page.point
     name = diagram.axes[-1].name
-    room = [page.at(0.0, top), page.at(0.0, -2.8 * _LINE), page.at(across, -2.8 * _LINE)]
+    room = [page.at(0.0, top), page.at(0.0, -_BELOW * _LINE), page.at(across, -_BELOW * _LINE)]
     title = [(0.0, top + _LINE, name)] if name else []
     if diagram.title and len(diagram.axes) == 2:
         lines = diagram.title.count("\n") + 1

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import combinations
 from typing import TYPE_CHECKING, Any
 
@@ -10,13 +11,19 @@ import numpy as np
 import pytest
 
 from contact_dynamics.contact.contact import ContactSet
+from contact_dynamics.contact_modes import contact_modes, wrench_sets
+from contact_dynamics.contact_modes.letters import mode_in_words
 from contact_dynamics.diagrams.impulse_space import impulse_space, impulse_space_in_3d
+from contact_dynamics.diagrams.mode_map import mode_map
+from contact_dynamics.diagrams.planar_modes import side_by_side
 from contact_dynamics.plane.projection import PlaneOfMotion
+from contact_dynamics.plane.types import PlanarWrench
 from contact_dynamics.questions import ImpactQuestion, Problem, ask
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
-from contact_dynamics.viewing.drawing import EYE, TARGET, draw_diagram
+from contact_dynamics.viewing.drawing import EYE, TARGET, draw_diagram, draw_side_by_side
 from contact_dynamics.viewing.picture import Picture
 from contact_dynamics.world import Body, World
+from plots.drawn_figures import APPLIED, DIRECTIONS, IN_TRAY, OUTLINE, TRAY
 from viewing.drawn import STAMP_NS
 
 if TYPE_CHECKING:
@@ -80,6 +87,31 @@ def test_words_of_impulse_space_do_not_cover_each_other(
     words = words_on_screen(read(), in_space=in_space, height=240.0)
     assert {text for text, _ in words} >= {axis.name for axis in diagram.axes}
     assert {mark.legend for mark in diagram.marks if mark.legend} <= {text for text, _ in words}
+    cover_no_other(words)
+
+
+@pytest.mark.parametrize("name", ["modes", "map"])
+def test_words_of_contact_modes_do_not_cover_each_other(
+    recording: rr.RecordingStream, read: Callable[[], Drawn], name: str
+) -> None:
+    """On the page of contact modes, where the map has names for regions and points for the small ones."""
+    leans = replace(IN_TRAY, wrench=PlanarWrench(f=(4.0, -9.0)))
+    (mode,) = contact_modes(leans).modes
+    if name == "modes":
+        titles = [f"{mode.mode}: {mode_in_words(mode.mode)}\n(margin 6.53 N to llss)"]
+        view = side_by_side(tuple(TRAY), (mode,), titles, outline=OUTLINE)
+        draw_side_by_side(recording, view.scenes, "shown", name="mode")
+    else:
+        draw_diagram(recording, mode_map(wrench_sets(IN_TRAY), DIRECTIONS, applied=APPLIED), "shown")
+    drawn = read()
+    words = words_on_screen(drawn, in_space=False, height=235.0)
+    if name == "map":
+        assert len(drawn.last("/shown/small_regions", "Points2D:labels")) > 0
+    assert len(words) > 12
+    cover_no_other(words)
+
+
+def cover_no_other(words: list[tuple[str, np.ndarray]]) -> None:
     for (one, a), (other, b) in combinations(words, 2):
         wide, high = np.minimum(a[2:], b[2:]) - np.maximum(a[:2], b[:2])
         assert wide <= 1.0 or high <= 1.0, f"{one!r} covers {other!r}"
