@@ -86,13 +86,13 @@ class Situation(Enum):
         Part.STATES,
         Level.ERROR,
         "the states of {body!r} are rejected, the last because {reason}",
-        "test_diagnostics.py::test_states_that_are_all_rejected",
+        "test_diagnostics.py::test_states_that_are_rejected",
     )
     SOME_REJECTED = _Row(
         Part.STATES,
         Level.WARN,
         "some states of {body!r} are rejected, the last because {reason}",
-        "test_diagnostics.py::test_states_that_are_rejected_now_and_then",
+        "test_diagnostics.py::test_states_that_are_rejected",
     )
     OLD = _Row(
         Part.STATES,

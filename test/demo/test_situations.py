@@ -88,7 +88,7 @@ def test_a_block_that_is_pushed_high_tips() -> None:
 def test_a_block_slides_on_a_tray_that_tilts_until_it_meets_the_rim() -> None:
     meets = ("it stays fixed", ": it slides right", "it stays fixed", "4 contacts separate, 4 slide left")
     printed = told(
-        TRAY, "tray.yaml", "block_publisher", TRAY, "--degrees-per-second", "6", "--seconds", "7",
+        TRAY, "tray.yaml", "block_publisher", TRAY, "--degrees-per-second", "12", "--seconds", "4",
         all_of=meets,
     )  # fmt: skip
     assert are_in_order(printed, meets), printed

@@ -18,7 +18,10 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter
 
 from contact_dynamics.nodes import server, visualizer
+from contact_dynamics.nodes.given_parameters import ParameterFile
 from contact_dynamics.nodes.log import Log
+from contact_dynamics.nodes.parameter_reader import ConfigurationError
+from contact_dynamics.nodes.parameters import read_server_parameters
 from contact_dynamics.nodes.state_sources import ADAPTERS
 from contact_dynamics.recording.limits import UNLIMITED
 from message_words import says
@@ -264,22 +267,6 @@ WRONG = [
         put(body__brick__source="pose"),
         "body.brick.source and body.brick.source_topics must be ..., got 'pose' and []",
     ),
-    (
-        put(body__brick__source="pose", body__brick__source_topics=["/a", "/b"]),
-        "body.brick.source_topics must be 1, of geometry_msgs/msg/PoseStamped..., got ['/a', '/b']",
-    ),
-    (
-        put(body__brick__source="pose", body__brick__source_topics=["/brick/odometry"]),
-        "body.brick.source_topics[0] must be ..., got '/brick/odometry' for geometry_msgs/msg/PoseStamped",
-    ),
-    (
-        put(body__brick__source="tf", body__brick__source_topics=["/tf"]),
-        "must be an interface whose package is installed..., got tf2_msgs/msg/TFMessage",
-    ),
-    (
-        put(body__brick__odometry_topic="/brick odometry"),
-        "body.brick.odometry_topic must be ..., got '/brick odometry'",
-    ),
     (put(bodies=["brick", "brick"]), "bodies must be different names..., got ['brick', 'brick']"),
     (put(bodies=["brick", ""]), "bodies[1] must be a name of 1 to 256 letters..., got ''"),
     (put(bodies=["brick", "x" * 257]), "bodies[1] must be ..., got 'xxx"),
@@ -295,11 +282,6 @@ WRONG = [
     (put(surface__floor__point=[1e20, 0.0, 0.0]), "surface.floor.point must be at most..., got 1e+20 m"),
     (put(surface__floor__friction=1e20), "surface.floor.friction must be at most 1e+10..., got 1e+20"),
     (put(gravity=[0.0, 0.0, 1e20]), "gravity must be at most 1e+15..., got 1e+20"),
-    (
-        put(body__brick__source="odometry", body__brick__source_topics=["/brick/odometry"]),
-        "body.brick.source_topics[0] must be another topic than that of the..., got '/brick/odometry'",
-    ),
-    (two_bodies_by_one_source, "body.plate.source_topics[0] must be another topic than..., got '/poses'"),
     (two_bodies_on_one_topic, "body.plate.odometry_topic must be ..., got '/brick/odometry'"),
     (drop("surface.floor.friction"), "surface.floor.friction is required ("),
     (put(surface__floor__friction=-0.1), "surface.floor.friction must be >= 0..., got -0.1"),
@@ -332,13 +314,12 @@ WRONG = [
     (put(gravity=[0.0, 0.0, NAN]), "gravity must be "),
     (put(gravity=[0.0, -9.81]), "gravity must be ..., got shape (2,)"),
     (put(state_timeout=-1.0), "state_timeout"),
-    (put(state_timeout=NAN), "state_timeout must be in [0.001, 1e+06] (Largest age..., got nan"),
-    (put(velocity_tolerance=NAN), "velocity_tolerance must be in [0, 1000] (Speed below..., got nan"),
+    (put(state_timeout=NAN), "state_timeout must be in [0.001, 1e+06], got nan"),
+    (put(velocity_tolerance=NAN), "velocity_tolerance must be in [0, 1000], got nan"),
     (put(max_states=0), "max_states must be in [1, 1e+07]..., got 0"),
     (put(horizon=INF), "horizon"),
     (put(rate=0.0), "rate"),
     (put(log="perhaps"), "log"),
-    (put(log_directory=str(Path(__file__))), "log_directory must be a folder"),
     (put(log_file_size=1e-7), "log_file_size must be 0 or in [0.065536, 1e+08] MB..., got 1e-07 MB"),
     (put(log_file_duration=0.5), "log_file_duration must be 0 or in [1, 1e+08] s..., got 0.5 s"),
     (put(log_size_limit=1500.0), "log_size_limit must be 0 or in [2000, 1e+08] MB..., got 1500 MB"),
@@ -348,6 +329,40 @@ WRONG = [
     ),
     (put(log=False, log_before_answer=True), "log_before_answer must be false where log is..., got true"),
 ]
+
+
+WRONG_FOR_ROS = [
+    (misspell("body.brick.mass", "body.brick.maas"), "Given is body.brick.maas, which may be misspelled."),
+    (put(state_timeout=NAN), "state_timeout must be in [0.001, 1e+06] (Largest age..., got nan"),
+    (put(body__brick__sphere=0.03), "body.brick.sphere must be a list, such as [0.03], got 0.03"),
+    (
+        put(body__brick__box=[1, 1, 1]),
+        "body.brick.box must be a list of numbers with points..., got [1, 1, 1]",
+    ),
+    (
+        put(body__brick__source="pose", body__brick__source_topics=["/a", "/b"]),
+        "body.brick.source_topics must be 1, of geometry_msgs/msg/PoseStamped..., got ['/a', '/b']",
+    ),
+    (
+        put(body__brick__source="pose", body__brick__source_topics=["/brick/odometry"]),
+        "body.brick.source_topics[0] must be ..., got '/brick/odometry' for geometry_msgs/msg/PoseStamped",
+    ),
+    (
+        put(body__brick__source="tf", body__brick__source_topics=["/tf"]),
+        "must be an interface whose package is installed..., got tf2_msgs/msg/TFMessage",
+    ),
+    (
+        put(body__brick__odometry_topic="/brick odometry"),
+        "body.brick.odometry_topic must be ..., got '/brick odometry'",
+    ),
+    (
+        put(body__brick__source="odometry", body__brick__source_topics=["/brick/odometry"]),
+        "body.brick.source_topics[0] must be another topic than that of the..., got '/brick/odometry'",
+    ),
+    (two_bodies_by_one_source, "body.plate.source_topics[0] must be another topic than..., got '/poses'"),
+    (put(log_directory=str(Path(__file__))), "log_directory must be a folder"),
+]
+"""Two of those above, and what is known once there are topics, types of ROS and a log."""
 
 
 def test_the_log_may_go_below_the_home_folder(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
@@ -381,6 +396,15 @@ def test_a_concave_body_is_told_in_the_log(tmp_path: Path, capfd: pytest.Capture
 
 
 @pytest.mark.parametrize(("change", "words"), WRONG, ids=[words.partition(":")[0] for _, words in WRONG])
+def test_a_wrong_value_is_named(tmp_path: Path, change: Change, words: str) -> None:
+    values = values_of(SERVER_FILE)
+    change(values)
+    with pytest.raises(ConfigurationError) as caught:
+        read_server_parameters(ParameterFile(parameters_file(tmp_path, values)))
+    assert says(str(caught.value), words)
+
+
+@pytest.mark.parametrize(("change", "words"), WRONG_FOR_ROS)
 def test_a_wrong_value_ends_the_server_and_is_named(
     tmp_path: Path, capfd: pytest.CaptureFixture[str], change: Change, words: str
 ) -> None:

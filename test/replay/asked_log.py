@@ -27,9 +27,11 @@ from contact_dynamics_interfaces.srv import (
     PredictTumbling,
     PredictTumblingBatch,
 )
+from msg_adapters.stamps import stamp_to_msg
 from running_server import ROOT, server_and_client
 
-ROUNDS = 8
+ROUNDS = 5
+QUIET_S = 1.2  # before the last question
 MANY = 3  # states or candidates of a question about many
 BLOCKED = """
 import sys
@@ -155,16 +157,18 @@ def about_candidates(number: int) -> list[Any]:
 
 
 def configured(folder: Path) -> Path:
-    """The commented configuration, with a ball whose pose and twist are published apart."""
+    """The commented configuration, with a ball whose pose and twist are published apart, and a crate."""
     text = (ROOT / "config" / "server.yaml").read_text(encoding="utf-8")
     assert "bodies: [brick]" in text
     ball = (
         "    body.ball.mass: 0.2\n    body.ball.inertia: [0.0]\n    body.ball.sphere: [0.04]\n"
         "    body.ball.pose_topic: ball/pose\n    body.ball.twist_topic: ball/twist\n"
+        "    body.crate.mass: 1.0\n    body.crate.inertia: [0.0]\n    body.crate.box: [0.1, 0.1, 0.1]\n"
+        "    body.crate.odometry_topic: crate/odometry\n"
     )
     file = folder / "server.yaml"
-    text = text.replace("bodies: [brick]", "bodies: [brick, ball]")
-    # On a loaded machine a state may be old when its question comes. The one that is too old is 3.3 s late.
+    text = text.replace("bodies: [brick]", "bodies: [brick, ball, crate]")
+    # On a loaded machine a state may be old when its question comes. The one that is too old is 10 s late.
     assert "    state_timeout: 0.5\n" in text
     text = text.replace("    state_timeout: 0.5\n", "    state_timeout: 3.0\n")
     file.write_text(f"{text.rstrip()}\n\n{ball}", encoding="utf-8")
@@ -172,7 +176,7 @@ def configured(folder: Path) -> Path:
 
 
 def session(folder: Path) -> Asked:
-    """A session in which states and questions alternate, and one comes when the states are too old."""
+    """A session in which states and questions alternate, and the last is about a state that was too old."""
     counts: dict[str, int] = {}
     with server_and_client(folder / "logs", params_file=configured(folder)) as client:
         publishers = {
@@ -180,6 +184,9 @@ def session(folder: Path) -> Asked:
             "pose": client.publisher(PoseStamped, "/ball/pose"),
             "twist": client.publisher(TwistStamped, "/ball/twist"),
         }
+        late = odometry(stamp_to_msg(client.node.get_clock().now().nanoseconds - 10_000_000_000), 0)
+        late.child_frame_id = "crate"
+        client.publisher(Odometry, "/crate/odometry").publish(late)
 
         def publish(number: int) -> None:
             stamp = client.node.get_clock().now().to_msg()
@@ -201,8 +208,8 @@ def session(folder: Path) -> Asked:
                 publish(4 * number + step)
             for request in questions(number, client.node.get_clock().now().to_msg()):
                 ask(request)
-        time.sleep(3.3)
-        stale = ask(PredictImpact.Request(body_name="brick"))
+        time.sleep(QUIET_S)
+        stale = ask(PredictImpact.Request(body_name="crate"))
         assert stale.status == PredictImpact.Response.STALE_STATE
     (log,) = (folder / "logs").iterdir()
     return Asked(log=log, counts=counts)

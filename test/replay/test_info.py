@@ -25,7 +25,7 @@ def test_the_contents_of_a_log(asked: Asked) -> None:
     assert done.returncode == 0, done.stderr
     begin, end = BagReader(asked.log).extent()
     assert f"UTC, {(end - begin) / 1e9:.3f} s\n" in done.stdout
-    assert "\n  bodies: brick, ball\n  surfaces: floor\n" in done.stdout
+    assert "\n  bodies: brick, ball, crate\n  surfaces: floor\n" in done.stdout
     sent = BagReader(asked.log).messages({"/brick/odometry"})
     expected = ["nav_msgs/msg/Odometry", str(sum(1 for _ in sent))]
     assert table(done.stdout, "topic")["/brick/odometry"] == expected

@@ -138,7 +138,7 @@ def test_parquet_has_the_cells_of_csv_and_needs_no_ros(asked: Asked, tmp_path: P
 
 
 def test_a_part_of_a_log(asked: Asked, tmp_path: Path) -> None:
-    """The last second and a half has one question, the one whose state was too old."""
+    """The last second has one question, the one whose state was too old."""
     begin, end = BagReader(asked.log).extent()
     seconds = (end - begin) / 1e9
     out = tmp_path / "table.csv"

@@ -65,19 +65,22 @@ def test_questions_to_a_recording_of_others_are_drawn(tmp_path: Path) -> None:
 
 
 def test_a_viewer_that_does_not_open_ends_with_the_reason(
-    asked: Asked, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    write_flight(tmp_path / "bag")
+    (tmp_path / "server.yaml").write_text(CONFIGURATION)
     for name in ("DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"):
         monkeypatch.delenv(name, raising=False)
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
         port = str(probe.getsockname()[1])
+    view = ("view", tmp_path / "bag", "--config", tmp_path / "server.yaml", "--topics", "ball=/tracker/ball")
     reason = "neither DISPLAY nor WAYLAND_DISPLAY is set; draw into a file, or serve the picture"
-    done = without_ros("view", asked.log, "--port", port)
+    done = without_ros(*view, "--port", port)
     assert done.returncode == 2
     assert "nowhere to draw to: rerun's viewer has no screen" in done.stderr
     assert reason in done.stderr
-    done = without_ros("view", asked.log, "--port", port, "--spawn", "--rrd", tmp_path / "drawn.rrd")
+    done = without_ros(*view, "--port", port, "--spawn", "--rrd", tmp_path / "drawn.rrd")
     assert done.returncode == 1  # the file is there, what was asked for was to see it
     assert reason in done.stderr
     assert (tmp_path / "drawn.rrd").stat().st_size > 0
