@@ -37,6 +37,7 @@ WORDS: dict[str, Any] = {
     "9.80665 along -z": [0.0, 0.0, -9.80665],
     "[0.0]": [0.0],
     "at its origin": [0.0, 0.0, 0.0],
+    "at rest": [0.0, 0.0, 0.0],
     "empty": "",
     "false": False,
     "none": [""],
