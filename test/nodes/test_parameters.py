@@ -18,7 +18,7 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter
 
 from contact_dynamics.nodes import server, visualizer
-from contact_dynamics.nodes.given_parameters import ParameterFile
+from contact_dynamics.nodes.parameter_file import ParameterFile
 from contact_dynamics.nodes.log import Log
 from contact_dynamics.nodes.parameter_reader import ConfigurationError
 from contact_dynamics.nodes.parameters import read_server_parameters
