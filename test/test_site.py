@@ -58,6 +58,7 @@ def build_site(folder: Path) -> None:
     assert built.returncode == 0, built.stdout + built.stderr
 
 
+@pytest.mark.slow  # the workflow of the documents builds it, as strictly, for every change
 def test_the_site_is_built_without_a_complaint(tmp_path: Path) -> None:
     build_site(tmp_path)
     reference = (tmp_path / "api" / "tumbling.html").read_text(encoding="utf-8")

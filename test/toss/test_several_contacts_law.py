@@ -102,26 +102,24 @@ def test_the_energetic_law_has_no_simultaneous_form() -> None:
 
 
 def test_samples_take_the_law_too() -> None:
-    """Without any spread, each sample bounces level, and rests where it fell."""
+    """Where a box comes to rest depends on it, with the same seed and without any spread."""
     state = BodyState(p_WB_W=[0, 0, HEIGHT], q_WB=[0, 0, 0, 1], v_WB_W=[0, 0, 0], w_WB_W=[0, 0, 0])
-    told = sampled_toss(
-        COIN,
-        state,
-        WORLD,
-        count=3,
-        to_rest=True,
-        restitution_law=RestitutionLaw.POISSON,
-        several_contacts_law=SeveralContactsLaw.SIMULTANEOUS,
-        horizon=3.0,
-    )
-    assert told.samples == 3
-    with pytest.raises(InvalidFieldError, match="POISSON or NEWTON for SIMULTANEOUS"):
-        sampled_toss(
-            COIN,
+    brick = Body.box((0.1, 0.06, 0.02), 0.5)
+
+    def place(law: SeveralContactsLaw, restitution_law: RestitutionLaw) -> np.ndarray:
+        told = sampled_toss(
+            brick,
             state,
             WORLD,
-            count=3,
-            restitution_law=RestitutionLaw.ENERGETIC,
-            several_contacts_law=SeveralContactsLaw.SIMULTANEOUS,
-            horizon=3.0,
+            count=1,
+            to_rest=True,
+            restitution_law=restitution_law,
+            several_contacts_law=law,
         )
+        assert told.rest
+        return told.rest.positions[0]
+
+    first, other = (place(law, RestitutionLaw.POISSON) for law in SeveralContactsLaw)
+    assert np.linalg.norm(first - other) > 1e-3
+    with pytest.raises(InvalidFieldError, match="POISSON or NEWTON for SIMULTANEOUS"):
+        place(SeveralContactsLaw.SIMULTANEOUS, RestitutionLaw.ENERGETIC)
