@@ -177,7 +177,6 @@ turns = st.tuples(finite, finite, finite, finite).filter(lambda q: np.linalg.nor
 places = st.tuples(finite, finite, finite)
 
 
-@settings(max_examples=60, deadline=None)
 @given(q=turns, p=places, which=st.sampled_from([TABLE, SPIKE, RIDGE]))
 def test_the_gap_is_positive_just_where_hulls_are_apart_and_never_above_their_distance(
     q: tuple[float, ...], p: tuple[float, float, float], which: Obstacle
@@ -194,7 +193,6 @@ def test_the_gap_is_positive_just_where_hulls_are_apart_and_never_above_their_di
         )
 
 
-@settings(max_examples=40, deadline=None)
 @given(q=turns, center=places, scale=st.floats(0.1, 2.0), seed=st.integers(0, 10_000))
 @pytest.mark.filterwarnings("ignore::contact_dynamics.errors.ConcaveShapeWarning")
 def test_a_ball_is_as_far_as_its_centre(
@@ -210,7 +208,6 @@ def test_a_ball_is_as_far_as_its_centre(
     assert site.gap == pytest.approx(apart - 0.05, abs=1e-6)
 
 
-@settings(max_examples=25, deadline=None)
 @given(turn=st.floats(-3.0, 3.0), x=st.floats(0.6, 1.4), y=st.floats(0.6, 1.4))
 def test_contacts_are_the_extreme_points_of_the_overlap(turn: float, x: float, y: float) -> None:
     rotation = Rotation.from_euler("z", turn)
@@ -255,7 +252,7 @@ def test_one_that_leaves_comes_back() -> None:
     assert drop(at((0.0, 0.0, 0.05), v=(0.0, 0.0, -1.0))) == 0.0
 
 
-@settings(max_examples=12, deadline=None)
+@settings(max_examples=12)
 @given(
     q=turns,
     x=st.floats(0.7, 1.3),
@@ -385,7 +382,6 @@ def test_a_pill_that_falls_on_an_edge() -> None:
 PILLOW = rounded(box(size=(0.4, 0.2, 0.1)), radius=0.05)
 
 
-@settings(max_examples=40, deadline=None)
 @given(
     q=turns,
     p=places,

@@ -100,11 +100,8 @@ def check_limit(problem: impact_compliant.Problem, rigid: np.ndarray) -> None:
     ("seed", "outcome"),
     [
         (0, ImpactOutcome.SLIDES),
-        (5, ImpactOutcome.SLIDES),
         (3, ImpactOutcome.STICKS_IN_COMPRESSION),
-        (7, ImpactOutcome.STICKS_IN_COMPRESSION),
         (21, ImpactOutcome.STICKS_IN_RESTITUTION),
-        (96, ImpactOutcome.STICKS_IN_RESTITUTION),
         (106, ImpactOutcome.REVERSES_IN_COMPRESSION),
         (1279, ImpactOutcome.REVERSES_IN_RESTITUTION),
     ],
@@ -120,13 +117,10 @@ def test_a_stiff_spring_in_space(seed: int, outcome: ImpactOutcome) -> None:
     ("seed", "outcome"),
     [
         (0, ImpactOutcome.SLIDES),
-        (5, ImpactOutcome.SLIDES),
         (14, ImpactOutcome.STICKS_IN_COMPRESSION),
         (42, ImpactOutcome.STICKS_IN_RESTITUTION),
         (4, ImpactOutcome.REVERSES_IN_COMPRESSION),
-        (9, ImpactOutcome.REVERSES_IN_COMPRESSION),
         (13, ImpactOutcome.REVERSES_IN_RESTITUTION),
-        (98, ImpactOutcome.REVERSES_IN_RESTITUTION),
     ],
 )
 def test_a_stiff_spring_in_the_plane(seed: int, outcome: ImpactOutcome) -> None:

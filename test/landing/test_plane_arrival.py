@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
@@ -43,7 +43,6 @@ def toss(
 finite = st.floats(-1.0, 1.0)
 
 
-@settings(max_examples=60, deadline=None)
 @given(
     height=st.floats(0.0867, 1.5),  # all corners above the floor
     direction=st.tuples(finite, finite, finite, finite).filter(lambda q: np.linalg.norm(q) > 0.1),

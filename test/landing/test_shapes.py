@@ -70,7 +70,7 @@ turns = st.tuples(finite, finite, finite, finite).filter(lambda q: np.linalg.nor
 
 
 @pytest.mark.parametrize("name", list(SHAPES))
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15)
 @given(
     height=st.floats(0.11, 0.8),
     q=turns,

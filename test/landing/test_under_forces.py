@@ -46,7 +46,7 @@ turns = st.tuples(finite, finite, finite, finite).filter(lambda q: np.linalg.nor
 vectors = st.tuples(finite, finite, finite)
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(height=st.floats(0.1, 1.0), q=turns, v=vectors, w=vectors, tumbling=st.sampled_from([1.0, 10.0, 40.0]))
 def test_at_zero_torque_it_is_the_closed_form(
     height: float, q: tuple[float, ...], v: tuple[float, ...], w: tuple[float, ...], tumbling: float
@@ -63,7 +63,7 @@ def test_at_zero_torque_it_is_the_closed_form(
     assert found.v_WC_W == pytest.approx(exact.v_WC_W, abs=1e-8 / speed)
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15)
 @given(
     height=st.floats(0.0867, 0.8),
     q=turns,

@@ -17,6 +17,7 @@ from contact_dynamics.motion.integrated import ForcedMotion, forced_motion
 from contact_dynamics.questions import Context, ImpactQuestion, PublishedState, TumblingQuestion, ask
 from contact_dynamics.questions.state_store import StateStore
 from contact_dynamics.tumbling import FreeMotion, free_motion
+from sweeps import seeds
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -144,30 +145,31 @@ def test_a_fit_to_a_body_that_lies_or_slides_has_not_converged(noise: float, til
         ask(question, context)
 
 
-def test_no_impact_is_found_in_a_flight() -> None:
-    """White noise of every size, gravity that leans, and drag that is not known or is: none is an impact."""
-    for seed in range(300):
-        rng = np.random.default_rng(seed)
-        start = BodyState(
-            p_WB_W=rng.normal(size=3), q_WB=[0, 0, 0, 1], v_WB_W=rng.normal(size=3), w_WB_W=rng.normal(size=3)
-        )
-        times = np.arange(int(rng.integers(3, 80))) / RATE
-        noise = float(10.0 ** rng.uniform(-12, -2)) if seed % 10 else 0.0
-        leaning = [0.2 * rng.normal(), 0.2 * rng.normal(), -G + 0.2 * rng.normal()]
-        states = noisy(free_motion(BRICK, start, gravity_W=leaning), times, rng, noise)
-        fit = fit_free_motion(BRICK, states)
-        assert (fit.velocity_jump, fit.converged) == (None, True)
-    drag = Drag(linear=0.4)
-    for seed in range(10):
-        rng = np.random.default_rng(seed)
-        start = BodyState(p_WB_W=[0, 0, 1], q_WB=[0, 0, 0, 1], v_WB_W=[4, 0, 3], w_WB_W=[0, 0.5, 0])
-        states = noisy(
-            forced_motion(BRICK, start, drag=drag), np.arange(40) / RATE, rng, 10.0 ** -(seed + 3.0)
-        )
-        assert fit_free_motion(BRICK, states).velocity_jump is None
-        known = fit_motion(BRICK, states, drag=drag)
-        assert known.velocity_jump is None
-        assert known.converged
+@seeds(range(80), slow=range(80, 300))
+def test_no_impact_is_found_in_a_flight(seed: int) -> None:
+    """White noise of every size and gravity that leans."""
+    rng = np.random.default_rng(seed)
+    start = BodyState(
+        p_WB_W=rng.normal(size=3), q_WB=[0, 0, 0, 1], v_WB_W=rng.normal(size=3), w_WB_W=rng.normal(size=3)
+    )
+    times = np.arange(int(rng.integers(3, 80))) / RATE
+    noise = float(10.0 ** rng.uniform(-12, -2)) if seed % 10 else 0.0
+    leaning = [0.2 * rng.normal(), 0.2 * rng.normal(), -G + 0.2 * rng.normal()]
+    states = noisy(free_motion(BRICK, start, gravity_W=leaning), times, rng, noise)
+    fit = fit_free_motion(BRICK, states)
+    assert (fit.velocity_jump, fit.converged) == (None, True)
+
+
+@seeds(range(0, 10, 3), slow=range(10))
+def test_no_impact_is_found_in_a_flight_with_drag(seed: int) -> None:
+    """Whether or not the drag is known."""
+    drag, rng = Drag(linear=0.4), np.random.default_rng(seed)
+    start = BodyState(p_WB_W=[0, 0, 1], q_WB=[0, 0, 0, 1], v_WB_W=[4, 0, 3], w_WB_W=[0, 0.5, 0])
+    states = noisy(forced_motion(BRICK, start, drag=drag), np.arange(40) / RATE, rng, 10.0 ** -(seed + 3.0))
+    assert fit_free_motion(BRICK, states).velocity_jump is None
+    known = fit_motion(BRICK, states, drag=drag)
+    assert known.velocity_jump is None
+    assert known.converged
 
 
 @pytest.mark.parametrize("fit", [fit_free_motion, partial(fit_motion, drag=Drag(linear=0.05))])

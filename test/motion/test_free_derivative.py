@@ -122,7 +122,7 @@ def test_what_is_given_near_every_singular_end_is_right(monkeypatch: pytest.Monk
     """Pieces of other lengths round otherwise: what they agree on is right, and the rest is NaN."""
     rng, count, finite = np.random.default_rng(7), 0, 0
     rows = np.r_[3:6, 9:12]
-    for _ in range(150):
+    for _ in range(60):
         drawn = draw(rng)
         if np.linalg.cond(drawn.I_B) > 1e3:
             continue  # thinner rods: less is claimed
@@ -139,7 +139,7 @@ def test_what_is_given_near_every_singular_end_is_right(monkeypatch: pytest.Monk
         given = np.isfinite(answers).all(axis=(0, 2, 3))
         finite += given.sum()
         assert (relative(answers[0][given], answers[1][given]) < 1e-2).all(), drawn
-    assert count > 100
+    assert count > 40
     assert finite > 0.8 * 4 * count
 
 

@@ -7,7 +7,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from scipy.optimize import least_squares
 from scipy.spatial.transform import Rotation
@@ -91,7 +91,6 @@ positive = st.floats(0.3, 3.0)
 component = st.floats(-8.0, 8.0)
 
 
-@settings(max_examples=40, deadline=None)
 @given(
     a=positive,
     b=positive,

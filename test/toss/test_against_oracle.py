@@ -74,7 +74,7 @@ def phases(went: Toss) -> list[tuple[tuple[int, ...], str, list[PhaseStep]]]:
 
 @pytest.mark.parametrize("error", [PHASE_ERROR, SAMPLED_PHASE_ERROR])
 @pytest.mark.parametrize("friction", [0.2, 0.6])
-@seeds(range(4), slow=range(4, 40))
+@seeds(range(2), slow=range(2, 40))
 def test_each_contact_phase_is_that_of_the_oracle(seed: int, friction: float, error: float) -> None:
     """Each step may be off by ``error``, m and m/s; what is off grows on, by less than ten times here.
 

@@ -7,7 +7,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
@@ -59,7 +59,6 @@ def test_known_motions_compose_and_reverse(name: str) -> None:
         assert error <= 5e-15 + ROUNDING * condition
 
 
-@settings(max_examples=60, deadline=None)
 @given(
     seed=st.integers(0, 2**32 - 1),
     first=st.floats(-50.0, 50.0),

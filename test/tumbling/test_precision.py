@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
@@ -38,7 +38,6 @@ def test_known_motions(name: str) -> None:
     assert in_doubles(motion).regime is motion.regime
 
 
-@settings(max_examples=60, deadline=None)
 @given(seed=st.integers(0, 2**32 - 1), turned=st.floats(-100.0, 100.0))
 def test_drawn_motions(seed: int, turned: float) -> None:
     drawn = draw(np.random.default_rng(seed))

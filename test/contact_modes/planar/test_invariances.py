@@ -8,7 +8,7 @@ import random
 from dataclasses import replace
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from contact_dynamics.contact_modes import PlanarContactProblem, PlanarModeAnswer, contact_modes
@@ -32,7 +32,6 @@ def strings(answer: PlanarModeAnswer) -> tuple[set[str], set[str]]:
 
 
 @given(cases, st.randoms(use_true_random=False))
-@settings(max_examples=60, deadline=None)
 def test_renaming_contacts_permutes_letters(case: FloatCase, chance: random.Random) -> None:
     body, velocity, contacts, wrench = case
     order = list(range(len(contacts)))
@@ -43,7 +42,6 @@ def test_renaming_contacts_permutes_letters(case: FloatCase, chance: random.Rand
 
 
 @given(cases)
-@settings(max_examples=60, deadline=None)
 def test_a_mirror_swaps_left_and_right(case: FloatCase) -> None:
     body, velocity, contacts, wrench = case
     mirrored = (
@@ -57,7 +55,6 @@ def test_a_mirror_swaps_left_and_right(case: FloatCase) -> None:
 
 
 @given(cases, st.floats(1e-6, 1e6))
-@settings(max_examples=60, deadline=None)
 def test_mass_and_wrench_together_only_scale_forces(case: FloatCase, factor: float) -> None:
     body, velocity, contacts, wrench = case
     heavier = (
@@ -81,7 +78,6 @@ def test_mass_and_wrench_together_only_scale_forces(case: FloatCase, factor: flo
 
 
 @given(cases, st.randoms(use_true_random=False))
-@settings(max_examples=60, deadline=None)
 def test_a_copy_of_a_contact_adds_its_letter(case: FloatCase, chance: random.Random) -> None:
     body, velocity, contacts, wrench = case
     i = chance.randrange(len(contacts))
@@ -91,7 +87,6 @@ def test_a_copy_of_a_contact_adds_its_letter(case: FloatCase, chance: random.Ran
 
 
 @given(cases)
-@settings(max_examples=60, deadline=None)
 def test_a_contact_that_leaves_adds_an_s(case: FloatCase) -> None:
     body, velocity, contacts, wrench = case
     moving = PlanarVelocity(v=velocity.v, w=velocity.w)
@@ -107,7 +102,6 @@ def test_a_contact_that_leaves_adds_an_s(case: FloatCase) -> None:
 
 
 @given(cases, st.floats(0.0, 7.0), st.randoms(use_true_random=False))
-@settings(max_examples=60, deadline=None)
 def test_copies_that_rounding_parts_are_copies_all_the_same(
     case: FloatCase, angle: float, chance: random.Random
 ) -> None:
@@ -131,7 +125,6 @@ def test_copies_that_rounding_parts_are_copies_all_the_same(
 
 
 @given(cases, st.integers(10, 20))
-@settings(max_examples=60, deadline=None)
 def test_many_copies_of_all_contacts_repeat_the_letters(case: FloatCase, copies: int) -> None:
     """So that the cones have many rows, most of which change nothing."""
     body, velocity, contacts, wrench = case
@@ -145,7 +138,6 @@ def test_many_copies_of_all_contacts_repeat_the_letters(case: FloatCase, copies:
 
 
 @given(cases, st.floats(0.1, 10.0), st.integers(20, 60))
-@settings(max_examples=60, deadline=None)
 def test_many_feet_between_two_add_only_letters(case: FloatCase, width: float, count: int) -> None:
     body, _, contacts, wrench = case
     resting = PlanarVelocity(v=(0.0, 0.0), w=0.0)
@@ -162,7 +154,6 @@ def test_many_feet_between_two_add_only_letters(case: FloatCase, width: float, c
 
 
 @given(cases, st.floats(1.0, 1e3), st.floats(-0.9, 0.9))
-@settings(max_examples=60, deadline=None)
 def test_a_far_contact_that_others_make_redundant_adds_only_its_letter(
     case: FloatCase, reach: float, place: float
 ) -> None:
@@ -178,14 +169,12 @@ def test_a_far_contact_that_others_make_redundant_adds_only_its_letter(
 
 
 @given(cases)
-@settings(max_examples=60, deadline=None)
 def test_the_strings_are_a_few_times_the_contacts(case: FloatCase) -> None:
     # 4 n + 2 for facets cut once; coincident contacts can cut a facet once more each.
     assert len(ask(case).kinematic_modes) <= 4 * len(case[2]) + 2
 
 
 @given(cases)
-@settings(max_examples=60, deadline=None)
 def test_asking_again_gives_the_same_answer(case: FloatCase) -> None:
     assert ask(case) == ask(case)
 

@@ -193,7 +193,7 @@ def letters(answer: PlanarModeAnswer) -> tuple[object, ...]:
     return answer.verdict, sorted(mode.mode for mode in answer.modes), answer.kinematic_modes
 
 
-@seeds(range(60), slow=range(60, 1000))
+@seeds(range(24), slow=range(24, 1000))
 def test_modes_are_those_of_a_still_problem_with_explicit_pseudo_forces(seed: int) -> None:
     case, motion = rounded(draw(seed, most_contacts=4)), drawn_motion(seed)
     body, velocity, contacts, wrench = case

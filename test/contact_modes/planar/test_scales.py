@@ -53,7 +53,7 @@ def compare(seed: int, power: int, most_contacts: int) -> None:
 
 
 @pytest.mark.parametrize("power", [-5, -3, -1, 1, 3])
-@seeds(range(25))
+@seeds(range(10), slow=range(10, 25))
 def test_long_and_short_arms(seed: int, power: int) -> None:
     compare(seed, power, most_contacts=4)
 

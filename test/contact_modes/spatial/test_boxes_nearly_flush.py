@@ -113,7 +113,7 @@ def check(seed: int, noise: float) -> tuple[ModeVerdict, float]:
 
 @pytest.mark.parametrize("decade", DECADES)
 def test_some_boxes_are_decided(decade: int) -> None:
-    verdicts = Counter(check(seed, noise_of(seed, decade))[0] for seed in range(200, 208))
+    verdicts = Counter(check(seed, noise_of(seed, decade))[0] for seed in range(200, 203))
     assert ModeVerdict.UNDECIDED not in verdicts
 
 
@@ -134,7 +134,7 @@ def test_two_thousand_boxes_of_each_decade_are_decided_and_soon(decade: int) -> 
     assert late <= MOST_LATE * BOXES
 
 
-@seeds(range(200, 216))
+@seeds(range(200, 207), slow=range(207, 216))
 def test_noise_that_counts_as_none_changes_no_verdict_and_no_letter(seed: int) -> None:
     exact = contact_modes(problem_of(flush(seed, 0.0)))
     for noise in (1e-13, 1e-11, 3e-10):

@@ -70,7 +70,7 @@ def same_modes(one: SpatialModeAnswer, other: SpatialModeAnswer, turned: np.ndar
         assert min(np.abs(twin - expected).max() for twin in found) <= 1e-6 * (1.0 + np.abs(expected).max())
 
 
-@seeds(range(8), slow=range(8, 60))
+@seeds(range(4), slow=range(4, 60))
 def test_renamed_contacts(seed: int) -> None:
     case = Case(seed)
     before = case.answer()
@@ -81,7 +81,7 @@ def test_renamed_contacts(seed: int) -> None:
     assert sorted(mode.mode for mode in after.modes) == renamed
 
 
-@seeds(range(8), slow=range(8, 60))
+@seeds(range(4), slow=range(4, 60))
 def test_other_axes(seed: int) -> None:
     # A mirror image has its torques and angular accelerations reversed, as axial vectors are.
     mirrored = 1.0 if seed % 4 < 2 else -1.0
@@ -95,7 +95,7 @@ def test_other_axes(seed: int) -> None:
     same_modes(before, case.answer(facets=8), turned, mirrored)
 
 
-@seeds(range(8), slow=range(8, 60))
+@seeds(range(4), slow=range(4, 60))
 def test_other_units_of_mass(seed: int) -> None:
     factor = (1e-6, 1e-2, 1e4)[seed % 3]
     case = Case(seed)

@@ -130,7 +130,7 @@ def test_cubes_at_walls(pairs: list) -> None:
     assert set(spatial_kinematic_modes(state(), contacts)) == all_strings(state(), contacts)
 
 
-@seeds(range(30))
+@seeds(range(12), slow=range(12, 30))
 def test_drawn_sets(seed: int) -> None:
     chance = np.random.default_rng(seed)
     n = int(chance.integers(1, 8))
@@ -147,7 +147,7 @@ def test_drawn_sets(seed: int) -> None:
     assert set(spatial_kinematic_modes(state(), contacts)) == all_strings(state(), contacts)
 
 
-@seeds(range(12))
+@seeds(range(5), slow=range(5, 12))
 def test_a_body_that_turns_about_its_contacts(seed: int) -> None:
     chance = np.random.default_rng(seed)
     centre = chance.normal(size=3)

@@ -78,7 +78,7 @@ def test_two_fingers_may_let_go_before_they_must() -> None:
     assert (found.factor, found.only_rest) == (math.inf, 0.0)
 
 
-@seeds(range(8))
+@seeds(range(4), slow=range(4, 8))
 def test_rest_is_consistent_just_before_and_not_just_beyond(seed: int) -> None:
     """Among all modes, which are found in another way; feet on a floor, and some on a wall."""
     random = np.random.default_rng(seed)

@@ -235,7 +235,7 @@ def check_margin(problem: SpatialContactProblem, margin: SpatialModeMargin, ways
         assert margin.mode in modes_at(problem, change)
 
 
-@seeds(range(8))
+@seeds(range(4), slow=range(4, 8))
 def test_margins_of_a_foot_are_exact(seed: int) -> None:
     chance = np.random.default_rng(seed)
     foot = ContactSet(p_WC_W=chance.normal(size=(1, 3)), normals_W=[0.0, 0.0, 1.0], frictions=0.3)
@@ -302,7 +302,7 @@ def on_cone(problem: SpatialContactProblem, change: np.ndarray, *, around: bool)
     return bool(found.status == 0)
 
 
-@seeds(range(4), slow=range(4, 60))
+@seeds(range(2), slow=range(2, 60))
 def test_margins_of_bodies_that_stick_are_between_those_of_fine_pyramids(seed: int) -> None:
     chance = np.random.default_rng(seed)
     n = int(chance.integers(3, 6))

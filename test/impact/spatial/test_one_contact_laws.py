@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from contact_dynamics.contact.contact import Contact
@@ -16,7 +16,6 @@ from sweeps import seeds
 
 
 @pytest.mark.parametrize("law", RestitutionLaw)
-@settings(max_examples=50, deadline=None)
 @given(seed=st.integers(0, 2**32))
 def test_admissible(law: RestitutionLaw, seed: int) -> None:
     problem = random_problem(seed)
@@ -41,7 +40,6 @@ def test_admissible(law: RestitutionLaw, seed: int) -> None:
 
 
 @pytest.mark.parametrize("law", RestitutionLaw)
-@settings(max_examples=30, deadline=None)
 @given(seed=st.integers(0, 2**32))
 def test_laws_mean_what_they_say(law: RestitutionLaw, seed: int) -> None:
     problem = random_problem(seed)
@@ -63,7 +61,6 @@ def test_laws_mean_what_they_say(law: RestitutionLaw, seed: int) -> None:
     assert at_end @ normal == pytest.approx(0.0, abs=1e-10 * float(np.linalg.norm(at_end) + 1.0))
 
 
-@settings(max_examples=30, deadline=None)
 @given(seed=st.integers(0, 2**32), mirror=st.booleans())
 def test_turned_and_mirrored_problems_have_turned_and_mirrored_answers(seed: int, mirror: bool) -> None:  # noqa: FBT001
     problem = random_problem(seed)
@@ -95,7 +92,6 @@ def test_turned_and_mirrored_problems_have_turned_and_mirrored_answers(seed: int
 
 
 @pytest.mark.parametrize("law", RestitutionLaw)
-@settings(max_examples=30, deadline=None)
 @given(seed=st.integers(0, 2**32))
 def test_mirrored_problems_have_mirrored_answers_to_the_last_bit(law: RestitutionLaw, seed: int) -> None:
     """In a coordinate plane, since only signs change."""

@@ -101,7 +101,7 @@ def test_a_given_mass_and_the_density_that_makes_it_agree(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", SHAPES)
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(factor=st.floats(1e-3, 1e3))
 def test_solids_scale_with_the_cube_and_the_fifth_power(name: str, factor: float) -> None:
     """Sheets scale with the square and the fourth power, wires with the first and the third."""

@@ -70,7 +70,6 @@ def assert_equal(one: MassDistribution, other: MassDistribution, *, tolerance: f
     np.testing.assert_allclose(one.I_B, other.I_B, atol=tolerance * scale)
 
 
-@settings(max_examples=30, deadline=None)
 @given(
     radii=st.lists(st.integers(1, 1000), min_size=18, max_size=18),
     far=st.tuples(*[st.integers(-(2**45), 2**45)] * 3),
