@@ -39,7 +39,6 @@ _LINE: Final = 23.0  # points, from one word to the one below
 _DROP: Final = 12.0  # points that the middle of a word is below its place
 _FURTHER: Final = 7.5  # the same, for each further line of it
 _BELOW: Final = 2.8  # lines below the axes, with numbers and a name
-_BELOW: Final = 2.8  # lines below the axes, with numbers and a name
 
 EYE: Final = np.array([0.8, -1.7, 1.07])
 TARGET: Final = np.array([0.0, 0.0, 0.32])
