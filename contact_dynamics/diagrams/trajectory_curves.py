@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -19,7 +18,8 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from contact_dynamics.diagrams.marks import Mark
-    from contact_dynamics.rigid_body.body import BodyState, MassProperties
+    from contact_dynamics.motion.covariance import CarriedCovariance
+    from contact_dynamics.rigid_body.body import BodyState, HasMassProperties, MassProperties
     from contact_dynamics.validation import FloatArray
 
 
@@ -29,26 +29,6 @@ DEVIATIONS: Final = 2.0
 _DASHES: Final = ("-", "--", "-.", ":")  # beside the colours, for print in grey
 _MARGIN: Final = 0.05  # room about the curves, relative to their extent
 _ROUNDING: Final = 1e-9  # relative: what differs by less is rounding
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Energies:
-    """Energies at the n times of a trajectory, J.
-
-    Attributes:
-        translational: (n,), m v^2 / 2.
-        rotational: (n,), w . L / 2.
-        potential: (n,), -m g . p, which is zero at the origin of the world.
-    """
-
-    translational: FloatArray
-    rotational: FloatArray
-    potential: FloatArray
-
-    @property
-    def total(self) -> FloatArray:
-        """Return their sum, (n,), J."""
-        return self.translational + self.rotational + self.potential
 
 
 def trajectory_of(states: Sequence[BodyState]) -> Trajectory:
@@ -76,14 +56,57 @@ def momenta_of(body: MassProperties, trajectory: Trajectory) -> FloatArray:
     return body.mass * trajectory.v_WB_W
 
 
-def energies_of(body: MassProperties, trajectory: Trajectory, *, gravity_W: FloatArray) -> Energies:
-    """Return the energies over a trajectory. ``gravity_W`` is (3,), m/s^2, world axes."""
+def energies_of(body: MassProperties, trajectory: Trajectory, *, gravity_W: FloatArray) -> FloatArray:
+    """Return the energies of translation and rotation, the potential energy and their sum, (n, 4), J.
+
+    ``gravity_W`` is (3,), m/s^2, world axes. The potential energy is zero at the origin of the world.
+    """
     L_W = angular_momenta_of(body, trajectory)
-    return Energies(
-        translational=0.5 * body.mass * np.einsum("ni,ni->n", trajectory.v_WB_W, trajectory.v_WB_W),
-        rotational=0.5 * np.einsum("ni,ni->n", trajectory.w_WB_W, L_W),
-        potential=-body.mass * trajectory.p_WB_W @ gravity_W,
-    )
+    translation = 0.5 * body.mass * np.einsum("ni,ni->n", trajectory.v_WB_W, trajectory.v_WB_W)
+    rotation = 0.5 * np.einsum("ni,ni->n", trajectory.w_WB_W, L_W)
+    potential = -body.mass * trajectory.p_WB_W @ gravity_W
+    return np.column_stack([translation, rotation, potential, translation + rotation + potential])
+
+
+def position(trajectory: Trajectory, *, covariance: CarriedCovariance | None = None) -> Diagram:
+    """Return the position of the centre of mass, m, with bands of two deviations for a covariance."""
+    deviations = None
+    if covariance is not None:
+        variances = np.diagonal(covariance.covariances[:, :3, :3], axis1=1, axis2=2)
+        deviations = np.sqrt(np.maximum(variances, 0.0))
+    return over_time(trajectory, trajectory.p_WB_W, "position, m", deviations=deviations)
+
+
+def attitude(trajectory: Trajectory) -> Diagram:
+    """Return the orientation as the components of its unit quaternion, body to world."""
+    return over_time(trajectory, trajectory.q_WB, "orientation, unit quaternion", "xyzw")
+
+
+def velocity(trajectory: Trajectory) -> Diagram:
+    """Return the velocity of the centre of mass, m/s."""
+    return over_time(trajectory, trajectory.v_WB_W, "velocity, m/s")
+
+
+def angular_velocity(trajectory: Trajectory) -> Diagram:
+    """Return the angular velocity, rad/s."""
+    return over_time(trajectory, trajectory.w_WB_W, "angular velocity, rad/s")
+
+
+def momentum(trajectory: Trajectory, body: HasMassProperties) -> Diagram:
+    """Return the momentum, kg m/s."""
+    return over_time(trajectory, momenta_of(body.mass_properties, trajectory), "momentum, kg m/s")
+
+
+def angular_momentum(trajectory: Trajectory, body: HasMassProperties) -> Diagram:
+    """Return the angular momentum about the centre of mass, kg m²/s."""
+    momenta = angular_momenta_of(body.mass_properties, trajectory)
+    return over_time(trajectory, momenta, "angular momentum, kg m²/s")
+
+
+def energy(trajectory: Trajectory, body: HasMassProperties, *, gravity_W: FloatArray) -> Diagram:
+    """Return the energies of `energies_of`, J."""
+    rows = energies_of(body.mass_properties, trajectory, gravity_W=gravity_W)
+    return over_time(trajectory, rows, "energy, J", ("translation", "rotation", "potential", "sum"))
 
 
 def over_time(

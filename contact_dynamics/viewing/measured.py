@@ -75,7 +75,7 @@ def curves_of(
     curves = {HEIGHT: trajectory.p_WB_W @ up_W, SPEED: np.linalg.norm(trajectory.v_WB_W, axis=1)}
     if body is not None:
         gravity_W = np.zeros(3) if gravity_W is None else gravity_W
-        curves[ENERGY] = energies_of(body, trajectory, gravity_W=gravity_W).total
+        curves[ENERGY] = energies_of(body, trajectory, gravity_W=gravity_W)[:, 3]
         curves[MOMENTUM] = np.linalg.norm(momenta_of(body, trajectory), axis=1)
         curves[ANGULAR_MOMENTUM] = np.linalg.norm(angular_momenta_of(body, trajectory), axis=1)
         curves[ANGULAR_VELOCITY] = np.linalg.norm(trajectory.w_WB_W, axis=1)
