@@ -17,7 +17,6 @@ import sys
 from typing import TYPE_CHECKING, Final
 
 from contact_dynamics.nodes.fast_dds import FIRST_PORT, PORTS_OF_DOMAIN, ports_in_use
-from contact_dynamics.recording.closing import ClosedAtTheEnd
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -31,7 +30,7 @@ _COMPLAINT: Final = re.compile(r"\b(?:WARN|ERROR|FATAL)\b|^Traceback")
 _LEVEL: Final = re.compile(r"^\[")  # what begins a message of ROS's or rerun's log
 
 
-class Processes(ClosedAtTheEnd):
+class Processes(contextlib.AbstractContextManager["Processes"]):
     """The child processes of one run. Leaving the context stops all of them, the newest first."""
 
     def __init__(self, log_folder: Path) -> None:
@@ -44,6 +43,10 @@ class Processes(ClosedAtTheEnd):
             "ROS_DOMAIN_ID": str(claim_domain()),
         }
         self._environment = {**os.environ, **self.ros_environment, "PYTHONUNBUFFERED": "1"}
+
+    def __exit__(self, *_error: object) -> None:
+        """Stop all processes."""
+        self.close()
 
     def start(self, verb: str, arguments: Sequence[str]) -> subprocess.Popen[bytes]:
         """Start a verb of the command line. Its output goes to a file."""

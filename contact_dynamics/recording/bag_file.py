@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import contextlib
+import json
 import os
 from typing import TYPE_CHECKING, Any, Final
 
@@ -17,12 +18,14 @@ from contact_dynamics.recording.bag_metadata import (
     sealed_run,
 )
 from contact_dynamics.recording.limits import Compression
+from contact_dynamics.recording.qos import qos_maps
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
     from pathlib import Path
 
     from contact_dynamics.recording.definitions import TypeDefinition
+    from contact_dynamics.recording.qos import OfferedQos
 
 CHUNK_BYTES: Final = 256 * 1024
 
@@ -59,7 +62,7 @@ class BagFile:
         self._opened_ns = opened_ns
         self._counts: dict[str, int] = {}  # messages given, by topic
         self._safe_counts: dict[str, int] = {}  # messages in the file
-        self._defined: dict[tuple[str, str, tuple[str, ...]], int] = {}  # channels by topic, type and QoS
+        self._defined: dict[tuple[str, str, tuple[OfferedQos, ...]], int] = {}  # channels
         self._channels: dict[str, int] = {}  # the present ones, by topic
         self._schemas: dict[str, int] = {}
         self._file = AppendFile(path)
@@ -96,7 +99,7 @@ class BagFile:
             counts=dict(self._safe_counts),
         )
 
-    def add_topic(self, name: str, definition: TypeDefinition, qos: tuple[str, ...]) -> None:
+    def add_topic(self, name: str, definition: TypeDefinition, qos: tuple[OfferedQos, ...]) -> None:
         """Write the definition of a topic, or another one, which holds for its messages from now on."""
         with self._cut_back_on_failure():
             type_name = definition.type_name
@@ -110,7 +113,7 @@ class BagFile:
                     message_encoding="cdr",
                     schema_id=self._schemas[type_name],
                     metadata={
-                        OFFERED_QOS: "\n".join(qos),
+                        OFFERED_QOS: json.dumps(qos_maps(qos)),
                         TYPE_HASH: definition.type_hash,
                     },
                 )

@@ -12,7 +12,6 @@ installed.
 
 from __future__ import annotations
 
-import json
 import re
 import warnings
 from contextlib import contextmanager
@@ -21,7 +20,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from contact_dynamics.errors import InvalidFieldError
-from contact_dynamics.recording.bag_metadata import METADATA_FILE, custom_data_of
+from contact_dynamics.recording.bag_metadata import BAG_KEY, METADATA_FILE
 from contact_dynamics.recording.definitions import standard_definition
 from contact_dynamics.recording.errors import DamagedLogWarning, NotALogError
 from contact_dynamics.recording.file_messages import Loss, MessageFile, Span, Topic
@@ -181,12 +180,15 @@ class BagReader:
 
     def _run_of_metadata(self) -> dict[str, str]:
         """Return the record in ``metadata.yaml``, if that describes the first file."""
+        import yaml  # only damaged logs need it
+
         path = self.paths[0]
         try:
-            text = (path.parent / METADATA_FILE).read_text(encoding="utf-8")
-        except (OSError, UnicodeDecodeError):
+            bag = yaml.safe_load((path.parent / METADATA_FILE).read_text(encoding="utf-8"))[BAG_KEY]
+            run: dict[str, str] = bag["custom_data"] or {}
+            return run if path.name in bag["relative_file_paths"] else {}
+        except (OSError, ValueError, LookupError, TypeError, yaml.YAMLError):
             return {}
-        return custom_data_of(text) if json.dumps(path.name, ensure_ascii=False) in text else {}
 
     def _made(self, path: Path, stored: StoredMessage) -> LoggedMessage | None:
         topic, data, log_time_ns, publish_time_ns = stored

@@ -23,12 +23,15 @@ from __future__ import annotations
 
 import contextlib
 import errno
+import json
 import os
 import shutil
 import time
+from contextlib import AbstractContextManager
 from dataclasses import dataclass, replace
+from datetime import datetime, timezone
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from contact_dynamics.constants import NS_PER_S
 from contact_dynamics.errors import InvalidFieldError
@@ -38,20 +41,23 @@ from contact_dynamics.recording.bag_metadata import (
     METADATA_FILE,
     BagSummary,
     FileSummary,
+    TopicSummary,
     metadata_file_text,
-    metadata_lines,
+    metadata_text,
 )
-from contact_dynamics.recording.closing import ClosedAtTheEnd
-from contact_dynamics.recording.declared_topic import DeclaredTopic, qos_yaml
+from contact_dynamics.recording.cdr_stamp import event_stamp_ns, leading_stamp_ns
 from contact_dynamics.recording.definitions import find_definition
 from contact_dynamics.recording.errors import LogExistsError, LogFailedError
-from contact_dynamics.recording.gaps import Gap, record_of_gaps
 from contact_dynamics.recording.limits import UNLIMITED, LogLimits
+from contact_dynamics.recording.qos import offers_of
 from contact_dynamics.validation_types import checks_types
 from contact_dynamics.version import version_of_this_package
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
+
+    from contact_dynamics.recording.definitions import TypeDefinition
+    from contact_dynamics.recording.qos import OfferedQos
 
 _LATEST_NS: Final = 2**63 - 1  # rosbag2 keeps times as int64
 _SHORTEST_MESSAGE: Final = 5  # bytes: encapsulation and one of content, which even an empty message has
@@ -60,13 +66,78 @@ _LEAST_ROOM: Final = 1_000_000  # bytes on the disk with which an interrupted lo
 _METADATA_EVERY_S: Final = 5.0  # how old the counts of metadata.yaml may grow while writing
 
 
+_GAPS_KEY: Final = "gaps"  # in the record of the run
+
+
+class Gap(NamedTuple):
+    """A time in which messages were lost.
+
+    Attributes:
+        from_ns: When the first of them was received, ns since the epoch.
+        until_ns: When the log went on, ns since the epoch.
+        lost: Number of messages.
+    """
+
+    from_ns: int
+    until_ns: int
+    lost: int
+
+    def __str__(self) -> str:
+        """Return in words what is missing."""
+        began = datetime.fromtimestamp(self.from_ns / NS_PER_S, timezone.utc)
+        seconds = (self.until_ns - self.from_ns) / NS_PER_S
+        return f"{self.lost} messages of {seconds:.1f} s from {began:%Y-%m-%d %H:%M:%S} UTC are missing"
+
+
+def _record_of_gaps(gaps: Sequence[Gap]) -> dict[str, str]:
+    """Return what the record of the run says of gaps."""
+    return {_GAPS_KEY: json.dumps([gap._asdict() for gap in gaps])} if gaps else {}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _DeclaredTopic:
+    """A topic whose messages a log takes.
+
+    Attributes:
+        name: The topic's name with its leading slash.
+        definition: Its type.
+        qos: What its publishers offer.
+    """
+
+    name: str
+    definition: TypeDefinition
+    qos: tuple[OfferedQos, ...]
+
+    @property
+    def summary(self) -> TopicSummary:
+        """The topic's entry of ``metadata.yaml``."""
+        return TopicSummary(
+            name=self.name,
+            type_name=self.definition.type_name,
+            # rosbags refuses the whole folder if this is not its own hash of the text. It cannot be for an
+            # event, which is written out as a message. The channel has the true hash.
+            type_hash="" if self.definition.is_service_event else self.definition.type_hash,
+            qos=self.qos,
+        )
+
+    def stamp_ns(self, data: bytes, *, otherwise_ns: int) -> int:
+        """Return the stamp with which a serialised message begins, ns, or another time if it has none."""
+        if self.definition.is_service_event:
+            stamp_ns = event_stamp_ns(data)
+        elif self.definition.begins_with_stamp:
+            stamp_ns = leading_stamp_ns(data)
+        else:
+            return otherwise_ns
+        return max(0, stamp_ns)  # MCAP has no time before the epoch, but the message itself keeps its stamp
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Finished:
     summary: FileSummary
     size: int
 
 
-class BagWriter(ClosedAtTheEnd):
+class BagWriter(AbstractContextManager["BagWriter"]):
     """A log that is being written, as a context manager. Methods raise `OSError` if the disk refuses."""
 
     @checks_types
@@ -95,7 +166,7 @@ class BagWriter(ClosedAtTheEnd):
             raise LogExistsError(f"{self.folder} exists; a log is never overwritten") from error
         self._limits = limits
         self._on_deleted = on_deleted
-        self._topics: dict[str, DeclaredTopic] = {}
+        self._topics: dict[str, _DeclaredTopic] = {}
         self._finished: list[_Finished] = []
         self._deleted = 0  # files
         self._gaps: list[Gap] = []
@@ -109,6 +180,10 @@ class BagWriter(ClosedAtTheEnd):
         except OSError:
             self._file.close()
             raise
+
+    def __exit__(self, *_error: object) -> None:
+        """Close the log."""
+        self.close()
 
     @property
     def path(self) -> Path:
@@ -137,7 +212,7 @@ class BagWriter(ClosedAtTheEnd):
         self._check_open()
         if not name.startswith("/") or name in self._topics:
             raise InvalidFieldError("topic", name, "an absolute name that is not declared yet")
-        self._declare(DeclaredTopic(name=name, definition=find_definition(type_name), qos=qos_yaml(qos)))
+        self._declare(_DeclaredTopic(name=name, definition=find_definition(type_name), qos=offers_of(qos)))
 
     def set_qos(self, topic: str, qos: Any) -> None:
         """Declare another quality of service of a topic, as `add_topic` takes it, for messages from now on.
@@ -146,7 +221,7 @@ class BagWriter(ClosedAtTheEnd):
             InvalidFieldError: the topic is not declared.
         """
         self._check_open()
-        self._declare(replace(self._declared(topic), qos=qos_yaml(qos)))
+        self._declare(replace(self._declared(topic), qos=offers_of(qos)))
 
     def write(self, topic: str, data: bytes, *, log_time_ns: int, publish_time_ns: int | None = None) -> None:
         """Append one message.
@@ -228,12 +303,12 @@ class BagWriter(ClosedAtTheEnd):
         finally:
             self._file.close()
 
-    def _declare(self, topic: DeclaredTopic) -> None:
+    def _declare(self, topic: _DeclaredTopic) -> None:
         self._file.add_topic(topic.name, topic.definition, topic.qos)
         self._topics[topic.name] = topic
         self._metadata_due_s = 0.0
 
-    def _declared(self, topic: str) -> DeclaredTopic:
+    def _declared(self, topic: str) -> _DeclaredTopic:
         declared = self._topics.get(topic)
         if declared is None:
             raise InvalidFieldError("topic", topic, f"one of {sorted(self._topics)}")
@@ -242,14 +317,14 @@ class BagWriter(ClosedAtTheEnd):
     def _new_file(self, number: int) -> BagFile:
         return BagFile(
             self.folder / f"{self.folder.name}_{number}.mcap",
-            run={**self._run, **record_of_gaps(self._gaps)},
+            run={**self._run, **_record_of_gaps(self._gaps)},
             compression=self._limits.compression,
             opened_ns=time.time_ns(),
         )
 
     def _finish_file(self) -> None:
         self._file.flush()
-        self._file.finish("\n".join(metadata_lines(self._summary([self._file.summary]))))
+        self._file.finish(metadata_text(self._summary([self._file.summary])))
 
     def _is_full(self, log_time_ns: int) -> bool:
         """Return whether the file has reached its limit before a message of some time."""
@@ -319,7 +394,7 @@ class BagWriter(ClosedAtTheEnd):
         return BagSummary(
             files=files,
             topics=[topic.summary for topic in self._topics.values()],
-            custom_data={**self._run, **record_of_gaps(self._gaps), **deleted},
+            custom_data={**self._run, **_record_of_gaps(self._gaps), **deleted},
         )
 
     def _write_metadata_file(self) -> None:

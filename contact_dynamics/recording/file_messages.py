@@ -21,12 +21,14 @@ class Topic(NamedTuple):
         type_name: Its type, "package/msg/Name" or "package/srv/Name_Event".
         definition: The text of the type, which is empty unless it has MCAP's form ros2msg.
         qos: The YAML list of what its publishers offered, which `qos.offered_qos` reads, or nothing.
+        type_hash: The hash of its type, "RIHS01_...", or nothing.
     """
 
     name: str
     type_name: str
     definition: str
     qos: str = ""
+    type_hash: str = ""
 
 
 class StoredMessage(NamedTuple):

@@ -7,10 +7,9 @@ from typing import TYPE_CHECKING, Final
 
 from mcap.records import Channel, Message, Metadata, Schema
 
-from contact_dynamics.recording.bag_metadata import OFFERED_QOS, RUN_RECORD, unsealed_run
+from contact_dynamics.recording.bag_metadata import OFFERED_QOS, RUN_RECORD, TYPE_HASH, unsealed_run
 from contact_dynamics.recording.file_messages import StoredMessage, Topic
-from contact_dynamics.recording.mcap_file import McapFile
-from contact_dynamics.recording.mcap_summary import Summary
+from contact_dynamics.recording.mcap_file import McapFile, Summary
 from contact_dynamics.recording.mcap_walk import McapWalk
 
 if TYPE_CHECKING:
@@ -151,8 +150,8 @@ class _Definitions:
             return None
         if channel.message_encoding not in _ENCODINGS:
             return Topic(channel.topic, "", "")
-        offered = channel.metadata.get(OFFERED_QOS, "")
-        return Topic(channel.topic, schema.name, _ros2msg(schema), offered)
+        offered, type_hash = channel.metadata.get(OFFERED_QOS, ""), channel.metadata.get(TYPE_HASH, "")
+        return Topic(channel.topic, schema.name, _ros2msg(schema), offered, type_hash)
 
     @property
     def _summary(self) -> Summary:

@@ -20,11 +20,20 @@ from typing import TYPE_CHECKING, Any, Final, TypeAlias
 from mcap.opcode import Opcode
 from mcap.records import Channel, Message, Metadata, Schema
 
-from contact_dynamics.recording.chunk_data import uncompressed
 from contact_dynamics.recording.errors import NotALogError
 from contact_dynamics.recording.file_messages import Loss
-from contact_dynamics.recording.mcap_file import HEAD, MAGIC, WINDOW, DamagedError, McapFile, demand, parsed
-from contact_dynamics.recording.mcap_summary import Summary, read_summary
+from contact_dynamics.recording.mcap_file import (
+    HEAD,
+    MAGIC,
+    WINDOW,
+    DamagedError,
+    McapFile,
+    Summary,
+    demand,
+    parsed,
+    read_summary,
+)
+from contact_dynamics.recording.packed import uncompressed
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator

@@ -1,20 +1,20 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Unpacks files and messages of rosbag2's compression modes FILE and MESSAGE, which pack each as a whole.
+"""Unpacks chunks of MCAP, and files and messages of rosbag2's compression modes FILE and MESSAGE.
 
-A packed file is unpacked piece by piece into a temporary one, because a reader has to jump about in it. A
-serialised message begins with a zero byte, and the magic number of packed data does not, so the first byte
-shows which of the two it is.
+All are unpacked piece by piece, so that damaged data with a huge size take no memory. A packed file goes into
+a temporary one, because a reader has to jump about in it. A serialised message begins with a zero byte, and
+the magic number of packed data does not, so the first byte shows which of the two it is.
 """
 
 from __future__ import annotations
 
 import tempfile
 from contextlib import contextmanager
+from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from contact_dynamics.errors import InvalidFieldError
-from contact_dynamics.recording.chunk_data import uncompressed
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -30,6 +30,24 @@ MAX_BYTES: Final = 64 * 1024 * 1024
 """The size of the largest message that is unpacked, bytes."""
 
 _PIECE: Final = 1024 * 1024  # bytes
+
+
+def uncompressed(compression: bytes, data: bytes, size: int) -> bytes:
+    """Return the unpacked data. Unpacking stops soon after ``size`` bytes.
+
+    Raises:
+        ValueError: MCAP has no such compression.
+        Exception: the data are damaged. The class is that of the unpacking library.
+    """
+    if compression == b"":
+        return data
+    found: list[bytes] = []
+    for piece in _pieces(compression, BytesIO(data)):
+        found.append(piece)
+        size -= len(piece)
+        if size < 0:
+            break
+    return b"".join(found)
 
 
 def unpacked_message(data: bytes) -> bytes:
@@ -61,8 +79,10 @@ def unpacked_file(path: Path) -> Iterator[tuple[Path, str | None]]:
         return
     with path.open("rb") as packed, tempfile.NamedTemporaryFile(suffix=Path(path.stem).suffix) as plain:
         reason = None
+        compression = MAGICS.get(packed.read(4), b"zstd")
+        packed.seek(0)
         try:
-            for piece in _pieces(packed):
+            for piece in _pieces(compression, packed):
                 plain.write(piece)
         except Exception as error:  # noqa: BLE001  see above
             reason = f"the rest cannot be unpacked: {error}"
@@ -70,16 +90,18 @@ def unpacked_file(path: Path) -> Iterator[tuple[Path, str | None]]:
         yield Path(plain.name), reason
 
 
-def _pieces(packed: BinaryIO) -> Iterator[bytes]:
-    if MAGICS.get(packed.read(4)) == b"lz4":
-        import lz4.frame  # it comes with the mcap library, as zstandard does
+def _pieces(compression: bytes, packed: BinaryIO) -> Iterator[bytes]:
+    stream: Any
+    if compression == b"zstd":
+        import zstandard  # it comes with the mcap library, as lz4 does, and a log needs one of them at most
 
-        packed.seek(0)
-        stream: Any = lz4.frame.LZ4FrameFile(packed)
-    else:
-        import zstandard
-
-        packed.seek(0)
         stream = zstandard.ZstdDecompressor().stream_reader(packed, read_across_frames=True)
+    elif compression == b"lz4":
+        import lz4.frame
+
+        stream = lz4.frame.LZ4FrameFile(packed)
+    else:
+        message = f"compression must be zstd, lz4 or none, got {compression!r}"
+        raise ValueError(message)
     while piece := stream.read(_PIECE):
         yield piece

@@ -1,19 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
-"""rosbag2 writes quality of service as YAML maps with all nine keys, and fails on a partial one.
+"""The quality of service of a topic, which a bag has as YAML: a list of what each of its publishers offers.
 
-A topic has a list of them: what each of its publishers offers. The functions use only the attributes of
-rclpy's ``QoSProfile``, so that writing a log needs no rclpy. Without rclpy, use `OfferedQos`.
+rosbag2 fails on a map that lacks one of the nine keys. JSON is YAML.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final
+from dataclasses import asdict, dataclass
+from typing import Any, Final
 
 from contact_dynamics.constants import NS_PER_S
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
 
 FOREVER_NS: Final = 2**63 - 1
 
@@ -54,12 +50,33 @@ _WORDS: Final = {
 """The names of policies by their numbers in rmw, which stand in bags from before ROS 2 Jazzy."""
 
 
-def qos_lines(offers: Sequence[Any]) -> list[str]:
-    """Return the lines of a YAML list of what publishers offer: rclpy's ``QoSProfile`` or `OfferedQos` each.
+_DURATIONS: Final = ("deadline", "lifespan", "liveliness_lease_duration")
 
-    Without publishers, this is the line of an empty list.
-    """
-    return [line for qos in offers for line in _profile_lines(qos)] or ["[]"]
+
+def offers_of(qos: Any) -> tuple[OfferedQos, ...]:
+    """Return one or several offers: rclpy's ``QoSProfile`` or `OfferedQos` each, or None for the default."""
+    given = qos if isinstance(qos, (list, tuple)) else [OfferedQos() if qos is None else qos]
+    return tuple(each if isinstance(each, OfferedQos) else _of_profile(each) for each in given)
+
+
+def _of_profile(profile: Any) -> OfferedQos:
+    words = {name: getattr(profile, name).name.lower() for name in _WORDS}
+    durations = {name: getattr(profile, name).nanoseconds for name in _DURATIONS}
+    avoids: bool = profile.avoid_ros_namespace_conventions
+    return OfferedQos(depth=profile.depth, avoid_ros_namespace_conventions=avoids, **words, **durations)
+
+
+def qos_maps(offers: tuple[OfferedQos, ...]) -> list[dict[str, Any]]:
+    """Return offers as the maps that a bag has of them."""
+    return [
+        {
+            name: dict(zip(("sec", "nsec"), divmod(value, NS_PER_S), strict=True))
+            if name in _DURATIONS
+            else value
+            for name, value in asdict(each).items()
+        }
+        for each in offers
+    ]
 
 
 def offered_qos(text: str) -> list[OfferedQos]:
@@ -73,7 +90,8 @@ def offered_qos(text: str) -> list[OfferedQos]:
         listed = yaml.safe_load(text)
     except (yaml.YAMLError, RecursionError):
         return []
-    return [_profile(each) for each in listed if isinstance(each, dict)] if isinstance(listed, list) else []
+    maps = listed if isinstance(listed, list) else []
+    return [_profile(each) for each in maps if isinstance(each, dict)]
 
 
 def _profile(found: dict[str, Any]) -> OfferedQos:
@@ -86,34 +104,8 @@ def _profile(found: dict[str, Any]) -> OfferedQos:
             given[name] = word
     if isinstance(found.get("depth"), int):
         given["depth"] = found["depth"]
-    for name in ("deadline", "lifespan", "liveliness_lease_duration"):
+    for name in _DURATIONS:
         duration = found.get(name)
         if isinstance(duration, dict) and {type(duration.get(key)) for key in ("sec", "nsec")} == {int}:
             given[name] = min(duration["sec"] * NS_PER_S + duration["nsec"], FOREVER_NS)
     return OfferedQos(**given)
-
-
-def _profile_lines(qos: Any) -> list[str]:
-    return [
-        f"- history: {_word(qos.history)}",
-        f"  depth: {qos.depth}",
-        f"  reliability: {_word(qos.reliability)}",
-        f"  durability: {_word(qos.durability)}",
-        "  deadline:",
-        *_duration_lines(qos.deadline),
-        "  lifespan:",
-        *_duration_lines(qos.lifespan),
-        f"  liveliness: {_word(qos.liveliness)}",
-        "  liveliness_lease_duration:",
-        *_duration_lines(qos.liveliness_lease_duration),
-        f"  avoid_ros_namespace_conventions: {'true' if qos.avoid_ros_namespace_conventions else 'false'}",
-    ]
-
-
-def _word(policy: Any) -> str:
-    return str(policy if isinstance(policy, str) else policy.name).lower()
-
-
-def _duration_lines(duration: Any) -> list[str]:
-    nanoseconds = duration if isinstance(duration, int) else duration.nanoseconds
-    return [f"    sec: {nanoseconds // NS_PER_S}", f"    nsec: {nanoseconds % NS_PER_S}"]

@@ -23,12 +23,12 @@ import enum
 import logging
 import threading
 import time
+from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from contact_dynamics.errors import InvalidFieldError
-from contact_dynamics.recording.closing import ClosedAtTheEnd
-from contact_dynamics.recording.gaps import Gap
+from contact_dynamics.recording.bag_writer import Gap
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -109,7 +109,7 @@ class _Interruption(NamedTuple):
     again: float  # s, by a clock that nobody sets: when to try to go on
 
 
-class Recorder(ClosedAtTheEnd):
+class Recorder(AbstractContextManager["Recorder"]):
     """A thread that owns a `BagWriter` whose topics are declared. It is a context manager."""
 
     def __init__(
@@ -154,6 +154,10 @@ class Recorder(ClosedAtTheEnd):
         self._on_disk = 0  # number of the messages given that are on the disk itself, or lost
         self._thread = threading.Thread(target=self._run, name="contact_dynamics log", daemon=True)
         self._thread.start()
+
+    def __exit__(self, *_error: object) -> None:
+        """Close the log."""
+        self.close()
 
     @property
     def status(self) -> RecorderStatus:

@@ -24,7 +24,7 @@ from rclpy.qos import QoSProfile
 from contact_dynamics.nodes.log import Log
 from contact_dynamics.nodes.situations import Part, Situation
 from contact_dynamics.recording import BagReader, DamagedLogWarning
-from contact_dynamics.recording.gaps import Gap
+from contact_dynamics.recording.bag_writer import Gap
 from contact_dynamics.recording.limits import UNLIMITED
 from contact_dynamics_interfaces.srv import PredictTumbling
 from msg_adapters.stamps import stamp_ns_from_msg

@@ -3,13 +3,14 @@
 
 from __future__ import annotations
 
+import json
 import sqlite3
 from pathlib import Path
 
 import pytest
 
 from contact_dynamics.recording import BagReader, OfferedQos
-from contact_dynamics.recording.qos import FOREVER_NS, offered_qos, qos_lines
+from contact_dynamics.recording.qos import FOREVER_NS, offered_qos, qos_maps
 
 OF_HUMBLE = """
 - history: 3
@@ -25,12 +26,12 @@ OF_HUMBLE = """
 
 
 def test_what_is_written_is_read() -> None:
-    offers = [
+    offers = (
         OfferedQos(reliability="best_effort", depth=3, deadline=1_500_000_000),
         OfferedQos(durability="transient_local", liveliness="manual_by_topic", lifespan=7),
-    ]
-    assert offered_qos("\n".join(qos_lines(offers))) == offers
-    assert offered_qos("\n".join(qos_lines([]))) == []
+    )
+    assert offered_qos(json.dumps(qos_maps(offers))) == list(offers)
+    assert offered_qos(json.dumps(qos_maps(()))) == []
 
 
 def test_numbers_of_rmw_are_read_as_their_names() -> None:
