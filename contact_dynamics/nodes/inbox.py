@@ -21,7 +21,6 @@ from rclpy.serialization import deserialize_message
 from rosgraph_msgs.msg import Clock
 
 from contact_dynamics.constants import NS_PER_S
-from contact_dynamics.nodes.fast_dds import ask_for_introductions
 from contact_dynamics.nodes.parameter_reader import ConfigurationError
 
 if TYPE_CHECKING:
@@ -68,7 +67,6 @@ class InboxNode(Node):
         self._question_ns = 0
         super().__init__(*arguments, **options)
         refuse_what_ros_cannot_do(self)
-        ask_for_introductions(self.context.get_domain_id())
 
     @property
     def subscriptions(self) -> Iterator[Subscription]:

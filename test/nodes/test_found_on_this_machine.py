@@ -11,9 +11,10 @@ from pathlib import Path
 
 from contact_dynamics.command_line import DISCOVERY_RANGE
 from contact_dynamics.demo.processes import claim_domain
-from contact_dynamics.nodes.fast_dds import FIRST_DISCOVERY, PORTS_OF_DOMAIN, first_port, ports_in_use
+from contact_dynamics.nodes.fast_dds import PORTS_OF_DOMAIN, first_port, ports_in_use
 from running_server import PATIENCE_S, ROOT, environment
 
+FIRST_DISCOVERY = 10  # the port at which the first participant of a machine discovers others, in the domain
 SERVER = ("server", "--ros-args", "-p", "log:=false")
 PYTHON = (sys.executable, "-m", "contact_dynamics")
 SCRIPT = (str(Path(sys.executable).with_name("contact-dynamics")),)
