@@ -112,27 +112,15 @@ def test_an_argument_is_checked_by_place_and_by_name() -> None:
 
 
 GUESSES: list[tuple[Any, dict[str, Any], str]] = [
-    (
-        Body,
-        {"name": "cup", "mass": 1.0},
-        "Body has no argument 'mass', did you mean mass_properties (Ma",
-    ),
-    (
-        BodyState,
-        {"position": (0, 0, 1)},
-        "BodyState has no argument 'position', did you mean p_WB_W (",
-    ),
+    (Body, {"name": "cup", "mass": 1.0}, "Body has no argument 'mass', did you mean mass_properties (Ma"),
+    (BodyState, {"position": (0, 0, 1)}, "BodyState has no argument 'position', did you mean p_WB_W ("),
     (BodyState, {"velocity": (0, 0, 1)}, "BodyState has no argument 'velocity', did you mean v_WB_W ("),
     (
         Surface,
         {"name": "floor", "normal": (0, 0, 1)},
         "Surface has no argument 'normal', did you mean normal_W (",
     ),
-    (
-        ContactSet,
-        {"normal": (0, 0, 1)},
-        "ContactSet has no argument 'normal', did you mean normals_W (",
-    ),
+    (ContactSet, {"normal": (0, 0, 1)}, "ContactSet has no argument 'normal', did you mean normals_W ("),
     (World, {"gravity": 9.81}, "World has no argument 'gravity', did you mean gravity_W ((3,), m/s^2"),
     (
         free_motion,

@@ -27,23 +27,13 @@ PLANAR_BODY = PlanarBody(mass=1.0, inertia=0.1)
 FALLING = PlanarVelocity(v=(0.3, -1.0), w=0.2)
 CONTACT = PlanarContact(r=(0.1, -0.5), normal=(0.0, 1.0), friction=0.3, restitution=0.5)
 BODY = MassProperties(mass=1.0, I_B=0.1 * np.eye(3))
-STATE = BodyState(
-    p_WB_W=np.array([0.0, 0.0, 0.5]),
-    q_WB=np.array([0.0, 0.0, 0.0, 1.0]),
-    v_WB_W=np.array([0.3, 0.0, -1.0]),
-    w_WB_W=np.zeros(3),
-)
+STATE = BodyState(p_WB_W=[0.0, 0.0, 0.5], q_WB=[0.0, 0.0, 0.0, 1.0], v_WB_W=[0.3, 0.0, -1.0])
 CONTACTS = ContactSet(
-    p_WC_W=np.array([[0.1, 0.0, 0.0]]),
-    normals_W=np.array([[0.0, 0.0, 1.0]]),
-    frictions=np.array([0.3]),
-    restitutions=np.array([0.5]),
+    p_WC_W=[[0.1, 0.0, 0.0]], normals_W=[[0.0, 0.0, 1.0]], frictions=[0.3], restitutions=[0.5]
 )
-FLOOR = Surface(
-    name="floor", p_WS_W=np.zeros(3), normal_W=np.array([0.0, 0.0, 1.0]), friction=0.3, restitution=0.5
-)
+FLOOR = Surface(name="floor", p_WS_W=np.zeros(3), normal_W=[0.0, 0.0, 1.0], friction=0.3, restitution=0.5)
 BOX = Body(name="box", mass_properties=BODY, vertices_B=box_vertices((1.0, 1.0, 1.0)))
-WORLD = World(bodies=(BOX,), surfaces=(FLOOR,), gravity_W=np.array([0.0, 0.0, -9.81]))
+WORLD = World(bodies=(BOX,), surfaces=(FLOOR,), gravity_W=[0.0, 0.0, -9.81])
 AT = Contact(p_WC_W=[0.1, 0.0, 0.0], normal_W=[0.0, 0.0, 1.0], friction=0.3, restitution=0.5)
 STRIKING = StrikingBodies(
     masses=1.0,
@@ -51,11 +41,11 @@ STRIKING = StrikingBodies(
     q_WB=STATE.q_WB,
     v_WB_W=STATE.v_WB_W,
     w_WB_W=STATE.w_WB_W,
-    r_W=np.array([0.1, 0.0, -0.5]),
+    r_W=[0.1, 0.0, -0.5],
 )
 TABLE = {"normals_W": (0.0, 0.0, 1.0), "frictions": 0.3, "restitutions": 0.5}
 STILL = PlanarVelocity(v=(0.0, 0.0), w=0.0)
-RESTING = BodyState(p_WB_W=-STATE.p_WB_W, q_WB=STATE.q_WB, v_WB_W=np.zeros(3), w_WB_W=np.zeros(3))
+RESTING = BodyState(p_WB_W=-STATE.p_WB_W, q_WB=STATE.q_WB)
 
 CALLS: dict[str, Callable[..., Any]] = {
     "planar_impact": lambda **law: impact.planar_impact(PLANAR_BODY, FALLING, CONTACT, **law),

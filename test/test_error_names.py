@@ -20,12 +20,9 @@ from contact_dynamics.world import Body, Surface, World
 
 NAN = float("nan")
 BODY = MassProperties(mass=1.0, I_B=0.1 * np.eye(3))
-STATE = BodyState(p_WB_W=np.zeros(3), q_WB=np.eye(4)[3], v_WB_W=np.zeros(3), w_WB_W=np.zeros(3))
+STATE = BodyState(p_WB_W=np.zeros(3), q_WB=np.eye(4)[3])
 CONTACTS = ContactSet(
-    p_WC_W=np.array([[0.0, 0.0, -0.5]]),
-    normals_W=np.array([[0.0, 0.0, 1.0]]),
-    frictions=np.array([0.3]),
-    restitutions=np.array([0.5]),
+    p_WC_W=[[0.0, 0.0, -0.5]], normals_W=[[0.0, 0.0, 1.0]], frictions=[0.3], restitutions=[0.5]
 )
 STRIKES = {"p_WC_W": (0.0, 0.0, -0.5), "normal_W": (0.0, 0.0, 1.0), "friction": 0.3, "restitution": 0.5}
 

@@ -41,8 +41,8 @@ BRICK = Body.of("brick", inertia.box(SIZE, mass=0.4), shape_F=shapes.box(SIZE))
 FLOOR = Surface(name="floor", p_WS_W=[0, 0, 0], normal_W=[0, 0, 1], friction=0.3, restitution=0.45)
 WORLD = World(bodies=(BRICK,), surfaces=(FLOOR,))
 FALLING = BodyState(p_WB_W=[0, 0, 0.3], q_WB=[0, 0, 0, 1], v_WB_W=[1.5, 0, -1.0], w_WB_W=[0, 2.0, 0])
-LANDED = BodyState(p_WB_W=[0, 0, 0.025], q_WB=[0, 0, 0, 1], v_WB_W=[0.5, 0, -1.0], w_WB_W=[0, 0, 0])
-BELOW = BodyState(p_WB_W=[0, 0, -0.025], q_WB=[0, 0, 0, 1], v_WB_W=[0, 0, 0], w_WB_W=[0, 0, 0])
+LANDED = BodyState(p_WB_W=[0, 0, 0.025], q_WB=[0, 0, 0, 1], v_WB_W=[0.5, 0, -1.0])
+BELOW = BodyState(p_WB_W=[0, 0, -0.025], q_WB=[0, 0, 0, 1])
 CONTACTS = find_contacts(BRICK, LANDED, WORLD)
 WEIGHT: dict[str, Any] = {"force_W": [0.0, 0.0, -3.9], "torque_W": [0.0, 0.0, 0.0]}
 LATER = BodyState(
@@ -147,7 +147,7 @@ def test_the_horizon_and_the_law_have_one_name_and_one_default() -> None:
 
 def test_a_sampled_toss_says_which_face_is_on_top_and_how_sure_that_is() -> None:
     die = Body.box((0.016, 0.016, 0.016), 0.005, name="die")
-    low = BodyState(p_WB_W=[0, 0, 0.01], q_WB=[0, 1, 0, 0], v_WB_W=[0, 0, 0], w_WB_W=[0, 0, 0])
+    low = BodyState(p_WB_W=[0, 0, 0.01], q_WB=[0, 1, 0, 0])
     told = sampled_toss(die, low, WORLD, count=50, to_rest=True, covariance=1e-8 * np.eye(12))
     assert told.faces_on_top == ("-z",)  # turned by half a turn about y
     assert told.standard_error(0.5) == pytest.approx(0.5 / np.sqrt(50))

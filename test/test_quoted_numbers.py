@@ -21,7 +21,7 @@ NUMBER = re.compile(
 )
 VAGUE = re.compile(
     r"\b(?:tenths?|hundredths?|thousandths?|(?:few|some|two|a) (?:nano|micro|milli)?seconds?) of an? \w+"
-    r"|(?:few|some|two|several|tens of) (?:nano|micro|milli)seconds",
+    r"|(?:few|some|two|several|tens of) (?:nano|micro|milli)seconds"
 )
 
 NOT_MEASURED: dict[

@@ -123,7 +123,7 @@ def test_every_result_of_a_toss_fits() -> None:
     """A cube that is dropped flat has many branch points: at each landing four corners strike at once."""
     cube = Body.box((0.1, 0.1, 0.1), 0.37)
     floor = Surface(name="floor", p_WS_W=[0, 0, 0], normal_W=[0, 0, 1], friction=0.3, restitution=0.45)
-    state = BodyState(p_WB_W=[0, 0, 0.5], q_WB=[0, 0, 0, 1], v_WB_W=[0.3, 0, 0], w_WB_W=[0, 0, 0])
+    state = BodyState(p_WB_W=[0, 0, 0.5], q_WB=[0, 0, 0, 1], v_WB_W=[0.3, 0, 0])
     world = World(bodies=(cube,), surfaces=(floor,))
     went = toss(cube, state, world)
     assert went.alternatives == ()

@@ -67,7 +67,7 @@ WALL = surface("wall", (1.0, 0.0, 0.0), (-1.0, 0.0, 0.0))
 
 def at(p: tuple[float, float, float], q: np.ndarray | None = None) -> BodyState:
     upright = np.array([0.0, 0.0, 0.0, 1.0]) if q is None else q
-    return BodyState(p_WB_W=np.array(p), q_WB=upright, v_WB_W=np.zeros(3), w_WB_W=np.zeros(3))
+    return BodyState(p_WB_W=np.array(p), q_WB=upright)
 
 
 def test_a_face_flush_on_the_floor_touches_with_its_four_corners() -> None:

@@ -112,17 +112,14 @@ def test_a_mass_distribution_is_no_mass_properties() -> None:
     words = r"got a MassDistribution, which Body\.of takes with its centre of mass"
     with pytest.raises(WrongTypeError, match=f"mass_properties must be a MassProperties, {words}"):
         Body(name="L", mass_properties=mass("L"))  # type: ignore[arg-type]
-    state = BodyState(p_WB_W=np.zeros(3), q_WB=[0, 0, 0, 1], v_WB_W=np.zeros(3), w_WB_W=np.ones(3))
+    state = BodyState(p_WB_W=np.zeros(3), q_WB=[0, 0, 0, 1], w_WB_W=np.ones(3))
     with pytest.raises(WrongTypeError, match=f"body must be a Body or its MassProperties, {words}"):
         free_motion(mass("L"), state)  # type: ignore[arg-type]
 
 
 def test_a_configured_bracket_warns() -> None:
     """With the inertia of its hull too, which its corners in faces contradict."""
-    for given in (
-        {"body.bracket.inertia": [0.0]},
-        {"body.bracket.inertia": [0.1, 0.1, 0.15, 0.0, 0.0, 0.0]},
-    ):
+    for given in ({"body.bracket.inertia": [0.0]}, {"body.bracket.inertia": [0.1, 0.1, 0.15, 0.0, 0.0, 0.0]}):
         values = {
             "bodies": ["bracket"],
             "body.bracket.mass": 1.0,

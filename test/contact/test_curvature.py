@@ -50,9 +50,7 @@ class Touching:
 
     @staticmethod
     def side(along: float, over: float, direction: Any = (0.0, 0.0, 0.0)) -> Curvatures:
-        return Curvatures(
-            along=np.array([along]), across=np.array([over]), directions_W=np.array([direction])
-        )
+        return Curvatures(along=[along], across=[over], directions_W=[direction])
 
     def check(self, gap: exact.Gap, seed: int) -> None:
         """Compare n . (a + alpha x r + w x (w x r)) and what velocities add with the gap's derivative."""
@@ -263,10 +261,7 @@ def test_large_curvature_tends_to_a_corner() -> None:
 
 def test_without_curvatures_nothing_is_added() -> None:
     plain = ContactSet(
-        p_WC_W=np.zeros((2, 3)),
-        normals_W=np.array([UP, UP]),
-        frictions=np.zeros(2),
-        restitutions=np.zeros(2),
+        p_WC_W=np.zeros((2, 3)), normals_W=[UP, UP], frictions=np.zeros(2), restitutions=np.zeros(2)
     )
     np.testing.assert_array_equal(
         velocity_accelerations(plain, np.ones((2, 3)), np.ones(3)), np.zeros((2, 3))
@@ -308,12 +303,10 @@ def test_so_they_are_in_the_plane(body: float, surface: float) -> None:
 
 
 def test_curvatures_follow_their_contacts() -> None:
-    curvatures = Curvatures(
-        along=np.array([1.0, 2.0]), across=np.array([INF, 2.0]), directions_W=np.array([X, (0.0, 0.0, 0.0)])
-    )
+    curvatures = Curvatures(along=[1.0, 2.0], across=[INF, 2.0], directions_W=[X, (0.0, 0.0, 0.0)])
     both = ContactSet(
         p_WC_W=np.zeros((2, 3)),
-        normals_W=np.array([UP, UP]),
+        normals_W=[UP, UP],
         frictions=np.zeros(2),
         restitutions=np.zeros(2),
         body_curvatures=curvatures,
@@ -328,7 +321,7 @@ def test_curvatures_follow_their_contacts() -> None:
     with pytest.raises(InvalidFieldError, match="body_curvatures"):
         ContactSet(
             p_WC_W=np.zeros((1, 3)),
-            normals_W=np.array([UP]),
+            normals_W=[UP],
             frictions=np.zeros(1),
             restitutions=np.zeros(1),
             body_curvatures=curvatures,

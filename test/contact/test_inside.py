@@ -44,7 +44,7 @@ WORLD = World(bodies=(CUBE,), surfaces=(FLOOR,))
 
 
 def sunk(depth: float) -> BodyState:
-    return BodyState(p_WB_W=[0, 0, 0.05 - depth], q_WB=[0, 0, 0, 1], v_WB_W=[0, 0, -0.5], w_WB_W=[0, 0, 0])
+    return BodyState(p_WB_W=[0, 0, 0.05 - depth], q_WB=[0, 0, 0, 1], v_WB_W=[0, 0, -0.5])
 
 
 def known(tolerance: float) -> Context:
@@ -111,7 +111,7 @@ def test_the_depth_is_that_of_the_lowest_point(shape: ConvexShape, height: float
         friction=0,
         restitution=0,
     )
-    state = BodyState(p_WB_W=[0, 0, height - depth], q_WB=[0, 0, 0, 1], v_WB_W=[0, 0, 0], w_WB_W=[0, 0, 0])
+    state = BodyState(p_WB_W=[0, 0, height - depth], q_WB=[0, 0, 0, 1])
     for surface in (FLOOR, table):
         with pytest.raises(InvalidFieldError, match=rf"'it' {depth:.6g}\d* m deep in '{surface.name}'"):
             find_contacts(body, state, World(surfaces=(surface,)))
@@ -123,9 +123,9 @@ def test_the_depth_is_that_of_the_lowest_point(shape: ConvexShape, height: float
 def test_a_ceiling_and_a_wall_count_from_their_own_side() -> None:
     ceiling = Surface(name="ceiling", p_WS_W=[0, 0, 1], normal_W=[0, 0, -1], friction=0.3, restitution=0.3)
     for height in (0.9, 0.95):
-        free = BodyState(p_WB_W=[0, 0, height], q_WB=[0, 0, 0, -1], v_WB_W=[0, 0, 0], w_WB_W=[0, 0, 0])
+        free = BodyState(p_WB_W=[0, 0, height], q_WB=[0, 0, 0, -1])
         found = find_contacts(CUBE, free, World(surfaces=(FLOOR, ceiling)))
         assert len(found) == (4 if math.isclose(height, 0.95) else 0)
-    through = BodyState(p_WB_W=[0, 0, 0.96], q_WB=[0, 0, 0, 1], v_WB_W=[0, 0, 0], w_WB_W=[0, 0, 0])
+    through = BodyState(p_WB_W=[0, 0, 0.96], q_WB=[0, 0, 0, 1])
     with pytest.raises(InvalidFieldError, match=r"0\.01 m deep in 'ceiling'"):
         find_contacts(CUBE, through, World(surfaces=(FLOOR, ceiling)))

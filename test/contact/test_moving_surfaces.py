@@ -14,9 +14,7 @@ from scipy.spatial.transform import Rotation
 
 import contact_dynamics as cd
 from contact_dynamics.contact import spatial_contact_velocities
-from contact_dynamics.contact_modes import (
-    spatial_sliding_modes,
-)
+from contact_dynamics.contact_modes import spatial_sliding_modes
 from contact_dynamics.errors import InvalidFieldError, NotSupportedError
 from contact_dynamics.impact import (
     impact_sequence_of,

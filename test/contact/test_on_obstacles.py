@@ -279,11 +279,7 @@ def test_nothing_touches_before_by_optimisation_at_many_times(
 
 def test_a_landing_on_a_table_s_edge_and_past_it_on_the_floor() -> None:
     floor = Surface(
-        name="floor",
-        p_WS_W=np.array([0.0, 0.0, -1.0]),
-        normal_W=np.array([0.0, 0.0, 1.0]),
-        friction=0.5,
-        restitution=0.0,
+        name="floor", p_WS_W=[0.0, 0.0, -1.0], normal_W=[0.0, 0.0, 1.0], friction=0.5, restitution=0.0
     )
     brick = body(BRICK)
     world = World(bodies=(brick,), surfaces=(floor, TABLE), gravity_W=DOWN)

@@ -26,14 +26,12 @@ CRATE = Body.box((0.4, 0.3, 0.6), mass=20.0, name="crate")
 BALL = Body.sphere(0.1, mass=1.0, name="ball")
 FLOOR = Surface(name="floor", p_WS_W=[0, 0, 0], normal_W=[0, 0, 1], friction=0.5, restitution=0.3)
 WORLD = World(bodies=(CRATE, BALL), surfaces=(FLOOR,))
-THROWN = BodyState(p_WB_W=[0, 0, 2], q_WB=[0, 0.6, 0, 0.8], v_WB_W=[1, 0, -1], w_WB_W=[0, 0, 0])
+THROWN = BodyState(p_WB_W=[0, 0, 2], q_WB=[0, 0.6, 0, 0.8], v_WB_W=[1, 0, -1])
 
 
 def calls(body: Body, state: BodyState, contacts: Any) -> list[Any]:
     """What takes a contact that is given."""
-    struck = BodyState(
-        p_WB_W=contacts.p_WC_W[0] - [0, 0, 0.1], q_WB=[0, 0, 0, 1], v_WB_W=[0, 0, 0], w_WB_W=[0, 0, 0]
-    )
+    struck = BodyState(p_WB_W=contacts.p_WC_W[0] - [0, 0, 0.1], q_WB=[0, 0, 0, 1])
     return [
         lambda: spatial_impact(body, state, contacts[0]),
         lambda: several_impact(body, state, contacts),

@@ -3,15 +3,19 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from contact_dynamics.contact_modes import PlanarContactProblem
+from contact_dynamics.contact_modes import PlanarContactProblem, SpatialContactProblem
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from numpy.typing import ArrayLike
+
+    from contact_dynamics.contact.contact import ContactSet
     from contact_dynamics.contact_modes import PlanarMode, PlanarModeAnswer
     from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
+    from contact_dynamics.rigid_body.body import BodyState, MassProperties
 
 
 def planar_problem(
@@ -23,6 +27,20 @@ def planar_problem(
 ) -> PlanarContactProblem:
     """Return the problem of a case that is drawn as a tuple."""
     return PlanarContactProblem(body=body, velocity=velocity, contacts=contacts, wrench=wrench, **tolerances)
+
+
+def spatial_problem(
+    body: MassProperties,
+    state: BodyState,
+    contacts: ContactSet,
+    force_W: ArrayLike,
+    torque_W: ArrayLike = (0.0, 0.0, 0.0),
+    **others: Any,
+) -> SpatialContactProblem:
+    """Return a problem in space, whose force and torque follow its contacts."""
+    return SpatialContactProblem(
+        body=body, state=state, contacts=contacts, force_W=force_W, torque_W=torque_W, **others
+    )
 
 
 ROUNDING = 1e-9  # relative to the forces at work: internal forces of narrow cones are large
@@ -42,10 +60,7 @@ def check_evidence(
 
 
 def check_forces(
-    answer: PlanarModeAnswer,
-    body: PlanarBody,
-    contacts: Sequence[PlanarContact],
-    wrench: PlanarWrench,
+    answer: PlanarModeAnswer, body: PlanarBody, contacts: Sequence[PlanarContact], wrench: PlanarWrench
 ) -> None:
     """Check forces against Newton's law and their letters."""
     for mode in answer.modes:

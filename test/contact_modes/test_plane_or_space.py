@@ -21,23 +21,22 @@ from contact_dynamics.contact_modes import (
 from contact_dynamics.errors import InvalidFieldError, TooLargeError
 from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarWrench
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
+from contact_modes.evidence import planar_problem, spatial_problem
 from oracles.contact_mode_cases import draw, rounded
 
 FEET = [PlanarContact(r=(x, -0.1), normal=(0.0, 1.0), friction=0.5) for x in (-0.2, 0.2)]
 PLANAR = PlanarContactProblem(
     body=PlanarBody(mass=2.0, inertia=0.033), contacts=FEET, wrench=PlanarWrench(f=(0.0, -19.6))
 )
-SPATIAL = SpatialContactProblem(
-    body=MassProperties(mass=2.0, I_B=np.diag([0.02, 0.033, 0.04])),
-    state=BodyState(
-        p_WB_W=[0.0, 0.0, 0.1], q_WB=[0.0, 0.0, 0.0, 1.0], v_WB_W=np.zeros(3), w_WB_W=np.zeros(3)
-    ),
-    contacts=ContactSet(
+SPATIAL = spatial_problem(
+    MassProperties(mass=2.0, I_B=np.diag([0.02, 0.033, 0.04])),
+    BodyState(p_WB_W=[0.0, 0.0, 0.1], q_WB=[0.0, 0.0, 0.0, 1.0]),
+    ContactSet(
         p_WC_W=[[x, y, 0.0] for x in (-0.2, 0.2) for y in (-0.1, 0.1)],
         normals_W=[0.0, 0.0, 1.0],
         frictions=0.5,
     ),
-    force_W=[0.0, 0.0, -19.6],
+    [0.0, 0.0, -19.6],
     friction_facets=4,
 )
 
@@ -62,7 +61,7 @@ def test_a_known_answer_saves_a_search_and_changes_nothing_in_the_plane() -> Non
     for seed in range(100):
         body, velocity, contacts, wrench = rounded(draw(seed, most_contacts=4))
         contacts = [*contacts, *contacts[: seed % 3]]
-        problem = PlanarContactProblem(body=body, velocity=velocity, contacts=contacts, wrench=wrench)
+        problem = planar_problem(body, velocity, contacts, wrench)
         assert mode_margins(problem, contact_modes(problem)) == mode_margins(problem)
 
 

@@ -15,7 +15,7 @@ from contact_dynamics.contact_modes.letters import margin_in_words, mode_in_word
 from contact_dynamics.errors import InvalidFieldError
 
 CRATE = cd.Body.box((0.4, 0.3, 0.3), mass=5.0)
-RESTING = cd.BodyState(p_WB_W=[0, 0, 0.15], q_WB=[0, 0, 0, 1], v_WB_W=[0, 0, 0], w_WB_W=[0, 0, 0])
+RESTING = cd.BodyState(p_WB_W=[0, 0, 0.15], q_WB=[0, 0, 0, 1])
 
 
 def answer(push: float, height: float, friction: float) -> cd.contact_modes.SpatialModeAnswer:

@@ -9,15 +9,7 @@ from hostile_values.questions import QUESTIONS
 from hostile_values.rigid_bodies import RIGID_BODIES
 from hostile_values.tosses import TOSSES
 
-CALLS = {
-    **RIGID_BODIES,
-    **MOTIONS,
-    **CALLS_WITH_CONTACTS,
-    **MODES,
-    **IMPACTS,
-    **TOSSES,
-    **QUESTIONS,
-}
+CALLS = {**RIGID_BODIES, **MOTIONS, **CALLS_WITH_CONTACTS, **MODES, **IMPACTS, **TOSSES, **QUESTIONS}
 
 UNCHECKED = {
     "BodyState.velocity_of_point",

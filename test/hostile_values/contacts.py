@@ -59,10 +59,7 @@ CALLS_WITH_CONTACTS: Calls = {
     "Contact": (Contact, TOUCH),
     "ContactSet": (ContactSet, CORNERS),
     "Surface": (Surface, FLOOR),
-    "World": (
-        World,
-        {"bodies": (BOX,), "surfaces": (Surface(**FLOOR),), "gravity_W": [0, 0, -9.8]},
-    ),
+    "World": (World, {"bodies": (BOX,), "surfaces": (Surface(**FLOOR),), "gravity_W": [0, 0, -9.8]}),
     "PlanarBody": (PlanarBody, {"mass": 1.0, "inertia": 0.5}),
     "PlanarVelocity": (PlanarVelocity, LEAN),
     "PlanarWrench": (PlanarWrench, {"f": (0.0, -9.8), "moment": 0.1}),
@@ -121,10 +118,7 @@ CALLS_WITH_CONTACTS: Calls = {
         {"problem": HELD, "force_W": [1.0, 0.0, 0.0], "torque_W": [0.0, 0.1, 0.0], "at_W": [0.0, 0.0, 0.1]},
     ),
     "largest_acceleration": (largest_acceleration, {"problem": HELD, "direction_W": [1.0, 0.0, 0.0]}),
-    "largest_spin": (
-        largest_spin,
-        {"problem": HELD, "axis_W": [0.0, 0.0, 1.0], "at_W": [1.0, 0.0, 0.0]},
-    ),
+    "largest_spin": (largest_spin, {"problem": HELD, "axis_W": [0.0, 0.0, 1.0], "at_W": [1.0, 0.0, 0.0]}),
     "largest_tilt": (
         largest_tilt,
         {"problem": HELD, "axis_W": [0.0, 1.0, 0.0], "gravity_W": [0.0, 0.0, -9.8]},

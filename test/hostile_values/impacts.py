@@ -35,14 +35,8 @@ from hostile_values.shared import (
 
 IMPACTS: Calls = {
     "StrikingBodies": (StrikingBodies, STRIKERS),
-    "StrikingBodies.of": (
-        StrikingBodies.of,
-        {"body": BALL, **FALLING, "p_WC_W": [0.0, 0.0, 0.0]},
-    ),
-    "spatial_impact": (
-        spatial_impact,
-        {**WHERE, "contact": CONTACT, "velocity_tolerance": 1e-9},
-    ),
+    "StrikingBodies.of": (StrikingBodies.of, {"body": BALL, **FALLING, "p_WC_W": [0.0, 0.0, 0.0]}),
+    "spatial_impact": (spatial_impact, {**WHERE, "contact": CONTACT, "velocity_tolerance": 1e-9}),
     "response_impact": (
         response_impact,
         {
@@ -64,18 +58,9 @@ IMPACTS: Calls = {
         },
     ),
     "several_impact": (several_impact, SEVERAL),
-    "outcomes_over_orders": (
-        impact.outcomes_over_orders,
-        {**SEVERAL, "max_orders": 2},
-    ),
-    "outcomes_at_once": (
-        impact.outcomes_at_once,
-        {**SEVERAL, "max_orders": 2},
-    ),
-    "outcomes_over_interleavings": (
-        impact.outcomes_over_interleavings,
-        {**SEVERAL, "samples": 1, "seed": 0},
-    ),
+    "outcomes_over_orders": (impact.outcomes_over_orders, {**SEVERAL, "max_orders": 2}),
+    "outcomes_at_once": (impact.outcomes_at_once, {**SEVERAL, "max_orders": 2}),
+    "outcomes_over_interleavings": (impact.outcomes_over_interleavings, {**SEVERAL, "samples": 1, "seed": 0}),
     "jamming_impact": (
         impact.jamming_impact,
         {

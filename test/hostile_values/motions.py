@@ -45,10 +45,7 @@ MOTIONS: Calls = {
     "ForcedMotion.from_state": (FORCED.from_state, {"state": STATE}),
     "ForcedMotion.state_at": (FORCED.state_at, {"seconds": 0.5}),
     "ForcedMotion.at": (FORCED.at, {"seconds": [0.1, 0.5]}),
-    "Drag": (
-        Drag,
-        {"linear": 0.1, "quadratic": 0.1, "linear_angular": 0.01, "quadratic_angular": 0.01},
-    ),
+    "Drag": (Drag, {"linear": 0.1, "quadratic": 0.1, "linear_angular": 0.01, "quadratic_angular": 0.01}),
     "ConstantWrench": (ConstantWrench, {"force": [1.0, 0.0, 0.0], "torque": [0.0, 0.1, 0.0]}),
     "StateNoise": (
         motion.StateNoise,

@@ -44,10 +44,7 @@ QUESTIONS: Calls = {
         ImpactQuestion,
         {"body": BOX, "horizon": 1.0, "velocity_tolerance": 1e-9, "distance_tolerance": 1e-6},
     ),
-    "TumblingQuestion": (
-        TumblingQuestion,
-        {"body": BOX, "gravity_W": [0.0, 0.0, -9.8], "curve_points": 10},
-    ),
+    "TumblingQuestion": (TumblingQuestion, {"body": BOX, "gravity_W": [0.0, 0.0, -9.8], "curve_points": 10}),
     "AtTimes": (AtTimes, {"times": [0.1, 0.2]}),
     "AtRate": (AtRate, {"rate": 100.0, "duration": 0.5}),
     "UntilContact": (UntilContact, {"rate": 100.0, "duration": 0.5}),

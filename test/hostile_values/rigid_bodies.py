@@ -3,12 +3,7 @@
 
 import numpy as np
 
-from contact_dynamics import (
-    BodyState,
-    MassProperties,
-    rigid_body,
-    shapes,
-)
+from contact_dynamics import BodyState, MassProperties, rigid_body, shapes
 from contact_dynamics.rigid_body import inertia
 from hostile_values.shared import BALL, FALLING, OUTWARD, STATE, TETRAHEDRON, WHERE, Calls
 
@@ -68,17 +63,11 @@ RIGID_BODIES: Calls = {
     ),
     "inertia.box": (inertia.box, {"size": [0.1, 0.2, 0.3], "mass": 1.0}),
     "inertia.sphere": (inertia.sphere, {"radius": 0.1, "density": 1e3}),
-    "inertia.hollow_sphere": (
-        inertia.hollow_sphere,
-        {"outer_radius": 0.2, "inner_radius": 0.1, "mass": 1.0},
-    ),
+    "inertia.hollow_sphere": (inertia.hollow_sphere, {"outer_radius": 0.2, "inner_radius": 0.1, "mass": 1.0}),
     "inertia.ellipsoid": (inertia.ellipsoid, {"semi_axes": [0.1, 0.2, 0.3], "mass": 1.0}),
     "inertia.hemisphere": (inertia.hemisphere, {"radius": 0.1, "mass": 1.0}),
     "inertia.cylinder": (inertia.cylinder, {"radius": 0.1, "length": 0.3, "mass": 1.0}),
-    "inertia.tube": (
-        inertia.tube,
-        {"outer_radius": 0.2, "inner_radius": 0.1, "length": 0.3, "mass": 1.0},
-    ),
+    "inertia.tube": (inertia.tube, {"outer_radius": 0.2, "inner_radius": 0.1, "length": 0.3, "mass": 1.0}),
     "inertia.capsule": (inertia.capsule, {"radius": 0.1, "length": 0.3, "mass": 1.0}),
     "inertia.cone": (inertia.cone, {"radius": 0.1, "height": 0.3, "top_radius": 0.05, "mass": 1.0}),
     "inertia.torus": (inertia.torus, {"ring_radius": 0.3, "tube_radius": 0.1, "mass": 1.0}),
@@ -94,24 +83,15 @@ RIGID_BODIES: Calls = {
     "shapes.box_vertices": (shapes.box_vertices, {"size": [0.1, 0.2, 0.3]}),
     "shapes.polyhedron": (shapes.polyhedron, {"vertices": TETRAHEDRON}),
     "shapes.polygon": (shapes.polygon, {"outline": [[0.0, 0.0], [0.2, 0.0], [0.0, 0.2]]}),
-    "shapes.rounded": (
-        shapes.rounded,
-        {"shape": shapes.box(size=[0.1, 0.2, 0.3]), "radius": 0.01},
-    ),
-    "inertia.mesh": (
-        inertia.mesh,
-        {"p_FV_F": TETRAHEDRON, "triangles": OUTWARD, "mass": 1.0},
-    ),
+    "shapes.rounded": (shapes.rounded, {"shape": shapes.box(size=[0.1, 0.2, 0.3]), "radius": 0.01}),
+    "inertia.mesh": (inertia.mesh, {"p_FV_F": TETRAHEDRON, "triangles": OUTWARD, "mass": 1.0}),
     "inertia.particles": (inertia.particles, {"masses": [1.0, 2.0, 3.0, 1.0], "p_FP_F": TETRAHEDRON}),
     "inertia.plate": (inertia.plate, {"size": [0.1, 0.2], "mass": 1.0}),
     "inertia.disc": (inertia.disc, {"radius": 0.1, "mass": 1.0}),
     "inertia.ring": (inertia.ring, {"radius": 0.1, "mass": 1.0}),
     "inertia.rod": (inertia.rod, {"length": 0.1, "mass": 1.0}),
     "inertia.spherical_shell": (inertia.spherical_shell, {"radius": 0.1, "density": 10.0}),
-    "inertia.cylindrical_shell": (
-        inertia.cylindrical_shell,
-        {"radius": 0.1, "length": 0.3, "density": 10.0},
-    ),
+    "inertia.cylindrical_shell": (inertia.cylindrical_shell, {"radius": 0.1, "length": 0.3, "density": 10.0}),
     "inertia.principal_axes": (inertia.principal_axes, {"I_B": np.diag([0.1, 0.2, 0.25])}),
     "inertia.inertia_ellipsoid": (
         inertia.inertia_ellipsoid,
@@ -121,10 +101,7 @@ RIGID_BODIES: Calls = {
         inertia.inertia_ellipsoid(np.diag([0.1, 0.2, 0.25])).distance,
         {"axis_B": [0.0, 0.6, 0.8]},
     ),
-    "ConvexShape": (
-        shapes.ConvexShape,
-        {"vertices": TETRAHEDRON, "rims": (RIM,), "rounding": 0.01},
-    ),
+    "ConvexShape": (shapes.ConvexShape, {"vertices": TETRAHEDRON, "rims": (RIM,), "rounding": 0.01}),
     "ConvexShape.moved": (
         shapes.box(size=[0.1, 0.2, 0.3]).moved,
         {"offset": [0.1, 0.2, 0.3], "q": [0.0, 0.0, 0.6, 0.8]},

@@ -43,7 +43,7 @@ CORNERS = {
 CONTACT, CONTACTS = Contact(**TOUCH), ContactSet(**CORNERS)
 FLOOR = {"name": "floor", "p_WS_W": [0, 0, 0], "normal_W": [0, 0, 1], "friction": 0.4, "restitution": 0.5}
 BOX = Body(name="box", mass_properties=BALL, vertices_B=shapes.box_vertices((0.2, 0.2, 0.2)))
-LYING = BodyState(p_WB_W=[0, 0, 0.1], q_WB=[0, 0, 0, 1], v_WB_W=[0, 0, 0], w_WB_W=[0, 0, 0])
+LYING = BodyState(p_WB_W=[0, 0, 0.1], q_WB=[0, 0, 0, 1])
 WORLD = World(bodies=(BOX,), surfaces=(Surface(**FLOOR),))
 HELD = SpatialContactProblem.of(BOX, LYING, WORLD)
 ROD, LEAN = PlanarBody(mass=1.0, inertia=0.5), {"v": (0.3, -1.0), "w": 0.5}

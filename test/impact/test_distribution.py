@@ -94,7 +94,7 @@ def test_space_agrees_with_the_plane() -> None:
     covariance[6, 6], covariance[8, 8], covariance[10, 10] = 0.04, 0.01, 0.09
     answer = spatial_impact_distribution(
         MassProperties(mass=1.0, I_B=np.eye(3)),
-        BodyState(p_WB_W=np.zeros(3), q_WB=IDENTITY, v_WB_W=[0.6, 0.0, -1.0], w_WB_W=np.zeros(3)),
+        BodyState(p_WB_W=np.zeros(3), q_WB=IDENTITY, v_WB_W=[0.6, 0.0, -1.0]),
         Contact(p_WC_W=[0.3, 0.0, -1.0], normal_W=[0.0, 0.0, 1.0], friction=0.3, restitution=0.5),
         covariance=covariance,
         samples=4000,
@@ -111,7 +111,7 @@ def test_a_tilted_pose_moves_the_contact_with_it() -> None:
     covariance[4, 4] = 0.01**2
     answer = spatial_impact_distribution(
         MassProperties(mass=1.0, I_B=np.eye(3)),
-        BodyState(p_WB_W=[0.0, 0.0, 1.0], q_WB=IDENTITY, v_WB_W=[0.0, 0.0, -1.0], w_WB_W=np.zeros(3)),
+        BodyState(p_WB_W=[0.0, 0.0, 1.0], q_WB=IDENTITY, v_WB_W=[0.0, 0.0, -1.0]),
         Contact(p_WC_W=[0.0, 0.0, 0.0], normal_W=[0.0, 0.0, 1.0], friction=0.0, restitution=0.0),
         covariance=covariance,
         samples=400,

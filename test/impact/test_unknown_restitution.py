@@ -43,8 +43,8 @@ from contact_dynamics.questions.contact_modes import ContactModeQuestion
 from contact_dynamics.questions.impact_question import ImpactQuestion
 
 BODY = MassProperties(mass=1.0, I_B=np.diag([0.1, 0.1, 0.1]))
-FALLING = BodyState(p_WB_W=[0, 0, 0.1], q_WB=[0, 0, 0, 1], v_WB_W=[0, 0, -1], w_WB_W=[0, 0, 0])
-RESTING = BodyState(p_WB_W=[0, 0, 0.1], q_WB=[0, 0, 0, 1], v_WB_W=[0, 0, 0], w_WB_W=[0, 0, 0])
+FALLING = BodyState(p_WB_W=[0, 0, 0.1], q_WB=[0, 0, 0, 1], v_WB_W=[0, 0, -1])
+RESTING = BodyState(p_WB_W=[0, 0, 0.1], q_WB=[0, 0, 0, 1])
 POINT = Contact(p_WC_W=[0, 0, 0], normal_W=[0, 0, 1], friction=0.3)
 FEET = ContactSet(p_WC_W=[[-0.1, 0, 0], [0.1, 0, 0]], normals_W=[0, 0, 1], frictions=0.3)
 CUBE = Body(name="cube", mass_properties=BODY)

@@ -19,22 +19,14 @@ from contact_dynamics.tumbling import free_motion
 from contact_dynamics.world import Body, Surface, World, box_vertices
 
 G = 10.0
-FLOOR = Surface(
-    name="floor", p_WS_W=np.zeros(3), normal_W=np.array([0.0, 0.0, 1.0]), friction=0.5, restitution=0.5
-)
-WALL = Surface(
-    name="wall",
-    p_WS_W=np.array([2.0, 0.0, 0.0]),
-    normal_W=np.array([-1.0, 0.0, 0.0]),
-    friction=0.1,
-    restitution=0.9,
-)
+FLOOR = Surface(name="floor", p_WS_W=np.zeros(3), normal_W=[0.0, 0.0, 1.0], friction=0.5, restitution=0.5)
+WALL = Surface(name="wall", p_WS_W=[2.0, 0.0, 0.0], normal_W=[-1.0, 0.0, 0.0], friction=0.1, restitution=0.9)
 BOX = Body(
     name="box",
     mass_properties=MassProperties(mass=1.0, I_B=np.diag([0.02, 0.03, 0.04])),
     vertices_B=box_vertices((0.4, 0.3, 0.2)),
 )
-WORLD = World(bodies=(BOX,), surfaces=(FLOOR, WALL), gravity_W=np.array([0.0, 0.0, -G]))
+WORLD = World(bodies=(BOX,), surfaces=(FLOOR, WALL), gravity_W=[0.0, 0.0, -G])
 UPRIGHT = np.array([0.0, 0.0, 0.0, 1.0])
 
 
@@ -44,7 +36,7 @@ def state(
     v: tuple[float, float, float] = (0.0, 0.0, 0.0),
     w: tuple[float, float, float] = (0.0, 0.0, 0.0),
 ) -> BodyState:
-    return BodyState(p_WB_W=np.array([0.0, 0.0, z]), q_WB=UPRIGHT, v_WB_W=np.array(v), w_WB_W=np.array(w))
+    return BodyState(p_WB_W=[0.0, 0.0, z], q_WB=UPRIGHT, v_WB_W=np.array(v), w_WB_W=np.array(w))
 
 
 def test_a_level_box_lands_on_its_face() -> None:
@@ -111,11 +103,7 @@ def test_what_leaves_is_no_contact_of_a_box_that_tips() -> None:
     np.testing.assert_allclose(landing.velocities_W[:, 2], -0.2, atol=1e-15)
 
 
-@given(
-    spin=st.tuples(*[st.floats(-20.0, 20.0)] * 3),
-    height=st.floats(0.5, 3.0),
-    rise=st.floats(-3.0, 3.0),
-)
+@given(spin=st.tuples(*[st.floats(-20.0, 20.0)] * 3), height=st.floats(0.5, 3.0), rise=st.floats(-3.0, 3.0))
 def test_no_corner_is_below_a_surface_before_the_landing(
     spin: tuple[float, float, float], height: float, rise: float
 ) -> None:

@@ -15,16 +15,7 @@ from contact_dynamics.landing.plane_arrival import first_contact
 from contact_dynamics.motion.forces import Drag
 from contact_dynamics.motion.integrated import forced_motion
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
-from contact_dynamics.shapes.convex import (
-    ConvexShape,
-    Rim,
-    box,
-    capsule,
-    cone,
-    cylinder,
-    rounded,
-    sphere,
-)
+from contact_dynamics.shapes.convex import ConvexShape, Rim, box, capsule, cone, cylinder, rounded, sphere
 from contact_dynamics.tumbling import FreeMotion, free_motion
 
 FLOOR = (0.0, 0.0, 0.0)

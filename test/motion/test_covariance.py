@@ -139,7 +139,7 @@ def test_under_forces_too_what_is_lost_on_the_way_stays_lost() -> None:
 def test_a_sphere_and_its_place() -> None:
     """Only rates and what they are rates of are coupled. Turning errors about the spin's axis add up."""
     w, t = np.array([0.0, 0.0, 2.0]), 3.0
-    state = BodyState(p_WB_W=np.zeros(3), q_WB=[0.0, 0.0, 0.0, 1.0], v_WB_W=np.zeros(3), w_WB_W=w)
+    state = BodyState(p_WB_W=np.zeros(3), q_WB=[0.0, 0.0, 0.0, 1.0], w_WB_W=w)
     deviations = np.repeat([1e-3, 2e-3, 3e-3, 4e-3], 3)
     carried = propagate_covariance(SPHERE, state, np.diag(deviations**2), [t]).covariances[0]
     place = carried[np.ix_([0, 6], [0, 6])]

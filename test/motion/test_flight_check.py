@@ -48,7 +48,6 @@ def bouncing(
                 else [0.3 * t, 0, height],
                 q_WB=[0, 0, 0, 1],
                 v_WB_W=[0.3, 0.0, velocity - G * since],
-                w_WB_W=[0, 0, 0],
                 stamp_ns=round(1e9 * t),
             )
         )
@@ -130,7 +129,6 @@ def test_a_fit_to_a_body_that_lies_or_slides_has_not_converged(noise: float, til
                 p_WB_W=along * slope + noise * rng.standard_normal(3),
                 q_WB=[0, 0, 0, 1],
                 v_WB_W=G * np.sin(tilt) * t * slope,
-                w_WB_W=[0, 0, 0],
                 stamp_ns=round(1e9 * t),
             )
         )
@@ -176,13 +174,11 @@ def test_no_impact_is_found_in_a_flight_with_drag(seed: int) -> None:
 def test_a_tumbling_body_that_bounces_names_the_impact_too(fit: Callable[..., FitResult]) -> None:
     rng = np.random.default_rng(3)
     before = free_motion(
-        BRICK,
-        BodyState(p_WB_W=[0, 0, 0.1], q_WB=[0, 0, 0, 1], v_WB_W=[0.5, 0, -2], w_WB_W=[3, 4, 1]),
+        BRICK, BodyState(p_WB_W=[0, 0, 0.1], q_WB=[0, 0, 0, 1], v_WB_W=[0.5, 0, -2], w_WB_W=[3, 4, 1])
     )
     struck = before.state_at(0.1)
     bounced = free_motion(
-        BRICK,
-        BodyState(p_WB_W=struck.p_WB_W, q_WB=struck.q_WB, v_WB_W=[0.3, 0.1, 1.2], w_WB_W=[-5, 2, 6]),
+        BRICK, BodyState(p_WB_W=struck.p_WB_W, q_WB=struck.q_WB, v_WB_W=[0.3, 0.1, 1.2], w_WB_W=[-5, 2, 6])
     )
     states = noisy(before, np.arange(0.004, 0.1, 1 / RATE), rng, 1e-4)
     for state in noisy(bounced, np.arange(0.004, 0.1, 1 / RATE), rng, 1e-4):

@@ -127,7 +127,7 @@ def test_what_is_given_near_every_singular_end_is_right(monkeypatch: pytest.Monk
         if np.linalg.cond(drawn.I_B) > 1e3:
             continue  # thinner rods: less is claimed
         count += 1
-        state = BodyState(p_WB_W=np.zeros(3), q_WB=drawn.q_WB, v_WB_W=np.zeros(3), w_WB_W=drawn.w_WB_W)
+        state = BodyState(p_WB_W=np.zeros(3), q_WB=drawn.q_WB, w_WB_W=drawn.w_WB_W)
         motion = free_motion(MassProperties(mass=1.0, I_B=drawn.I_B), state)
         speed = np.linalg.norm(drawn.w_WB_W)
         units = np.repeat([1.0, speed], [9, 3])  # angular velocities beside the body's own
@@ -153,9 +153,7 @@ def test_the_cost_does_not_grow_with_time() -> None:
 def test_slow_and_fast_meet() -> None:
     """Either side of the switch to the slow form."""
     body = MassProperties(mass=1.0, I_B=np.diag([1.0, 1.4, 1.9]))
-    state = BodyState(
-        p_WB_W=np.zeros(3), q_WB=[0, 0, 0, 1], v_WB_W=np.zeros(3), w_WB_W=[0.003, -0.005, 0.008]
-    )
+    state = BodyState(p_WB_W=np.zeros(3), q_WB=[0, 0, 0, 1], w_WB_W=[0.003, -0.005, 0.008])
     motion = free_motion(body, state)
     speed = math.sqrt(0.003**2 + 0.005**2 + 0.008**2)
     t = np.array([0.5, 1.0]) * 0.99e-2 / speed

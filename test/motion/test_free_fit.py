@@ -317,9 +317,7 @@ def test_needles_are_found_whose_spin_is_lost_in_their_momentum(seed: int) -> No
     slim = 10.0 ** rng.uniform(-5.0, -3.0)
     body = MassProperties(mass=1.0, I_B=np.diag([slim, 1.0, 1.0 + 0.5 * slim]))
     w = rng.normal(size=3)
-    begin = BodyState(
-        p_WB_W=np.zeros(3), q_WB=(0, 0, 0, 1), v_WB_W=np.zeros(3), w_WB_W=10.0 * w / np.linalg.norm(w)
-    )
+    begin = BodyState(p_WB_W=np.zeros(3), q_WB=(0, 0, 0, 1), w_WB_W=10.0 * w / np.linalg.norm(w))
     motion = free_motion(body, begin)
     fit = fit_free_motion(body, [motion.state_at(0.01 * i) for i in range(12)])
     assert fit.converged

@@ -142,7 +142,7 @@ def test_a_function_that_breaks_off_beside_the_motion_is_refused() -> None:
     """The function is defined at the wall itself, but not a little further."""
     motion = forced_motion(
         SPHERE,
-        BodyState(p_WB_W=np.zeros(3), q_WB=[0, 0, 0, 1], v_WB_W=np.zeros(3), w_WB_W=np.zeros(3)),
+        BodyState(p_WB_W=np.zeros(3), q_WB=[0, 0, 0, 1]),
         wrench_of=lambda _, s: ([math.nan if s.p_WB_W[0] > 0.0 else 0.0, 0.0, 0.0], [0.0] * 3),
         gravity_W=np.zeros(3),
     )

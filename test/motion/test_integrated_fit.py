@@ -50,11 +50,7 @@ def window(forces: dict, *, noise: StateNoise | None = None, seed: int = 0) -> l
         if noise is None:
             states.append(
                 BodyState(
-                    p_WB_W=exact.p_WB_W,
-                    q_WB=exact.q_WB,
-                    v_WB_W=[9.0, 9.0, 9.0],
-                    w_WB_W=[0.0, 0.0, 0.0],
-                    stamp_ns=exact.stamp_ns,
+                    p_WB_W=exact.p_WB_W, q_WB=exact.q_WB, v_WB_W=[9.0, 9.0, 9.0], stamp_ns=exact.stamp_ns
                 )
             )
             continue

@@ -66,7 +66,6 @@ def drawn(rng: np.random.Generator, *, with_velocities: bool) -> Draw:
         BodyState(
             p_WB_W=np.zeros(3),
             q_WB=(Rotation.from_rotvec(rng.normal(scale=orientation, size=3)) * attitude).as_quat(),
-            v_WB_W=np.zeros(3),
             w_WB_W=w + rng.normal(scale=velocity, size=3) if with_velocities else np.zeros(3),
             stamp_ns=int(stamp),
         )
@@ -111,7 +110,6 @@ def spinning(rate: float, per_second: float, count: int = 10) -> list[BodyState]
         BodyState(
             p_WB_W=np.zeros(3),
             q_WB=Rotation.from_rotvec([0.0, 0.0, rate * k / per_second]).as_quat(),
-            v_WB_W=np.zeros(3),
             w_WB_W=[0.0, 0.0, rate],
             stamp_ns=round(1e9 * k / per_second),
         )
@@ -120,10 +118,7 @@ def spinning(rate: float, per_second: float, count: int = 10) -> list[BodyState]
 
 
 def poses_of(states: list[BodyState]) -> list[BodyState]:
-    return [
-        BodyState(p_WB_W=s.p_WB_W, q_WB=s.q_WB, v_WB_W=np.zeros(3), w_WB_W=np.zeros(3), stamp_ns=s.stamp_ns)
-        for s in states
-    ]
+    return [BodyState(p_WB_W=s.p_WB_W, q_WB=s.q_WB, stamp_ns=s.stamp_ns) for s in states]
 
 
 @pytest.mark.parametrize(
@@ -181,8 +176,6 @@ def test_a_body_that_rests_needs_no_velocities() -> None:
         BodyState(
             p_WB_W=s.p_WB_W,
             q_WB=Rotation.from_rotvec(rng.normal(scale=2e-3, size=3)).as_quat(),
-            v_WB_W=np.zeros(3),
-            w_WB_W=np.zeros(3),
             stamp_ns=s.stamp_ns,
         )
         for s in spinning(0.0, 240.0, 24)

@@ -83,11 +83,7 @@ def _places(
         return np.array(below + walls), np.array(up[: len(below)] + inward), np.array([0.0, 1.0, 0.0])
     if kind == "stack":  # on a floor, and below something as wide
         above = [(a, b, z) for a in (-x, x) for b in (-y, y)]
-        return (
-            np.array(floor + above),
-            np.array(up + [(0.0, 0.0, -1.0)] * 4),
-            np.array([0.6, 0.8, 0.0]),
-        )
+        return (np.array(floor + above), np.array(up + [(0.0, 0.0, -1.0)] * 4), np.array([0.6, 0.8, 0.0]))
     count = int(chance.integers(3, 5))  # around a peg, at two heights
     angles = 2.0 * np.pi * np.arange(count) / count + chance.choice([0.0, 0.4])
     out = np.column_stack([np.cos(angles), np.sin(angles), np.zeros(count)])

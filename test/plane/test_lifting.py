@@ -14,9 +14,9 @@ from contact_dynamics.plane.lifting import check_mirrored, equal_shares, mirror_
 from contact_dynamics.plane.projection import PlaneOfMotion
 from contact_dynamics.rigid_body.body import BodyState
 
-PLANE = PlaneOfMotion(normal_W=np.array([0.0, -1.0, 0.0]))
+PLANE = PlaneOfMotion(normal_W=[0.0, -1.0, 0.0])
 CENTRE = np.array([0.3, 0.2, 0.1])
-STATE = BodyState(p_WB_W=CENTRE, q_WB=np.array([0.0, 0.0, 0.0, 1.0]), v_WB_W=np.zeros(3), w_WB_W=np.zeros(3))
+STATE = BodyState(p_WB_W=CENTRE, q_WB=[0.0, 0.0, 0.0, 1.0])
 
 
 def contacts(arms: list[tuple[float, ...]], frictions: list[float] | None = None) -> ContactSet:

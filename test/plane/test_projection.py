@@ -15,16 +15,12 @@ from contact_dynamics.contact.contact import Contact, ContactSet
 from contact_dynamics.errors import InvalidFieldError, OutOfPlaneError
 from contact_dynamics.impact import planar_impact, spatial_impact
 from contact_dynamics.plane.plane_search import best_plane
-from contact_dynamics.plane.projection import (
-    PlaneOfMotion,
-    out_of_plane_speed,
-    project_onto_plane,
-)
+from contact_dynamics.plane.projection import PlaneOfMotion, out_of_plane_speed, project_onto_plane
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 
 BODY = MassProperties(mass=2.0, I_B=np.diag([0.2, 0.3, 0.4]))
 UP = np.array([0.0, 0.0, 1.0])
-FROM_THE_FRONT = PlaneOfMotion(normal_W=np.array([0.0, -1.0, 0.0]))  # x to the right, z up
+FROM_THE_FRONT = PlaneOfMotion(normal_W=[0.0, -1.0, 0.0])  # x to the right, z up
 WEIGHT = np.array([0.0, 0.0, -20.0])
 NONE = np.zeros(3)
 
@@ -36,20 +32,12 @@ def state(
     v: tuple[float, float, float] = (0.0, 0.0, 0.0), w: tuple[float, float, float] = (0.0, 0.0, 0.0)
 ) -> BodyState:
     return BodyState(
-        p_WB_W=np.array([0.0, 0.0, 0.5]),
-        q_WB=np.array([0.0, 0.0, 0.0, 1.0]),
-        v_WB_W=np.array(v),
-        w_WB_W=np.array(w),
+        p_WB_W=[0.0, 0.0, 0.5], q_WB=[0.0, 0.0, 0.0, 1.0], v_WB_W=np.array(v), w_WB_W=np.array(w)
     )
 
 
 def contact(point: tuple[float, float, float], normal: np.ndarray = UP) -> ContactSet:
-    return ContactSet(
-        p_WC_W=np.array([point]),
-        normals_W=normal[None],
-        frictions=np.array([0.5]),
-        restitutions=np.array([0.5]),
-    )
+    return ContactSet(p_WC_W=[point], normals_W=normal[None], frictions=[0.5], restitutions=[0.5])
 
 
 def test_seen_with_the_normal_towards_the_eye_right_is_right() -> None:
@@ -71,7 +59,7 @@ def test_seen_with_the_normal_towards_the_eye_right_is_right() -> None:
 
 
 def test_turned_over_left_and_right_change_places() -> None:
-    behind = PlaneOfMotion(normal_W=np.array([0.0, 1.0, 0.0]))
+    behind = PlaneOfMotion(normal_W=[0.0, 1.0, 0.0])
     problem = project_onto_plane(
         BODY, state((1.0, 0.0, 0.0)), contact((0.25, 0.0, 0.0)), plane=behind, force_W=WEIGHT, torque_W=NONE
     )
@@ -102,8 +90,7 @@ def test_the_amount_out_of_plane_is_the_speed_left_out(moving: BodyState, amount
     assert out_of_plane_speed(FROM_THE_FRONT, moving, touching) == pytest.approx(amount, abs=1e-16)
     if amount:
         with pytest.raises(
-            OutOfPlaneError,
-            match=rf"state must be at most 1e-06 m/s, got {amount:g} m/s out of the plane",
+            OutOfPlaneError, match=rf"state must be at most 1e-06 m/s, got {amount:g} m/s out of the plane"
         ):
             project_onto_plane(BODY, moving, touching, plane=FROM_THE_FRONT, force_W=WEIGHT, torque_W=NONE)
     project_onto_plane(
@@ -124,7 +111,7 @@ def test_what_leans_out_of_the_plane_is_refused_by_name() -> None:
         project_onto_plane(
             BODY, state(), contact((0.0, 0.0, 0.0)), **{**arguments, "torque_W": np.array([1.0, 0.0, 0.0])}
         )
-    skew = MassProperties(mass=2.0, I_B=np.array([[0.2, 0.05, 0.0], [0.05, 0.3, 0.0], [0.0, 0.0, 0.4]]))
+    skew = MassProperties(mass=2.0, I_B=[[0.2, 0.05, 0.0], [0.05, 0.3, 0.0], [0.0, 0.0, 0.4]])
     with pytest.raises(OutOfPlaneError, match="inertia"):
         project_onto_plane(skew, state(), contact((0.0, 0.0, 0.0)), **arguments)
     with pytest.raises(InvalidFieldError, match="normal_W"):
@@ -157,8 +144,8 @@ def test_a_body_at_rest_is_seen_in_the_plane_of_its_contacts(azimuth: float, off
     round_body = MassProperties(mass=2.0, I_B=np.diag([0.2, 0.2, 0.4]))
     across = np.array([math.cos(azimuth), math.sin(azimuth), 0.0])
     feet = ContactSet(
-        p_WC_W=np.array([-0.5 * across, offset * across]),
-        normals_W=np.array([UP, UP]),
+        p_WC_W=[-0.5 * across, offset * across],
+        normals_W=[UP, UP],
         frictions=np.full(2, 0.5),
         restitutions=np.zeros(2),
     )
@@ -217,9 +204,7 @@ def test_a_planar_impact_lifted_to_space_is_the_spatial_impact(
         w_WB_W=turn.apply([0.0, w, 0.0]),
     )
     point = turn.apply([r_x, 0.0, -0.5])
-    touching = ContactSet(
-        p_WC_W=point[None], normals_W=UP[None], frictions=np.array([mu]), restitutions=np.array([e])
-    )
+    touching = ContactSet(p_WC_W=point[None], normals_W=UP[None], frictions=[mu], restitutions=[e])
     if before.velocity_of_point(point)[2] > -1e-3:
         return
     plane = PlaneOfMotion(normal_W=turn.apply([0.0, -1.0, 0.0]))

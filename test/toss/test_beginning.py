@@ -47,9 +47,7 @@ def on_edge(seed: int) -> OnEdge:
     chance = np.random.default_rng(seed)
     vertices = np.array(box(size=SIZE).vertices) + 1e-3 * chance.standard_normal((8, 3))
     body = Body(
-        name="brick",
-        mass_properties=inertia.box(size=SIZE, mass=MASS).mass_properties,
-        vertices_B=vertices,
+        name="brick", mass_properties=inertia.box(size=SIZE, mass=MASS).mass_properties, vertices_B=vertices
     )
     n = np.array([*chance.uniform(-0.4, 0.4, 2), 1.0])
     n /= np.linalg.norm(n)

@@ -20,9 +20,7 @@ DEEP = 0.02  # m
 
 def tilted(size: list[float], depth: float, chance: np.random.Generator) -> BodyState:
     turn = Rotation.from_rotvec(np.radians(3.0) * chance.normal(size=3))
-    return BodyState(
-        p_WB_W=[0, 0, 0.5 * size[2] - depth], q_WB=turn.as_quat(), v_WB_W=[0, 0, 0], w_WB_W=[0, 0, 0]
-    )
+    return BodyState(p_WB_W=[0, 0, 0.5 * size[2] - depth], q_WB=turn.as_quat())
 
 
 @pytest.mark.parametrize("depth", [0.0, 1e-4, 1e-3, 3e-3])
@@ -41,7 +39,7 @@ def test_a_body_at_rest_but_for_noise_comes_to_rest(size: list[float], mass: flo
 
 def test_all_samples_of_a_die_at_rest_rest() -> None:
     die = Body.box([0.016] * 3, mass=0.004)
-    resting = BodyState(p_WB_W=[0, 0, 0.008], q_WB=[0, 0, 0, 1], v_WB_W=[0, 0, 0], w_WB_W=[0, 0, 0])
+    resting = BodyState(p_WB_W=[0, 0, 0.008], q_WB=[0, 0, 0, 1])
     noise = state_covariance(position=5e-4, rotation=np.radians(3.0), velocity=0.05, angular_velocity=1.0)
     found = sampled_toss(
         die, resting, WORLD, covariance=noise, count=100, to_rest=True, distance_tolerance=DEEP

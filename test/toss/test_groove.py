@@ -19,7 +19,7 @@ from sweeps import seeds
 
 G = 9.81
 TIP = np.array([0.0, 0.0, -0.2])
-STILL = BodyState(p_WB_W=-TIP, q_WB=[0, 0, 0, 1], v_WB_W=[0, 0, 0], w_WB_W=[0, 0, 0])
+STILL = BodyState(p_WB_W=-TIP, q_WB=[0, 0, 0, 1])
 STUCK = (Held((0, 0)), Held((1, 0)))
 
 

@@ -161,9 +161,7 @@ def test_a_body_without_friction_rests_in_a_corner() -> None:
         ),
         gravity_W=[0, 0, -G],
     )
-    state = BodyState(
-        p_WB_W=[0, 0, 0.25], q_WB=[0, 0.3826834, 0, 0.9238795], v_WB_W=[0, 0, 0], w_WB_W=[0, 0, 0]
-    )
+    state = BodyState(p_WB_W=[0, 0, 0.25], q_WB=[0, 0.3826834, 0, 0.9238795])
     went = toss(CUBE, state, room, horizon=5.0, max_alternatives=0)
     assert went.end == TossEnd.RESTS
     assert went.state.p_WB_W[2] == pytest.approx(0.05 * math.sqrt(2.0), abs=1e-6)
@@ -193,7 +191,7 @@ def test_short_steps_converge_to_the_motion_of_a_block_that_slides() -> None:
         gravity_W=[0, 0, -G],
     )
     solid = solid_of(CUBE, floor)
-    state = BodyState(p_WB_W=[0, 0, 0.05], q_WB=[0, 0, 0, 1], v_WB_W=[1, 0, 0], w_WB_W=[0, 0, 0])
+    state = BodyState(p_WB_W=[0, 0, 0.05], q_WB=[0, 0, 0, 1], v_WB_W=[1, 0, 0])
     off = []
     for span in (2e-3, 1e-3):
         y = numbers_of(state)

@@ -89,7 +89,7 @@ def test_only_a_body_near_one_flat_is_laid() -> None:
     assert laid(body, state, FLOOR, near) is None
     assert laid(body, state, FLOOR, far) is not None
     ceiling = Surface(name="lid", p_WS_W=[0, 0, 0], normal_W=[0, 0, -1], friction=0.2, restitution=0.3)
-    above = BodyState(p_WB_W=[0, 0, -0.04], q_WB=[0, 0, 0, 1], v_WB_W=[0, 0, 0], w_WB_W=[0, 0, 0])
+    above = BodyState(p_WB_W=[0, 0, -0.04], q_WB=[0, 0, 0, 1])
     assert laid(body, above, ceiling) is None
 
 

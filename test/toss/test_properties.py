@@ -92,12 +92,7 @@ def test_the_result_does_not_depend_on_the_steps() -> None:
     )
     angle = math.atan2(size[0], size[2]) + 0.05
     height = 0.5 * (size[2] * math.cos(angle) + size[0] * math.sin(angle))
-    state = BodyState(
-        p_WB_W=[0, 0, height],
-        q_WB=[0.0, math.sin(0.5 * angle), 0.0, math.cos(0.5 * angle)],
-        v_WB_W=[0.0, 0.0, 0.0],
-        w_WB_W=[0.0, 0.0, 0.0],
-    )
+    state = BodyState(p_WB_W=[0, 0, height], q_WB=[0.0, math.sin(0.5 * angle), 0.0, math.cos(0.5 * angle)])
     world = World(surfaces=(Surface(**FLOOR, friction=0.3, restitution=0.0),), gravity_W=[0, 0, -G])
     coarse, fine = (toss(body, state, world, max_alternatives=0, error=error) for error in (1e-7, 1e-11))
     first = next(event.seconds for event in fine.strikes)
@@ -115,7 +110,7 @@ def test_a_box_that_lands_flat_tells_that_the_order_of_its_corners_is_open() -> 
     cube = Body(
         name="cube", mass_properties=inertia.box(size=size, mass=0.5).mass_properties, shape=box(size=size)
     )
-    state = BodyState(p_WB_W=[0, 0, 0.1], q_WB=[0, 0, 0, 1], v_WB_W=[0.3, 0, 0], w_WB_W=[0, 0, 0])
+    state = BodyState(p_WB_W=[0, 0, 0.1], q_WB=[0, 0, 0, 1], v_WB_W=[0.3, 0, 0])
     world = World(surfaces=(Surface(**FLOOR, friction=0.3, restitution=0.2),), gravity_W=[0, 0, -G])
     went = toss(cube, state, world, max_alternatives=3)
     first = went.undecided[0]
@@ -162,7 +157,7 @@ def test_a_ball_that_rolls_on_for_years_ends_at_the_bound_on_steps(monkeypatch: 
         shape=sphere(radius=0.05),
     )
     floor = Surface(**FLOOR, friction=0.5, restitution=0.0)
-    state = BodyState(p_WB_W=[0, 0, 0.05], q_WB=[0, 0, 0, 1], v_WB_W=[1, 0, 0], w_WB_W=[0, 0, 0])
+    state = BodyState(p_WB_W=[0, 0, 0.05], q_WB=[0, 0, 0, 1], v_WB_W=[1, 0, 0])
     went = toss(ball, state, World(surfaces=(floor,)), horizon=1e9)
     assert went.end == TossEnd.MAX_EVENTS
     assert 1.0 < went.seconds < 1e4

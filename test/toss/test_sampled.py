@@ -61,12 +61,7 @@ def test_exact_samples_strike_as_the_toss_does(seed: int) -> None:
     chance = np.random.default_rng(0)
     samples = draw(BRICK, state, WORLD, covariance=None, uncertainty=EXACT, count=2, chance=chance)
     many = next_strikes(
-        solid,
-        samples,
-        law=RestitutionLaw.POISSON,
-        spread=LawSpread(EXACT, 2, chance),
-        depth=3,
-        horizon=5.0,
+        solid, samples, law=RestitutionLaw.POISSON, spread=LawSpread(EXACT, 2, chance), depth=3, horizon=5.0
     )
     events = toss(BRICK, state, WORLD, max_alternatives=0).events
     strikes = [event for event in events if event.kind == TossEventKind.STRIKES]
@@ -115,7 +110,7 @@ def test_samples_that_go_on_together_are_where_the_strikes_would_have_them() -> 
 def test_the_time_of_a_strike_is_as_uncertain_as_height_over_speed() -> None:
     """A brick that does not turn falls onto a corner: dt = dz / v, with v^2 = 2 g h."""
     q = np.array([0.3, 0.5, 0.1, 0.8])
-    state = BodyState(p_WB_W=[0, 0, 0.5], q_WB=q / np.linalg.norm(q), v_WB_W=[0, 0, 0], w_WB_W=[0, 0, 0])
+    state = BodyState(p_WB_W=[0, 0, 0.5], q_WB=q / np.linalg.norm(q))
     covariance = np.zeros((12, 12))
     covariance[2, 2] = 1e-3**2
     first = told(state, 2000, covariance=covariance, strikes=1).strikes[0]
@@ -140,7 +135,7 @@ def test_the_spread_of_the_law_is_that_of_velocities_after_a_strike() -> None:
 def test_corners_that_are_not_where_the_shape_has_them_make_the_time_uncertain() -> None:
     """A brick falls on a corner whose ray has the cosine c to the normal, so that dt = c dr / v."""
     q = np.array([0.3, 0.5, 0.1, 0.8])
-    state = BodyState(p_WB_W=[0, 0, 0.5], q_WB=q / np.linalg.norm(q), v_WB_W=[0, 0, 0], w_WB_W=[0, 0, 0])
+    state = BodyState(p_WB_W=[0, 0, 0.5], q_WB=q / np.linalg.norm(q))
     first = told(state, 2000, strikes=1, uncertainty=TossUncertainty(height=1e-3)).strikes[0]
     corner = min((BRICK.vertices_B @ state.R_WB.T).tolist(), key=lambda point: point[2])
     cosine = -corner[2] / math.hypot(*corner)
@@ -155,12 +150,7 @@ def test_no_sample_goes_on_into_the_floor() -> None:
     state, solid, chance = thrown(2), solid_of(BRICK, WORLD), np.random.default_rng(3)
     samples = draw(BRICK, state, WORLD, covariance=None, uncertainty=EXACT, count=200, chance=chance)
     found = next_strikes(
-        solid,
-        samples,
-        law=RestitutionLaw.POISSON,
-        spread=LawSpread(many, 200, chance),
-        depth=1,
-        horizon=5.0,
+        solid, samples, law=RestitutionLaw.POISSON, spread=LawSpread(many, 200, chance), depth=1, horizon=5.0
     )
     arms = np.einsum(
         "nij,nj->ni", matrices_of(found.q_WB[0]), samples.corners_B[np.arange(200), found.corners[0]]
@@ -226,12 +216,7 @@ def test_a_brick_on_its_edge_falls_to_either_side() -> None:
     """It is let go at rest on a long edge, the mass centre above it, and knows its tilt to a tenth."""
     y, z = 0.06, 0.035
     tilt = 0.5 * math.atan2(y, z)
-    state = BodyState(
-        p_WB_W=[0, 0, math.hypot(y, z) + 1e-3],
-        q_WB=[math.sin(tilt), 0, 0, math.cos(tilt)],
-        v_WB_W=[0, 0, 0],
-        w_WB_W=[0, 0, 0],
-    )
+    state = BodyState(p_WB_W=[0, 0, math.hypot(y, z) + 1e-3], q_WB=[math.sin(tilt), 0, 0, math.cos(tilt)])
     covariance = np.zeros((12, 12))
     covariance[3, 3] = 0.1**2
     found = told(state, 30, covariance=covariance, to_rest=True)
@@ -247,7 +232,7 @@ def test_a_brick_on_its_edge_falls_to_either_side() -> None:
 
 def test_friction_that_lasts_stops_what_slides_and_strikes_have_their_own() -> None:
     """A brick that slides flush stops after v^2 / (2 mu g); a strike before has the friction of strikes."""
-    flush = BodyState(p_WB_W=[0, 0, 0.035], q_WB=[0, 0, 0, 1], v_WB_W=[0.6, 0, 0], w_WB_W=[0, 0, 0])
+    flush = BodyState(p_WB_W=[0, 0, 0.035], q_WB=[0, 0, 0, 1], v_WB_W=[0.6, 0, 0])
     lasting = TossUncertainty(lasting_factors=[1.5], lasting_factor_stds=[0.1])
     found = told(flush, 300, to_rest=True, uncertainty=lasting).rest
     assert found is not None
@@ -262,7 +247,7 @@ def test_friction_that_lasts_stops_what_slides_and_strikes_have_their_own() -> N
 
 
 def test_a_surface_has_a_factor_of_its_own_that_a_list_replaces() -> None:
-    flush = BodyState(p_WB_W=[0, 0, 0.035], q_WB=[0, 0, 0, 1], v_WB_W=[0.6, 0, 0], w_WB_W=[0, 0, 0])
+    flush = BodyState(p_WB_W=[0, 0, 0.035], q_WB=[0, 0, 0, 1], v_WB_W=[0.6, 0, 0])
     world = World(surfaces=(replace(FLOOR, lasting_factor=1.5),))
     for factors, factor in (((), 1.5), ([0.5], 0.5)):
         end = 0.6**2 / (2.0 * 9.80665 * 0.2 * factor)

@@ -28,7 +28,7 @@ HEIGHT = 0.2
 
 def dropped(law: SeveralContactsLaw, restitution_law: RestitutionLaw = RestitutionLaw.POISSON) -> Toss:
     """A coin falls flat, without any motion but along the normal."""
-    state = BodyState(p_WB_W=[0, 0, HEIGHT], q_WB=[0, 0, 0, 1], v_WB_W=[0, 0, 0], w_WB_W=[0, 0, 0])
+    state = BodyState(p_WB_W=[0, 0, HEIGHT], q_WB=[0, 0, 0, 1])
     return toss(
         COIN,
         state,
@@ -103,7 +103,7 @@ def test_the_energetic_law_has_no_simultaneous_form() -> None:
 
 def test_samples_take_the_law_too() -> None:
     """Where a box comes to rest depends on it, with the same seed and without any spread."""
-    state = BodyState(p_WB_W=[0, 0, HEIGHT], q_WB=[0, 0, 0, 1], v_WB_W=[0, 0, 0], w_WB_W=[0, 0, 0])
+    state = BodyState(p_WB_W=[0, 0, HEIGHT], q_WB=[0, 0, 0, 1])
     brick = Body.box((0.1, 0.06, 0.02), 0.5)
 
     def place(law: SeveralContactsLaw, restitution_law: RestitutionLaw) -> np.ndarray:

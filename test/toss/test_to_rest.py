@@ -103,7 +103,7 @@ def test_printed_samples_have_their_probabilities(alone: TossDistribution) -> No
 def test_printed_samples_that_do_not_rest_say_so() -> None:
     """Where it was asked for; some that rest and some that do not have the share of the latter."""
     few = {"covariance": np.diag([1e-4] * 12) ** 2, "count": 20}
-    args = (BRICK, BodyState(p_WB_W=[0, 0, 1], q_WB=[0, 0, 0, 1], v_WB_W=[0, 0, 0], w_WB_W=[1, 0, 0]))
+    args = (BRICK, BodyState(p_WB_W=[0, 0, 1], q_WB=[0, 0, 0, 1], w_WB_W=[1, 0, 0]))
     world = World(bodies=(BRICK,), surfaces=(FLOOR,))
     exact = "; taken as exact: friction, restitution, impact law"
     none = f"TossDistribution of 20 samples, none of which came to rest before the horizon{exact}"

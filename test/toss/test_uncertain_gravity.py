@@ -54,7 +54,7 @@ def test_places_spread_as_gravity_takes_samples_aside(by_gravity: tuple[float, f
 
 def test_a_sample_that_goes_on_to_rest_has_the_gravity_of_the_world() -> None:
     """A brick that slides flush stops after v^2 / (2 mu g), whatever gravity was in flights."""
-    flush = BodyState(p_WB_W=[0, 0, 0.035], q_WB=[0, 0, 0, 1], v_WB_W=[0.6, 0, 0], w_WB_W=[0, 0, 0])
+    flush = BodyState(p_WB_W=[0, 0, 0.035], q_WB=[0, 0, 0, 1], v_WB_W=[0.6, 0, 0])
     found = sampled_toss(
         BRICK,
         flush,

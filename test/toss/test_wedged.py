@@ -27,15 +27,13 @@ def between_walls(friction: float) -> tuple[Body, World, BodyState]:
     """A rod at rest between two walls that are 1 m apart, so that it touches both."""
     properties = MassProperties(mass=1.0, I_B=np.diag([0.02, 0.1, 0.1]))
     rod = Body(
-        name="rod",
-        mass_properties=properties,
-        vertices_B=[[-0.5, 0.0, -0.5 * LEAN], [0.5, 0.0, 0.5 * LEAN]],
+        name="rod", mass_properties=properties, vertices_B=[[-0.5, 0.0, -0.5 * LEAN], [0.5, 0.0, 0.5 * LEAN]]
     )
     walls = [
         Surface(name=name, p_WS_W=[x, 0, 0], normal_W=[-2.0 * x, 0, 0], friction=friction, restitution=0.0)
         for name, x in (("left", -0.5), ("right", 0.5))
     ]
-    still = BodyState(p_WB_W=[0, 0, 0], q_WB=[0, 0, 0, 1], v_WB_W=[0, 0, 0], w_WB_W=[0, 0, 0])
+    still = BodyState(p_WB_W=[0, 0, 0], q_WB=[0, 0, 0, 1])
     return rod, World(surfaces=tuple(walls), gravity_W=[0, 0, -G]), still
 
 
@@ -151,7 +149,7 @@ def test_a_box_in_a_corner_has_one_mode(friction: float) -> None:
         for name, normal in (("floor", [0, 0, 1]), ("wall", [1, 0, 0]))
     )
     world = World(surfaces=(floor, wall), gravity_W=[0, 0, -G])
-    state = BodyState(p_WB_W=[size, 0, size], q_WB=[0, 0, 0, 1], v_WB_W=[0, 0.3, 0], w_WB_W=[0, 0, 0])
+    state = BodyState(p_WB_W=[size, 0, size], q_WB=[0, 0, 0, 1], v_WB_W=[0, 0.3, 0])
     went = toss(box, state, world)
     assert (went.end, went.undecided) == (TossEnd.RESTS, ())
     assert went.state.p_WB_W[1] == pytest.approx(0.3**2 / (2.0 * friction * G), rel=1e-4)

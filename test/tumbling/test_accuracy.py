@@ -35,7 +35,7 @@ def exact(motion: FreeMotion) -> ExactMotion:
 
 
 def motion_from(drawn: Draw) -> FreeMotion:
-    state = BodyState(p_WB_W=np.zeros(3), q_WB=drawn.q_WB, v_WB_W=np.zeros(3), w_WB_W=drawn.w_WB_W)
+    state = BodyState(p_WB_W=np.zeros(3), q_WB=drawn.q_WB, w_WB_W=drawn.w_WB_W)
     return free_motion(MassProperties(mass=1.0, I_B=drawn.I_B), state)
 
 

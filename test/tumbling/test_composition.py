@@ -68,7 +68,7 @@ def test_drawn_motions_compose_and_reverse(seed: int, first: float, second: floa
     """Times are in rad turned. Without a second time, the motion goes back to the beginning."""
     drawn = draw(np.random.default_rng(seed))
     rate = float(np.linalg.norm(drawn.w_WB_W))
-    state = BodyState(p_WB_W=np.zeros(3), q_WB=drawn.q_WB, v_WB_W=np.zeros(3), w_WB_W=drawn.w_WB_W)
+    state = BodyState(p_WB_W=np.zeros(3), q_WB=drawn.q_WB, w_WB_W=drawn.w_WB_W)
     motion = free_motion(MassProperties(mass=1.0, I_B=drawn.I_B), state)
     out = _on_the_binary_grid(first / rate)
     back = -out if second is None else _on_the_binary_grid(second / rate)

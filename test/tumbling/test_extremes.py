@@ -80,8 +80,7 @@ def test_what_turns_nothing_in_the_age_of_the_universe_is_at_rest() -> None:
 
 @pytest.mark.parametrize("make", [free_motion, forced_motion])
 @pytest.mark.parametrize(
-    ("field", "value"),
-    [("p_WB_W", 1e61), ("v_WB_W", -1e61), ("w_WB_W", 1e61), ("gravity_W", 1e61)],
+    ("field", "value"), [("p_WB_W", 1e61), ("v_WB_W", -1e61), ("w_WB_W", 1e61), ("gravity_W", 1e61)]
 )
 def test_numbers_that_cannot_be_squared_are_refused(make: object, field: str, value: float) -> None:
     numbers = {name: np.zeros(3) for name in ("p_WB_W", "v_WB_W", "w_WB_W", "gravity_W")}

@@ -19,7 +19,7 @@ UPRIGHT = (0.0, 0.0, 0.0, 1.0)
 
 
 def one(moments: np.ndarray, w: np.ndarray) -> FreeMotion:
-    state = BodyState(p_WB_W=np.zeros(3), q_WB=UPRIGHT, v_WB_W=np.zeros(3), w_WB_W=w)
+    state = BodyState(p_WB_W=np.zeros(3), q_WB=UPRIGHT, w_WB_W=w)
     return free_motion(MassProperties(mass=1.0, I_B=np.diag(moments)), state)
 
 

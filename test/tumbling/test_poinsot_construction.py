@@ -140,7 +140,7 @@ def test_curves_touch_where_the_motion_is_then(name: str) -> None:
 def test_curves_that_take_longer_than_doubles_can_tell_are_refused() -> None:
     """Moments that nearly agree, and spin near their plane: some 1e16 turns a period."""
     drawn = draw(np.random.default_rng(2000316))
-    state = BodyState(p_WB_W=np.zeros(3), q_WB=drawn.q_WB, v_WB_W=np.zeros(3), w_WB_W=drawn.w_WB_W)
+    state = BodyState(p_WB_W=np.zeros(3), q_WB=drawn.q_WB, w_WB_W=drawn.w_WB_W)
     motion = free_motion(MassProperties(mass=1.0, I_B=drawn.I_B), state)
     with pytest.raises(InvalidFieldError, match=r"rolling curves must be .*, got a period of"):
         rolling_curves(motion, 10)
@@ -212,7 +212,7 @@ def by_trying(motion: FreeMotion, relative: float, turned: float) -> float:
 )
 def test_sensitivity_is_what_errors_grow_by(moments: tuple[float, ...], w: tuple[float, ...]) -> None:
     body = MassProperties(mass=1.0, I_B=np.diag(moments))
-    state = BodyState(p_WB_W=np.zeros(3), q_WB=(0.0, 0.0, 0.0, 1.0), v_WB_W=np.zeros(3), w_WB_W=w)
+    state = BodyState(p_WB_W=np.zeros(3), q_WB=(0.0, 0.0, 0.0, 1.0), w_WB_W=w)
     motion = free_motion(body, state)
     # After 1e5 rad what does not grow is 1e-5 of what does; steps of 1e-11 are far from nonlinear.
     assert by_trying(motion, 1e-11, 1e5) == pytest.approx(sensitivity(motion), rel=3e-3)

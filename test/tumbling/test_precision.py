@@ -44,7 +44,7 @@ def test_drawn_motions(seed: int, turned: float) -> None:
     # There, what the last bit of the state does is beyond any bound in doubles.
     assume(drawn.spin not in ("separatrix", "middle") and drawn.body != "needle")
     rate = float(np.linalg.norm(drawn.w_WB_W))
-    state = BodyState(p_WB_W=np.zeros(3), q_WB=drawn.q_WB, v_WB_W=np.zeros(3), w_WB_W=drawn.w_WB_W)
+    state = BodyState(p_WB_W=np.zeros(3), q_WB=drawn.q_WB, w_WB_W=drawn.w_WB_W)
     motion = free_motion(MassProperties(mass=1.0, I_B=drawn.I_B), state)
     limit = LAST_BITS * (1.0 + sensitivity(motion)) * (1.0 + abs(turned))
     assert difference(motion, turned / rate) <= limit
@@ -61,7 +61,7 @@ def test_the_unit_does_not_matter(
     def motion(moment_unit: float, rate_unit: float) -> FreeMotion:
         body = MassProperties(mass=1.0, I_B=moment_unit * np.diag((1.0, 1.4, 1.9)))
         rates = rate_unit * np.array(w)
-        state = BodyState(p_WB_W=np.zeros(3), q_WB=(0.0, 0.0, 0.0, 1.0), v_WB_W=np.zeros(3), w_WB_W=rates)
+        state = BodyState(p_WB_W=np.zeros(3), q_WB=(0.0, 0.0, 0.0, 1.0), w_WB_W=rates)
         return free_motion(body, state, precision=precision)
 
     usual, other = motion(1.0, 1.0), motion(moment_unit, rate_unit)

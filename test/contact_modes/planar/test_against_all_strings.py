@@ -7,10 +7,10 @@ import random
 
 import pytest
 
-from contact_dynamics.contact_modes import ModeVerdict, PlanarContactProblem, PlanarModeAnswer, contact_modes
+from contact_dynamics.contact_modes import ModeVerdict, PlanarModeAnswer, contact_modes
 from contact_dynamics.contact_modes.planar import cone
 from contact_dynamics.contact_modes.planar import wrench_cone as edges
-from contact_modes.evidence import check_evidence
+from contact_modes.evidence import check_evidence, planar_problem
 from oracles.contact_mode_cases import FloatCase, contact, draw, resting, rounded
 from oracles.contact_modes import ExactCase, consistent_modes, kinematic_modes, uniqueness
 from sweeps import seeds
@@ -53,7 +53,7 @@ DEGENERATE = {
 
 def ask(case: FloatCase) -> PlanarModeAnswer:
     body, velocity, contacts, wrench = case
-    return contact_modes(PlanarContactProblem(body=body, velocity=velocity, contacts=contacts, wrench=wrench))
+    return contact_modes(planar_problem(body, velocity, contacts, wrench))
 
 
 def compare(exact: ExactCase, case: FloatCase) -> PlanarModeAnswer:

@@ -12,19 +12,14 @@ from scipy.spatial.transform import Rotation
 from contact_dynamics.contact.contact import ContactSet
 from contact_dynamics.contact.curvature import Curvatures
 from contact_dynamics.contact.found import find_contacts
-from contact_dynamics.contact_modes import (
-    PlanarContactProblem,
-    PlanarMode,
-    SpatialContactProblem,
-    contact_modes,
-    spatial_kinematic_modes,
-)
+from contact_dynamics.contact_modes import PlanarMode, contact_modes, spatial_kinematic_modes
 from contact_dynamics.errors import OutOfPlaneError
 from contact_dynamics.plane.projection import PlaneOfMotion, project_onto_plane
 from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.shapes.convex import cylinder, sphere
 from contact_dynamics.world import Body, Surface, World
+from contact_modes.evidence import planar_problem, spatial_problem
 
 G = 10.0
 M, R = 2.0, 0.25
@@ -40,9 +35,7 @@ def contact(
 
 
 def only(velocity: PlanarVelocity, *contacts: PlanarContact, body: PlanarBody = DISC) -> PlanarMode:
-    answer = contact_modes(
-        PlanarContactProblem(body=body, velocity=velocity, contacts=contacts, wrench=WEIGHT)
-    )
+    answer = contact_modes(planar_problem(body, velocity, contacts, WEIGHT))
     assert len(answer.modes) == 1, [mode.mode for mode in answer.modes]
     return answer.modes[0]
 
@@ -123,11 +116,7 @@ def test_several_contacts_have_their_own_terms() -> None:
         )
         for side in (-1.0, 1.0)
     ]
-    answer = contact_modes(
-        PlanarContactProblem(
-            body=DISC, velocity=PlanarVelocity(v=(0.0, 0.0), w=20.0), contacts=walls, wrench=WEIGHT
-        )
-    )
+    answer = contact_modes(planar_problem(DISC, PlanarVelocity(v=(0.0, 0.0), w=20.0), walls, WEIGHT))
     assert len(answer.modes) == 1
     for _, f_n in answer.modes[0].contact_forces:
         assert f_n == pytest.approx(M * G * slope, rel=1e-9)
@@ -145,14 +134,12 @@ def test_each_contact_has_the_terms_of_its_own_kind(*, first: bool) -> None:
     assert mode.contact_accelerations[1 if first else 0][1] == pytest.approx(9.0 / R)
 
 
-FLOOR = Surface(
-    name="floor", p_WS_W=np.zeros(3), normal_W=np.array([0.0, 0.0, 1.0]), friction=0.8, restitution=0.0
-)
-FROM_THE_FRONT = PlaneOfMotion(normal_W=np.array([0.0, -1.0, 0.0]))
+FLOOR = Surface(name="floor", p_WS_W=np.zeros(3), normal_W=[0.0, 0.0, 1.0], friction=0.8, restitution=0.0)
+FROM_THE_FRONT = PlaneOfMotion(normal_W=[0.0, -1.0, 0.0])
 
 
 def state(q: tuple[float, ...], v: tuple[float, ...], w: tuple[float, ...]) -> BodyState:
-    return BodyState(p_WB_W=np.array([0.0, 0.0, R]), q_WB=np.array(q), v_WB_W=np.array(v), w_WB_W=np.array(w))
+    return BodyState(p_WB_W=[0.0, 0.0, R], q_WB=np.array(q), v_WB_W=np.array(v), w_WB_W=np.array(w))
 
 
 def test_a_ball_found_on_the_floor_rolls_and_pivots_without_force_but_its_weight() -> None:
@@ -163,11 +150,7 @@ def test_a_ball_found_on_the_floor_rolls_and_pivots_without_force_but_its_weight
     )
     now = state((0.1, 0.7, -0.1, 0.7), (1.0, -0.5, 0.0), (0.5 / R, 1.0 / R, 6.0))
     contacts = find_contacts(ball, now, World(surfaces=(FLOOR,)))
-    answer = contact_modes(
-        SpatialContactProblem(
-            body=ball.mass_properties, state=now, contacts=contacts, force_W=(0.0, 0.0, -M * G)
-        )
-    )
+    answer = contact_modes(spatial_problem(ball.mass_properties, now, contacts, (0.0, 0.0, -M * G)))
     assert [mode.mode for mode in answer.modes] == ["f"]
     np.testing.assert_allclose(answer.modes[0].contact_forces_W, [[0.0, 0.0, M * G]], atol=1e-6)
     np.testing.assert_allclose(answer.modes[0].acceleration_W, np.zeros(3), atol=1e-6)
@@ -191,35 +174,19 @@ def test_a_can_found_on_its_side_rolls_in_space_as_in_its_plane() -> None:
         torque_W=np.zeros(3),
     )
     assert [flat.body_curvature for flat in problem.contacts] == pytest.approx([1.0 / R] * 2)
-    answer = contact_modes(
-        PlanarContactProblem(
-            body=problem.body, velocity=problem.velocity, contacts=problem.contacts, wrench=problem.wrench
-        )
-    )
+    answer = contact_modes(planar_problem(problem.body, problem.velocity, problem.contacts, problem.wrench))
     assert [mode.mode for mode in answer.modes] == ["ff"]
     assert sum(f_n for _, f_n in answer.modes[0].contact_forces) == pytest.approx(M * G, rel=1e-9)
-    in_space = contact_modes(
-        SpatialContactProblem(
-            body=can.mass_properties, state=lying, contacts=contacts, force_W=(0.0, 0.0, -M * G)
-        )
-    )
+    in_space = contact_modes(spatial_problem(can.mass_properties, lying, contacts, (0.0, 0.0, -M * G)))
     assert "ff" in [mode.mode for mode in in_space.modes]
     total = in_space.modes[0].contact_forces_W.sum(axis=0)
     np.testing.assert_allclose(total, [0.0, 0.0, M * G], atol=1e-5)
 
 
 def test_a_can_that_lies_askew_to_the_plane_is_refused() -> None:
-    askew = Curvatures(
-        along=np.array([4.0]),
-        across=np.array([INF]),
-        directions_W=np.array([[math.sqrt(0.5), math.sqrt(0.5), 0.0]]),
-    )
+    askew = Curvatures(along=[4.0], across=[INF], directions_W=[[math.sqrt(0.5), math.sqrt(0.5), 0.0]])
     contacts = ContactSet(
-        p_WC_W=np.zeros((1, 3)),
-        normals_W=np.array([[0.0, 0.0, 1.0]]),
-        frictions=np.array([0.5]),
-        restitutions=np.zeros(1),
-        body_curvatures=askew,
+        p_WC_W=np.zeros((1, 3)), normals_W=[[0.0, 0.0, 1.0]], frictions=[0.5], body_curvatures=askew
     )
     with pytest.raises(OutOfPlaneError, match="body_curvatures"):
         project_onto_plane(
@@ -244,7 +211,7 @@ def test_a_can_that_rolls_may_do_what_one_at_rest_may(turned: float) -> None:
     ahead = np.array([math.cos(turned), math.sin(turned), 0.0])
     q = (Rotation.from_euler("z", turned) * Rotation.from_euler("x", 90.0, degrees=True)).as_quat()
     lying = BodyState(
-        p_WB_W=np.array([0.0, 0.0, radius]),
+        p_WB_W=[0.0, 0.0, radius],
         q_WB=q,
         v_WB_W=3.0 * ahead,
         w_WB_W=np.cross([0.0, 0.0, 1.0], ahead) * 3.0 / radius,

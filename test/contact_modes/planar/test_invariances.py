@@ -11,9 +11,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from contact_dynamics.contact_modes import PlanarContactProblem, PlanarModeAnswer, contact_modes
+from contact_dynamics.contact_modes import PlanarModeAnswer, contact_modes
 from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
-from contact_modes.evidence import check_evidence
+from contact_modes.evidence import check_evidence, planar_problem
 from oracles.contact_mode_cases import FloatCase, draw, rounded
 
 SWAPPED = str.maketrans("lr", "rl")
@@ -22,9 +22,7 @@ cases = st.integers(0, 10**6).map(lambda seed: rounded(draw(seed, most_contacts=
 
 
 def ask(case: FloatCase) -> PlanarModeAnswer:
-    return contact_modes(
-        PlanarContactProblem(body=case[0], velocity=case[1], contacts=case[2], wrench=case[3])
-    )
+    return contact_modes(planar_problem(case[0], case[1], case[2], case[3]))
 
 
 def strings(answer: PlanarModeAnswer) -> tuple[set[str], set[str]]:
@@ -188,11 +186,7 @@ def test_noise_within_the_tolerance_does_not_move_a_resting_block() -> None:
         noisy = PlanarVelocity(
             v=(chance.uniform(-4e-3, 4e-3), chance.uniform(-4e-3, 4e-3)), w=chance.uniform(-0.05, 0.05)
         )
-        answer = contact_modes(
-            PlanarContactProblem(
-                body=body, velocity=noisy, contacts=contacts, wrench=weight, velocity_tolerance=0.01
-            )
-        )
+        answer = contact_modes(planar_problem(body, noisy, contacts, weight, velocity_tolerance=0.01))
         assert [mode.mode for mode in answer.modes] == ["fff"]
         assert answer.modes[0].motion_unique
         assert not answer.modes[0].forces_unique

@@ -7,14 +7,9 @@ import math
 
 import pytest
 
-from contact_dynamics.contact_modes import (
-    ModeVerdict,
-    PlanarContactProblem,
-    PlanarModeAnswer,
-    Refusal,
-    contact_modes,
-)
+from contact_dynamics.contact_modes import ModeVerdict, PlanarModeAnswer, Refusal, contact_modes
 from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
+from contact_modes.evidence import planar_problem
 
 LENGTH = 4.0
 THETA = math.radians(75.0)
@@ -32,9 +27,7 @@ def rod_tip(friction: float) -> PlanarContact:
 
 
 def ask(velocity: PlanarVelocity, wrench: PlanarWrench, friction: float) -> PlanarModeAnswer:
-    return contact_modes(
-        PlanarContactProblem(body=ROD, velocity=velocity, contacts=[rod_tip(friction)], wrench=wrench)
-    )
+    return contact_modes(planar_problem(ROD, velocity, [rod_tip(friction)], wrench))
 
 
 def test_no_mode_of_the_sliding_rod_is_consistent() -> None:

@@ -16,7 +16,6 @@ from contact_dynamics.contact_modes import (
     PlanarContactProblem,
     PlanarMode,
     PlanarModeAnswer,
-    SpatialContactProblem,
     contact_modes,
     geometry_margins,
     mode_margins,
@@ -27,7 +26,7 @@ from contact_dynamics.contact_modes import (
 from contact_dynamics.errors import NotSupportedError
 from contact_dynamics.plane import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
 from contact_dynamics.plane.lifting import planar_in_space
-from contact_modes.evidence import check_forces
+from contact_modes.evidence import check_forces, planar_problem, spatial_problem
 from oracles.contact_mode_cases import FloatCase, draw, rounded
 from sweeps import seeds
 
@@ -66,9 +65,7 @@ def feet(width: float = 0.3, height: float = 0.2, friction: float = MU) -> list[
 
 
 def problem_on(motion: Motion, velocity: PlanarVelocity, *contacts: PlanarContact) -> PlanarContactProblem:
-    return PlanarContactProblem(
-        body=BLOCK, velocity=velocity, contacts=[motion.carried(one) for one in contacts], wrench=WEIGHT
-    )
+    return planar_problem(BLOCK, velocity, [motion.carried(one) for one in contacts], WEIGHT)
 
 
 def only_mode(problem: PlanarContactProblem) -> PlanarMode:
@@ -134,16 +131,14 @@ def test_a_block_between_two_belts_is_dragged_by_both() -> None:
     contacts = [*map(right.carried, low), *map(left.carried, high)]
     for v, letters, a in ((0.0, "llss", MU * G), (1.5, "rrss", -MU * G), (1.0, "ffss", 0.0)):
         moving = PlanarVelocity(v=(v, 0.0), w=0.0)
-        problem = PlanarContactProblem(body=BLOCK, velocity=moving, contacts=contacts, wrench=WEIGHT)
+        problem = planar_problem(BLOCK, moving, contacts, WEIGHT)
         answer = contact_modes(problem)
         assert answer.contact_velocities[2] == pytest.approx((-(v + 2.0), 0.0))  # right is towards -x above
         assert {mode.mode[:2] for mode in answer.modes} == {letters[:2]}
         assert {round(mode.acceleration[0], 9) for mode in answer.modes} == {round(a, 9)}
     # A cart that carries both adds its acceleration to all.
     cart = [replace(one, surface_acceleration=(-0.5 * MU * G, 0.0)) for one in contacts]
-    carried = PlanarContactProblem(
-        body=BLOCK, velocity=PlanarVelocity(v=(1.0, 0.0), w=0.0), contacts=cart, wrench=WEIGHT
-    )
+    carried = planar_problem(BLOCK, PlanarVelocity(v=(1.0, 0.0), w=0.0), cart, WEIGHT)
     modes = contact_modes(carried).modes
     assert {mode.mode[:2] for mode in modes} == {"ff"}
     assert modes[0].acceleration[0] == pytest.approx(-0.5 * MU * G)
@@ -170,11 +165,11 @@ def seen(case: FloatCase, motion: Motion) -> PlanarContactProblem:
     body, velocity, contacts, wrench = case
     (v_x, v_y), w = velocity.v, velocity.w
     x, y = pseudo(velocity, motion)
-    return PlanarContactProblem(
-        body=body,
-        velocity=PlanarVelocity(v=(v_x + motion.v[0], v_y + motion.v[1]), w=w + motion.w),
-        contacts=[motion.carried(one) for one in contacts],
-        wrench=PlanarWrench(
+    return planar_problem(
+        body,
+        PlanarVelocity(v=(v_x + motion.v[0], v_y + motion.v[1]), w=w + motion.w),
+        [motion.carried(one) for one in contacts],
+        PlanarWrench(
             f=(wrench.f[0] + body.mass * x, wrench.f[1] + body.mass * y),
             moment=wrench.moment + body.inertia * motion.alpha,
         ),
@@ -183,10 +178,7 @@ def seen(case: FloatCase, motion: Motion) -> PlanarContactProblem:
 
 def pseudo(velocity: PlanarVelocity, motion: Motion) -> tuple[float, float]:
     """Return the acceleration of the frame at the centre of mass, with Coriolis' part."""
-    return (
-        motion.a[0] - 2.0 * motion.w * velocity.v[1],
-        motion.a[1] + 2.0 * motion.w * velocity.v[0],
-    )
+    return (motion.a[0] - 2.0 * motion.w * velocity.v[1], motion.a[1] + 2.0 * motion.w * velocity.v[0])
 
 
 def letters(answer: PlanarModeAnswer) -> tuple[object, ...]:
@@ -239,19 +231,12 @@ def test_the_plane_agrees_with_space(seed: int) -> None:
         v=(motion.v[0] + slide + turn * first[1], motion.v[1] - turn * first[0]), w=motion.w + turn
     )
     f_x, f_y, moment = chance.normal(size=3).tolist()
-    problem = PlanarContactProblem(
-        body=BLOCK,
-        velocity=velocity,
-        contacts=contacts,
-        wrench=PlanarWrench(f=(5 * f_x, 10 * f_y - 20), moment=moment),
+    problem = planar_problem(
+        BLOCK, velocity, contacts, PlanarWrench(f=(5 * f_x, 10 * f_y - 20), moment=moment)
     )
     body, state, lifted = planar_in_space(BLOCK, velocity, contacts, axes_W=[[1, 0, 0], [0, 1, 0]])
     wrench = problem.wrench
-    in_space = contact_modes(
-        SpatialContactProblem(
-            body=body, state=state, contacts=lifted, force_W=[*wrench.f, 0], torque_W=[0, 0, wrench.moment]
-        )
-    )
+    in_space = contact_modes(spatial_problem(body, state, lifted, [*wrench.f, 0], [0, 0, wrench.moment]))
     in_plane = contact_modes(problem)
     as_in_space = str.maketrans("lr", "cc")
     assert [one.mode.translate(as_in_space) for one in in_plane.modes] == [one.mode for one in in_space.modes]
@@ -301,7 +286,7 @@ BELTS = [FAST.carried(LEFT), FASTER.carried(RIGHT)]
 def test_what_the_plane_does_not_answer_points_to_space(
     contacts: Sequence[PlanarContact], velocity: PlanarVelocity
 ) -> None:
-    problem = PlanarContactProblem(body=BLOCK, velocity=velocity, contacts=contacts, wrench=WEIGHT)
+    problem = planar_problem(BLOCK, velocity, contacts, WEIGHT)
     calls: list[Callable[[], object]] = [lambda: contact_modes(problem), lambda: mode_margins(problem)]
     for call in calls:
         with pytest.raises(NotSupportedError, match=r"belts with equal accelerations.*SpatialContactProblem"):

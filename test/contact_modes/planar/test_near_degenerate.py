@@ -26,7 +26,7 @@ from contact_dynamics.contact_modes import (
 from contact_dynamics.contact_modes.planar import cone
 from contact_dynamics.errors import UndecidedError
 from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
-from contact_modes.evidence import check_evidence, check_forces
+from contact_modes.evidence import check_evidence, check_forces, planar_problem
 from oracles.contact_modes import ExactCase, ExactContact, consistent_modes, kinematic_modes
 from sweeps import seeds
 
@@ -323,11 +323,11 @@ def test_more_friction_than_can_be_told_from_less_is_not_called_inconsistent() -
 
 
 def test_where_everything_separates_no_wrench_changes_that() -> None:
-    problem = PlanarContactProblem(
-        body=PlanarBody(mass=1.0, inertia=1.0),
-        velocity=PlanarVelocity(v=(0.0, 1.0), w=0.0),
-        contacts=[PlanarContact(r=(x, -1.0), normal=(0.0, 1.0), friction=0.5) for x in (-1.0, 1.0)],
-        wrench=PlanarWrench(f=(0.0, -9.8)),
+    problem = planar_problem(
+        PlanarBody(mass=1.0, inertia=1.0),
+        PlanarVelocity(v=(0.0, 1.0), w=0.0),
+        [PlanarContact(r=(x, -1.0), normal=(0.0, 1.0), friction=0.5) for x in (-1.0, 1.0)],
+        PlanarWrench(f=(0.0, -9.8)),
     )
     (margin,) = mode_margins(problem)
     assert (margin.mode, margin.margin) == ("ss", math.inf)

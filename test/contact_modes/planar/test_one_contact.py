@@ -5,15 +5,10 @@ from __future__ import annotations
 
 import pytest
 
-from contact_dynamics.contact_modes import (
-    ModeVerdict,
-    PlanarContactProblem,
-    PlanarModeAnswer,
-    Refusal,
-    contact_modes,
-)
+from contact_dynamics.contact_modes import ModeVerdict, PlanarModeAnswer, Refusal, contact_modes
 from contact_dynamics.errors import InvalidFieldError, TooLargeError
 from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
+from contact_modes.evidence import planar_problem
 
 BODY = PlanarBody(mass=2.0, inertia=0.5)
 BELOW = PlanarContact(r=(0.0, -0.5), normal=(0.0, 1.0), friction=0.5)
@@ -28,12 +23,7 @@ def ask(
     moment: float = 0.0,
 ) -> PlanarModeAnswer:
     return contact_modes(
-        PlanarContactProblem(
-            body=BODY,
-            velocity=PlanarVelocity(v=v, w=w),
-            contacts=[BELOW],
-            wrench=PlanarWrench(f=f, moment=moment),
-        )
+        planar_problem(BODY, PlanarVelocity(v=v, w=w), [BELOW], PlanarWrench(f=f, moment=moment))
     )
 
 
@@ -57,11 +47,7 @@ def test_a_leaving_contact_separates_whatever_the_force() -> None:
 
 
 def test_no_contact_is_free_motion() -> None:
-    answer = contact_modes(
-        PlanarContactProblem(
-            body=BODY, velocity=AT_REST, contacts=[], wrench=PlanarWrench(f=(4.0, 2.0), moment=1.0)
-        )
-    )
+    answer = contact_modes(planar_problem(BODY, AT_REST, [], PlanarWrench(f=(4.0, 2.0), moment=1.0)))
     assert (answer.verdict, letters(answer)) == (ModeVerdict.UNIQUE, [""])
     assert answer.modes[0].acceleration == (2.0, 1.0)
     assert answer.modes[0].angular_acceleration == 2.0
@@ -127,13 +113,9 @@ def test_turning_about_the_contact_lifts_or_presses_it() -> None:
 def test_velocity_within_the_tolerance_counts_as_zero() -> None:
     noisy = PlanarVelocity(v=(0.004, -0.009), w=0.0)
     wrench = PlanarWrench(f=(0.0, -10.0))
-    exact = contact_modes(PlanarContactProblem(body=BODY, velocity=noisy, contacts=[BELOW], wrench=wrench))
+    exact = contact_modes(planar_problem(BODY, noisy, [BELOW], wrench))
     assert exact.verdict == ModeVerdict.IMPACT
-    measured = contact_modes(
-        PlanarContactProblem(
-            body=BODY, velocity=noisy, contacts=[BELOW], wrench=wrench, velocity_tolerance=0.01
-        )
-    )
+    measured = contact_modes(planar_problem(BODY, noisy, [BELOW], wrench, velocity_tolerance=0.01))
     assert letters(measured) == ["f"]
     assert measured.contact_velocities == ((0.0, 0.0),)
     assert measured.velocity_tolerance == 0.01
@@ -142,22 +124,8 @@ def test_velocity_within_the_tolerance_counts_as_zero() -> None:
 def test_misuse_is_refused_by_name() -> None:
     wrench = PlanarWrench(f=(0.0, 0.0))
     with pytest.raises(InvalidFieldError, match="velocity_tolerance"):
-        contact_modes(
-            PlanarContactProblem(
-                body=BODY, velocity=AT_REST, contacts=[BELOW], wrench=wrench, velocity_tolerance=-1.0
-            )
-        )
+        contact_modes(planar_problem(BODY, AT_REST, [BELOW], wrench, velocity_tolerance=-1.0))
     with pytest.raises(InvalidFieldError, match="acceleration_tolerance"):
-        contact_modes(
-            PlanarContactProblem(
-                body=BODY,
-                velocity=AT_REST,
-                contacts=[BELOW],
-                wrench=wrench,
-                acceleration_tolerance=float("nan"),
-            )
-        )
+        contact_modes(planar_problem(BODY, AT_REST, [BELOW], wrench, acceleration_tolerance=float("nan")))
     with pytest.raises(TooLargeError, match="contacts"):
-        contact_modes(
-            PlanarContactProblem(body=BODY, velocity=AT_REST, contacts=[BELOW] * 1001, wrench=wrench)
-        )
+        contact_modes(planar_problem(BODY, AT_REST, [BELOW] * 1001, wrench))

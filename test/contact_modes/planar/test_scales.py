@@ -121,12 +121,7 @@ def test_numbers_of_any_size_give_finite_evidence(seed: int) -> None:
     if chance.random() < 0.4:
         velocity = PlanarVelocity(v=(number(), number()), w=number())
     answer = contact_modes(
-        PlanarContactProblem(
-            body=body,
-            velocity=velocity,
-            contacts=contacts,
-            wrench=PlanarWrench(f=(number(), number()), moment=number()),
-        )
+        planar_problem(body, velocity, contacts, PlanarWrench(f=(number(), number()), moment=number()))
     )
     for mode in answer.modes:
         pairs = (mode.acceleration, *mode.contact_forces, *mode.contact_accelerations)

@@ -58,9 +58,7 @@ def test_a_tall_block_tips_when_its_weight_leaves_its_base(width: float, height:
     assert modes_on_incline(slope + NEAR, 2.0, width, height) == ["fs"]
     # It turns about the lower foot with the moment of its weight about it.
     feet, weight = on_incline(slope + 0.1, 2.0, width, height)
-    (tipping,) = contact_modes(
-        PlanarContactProblem(body=BODY, velocity=AT_REST, contacts=feet, wrench=weight)
-    ).modes
+    (tipping,) = contact_modes(planar_problem(BODY, AT_REST, feet, weight)).modes
     x, y = feet[0].r
     moment = -(x * weight.f[1] - y * weight.f[0])
     assert tipping.angular_acceleration == pytest.approx(
@@ -70,9 +68,7 @@ def test_a_tall_block_tips_when_its_weight_leaves_its_base(width: float, height:
 
 def test_the_slope_that_is_exactly_the_angle_of_friction_holds() -> None:
     feet = [PlanarContact(r=(x, -0.5), normal=(0.0, 1.0), friction=0.75) for x in (-1.0, 1.0)]
-    answer = contact_modes(
-        PlanarContactProblem(body=BODY, velocity=AT_REST, contacts=feet, wrench=PlanarWrench(f=(-3.0, -4.0)))
-    )
+    answer = contact_modes(planar_problem(BODY, AT_REST, feet, PlanarWrench(f=(-3.0, -4.0))))
     assert [mode.mode for mode in answer.modes] == ["ff"]
     held = statics(PlanarContactProblem(body=BODY, contacts=feet, wrench=PlanarWrench(f=(-3.0, -4.0))))
     assert held.equilibrium == Certainty.CERTAIN
@@ -206,12 +202,7 @@ def test_a_rod_against_a_wall_may_stay_or_fall() -> None:
     held = statics(PlanarContactProblem(body=body, contacts=[tip], wrench=sideways))
     # The fixed rod of lecture 26 swings about its tip: it does not stay at rest.
     assert held.equilibrium == Certainty.NO
-    assert (
-        contact_modes(
-            PlanarContactProblem(body=body, velocity=AT_REST, contacts=[tip], wrench=sideways)
-        ).verdict
-        == ModeVerdict.INDETERMINATE
-    )
+    assert contact_modes(planar_problem(body, AT_REST, [tip], sideways)).verdict == ModeVerdict.INDETERMINATE
 
 
 def test_disturbance_of_a_block_in_both_metrics() -> None:

@@ -27,6 +27,7 @@ from contact_dynamics.contact_modes import (
 )
 from contact_dynamics.plane.force_dual import friction_cone
 from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
+from contact_modes.evidence import planar_problem
 from oracles.contact_mode_cases import contact, resting, rounded
 from oracles.contact_modes import kinematic_modes
 
@@ -50,12 +51,7 @@ def feet(width: float, height: float, friction: float) -> list[PlanarContact]:
 def modes_of(
     contacts: list[PlanarContact], wrench: PlanarWrench, velocity: PlanarVelocity = AT_REST
 ) -> list[str]:
-    return [
-        mode.mode
-        for mode in contact_modes(
-            PlanarContactProblem(body=BODY, velocity=velocity, contacts=contacts, wrench=wrench)
-        ).modes
-    ]
+    return [mode.mode for mode in contact_modes(planar_problem(BODY, velocity, contacts, wrench)).modes]
 
 
 def along_incline(slope: float, push: float = 0.0) -> PlanarWrench:
@@ -94,11 +90,7 @@ def test_a_sliding_block_is_braked_and_its_leading_foot_carries_more(
     assume(friction * centre_height < 0.99 * half_base)
     contacts = feet(2.0 * half_base, 2.0 * centre_height, friction)
     down = PlanarWrench(f=(0.0, -WEIGHT))
-    answer = contact_modes(
-        PlanarContactProblem(
-            body=BODY, velocity=PlanarVelocity(v=(3.0, 0.0), w=0.0), contacts=contacts, wrench=down
-        )
-    )
+    answer = contact_modes(planar_problem(BODY, PlanarVelocity(v=(3.0, 0.0), w=0.0), contacts, down))
     (mode,) = answer.modes
     assert mode.mode == "rr"
     assert mode.acceleration == pytest.approx((-friction * G, 0.0), abs=1e-9)
@@ -118,11 +110,7 @@ def test_a_sliding_block_trips_where_friction_times_height_exceeds_its_half_base
         assert modes_of(contacts, down, moving) == [expected]
     # It turns over its leading foot, which goes on sliding: N = m g / (1 + m b (b - mu h) / I).
     height = 1.1 * threshold
-    answer = contact_modes(
-        PlanarContactProblem(
-            body=BODY, velocity=moving, contacts=feet(2.0 * half_base, 2.0 * height, friction), wrench=down
-        )
-    )
+    answer = contact_modes(planar_problem(BODY, moving, feet(2.0 * half_base, 2.0 * height, friction), down))
     (mode,) = answer.modes
     lever = half_base - friction * height
     load = WEIGHT / (1.0 + BODY.mass * half_base * lever / BODY.inertia)
@@ -278,12 +266,7 @@ def test_the_rod_is_inconsistent_below_a_moment_of_inertia() -> None:
         (threshold * (1.0 + NEAR), ModeVerdict.UNIQUE),
     ):
         rod = PlanarBody(mass=1.0, inertia=inertia)
-        assert (
-            contact_modes(
-                PlanarContactProblem(body=rod, velocity=sliding, contacts=[tip], wrench=down)
-            ).verdict
-            == verdict
-        )
+        assert contact_modes(planar_problem(rod, sliding, [tip], down)).verdict == verdict
 
 
 @given(st.floats(0.3, 1.4), st.floats(0.05, 20.0), st.floats(0.2, 5.0))
@@ -303,10 +286,7 @@ def test_the_rod_along_its_wall_can_stay_from_a_friction_on(
     for friction, expected in ((ratio * (1.0 - NEAR), {"l"}), (ratio * (1.0 + NEAR), {"l", "f"})):
         tip = PlanarContact(r=(-length * cosine, -length * sine), normal=(0.0, 1.0), friction=friction)
         by_letter = {
-            mode.mode: mode
-            for mode in contact_modes(
-                PlanarContactProblem(body=rod, velocity=AT_REST, contacts=[tip], wrench=sideways)
-            ).modes
+            mode.mode: mode for mode in contact_modes(planar_problem(rod, AT_REST, [tip], sideways)).modes
         }
         assert set(by_letter) == expected
         assert by_letter["l"].contact_forces == ((0.0, 0.0),)
@@ -343,9 +323,7 @@ def test_wrenches_accelerations_and_contact_forces_are_related_as_the_lecture_sa
     for _ in range(300):
         f_x, f_y, moment = chance.normal(size=3) * [1.0, 1.0, 15.0]
         wrench = PlanarWrench(f=(float(f_x), float(f_y)), moment=float(moment))
-        for mode in contact_modes(
-            PlanarContactProblem(body=body, velocity=AT_REST, contacts=contacts, wrench=wrench)
-        ).modes:
+        for mode in contact_modes(planar_problem(body, AT_REST, contacts, wrench)).modes:
             seen.add(mode.mode)
             edges = []
             for letter, touching in zip(mode.mode, contacts, strict=True):

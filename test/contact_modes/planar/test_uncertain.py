@@ -10,12 +10,7 @@ from dataclasses import replace
 import pytest
 
 from contact_dynamics.contact import ContactUncertainty
-from contact_dynamics.contact_modes import (
-    ModeVerdict,
-    PlanarContactProblem,
-    contact_modes,
-    geometry_margins,
-)
+from contact_dynamics.contact_modes import ModeVerdict, PlanarContactProblem, contact_modes, geometry_margins
 from contact_dynamics.contact_modes.planar.uncertain import holds_everywhere, no_other_mode
 from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
 
@@ -146,11 +141,7 @@ def test_a_rod_whose_answer_hangs_on_its_wall_has_other_verdicts_nearby() -> Non
 
 def test_two_modes_that_hold_everywhere_leave_the_verdict_indeterminate() -> None:
     theta = math.radians(75.0)
-    tip = PlanarContact(
-        r=(-4.0 * math.cos(theta), -4.0 * math.sin(theta)),
-        normal=(0.0, 1.0),
-        friction=0.8,
-    )
+    tip = PlanarContact(r=(-4.0 * math.cos(theta), -4.0 * math.sin(theta)), normal=(0.0, 1.0), friction=0.8)
     problem = PlanarContactProblem(
         body=PlanarBody(mass=1.0, inertia=1.0),
         contacts=[tip],

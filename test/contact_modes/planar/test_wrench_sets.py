@@ -19,6 +19,7 @@ from contact_dynamics.contact_modes import (
 )
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
+from contact_modes.evidence import planar_problem
 from oracles.contact_mode_cases import draw, rounded
 from sweeps import seeds
 
@@ -32,26 +33,16 @@ CLEAR = 1e-6  # N: what is nearer to a boundary than this is left to the exact t
 def consistent(
     body: PlanarBody, velocity: PlanarVelocity, contacts: list[PlanarContact], wrench: PlanarWrench
 ) -> set[str]:
-    answer = contact_modes(
-        PlanarContactProblem(body=body, velocity=velocity, contacts=contacts, wrench=wrench)
-    )
+    answer = contact_modes(planar_problem(body, velocity, contacts, wrench))
     return {mode.mode for mode in answer.modes}
 
 
 @seeds(range(60))
 def test_the_map_says_what_the_modes_say(seed: int) -> None:
     body, velocity, contacts, _ = rounded(draw(seed, most_contacts=4))
-    sets = wrench_sets(
-        PlanarContactProblem(
-            body=body, velocity=velocity, contacts=contacts, wrench=PlanarWrench(f=(0.0, 0.0))
-        )
-    )
+    sets = wrench_sets(planar_problem(body, velocity, contacts, PlanarWrench(f=(0.0, 0.0))))
     if not sets:
-        answer = contact_modes(
-            PlanarContactProblem(
-                body=body, velocity=velocity, contacts=contacts, wrench=PlanarWrench(f=(0.0, 0.0))
-            )
-        )
+        answer = contact_modes(planar_problem(body, velocity, contacts, PlanarWrench(f=(0.0, 0.0))))
         leaves = all(v_n > 0.0 for _, v_n in answer.contact_velocities)
         assert leaves or answer.kinematic_modes == ()
         return
@@ -81,11 +72,7 @@ def combination(one: PlanarWrenchSet, chance: random.Random) -> PlanarWrench:
 def test_what_the_generators_make_brings_the_mode_about(seed: int) -> None:
     body, velocity, contacts, _ = rounded(draw(seed, most_contacts=4))
     chance = random.Random(seed)
-    for one in wrench_sets(
-        PlanarContactProblem(
-            body=body, velocity=velocity, contacts=contacts, wrench=PlanarWrench(f=(0.0, 0.0))
-        )
-    ):
+    for one in wrench_sets(planar_problem(body, velocity, contacts, PlanarWrench(f=(0.0, 0.0)))):
         assert one.mode in consistent(body, velocity, contacts, combination(one, chance))
 
 
@@ -100,9 +87,7 @@ def test_half_spaces_and_generators_touch() -> None:
 
 
 def test_the_margin_of_a_resting_block_to_tipping_and_sliding() -> None:
-    (fixed,) = mode_margins(
-        PlanarContactProblem(body=BODY, velocity=AT_REST, contacts=BLOCK, wrench=WEIGHT), margin_length=1e3
-    )
+    (fixed,) = mode_margins(planar_problem(BODY, AT_REST, BLOCK, WEIGHT), margin_length=1e3)
     # With a long length moments cost nothing: the block tips at half its width.
     assert fixed.mode == "ff"
     assert fixed.margin == pytest.approx(20.0 * 0.5 / 1e3, rel=1e-5)
@@ -110,9 +95,7 @@ def test_the_margin_of_a_resting_block_to_tipping_and_sliding() -> None:
     assert fixed.modes_beyond in {("fs",), ("sf",)}
     # With a short one they cost all: it slides at mu times the weight, at right angles to the cone's edge.
     low = [PlanarContact(r=(x, -1e-3), normal=(0.0, 1.0), friction=0.5) for x in (-0.5, 0.5)]
-    (sliding,) = mode_margins(
-        PlanarContactProblem(body=BODY, velocity=AT_REST, contacts=low, wrench=WEIGHT), margin_length=1e-3
-    )
+    (sliding,) = mode_margins(planar_problem(BODY, AT_REST, low, WEIGHT), margin_length=1e-3)
     assert sliding.margin == pytest.approx(20.0 * 0.5 / math.sqrt(1.0 + 0.25), rel=1e-4)
     assert sliding.verdict_beyond == ModeVerdict.UNIQUE
     assert sliding.modes_beyond in {("ll",), ("rr",)}
@@ -123,10 +106,7 @@ def test_the_margin_is_the_least_change_that_leaves_the_mode(seed: int) -> None:
     body, velocity, contacts, wrench = rounded(draw(seed, most_contacts=3))
     chance = random.Random(seed)
     length = body.radius_of_gyration * chance.uniform(0.2, 5.0)
-    for margin in mode_margins(
-        PlanarContactProblem(body=body, velocity=velocity, contacts=contacts, wrench=wrench),
-        margin_length=length,
-    ):
+    for margin in mode_margins(planar_problem(body, velocity, contacts, wrench), margin_length=length):
         if math.isinf(margin.margin):
             assert margin.change == PlanarWrench(f=(0.0, 0.0))
             continue
@@ -156,16 +136,10 @@ def test_just_inside_the_margin_the_mode_holds_and_just_outside_are_those_told(s
         f = (wrench.f[0] + part * change.f[0], wrench.f[1] + part * change.f[1])
         there = PlanarWrench(f=f, moment=wrench.moment + part * change.moment)
         return tuple(
-            mode.mode
-            for mode in contact_modes(
-                PlanarContactProblem(body=body, velocity=velocity, contacts=contacts, wrench=there)
-            ).modes
+            mode.mode for mode in contact_modes(planar_problem(body, velocity, contacts, there)).modes
         )
 
-    for margin in mode_margins(
-        PlanarContactProblem(body=body, velocity=velocity, contacts=contacts, wrench=wrench),
-        margin_length=length,
-    ):
+    for margin in mode_margins(planar_problem(body, velocity, contacts, wrench), margin_length=length):
         if math.isinf(margin.margin) or margin.margin <= 1e-5 * size:
             continue
         largest = max(size, margin.margin)
@@ -191,7 +165,7 @@ def test_a_wrench_in_a_tray_has_modes_like_rsrs() -> None:
     assert "rsrs" in sets
     chance = random.Random(0)
     wrench = combination(sets["rsrs"], chance)
-    answer = contact_modes(PlanarContactProblem(body=BODY, velocity=AT_REST, contacts=tray, wrench=wrench))
+    answer = contact_modes(planar_problem(BODY, AT_REST, tray, wrench))
     mode = next(mode for mode in answer.modes if mode.mode == "rsrs")
     assert mode.contact_accelerations[0][0] > 0.0
     assert mode.contact_accelerations[1][1] > 0.0
@@ -201,12 +175,8 @@ def test_a_wrench_in_a_tray_has_modes_like_rsrs() -> None:
 @seeds(range(200, 260))
 def test_margins_are_in_the_order_of_the_answer(seed: int) -> None:
     body, velocity, contacts, wrench = rounded(draw(seed, most_contacts=2))
-    answer = contact_modes(
-        PlanarContactProblem(body=body, velocity=velocity, contacts=contacts, wrench=wrench)
-    )
-    margins = mode_margins(
-        PlanarContactProblem(body=body, velocity=velocity, contacts=contacts, wrench=wrench)
-    )
+    answer = contact_modes(planar_problem(body, velocity, contacts, wrench))
+    margins = mode_margins(planar_problem(body, velocity, contacts, wrench))
     if margins:
         assert [margin.mode for margin in margins] == [mode.mode for mode in answer.modes]
 
@@ -215,43 +185,28 @@ def test_margins_of_an_indeterminate_rod_are_in_the_order_of_the_answer() -> Non
     rod = PlanarBody(mass=1.0, inertia=1.0)
     tip = PlanarContact(r=(-1.0353, -3.8637), normal=(0.0, 1.0), friction=0.57735)
     wrench = PlanarWrench(f=(-1.0, 0.0))
-    margins = mode_margins(PlanarContactProblem(body=rod, velocity=AT_REST, contacts=[tip], wrench=wrench))
+    margins = mode_margins(planar_problem(rod, AT_REST, [tip], wrench))
     assert [one.mode for one in margins] == ["l", "f"]
-    assert [
-        one.mode
-        for one in contact_modes(
-            PlanarContactProblem(body=rod, velocity=AT_REST, contacts=[tip], wrench=wrench)
-        ).modes
-    ] == ["l", "f"]
+    assert [one.mode for one in contact_modes(planar_problem(rod, AT_REST, [tip], wrench)).modes] == [
+        "l",
+        "f",
+    ]
 
 
 def test_no_map_without_touching_contacts() -> None:
     up = PlanarVelocity(v=(0.0, 1.0), w=0.0)
     down = PlanarVelocity(v=(0.0, -1.0), w=0.0)
-    assert (
-        wrench_sets(
-            PlanarContactProblem(body=BODY, velocity=up, contacts=BLOCK, wrench=PlanarWrench(f=(0.0, 0.0)))
-        )
-        == ()
-    )
-    assert (
-        wrench_sets(
-            PlanarContactProblem(body=BODY, velocity=down, contacts=BLOCK, wrench=PlanarWrench(f=(0.0, 0.0)))
-        )
-        == ()
-    )
+    assert wrench_sets(planar_problem(BODY, up, BLOCK, PlanarWrench(f=(0.0, 0.0)))) == ()
+    assert wrench_sets(planar_problem(BODY, down, BLOCK, PlanarWrench(f=(0.0, 0.0)))) == ()
 
 
 def test_where_everything_separates_no_wrench_changes_the_mode() -> None:
     up = PlanarVelocity(v=(0.0, 1.0), w=0.0)
-    (margin,) = mode_margins(PlanarContactProblem(body=BODY, velocity=up, contacts=BLOCK, wrench=WEIGHT))
+    (margin,) = mode_margins(planar_problem(BODY, up, BLOCK, WEIGHT))
     assert set(margin.mode) == {"s"}
     assert margin.margin == math.inf
 
 
 def test_a_length_that_is_none_is_refused() -> None:
     with pytest.raises(InvalidFieldError, match="margin_length"):
-        mode_margins(
-            PlanarContactProblem(body=BODY, velocity=AT_REST, contacts=BLOCK, wrench=WEIGHT),
-            margin_length=0.0,
-        )
+        mode_margins(planar_problem(BODY, AT_REST, BLOCK, WEIGHT), margin_length=0.0)

@@ -10,8 +10,9 @@ from hypothesis import strategies as st
 
 from contact_dynamics.contact.contact import ContactSet
 from contact_dynamics.contact.friction import linearised_cone
-from contact_dynamics.contact_modes import ModeVerdict, SpatialContactProblem, contact_modes
+from contact_dynamics.contact_modes import ModeVerdict, contact_modes
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
+from contact_modes.evidence import spatial_problem
 from oracles.spatial_modes import consistent_combinations
 from sweeps import seeds
 
@@ -20,7 +21,7 @@ NONE = np.zeros(3)
 
 
 def state(v: np.ndarray = NONE, w: np.ndarray = NONE) -> BodyState:
-    return BodyState(p_WB_W=np.zeros(3), q_WB=np.array([0.0, 0.0, 0.0, 1.0]), v_WB_W=v, w_WB_W=w)
+    return BodyState(p_WB_W=np.zeros(3), q_WB=[0.0, 0.0, 0.0, 1.0], v_WB_W=v, w_WB_W=w)
 
 
 def contact_set(points: list, normals: list, frictions: list) -> ContactSet:
@@ -29,22 +30,13 @@ def contact_set(points: list, normals: list, frictions: list) -> ContactSet:
         p_WC_W=np.array(points, dtype=float),
         normals_W=directions / np.linalg.norm(directions, axis=1)[:, None],
         frictions=np.array(frictions, dtype=float),
-        restitutions=np.zeros(len(points)),
     )
 
 
 def check(now: BodyState, contacts: ContactSet, wrench: np.ndarray, facets: int) -> int:
     """Compare letters, and accelerations where they are unique; return the number of modes."""
     answer = contact_modes(
-        SpatialContactProblem(
-            body=BODY,
-            state=now,
-            contacts=contacts,
-            force_W=wrench[:3],
-            torque_W=wrench[3:],
-            friction_facets=facets,
-            sharpen=False,
-        )
+        spatial_problem(BODY, now, contacts, wrench[:3], wrench[3:], friction_facets=facets, sharpen=False)
     )
     r, w = contacts.p_WC_W, now.w_WB_W
     velocities = now.v_WB_W + np.cross(w, r)

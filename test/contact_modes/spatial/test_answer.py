@@ -11,7 +11,6 @@ import pytest
 from contact_dynamics.contact.contact import ContactSet
 from contact_dynamics.contact_modes import (
     ModeVerdict,
-    PlanarContactProblem,
     SpatialContactProblem,
     SpatialModeAnswer,
     contact_modes,
@@ -19,6 +18,7 @@ from contact_dynamics.contact_modes import (
 from contact_dynamics.errors import InvalidFieldError, TooLargeError
 from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
+from contact_modes.evidence import planar_problem, spatial_problem
 from oracles.contact_mode_cases import FloatCase, draw, rounded
 from sweeps import seeds
 
@@ -35,14 +35,11 @@ def on_floor(points: list[tuple[float, ...]], friction: float) -> ContactSet:
         p_WC_W=np.array(points).reshape(-1, 3),
         normals_W=np.tile([0.0, 0.0, 1.0], (n, 1)),
         frictions=np.full(n, friction),
-        restitutions=np.zeros(n),
     )
 
 
 def state(v: tuple[float, ...] = (0, 0, 0), w: tuple[float, ...] = (0, 0, 0)) -> BodyState:
-    return BodyState(
-        p_WB_W=np.zeros(3), q_WB=np.array([0.0, 0.0, 0.0, 1.0]), v_WB_W=np.array(v), w_WB_W=np.array(w)
-    )
+    return BodyState(p_WB_W=np.zeros(3), q_WB=[0.0, 0.0, 0.0, 1.0], v_WB_W=np.array(v), w_WB_W=np.array(w))
 
 
 def check_evidence(
@@ -86,9 +83,7 @@ def test_a_pushed_block_slides_at_the_angle_of_friction_in_any_direction(heading
     for share, mode in ((0.999, "ffff"), (1.001, "cccc")):
         push = share * 0.4 * WEIGHT
         wrench = np.array([push * math.cos(heading), push * math.sin(heading), -WEIGHT, 0.0, 0.0, 0.0])
-        answer = contact_modes(
-            SpatialContactProblem(body=BODY, state=state(), contacts=contacts, force_W=wrench[:3])
-        )
+        answer = contact_modes(spatial_problem(BODY, state(), contacts, wrench[:3]))
         assert answer.verdict == ModeVerdict.UNIQUE
         assert [one.mode for one in answer.modes] == [mode]
         assert answer.modes[0].motion_unique
@@ -108,7 +103,7 @@ def test_a_sliding_block_is_braked_against_its_motion(heading: float) -> None:
     now = state(v=tuple(3.0 * way))
     wrench = np.array([0.0, 0.0, -WEIGHT, 0.0, 0.0, 0.0])
     contacts = on_floor(FEET, 0.4)
-    answer = contact_modes(SpatialContactProblem(body=BODY, state=now, contacts=contacts, force_W=wrench[:3]))
+    answer = contact_modes(spatial_problem(BODY, now, contacts, wrench[:3]))
     (mode,) = answer.modes
     assert mode.mode == "cccc"
     np.testing.assert_allclose(mode.acceleration_W, -4.0 * way, atol=1e-6)
@@ -118,18 +113,10 @@ def test_a_sliding_block_is_braked_against_its_motion(heading: float) -> None:
 
 def test_a_block_tips_about_an_edge() -> None:
     contacts = on_floor([(x, y, -1.0) for x, y, _ in FEET], 2.0)
-    answer = contact_modes(
-        SpatialContactProblem(
-            body=BODY, state=state(), contacts=contacts, force_W=(0.0, 0.51 * WEIGHT, -WEIGHT)
-        )
-    )
+    answer = contact_modes(spatial_problem(BODY, state(), contacts, (0.0, 0.51 * WEIGHT, -WEIGHT)))
     # Pushed at its centre, height 1, half-width 0.5: it tips once the push is half its weight.
     assert [one.mode for one in answer.modes] == ["ssff"]
-    still = contact_modes(
-        SpatialContactProblem(
-            body=BODY, state=state(), contacts=contacts, force_W=(0.0, 0.49 * WEIGHT, -WEIGHT)
-        )
-    )
+    still = contact_modes(spatial_problem(BODY, state(), contacts, (0.0, 0.49 * WEIGHT, -WEIGHT)))
     assert [one.mode for one in still.modes] == ["ffff"]
 
 
@@ -144,12 +131,9 @@ def test_more_contacts_than_the_motion_has_dimensions(contacts: int) -> None:
         p_WC_W=-normals + 0.1 * chance.normal(size=(contacts, 3)),
         normals_W=normals,
         frictions=np.full(contacts, 0.8),
-        restitutions=np.zeros(contacts),
     )
     wrench = np.array([0.3, 0.2, -WEIGHT, 0.1, 0.0, 0.2])
-    answer = contact_modes(
-        SpatialContactProblem(body=BODY, state=state(), contacts=cup, force_W=wrench[:3], torque_W=wrench[3:])
-    )
+    answer = contact_modes(spatial_problem(BODY, state(), cup, wrench[:3], wrench[3:]))
     assert "f" * contacts in [mode.mode for mode in answer.modes]
     check_evidence(answer, BODY, state(), cup, wrench)
 
@@ -158,11 +142,7 @@ def test_more_contacts_than_the_motion_has_dimensions(contacts: int) -> None:
 def test_a_block_on_many_feet_slides_as_on_four(corners: int) -> None:
     angles = 2.0 * math.pi * np.arange(corners) / corners
     feet = [(math.cos(angle), math.sin(angle), -0.2) for angle in angles]
-    answer = contact_modes(
-        SpatialContactProblem(
-            body=BODY, state=state(), contacts=on_floor(feet, 0.4), force_W=(10.0, 0.0, -WEIGHT)
-        )
-    )
+    answer = contact_modes(spatial_problem(BODY, state(), on_floor(feet, 0.4), (10.0, 0.0, -WEIGHT)))
     (mode,) = answer.modes
     assert mode.mode == "c" * corners
     np.testing.assert_allclose(mode.acceleration_W, [5.0 - 4.0, 0.0, 0.0], atol=1e-9)
@@ -170,14 +150,10 @@ def test_a_block_on_many_feet_slides_as_on_four(corners: int) -> None:
 
 def test_a_frictionless_block_slides_freely() -> None:
     contacts = on_floor(FEET, 0.0)
-    pushed = contact_modes(
-        SpatialContactProblem(body=BODY, state=state(), contacts=contacts, force_W=(1.0, 0.0, -WEIGHT))
-    )
+    pushed = contact_modes(spatial_problem(BODY, state(), contacts, (1.0, 0.0, -WEIGHT)))
     assert [one.mode for one in pushed.modes] == ["cccc"]
     np.testing.assert_allclose(pushed.modes[0].acceleration_W, [0.5, 0.0, 0.0], atol=1e-6)
-    resting = contact_modes(
-        SpatialContactProblem(body=BODY, state=state(), contacts=contacts, force_W=(0.0, 0.0, -WEIGHT))
-    )
+    resting = contact_modes(spatial_problem(BODY, state(), contacts, (0.0, 0.0, -WEIGHT)))
     assert [one.mode for one in resting.modes] == ["ffff"]
 
 
@@ -192,7 +168,6 @@ def in_space(case: FloatCase) -> tuple[MassProperties, BodyState, ContactSet, np
             p_WC_W=np.array([(one.r[0], 0.0, one.r[1]) for one in contacts]),
             normals_W=np.array([(one.normal[0], 0.0, one.normal[1]) for one in contacts]),
             frictions=np.array([one.friction for one in contacts]),
-            restitutions=np.zeros(len(contacts)),
         ),
         np.array([wrench.f[0], 0.0, wrench.f[1], 0.0, -wrench.moment, 0.0]),
     )
@@ -202,20 +177,9 @@ def in_space(case: FloatCase) -> tuple[MassProperties, BodyState, ContactSet, np
 def test_every_planar_mode_is_one_in_space(seed: int) -> None:
     case = rounded(draw(seed, most_contacts=2))
     body, now, contacts, wrench = in_space(case)
-    answer = contact_modes(
-        SpatialContactProblem(
-            body=body,
-            state=now,
-            contacts=contacts,
-            force_W=wrench[:3],
-            torque_W=wrench[3:],
-            friction_facets=4,
-        )
-    )
+    answer = contact_modes(spatial_problem(body, now, contacts, wrench[:3], wrench[3:], friction_facets=4))
     check_evidence(answer, body, now, contacts, wrench)
-    planar = contact_modes(
-        PlanarContactProblem(body=case[0], velocity=case[1], contacts=case[2], wrench=case[3])
-    )
+    planar = contact_modes(planar_problem(case[0], case[1], case[2], case[3]))
     for mode in planar.modes:
         # A frictionless contact that stays is c or f by its acceleration.
         letters = "".join("c" if letter in "lr" else letter for letter in mode.mode)
@@ -241,7 +205,7 @@ def rod(velocity: tuple[float, float], force: tuple[float, float]) -> SpatialMod
     body, now, contacts, wrench = in_space(
         (PlanarBody(mass=1.0, inertia=1.0), PlanarVelocity(v=velocity, w=0.0), [tip], PlanarWrench(f=force))
     )
-    answer = contact_modes(SpatialContactProblem(body=body, state=now, contacts=contacts, force_W=wrench[:3]))
+    answer = contact_modes(spatial_problem(body, now, contacts, wrench[:3]))
     check_evidence(answer, body, now, contacts, wrench)
     return answer
 
@@ -254,25 +218,15 @@ def test_the_rods_of_lecture_26_in_space() -> None:
 
 
 def test_free_leaving_and_approaching_bodies() -> None:
-    free = contact_modes(
-        SpatialContactProblem(
-            body=BODY, state=state(w=(1, 2, 3)), contacts=on_floor([], 0.5), force_W=(0, 0, -WEIGHT)
-        )
-    )
+    free = contact_modes(spatial_problem(BODY, state(w=(1, 2, 3)), on_floor([], 0.5), (0, 0, -WEIGHT)))
     (mode,) = free.modes
     assert mode.mode == ""
     L = BODY.I_B @ [1.0, 2.0, 3.0]
     np.testing.assert_allclose(BODY.I_B @ mode.angular_acceleration_W, -np.cross([1.0, 2.0, 3.0], L))
     contacts = on_floor(FEET, 0.5)
-    leaving = contact_modes(
-        SpatialContactProblem(body=BODY, state=state(v=(0, 0, 1)), contacts=contacts, force_W=(0, 0, -WEIGHT))
-    )
+    leaving = contact_modes(spatial_problem(BODY, state(v=(0, 0, 1)), contacts, (0, 0, -WEIGHT)))
     assert [one.mode for one in leaving.modes] == ["ssss"]
-    strikes = contact_modes(
-        SpatialContactProblem(
-            body=BODY, state=state(v=(0, 0, -1)), contacts=contacts, force_W=(0, 0, -WEIGHT)
-        )
-    )
+    strikes = contact_modes(spatial_problem(BODY, state(v=(0, 0, -1)), contacts, (0, 0, -WEIGHT)))
     assert strikes.verdict == ModeVerdict.IMPACT
     assert strikes.approaching == (0, 1, 2, 3)
 
@@ -284,9 +238,7 @@ def drawn_feet(seed: int) -> tuple[ContactSet, np.ndarray]:
     points = np.array([[0.4, -0.5, -0.3], [0.3, 0.6, -0.3], [-0.9, 0.1, 0.0]]) + 0.1 * chance.normal(
         size=(3, 3)
     )
-    contacts = ContactSet(
-        p_WC_W=points, normals_W=normals, frictions=np.array([0.2, 0.3, 0.2]), restitutions=np.zeros(3)
-    )
+    contacts = ContactSet(p_WC_W=points, normals_W=normals, frictions=[0.2, 0.3, 0.2])
     return contacts, np.array([-15.0, 12.0, -WEIGHT, 0.0, 0.0, 0.0]) + chance.normal(size=6)
 
 
@@ -295,14 +247,7 @@ def test_sharpened_friction_is_coulombs_and_knows_no_facets(seed: int) -> None:
     contacts, wrench = drawn_feet(seed)
     answers = [
         contact_modes(
-            SpatialContactProblem(
-                body=BODY,
-                state=state(),
-                contacts=contacts,
-                force_W=wrench[:3],
-                torque_W=wrench[3:],
-                friction_facets=facets,
-            )
+            spatial_problem(BODY, state(), contacts, wrench[:3], wrench[3:], friction_facets=facets)
         )
         for facets in (6, 13)
     ]
@@ -326,25 +271,15 @@ def test_a_pyramid_turns_friction_by_half_a_sector_at_most(seed: int) -> None:
     contacts, wrench = drawn_feet(seed)
     for facets in (6, 24):
         answer = contact_modes(
-            SpatialContactProblem(
-                body=BODY,
-                state=state(),
-                contacts=contacts,
-                force_W=wrench[:3],
-                torque_W=wrench[3:],
-                friction_facets=facets,
-                sharpen=False,
+            spatial_problem(
+                BODY, state(), contacts, wrench[:3], wrench[3:], friction_facets=facets, sharpen=False
             )
         )
         assert all(1e-6 < mode.misdirection <= math.pi / facets + 1e-9 for mode in answer.modes)
 
 
 def test_four_feet_share_a_load_and_one_foot_has_no_choice() -> None:
-    resting = contact_modes(
-        SpatialContactProblem(
-            body=BODY, state=state(), contacts=on_floor(FEET, 0.4), force_W=(2.0, 0.0, -WEIGHT)
-        )
-    )
+    resting = contact_modes(spatial_problem(BODY, state(), on_floor(FEET, 0.4), (2.0, 0.0, -WEIGHT)))
     (mode,) = resting.modes
     assert (mode.motion_unique, mode.forces_unique) == (True, False)
     # Least squares: the load's line of force meets the floor 0.02 m from the middle.
@@ -353,9 +288,7 @@ def test_four_feet_share_a_load_and_one_foot_has_no_choice() -> None:
         mode.contact_forces_W[:, 2], WEIGHT / 4.0 * np.array([0.98, 1.02, 1.02, 0.98]), atol=1e-9
     )
     balanced = contact_modes(
-        SpatialContactProblem(
-            body=BODY, state=state(), contacts=on_floor([(0, 0, -0.2)], 0.4), force_W=(0.0, 0.0, -WEIGHT)
-        )
+        spatial_problem(BODY, state(), on_floor([(0, 0, -0.2)], 0.4), (0.0, 0.0, -WEIGHT))
     )
     (mode,) = balanced.modes
     assert (mode.mode, mode.motion_unique, mode.forces_unique) == ("f", True, True)
@@ -379,20 +312,8 @@ def test_a_pushed_and_turned_block_is_one_mode_of_several_motions() -> None:
 
 def test_misuse_is_refused_by_name() -> None:
     with pytest.raises(InvalidFieldError, match="friction_facets"):
-        contact_modes(
-            SpatialContactProblem(
-                body=BODY, state=state(), contacts=on_floor(FEET, 0.5), force_W=(0, 0, -1), friction_facets=2
-            )
-        )
+        contact_modes(spatial_problem(BODY, state(), on_floor(FEET, 0.5), (0, 0, -1), friction_facets=2))
     with pytest.raises(InvalidFieldError, match="force"):
-        contact_modes(
-            SpatialContactProblem(
-                body=BODY, state=state(), contacts=on_floor(FEET, 0.5), force_W=(0, 0, math.nan)
-            )
-        )
+        contact_modes(spatial_problem(BODY, state(), on_floor(FEET, 0.5), (0, 0, math.nan)))
     with pytest.raises(TooLargeError, match="contacts"):
-        contact_modes(
-            SpatialContactProblem(
-                body=BODY, state=state(), contacts=on_floor(FEET * 9, 0.5), force_W=(0, 0, -1)
-            )
-        )
+        contact_modes(spatial_problem(BODY, state(), on_floor(FEET * 9, 0.5), (0, 0, -1)))

@@ -15,6 +15,7 @@ from contact_dynamics.contact_modes.result import applied_wrench
 from contact_dynamics.errors import NoContactError
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.world import Body, Surface, World
+from contact_modes.evidence import spatial_problem
 from sweeps import seeds
 
 BODY = MassProperties(mass=0.7, I_B=np.diag([0.02, 0.05, 0.06]))
@@ -28,25 +29,15 @@ def test_the_applied_wrench_follows_from_each_mode(seed: int) -> None:
     state = BodyState(
         p_WB_W=random.normal(size=3),
         q_WB=q / np.linalg.norm(q),
-        v_WB_W=np.zeros(3),
         w_WB_W=random.normal(size=3) * (0.0 if seed % 2 else 3.0),
     )
     arms = random.uniform(-0.2, 0.2, size=(1 + seed % 3, 3)) - (0.0, 0.0, 0.2)
     points = state.p_WB_W + arms
-    contacts = ContactSet(
-        p_WC_W=points, normals_W=np.tile([0.0, 0.0, 1.0], (len(arms), 1)), frictions=0.5, restitutions=0.0
-    )
+    contacts = ContactSet(p_WC_W=points, normals_W=np.tile([0.0, 0.0, 1.0], (len(arms), 1)), frictions=0.5)
     approach = min(0.0, float(state.velocity_of_point(points)[:, 2].min()))
-    state = BodyState(
-        p_WB_W=state.p_WB_W,
-        q_WB=state.q_WB,
-        v_WB_W=np.array([0.0, 0.0, -approach]),
-        w_WB_W=state.w_WB_W,
-    )
+    state = BodyState(p_WB_W=state.p_WB_W, q_WB=state.q_WB, v_WB_W=[0.0, 0.0, -approach], w_WB_W=state.w_WB_W)
     force_W, torque_W = random.normal(size=3) - (0.0, 0.0, 5.0), 0.1 * random.normal(size=3)
-    problem = SpatialContactProblem(
-        body=BODY, state=state, contacts=contacts, force_W=force_W, torque_W=torque_W
-    )
+    problem = spatial_problem(BODY, state, contacts, force_W, torque_W)
     found = contact_modes(problem)
     assert found.modes
     for mode in found.modes:
@@ -60,7 +51,7 @@ def test_a_push_at_a_point_and_the_weight_make_the_wrench() -> None:
     crate = Body.box((0.4, 0.3, 0.6), mass=20.0, name="crate")
     floor = Surface(name="floor", p_WS_W=[0, 0, 0], normal_W=[0, 0, 1], friction=0.5, restitution=0.3)
     world = World(surfaces=(floor,), gravity_W=[0, 0, -10.0])
-    state = BodyState(p_WB_W=[1, 0, 0.3], q_WB=[0, 0, 0, 1], v_WB_W=[0, 0, 0], w_WB_W=[0, 0, 0])
+    state = BodyState(p_WB_W=[1, 0, 0.3], q_WB=[0, 0, 0, 1])
     for push, mode in ((79.9, "ffff"), (80.1, "ssff")):
         problem = SpatialContactProblem.of(
             crate, state, world, force_W=[push, 0, 0], at_W=[0.8, 0, 0.5], torque_W=[0, 0, 0.1]

@@ -21,6 +21,7 @@ from contact_dynamics.contact_modes import (
     mode_margins,
 )
 from contact_dynamics.tolerances import FLUSH, FLUSH_ROUGHLY, STRICT
+from contact_modes.evidence import spatial_problem
 from oracles.boxes_nearly_flush import MASS, Flush, flush
 from sweeps import seeds
 
@@ -36,12 +37,12 @@ DECADES = range(-14, -2)
 
 
 def problem_of(box: Flush) -> SpatialContactProblem:
-    return SpatialContactProblem(
-        body=MassProperties(mass=MASS, I_B=np.diag(box.inertia)),
-        state=BodyState(p_WB_W=[0, 0, 0], q_WB=[0, 0, 0, 1], v_WB_W=box.velocity, w_WB_W=[0, 0, 0]),
-        contacts=ContactSet(p_WC_W=box.points, normals_W=box.normals, frictions=box.frictions),
-        force_W=box.wrench[:3],
-        torque_W=box.wrench[3:],
+    return spatial_problem(
+        MassProperties(mass=MASS, I_B=np.diag(box.inertia)),
+        BodyState(p_WB_W=[0, 0, 0], q_WB=[0, 0, 0, 1], v_WB_W=box.velocity),
+        ContactSet(p_WC_W=box.points, normals_W=box.normals, frictions=box.frictions),
+        box.wrench[:3],
+        box.wrench[3:],
         velocity_tolerance=TOUCHES,
     )
 

@@ -11,20 +11,19 @@ import pytest
 from contact_dynamics.contact.contact import ContactSet
 from contact_dynamics.contact_modes import SpatialContactProblem, SpatialModeAnswer, contact_modes
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
+from contact_modes.evidence import spatial_problem
 from oracles.modes_by_construction import INERTIA, MASS, Made, made
 
 NEAR = 0.01  # relative, of accelerations: modes whose directions of sliding differ by 1e-3 rad count as one
 
 
 def problem_of(case: Made) -> SpatialContactProblem:
-    return SpatialContactProblem(
-        body=MassProperties(mass=MASS, I_B=INERTIA),
-        state=BodyState(
-            p_WB_W=np.zeros(3), q_WB=np.array([0.0, 0.0, 0.0, 1.0]), v_WB_W=case.v, w_WB_W=case.w
-        ),
-        contacts=ContactSet(p_WC_W=case.points, normals_W=case.normals, frictions=case.frictions),
-        force_W=case.wrench[:3],
-        torque_W=case.wrench[3:],
+    return spatial_problem(
+        MassProperties(mass=MASS, I_B=INERTIA),
+        BodyState(p_WB_W=np.zeros(3), q_WB=[0.0, 0.0, 0.0, 1.0], v_WB_W=case.v, w_WB_W=case.w),
+        ContactSet(p_WC_W=case.points, normals_W=case.normals, frictions=case.frictions),
+        case.wrench[:3],
+        case.wrench[3:],
     )
 
 

@@ -17,12 +17,11 @@ from contact_dynamics.contact_modes import (
     contact_modes,
 )
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
+from contact_modes.evidence import spatial_problem
 from oracles.equilibria_in_space import resting
 from sweeps import seeds
 
-AT_REST = BodyState(
-    p_WB_W=np.zeros(3), q_WB=np.array([0.0, 0.0, 0.0, 1.0]), v_WB_W=np.zeros(3), w_WB_W=np.zeros(3)
-)
+AT_REST = BodyState(p_WB_W=np.zeros(3), q_WB=[0.0, 0.0, 0.0, 1.0])
 BODY = MassProperties(mass=2.0, I_B=np.diag([0.3, 0.4, 0.5]))
 BOX = MassProperties(mass=1.0, I_B=np.diag([0.0043, 0.0043, 0.0053]))
 STRAIGHT = 1e-8  # rad, of friction to the way against sliding
@@ -83,16 +82,16 @@ def turned_feet(seed: int) -> SpatialContactProblem:
     chance = np.random.default_rng(seed)
     n = int(chance.integers(4, 13))
     angles = 2.0 * np.pi * np.arange(n) / n + 0.3
-    return SpatialContactProblem(
-        body=BOX,
-        state=AT_REST,
-        contacts=ContactSet(
+    return spatial_problem(
+        BOX,
+        AT_REST,
+        ContactSet(
             p_WC_W=np.column_stack([0.1 * np.cos(angles), 0.1 * np.sin(angles), np.full(n, -0.1)]),
             normals_W=[0.0, 0.0, 1.0],
             frictions=0.3,
         ),
-        force_W=chance.normal(size=3) * [3.0, 3.0, 0.0] - [0.0, 0.0, 9.8],
-        torque_W=chance.normal(size=3) * [0.05, 0.05, 1.0],
+        chance.normal(size=3) * [3.0, 3.0, 0.0] - [0.0, 0.0, 9.8],
+        chance.normal(size=3) * [0.05, 0.05, 1.0],
     )
 
 
@@ -104,17 +103,15 @@ def pivoting(seed: int) -> SpatialContactProblem:
     normals = np.array(
         [chance.normal(size=3), chance.normal(size=3), centre + w * chance.normal() - points[2]]
     )
-    return SpatialContactProblem(
-        body=BODY,
-        state=BodyState(
-            p_WB_W=np.zeros(3), q_WB=np.array([0.0, 0.0, 0.0, 1.0]), v_WB_W=-np.cross(w, centre), w_WB_W=w
-        ),
-        contacts=ContactSet(
+    return spatial_problem(
+        BODY,
+        BodyState(p_WB_W=np.zeros(3), q_WB=[0.0, 0.0, 0.0, 1.0], v_WB_W=-np.cross(w, centre), w_WB_W=w),
+        ContactSet(
             p_WC_W=points,
             normals_W=normals / np.linalg.norm(normals, axis=1)[:, None],
             frictions=chance.choice([0.3, 1.0], size=3),
         ),
-        force_W=5.0 * chance.normal(size=3),
+        5.0 * chance.normal(size=3),
     )
 
 
@@ -122,9 +119,7 @@ def degenerate(seed: int) -> SpatialContactProblem:
     """Return a body at rest by construction, with contacts that are nearly the same."""
     case = resting(seed)
     contacts = ContactSet(p_WC_W=case.points, normals_W=case.normals, frictions=case.frictions)
-    return SpatialContactProblem(
-        body=BODY, state=AT_REST, contacts=contacts, force_W=case.wrench[:3], torque_W=case.wrench[3:]
-    )
+    return spatial_problem(BODY, AT_REST, contacts, case.wrench[:3], case.wrench[3:])
 
 
 def test_feet_that_share_a_load_in_many_ways_have_friction_straight_against_their_sliding() -> None:
@@ -142,13 +137,8 @@ def test_a_box_that_just_slides_has_one_mode_although_its_feet_share_the_load() 
         frictions=0.5,
     )
     push = 5.0 * (1.0 + 1e-5) * np.array([np.cos(0.5), np.sin(0.5)])
-    problem = SpatialContactProblem(
-        body=BODY,
-        state=AT_REST,
-        contacts=feet,
-        force_W=(*push, -10.0),
-        torque_W=(-0.1 * push[1], 0.1 * push[0], 0.0),
-        friction_facets=5,
+    problem = spatial_problem(
+        BODY, AT_REST, feet, (*push, -10.0), (-0.1 * push[1], 0.1 * push[0], 0.0), friction_facets=5
     )
     answer = check(problem)
     assert (answer.verdict, [mode.mode for mode in answer.modes]) == (ModeVerdict.UNIQUE, ["cccc"])

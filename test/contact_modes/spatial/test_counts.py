@@ -22,16 +22,12 @@ from contact_dynamics.rigid_body.body import BodyState
 
 X, Y, Z = np.eye(3)
 WALLS = [(Z, X, Y), (Y, Z, X), (X, Y, Z), (-X, Z, Y), (-Y, X, Z), (-Z, Y, X)]
-AT_REST = BodyState(
-    p_WB_W=np.zeros(3), q_WB=np.array([0.0, 0.0, 0.0, 1.0]), v_WB_W=np.zeros(3), w_WB_W=np.zeros(3)
-)
+AT_REST = BodyState(p_WB_W=np.zeros(3), q_WB=[0.0, 0.0, 0.0, 1.0])
 
 
 def contact_set(points: list[np.ndarray], normals: list[np.ndarray]) -> ContactSet:
     n = len(points)
-    return ContactSet(
-        p_WC_W=np.array(points), normals_W=np.array(normals), frictions=np.ones(n), restitutions=np.zeros(n)
-    )
+    return ContactSet(p_WC_W=np.array(points), normals_W=np.array(normals), frictions=np.ones(n))
 
 
 def box_at(walls: int) -> ContactSet:

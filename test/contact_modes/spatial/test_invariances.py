@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 from contact_dynamics.contact.contact import ContactSet
-from contact_dynamics.contact_modes import SpatialContactProblem, SpatialModeAnswer, contact_modes
+from contact_dynamics.contact_modes import SpatialModeAnswer, contact_modes
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
+from contact_modes.evidence import spatial_problem
 from sweeps import seeds, sweep
 
 INERTIA = np.diag([0.3, 0.4, 0.5])
@@ -32,21 +33,13 @@ class Case:
         self.inertia, self.mass = INERTIA, 2.0
 
     def answer(self, facets: int = 7) -> SpatialModeAnswer:
-        n = len(self.points)
         return contact_modes(
-            SpatialContactProblem(
-                body=MassProperties(mass=self.mass, I_B=self.inertia),
-                state=BodyState(
-                    p_WB_W=np.zeros(3), q_WB=np.array([0.0, 0.0, 0.0, 1.0]), v_WB_W=self.v, w_WB_W=np.zeros(3)
-                ),
-                contacts=ContactSet(
-                    p_WC_W=self.points,
-                    normals_W=self.normals,
-                    frictions=self.frictions,
-                    restitutions=np.zeros(n),
-                ),
-                force_W=self.wrench[:3],
-                torque_W=self.wrench[3:],
+            spatial_problem(
+                MassProperties(mass=self.mass, I_B=self.inertia),
+                BodyState(p_WB_W=np.zeros(3), q_WB=[0.0, 0.0, 0.0, 1.0], v_WB_W=self.v),
+                ContactSet(p_WC_W=self.points, normals_W=self.normals, frictions=self.frictions),
+                self.wrench[:3],
+                self.wrench[3:],
                 friction_facets=facets,
             )
         )
@@ -100,11 +93,7 @@ def test_other_units_of_mass(seed: int) -> None:
     factor = (1e-6, 1e-2, 1e4)[seed % 3]
     case = Case(seed)
     before = case.answer()
-    case.mass, case.inertia, case.wrench = (
-        factor * case.mass,
-        factor * case.inertia,
-        factor * case.wrench,
-    )
+    case.mass, case.inertia, case.wrench = (factor * case.mass, factor * case.inertia, factor * case.wrench)
     after = case.answer()
     same_modes(before, after, np.eye(3), 1.0)
     for one, other in zip(before.modes, after.modes, strict=True):

@@ -29,14 +29,11 @@ def contact_set(pairs: list[tuple[tuple[float, ...], tuple[float, ...]]]) -> Con
         p_WC_W=points,
         normals_W=normals / np.linalg.norm(normals, axis=1)[:, None],
         frictions=np.ones(len(pairs)),
-        restitutions=np.zeros(len(pairs)),
     )
 
 
 def state(v: tuple[float, ...] = (0, 0, 0), w: tuple[float, ...] = (0, 0, 0)) -> BodyState:
-    return BodyState(
-        p_WB_W=np.zeros(3), q_WB=np.array([0.0, 0.0, 0.0, 1.0]), v_WB_W=np.array(v), w_WB_W=np.array(w)
-    )
+    return BodyState(p_WB_W=np.zeros(3), q_WB=[0.0, 0.0, 0.0, 1.0], v_WB_W=np.array(v), w_WB_W=np.array(w))
 
 
 def face_of_cube(axis: int, side: float) -> list[tuple[tuple[float, ...], tuple[float, ...]]]:
@@ -178,7 +175,6 @@ def test_a_wheel_between_two_plates_rolls_and_a_bar_between_them_cannot() -> Non
         p_WC_W=bar.p_WC_W,
         normals_W=bar.normals_W,
         frictions=bar.frictions,
-        restitutions=bar.restitutions,
         body_curvatures=Curvatures(along=np.ones(2), across=np.ones(2), directions_W=np.zeros((2, 3))),
     )
     rolling = state(v=(2.0, 0.0, 0.0), w=(0.0, 2.0, 0.0))

@@ -21,11 +21,12 @@ from contact_dynamics import (
     largest_load,
 )
 from contact_dynamics.errors import InvalidFieldError
+from contact_modes.evidence import spatial_problem
 from sweeps import seeds
 
 WEIGHT = 20.0 * 10.0
 CRATE = Body.box((0.4, 0.3, 0.6), mass=20.0, name="crate")
-LYING = BodyState(p_WB_W=[0, 0, 0.3], q_WB=[0, 0, 0, 1], v_WB_W=[0, 0, 0], w_WB_W=[0, 0, 0])
+LYING = BodyState(p_WB_W=[0, 0, 0.3], q_WB=[0, 0, 0, 1])
 
 
 def on_floor(friction: float) -> SpatialContactProblem:
@@ -72,8 +73,8 @@ def test_two_fingers_may_let_go_before_they_must() -> None:
         p_WC_W=[[-0.05, 0, 0], [0.05, 0, 0]], normals_W=[[1, 0, 0], [-1, 0, 0]], frictions=0.5
     )
     plate = Body.box((0.1, 0.1, 0.1), mass=1.0)
-    state = BodyState(p_WB_W=[0, 0, 0], q_WB=[0, 0, 0, 1], v_WB_W=[0, 0, 0], w_WB_W=[0, 0, 0])
-    problem = SpatialContactProblem(body=plate, state=state, contacts=fingers, force_W=[0, 0, -1e-3])
+    state = BodyState(p_WB_W=[0, 0, 0], q_WB=[0, 0, 0, 1])
+    problem = spatial_problem(plate, state, fingers, [0, 0, -1e-3])
     found = largest_load(problem, force_W=[0, 0, -1])
     assert (found.factor, found.only_rest) == (math.inf, 0.0)
 
@@ -89,10 +90,8 @@ def test_rest_is_consistent_just_before_and_not_just_beyond(seed: int) -> None:
     if seed % 2:
         points, normals = np.vstack([points, [[0.1, -0.3, 0.1]]]), np.vstack([normals, [[0.0, 1.0, 0.0]]])
     contacts = ContactSet(p_WC_W=points, normals_W=normals, frictions=random.uniform(0.2, 0.8, len(points)))
-    state = BodyState(p_WB_W=[0, 0, 0], q_WB=[0, 0, 0, 1], v_WB_W=[0, 0, 0], w_WB_W=[0, 0, 0])
-    problem = SpatialContactProblem(
-        body=CRATE.mass_properties, state=state, contacts=contacts, force_W=[0, 0, -WEIGHT]
-    )
+    state = BodyState(p_WB_W=[0, 0, 0], q_WB=[0, 0, 0, 1])
+    problem = spatial_problem(CRATE.mass_properties, state, contacts, [0, 0, -WEIGHT])
     load = random.normal(size=6) * [1, 1, 0.3, 0.2, 0.2, 0.2]
     found = largest_load(problem, force_W=load[:3], torque_W=load[3:])
     rest = "f" * len(points)

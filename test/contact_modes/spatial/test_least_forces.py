@@ -7,12 +7,13 @@ import numpy as np
 import pytest
 
 from contact_dynamics import BodyState, ContactSet, MassProperties
-from contact_dynamics.contact_modes import SpatialContactProblem, contact_modes
+from contact_dynamics.contact_modes import contact_modes
 from contact_dynamics.contact_modes.result import SpatialModeAnswer
+from contact_modes.evidence import spatial_problem
 from sweeps import seeds
 
 CUBE = MassProperties(mass=1.0, I_B=np.eye(3) / 6.0)
-AT_REST = BodyState(p_WB_W=np.zeros(3), q_WB=[0.0, 0.0, 0.0, 1.0], v_WB_W=np.zeros(3), w_WB_W=np.zeros(3))
+AT_REST = BodyState(p_WB_W=np.zeros(3), q_WB=[0.0, 0.0, 0.0, 1.0])
 FEET = np.array([[x, y, -0.5] for x in (-0.5, 0.5) for y in (-0.5, 0.5)])
 UP = [0.0, 0.0, 1.0]
 
@@ -20,9 +21,7 @@ UP = [0.0, 0.0, 1.0]
 def answer_of(
     contacts: ContactSet, force: list[float], torque: list[float] | None = None
 ) -> SpatialModeAnswer:
-    problem = SpatialContactProblem(
-        body=CUBE, state=AT_REST, contacts=contacts, force_W=force, torque_W=torque or [0.0, 0.0, 0.0]
-    )
+    problem = spatial_problem(CUBE, AT_REST, contacts, force, torque or [0.0, 0.0, 0.0])
     return contact_modes(problem)
 
 

@@ -12,14 +12,13 @@ from contact_dynamics.contact.contact import ContactSet
 from contact_dynamics.contact.friction import linearised_cone
 from contact_dynamics.contact_modes import ModeVerdict, SpatialContactProblem, contact_modes
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
+from contact_modes.evidence import spatial_problem
 from oracles.pressed_feet import drawn_loads, motion_under
 from sweeps import seeds
 
 MASS, WEIGHT, FRICTION = 2.0, 20.0, 0.4
 BODY = MassProperties(mass=MASS, I_B=np.diag([0.3, 0.4, 0.5]))
-AT_REST = BodyState(
-    p_WB_W=np.zeros(3), q_WB=np.array([0.0, 0.0, 0.0, 1.0]), v_WB_W=np.zeros(3), w_WB_W=np.zeros(3)
-)
+AT_REST = BodyState(p_WB_W=np.zeros(3), q_WB=[0.0, 0.0, 0.0, 1.0])
 
 
 def ring(n: int, height: float = 0.2) -> ContactSet:
@@ -28,7 +27,6 @@ def ring(n: int, height: float = 0.2) -> ContactSet:
         p_WC_W=np.column_stack([np.cos(angles), np.sin(angles), np.full(n, -height)]),
         normals_W=np.tile([0.0, 0.0, 1.0], (n, 1)),
         frictions=np.full(n, FRICTION),
-        restitutions=np.zeros(n),
     )
 
 
@@ -49,11 +47,7 @@ def ring(n: int, height: float = 0.2) -> ContactSet:
 def test_many_feet_take_few_trials(
     feet: int, push: tuple[float, float], torque: tuple[float, float, float], first: str, modes: int | None
 ) -> None:
-    answer = contact_modes(
-        SpatialContactProblem(
-            body=BODY, state=AT_REST, contacts=ring(feet), force_W=(*push, -WEIGHT), torque_W=torque
-        )
-    )
+    answer = contact_modes(spatial_problem(BODY, AT_REST, ring(feet), (*push, -WEIGHT), torque))
     if modes is not None:
         assert len(answer.modes) == modes
     if torque[1] == 25.0:  # N m, more than its weight has about the outermost foot
@@ -108,14 +102,8 @@ def test_every_distribution_of_the_load_has_its_mode(push: tuple[float, float], 
     facets, contacts = 8, ring(8, height=0.0)
     force = np.array([*push, -WEIGHT])
     answer = contact_modes(
-        SpatialContactProblem(
-            body=BODY,
-            state=AT_REST,
-            contacts=contacts,
-            force_W=force,
-            torque_W=(0.0, 0.0, twist),
-            friction_facets=facets,
-            sharpen=False,
+        spatial_problem(
+            BODY, AT_REST, contacts, force, (0.0, 0.0, twist), friction_facets=facets, sharpen=False
         )
     )
     corners = contacts.p_WC_W[:, :2]

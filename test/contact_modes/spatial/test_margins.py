@@ -20,6 +20,7 @@ from contact_dynamics.contact_modes import (
 )
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
+from contact_modes.evidence import spatial_problem
 from oracles.modes_on_planes import INERTIA, MASS, made
 from sweeps import seeds
 
@@ -33,9 +34,7 @@ COARSELY = 2e-2  # relative, of changes on a body whose friction is that of such
 
 
 def state(v: tuple[float, ...] = (0, 0, 0), w: tuple[float, ...] = (0, 0, 0)) -> BodyState:
-    return BodyState(
-        p_WB_W=np.zeros(3), q_WB=np.array([0.0, 0.0, 0.0, 1.0]), v_WB_W=np.array(v), w_WB_W=np.array(w)
-    )
+    return BodyState(p_WB_W=np.zeros(3), q_WB=[0.0, 0.0, 0.0, 1.0], v_WB_W=np.array(v), w_WB_W=np.array(w))
 
 
 def feet(height: float, friction: float) -> ContactSet:
@@ -44,17 +43,13 @@ def feet(height: float, friction: float) -> ContactSet:
         p_WC_W=np.array([(x, y, -height) for x, y in corners]),
         normals_W=np.tile([0.0, 0.0, 1.0], (4, 1)),
         frictions=np.full(4, friction),
-        restitutions=np.zeros(4),
     )
 
 
 @pytest.mark.parametrize("facets", [4, 8, 16])
 def test_a_block_at_rest_slips_at_the_edge_of_its_friction_cone(facets: int) -> None:
     (margin,) = mode_margins(
-        SpatialContactProblem(
-            body=BODY, state=state(), contacts=feet(0.2, 0.4), force_W=DOWN, friction_facets=facets
-        ),
-        margin_length=SHORT,
+        spatial_problem(BODY, state(), feet(0.2, 0.4), DOWN, friction_facets=facets), margin_length=SHORT
     )
     assert margin.mode == "ffff"
     assert margin.margin == pytest.approx(WEIGHT * math.sin(math.atan(0.4)), rel=1e-9)
@@ -66,30 +61,18 @@ def test_a_block_at_rest_slips_at_the_edge_of_its_friction_cone(facets: int) -> 
 
 def test_a_tall_block_tips_over_its_nearer_edge() -> None:
     (margin,) = mode_margins(
-        SpatialContactProblem(
-            body=BODY, state=state(), contacts=feet(1.0, 2.0), force_W=DOWN, friction_facets=16
-        ),
-        margin_length=SHORT,
+        spatial_problem(BODY, state(), feet(1.0, 2.0), DOWN, friction_facets=16), margin_length=SHORT
     )
     assert margin.margin == pytest.approx(WEIGHT * math.sin(math.atan(0.5)), rel=1e-6)
     assert margin.modes_beyond in (("ssff",), ("ffss",))
     # Pushed to the limit there is none left, and a torque about the edge is worth its lever.
     (limit,) = mode_margins(
-        SpatialContactProblem(
-            body=BODY,
-            state=state(),
-            contacts=feet(1.0, 2.0),
-            force_W=(0.0, 0.5 * WEIGHT, -WEIGHT),
-            friction_facets=16,
-        ),
+        spatial_problem(BODY, state(), feet(1.0, 2.0), (0.0, 0.5 * WEIGHT, -WEIGHT), friction_facets=16),
         margin_length=SHORT,
     )
     assert limit.margin == pytest.approx(0.0, abs=1e-9)
     (by_torque,) = mode_margins(
-        SpatialContactProblem(
-            body=BODY, state=state(), contacts=feet(1.0, 2.0), force_W=DOWN, friction_facets=16
-        ),
-        margin_length=1e3,
+        spatial_problem(BODY, state(), feet(1.0, 2.0), DOWN, friction_facets=16), margin_length=1e3
     )
     assert by_torque.margin == pytest.approx(WEIGHT * 0.5 / 1e3, rel=1e-5)
 
@@ -98,26 +81,14 @@ def test_a_sliding_block_tips_forward_or_lifts_off() -> None:
     # It slides along x with friction at its feet, which the load has to balance about the centre of mass:
     # it moves forward by mu h = 0.2 of the half-length 1.
     (margin,) = mode_margins(
-        SpatialContactProblem(
-            body=BODY,
-            state=state(v=(2.0, 0.0, 0.0)),
-            contacts=feet(0.5, 0.4),
-            force_W=DOWN,
-            friction_facets=16,
-        ),
+        spatial_problem(BODY, state(v=(2.0, 0.0, 0.0)), feet(0.5, 0.4), DOWN, friction_facets=16),
         margin_length=1e3,
     )
     # By torque alone: sideways WEIGHT * 0.5, forward WEIGHT * (1 - 0.2); sideways is nearer.
     assert margin.mode == "cccc"
     assert margin.margin == pytest.approx(WEIGHT * 0.5 / 1e3, rel=1e-5)
     lifts = mode_margins(
-        SpatialContactProblem(
-            body=BODY,
-            state=state(v=(2.0, 0.0, 0.0)),
-            contacts=feet(0.0, 0.4),
-            force_W=DOWN,
-            friction_facets=16,
-        ),
+        spatial_problem(BODY, state(v=(2.0, 0.0, 0.0)), feet(0.0, 0.4), DOWN, friction_facets=16),
         margin_length=SHORT,
     )
     assert lifts[0].margin == pytest.approx(WEIGHT, rel=1e-5)  # only lifting, and a little torque
@@ -130,10 +101,7 @@ def turning_case(seed: int) -> tuple[BodyState, ContactSet, np.ndarray]:
     points = np.array([centre + chance.normal(size=3) for _ in range(2)])
     normals = np.array([centre + w * chance.normal() - point for point in points])
     contacts = ContactSet(
-        p_WC_W=points,
-        normals_W=normals / np.linalg.norm(normals, axis=1)[:, None],
-        frictions=np.full(2, 0.4),
-        restitutions=np.zeros(2),
+        p_WC_W=points, normals_W=normals / np.linalg.norm(normals, axis=1)[:, None], frictions=np.full(2, 0.4)
     )
     return state(tuple(-np.cross(w, centre)), tuple(w)), contacts, 3.0 * chance.normal(size=6)
 
@@ -143,56 +111,30 @@ def test_no_smaller_change_ends_a_mode_and_the_stated_one_does(seed: int) -> Non
     now, contacts, wrench = turning_case(seed)
     chance = np.random.default_rng(seed + 100)
     margins = mode_margins(
-        SpatialContactProblem(
-            body=BODY,
-            state=now,
-            contacts=contacts,
-            force_W=wrench[:3],
-            torque_W=wrench[3:],
-            friction_facets=16,
-        ),
-        margin_length=0.5,
+        spatial_problem(BODY, now, contacts, wrench[:3], wrench[3:], friction_facets=16), margin_length=0.5
     )
     metric = np.array([1.0, 1.0, 1.0, 0.5, 0.5, 0.5])
     for margin in margins:
         assert 0.0 <= margin.margin < math.inf
         for part, stays in ((0.999, True), (1.001, False)):
             changed = wrench + part * margin.change_W
-            there = contact_modes(
-                SpatialContactProblem(
-                    body=BODY, state=now, contacts=contacts, force_W=changed[:3], torque_W=changed[3:]
-                )
-            )
+            there = contact_modes(spatial_problem(BODY, now, contacts, changed[:3], changed[3:]))
             assert (margin.mode in [mode.mode for mode in there.modes]) == stays
         for _ in range(6):
             way = chance.normal(size=6)
             changed = wrench + 0.999 * margin.margin * way / np.linalg.norm(way) * metric
-            there = contact_modes(
-                SpatialContactProblem(
-                    body=BODY, state=now, contacts=contacts, force_W=changed[:3], torque_W=changed[3:]
-                )
-            )
+            there = contact_modes(spatial_problem(BODY, now, contacts, changed[:3], changed[3:]))
             assert margin.mode in [mode.mode for mode in there.modes]
 
 
 def test_modes_without_a_margin_and_without_an_end() -> None:
     (free,) = mode_margins(
-        SpatialContactProblem(
-            body=BODY, state=state(v=(0, 0, 1.0)), contacts=feet(0.2, 0.4), force_W=DOWN, friction_facets=16
-        )
+        spatial_problem(BODY, state(v=(0, 0, 1.0)), feet(0.2, 0.4), DOWN, friction_facets=16)
     )
     assert (free.mode, free.margin, free.modes_beyond) == ("ssss", math.inf, ("ssss",))
     np.testing.assert_array_equal(free.change_W, np.zeros(6))
     assert (
-        mode_margins(
-            SpatialContactProblem(
-                body=BODY,
-                state=state(v=(0, 0, -1.0)),
-                contacts=feet(0.2, 0.4),
-                force_W=DOWN,
-                friction_facets=16,
-            )
-        )
+        mode_margins(spatial_problem(BODY, state(v=(0, 0, -1.0)), feet(0.2, 0.4), DOWN, friction_facets=16))
         == ()
     )
 
@@ -202,13 +144,7 @@ def test_a_block_that_begins_to_slide_stops_at_the_edge_of_its_cone(
     push: tuple[float, float], facets: int
 ) -> None:
     (margin,) = mode_margins(
-        SpatialContactProblem(
-            body=BODY,
-            state=state(),
-            contacts=feet(0.2, 0.4),
-            force_W=(*push, -WEIGHT),
-            friction_facets=facets,
-        ),
+        spatial_problem(BODY, state(), feet(0.2, 0.4), (*push, -WEIGHT), friction_facets=facets),
         margin_length=SHORT,
     )
     assert margin.mode == "cccc"
@@ -240,9 +176,7 @@ def test_margins_of_a_foot_are_exact(seed: int) -> None:
     chance = np.random.default_rng(seed)
     foot = ContactSet(p_WC_W=chance.normal(size=(1, 3)), normals_W=[0.0, 0.0, 1.0], frictions=0.3)
     wrench = np.append(chance.normal(size=3) * 5.0 - [0.0, 0.0, WEIGHT], chance.normal(size=3))
-    asked = SpatialContactProblem(
-        body=BODY, state=state(), contacts=foot, force_W=wrench[:3], torque_W=wrench[3:]
-    )
+    asked = spatial_problem(BODY, state(), foot, wrench[:3], wrench[3:])
     for margin in mode_margins(asked, margin_length=float(chance.choice([0.1, 0.45, 2.0]))):
         assert 0.0 < margin.margin < math.inf
         check_margin(asked, margin, chance.normal(size=(40, 6)))
@@ -258,12 +192,12 @@ def pushed_and_turned(seed: int) -> SpatialContactProblem:
         normals_W=[0.0, 0.0, 1.0],
         frictions=friction,
     )
-    return SpatialContactProblem(
-        body=MassProperties(mass=1.0, I_B=np.diag([0.0043, 0.0043, 0.0053])),
-        state=state(),
-        contacts=corners,
-        force_W=(*push, -9.8),
-        torque_W=chance.normal(size=3) * [0.02, 0.02, 0.1],
+    return spatial_problem(
+        MassProperties(mass=1.0, I_B=np.diag([0.0043, 0.0043, 0.0053])),
+        state(),
+        corners,
+        (*push, -9.8),
+        chance.normal(size=3) * [0.02, 0.02, 0.1],
     )
 
 
@@ -309,14 +243,14 @@ def test_margins_of_bodies_that_stick_are_between_those_of_fine_pyramids(seed: i
     normals = chance.normal(size=(n, 3)) * 0.4 + [0.0, 0.0, 1.0]
     forces = normals / np.linalg.norm(normals, axis=1)[:, None] + 0.1 * chance.normal(size=(n, 3))
     points = chance.normal(size=(n, 3))
-    asked = SpatialContactProblem(
-        body=BODY,
-        state=state(),
-        contacts=ContactSet(
+    asked = spatial_problem(
+        BODY,
+        state(),
+        ContactSet(
             p_WC_W=points, normals_W=normals / np.linalg.norm(normals, axis=1)[:, None], frictions=0.5
         ),
-        force_W=-forces.sum(axis=0),
-        torque_W=-np.cross(points, forces).sum(axis=0),
+        -forces.sum(axis=0),
+        -np.cross(points, forces).sum(axis=0),
     )
     margins = [margin for margin in mode_margins(asked) if margin.mode == "f" * n]
     assert len(margins) == 1
@@ -331,12 +265,12 @@ def test_margins_of_bodies_that_stick_are_between_those_of_fine_pyramids(seed: i
 @seeds(range(6), slow=range(6, 100))
 def test_margins_do_not_depend_on_the_facets(seed: int) -> None:
     case = made(seed, most=4)
-    asked = SpatialContactProblem(
-        body=MassProperties(mass=MASS, I_B=INERTIA),
-        state=state(case.v, case.w),
-        contacts=ContactSet(p_WC_W=case.points, normals_W=case.normals, frictions=case.frictions),
-        force_W=case.wrench[:3],
-        torque_W=case.wrench[3:],
+    asked = spatial_problem(
+        MassProperties(mass=MASS, I_B=INERTIA),
+        state(case.v, case.w),
+        ContactSet(p_WC_W=case.points, normals_W=case.normals, frictions=case.frictions),
+        case.wrench[:3],
+        case.wrench[3:],
     )
     coarse, fine = (mode_margins(replace(asked, friction_facets=facets)) for facets in (3, 24))
     for one, other in zip(coarse, fine, strict=True):
@@ -353,7 +287,7 @@ def ring(feet: int) -> SpatialContactProblem:
         normals_W=[0.0, 0.0, 1.0],
         frictions=0.4,
     )
-    return SpatialContactProblem(body=BODY, state=state(), contacts=contacts, force_W=(10.0, 0.0, -WEIGHT))
+    return spatial_problem(BODY, state(), contacts, (10.0, 0.0, -WEIGHT))
 
 
 def test_six_feet_that_begin_to_slide_stop_as_one_does() -> None:
@@ -377,8 +311,5 @@ def test_what_is_not_known_of_a_mode_that_begins_to_slide_is_not_told() -> None:
 def test_misuse_is_refused_by_name() -> None:
     with pytest.raises(InvalidFieldError, match="margin_length"):
         mode_margins(
-            SpatialContactProblem(
-                body=BODY, state=state(), contacts=feet(0.2, 0.4), force_W=DOWN, friction_facets=16
-            ),
-            margin_length=0.0,
+            spatial_problem(BODY, state(), feet(0.2, 0.4), DOWN, friction_facets=16), margin_length=0.0
         )

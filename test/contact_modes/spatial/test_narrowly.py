@@ -12,13 +12,9 @@ import numpy as np
 import pytest
 
 from contact_dynamics import BodyState, ContactSet, MassProperties
-from contact_dynamics.contact_modes import (
-    ModeVerdict,
-    SpatialContactProblem,
-    SpatialModeAnswer,
-    contact_modes,
-)
+from contact_dynamics.contact_modes import ModeVerdict, SpatialModeAnswer, contact_modes
 from contact_dynamics.tolerances import NARROWLY
+from contact_modes.evidence import spatial_problem
 
 G = 9.81
 THICK, WIDE, HIGH = 0.04, 0.1, 0.2
@@ -51,11 +47,8 @@ def turning_plate(share: float) -> SpatialModeAnswer:
         frictions=needed * (1.0 + share),
     )
     return contact_modes(
-        SpatialContactProblem(
-            body=MassProperties(mass=MASS, I_B=np.diag(inertia)),
-            state=state,
-            contacts=corners,
-            force_W=[0.0, 0.0, -MASS * G],
+        spatial_problem(
+            MassProperties(mass=MASS, I_B=np.diag(inertia)), state, corners, [0.0, 0.0, -MASS * G]
         )
     )
 
@@ -64,11 +57,11 @@ def pushed_box(share: float, heading: float = 0.3) -> SpatialModeAnswer:
     """Ask about a box that is pushed through its centre of mass, by a share more than friction takes."""
     push = 0.3 * 9.8 * (1.0 + share) * np.array([math.cos(heading), math.sin(heading)])
     return contact_modes(
-        SpatialContactProblem(
-            body=BOX,
-            state=BodyState(p_WB_W=[0, 0, 0.1], q_WB=[0, 0, 0, 1], v_WB_W=[0, 0, 0], w_WB_W=[0, 0, 0]),
-            contacts=ContactSet(p_WC_W=FEET, normals_W=[0.0, 0.0, 1.0], frictions=0.3),
-            force_W=[*push, -9.8],
+        spatial_problem(
+            BOX,
+            BodyState(p_WB_W=[0, 0, 0.1], q_WB=[0, 0, 0, 1]),
+            ContactSet(p_WC_W=FEET, normals_W=[0.0, 0.0, 1.0], frictions=0.3),
+            [*push, -9.8],
         )
     )
 

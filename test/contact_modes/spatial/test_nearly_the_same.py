@@ -20,12 +20,11 @@ from contact_dynamics.contact_modes import (
 )
 from contact_dynamics.errors import TooLargeError, UndecidedError
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
+from contact_modes.evidence import spatial_problem
 from oracles.equilibria_in_space import KINDS, Resting, resting, rough
 from sweeps import seeds
 
-AT_REST = BodyState(
-    p_WB_W=np.zeros(3), q_WB=np.array([0.0, 0.0, 0.0, 1.0]), v_WB_W=np.zeros(3), w_WB_W=np.zeros(3)
-)
+AT_REST = BodyState(p_WB_W=np.zeros(3), q_WB=[0.0, 0.0, 0.0, 1.0])
 BODY = MassProperties(mass=2.0, I_B=np.diag([0.3, 0.4, 0.5]))
 BOX = MassProperties(mass=1.0, I_B=np.diag([0.0043, 0.0043, 0.0053]))
 FEET = np.array([[x, y, -0.1] for x in (-0.1, 0.1) for y in (-0.1, 0.1)])
@@ -33,12 +32,12 @@ HELD = 1e-9  # relative to the forces: what may be left of an equilibrium
 
 
 def problem_of(case: Resting, body: MassProperties = BODY) -> SpatialContactProblem:
-    return SpatialContactProblem(
-        body=body,
-        state=AT_REST,
-        contacts=ContactSet(p_WC_W=case.points, normals_W=case.normals, frictions=case.frictions),
-        force_W=case.wrench[:3],
-        torque_W=case.wrench[3:],
+    return spatial_problem(
+        body,
+        AT_REST,
+        ContactSet(p_WC_W=case.points, normals_W=case.normals, frictions=case.frictions),
+        case.wrench[:3],
+        case.wrench[3:],
     )
 
 
@@ -87,9 +86,7 @@ def test_a_box_under_its_weight_sticks_whatever_the_noise_of_its_normals(angle: 
         contacts = ContactSet(
             p_WC_W=FEET, normals_W=normals / np.linalg.norm(normals, axis=1)[:, None], frictions=0.5
         )
-        answer = contact_modes(
-            SpatialContactProblem(body=BOX, state=AT_REST, contacts=contacts, force_W=(0, 0, -9.8))
-        )
+        answer = contact_modes(spatial_problem(BOX, AT_REST, contacts, (0, 0, -9.8)))
         assert (answer.verdict, [mode.mode for mode in answer.modes]) == (ModeVerdict.UNIQUE, ["ffff"])
 
 
@@ -97,9 +94,7 @@ def test_a_box_under_its_weight_sticks_whatever_the_noise_of_its_normals(angle: 
 def test_two_contacts_side_by_side_far_from_the_centre(gap: float) -> None:
     points = np.array([[1.0, 0.0, -0.1], [1.0, gap, -0.1], [-1.0, 0.3, -0.1], [-1.0, -0.3, -0.1]])
     contacts = ContactSet(p_WC_W=points, normals_W=[0.0, 0.0, 1.0], frictions=0.5)
-    check_sticking(
-        SpatialContactProblem(body=BODY, state=AT_REST, contacts=contacts, force_W=(0.5, 0.2, -9.8))
-    )
+    check_sticking(spatial_problem(BODY, AT_REST, contacts, (0.5, 0.2, -9.8)))
 
 
 @seeds(range(len(KINDS)), slow=range(len(KINDS), 4 * len(KINDS)))

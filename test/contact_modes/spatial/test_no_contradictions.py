@@ -26,12 +26,11 @@ from contact_dynamics.contact_modes import (
 )
 from contact_dynamics.errors import TooLargeError, UndecidedError
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
+from contact_modes.evidence import spatial_problem
 from oracles.equilibria_in_space import KINDS, resting
 from sweeps import seeds
 
-AT_REST = BodyState(
-    p_WB_W=np.zeros(3), q_WB=np.array([0.0, 0.0, 0.0, 1.0]), v_WB_W=np.zeros(3), w_WB_W=np.zeros(3)
-)
+AT_REST = BodyState(p_WB_W=np.zeros(3), q_WB=[0.0, 0.0, 0.0, 1.0])
 BODY = MassProperties(mass=2.0, I_B=np.diag([0.3, 0.4, 0.5]))
 FLOOR = [(x, y, -0.1) for x in (-0.1, 0.1) for y in (-0.1, 0.1)]
 HELD = 1e-9  # relative to the load: what counts as balanced
@@ -65,12 +64,12 @@ def drawn(seed: int) -> Draw:
         points, normals = chance.normal(size=(n, 3)), chance.normal(size=(n, 3))
         normals /= np.linalg.norm(normals, axis=1)[:, None]
         frictions, wrench = chance.choice([0.0, 0.3, 1.0, 3.0], size=n), chance.normal(size=6)
-    problem = SpatialContactProblem(
-        body=BODY,
-        state=AT_REST,
-        contacts=ContactSet(p_WC_W=points, normals_W=normals, frictions=frictions),
-        force_W=wrench[:3],
-        torque_W=wrench[3:],
+    problem = spatial_problem(
+        BODY,
+        AT_REST,
+        ContactSet(p_WC_W=points, normals_W=normals, frictions=frictions),
+        wrench[:3],
+        wrench[3:],
         friction_facets=4,
     )
     return Draw(problem, rests=kind == 0)
@@ -85,16 +84,16 @@ def feet_under_load(draw: st.DrawFn) -> SpatialContactProblem:
     normals = np.array([(draw(leans), draw(leans), 1.0) for _ in feet])
     frictions = [draw(st.sampled_from([0.0, 0.25, 0.5, 1.0])) for _ in feet]
     push, torque = draw(st.tuples(*[st.integers(-6, 6)] * 2)), draw(st.tuples(*[st.integers(-3, 3)] * 3))
-    return SpatialContactProblem(
-        body=BODY,
-        state=AT_REST,
-        contacts=ContactSet(
+    return spatial_problem(
+        BODY,
+        AT_REST,
+        ContactSet(
             p_WC_W=[(0.1 * x, 0.1 * y, -0.1) for x, y in feet],
             normals_W=normals / np.linalg.norm(normals, axis=1)[:, None],
             frictions=frictions,
         ),
-        force_W=(float(push[0]), float(push[1]), -10.0),
-        torque_W=[0.25 * part for part in torque],
+        (float(push[0]), float(push[1]), -10.0),
+        [0.25 * part for part in torque],
         friction_facets=4,
     )
 

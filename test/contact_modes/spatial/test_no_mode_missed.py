@@ -17,22 +17,23 @@ from contact_dynamics.contact_modes import (
     contact_modes,
 )
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
+from contact_modes.evidence import spatial_problem
 from oracles.modes_on_planes import INERTIA, MASS, Made, made, worst_violation
 from sweeps import seeds
 
 NEAR = 0.01  # relative, of accelerations: modes whose directions of sliding differ by 1e-3 rad count as one
 EXACT = 1e-9
 FEW, BLOCK = 60, 1000
-AT_REST = BodyState(p_WB_W=[0, 0, 0], q_WB=[0, 0, 0, 1], v_WB_W=[0, 0, 0], w_WB_W=[0, 0, 0])
+AT_REST = BodyState(p_WB_W=[0, 0, 0], q_WB=[0, 0, 0, 1])
 
 
 def problem_of(case: Made, friction_facets: int = 8) -> SpatialContactProblem:
-    return SpatialContactProblem(
-        body=MassProperties(mass=MASS, I_B=INERTIA),
-        state=BodyState(p_WB_W=np.zeros(3), q_WB=[0.0, 0.0, 0.0, 1.0], v_WB_W=case.v, w_WB_W=case.w),
-        contacts=ContactSet(p_WC_W=case.points, normals_W=case.normals, frictions=case.frictions),
-        force_W=case.wrench[:3],
-        torque_W=case.wrench[3:],
+    return spatial_problem(
+        MassProperties(mass=MASS, I_B=INERTIA),
+        BodyState(p_WB_W=np.zeros(3), q_WB=[0.0, 0.0, 0.0, 1.0], v_WB_W=case.v, w_WB_W=case.w),
+        ContactSet(p_WC_W=case.points, normals_W=case.normals, frictions=case.frictions),
+        case.wrench[:3],
+        case.wrench[3:],
         friction_facets=friction_facets,
     )
 
@@ -136,12 +137,12 @@ def test_three_feet_on_a_floor_and_two_on_a_wall_have_three_modes() -> None:
     assert np.cross(points, forces).sum(axis=0) + torque == pytest.approx(np.zeros(3), abs=1e-12)
     for facets in (3, 8, 16, 24):
         answer = contact_modes(
-            SpatialContactProblem(
-                body=MassProperties(mass=1, I_B=np.diag([0.6, 0.7, 0.9])),
-                state=AT_REST,
-                contacts=contacts,
-                force_W=force,
-                torque_W=torque,
+            spatial_problem(
+                MassProperties(mass=1, I_B=np.diag([0.6, 0.7, 0.9])),
+                AT_REST,
+                contacts,
+                force,
+                torque,
                 friction_facets=facets,
             )
         )
@@ -157,15 +158,15 @@ def test_three_feet_on_a_floor_and_two_on_a_wall_have_three_modes() -> None:
 def test_a_box_that_rests_on_many_feet_is_proven_to_rest_without_a_search(feet: int, push: float) -> None:
     angles = 2.0 * math.pi * np.arange(feet) / feet + 0.1
     answer = contact_modes(
-        SpatialContactProblem(
-            body=MassProperties(mass=2.0, I_B=np.diag([0.3, 0.4, 0.5])),
-            state=AT_REST,
-            contacts=ContactSet(
+        spatial_problem(
+            MassProperties(mass=2.0, I_B=np.diag([0.3, 0.4, 0.5])),
+            AT_REST,
+            ContactSet(
                 p_WC_W=np.column_stack([np.cos(angles), np.sin(angles), np.full(feet, -0.2)]),
                 normals_W=[0.0, 0.0, 1.0],
                 frictions=0.4,
             ),
-            force_W=(0.6 * 8.0 * push, 0.8 * 8.0 * push, -20.0),
+            (0.6 * 8.0 * push, 0.8 * 8.0 * push, -20.0),
         )
     )
     assert (answer.verdict, [mode.mode for mode in answer.modes]) == (ModeVerdict.UNIQUE, ["f" * feet])
@@ -183,13 +184,13 @@ def test_two_feet_that_leave_a_squeezed_box_are_found() -> None:
         (0, 0.2, 0),
     ]
     answer = contact_modes(
-        SpatialContactProblem(
-            body=MassProperties(mass=2.0, I_B=np.diag([0.3, 0.4, 0.5])),
-            state=BodyState(p_WB_W=[0, 0, 0], q_WB=[0, 0, 0, 1], v_WB_W=[0, 0, 0], w_WB_W=[0, 0, 0]),
-            contacts=ContactSet(
+        spatial_problem(
+            MassProperties(mass=2.0, I_B=np.diag([0.3, 0.4, 0.5])),
+            BodyState(p_WB_W=[0, 0, 0], q_WB=[0, 0, 0, 1]),
+            ContactSet(
                 p_WC_W=points, normals_W=[(0, -math.copysign(1.0, y), 0) for _, y, _ in points], frictions=0.5
             ),
-            force_W=[-5, 0, 0],
+            [-5, 0, 0],
         )
     )
     assert answer.verdict == ModeVerdict.INDETERMINATE

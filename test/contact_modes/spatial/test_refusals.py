@@ -12,12 +12,12 @@ from contact_dynamics.contact.contact import ContactSet
 from contact_dynamics.contact_modes import (
     Refusal,
     RefusedMode,
-    SpatialContactProblem,
     contact_modes,
     refused_modes,
     spatial_kinematic_modes,
 )
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
+from contact_modes.evidence import spatial_problem
 from sweeps import seeds
 
 MASS, WEIGHT, HEIGHT = 2.0, 20.0, 0.2
@@ -26,9 +26,7 @@ LENGTH = math.sqrt(1.2 / (3.0 * MASS))  # the radius of gyration, root mean squa
 
 
 def state(v: tuple[float, float, float] = (0.0, 0.0, 0.0)) -> BodyState:
-    return BodyState(
-        p_WB_W=np.zeros(3), q_WB=np.array([0.0, 0.0, 0.0, 1.0]), v_WB_W=np.array(v), w_WB_W=np.zeros(3)
-    )
+    return BodyState(p_WB_W=np.zeros(3), q_WB=[0.0, 0.0, 0.0, 1.0], v_WB_W=np.array(v))
 
 
 def on_floor(corners: list[tuple[float, float]], friction: float) -> ContactSet:
@@ -37,7 +35,6 @@ def on_floor(corners: list[tuple[float, float]], friction: float) -> ContactSet:
         p_WC_W=np.column_stack([np.array(corners), np.full(n, -HEIGHT)]),
         normals_W=np.tile([0.0, 0.0, 1.0], (n, 1)),
         frictions=np.full(n, friction),
-        restitutions=np.zeros(n),
     )
 
 
@@ -47,9 +44,7 @@ def refused(
     """Return the refusals by their strings, which with the consistent ones are all, each once."""
     now = now or state()
     force, torque = wrench[:3], wrench[3:]
-    problem = SpatialContactProblem(
-        body=BODY, state=now, contacts=contacts, force_W=force, torque_W=torque, friction_facets=facets
-    )
+    problem = spatial_problem(BODY, now, contacts, force, torque, friction_facets=facets)
     answer = contact_modes(problem)
     found = refused_modes(problem, answer)
     consistent = {mode.mode.replace("f", "c") for mode in answer.modes}
@@ -110,7 +105,6 @@ def test_the_least_change_is_what_the_string_is_short_of(seed: int) -> None:
         p_WC_W=chance.normal(size=(n, 3)),
         normals_W=normals / np.linalg.norm(normals, axis=1)[:, None],
         frictions=chance.choice([0.2, 0.6], size=n),
-        restitutions=np.zeros(n),
     )
     wrench = 3.0 * chance.normal(size=6) - [0.0, 0.0, 5.0, 0.0, 0.0, 0.0]
     for string, one in refused(contacts, wrench, facets=24).items():
@@ -123,14 +117,7 @@ def test_the_least_change_is_what_the_string_is_short_of(seed: int) -> None:
         slack = 0.01 * float(np.linalg.norm(wrench / [1.0, 1.0, 1.0, LENGTH, LENGTH, LENGTH]))
         if one.amount > 10.0 * slack:
             there = contact_modes(
-                SpatialContactProblem(
-                    body=BODY,
-                    state=state(),
-                    contacts=contacts,
-                    force_W=changed[:3],
-                    torque_W=changed[3:],
-                    friction_facets=24,
-                )
+                spatial_problem(BODY, state(), contacts, changed[:3], changed[3:], friction_facets=24)
             )
             assert string not in {mode.mode.replace("f", "c") for mode in there.modes}
 

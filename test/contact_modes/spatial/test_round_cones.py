@@ -9,20 +9,13 @@ import numpy as np
 import pytest
 
 from contact_dynamics.contact.contact import ContactSet
-from contact_dynamics.contact_modes import (
-    Certainty,
-    ModeVerdict,
-    SpatialContactProblem,
-    contact_modes,
-    statics,
-)
+from contact_dynamics.contact_modes import Certainty, ModeVerdict, contact_modes, statics
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
+from contact_modes.evidence import spatial_problem
 from oracles.one_contact_in_space import all_modes
 from sweeps import seeds
 
-AT_REST = BodyState(
-    p_WB_W=np.zeros(3), q_WB=np.array([0.0, 0.0, 0.0, 1.0]), v_WB_W=np.zeros(3), w_WB_W=np.zeros(3)
-)
+AT_REST = BodyState(p_WB_W=np.zeros(3), q_WB=[0.0, 0.0, 0.0, 1.0])
 STRAIGHT = 1e-8  # rad, of friction to the way against sliding
 ALIKE = 1e-6  # relative: accelerations of the oracle's halved directions
 
@@ -38,12 +31,12 @@ def check_one_contact(seed: int) -> None:
     wrench = np.concatenate([5.0 * chance.normal(size=3) - [0.0, 0.0, 8.0], np.zeros(3)])
     wrench[3:] = chance.normal(size=3) * chance.choice([0.0, 1.0])
     answer = contact_modes(
-        SpatialContactProblem(
-            body=MassProperties(mass=1.0, I_B=inertia),
-            state=AT_REST,
-            contacts=ContactSet(p_WC_W=[r], normals_W=[normal], frictions=friction),
-            force_W=wrench[:3],
-            torque_W=wrench[3:],
+        spatial_problem(
+            MassProperties(mass=1.0, I_B=inertia),
+            AT_REST,
+            ContactSet(p_WC_W=[r], normals_W=[normal], frictions=friction),
+            wrench[:3],
+            wrench[3:],
         )
     )
     expected = all_modes(1.0, inertia, r=r, normal=normal, friction=friction, wrench=wrench)
@@ -60,11 +53,11 @@ def test_one_contact_has_the_modes_of_its_round_cone(seed: int) -> None:
 
 
 def test_one_contact_sticks_with_friction_between_the_edges_of_a_pyramid() -> None:
-    problem = SpatialContactProblem(
-        body=MassProperties(mass=1.0, I_B=np.diag([0.1, 0.5, 0.5])),
-        state=AT_REST,
-        contacts=ContactSet(p_WC_W=[[0.0, 0.1, -0.5]], normals_W=[[0.0, 0.0, 1.0]], frictions=0.4),
-        force_W=(5.0, 1.0, -10.0),
+    problem = spatial_problem(
+        MassProperties(mass=1.0, I_B=np.diag([0.1, 0.5, 0.5])),
+        AT_REST,
+        ContactSet(p_WC_W=[[0.0, 0.1, -0.5]], normals_W=[[0.0, 0.0, 1.0]], frictions=0.4),
+        (5.0, 1.0, -10.0),
     )
     answer = contact_modes(problem)
     assert (answer.verdict, [mode.mode for mode in answer.modes]) == (ModeVerdict.UNIQUE, ["f"])
@@ -78,11 +71,11 @@ def test_a_box_sticks_up_to_the_angle_of_friction_in_any_direction(
     # Its own pyramids lean against the push. A torque turns each of them away from it.
     feet = np.array([[x, y, 0.0] for x in (-0.1, 0.1) for y in (-0.1, 0.1)])
     push = share * 0.5 * 9.8
-    problem = SpatialContactProblem(
-        body=MassProperties(mass=1.0, I_B=np.diag([0.0043, 0.0043, 0.0053])),
-        state=AT_REST,
-        contacts=ContactSet(p_WC_W=feet, normals_W=[0.0, 0.0, 1.0], frictions=0.5),
-        force_W=(push * math.cos(heading), push * math.sin(heading), -9.8),
+    problem = spatial_problem(
+        MassProperties(mass=1.0, I_B=np.diag([0.0043, 0.0043, 0.0053])),
+        AT_REST,
+        ContactSet(p_WC_W=feet, normals_W=[0.0, 0.0, 1.0], frictions=0.5),
+        (push * math.cos(heading), push * math.sin(heading), -9.8),
         friction_facets=5,
     )
     answer = contact_modes(problem)
@@ -98,15 +91,15 @@ def test_friction_of_few_contacts_is_straight_against_their_sliding(seed: int) -
     points = chance.normal(size=(n, 3)) * [0.3, 0.3, 0.05] - [0.0, 0.0, 0.2]
     normals = np.array([0.0, 0.0, 1.0]) + 0.4 * chance.normal(size=(n, 3))
     answer = contact_modes(
-        SpatialContactProblem(
-            body=MassProperties(mass=1.5, I_B=np.diag([0.05, 0.06, 0.07])),
-            state=AT_REST,
-            contacts=ContactSet(
+        spatial_problem(
+            MassProperties(mass=1.5, I_B=np.diag([0.05, 0.06, 0.07])),
+            AT_REST,
+            ContactSet(
                 p_WC_W=points,
                 normals_W=normals / np.linalg.norm(normals, axis=1)[:, None],
                 frictions=chance.choice([0.1, 0.3, 0.5, 1.0], size=n),
             ),
-            force_W=(*chance.uniform(-6.0, 6.0, size=2), -15.0),
+            (*chance.uniform(-6.0, 6.0, size=2), -15.0),
         )
     )
     assert answer.verdict != ModeVerdict.INCONSISTENT

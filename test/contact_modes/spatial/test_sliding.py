@@ -28,7 +28,6 @@ def contact_set(points: np.ndarray, normals: np.ndarray) -> ContactSet:
         normals_W=normals.reshape(-1, 3)
         / np.maximum(np.linalg.norm(normals.reshape(-1, 3), axis=1), 1.0)[:, None],
         frictions=np.ones(n),
-        restitutions=np.zeros(n),
     )
 
 
@@ -139,9 +138,7 @@ def test_a_box_at_two_walls_has_these_modes_and_no_others() -> None:
 @seeds(range(6))
 def test_contacting_modes_are_those_without_the_ways(seed: int) -> None:
     contacts = drawn(seed)
-    at_rest = BodyState(
-        p_WB_W=np.zeros(3), q_WB=np.array([0.0, 0.0, 0.0, 1.0]), v_WB_W=np.zeros(3), w_WB_W=np.zeros(3)
-    )
+    at_rest = BodyState(p_WB_W=np.zeros(3), q_WB=[0.0, 0.0, 0.0, 1.0])
     modes = spatial_sliding_modes(contacts, planes=4)
     assert len(set(modes)) == len(modes)
     staying = {"".join("s" if letter == "s" else "c" for letter in mode) for mode in modes}

@@ -23,13 +23,12 @@ from contact_dynamics.contact_modes import (
 from contact_dynamics.errors import InvalidFieldError, TooLargeError, UndecidedError
 from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarWrench
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
+from contact_modes.evidence import spatial_problem
 from sweeps import seeds
 
 WEIGHT, MU, HEIGHT = 20.0, 0.5, 0.25
 BODY = MassProperties(mass=2.0, I_B=0.7 * np.eye(3))
-STATE = BodyState(
-    p_WB_W=np.zeros(3), q_WB=np.array([0.0, 0.0, 0.0, 1.0]), v_WB_W=np.zeros(3), w_WB_W=np.zeros(3)
-)
+STATE = BodyState(p_WB_W=np.zeros(3), q_WB=[0.0, 0.0, 0.0, 1.0])
 FEET = [(x, y, -HEIGHT) for x in (-1.0, 1.0) for y in (-0.6, 0.6)]
 SOLVED = 1e-9  # relative: facets of a hull of some dozen points
 
@@ -41,7 +40,6 @@ def touching(
         p_WC_W=np.array(points, dtype=float).reshape(-1, 3),
         normals_W=np.array(normals, dtype=float).reshape(-1, 3),
         frictions=np.full(len(points), friction),
-        restitutions=np.zeros(len(points)),
     )
 
 
@@ -53,13 +51,7 @@ def pushed(
     x: float = 0.0, y: float = 0.0, *, length: float = 1e3, facets: int = 8, friction: float = MU
 ) -> BodyStatics:
     return statics(
-        SpatialContactProblem(
-            body=BODY,
-            state=STATE,
-            contacts=on_floor(FEET, friction),
-            force_W=(x, y, -WEIGHT),
-            friction_facets=facets,
-        ),
+        spatial_problem(BODY, STATE, on_floor(FEET, friction), (x, y, -WEIGHT), friction_facets=facets),
         margin_length=length,
     )
 
@@ -89,10 +81,7 @@ def test_the_disturbance_is_the_pyramids_within_the_round_cone(facets: int) -> N
     # Short length: torques cost all. A regular pyramid's sides are nearer than the cone by cos(pi / facets).
     low = on_floor([(x, y, -1e-6) for x, y, _ in FEET])
     found = statics(
-        SpatialContactProblem(
-            body=BODY, state=STATE, contacts=low, force_W=(0.0, 0.0, -WEIGHT), friction_facets=facets
-        ),
-        margin_length=1e-4,
+        spatial_problem(BODY, STATE, low, (0.0, 0.0, -WEIGHT), friction_facets=facets), margin_length=1e-4
     )
     slope = MU * math.cos(math.pi / facets)
     assert found.stable_disturbance == pytest.approx(WEIGHT * slope / math.hypot(1.0, slope), rel=1e-4)
@@ -106,18 +95,9 @@ def test_two_soft_less_fingers_cannot_hold_a_twist_but_three_hold_all() -> None:
     found = statics(SpatialContactProblem(body=BODY, state=STATE, contacts=two, **nothing))
     assert found.wedged
     assert found.stable_disturbance == 0.0
-    twisted = statics(
-        SpatialContactProblem(
-            body=BODY, state=STATE, contacts=two, force_W=(0.0, 0.0, 0.0), torque_W=(0.1, 0.0, 0.0)
-        )
-    )
+    twisted = statics(spatial_problem(BODY, STATE, two, (0.0, 0.0, 0.0), (0.1, 0.0, 0.0)))
     assert twisted.equilibrium == Certainty.NO
-    assert (
-        statics(
-            SpatialContactProblem(body=BODY, state=STATE, contacts=two, force_W=(0.0, 0.0, -5.0))
-        ).equilibrium
-        != Certainty.NO
-    )
+    assert statics(spatial_problem(BODY, STATE, two, (0.0, 0.0, -5.0))).equilibrium != Certainty.NO
     angles = [0.0, 2.0 * math.pi / 3.0, 4.0 * math.pi / 3.0]
     three = touching(
         [(math.cos(a), math.sin(a), 0.0) for a in angles], [(-math.cos(a), -math.sin(a), 0.0) for a in angles]
@@ -142,11 +122,7 @@ def test_two_fingers_wedge_up_to_the_angle_of_friction_in_any_direction(heading:
     lean = (1.0 + more) * MU
     up = np.array([1.0, lean * math.cos(heading), lean * math.sin(heading)])
     fingers = touching([tuple(-up), tuple(up)], [(1.0, 0.0, 0.0), (-1.0, 0.0, 0.0)])
-    found = statics(
-        SpatialContactProblem(
-            body=BODY, state=STATE, contacts=fingers, force_W=(0.0, 0.0, 0.0), friction_facets=5
-        )
-    )
+    found = statics(spatial_problem(BODY, STATE, fingers, (0.0, 0.0, 0.0), friction_facets=5))
     assert found.wedged == (more < 0.0)
 
 
@@ -175,12 +151,12 @@ def test_planar_cases_have_the_planes_answer(seed: int) -> None:
         )
     )
     space = statics(
-        SpatialContactProblem(
-            body=BODY,
-            state=STATE,
-            contacts=touching(points, normals),
-            force_W=(force[0], 0.0, force[1]),
-            torque_W=(0.0, -moment, 0.0),
+        spatial_problem(
+            BODY,
+            STATE,
+            touching(points, normals),
+            (force[0], 0.0, force[1]),
+            (0.0, -moment, 0.0),
             friction_facets=16,
         )
     )
@@ -208,12 +184,12 @@ def test_corners_found_twice_have_an_answer_in_every_attitude() -> None:
     torque = -np.cross(CORNERS, normals).sum(axis=0)
     found = [
         statics(
-            SpatialContactProblem(
-                body=BODY,
-                state=STATE,
-                contacts=touching(list(map(tuple, CORNERS @ R.T)), list(map(tuple, normals @ R.T))),
-                force_W=R @ force,
-                torque_W=R @ torque,
+            spatial_problem(
+                BODY,
+                STATE,
+                touching(list(map(tuple, CORNERS @ R.T)), list(map(tuple, normals @ R.T))),
+                R @ force,
+                R @ torque,
                 friction_facets=16,
             )
         )
@@ -234,13 +210,7 @@ def test_contacts_that_nearly_coincide_are_answered_or_refused_by_name(apart: fl
         force, torque = chance.normal(size=3), chance.normal(size=3)
         with contextlib.suppress(UndecidedError):
             found = statics(
-                SpatialContactProblem(
-                    body=BODY,
-                    state=STATE,
-                    contacts=touching(points, list(map(tuple, normals)), 0.3),
-                    force_W=force,
-                    torque_W=torque,
-                )
+                spatial_problem(BODY, STATE, touching(points, list(map(tuple, normals)), 0.3), force, torque)
             )
             assert found.equilibrium == Certainty.NO  # a torque about the one point cannot be balanced
 
@@ -272,12 +242,7 @@ def test_linear_programs_over_the_forces_agree(seed: int) -> None:
     found = touching(list(map(tuple, points)), list(map(tuple, normals)))
     wrench = -np.concatenate([normals.sum(axis=0), np.cross(points, normals).sum(axis=0)])
     wrench += 0.3 * chance.normal(size=6) * (seed % 3)
-    held = statics(
-        SpatialContactProblem(
-            body=BODY, state=STATE, contacts=found, force_W=wrench[:3], torque_W=wrench[3:]
-        ),
-        margin_length=1.0,
-    )
+    held = statics(spatial_problem(BODY, STATE, found, wrench[:3], wrench[3:]), margin_length=1.0)
     inner, outer = math.cos(math.pi / 8.0), 1.0 / math.cos(math.pi / 64.0)
     if can_balance(found, wrench, inner):
         assert held.equilibrium != Certainty.NO
@@ -290,14 +255,8 @@ def test_linear_programs_over_the_forces_agree(seed: int) -> None:
 
 def test_without_contacts_only_nothing_is_held() -> None:
     none = on_floor([])
-    assert (
-        statics(SpatialContactProblem(body=BODY, state=STATE, contacts=none, force_W=(0, 0, -1))).equilibrium
-        == Certainty.NO
-    )
-    assert (
-        statics(SpatialContactProblem(body=BODY, state=STATE, contacts=none, force_W=(0, 0, 0))).equilibrium
-        == Certainty.CERTAIN
-    )
+    assert statics(spatial_problem(BODY, STATE, none, (0, 0, -1))).equilibrium == Certainty.NO
+    assert statics(spatial_problem(BODY, STATE, none, (0, 0, 0))).equilibrium == Certainty.CERTAIN
 
 
 def test_misuse_is_refused_by_name() -> None:
@@ -316,15 +275,13 @@ def test_what_rounding_hides_does_not_take_the_other_answers_with_it(decade: int
     for seed in range(3):
         normals = [0.0, 0.0, 1.0] + 10.0**decade * np.random.default_rng([seed, -decade]).normal(size=(4, 3))
         found = statics(
-            SpatialContactProblem(
-                body=MassProperties(mass=1.0, I_B=np.diag([0.01, 0.012, 0.015])),
-                state=BodyState(p_WB_W=[0, 0, 0.1], q_WB=[0, 0, 0, 1], v_WB_W=[0, 0, 0], w_WB_W=[0, 0, 0]),
-                contacts=ContactSet(
-                    p_WC_W=feet,
-                    normals_W=normals / np.linalg.norm(normals, axis=1)[:, None],
-                    frictions=0.5,
+            spatial_problem(
+                MassProperties(mass=1.0, I_B=np.diag([0.01, 0.012, 0.015])),
+                BodyState(p_WB_W=[0, 0, 0.1], q_WB=[0, 0, 0, 1]),
+                ContactSet(
+                    p_WC_W=feet, normals_W=normals / np.linalg.norm(normals, axis=1)[:, None], frictions=0.5
                 ),
-                force_W=(0.0, 0.0, -9.8),
+                (0.0, 0.0, -9.8),
             )
         )
         assert (found.equilibrium, found.wedged) == (Certainty.CERTAIN, False)
@@ -341,11 +298,11 @@ def test_forces_far_beyond_the_weight_hold_a_body_in_a_slot_that_widens(friction
         normals_W=[[-side * math.cos(lean), 0.0, -math.sin(lean)] for side in (-1, 1) for _ in (-0.05, 0.05)],
         frictions=friction,
     )
-    problem = SpatialContactProblem(
-        body=MassProperties(mass=0.2, I_B=1e-4 * np.eye(3)),
-        state=BodyState(p_WB_W=[0, 0, 0], q_WB=[0, 0, 0, 1], v_WB_W=[0, 0, 0], w_WB_W=[0, 0, 0]),
-        contacts=contacts,
-        force_W=[0, 0, -1.962],
+    problem = spatial_problem(
+        MassProperties(mass=0.2, I_B=1e-4 * np.eye(3)),
+        BodyState(p_WB_W=[0, 0, 0], q_WB=[0, 0, 0, 1]),
+        contacts,
+        [0, 0, -1.962],
     )
     assert "ffff" in {mode.mode for mode in contact_modes(problem).modes}
     assert statics(problem).equilibrium == Certainty.POSSIBLE

@@ -33,13 +33,14 @@ from contact_dynamics.contact_modes import (
     least_friction,
 )
 from contact_dynamics.errors import InvalidFieldError, NotSupportedError
+from contact_modes.evidence import spatial_problem
 from sweeps import seeds
 
 G = 9.80665
 MASS = 2.0
 WIDTH, HEIGHT = 0.2, 0.4
 BOX = Body.box((WIDTH, 0.6, HEIGHT), mass=MASS)
-STANDING = BodyState(p_WB_W=[0, 0, 0.2], q_WB=[0, 0, 0, 1], v_WB_W=[0, 0, 0], w_WB_W=[0, 0, 0])
+STANDING = BodyState(p_WB_W=[0, 0, 0.2], q_WB=[0, 0, 0, 1])
 TIPS = WIDTH / HEIGHT  # the friction from which the box tips before it slides
 
 
@@ -57,11 +58,9 @@ def drawn(seed: int) -> SpatialContactProblem:
     if seed % 2:
         points, normals = np.vstack([points, [[0.1, -0.3, 0.1]]]), np.vstack([normals, [[0.0, 1.0, 0.0]]])
     contacts = ContactSet(p_WC_W=points, normals_W=normals, frictions=random.uniform(0.2, 0.8, len(points)))
-    state = BodyState(p_WB_W=[0, 0, 0], q_WB=[0, 0, 0, 1], v_WB_W=[0, 0, 0], w_WB_W=[0, 0, 0])
+    state = BodyState(p_WB_W=[0, 0, 0], q_WB=[0, 0, 0, 1])
     push = random.normal(size=3) * 0.5
-    return SpatialContactProblem(
-        body=BOX.mass_properties, state=state, contacts=contacts, force_W=[push[0], push[1], -MASS * G]
-    )
+    return spatial_problem(BOX.mass_properties, state, contacts, [push[0], push[1], -MASS * G])
 
 
 def may_rest(problem: SpatialContactProblem) -> bool:
@@ -131,7 +130,7 @@ def test_a_body_in_a_vice_stays_at_any_tilt_where_friction_wedges_it() -> None:
         normals_W=[[1, 0, 0], [-1, 0, 0], [-1, 0, 0], [-1, 0, 0]],
         frictions=0.5,
     )
-    problem = SpatialContactProblem(body=BOX, state=STANDING, contacts=fingers, force_W=[0, 0, -MASS * G])
+    problem = spatial_problem(BOX, STANDING, fingers, [0, 0, -MASS * G])
     centred = replace(problem, state=replace(STANDING, p_WB_W=[0, 0, 0]))
     found = largest_tilt(centred, [0, 1, 0])
     assert (found.factor, found.only_rest) == (math.inf, 0.0)
@@ -186,13 +185,11 @@ def test_fingers_that_press_a_part_down_need_the_friction_of_their_slope(
     slope, angles = math.radians(down), turned + 2.0 * math.pi * np.arange(fingers) / fingers
     out = np.column_stack([np.cos(angles), np.sin(angles), np.zeros(fingers)])
     contacts = ContactSet(
-        p_WC_W=0.05 * out,
-        normals_W=-math.cos(slope) * out - [0.0, 0.0, math.sin(slope)],
-        frictions=0.5,
+        p_WC_W=0.05 * out, normals_W=-math.cos(slope) * out - [0.0, 0.0, math.sin(slope)], frictions=0.5
     )
     part = MassProperties(mass=0.2, I_B=1e-4 * np.eye(3))
-    held = BodyState(p_WB_W=[0, 0, 0], q_WB=[0, 0, 0, 1], v_WB_W=[0, 0, 0], w_WB_W=[0, 0, 0])
-    problem = SpatialContactProblem(body=part, state=held, contacts=contacts, force_W=[0, 0, -0.2 * G])
+    held = BodyState(p_WB_W=[0, 0, 0], q_WB=[0, 0, 0, 1])
+    problem = spatial_problem(part, held, contacts, [0, 0, -0.2 * G])
     needed = least_friction(problem).frictions[0]
     assert math.tan(slope) * (1.0 - 1e-7) <= needed <= math.tan(slope) * (1.0 + 1e-4)
     smooth = replace(problem, contacts=replace(contacts, frictions=0.0))
@@ -211,10 +208,8 @@ def test_the_least_friction_of_a_ladder() -> None:
         normals_W=[[0, 0, 1], [0, 0, 1], [1, 0, 0]],
         frictions=[0.9, 0.9, 0.0],
     )
-    state = BodyState(p_WB_W=[0, 0, 0], q_WB=[0, 0, 0, 1], v_WB_W=[0, 0, 0], w_WB_W=[0, 0, 0])
-    problem = SpatialContactProblem(
-        body=BOX.mass_properties, state=state, contacts=ladder, force_W=[0, 0, -MASS * G]
-    )
+    state = BodyState(p_WB_W=[0, 0, 0], q_WB=[0, 0, 0, 1])
+    problem = spatial_problem(BOX.mass_properties, state, ladder, [0, 0, -MASS * G])
     found = least_friction(problem)
     needed = 0.5 * math.tan(angle)
     assert found.frictions == pytest.approx((needed, needed, 0.0), rel=1e-7)  # as its docstring says

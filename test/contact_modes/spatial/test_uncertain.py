@@ -10,16 +10,12 @@ import numpy as np
 import pytest
 
 from contact_dynamics.contact import ContactSet, ContactUncertainty
-from contact_dynamics.contact_modes import (
-    ModeVerdict,
-    SpatialContactProblem,
-    contact_modes,
-    geometry_margins,
-)
+from contact_dynamics.contact_modes import ModeVerdict, SpatialContactProblem, contact_modes, geometry_margins
 from contact_dynamics.contact_modes.spatial.excluded import no_other_mode
 from contact_dynamics.contact_modes.spatial.uncertain import holds_everywhere
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
+from contact_modes.evidence import spatial_problem
 
 BODY = MassProperties(mass=1.0, I_B=np.diag([0.0043, 0.0043, 0.0053]))
 FRICTION = 0.5
@@ -31,10 +27,7 @@ SQUARE = [(x, y) for x in (-0.1, 0.1) for y in (-0.1, 0.1)]
 
 def state(**fields: tuple[float, float, float]) -> BodyState:
     return BodyState(
-        p_WB_W=(0.0, 0.0, HEIGHT),
-        q_WB=(0.0, 0.0, 0.0, 1.0),
-        v_WB_W=fields.get("v_WB_W", (0.0, 0.0, 0.0)),
-        w_WB_W=(0.0, 0.0, 0.0),
+        p_WB_W=(0.0, 0.0, HEIGHT), q_WB=(0.0, 0.0, 0.0, 1.0), v_WB_W=fields.get("v_WB_W", (0.0, 0.0, 0.0))
     )
 
 
@@ -44,13 +37,7 @@ def on_feet(
     box: ContactUncertainty | None = None,
 ) -> SpatialContactProblem:
     feet = ContactSet(p_WC_W=[(x, y, 0.0) for x, y in places], normals_W=(0.0, 0.0, 1.0), frictions=FRICTION)
-    return SpatialContactProblem(
-        body=BODY,
-        state=state(),
-        contacts=feet,
-        force_W=(*push, -WEIGHT),
-        uncertainty=box or ContactUncertainty(),
-    )
+    return spatial_problem(BODY, state(), feet, (*push, -WEIGHT), uncertainty=box or ContactUncertainty())
 
 
 def drawn(chance: np.random.Generator) -> SpatialContactProblem:
@@ -65,14 +52,12 @@ def drawn(chance: np.random.Generator) -> SpatialContactProblem:
     body = MassProperties(
         mass=1.0, I_B=np.diag(chance.uniform(0.6, 1.0, 3)) * 10.0 ** chance.uniform(-1.0, 1.0)
     )
-    return SpatialContactProblem(
-        body=body,
-        state=BodyState(
-            p_WB_W=np.zeros(3), q_WB=(0.0, 0.0, 0.0, 1.0), v_WB_W=np.zeros(3), w_WB_W=np.zeros(3)
-        ),
-        contacts=contacts,
-        force_W=(*chance.uniform(-3.0, 3.0, 2), chance.uniform(-10.0, 1.0)),
-        torque_W=chance.uniform(-1.0, 1.0, 3),
+    return spatial_problem(
+        body,
+        BodyState(p_WB_W=np.zeros(3), q_WB=(0.0, 0.0, 0.0, 1.0)),
+        contacts,
+        (*chance.uniform(-3.0, 3.0, 2), chance.uniform(-10.0, 1.0)),
+        chance.uniform(-1.0, 1.0, 3),
     )
 
 
@@ -166,11 +151,11 @@ def test_a_pushed_box_holds_where_an_eighth_of_friction_is_not_known() -> None:
         normals_W=(0.0, 0.0, 1.0),
         frictions=0.5,
     )
-    problem = SpatialContactProblem(
-        body=MassProperties(mass=1.0, I_B=np.diag([0.1, 0.12, 0.15])),
-        state=replace(state(), p_WB_W=np.zeros(3)),
-        contacts=feet,
-        force_W=(3.0, 0.0, -10.0),
+    problem = spatial_problem(
+        MassProperties(mass=1.0, I_B=np.diag([0.1, 0.12, 0.15])),
+        replace(state(), p_WB_W=np.zeros(3)),
+        feet,
+        (3.0, 0.0, -10.0),
     )
     assert no_other_mode(problem, "ffff", ContactUncertainty(frictions=0.125))
     assert not no_other_mode(problem, "ffff", ContactUncertainty(frictions=0.21))
@@ -192,11 +177,11 @@ def test_two_modes_that_hold_everywhere_leave_the_verdict_indeterminate() -> Non
         normals_W=(0.0, 0.0, 1.0),
         frictions=0.8,
     )
-    problem = SpatialContactProblem(
-        body=MassProperties(mass=1.0, I_B=np.eye(3)),
-        state=replace(state(), p_WB_W=np.zeros(3)),
-        contacts=tip,
-        force_W=(-1.0, 0.0, 0.05),
+    problem = spatial_problem(
+        MassProperties(mass=1.0, I_B=np.eye(3)),
+        replace(state(), p_WB_W=np.zeros(3)),
+        tip,
+        (-1.0, 0.0, 0.05),
         uncertainty=ContactUncertainty(points=1e-3, normals=1e-3, frictions=1e-3),
     )
     answer = contact_modes(problem)

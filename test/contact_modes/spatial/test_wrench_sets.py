@@ -21,6 +21,7 @@ from contact_dynamics.contact_modes import (
 )
 from contact_dynamics.errors import InvalidFieldError, TooLargeError
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
+from contact_modes.evidence import spatial_problem
 from sweeps import seeds
 
 BODY = MassProperties(mass=2.0, I_B=np.diag([0.3, 0.4, 0.5]))
@@ -32,7 +33,7 @@ NONE = np.zeros(3)
 
 
 def state(v: np.ndarray = NONE, w: np.ndarray = NONE) -> BodyState:
-    return BodyState(p_WB_W=np.zeros(3), q_WB=np.array([0.0, 0.0, 0.0, 1.0]), v_WB_W=v, w_WB_W=w)
+    return BodyState(p_WB_W=np.zeros(3), q_WB=[0.0, 0.0, 0.0, 1.0], v_WB_W=v, w_WB_W=w)
 
 
 def contact_set(points: list, normals: list, frictions: list) -> ContactSet:
@@ -41,7 +42,6 @@ def contact_set(points: list, normals: list, frictions: list) -> ContactSet:
         p_WC_W=np.array(points, dtype=float),
         normals_W=directions / np.linalg.norm(directions, axis=1)[:, None],
         frictions=np.array(frictions, dtype=float),
-        restitutions=np.zeros(len(points)),
     )
 
 
@@ -148,11 +148,7 @@ def drawn_wrenches(count: int) -> np.ndarray:
 
 def test_a_block_on_a_floor_has_a_mode_under_every_wrench() -> None:
     # Too little friction to jam it. How four feet share its weight as it turns is open, and so is the mode.
-    sets = wrench_sets(
-        SpatialContactProblem(
-            body=BODY, state=state(), contacts=feet(0.2, 0.4), force_W=(0.0, 0.0, 0.0), friction_facets=4
-        )
-    )
+    sets = wrench_sets(spatial_problem(BODY, state(), feet(0.2, 0.4), (0.0, 0.0, 0.0), friction_facets=4))
     reached = set()
     for wrench in drawn_wrenches(300):
         depths = np.array([one.depth(wrench, LENGTH) for one in sets])
@@ -164,11 +160,11 @@ def test_a_block_on_a_floor_has_a_mode_under_every_wrench() -> None:
 
 def test_one_foot_has_one_mode_under_every_wrench() -> None:
     sets = wrench_sets(
-        SpatialContactProblem(
-            body=BODY,
-            state=state(),
-            contacts=contact_set([(0.3, 0.1, -0.2)], [(0, 0, 1)], [0.4]),
-            force_W=(0.0, 0.0, 0.0),
+        spatial_problem(
+            BODY,
+            state(),
+            contact_set([(0.3, 0.1, -0.2)], [(0, 0, 1)], [0.4]),
+            (0.0, 0.0, 0.0),
             friction_facets=4,
         )
     )
@@ -194,11 +190,7 @@ def test_one_foot_has_one_mode_under_every_wrench() -> None:
 )
 def test_both_forms_are_one_set(now: BodyState, contacts: ContactSet) -> None:
     chance = np.random.default_rng(0)
-    sets = wrench_sets(
-        SpatialContactProblem(
-            body=BODY, state=now, contacts=contacts, friction_facets=3, force_W=(0.0, 0.0, 0.0)
-        )
-    )
+    sets = wrench_sets(spatial_problem(BODY, now, contacts, (0.0, 0.0, 0.0), friction_facets=3))
     assert sets
     for one in sets:
         shares = chance.uniform(size=len(one.vertices))
@@ -223,20 +215,14 @@ def test_both_forms_are_one_set(now: BodyState, contacts: ContactSet) -> None:
 
 def test_a_block_is_held_up_to_the_side_of_its_pyramid_and_to_its_edges() -> None:
     (held,) = wrench_sets(
-        SpatialContactProblem(
-            body=BODY, state=state(), contacts=feet(0.2, 0.4), force_W=(0.0, 0.0, 0.0), friction_facets=4
-        ),
-        modes=["ffff"],
+        spatial_problem(BODY, state(), feet(0.2, 0.4), (0.0, 0.0, 0.0), friction_facets=4), modes=["ffff"]
     )
     slope = math.atan(0.4 * math.cos(math.pi / 4.0))
     assert held.depth(DOWN, 1e-3) == pytest.approx(
         WEIGHT * math.sin(slope), rel=1e-4
     )  # torques cost nearly all
     (tall,) = wrench_sets(
-        SpatialContactProblem(
-            body=BODY, state=state(), contacts=feet(1.0, 2.0), force_W=(0.0, 0.0, 0.0), friction_facets=4
-        ),
-        modes=["ffff"],
+        spatial_problem(BODY, state(), feet(1.0, 2.0), (0.0, 0.0, 0.0), friction_facets=4), modes=["ffff"]
     )
     assert tall.depth(DOWN, 1e3) == pytest.approx(WEIGHT * 0.5 / 1e3, rel=1e-4)  # they cost next to nothing
     assert held.vertices == pytest.approx(np.zeros((1, 6)))
@@ -245,11 +231,7 @@ def test_a_block_is_held_up_to_the_side_of_its_pyramid_and_to_its_edges() -> Non
 
 def test_one_foot_has_sets_all_around() -> None:
     foot = contact_set([(0, 0, -1)], [(0, 0, 1)], [0.5])
-    sets = wrench_sets(
-        SpatialContactProblem(
-            body=BODY, state=state(), contacts=foot, force_W=(0.0, 0.0, 0.0), friction_facets=4
-        )
-    )
+    sets = wrench_sets(spatial_problem(BODY, state(), foot, (0.0, 0.0, 0.0), friction_facets=4))
     assert [one.mode for one in sets] == ["c"] * 8 + ["f", "s"]
     ranges = [
         (
@@ -261,23 +243,14 @@ def test_one_foot_has_sets_all_around() -> None:
     widths = sorted((high - low) % (2.0 * math.pi) for low, high in ranges)
     assert widths == pytest.approx([0.0] * 4 + [0.5 * math.pi] * 4)
     assert (
-        wrench_sets(
-            SpatialContactProblem(
-                body=BODY, state=state(), contacts=foot, force_W=(0.0, 0.0, 0.0), friction_facets=4
-            ),
-            modes=["f"],
-        )[0].mode
+        wrench_sets(spatial_problem(BODY, state(), foot, (0.0, 0.0, 0.0), friction_facets=4), modes=["f"])[
+            0
+        ].mode
         == "f"
     )
     assert (
         wrench_sets(
-            SpatialContactProblem(
-                body=BODY,
-                state=state(np.array([1.0, 0.0, 0.0])),
-                contacts=foot,
-                force_W=(0.0, 0.0, 0.0),
-                friction_facets=4,
-            ),
+            spatial_problem(BODY, state(np.array([1.0, 0.0, 0.0])), foot, (0.0, 0.0, 0.0), friction_facets=4),
             modes=["f"],
         )
         == ()
@@ -290,14 +263,7 @@ def test_depths_in_pyramids_inside_and_around_the_cones_bound_the_margins(seed: 
     wider = 1.0 / math.cos(math.pi / 8)
     for now in (state(), state(np.array([1.0, 2.0, 0.0]))):
         inside, around = (
-            SpatialContactProblem(
-                body=BODY,
-                state=now,
-                contacts=feet(0.2, friction),
-                force_W=wrench[:3],
-                torque_W=wrench[3:],
-                friction_facets=8,
-            )
+            spatial_problem(BODY, now, feet(0.2, friction), wrench[:3], wrench[3:], friction_facets=8)
             for friction in (0.4, 0.4 * wider)
         )
         (margin,) = mode_margins(inside, margin_length=LENGTH)
@@ -311,23 +277,15 @@ def test_depths_in_pyramids_inside_and_around_the_cones_bound_the_margins(seed: 
 
 def test_a_body_that_leaves_and_one_that_approaches() -> None:
     (free,) = wrench_sets(
-        SpatialContactProblem(
-            body=BODY,
-            state=state(np.array([0.0, 0.0, 1.0])),
-            contacts=feet(0.2, 0.4),
-            force_W=(0.0, 0.0, 0.0),
-            friction_facets=4,
+        spatial_problem(
+            BODY, state(np.array([0.0, 0.0, 1.0])), feet(0.2, 0.4), (0.0, 0.0, 0.0), friction_facets=4
         )
     )
     assert (free.mode, len(free.half_spaces), free.depth(DOWN, 1.0)) == ("ssss", 0, math.inf)
     assert (
         wrench_sets(
-            SpatialContactProblem(
-                body=BODY,
-                state=state(np.array([0.0, 0.0, -1.0])),
-                contacts=feet(0.2, 0.4),
-                force_W=(0.0, 0.0, 0.0),
-                friction_facets=4,
+            spatial_problem(
+                BODY, state(np.array([0.0, 0.0, -1.0])), feet(0.2, 0.4), (0.0, 0.0, 0.0), friction_facets=4
             )
         )
         == ()
@@ -337,31 +295,20 @@ def test_a_body_that_leaves_and_one_that_approaches() -> None:
 def test_misuse_is_refused_by_name() -> None:
     with pytest.raises(InvalidFieldError, match=r"modes must be .*, got lll"):
         wrench_sets(
-            SpatialContactProblem(
-                body=BODY, state=state(), contacts=feet(0.2, 0.4), force_W=(0.0, 0.0, 0.0), friction_facets=4
-            ),
-            modes=["lll"],
+            spatial_problem(BODY, state(), feet(0.2, 0.4), (0.0, 0.0, 0.0), friction_facets=4), modes=["lll"]
         )
     ring = [(math.cos(a), math.sin(a), -1.0) for a in np.linspace(0.0, 6.0, 12)]
     with pytest.raises(TooLargeError, match="sets of planes"):
         wrench_sets(
-            SpatialContactProblem(
-                body=BODY,
-                state=state(),
-                contacts=contact_set(ring, [(0, 0, 1)] * 12, [0.5] * 12),
+            spatial_problem(
+                BODY,
+                state(),
+                contact_set(ring, [(0, 0, 1)] * 12, [0.5] * 12),
+                (0.0, 0.0, 0.0),
                 friction_facets=8,
-                force_W=(0.0, 0.0, 0.0),
             )
         )
     with pytest.raises(TooLargeError, match="edges"):
-        wrench_sets(
-            SpatialContactProblem(
-                body=BODY, state=state(), contacts=feet(0.2, 0.4), friction_facets=40, force_W=(0.0, 0.0, 0.0)
-            )
-        )
+        wrench_sets(spatial_problem(BODY, state(), feet(0.2, 0.4), (0.0, 0.0, 0.0), friction_facets=40))
     with pytest.raises(TooLargeError, match="sets of wrenches"):
-        wrench_sets(
-            SpatialContactProblem(
-                body=BODY, state=state(), contacts=feet(0.2, 0.4), friction_facets=12, force_W=(0.0, 0.0, 0.0)
-            )
-        )
+        wrench_sets(spatial_problem(BODY, state(), feet(0.2, 0.4), (0.0, 0.0, 0.0), friction_facets=12))

@@ -109,7 +109,7 @@ def test_a_level_frictionless_landing_without_restitution_ends_at_rest() -> None
     ends = ContactSet(
         p_WC_W=[[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0]], normals_W=[0, 0, 1], frictions=0.0, restitutions=0.0
     )
-    state = BodyState(p_WB_W=np.zeros(3), q_WB=[0, 0, 0, 1], v_WB_W=[0.3, 0.0, -1.0], w_WB_W=np.zeros(3))
+    state = BodyState(p_WB_W=np.zeros(3), q_WB=[0, 0, 0, 1], v_WB_W=[0.3, 0.0, -1.0])
     outcomes = outcomes_over_interleavings(rod, state, ends, samples=20)
     rest = np.array([0.3, 0.0, 0.0, 0.0, 0.0, 0.0])
     assert outcomes.velocities_W == pytest.approx(np.tile(rest, (len(outcomes.velocities_W), 1)), abs=1e-8)

@@ -164,7 +164,7 @@ def inconsistent_in_space(seed: int) -> tuple[MassProperties, BodyState, Contact
         restitutions=np.zeros(n),
     )
     body = MassProperties(mass=1.0, I_B=np.diag([0.1, 0.2, 0.25]))
-    state = BodyState(p_WB_W=np.zeros(3), q_WB=np.array([0.0, 0.0, 0.0, 1.0]), v_WB_W=way, w_WB_W=np.zeros(3))
+    state = BodyState(p_WB_W=np.zeros(3), q_WB=[0.0, 0.0, 0.0, 1.0], v_WB_W=way)
     force = chance.normal(size=3) - 2.0 * normals.sum(axis=0)
     answer = contact_modes(SpatialContactProblem(body=body, state=state, contacts=touching, force_W=force))
     return (body, state, touching, force) if answer.verdict == ModeVerdict.INCONSISTENT else None

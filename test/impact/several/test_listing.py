@@ -79,7 +79,7 @@ def slid(body: MassProperties, state: BodyState, contacts: ContactSet) -> dict[s
     """Return a sliding body whose contacts do not approach, under its weight."""
     return {
         "body": body,
-        "state": BodyState(p_WB_W=state.p_WB_W, q_WB=state.q_WB, v_WB_W=[-1.0, 0.1, 0.0], w_WB_W=np.zeros(3)),
+        "state": BodyState(p_WB_W=state.p_WB_W, q_WB=state.q_WB, v_WB_W=[-1.0, 0.1, 0.0]),
         "contacts": contacts,
         "force_W": [0.0, 0.0, -9.8],
     }

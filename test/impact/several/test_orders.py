@@ -314,12 +314,7 @@ def test_bodies_that_touch_no_world_keep_their_momenta(
     """Linear and angular momentum about the world's origin, of two bodies with up to three contacts."""
     body, state, contacts = random_set(seed)
     other = MassProperties(mass=2.0, I_B=np.diag([0.5, 0.6, 0.7]))
-    below = BodyState(
-        p_WB_W=np.array([0.1, -0.2, -1.5]),
-        q_WB=IDENTITY,
-        v_WB_W=np.array([0.1, 0.0, 0.3]),
-        w_WB_W=state.w_WB_W,
-    )
+    below = BodyState(p_WB_W=[0.1, -0.2, -1.5], q_WB=IDENTITY, v_WB_W=[0.1, 0.0, 0.3], w_WB_W=state.w_WB_W)
     pairs = [(0, 1)] * len(contacts)
     try:
         answer = bodies_impact(
@@ -356,7 +351,7 @@ def corners(seed: int, order: tuple[int, ...]) -> tuple[MassProperties, BodyStat
     frictions = chance.uniform(0.1, 1.0, size=4) if seed % 2 else np.full(4, 0.5)
     state = BodyState(
         p_WB_W=np.zeros(3),
-        q_WB=np.array([0.0, 0.0, 0.0, 1.0]),
+        q_WB=[0.0, 0.0, 0.0, 1.0],
         v_WB_W=chance.normal(size=3) - (0.0, 0.0, 1.5),
         w_WB_W=3.0 * chance.normal(size=3),
     )

@@ -6,11 +6,7 @@ from __future__ import annotations
 import numpy as np
 
 from contact_dynamics.contact.contact import Contact
-from contact_dynamics.impact import (
-    RestitutionLaw,
-    SpatialImpact,
-    spatial_impact,
-)
+from contact_dynamics.impact import RestitutionLaw, SpatialImpact, spatial_impact
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 
 UP = np.array([0.0, 0.0, 1.0])

@@ -323,12 +323,7 @@ SLANTED = touch(0.3, 0.5)
         (np.diag([1.0, -1.0, 2.0]), [1, 0, -1], SLANTED, r"inverse_inertia_W must be positive semidefinite"),
         ([[1, 0, 2], [0, 1, 0], [2, 0, 1]], [1, 0, -1], SLANTED, r"inverse_inertia_W must be positive semid"),
         ([[1, 0, 2], [0, 1, 0], [0, 0, 1]], [1, 0, -1], SLANTED, r"inverse_inertia_W must be symmetric"),
-        (
-            np.diag([1.0, 1.0, 0.0]),
-            [1, 0, -1],
-            SLANTED,
-            r"inverse_inertia_W must .* along the normal",
-        ),
+        (np.diag([1.0, 1.0, 0.0]), [1, 0, -1], SLANTED, r"inverse_inertia_W must .* along the normal"),
         (np.zeros((3, 3)), [1, 0, -1], SLANTED, r"inverse_inertia_W must .* along the normal"),
         (np.eye(2), [1, 0, -1], SLANTED, r"inverse_inertia_W must be of shape \(3, 3\)"),
         (np.full((3, 3), math.nan), [1, 0, -1], SLANTED, r"inverse_inertia_W must be finite"),

@@ -60,7 +60,7 @@ def test_a_central_impact_of_an_uneven_body_swerves_too(across: float) -> None:
     Both components of the sliding velocity are exponentials then, with no singularity; its length has one.
     """
     body = MassProperties(mass=1.0, I_B=np.diag([1.0, 0.05, 1.0]))
-    state = BodyState(p_WB_W=np.zeros(3), q_WB=IDENTITY, v_WB_W=[1.0, across, -0.3], w_WB_W=np.zeros(3))
+    state = BodyState(p_WB_W=np.zeros(3), q_WB=IDENTITY, v_WB_W=[1.0, across, -0.3])
     answer = spatial_impact(body, state, Contact(p_WC_W=-UP, normal_W=UP, friction=0.3, restitution=0.5))
     # Uncoupled, the normal impulse is that of a point.
     assert answer.impulse_W @ UP == pytest.approx(0.45, rel=1e-13)
@@ -190,7 +190,7 @@ def test_newton_creates_energy_where_friction_stops_the_slide() -> None:
     answers = {
         law: spatial_impact(
             MassProperties(mass=1.0, I_B=np.eye(3)),
-            BodyState(p_WB_W=np.zeros(3), q_WB=IDENTITY, v_WB_W=[-0.3, 0.0, -1.0], w_WB_W=np.zeros(3)),
+            BodyState(p_WB_W=np.zeros(3), q_WB=IDENTITY, v_WB_W=[-0.3, 0.0, -1.0]),
             Contact(p_WC_W=[1.0, 0.0, -1.0], normal_W=UP, friction=0.6, restitution=1.0),
             restitution_law=law,
         )
@@ -206,7 +206,7 @@ def test_from_rest_a_contact_leaves_in_an_invariant_direction(angle: float) -> N
     c, s = math.cos(angle), math.sin(angle)
     body = MassProperties(mass=1.0, I_B=np.diag([0.2, 0.3, 0.35]))
     arm = np.array([0.8 * c, 0.8 * s, -0.6])
-    state = BodyState(p_WB_W=np.zeros(3), q_WB=IDENTITY, v_WB_W=[0.0, 0.0, -1.0], w_WB_W=np.zeros(3))
+    state = BodyState(p_WB_W=np.zeros(3), q_WB=IDENTITY, v_WB_W=[0.0, 0.0, -1.0])
     answer = spatial_impact(body, state, Contact(p_WC_W=arm, normal_W=UP, friction=0.1, restitution=0.5))
     assert answer.outcome is ImpactOutcome.SLIDES
     assert PathEvent.SAMPLE not in answer.path_events
@@ -243,7 +243,7 @@ def test_sphere_with_spin(friction: float, grips: bool) -> None:  # noqa: FBT001
 def test_eccentric_rod_drop_without_friction() -> None:
     """A thin level rod of length 2 strikes with its end: I_n = (1 + e) v / (1/m + 1/I), by momentum alone."""
     body = MassProperties(mass=1.0, I_B=np.diag([1e-6, 1.0 / 3.0, 1.0 / 3.0]))
-    state = BodyState(p_WB_W=[0.0, 0.0, 0.0], q_WB=IDENTITY, v_WB_W=[0.0, 0.0, -2.0], w_WB_W=np.zeros(3))
+    state = BodyState(p_WB_W=[0.0, 0.0, 0.0], q_WB=IDENTITY, v_WB_W=[0.0, 0.0, -2.0])
     answer = spatial_impact(
         body, state, Contact(p_WC_W=[1.0, 0.0, 0.0], normal_W=UP, friction=0.0, restitution=0.5)
     )
@@ -312,7 +312,7 @@ def test_planes_along_the_axes_have_planar_answers_to_rounding(law: RestitutionL
     )
     answer = spatial_impact(
         MassProperties(mass=mass, I_B=inertia * np.diag([0.7, 1.0, 0.8])),
-        BodyState(p_WB_W=np.zeros(3), q_WB=IDENTITY, v_WB_W=[v[0], 0.0, v[1]], w_WB_W=np.zeros(3)),
+        BodyState(p_WB_W=np.zeros(3), q_WB=IDENTITY, v_WB_W=[v[0], 0.0, v[1]]),
         Contact(p_WC_W=[r[0], 0.0, r[1]], normal_W=UP, friction=friction, restitution=e),
         restitution_law=law,
     )
@@ -334,9 +334,7 @@ def test_a_swerving_contact_can_be_compressed_twice(law: RestitutionLaw) -> None
     normal = np.array([-0.07, 0.99, -0.14])
     problem = {
         "body": MassProperties(mass=1.0, I_B=np.diag([0.023, 0.098, 0.105])),
-        "state": BodyState(
-            p_WB_W=np.zeros(3), q_WB=IDENTITY, v_WB_W=[-1.7, -1.15, -0.17], w_WB_W=np.zeros(3)
-        ),
+        "state": BodyState(p_WB_W=np.zeros(3), q_WB=IDENTITY, v_WB_W=[-1.7, -1.15, -0.17]),
         "p_WC_W": np.array([0.42, -1.05, 0.79]),
         "n_W": normal / np.linalg.norm(normal),
         "friction": 0.72,
@@ -352,7 +350,7 @@ def test_a_swerving_contact_can_be_compressed_twice(law: RestitutionLaw) -> None
 def test_resting_contact_gets_no_impulse_unless_it_jams() -> None:
     """The lecture's sliding rod, in space: at mu = 1/2 sliding begins to drive it into the floor."""
     body = MassProperties(mass=1.0, I_B=np.eye(3))
-    state = BodyState(p_WB_W=[0.0, 0.0, 0.0], q_WB=IDENTITY, v_WB_W=[-1.0, 0.0, 0.0], w_WB_W=np.zeros(3))
+    state = BodyState(p_WB_W=[0.0, 0.0, 0.0], q_WB=IDENTITY, v_WB_W=[-1.0, 0.0, 0.0])
 
     def strike(friction: float) -> SpatialImpact:
         return spatial_impact(
@@ -404,7 +402,7 @@ def test_separating_contact_is_refused() -> None:
 def test_weak_coupling_ends_in_the_central_impact(offset: float, law: RestitutionLaw) -> None:
     """A corner below the centre, off by rounding: the terms of its swerve underflow or nearly do."""
     body = MassProperties(mass=2.0, I_B=np.diag([0.3, 0.4, 0.5]))
-    state = BodyState(p_WB_W=UP, q_WB=IDENTITY, v_WB_W=[1e-6, 2e-6, -1e-7], w_WB_W=np.zeros(3))
+    state = BodyState(p_WB_W=UP, q_WB=IDENTITY, v_WB_W=[1e-6, 2e-6, -1e-7])
     answer = spatial_impact(
         body,
         state,

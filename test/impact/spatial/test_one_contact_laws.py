@@ -124,9 +124,7 @@ def test_the_laws_agree_where_a_body_falls_without_spin(seed: int) -> None:
     q = rng.normal(size=4)
     second_moments = rng.uniform(0.05, 2.0, size=3)
     body = MassProperties(mass=1.3, I_B=np.diag(second_moments.sum() - second_moments))
-    state = BodyState(
-        p_WB_W=np.zeros(3), q_WB=q / np.linalg.norm(q), v_WB_W=[0.0, 0.0, -2.0], w_WB_W=np.zeros(3)
-    )
+    state = BodyState(p_WB_W=np.zeros(3), q_WB=q / np.linalg.norm(q), v_WB_W=[0.0, 0.0, -2.0])
     arm = rng.normal(size=3)
     contact = Contact(
         p_WC_W=[arm[0], arm[1], -abs(arm[2])],

@@ -144,11 +144,7 @@ def test_a_slim_bodys_small_moment_keeps_its_digits() -> None:
     small = 2.0**-40
     # The axes (3, 4, 0)/5, (-4, 3, 0)/5, z; times 25, all entries are exact in doubles
     I_B = np.array(
-        [
-            [9 * small + 16, 12 * small - 12, 0.0],
-            [12 * small - 12, 16 * small + 9, 0.0],
-            [0.0, 0.0, 25.0],
-        ]
+        [[9 * small + 16, 12 * small - 12, 0.0], [12 * small - 12, 16 * small + 9, 0.0], [0.0, 0.0, 25.0]]
     )
     axes = principal_axes(I_B)
     assert axes.moments[0] == 25 * small

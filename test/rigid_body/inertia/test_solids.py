@@ -44,11 +44,7 @@ SHAPES: dict[str, tuple[Callable[..., MassDistribution], dict[str, object], list
         revolved(-h / 2, h / 2, lambda _: R * R, lambda _: r * r),
     ),
     "capsule": (inertia.capsule, {"radius": R, "length": h}, CAPSULE),
-    "cone": (
-        inertia.cone,
-        {"radius": R, "height": h},
-        revolved(0.0, h, lambda z: (R * (1.0 - z / h)) ** 2),
-    ),
+    "cone": (inertia.cone, {"radius": R, "height": h}, revolved(0.0, h, lambda z: (R * (1.0 - z / h)) ** 2)),
     "frustum": (
         inertia.cone,
         {"radius": R, "height": h, "top_radius": r},

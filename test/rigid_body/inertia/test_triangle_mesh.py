@@ -213,24 +213,15 @@ LESS_ONE = (BOX[0], BOX[1][1:])
 @pytest.mark.parametrize(
     ("mesh", "words"),
     [
-        (
-            LESS_ONE,
-            r"edge \d-\d of triangle \d+ has no second triangle: the mesh is open \(and 2 more\)",
-        ),
+        (LESS_ONE, r"edge \d-\d of triangle \d+ has no second triangle: the mesh is open \(and 2 more\)"),
         (FIN, r"edge 8-0 of triangle 12 has no second triangle"),
         (
             (BOX[0], np.vstack([BOX[1], BOX[1][:1]])),
             r"edge 0-1 of triangles 0, 5, 12 has more than two triangles",
         ),
-        (
-            together((BOX[0], BOX[1]), (BOX[0], BOX[1])),
-            r"part \(that of triangle 0\) .* within another",
-        ),
+        (together((BOX[0], BOX[1]), (BOX[0], BOX[1])), r"part \(that of triangle 0\) .* within another"),
         (ONE_TURNED, r"edge \d-\d of triangles \d+, 11 is passed in one direction by both \(and 2 more\)"),
-        (
-            inside_out(BOX),
-            r"counter-clockwise.*, got .*an enclosed volume of -8 m\^3: inside out",
-        ),
+        (inside_out(BOX), r"counter-clockwise.*, got .*an enclosed volume of -8 m\^3: inside out"),
         ((BOX[0] * [1, 1, 0], BOX[1]), r"an enclosed volume of 0 m\^3: flat"),
         ((BOX[0][:3], [[0, 1, 2], [0, 2, 1]]), r"an enclosed volume of 0 m\^3: flat"),
         (
@@ -249,10 +240,7 @@ LESS_ONE = (BOX[0], BOX[1][1:])
             together(BOX, inside_out(box_mesh((1.5, 1.5, 1.5))), inside_out(box_mesh((1.0, 1.0, 1.0)))),
             r"part \(that of triangle 24\) of volume -1 m\^3 in no solid",
         ),
-        (
-            (BOX[0], [[0, 1, 8]]),
-            r"indices in \[0, 7\], of 8 vertices.*, got .*\[0, 1, 8\] in triangle 0",
-        ),
+        ((BOX[0], [[0, 1, 8]]), r"indices in \[0, 7\], of 8 vertices.*, got .*\[0, 1, 8\] in triangle 0"),
         ((BOX[0], [[0, 1, -1]]), r"\[0, 1, -1\] in triangle 0"),
         ((BOX[0], [[0.0, 1.0, 2.0]]), "whole numbers.*, got .*numbers of type float64"),
         ((BOX[0], [[0, 1, 2, 3]]), r"of shape \(n, 3\).*, got .*shape \(1, 4\)"),
