@@ -20,7 +20,7 @@ from contact_dynamics.diagrams.shape import drawn_shape
 from contact_dynamics.records import Record
 from contact_dynamics.viewing.entities import entity
 from contact_dynamics.viewing.kept_recording import APPLICATION
-from contact_dynamics.viewing.scene import solid
+from contact_dynamics.viewing.scenery import solid
 from contact_dynamics.viewing.side_by_side import EVENTS, MAX_DRAWN, TABLE, SideBySide
 
 if TYPE_CHECKING:

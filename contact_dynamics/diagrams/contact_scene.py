@@ -2,7 +2,10 @@
 """Contact modes in space: friction cones, words for what the contacts do, each consistent mode.
 
 Each mode has an entity of its own, `mode_1`, `mode_2` and so on, with its contact forces, sliding directions
-and acceleration. The viewer shows the first. The eye beside a mode's name switches it on.
+and acceleration. The viewer shows the first. The eye beside a mode's name switches it on. A diagram of one
+mode, in the plane and in space alike, has the contact forces in their friction cones: these look the same
+from all sides, so each contact is one point, friction force to the right and normal force up. A point on its
+cone's edge slides or is about to, and one inside sticks.
 """
 
 from __future__ import annotations
@@ -14,7 +17,7 @@ import numpy as np
 
 from contact_dynamics.contact_modes.result import applied_wrench
 from contact_dynamics.diagrams import palette, paper
-from contact_dynamics.diagrams.marks import Arrows, Faces, Labels, Lines, Points
+from contact_dynamics.diagrams.marks import Arrows, Axis, Diagram, Faces, Labels, Lines, Points
 from contact_dynamics.diagrams.palette import Paint
 from contact_dynamics.diagrams.shape import outline
 from contact_dynamics.diagrams.words import contacts_in_words
@@ -22,12 +25,14 @@ from contact_dynamics.numerics.vectors import tangents_near_x
 from contact_dynamics.questions.plane_of_motion import beyond, sliding_directions
 
 if TYPE_CHECKING:
+    from contact_dynamics.contact.contact import ContactSet
     from contact_dynamics.contact_modes import SpatialMode
     from contact_dynamics.diagrams.marks import Mark
     from contact_dynamics.diagrams.shape import Shape
     from contact_dynamics.questions.contact_modes import ContactModeAnswer
     from contact_dynamics.rigid_body.body import MassProperties
     from contact_dynamics.validation import FloatArray
+
 
 FORCE_LENGTH: Final = 0.6
 """Length of the longest force arrow, relative to the body's size. Labels say how much force it stands for."""
@@ -207,3 +212,49 @@ def friction_cones(
         corners.append(np.vstack([p_W, rim]))
     paint = Paint(palette.FRICTION_CONE, paper.PURPLE)
     return Faces(name, paint, np.vstack(corners), triangles=np.vstack(triangles), opacity=_CONE_OPACITY)
+
+
+_MARKERS: Final = "osD^v<>p*h"  # so that points at one place are seen
+_MARGIN: Final = 1.15  # how far the axes reach, relative to the largest force
+_DASHES: Final = ("-", "--", "-.", ":")
+
+
+def contact_forces(contacts: ContactSet, mode: SpatialMode, *, title: str = "") -> Diagram:
+    """Return the contact forces of a mode, N, with the friction cone of each different friction coefficient.
+
+    Args:
+        contacts: The contacts.
+        mode: The mode, whose forces may be one choice of many.
+        title: The title, which is the mode's letters by default.
+    """
+    normal = np.einsum("ni,ni->n", mode.contact_forces_W, contacts.normals_W)
+    friction = np.linalg.norm(mode.contact_forces_W - normal[:, None] * contacts.normals_W, axis=1)
+    top = _MARGIN * float(max(normal.max(initial=0.0), friction.max(initial=0.0))) or 1.0
+    marks: list[Mark] = []
+    for i, coefficient in enumerate(np.unique(contacts.frictions).tolist()):
+        reach = min(top, coefficient * top)
+        marks.append(
+            Lines(
+                f"cone_{i + 1}",
+                Paint(palette.FRICTION_CONE, paper.PURPLE),
+                [np.array([(0.0, 0.0), (reach, reach / coefficient if coefficient > 0.0 else top)])],
+                width=1.9,
+                dash=_DASHES[i % len(_DASHES)],
+                legend=f"edge of the friction cone, μ = {coefficient:.3g}",
+            )
+        )
+    count = len(mode.mode)
+    for i, (x, y, letter) in enumerate(zip(friction.tolist(), normal.tolist(), mode.mode, strict=True)):
+        marks.append(
+            Points(
+                f"contact_{i + 1}",
+                Paint(palette.LETTER_COLORS[letter], paper.LETTERS[letter]),
+                np.array([(x, y)]),
+                marker=_MARKERS[i % len(_MARKERS)],
+                size=6.0 + 3.0 * (count - 1 - i) / max(count - 1, 1),
+                legend=f"contact {i + 1} {letter}: {x:.3g}, {y:.3g} N",
+                is_noted=True,
+            )
+        )
+    axes = tuple(Axis(f"{name} force, N", -0.05 * top, top) for name in ("friction", "normal"))
+    return Diagram(marks=marks, axes=axes, title=title or mode.mode)

@@ -6,9 +6,8 @@ functions draws one diagram into the `Axes` that it is given. What it draws are 
 `contact_dynamics.diagrams`, which the viewer draws too. `contact_dynamics.plots` can be imported without
 Matplotlib, which the extra ``[plot]`` brings.
 
-In reading order: how marks are drawn (`drawing`), the diagrams (`draw`), all diagrams of an answer as figures
-(`figures`), what the physics returns as figures (`results`), and the command `contact-dynamics plot`
-(`arguments`, `run`).
+In reading order: how marks are drawn (`drawing`), the diagrams (`draw`), figures of an answer and of what
+the physics returns (`figures`), and the command `contact-dynamics plot` (`arguments`, `run`).
 """
 
 from contact_dynamics.plots.draw import (
@@ -31,8 +30,7 @@ from contact_dynamics.plots.draw import (
     draw_velocity,
 )
 from contact_dynamics.plots.drawing import save_figure
-from contact_dynamics.plots.figures import figures_of
-from contact_dynamics.plots.results import modes, toss
+from contact_dynamics.plots.figures import figures_of, modes, toss
 
 __all__ = [
     "draw_angular_momentum",

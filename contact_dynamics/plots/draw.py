@@ -14,15 +14,14 @@ from typing import TYPE_CHECKING, Any, Concatenate, Final, ParamSpec
 import numpy as np
 
 from contact_dynamics.diagrams import trajectory_curves
-from contact_dynamics.diagrams.contact_forces import contact_forces
+from contact_dynamics.diagrams.contact_scene import contact_forces
 from contact_dynamics.diagrams.force_dual import force_dual
 from contact_dynamics.diagrams.impulse_space import impulse_space, impulse_space_in_3d
 from contact_dynamics.diagrams.many_states import many_states_marks
 from contact_dynamics.diagrams.mode_map import mode_map
 from contact_dynamics.diagrams.poinsot import poinsot_diagram
 from contact_dynamics.diagrams.shape import NO_FACES
-from contact_dynamics.diagrams.toss_scene import toss_marks
-from contact_dynamics.diagrams.toss_tree import event_tree
+from contact_dynamics.diagrams.toss_scene import event_tree, toss_marks
 from contact_dynamics.plots.drawing import draw_diagram, draw_seen
 
 if TYPE_CHECKING:

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """What is drawn of a thing at many times, made ready for rerun once, for all places that get it.
 
-To convert it costs most of what drawing costs. And a chunk, which is what rerun takes and writes, costs about
-the same whether it has one time or a hundred.
+To convert it costs most of what drawing costs: rerun's own way takes strips one by one. And a chunk, which is
+what rerun takes and writes, costs about the same whether it has one time or a hundred.
 """
 
 from __future__ import annotations
@@ -14,10 +14,10 @@ import pyarrow as pa
 import rerun as rr
 from rerun.chunk import Chunk
 
-from contact_dynamics.viewing.strips import strips_3d
-
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
+
+    from numpy.typing import ArrayLike
 
     from contact_dynamics.validation import FloatArray
 
@@ -100,3 +100,22 @@ def _column(descriptor: rr.ComponentDescriptor, array: pa.Array) -> rr.Component
     """Return a column with one value at each time."""
     offsets = np.arange(len(array) + 1, dtype=np.int32)
     return rr.ComponentColumn(descriptor, _Made(descriptor, array), offsets=offsets)
+
+
+def strips_2d(strips: Iterable[ArrayLike]) -> pa.ListArray:
+    """Return strips, (k, 2) each, to draw with `rr.LineStrips2D`."""
+    return _strips(strips, rr.components.LineStrip2D.arrow_type())
+
+
+def strips_3d(strips: Iterable[ArrayLike]) -> pa.ListArray:
+    """Return strips, (k, 3) each, to draw with `rr.LineStrips3D`."""
+    return _strips(strips, rr.components.LineStrip3D.arrow_type())
+
+
+def _strips(strips: Iterable[ArrayLike], kind: pa.DataType) -> pa.ListArray:
+    points = [np.asarray(strip, dtype=np.float32) for strip in strips]
+    ends = np.cumsum([0, *map(len, points)], dtype=np.int32)
+    numbers = np.concatenate(points, axis=None) if points else np.zeros(0, dtype=np.float32)
+    return pa.ListArray.from_arrays(
+        ends, pa.FixedSizeListArray.from_arrays(numbers, type=kind.value_type), type=kind
+    )

@@ -18,7 +18,7 @@ import rerun as rr
 
 from contact_dynamics.diagrams import palette
 from contact_dynamics.diagrams.marks import Arrows, Ellipsoids, Faces, Labels, Lines, Points, Regions, mapped
-from contact_dynamics.viewing.strips import strips_2d, strips_3d
+from contact_dynamics.viewing.columns import strips_2d, strips_3d
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence

@@ -1,12 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Takes out of view what an answer left in the scene once it only hides the bodies.
+"""What is in view of answers, beside the states that are measured, and what only hides the bodies and goes.
 
-Of several bodies, the one that the newest answer is about has labels. An impact loses its labels some time
-after it, and is gone then if another body's is newer.
+States may come before the answer that predicted them. So the newest states of a body are kept, and are
+compared when the answer comes. Of several bodies, the one that the newest answer is about has labels. An
+impact loses its labels some time after it, and is gone then if another body's is newer.
 """
 
 from __future__ import annotations
 
+from collections import deque
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 import rerun as rr
@@ -15,10 +18,23 @@ from contact_dynamics.constants import ns_after
 from contact_dynamics.diagrams.contact_scene import LETTERS
 from contact_dynamics.diagrams.impact_scene import LABELS
 from contact_dynamics.viewing.entities import WHOSE, contacts_entity, entity, impact_entity
-from contact_dynamics.viewing.measured import OF_ONE_BODY, set_time
+from contact_dynamics.viewing.measured import (
+    OF_ONE_BODY,
+    curves_of,
+    draw_curves_of_one,
+    draw_prediction_at,
+    draw_states,
+    set_time,
+)
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Sequence
+
+    from contact_dynamics.rigid_body.body import BodyState
+    from contact_dynamics.tumbling import Trajectory
+    from contact_dynamics.validation import FloatArray
+    from contact_dynamics.viewing.scenery import BodiesInWorld
+
 
 LABELS_S: Final = 0.5
 """s. The labels of an impact go this long after it, since they would cover the body."""
@@ -120,3 +136,119 @@ def _clear_each(recording: rr.RecordingStream, paths: Iterable[str], stamp_ns: i
     set_time(recording, stamp_ns)
     for path in paths:
         recording.log(path, rr.Clear(recursive=False))
+
+
+MAX_KEPT: Final = 500
+"""States of a body, 2 s at 250 Hz. An answer that comes later than that is not drawn beside the earliest."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Prediction:
+    """Where a body was predicted to be.
+
+    Attributes:
+        begin_ns: When it begins, ns.
+        trajectory: The motion.
+        curves: Its curves by quantity, over the trajectory.
+        number: Its number among those of its body, from 0 on.
+    """
+
+    begin_ns: int
+    trajectory: Trajectory
+    curves: dict[str, FloatArray]
+    number: int
+
+
+class PredictionsInView:
+    """The newest predictions, and what is measured beside them."""
+
+    def __init__(self, recording: rr.RecordingStream, bodies: BodiesInWorld, *, up_W: FloatArray) -> None:
+        """Begin without any, for bodies of a world in which this direction is up."""
+        self._recording = recording
+        self._bodies = bodies
+        self._up_W = up_W
+        self._predictions: dict[str, Prediction] = {}
+        self._kept: dict[str, deque[BodyState]] = {}
+        self._conserved = ConservedInView(recording)
+        self._conserved_ns: dict[str, int] = {}  # stamp of the last state whose energy is drawn
+        self._compared_ns: dict[str, int] = {}  # stamp of the last state with a prediction beside it
+
+    @property
+    def conserved(self) -> str | None:
+        """The body whose energy and momenta are drawn, if there is one."""
+        return self._conserved.body_name
+
+    def newest(self, body_name: str) -> Prediction | None:
+        """Return the newest prediction of a body, if there is one."""
+        return self._predictions.get(body_name)
+
+    def add_states(
+        self, body_name: str, states: Sequence[BodyState], *, before: BodyState | None, gravity_W: FloatArray
+    ) -> bool:
+        """Draw measured states after the one before; return whether a prediction is drawn beside one."""
+        has_energy = body_name == self._conserved.body_name
+        draw_states(
+            self._recording,
+            body_name,
+            states,
+            before=before,
+            up_W=self._up_W,
+            body=self._bodies.mass_properties(body_name) if has_energy else None,
+            gravity_W=gravity_W,
+        )
+        if has_energy:
+            self._conserved_ns[body_name] = states[-1].stamp_ns
+        is_compared = self._compare(body_name, states)
+        self._kept.setdefault(body_name, deque(maxlen=MAX_KEPT)).extend(states)
+        return is_compared
+
+    def come(
+        self, body_name: str, trajectory: Trajectory, *, begin_ns: int, gravity_W: FloatArray
+    ) -> tuple[bool, bool]:
+        """Note a prediction, from which curves are drawn until the next.
+
+        Returns:
+            Whether there are curves of energy now, and whether the prediction is drawn beside a state.
+        """
+        earlier = self._predictions.get(body_name)
+        body = self._bodies.mass_properties(body_name)
+        self._predictions[body_name] = Prediction(
+            begin_ns=begin_ns,
+            trajectory=trajectory,
+            curves=curves_of(trajectory, up_W=self._up_W, body=body, gravity_W=gravity_W),
+            number=0 if earlier is None else earlier.number + 1,
+        )
+        has_energy = body is not None and len(trajectory) > 0
+        if body is not None and has_energy:
+            end_ns = ns_after(begin_ns, float(trajectory.seconds[-1]))
+            if self._conserved.come(body_name, stamp_ns=begin_ns, end_ns=end_ns):
+                kept = self._kept_after(body_name, self._conserved_ns.get(body_name, 0))
+                draw_curves_of_one(self._recording, body_name, kept, body=body, gravity_W=gravity_W)
+        first_ns = max(begin_ns, self._compared_ns.get(body_name, 0))
+        is_compared = self._compare(body_name, self._kept_after(body_name, first_ns))
+        set_time(self._recording, begin_ns)
+        return has_energy, is_compared
+
+    def _kept_after(self, body_name: str, stamp_ns: int) -> list[BodyState]:
+        return [state for state in self._kept.get(body_name, ()) if state.stamp_ns > stamp_ns]
+
+    def _compare(self, body_name: str, states: Sequence[BodyState]) -> bool:
+        """Draw the newest prediction of a body beside states, as far as it reaches; return if it does."""
+        prediction = self._predictions.get(body_name)
+        if prediction is None or not states:
+            return False
+        last_ns = draw_prediction_at(
+            self._recording,
+            body_name,
+            states,
+            trajectory=prediction.trajectory,
+            curves={
+                quantity: curve
+                for quantity, curve in prediction.curves.items()
+                if quantity not in OF_ONE_BODY or body_name == self._conserved.body_name
+            },
+            begin_ns=prediction.begin_ns,
+        )
+        if last_ns is not None:
+            self._compared_ns[body_name] = last_ns
+        return last_ns is not None

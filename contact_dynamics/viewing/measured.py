@@ -3,6 +3,8 @@
 
 The curves are height and speed. If the mass properties are known, they are energy and momenta too, which do
 not change in free flight, apart from the momentum that gravity gives, and the angular velocity, which does.
+After an impact, the measured velocity is drawn beside the predicted one: as curves over the time from which
+it is found, and as an arrow in the scene.
 """
 
 from __future__ import annotations
@@ -12,8 +14,9 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 import rerun as rr
 
-from contact_dynamics.constants import seconds_since
+from contact_dynamics.constants import seconds_since, to_ns
 from contact_dynamics.diagrams import palette
+from contact_dynamics.diagrams.impact_scene import measured_marks
 from contact_dynamics.diagrams.trajectory_curves import (
     angular_momenta_of,
     energies_of,
@@ -21,6 +24,7 @@ from contact_dynamics.diagrams.trajectory_curves import (
     trajectory_of,
 )
 from contact_dynamics.viewing.columns import pose_columns, scalar_columns, strip_columns
+from contact_dynamics.viewing.drawing import draw_marks
 from contact_dynamics.viewing.entities import (
     ANGULAR_MOMENTUM,
     ANGULAR_VELOCITY,
@@ -32,6 +36,7 @@ from contact_dynamics.viewing.entities import (
     TIMELINE,
     body_entity,
     entity,
+    impact_entity,
     trail_entity,
 )
 
@@ -40,9 +45,12 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
+    from contact_dynamics.diagrams.after_impact import AfterImpact
+    from contact_dynamics.diagrams.shape import Shape
     from contact_dynamics.rigid_body.body import BodyState, MassProperties
     from contact_dynamics.tumbling import Trajectory
     from contact_dynamics.validation import FloatArray
+
 
 OF_ONE_BODY: Final = (ENERGY, MOMENTUM, ANGULAR_MOMENTUM, ANGULAR_VELOCITY)
 """The entities of the curves that one body has at a time: it must have mass properties."""
@@ -219,3 +227,39 @@ def _draw_curves(
         recording.send_columns(
             entity(quantity, body_name, kind), indexes=[stamps], columns=scalar_columns(values)
         )
+
+
+PREDICTED: Final = "after impact, predicted"
+MEASURED: Final = "after impact, measured"
+
+_GAP_S: Final = 1e-3  # s after a curve, where it ends, so that nothing joins it to the next
+_WIDTH: Final = 2.5
+
+
+def style_after_impact(
+    recording: rr.RecordingStream, body_name: str, color: palette.Color = palette.MEASURED
+) -> None:
+    """Set colours and names of the two curves; ``color`` is the body's own."""
+    for kind, own in ((PREDICTED, palette.IMPACT), (MEASURED, palette.readable(color))):
+        series = rr.SeriesLines(colors=own, names=f"{body_name} {kind}", widths=_WIDTH)
+        recording.log(entity(SPEED, body_name, kind), series, static=True)
+
+
+def draw_after_impact(
+    recording: rr.RecordingStream,
+    shape: Shape,
+    found: AfterImpact,
+    *,
+    color: palette.Color = palette.MEASURED,
+) -> None:
+    """Draw what was measured after an impact at the newest of its stamps, with the curves at all of them."""
+    name, end_ns = found.answer.body_name, found.stamps_ns[-1]
+    stamps = time_column(found.stamps_ns)
+    for kind, speeds in ((PREDICTED, found.predicted_speeds), (MEASURED, found.measured_speeds)):
+        path = entity(SPEED, name, kind)
+        recording.send_columns(path, indexes=[stamps], columns=rr.Scalars.columns(scalars=speeds))
+        set_time(recording, end_ns + to_ns(_GAP_S))
+        recording.log(path, rr.Clear(recursive=False))
+    set_time(recording, end_ns)
+    measured = measured_marks(found.answer, found.v_WB_W, size=shape.size, color=color)
+    draw_marks(recording, measured, impact_entity(name))

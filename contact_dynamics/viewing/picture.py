@@ -12,10 +12,9 @@ import rerun as rr
 from contact_dynamics.constants import ns_after, to_ns
 from contact_dynamics.diagrams.after_impact import AwaitedImpacts
 from contact_dynamics.diagrams.contact_scene import contact_marks
-from contact_dynamics.diagrams.flight import DEFAULT_PREDICTIONS, EARLIER, flight_marks, path_mark
+from contact_dynamics.diagrams.flight import DEFAULT_PREDICTIONS, EARLIER, flight_marks, outside, path_mark
 from contact_dynamics.diagrams.impact_scene import impact_marks
 from contact_dynamics.diagrams.many_states import many_states_marks
-from contact_dynamics.diagrams.outside import outside
 from contact_dynamics.diagrams.planar_scene import silhouette
 from contact_dynamics.diagrams.toss_scene import toss_marks
 from contact_dynamics.diagrams.words import (
@@ -25,8 +24,6 @@ from contact_dynamics.diagrams.words import (
 from contact_dynamics.numerics.vectors import tangents_near_x
 from contact_dynamics.questions.services import service_of
 from contact_dynamics.tumbling.regime import Regime
-from contact_dynamics.viewing.after_impact import draw_after_impact
-from contact_dynamics.viewing.answers_in_words import AnswersInWords, sentence
 from contact_dynamics.viewing.blueprint import NO_TRAVEL, WINDOW_S, Framing, make_blueprint, near_most
 from contact_dynamics.viewing.diagrams_in_view import DiagramsInView
 from contact_dynamics.viewing.drawing import draw_marks
@@ -47,12 +44,11 @@ from contact_dynamics.viewing.entities import (
     predicted_entity,
     toss_entity,
 )
-from contact_dynamics.viewing.in_view import ImpactsInView, LettersInView
-from contact_dynamics.viewing.legend import LEGEND_TEXT
-from contact_dynamics.viewing.measured import SET_BACK_S, set_time
+from contact_dynamics.viewing.in_view import ImpactsInView, LettersInView, PredictionsInView
+from contact_dynamics.viewing.measured import SET_BACK_S, draw_after_impact, set_time
 from contact_dynamics.viewing.poinsot import PoinsotInView
-from contact_dynamics.viewing.predictions_in_view import PredictionsInView
-from contact_dynamics.viewing.world_in_view import WorldInView
+from contact_dynamics.viewing.scenery import WorldInView
+from contact_dynamics.viewing.words import LEGEND_TEXT, AnswersInWords, sentence
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

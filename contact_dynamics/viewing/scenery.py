@@ -1,21 +1,35 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Draws what keeps its form: surfaces and the shapes of bodies. It can have another form from a time on.
+"""Draws what keeps its form: surfaces as patches of ground, and the shapes of the bodies.
 
-What never changes is drawn without a time, so that it is there from the beginning. rerun shows such a drawing
-at every time, whatever else is drawn in its place. So what changes is moved to places of its own, one for
-each form, from the time when it came until it goes.
+It can have another form from a time on. What never changes is drawn without a time, so that it is there from
+the beginning. rerun shows such a drawing at every time, whatever else is drawn in its place. So what changes
+is moved to places of its own, one for each form, from the time when it came until it goes.
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, Final, TypeAlias
 
+import numpy as np
 import rerun as rr
 
-from contact_dynamics.viewing.measured import set_time
+from contact_dynamics.diagrams import palette
+from contact_dynamics.diagrams.shape import Shape, convex_shape, drawn_shape, part_above
+from contact_dynamics.numerics.vectors import tangents_near_x
+from contact_dynamics.shapes.convex import NO_SHAPE
+from contact_dynamics.viewing.columns import strips_3d
+from contact_dynamics.viewing.entities import SCENE, SURFACES, body_entity, entity, trail_entity
+from contact_dynamics.viewing.measured import set_time, style_after_impact, style_series
+from contact_dynamics.world import Surface
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
+
+    from contact_dynamics.rigid_body.body import MassProperties
+    from contact_dynamics.shapes.obstacle import Obstacle
+    from contact_dynamics.validation import FloatArray
+    from contact_dynamics.world import World
+
 
 Part: TypeAlias = rr.Mesh3D | rr.LineStrips3D | rr.Points3D
 
@@ -71,3 +85,248 @@ class Scenery:
         set_time(self._recording, stamp_ns)
         for name, part in parts.items():
             self._recording.log(f"{path}/{name}/{form}", part)
+
+
+GRID_SPACING: Final = 0.1
+"""m. The distance of the lines on a surface. It is ten times wider, and so on, if there would be more than
+`MAX_GRID_LINES` lines."""
+
+MAX_GRID_LINES: Final = 100
+
+_EDGE_WIDTH: Final = -1.5  # a negative size is in points of the screen
+_GRID_WIDTH: Final = -0.6
+_TRAIL_WIDTH: Final = -1.5
+
+
+def draw_axes(recording: rr.RecordingStream, up_W: FloatArray) -> None:
+    """Tell the viewer which of the world's axes is nearest to up."""
+    axis = int(np.abs(up_W).argmax())
+    names = ("RIGHT_HAND_X", "RIGHT_HAND_Y", "RIGHT_HAND_Z")
+    sign = "UP" if up_W[axis] > 0.0 else "DOWN"
+    recording.log(SCENE, getattr(rr.ViewCoordinates, f"{names[axis]}_{sign}"), static=True)
+
+
+def surface_path(name: str) -> str:
+    """Return where a surface is drawn."""
+    return entity(SURFACES, name)
+
+
+def surface_parts(
+    surface: Surface, *, center_W: FloatArray, side: float, among: Sequence[Surface] = ()
+) -> dict[str, Part]:
+    """Return a square of a surface with that side, m, about the point nearest to ``center_W``, (3,), m.
+
+    It ends where it meets the surfaces that it is ``among``.
+    """
+    others = [other for other in among if float(np.linalg.norm(np.cross(other.normal_W, surface.normal_W)))]
+    p_W = center_W - float(surface.gaps(center_W)) * surface.normal_W
+    u_W, v_W = (0.5 * side * tangent for tangent in tangents_near_x(surface.normal_W))
+    corners = _clipped(p_W + np.array([-u_W - v_W, u_W - v_W, u_W + v_W, v_W - u_W]), others)
+    if len(corners) < 3:
+        return {}
+    patch = rr.Mesh3D(
+        vertex_positions=corners,
+        triangle_indices=[[0, i, i + 1] for i in range(1, len(corners) - 1)],
+        vertex_normals=np.tile(surface.normal_W, (len(corners), 1)),
+        albedo_factor=palette.SURFACE,
+    )
+    spacing = GRID_SPACING
+    while side / spacing > MAX_GRID_LINES:
+        spacing *= 10.0
+    places = np.arange(-1.0, 1.0 + spacing / side, 2.0 * spacing / side)
+    whole = [
+        p_W + np.array([a * s - b, a * s + b]) for a, b in ((u_W, v_W), (v_W, u_W)) for s in places.tolist()
+    ]
+    lines = [line[:2] for line in (_clipped(line, others) for line in whole) if len(line) > 1]
+    return {
+        "patch": patch,
+        "grid": rr.LineStrips3D(strips_3d(lines), colors=palette.SURFACE_GRID, radii=_GRID_WIDTH),
+    }
+
+
+def _clipped(corners_W: FloatArray, others: Sequence[Surface]) -> FloatArray:
+    """Return the corners of the part of a convex polygon or line, (n, 3), m, that is above other surfaces."""
+    for other in others:
+        corners_W = part_above(corners_W, other.gaps(corners_W))
+    return corners_W
+
+
+def obstacle_parts(obstacle: Obstacle) -> dict[str, Part]:
+    """Return a convex piece of the world."""
+    shape = convex_shape(obstacle.vertices_W)
+    return {
+        "patch": solid(shape, palette.SURFACE),
+        "grid": rr.LineStrips3D(strips_3d(shape.edges_B), colors=palette.SURFACE_GRID, radii=_EDGE_WIDTH),
+    }
+
+
+def body_parts(shape: Shape, *, color: palette.Color = palette.MEASURED, name: str = "") -> dict[str, Part]:
+    """Return a body's shape, which moves with the body's pose, and its name, if one is given.
+
+    A body without shape is a ball.
+    """
+    parts: dict[str, Part] = {}
+    if len(shape.triangles_B) > 0:
+        parts["faces"] = solid(shape, color)
+    if len(shape.edges_B) > 0:
+        edges = list(shape.edges_B)
+        parts["edges"] = rr.LineStrips3D(strips_3d(edges), colors=palette.MEASURED_EDGE, radii=_EDGE_WIDTH)
+    else:
+        parts["faces"] = rr.Points3D([[0.0, 0.0, 0.0]], radii=0.5 * shape.size, colors=color)
+    if name:
+        parts["name"] = rr.Points3D(
+            [[0.0, 0.0, 0.0]], radii=0.0, colors=palette.NORMAL, labels=[name], show_labels=True
+        )
+    return parts
+
+
+def draw_trail_style(
+    recording: rr.RecordingStream, body_name: str, color: palette.Color = palette.MEASURED
+) -> None:
+    """Tell the viewer how the trail of a body looks."""
+    trail = rr.LineStrips3D.from_fields(colors=palette.translucent(color, 0.9), radii=_TRAIL_WIDTH)
+    recording.log(trail_entity(body_name), trail, static=True)
+
+
+def solid(shape: Shape, color: palette.Color) -> rr.Mesh3D:
+    """Return the faces of a shape, in body axes."""
+    return rr.Mesh3D(
+        vertex_positions=shape.triangles_B.reshape(-1, 3),
+        triangle_indices=np.arange(3 * len(shape.triangles_B)).reshape(-1, 3),
+        vertex_normals=np.repeat(shape.normals_B, 3, axis=0),
+        albedo_factor=color,
+    )
+
+
+class BodiesInWorld:
+    """How the bodies of a world look, and others that were asked about. An unknown one has no shape."""
+
+    def __init__(self, world: World) -> None:
+        """Take the bodies of a world."""
+        self.change(world)
+
+    def change(self, world: World) -> None:
+        """Take those of another world."""
+        self._world = world
+        self._shapes: dict[str, Shape] = {body.name: drawn_shape(body.shape) for body in world.bodies}
+
+    @property
+    def names(self) -> list[str]:
+        """The names of all bodies that were drawn or asked about."""
+        return list(self._shapes)
+
+    @property
+    def largest_size(self) -> float:
+        """The size of the largest body, m, or 0 without one."""
+        return max((shape.size for shape in self._shapes.values()), default=0.0)
+
+    def mass_properties(self, name: str) -> MassProperties | None:
+        """Return the mass properties of a body of the world, or None if the body is not known."""
+        known = (body.mass_properties for body in self._world.bodies if body.name == name)
+        return next(known, None)
+
+    def shape(self, name: str) -> Shape:
+        """Return the shape of a body."""
+        if name not in self._shapes:
+            self._shapes[name] = drawn_shape(NO_SHAPE)
+        return self._shapes[name]
+
+    def parts(self, name: str) -> dict[str, Part]:
+        """Return the parts of a body. Where there are several bodies, each has its name."""
+        written = name if len(self._world.bodies) > 1 else ""
+        return body_parts(self.shape(name), color=self.color(name), name=written)
+
+    def color(self, name: str) -> palette.Color:
+        """Return the colour of a body, which is its own among `palette.BODIES` of the world."""
+        names = [body.name for body in self._world.bodies]
+        return palette.body_color(names.index(name) if name in names else 0)
+
+
+GROUND: Final = 5.0
+"""Side of the largest square that a surface is drawn as, relative to the extent of what is looked at. A wall
+that is much larger than a body hides it."""
+
+
+class WorldInView:
+    """Surfaces and bodies in the scene. Both can have other forms from a time on.
+
+    Attributes:
+        bodies: How the bodies look.
+        up_W: (3,), the unit vector against gravity, or the third axis without gravity.
+    """
+
+    def __init__(self, recording: rr.RecordingStream, world: World, *, surface_side: float) -> None:
+        """Draw the surfaces of a world, as squares of ``surface_side``, m, and set how its bodies look."""
+        self._recording = recording
+        self._world = world
+        self._surface_side = surface_side
+        self._scenery = Scenery(recording)
+        self._in_scene: list[str] = []  # the bodies that are drawn
+        self._first_ns: int | None = None  # stamp of the first state
+        self._center_W: FloatArray | None = None  # the middle of what is looked at
+        self._extent = surface_side  # m, of what is looked at
+        self.bodies = BodiesInWorld(world)
+        gravity = float(np.linalg.norm(world.gravity_W))
+        self.up_W = -world.gravity_W / gravity if gravity > 0.0 else np.array([0.0, 0.0, 1.0])
+        draw_axes(recording, self.up_W)
+        self._draw_surfaces()
+        for name in self.bodies.names:
+            style_series(recording, name, self.bodies.color(name))
+            style_after_impact(recording, name, self.bodies.color(name))
+
+    @property
+    def surfaces(self) -> tuple[Surface | Obstacle, ...]:
+        """The world's surfaces."""
+        return tuple(self._world.surfaces)
+
+    @property
+    def gravity_W(self) -> FloatArray:
+        """The world's gravity, (3,), m/s^2."""
+        return self._world.gravity_W
+
+    def add_body(self, name: str, *, stamp_ns: int) -> None:
+        """Draw a body that has its first state at a stamp, ns."""
+        self._scenery.draw(body_entity(name), self.bodies.parts(name))
+        draw_trail_style(self._recording, name, self.bodies.color(name))
+        self._in_scene.append(name)
+        if self._first_ns is None:
+            self._first_ns = stamp_ns
+
+    def center_at(self, center_W: FloatArray, *, extent: float) -> None:
+        """Put the ground below a point, (3,), m, where what is looked at has an extent, m."""
+        self._center_W, self._extent = center_W, extent
+        self._draw_surfaces()
+
+    def change(self, world: World, *, stamp_ns: int) -> None:
+        """Draw other surfaces and shapes of bodies from a time on, ns."""
+        self._world = world
+        self.bodies.change(world)
+        wanted = self._surfaces()
+        gone = self._scenery.paths - wanted.keys()
+        wanted |= {body_entity(name): self.bodies.parts(name) for name in self._in_scene}
+        wanted |= {path: {} for path in gone - wanted.keys()}
+        for path, parts in wanted.items():
+            if self._first_ns is None:
+                self._scenery.draw(path, parts)
+            else:
+                first_ns = min(self._first_ns, stamp_ns)
+                self._scenery.change(path, parts, first_ns=first_ns, stamp_ns=stamp_ns)
+
+    def _draw_surfaces(self) -> None:
+        for path, parts in self._surfaces().items():
+            self._scenery.draw(path, parts)
+
+    def _surfaces(self) -> dict[str, dict[str, Part]]:
+        """Return the parts of the surfaces by their paths."""
+        flats = [surface for surface in self._world.surfaces if isinstance(surface, Surface)]
+        return {
+            surface_path(surface.name): surface_parts(
+                surface,
+                center_W=surface.p_WS_W if self._center_W is None else self._center_W,
+                side=min(self._surface_side, GROUND * self._extent or self._surface_side),
+                among=flats,
+            )
+            if isinstance(surface, Surface)
+            else obstacle_parts(surface)
+            for surface in self._world.surfaces
+        }

@@ -46,8 +46,6 @@ from contact_dynamics.viewing.viewer_process import ViewerProcess, viewer_execut
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from contact_dynamics.viewing.kept_recording import KeptRecording
-
 
 NO_WEB_PORT: Final = 0
 

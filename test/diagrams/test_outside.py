@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from contact_dynamics import BodyState, MassProperties, Surface, free_motion
-from contact_dynamics.diagrams.outside import DEEP, outside
+from contact_dynamics.diagrams.flight import DEEP, outside
 from contact_dynamics.diagrams.shape import drawn_shape
 from contact_dynamics.shapes import box, sphere
 

@@ -15,7 +15,7 @@ pytest.importorskip("matplotlib", reason="matplotlib of requirements/test.txt is
 
 from matplotlib.figure import Figure
 
-from contact_dynamics.diagrams.toss_tree import MAX_FACES, rest_in_words
+from contact_dynamics.diagrams.toss_scene import MAX_FACES, rest_in_words
 from contact_dynamics.impact import RestitutionLaw
 from contact_dynamics.plots import draw_event_tree, save_figure
 from contact_dynamics.rigid_body.body import BodyState

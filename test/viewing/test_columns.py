@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 import rerun as rr
 
-from contact_dynamics.viewing.columns import pose_columns, scalar_columns, strip_columns
-from contact_dynamics.viewing.strips import strips_2d, strips_3d
+from contact_dynamics.viewing.columns import pose_columns, scalar_columns, strip_columns, strips_2d, strips_3d
 
 if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray

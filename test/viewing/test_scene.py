@@ -14,14 +14,14 @@ from contact_dynamics.numerics.vectors import tangents_near_x
 from contact_dynamics.shapes.obstacle import Obstacle
 from contact_dynamics.viewing.entities import body_entity
 from contact_dynamics.viewing.picture import Picture
-from contact_dynamics.viewing.scene import (
+from contact_dynamics.viewing.scenery import (
     MAX_GRID_LINES,
+    Scenery,
     body_parts,
     draw_axes,
     surface_parts,
     surface_path,
 )
-from contact_dynamics.viewing.scenery import Scenery
 from contact_dynamics.world import Surface, World, box_vertices
 
 if TYPE_CHECKING:

@@ -10,8 +10,7 @@ import numpy as np
 import pytest
 
 from contact_dynamics.diagrams.shape import convex_shape
-from contact_dynamics.diagrams.toss_scene import MAX_STRIKING, toss_marks
-from contact_dynamics.diagrams.toss_tree import tree_of
+from contact_dynamics.diagrams.toss_scene import MAX_STRIKING, toss_marks, tree_of
 from contact_dynamics.diagrams.words import toss_in_words
 from contact_dynamics.questions import Context, TossQuestion, TossSampling, UncertainState, ask
 from contact_dynamics.rigid_body.body import BodyState

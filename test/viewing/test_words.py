@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import pytest
 
-from contact_dynamics.viewing.answers_in_words import sentence
+from contact_dynamics.viewing.words import sentence
 
 
 @pytest.mark.parametrize(
