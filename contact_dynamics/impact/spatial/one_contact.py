@@ -162,6 +162,13 @@ def response_impact(
             normal; or it wedges: friction holds the contact, which then cannot move along the normal either,
             although by ``restitution_law`` it would have to separate, or it still approaches.
     """
+    if np.shape(inverse_inertia_W) == (2, 2):
+        raise InvalidFieldError(
+            "inverse_inertia_W",
+            "shape (2, 2)",
+            "of shape (3, 3)",
+            hint="for a planar mechanism, add a row and a column of zeros across its plane",
+        )
     response = check_array("inverse_inertia_W", inverse_inertia_W, (3, 3))
     check_magnitude("inverse_inertia_W", response)
     velocity = check_vector3("velocity_W", velocity_W)
