@@ -30,6 +30,8 @@ from msg_adapters.geometry import (
 from msg_adapters.stamps import stamp_ns_from_msg
 
 if TYPE_CHECKING:
+    from enum import IntEnum
+
     from builtin_interfaces.msg import Time
     from geometry_msgs.msg import Inertia, Vector3
 
@@ -51,7 +53,7 @@ NOTHING: Final = np.zeros(3)
 """No force, no torque or no gravity."""
 
 Number = TypeVar("Number", int, float)
-Law = TypeVar("Law", RestitutionLaw, SeveralContactsLaw)
+Member = TypeVar("Member", bound="IntEnum")
 
 
 class ContactRequest(Protocol):
@@ -98,10 +100,7 @@ def asked_gravity(request: GravityRequest) -> FloatArray | None:
 
 def asked_problem(value: int) -> Problem:
     """Return the kind of problem of a request's number, or raise `InvalidFieldError`."""
-    try:
-        return Problem(value)
-    except ValueError:
-        raise InvalidFieldError("problem", value, "AUTOMATIC (0), PLANAR (1) or SPATIAL (2)") from None
+    return asked_member("problem", Problem, value)
 
 
 def asked_plane(normal: Vector3) -> PlaneOfMotion | None:
@@ -116,19 +115,20 @@ def asked_plane(normal: Vector3) -> PlaneOfMotion | None:
 
 def asked_restitution_law(value: int) -> RestitutionLaw:
     """Return the law of a request's number, or raise `InvalidFieldError`."""
-    return _asked_law("restitution_law", RestitutionLaw, value)
+    return asked_member("restitution_law", RestitutionLaw, value)
 
 
 def asked_instant_law(value: int) -> SeveralContactsLaw:
     """Return the law for contacts at one instant of a request's number, or raise `InvalidFieldError`."""
-    return _asked_law("several_contacts_law", SeveralContactsLaw, value)
+    return asked_member("several_contacts_law", SeveralContactsLaw, value)
 
 
-def _asked_law(field: str, kind: type[Law], value: int) -> Law:
+def asked_member(field: str, kind: type[Member], value: int, *others: str) -> Member:
+    """Return the member of a request's number, or raise an error that lists all, with the words of others."""
     try:
         return kind(value)
     except ValueError:
-        allowed = ", ".join(f"{law.name} ({law.value})" for law in kind)
+        allowed = ", ".join([*(f"{each.name} ({each.value})" for each in kind), *others])
         raise InvalidFieldError(field, value, allowed) from None
 
 

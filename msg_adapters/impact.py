@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from contact_dynamics.constants import ns_after
-from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.impact.in_time.result import SequenceEnd
 from contact_dynamics.impact.in_time.sequence import MAX_STRIKES, STRIKE_WINDOW
 from contact_dynamics.impact.law import ImpactOutcome, PathEvent, RestitutionLaw
@@ -35,6 +34,7 @@ from contact_dynamics_interfaces.srv import PredictImpact
 from msg_adapters import fields
 from msg_adapters.asked_fields import (
     asked_contacts,
+    asked_member,
     asked_other,
     asked_plane,
     asked_problem,
@@ -96,11 +96,7 @@ def _several_contacts_law(request: PredictImpact.Request) -> SeveralContactsLaw 
             max_strikes=MAX_STRIKES if most is None else most,
             hold_step=request.hold_step or None,
         )
-    try:
-        return SeveralContactsLaw(value)
-    except ValueError:
-        allowed = "SEQUENTIAL (0), SIMULTANEOUS (1), SEQUENTIAL_IN_TIME (2)"
-        raise InvalidFieldError("several_contacts_law", value, allowed) from None
+    return asked_member("several_contacts_law", SeveralContactsLaw, value, "SEQUENTIAL_IN_TIME (2)")
 
 
 def _write_law(msg: ImpactMsg, field: str, law: SeveralContactsLaw, _: fields.Frame) -> None:

@@ -82,11 +82,7 @@ def report_error(response: Response, error: Exception) -> None:
         response.event_time = math.nan  # there is no event; interfaces cannot have it as a default
     if isinstance(error, errors.NoShapeError):
         error = errors.NoShapeError(f"{error} ({_SHAPE_HINT})")
-    for error_type, code_name in _CODE_NAMES:
-        code = getattr(response, code_name, None)
-        if isinstance(error, error_type) and code is not None:
-            response.status = code
-            response.message = short(str(error))
-            return
-    response.status = response.INTERNAL_ERROR  # type: ignore[attr-defined]
-    response.message = short(f"{type(error).__name__}: {error}")
+    known = (name for kind, name in _CODE_NAMES if isinstance(error, kind) and hasattr(response, name))
+    name = next(known, "INTERNAL_ERROR")
+    response.status = getattr(response, name)
+    response.message = short(str(error) if name != "INTERNAL_ERROR" else f"{type(error).__name__}: {error}")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The situations that `/diagnostics` reports: the level of each, what it says, and the test that shows it.
+"""The situations that `/diagnostics` reports: the level of each, and what it says.
 
 A status is OK if none of its situations is present. Each of them ends when its cause does. What happens at an
 instant, such as the loss of a message, counts as present for `RECENT_S` after it last happened.
@@ -64,127 +64,55 @@ class _Row(NamedTuple):
     part: Part
     level: Level
     text: str
-    test: str
 
 
 class Situation(Enum):
-    """A situation. The value has its status, its level, its text, and the test that shows it."""
+    """A situation. The value has its status, its level and its text."""
 
     NO_STATE_YET = _Row(
-        Part.STATES,
-        Level.WARN,
-        "no state of {body!r} received on {topics} ({publishers} publishers)",
-        "test_diagnostics.py::test_a_body_of_which_nothing_came",
+        Part.STATES, Level.WARN, "no state of {body!r} received on {topics} ({publishers} publishers)"
     )
     NO_MATCH = _Row(
-        Part.STATES,
-        Level.ERROR,
-        "{topic}: {count} of {publishers} publishers cannot be received: {reason}",
-        "test_diagnostics.py::test_publishers_that_do_not_match",
+        Part.STATES, Level.ERROR, "{topic}: {count} of {publishers} publishers cannot be received: {reason}"
     )
     ALL_REJECTED = _Row(
-        Part.STATES,
-        Level.ERROR,
-        "the states of {body!r} are rejected, the last because {reason}",
-        "test_diagnostics.py::test_states_that_are_rejected",
+        Part.STATES, Level.ERROR, "the states of {body!r} are rejected, the last because {reason}"
     )
     SOME_REJECTED = _Row(
-        Part.STATES,
-        Level.WARN,
-        "some states of {body!r} are rejected, the last because {reason}",
-        "test_diagnostics.py::test_states_that_are_rejected",
+        Part.STATES, Level.WARN, "some states of {body!r} are rejected, the last because {reason}"
     )
     OLD = _Row(
         Part.STATES,
         Level.ERROR,
         "the states of {body!r} are too old on arrival, the last by {age:.3f} s (state_timeout): "
         "do the clocks agree?",
-        "test_diagnostics.py::test_states_that_are_old_when_they_come",
     )
-    SILENT = _Row(
-        Part.STATES,
-        Level.WARN,
-        "{topic} is silent",
-        "test_distrusted_states.py::test_what_got_lost_fell_silent_and_has_two_publishers_is_told",
-    )
-    BODY_SILENT = _Row(
-        Part.STATES,
-        Level.WARN,
-        "no state of {body!r} is received any more on {topics}",
-        "test_diagnostics.py::test_a_body_that_is_gone_from_a_shared_topic",
-    )
+    SILENT = _Row(Part.STATES, Level.WARN, "{topic} is silent")
+    BODY_SILENT = _Row(Part.STATES, Level.WARN, "no state of {body!r} is received any more on {topics}")
     LOST = _Row(
-        Part.STATES,
-        Level.WARN,
-        "{topic}: messages were lost before they were received, {count} so far",
-        "test_distrusted_states.py::test_what_got_lost_fell_silent_and_has_two_publishers_is_told",
+        Part.STATES, Level.WARN, "{topic}: messages were lost before they were received, {count} so far"
     )
     SEVERAL_PUBLISHERS = _Row(
-        Part.STATES,
-        Level.WARN,
-        "{topic}: {publishers} publishers send states of one body",
-        "test_diagnostics.py::test_a_second_publisher_of_a_body",
+        Part.STATES, Level.WARN, "{topic}: {publishers} publishers send states of one body"
     )
     TWIST_AXES = _Row(
         Part.STATES,
         Level.WARN,
         "{topic}: the twist disagrees with the poses by {speed:.1f} m/s; in nav_msgs/Odometry it is in the "
         "axes of child_frame_id",
-        "test_diagnostics.py::test_a_twist_in_the_axes_of_the_world",
     )
-    NO_CLOCK = _Row(
-        Part.STATES,
-        Level.WARN,
-        "use_sim_time is true and no time was received on /clock",
-        "test_diagnostics.py::test_a_simulated_clock_that_does_not_come",
-    )
+    NO_CLOCK = _Row(Part.STATES, Level.WARN, "use_sim_time is true and no time was received on /clock")
     SAME_NAME = _Row(
-        Part.ANSWERS,
-        Level.ERROR,
-        "another node has this name, and both answer the same requests",
-        "test_diagnostics.py::test_a_second_server_of_the_same_name",
+        Part.ANSWERS, Level.ERROR, "another node has this name, and both answer the same requests"
     )
-    FAULT = _Row(
-        Part.ANSWERS,
-        Level.ERROR,
-        "internal errors of the server, {count} so far",
-        "test_diagnostics.py::test_a_fault_of_the_server",
-    )
-    OVERLOADED = _Row(
-        Part.ANSWERS,
-        Level.WARN,
-        "requests were rejected as BUSY or TIMEOUT, {count} so far",
-        "test_diagnostics.py::test_questions_that_take_too_long",
-    )
-    WORKERS = _Row(
-        Part.ANSWERS,
-        Level.WARN,
-        "{ready} of {count} workers are ready",
-        "test_hard_questions.py::test_a_server_is_ready_once_its_workers_are",
-    )
-    LOG_INTERRUPTED = _Row(
-        Part.LOG,
-        Level.ERROR,
-        "{problem}; {lost} messages are missing so far",
-        "test_full_disk.py::test_the_log_goes_on_once_there_is_room_and_says_what_is_missing",
-    )
-    LOG_DROPPING = _Row(
-        Part.LOG,
-        Level.ERROR,
-        "{problem}; {lost} messages are missing so far",
-        "test_full_disk.py::test_each_kind_of_problem_of_the_log_is_reported_while_it_is_there",
-    )
-    LOG_REJECTING = _Row(
-        Part.LOG,
-        Level.WARN,
-        "{problem}",
-        "test_full_disk.py::test_each_kind_of_problem_of_the_log_is_reported_while_it_is_there",
-    )
+    FAULT = _Row(Part.ANSWERS, Level.ERROR, "internal errors of the server, {count} so far")
+    OVERLOADED = _Row(Part.ANSWERS, Level.WARN, "requests were rejected as BUSY or TIMEOUT, {count} so far")
+    WORKERS = _Row(Part.ANSWERS, Level.WARN, "{ready} of {count} workers are ready")
+    LOG_INTERRUPTED = _Row(Part.LOG, Level.ERROR, "{problem}; {lost} messages are missing so far")
+    LOG_DROPPING = _Row(Part.LOG, Level.ERROR, "{problem}; {lost} messages are lost so far")
+    LOG_REJECTING = _Row(Part.LOG, Level.WARN, "{problem}")
     LOG_NOT_AWAITED = _Row(
-        Part.LOG,
-        Level.WARN,
-        "the disk took too long, and answers are sent before they are on it",
-        "test_log_before_answer.py::test_a_disk_that_hangs_is_told_of_and_not_waited_for_again",
+        Part.LOG, Level.WARN, "the disk took too long, and answers are sent before they are on it"
     )
 
     def present(self, **found: object) -> Present:

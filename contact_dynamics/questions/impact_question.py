@@ -100,18 +100,18 @@ class ResolvedImpact(Record):
 
     restitution_law: RestitutionLaw
     several_contacts_law: SeveralContactsLaw
-    outcome: ImpactOutcome | None
-    jams: bool
+    outcome: ImpactOutcome | None = None
+    jams: bool = False
     converged: bool
     state: BodyState
     other_state: BodyState | None = None
     impulses_W: FloatArray
-    compression_impulses_W: FloatArray
+    compression_impulses_W: FloatArray = field(default_factory=lambda: np.zeros((0, 3)))
     velocities_before_W: FloatArray
     velocities_after_W: FloatArray
-    path_W: FloatArray
-    path_events: tuple[PathEvent, ...]
-    path_contacts: tuple[int, ...]
+    path_W: FloatArray = field(default_factory=lambda: np.zeros((0, 3)))
+    path_events: tuple[PathEvent, ...] = ()
+    path_contacts: tuple[int, ...] = ()
     kinetic_energy_before: float
     kinetic_energy_after: float
     creates_energy: bool

@@ -8,13 +8,12 @@ for two.
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
 from contact_dynamics.impact import (
     BodiesImpact,
-    ImpactOutcome,
     PathEvent,
     SequenceEnd,
     SeveralContactsLaw,
@@ -117,7 +116,6 @@ def several_resolved(
     after = impact.states if isinstance(impact, BodiesImpact) else (impact.state,)
     energy_before, energy_after = _energies(before, after)
     work = 0.0 if surfaces_W is None else float(np.sum(impact.impulses_W * surfaces_W))
-    told = _told_by(impact.strikes, len(impact.impulses_W)) if impact.strikes else _NOT_TOLD
     return ResolvedImpact(
         restitution_law=impact.restitution_law,
         several_contacts_law=impact.several_contacts_law,
@@ -130,7 +128,7 @@ def several_resolved(
         kinetic_energy_before=energy_before,
         kinetic_energy_after=energy_after,
         creates_energy=created(energy_after - energy_before - work, energy_before + abs(work)),
-        **told._asdict(),
+        **_told_by(impact.strikes, len(impact.impulses_W)),
     )
 
 
@@ -145,7 +143,6 @@ def sequence_resolved(impact: ImpactSequence, before: Before) -> ResolvedImpact:
     for strike in impact.strikes:
         impulses[strike.contact] += strike.impact.impulse_W
         velocities_after[strike.contact] = strike.impact.velocity_after_W
-    told = _told_by(tuple((strike.contact, strike.impact) for strike in impact.strikes), len(impulses))
     return ResolvedImpact(
         restitution_law=impact.restitution_law,
         several_contacts_law=SeveralContactsLaw.SEQUENTIAL,
@@ -172,7 +169,7 @@ def sequence_resolved(impact: ImpactSequence, before: Before) -> ResolvedImpact:
         end=impact.end,
         staying=impact.staying,
         limit_seconds=None if impact.limit_seconds is None else impact.limit_seconds - first,
-        **told._asdict(),
+        **_told_by([(strike.contact, strike.impact) for strike in impact.strikes], len(impulses)),
     )
 
 
@@ -195,29 +192,10 @@ def _energies(before: Sequence[Before], after: Sequence[BodyState]) -> tuple[flo
     )
 
 
-class _Told(NamedTuple):
-    """The fields that only a sequence has: its outcome, the split of the impulses, and the paths."""
-
-    outcome: ImpactOutcome | None
-    jams: bool
-    compression_impulses_W: FloatArray
-    path_W: FloatArray
-    path_events: tuple[PathEvent, ...]
-    path_contacts: tuple[int, ...]
-
-
-_NOT_TOLD = _Told(
-    outcome=None,
-    jams=False,
-    compression_impulses_W=np.zeros((0, 3)),
-    path_W=np.zeros((0, 3)),
-    path_events=(),
-    path_contacts=(),
-)
-
-
-def _told_by(strikes: Sequence[tuple[int, SpatialImpact]], contact_count: int) -> _Told:
-    """Return what only a sequence has. Its outcome is that of the hardest strike."""
+def _told_by(strikes: Sequence[tuple[int, SpatialImpact]], contact_count: int) -> dict[str, Any]:
+    """Return the fields that only a sequence of strikes has. Its outcome is that of the hardest strike."""
+    if not strikes:
+        return {}
     hardest = max(strikes, key=lambda strike: float(strike[1].impulse_W @ strike[1].impulse_W))[1]
     so_far = np.zeros((contact_count, 3))
     compression = np.zeros((contact_count, 3))
@@ -230,11 +208,11 @@ def _told_by(strikes: Sequence[tuple[int, SpatialImpact]], contact_count: int) -
         contacts += [contact] * len(strike.path_events)
         so_far[contact] += strike.impulse_W
         compression[contact] += strike.compression_W
-    return _Told(
-        outcome=hardest.outcome,
-        jams=hardest.jams,
-        compression_impulses_W=compression,
-        path_W=np.concatenate(path),
-        path_events=tuple(events),
-        path_contacts=tuple(contacts),
-    )
+    return {
+        "outcome": hardest.outcome,
+        "jams": hardest.jams,
+        "compression_impulses_W": compression,
+        "path_W": np.concatenate(path),
+        "path_events": tuple(events),
+        "path_contacts": tuple(contacts),
+    }

@@ -246,9 +246,3 @@ def test_the_table_in_the_documents_is_that_of_the_code() -> None:
         (row.part.value, row.level.name, re.sub(r"\{(\w+)[^}]*\}", r"<\1>", row.text))
         for row in (situation.value for situation in Situation)
     ]
-
-
-def test_each_situation_has_its_test() -> None:
-    for situation in Situation:
-        file, _, name = situation.value.test.partition("::")
-        assert f"\ndef {name}(" in (ROOT / "test" / "nodes" / file).read_text(encoding="utf-8")
