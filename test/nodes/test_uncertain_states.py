@@ -4,7 +4,9 @@
 from __future__ import annotations
 
 import math
+import time
 from collections.abc import Iterator
+from itertools import count
 from pathlib import Path
 
 import numpy as np
@@ -17,6 +19,10 @@ from running_server import Client, server_and_client
 
 G = 9.80665
 RATE = 100.0
+COUNT = 12  # states of a fit
+BEGINS_NS = (time.time_ns() - 60_000_000_000 + each for each in count(0, 3_000_000_000))
+"""When the states of a test begin: more than a fit looks back after those of the test before it."""
+
 COVARIANCE = np.diag([1e-6] * 3 + [1e-6] * 3 + [1e-4] * 3 + [1e-2] * 3)  # m, rad, m/s, rad/s, squared
 
 
@@ -93,10 +99,9 @@ def test_an_uncertain_landing_has_probabilities_that_sum_to_one(client: Client) 
 def test_a_fit_to_the_last_states_does_not_care_for_a_bad_velocity(client: Client) -> None:
     """Exact poses of a free fall with spin about z, published with velocities that are all wrong."""
     publisher = client.publisher(Odometry, "/brick/odometry")
-    begin_ns = client.node.get_clock().now().nanoseconds
+    begin_ns = next(BEGINS_NS)
     spin, rise = 4.0, 2.0
-    count = 12
-    for i in range(count):
+    for i in range(COUNT):
         t = i / RATE
         msg = Odometry()
         stamp_ns = begin_ns + round(1e9 * t)
@@ -107,14 +112,14 @@ def test_a_fit_to_the_last_states_does_not_care_for_a_bad_velocity(client: Clien
         msg.pose.pose.orientation.w = math.cos(0.5 * spin * t)
         msg.twist.twist.linear.x = 9.0
         publisher.publish(msg)
-    last = (count - 1) / RATE
+    last = (COUNT - 1) / RATE
     request = PredictTumbling.Request(body_name="brick", fit_window=1.0, times=[0.0], include_covariance=True)
     request.state_source, request.stamp = request.STATE_AT_STAMP, msg.header.stamp
     answers = []
 
     def all_arrived() -> bool:
         answers.append(client.ask(request))
-        return answers[-1].fit_count == count
+        return answers[-1].fit_count == COUNT
 
     client.spin_until(all_arrived)
     answer = answers[-1]
@@ -137,8 +142,8 @@ def test_a_fit_to_the_last_states_does_not_care_for_a_bad_velocity(client: Clien
 def test_fits_are_of_flights_under_the_forces_asked_for(client: Client) -> None:
     """Poses of a body that floats: with gravity the fit finds it falling."""
     publisher = client.publisher(Odometry, "/brick/odometry")
-    begin_ns = client.node.get_clock().now().nanoseconds + 300_000_000  # after what was published before
-    for i in range(12):
+    begin_ns = next(BEGINS_NS)
+    for i in range(COUNT):
         msg = Odometry()
         msg.header.stamp.sec, msg.header.stamp.nanosec = divmod(begin_ns + i * 10_000_000, 1_000_000_000)
         msg.header.frame_id = "world"
@@ -151,7 +156,7 @@ def test_fits_are_of_flights_under_the_forces_asked_for(client: Client) -> None:
 
     def all_arrived() -> bool:
         answers.append(client.ask(request))
-        return answers[-1].fit_count == 12
+        return answers[-1].fit_count == COUNT
 
     client.spin_until(all_arrived)
     assert answers[-1].fit_position_residual < 1e-8
@@ -188,10 +193,10 @@ def test_a_fit_keeps_the_direction_of_a_spin_of_more_than_half_a_turn_between_st
 ) -> None:
     """400 rad/s at 120 Hz is 0.53 turns from state to state: poses alone look like 354 rad/s backwards."""
     publisher = client.publisher(Odometry, "/brick/odometry")
-    begin_ns = client.node.get_clock().now().nanoseconds + 350_000_000  # after what was published before
-    count, rate, spin = 12, 120.0, 400.0
-    noise = np.random.default_rng(7).normal(scale=1.0, size=count)  # rad/s, of a gyroscope
-    for i in range(count):
+    begin_ns = next(BEGINS_NS)
+    rate, spin = 120.0, 400.0
+    noise = np.random.default_rng(7).normal(scale=1.0, size=COUNT)  # rad/s, of a gyroscope
+    for i in range(COUNT):
         t = i / rate
         msg = Odometry()
         msg.header.stamp.sec, msg.header.stamp.nanosec = divmod(begin_ns + round(1e9 * t), 1_000_000_000)
@@ -208,7 +213,7 @@ def test_a_fit_keeps_the_direction_of_a_spin_of_more_than_half_a_turn_between_st
 
     def all_arrived() -> bool:
         answers.append(client.ask(request))
-        return answers[-1].fit_count == count
+        return answers[-1].fit_count == COUNT
 
     client.spin_until(all_arrived)
     assert answers[-1].status == answers[-1].OK, answers[-1].message

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 POSE = "geometry_msgs/msg/PoseStamped"
 MAGIC = b"\x89MCAP0\r\n"
 HEAD = 9  # bytes of a record before its content: kind and length
-FLIPS = 4  # of each record's head, and as many of its content
+FLIPS = 2  # of each record's head, and as many of its content
 CHUNKS, PER_CHUNK = 4, 12
 HUGE = 1 << 60
 MEMORY = 16 * 1024 * 1024  # bytes; the files have less than one
@@ -196,7 +196,7 @@ def test_every_cut_of_the_tail_gives_all_whole_chunks(log: Path, tmp_path: Path)
     last = [record for record in records_in(data) if record.kind == Opcode.CHUNK][-1]
     whole = [message for chunk in by_chunk(data, cut) for message in chunk]
     closing = next(record.begin for record in records_in(data) if record.kind == Opcode.DATA_END)
-    sizes = [*range(last.begin, last.end, 11), *range(last.end, closing + 60)]
+    sizes = [*range(last.begin, last.end, 11), *range(last.end, closing + 60, 3)]
     sizes += [*range(closing + 60, len(data) - 120, 61), *range(len(data) - 120, len(data))]
     for size in sizes:
         messages, losses = read(cut, data[:size])

@@ -49,6 +49,7 @@ def test_a_build_that_fails_shows_the_compilers_words(tmp_path: Path) -> None:
     assert str(tmp_path / "an environment" / "build") in answer.stderr
 
 
+@pytest.mark.slow  # the real compilers, twice
 @pytest.mark.skipif(
     not (Path(sys.prefix) / "share" / "rosidl_default_generators").is_dir(),
     reason="NOT RUN: the build, because this environment has no rosidl generators",

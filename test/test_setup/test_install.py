@@ -78,7 +78,9 @@ def test_a_full_disk_is_named(tmp_path: Path) -> None:
     ],
 )
 def test_a_long_installation_shows_that_it_lives(tmp_path: Path, line: str, said: str) -> None:
-    answer = install(environment_with(tmp_path, f"echo '{line}'; sleep 3"), "numpy", PROGRESS_PERIOD_S="0.2")
+    answer = install(
+        environment_with(tmp_path, f"echo '{line}'; sleep 0.8"), "numpy", PROGRESS_PERIOD_S="0.2"
+    )
     assert answer.returncode == 0
     assert said in answer.stdout
     assert answer.stderr == ""
