@@ -202,7 +202,9 @@ class HoldingPrograms:
     def _whole(self, facets: int) -> list[_Edges]:
         """Return the edges of each contact's whole cone."""
         if facets not in self._around:
-            turns = np.arange(0.0, facets)[None, :] * (2.0 * math.pi / facets)
+            # A pyramid touches the round cone between its edges: so turned, along the frame's axes, in
+            # which friction often points: there, the program demands what a mode does.
+            turns = np.arange(0.5, facets)[None, :] * (2.0 * math.pi / facets)
             wider = 1.0 / math.cos(math.pi / facets)
             self._around[facets] = [
                 self._leaning([i], np.zeros((1, 1)), np.zeros((1, 1)))
