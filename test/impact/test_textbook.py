@@ -380,23 +380,6 @@ def test_one_contact_in_the_plane_is_the_planar_law(law: RestitutionLaw) -> None
     assert several.strikes[0][1].outcome is one.outcome
 
 
-def test_a_level_rod_on_two_supports_in_the_plane() -> None:
-    """By hand, the impulses are m v / 2 at the right end, then m v at the left one. Both tie as they fall."""
-    rod, falling = PlanarBody(mass=2.0, inertia=2.0 / 3.0), PlanarVelocity(v=(0.0, -1.0), w=0.0)
-    ends = [PlanarContact(r=(x, 0.0), normal=UP, friction=0.0, restitution=1.0) for x in (1.0, -1.0)]
-    right_first = PlanarVelocity(v=(0.0, -1.0), w=-1e-6)
-    answer = planar_several_impact(rod, right_first, ends)
-    assert answer.order[:2] == (0, 1)
-    assert answer.strikes[0][1].impulse_W == pytest.approx([0.0, 1.0, 0.0], abs=1e-5)
-    assert answer.strikes[1][1].impulse_W == pytest.approx([0.0, 2.0, 0.0], abs=1e-5)
-    as_one = planar_several_impact(rod, falling, ends)
-    assert as_one.state.v_WB_W == pytest.approx([0.0, 1.0, 0.0], abs=1e-12)
-    assert as_one.state.w_WB_W == pytest.approx([0.0, 0.0, 0.0], abs=1e-12)
-    at_once = planar_several_impact(rod, falling, ends, several_contacts_law=SIMULTANEOUS)
-    assert at_once.state.v_WB_W == pytest.approx([0.0, 1.0, 0.0], abs=1e-12)
-    assert at_once.state.w_WB_W == pytest.approx([0.0, 0.0, 0.0], abs=1e-11)
-
-
 def test_momentum_and_energy_of_a_heap() -> None:
     """Three boxes in a stack on the floor, struck from above: admissible, and no energy from nowhere."""
     box = MassProperties(mass=1.0, I_B=0.02 * np.eye(3))

@@ -85,14 +85,6 @@ def test_constant_torque_on_a_sphere() -> None:
     assert found.stamp_ns == 11_000_000_000
 
 
-def test_constant_body_torque_about_the_axis_of_spin_is_a_constant_world_torque() -> None:
-    axis_B = np.array([0.0, 0.6, 0.8])
-    axis_W = TURN.apply(axis_B)
-    in_body = ConstantWrench(torque=axis_B, axes=WrenchAxes.BODY)
-    found = forced_motion(SPHERE, state(w=2.0 * axis_W), wrench=in_body).state_at(3.0)
-    np.testing.assert_allclose(found.w_WB_W, (2.0 + 3.0 / 0.4) * axis_W, rtol=1e-11)
-
-
 def test_body_force_on_a_body_that_spins_makes_a_circle() -> None:
     """F turns at w about z: v is the integral of (cos wt, sin wt, 0) F/m."""
     w, thrust, t = 3.0, 2.6, 5.0
@@ -303,24 +295,7 @@ def test_forces_alone_leave_the_rotation_free() -> None:
         assert not forced_motion(BODY, state(), **forces).rotates_freely
 
 
-def test_methods_are_numbered_as_in_the_service() -> None:
-    assert (Method.CLOSED_FORM, Method.INTEGRATED) == (0, 1)
-
-
 # Misuse
-
-
-@pytest.mark.parametrize("field", ["linear", "quadratic", "linear_angular", "quadratic_angular"])
-@pytest.mark.parametrize("value", [-1.0, math.nan, math.inf])
-def test_drag_is_not_negative(field: str, value: float) -> None:
-    with pytest.raises(InvalidFieldError, match=f"{field}_drag"):
-        Drag(**{field: value})
-
-
-@pytest.mark.parametrize("field", ["force", "torque"])
-def test_wrenches_are_finite(field: str) -> None:
-    with pytest.raises(InvalidFieldError, match=field):
-        ConstantWrench(**{field: [0.0, math.nan, 0.0]})
 
 
 @pytest.mark.parametrize(

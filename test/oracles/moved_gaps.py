@@ -70,10 +70,6 @@ def ball_to_plane(center: Vector, radius: Any, point: Vector, normal: Vector) ->
     return lambda pose: dot(normal, pose[0] + pose[1] * center - point) - radius
 
 
-def ball_to_ball(center: Vector, radius: Any, other: Vector, other_radius: Any) -> Gap:
-    return lambda pose: length(pose[0] + pose[1] * center - other) - radius - other_radius
-
-
 def ellipsoid_to_plane(semiaxes: Vector, point: Vector, normal: Vector) -> Gap:
     def gap(pose: Pose) -> Any:
         n = pose[1].T * normal

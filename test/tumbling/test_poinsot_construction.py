@@ -50,17 +50,6 @@ def test_constants(name: str) -> None:
         assert picture.invariable_plane_distance == pytest.approx(distance, rel=1e-13)
 
 
-@pytest.mark.parametrize("name", MOTIONS)
-def test_principal_frame(name: str) -> None:
-    motion = motion_of(name)
-    picture = poinsot(motion)
-    axes = picture.principal_axes_B
-    assert axes.T @ axes == pytest.approx(np.eye(3), abs=1e-15)
-    assert np.linalg.det(axes) == pytest.approx(1.0, abs=1e-15)
-    assert pytest.approx(motion.body.I_B, abs=1e-15) == picture.I_B
-    assert (np.diff(picture.principal_moments) >= 0.0).all()
-
-
 @pytest.mark.parametrize("name", PERIODIC)
 def test_after_a_period_the_body_rate_is_back_and_the_body_has_turned_about_L(name: str) -> None:
     motion = motion_of(name)

@@ -88,42 +88,6 @@ def test_a_block_rides_on_a_cart_up_to_mu_g(sign: float) -> None:
         )
 
 
-def test_a_tall_block_tips_on_a_cart_before_it_slips() -> None:
-    width, height = 0.1, 0.5
-    tips = G * width / height
-    for share, letters in ((0.999, "ff"), (1.001, "sf")):
-        cart = Motion(a=(-share * tips, 0.0))
-        assert (
-            only_mode(problem_on(cart, PlanarVelocity(v=(0, 0), w=0.0), *feet(width, height))).mode == letters
-        )
-
-
-def test_a_load_on_a_swing_feels_no_force_along_it() -> None:
-    """A swing as a pendulum to the centre of mass: the seat pulls along the ropes only."""
-    length, angle, rate = 1.5, 0.5, 1.2
-    n = (-math.sin(angle), math.cos(angle))  # along the ropes, up
-    t = (math.cos(angle), math.sin(angle))
-    alpha = -G / length * math.sin(angle)
-    swing = Motion(
-        v=(rate * length * t[0], rate * length * t[1]),
-        w=rate,
-        a=tuple(alpha * length * t[k] + rate**2 * length * n[k] for k in (0, 1)),  # type: ignore[arg-type]
-        alpha=alpha,
-    )
-    seat = [
-        PlanarContact(r=(x * t[0] - 0.1 * n[0], x * t[1] - 0.1 * n[1]), normal=n, friction=1e-3)
-        for x in (-0.15, 0.15)
-    ]
-    mode = only_mode(problem_on(swing, PlanarVelocity(v=swing.v, w=rate), *seat))
-    assert mode.mode == "ff"
-    f_t = sum(force[0] for force in mode.contact_forces)
-    f_n = sum(force[1] for force in mode.contact_forces)
-    assert f_t == pytest.approx(0.0, abs=1e-11)
-    assert f_n == pytest.approx(2.0 * (G * math.cos(angle) + rate**2 * length), abs=1e-11)
-    assert mode.acceleration == pytest.approx(swing.a, abs=1e-12)
-    assert mode.angular_acceleration == pytest.approx(alpha, abs=1e-11)
-
-
 def test_a_block_between_two_belts_is_dragged_by_both() -> None:
     """The lower belt runs to the right under it, and the upper one, pressed down, to the left."""
     low, high = feet(), [replace(one, r=(one.r[0], 0.1), normal=(0.0, -1.0)) for one in feet()]
@@ -142,16 +106,6 @@ def test_a_block_between_two_belts_is_dragged_by_both() -> None:
     modes = contact_modes(carried).modes
     assert {mode.mode[:2] for mode in modes} == {"ff"}
     assert modes[0].acceleration[0] == pytest.approx(-0.5 * MU * G)
-
-
-def test_a_box_is_held_between_a_belt_and_a_wall() -> None:
-    wall = [PlanarContact(r=(0.15, y), normal=(-1.0, 0.0), friction=0.0) for y in (-0.1, 0.1)]
-    contacts = [*map(Motion(v=(1.0, 0.0)).carried, feet()), *wall]
-    problem = PlanarContactProblem(body=BLOCK, contacts=contacts, wrench=WEIGHT)
-    for mode in contact_modes(problem).modes:
-        assert mode.mode[:2] == "ll"
-        assert mode.acceleration == pytest.approx((0.0, 0.0), abs=1e-12)
-        assert sum(force[1] for force in mode.contact_forces[2:]) == pytest.approx(MU * 2.0 * G, abs=1e-11)
 
 
 def drawn_motion(seed: int) -> Motion:

@@ -39,13 +39,6 @@ def test_an_approaching_contact_is_an_impact() -> None:
     assert answer.kinematic_modes == ()
 
 
-def test_a_leaving_contact_separates_whatever_the_force() -> None:
-    answer = ask(v=(1.0, 0.1), f=(0.0, -1e6))
-    assert (answer.verdict, letters(answer)) == (ModeVerdict.UNIQUE, ["s"])
-    assert answer.modes[0].contact_forces == ((0.0, 0.0),)
-    assert answer.modes[0].acceleration == (0.0, -5e5)
-
-
 def test_no_contact_is_free_motion() -> None:
     answer = contact_modes(planar_problem(BODY, AT_REST, [], PlanarWrench(f=(4.0, 2.0), moment=1.0)))
     assert (answer.verdict, letters(answer)) == (ModeVerdict.UNIQUE, [""])
@@ -64,31 +57,6 @@ def test_pulled_away_it_separates() -> None:
     }
 
 
-def test_pressed_it_stays_fixed() -> None:
-    answer = ask()
-    assert (answer.verdict, letters(answer)) == (ModeVerdict.UNIQUE, ["f"])
-    assert answer.modes[0].contact_forces == ((0.0, 10.0),)
-    assert answer.kinematic_modes == ("f", "l", "r", "s")
-
-
-@pytest.mark.parametrize(("push", "mode", "friction"), [(-30.0, "l", 5.0), (30.0, "r", -5.0)])
-def test_pushed_hard_it_slides(push: float, mode: str, friction: float) -> None:
-    answer = ask(f=(push, -10.0))
-    assert (answer.verdict, letters(answer)) == (ModeVerdict.UNIQUE, [mode])
-    assert answer.modes[0].contact_forces == ((friction, 10.0),)
-
-
-@pytest.mark.parametrize(("speed", "mode", "friction"), [(-1.0, "l", 5.0), (1.0, "r", -5.0)])
-def test_a_sliding_contact_keeps_its_letter_whatever_its_acceleration(
-    speed: float, mode: str, friction: float
-) -> None:
-    for push in (-30.0, 0.0, 30.0):
-        answer = ask(v=(speed, 0.0), f=(push, -10.0))
-        assert (answer.verdict, letters(answer)) == (ModeVerdict.UNIQUE, [mode])
-        assert answer.modes[0].contact_forces == ((friction, 10.0),)
-        assert answer.kinematic_modes == tuple(sorted((mode, "s")))
-
-
 @pytest.mark.parametrize(("f", "mode"), [((-1.0, 0.0), "l"), ((1.0, 0.0), "r"), ((0.0, 0.0), "f")])
 def test_without_normal_force_it_skims_or_stays(f: tuple[float, float], mode: str) -> None:
     answer = ask(f=f)
@@ -96,18 +64,6 @@ def test_without_normal_force_it_skims_or_stays(f: tuple[float, float], mode: st
     assert answer.modes[0].contact_forces == ((0.0, 0.0),)
     assert answer.refused[0].mode == "s"
     assert answer.refused[0].refusal == Refusal.WRONG_MOTION
-
-
-def test_turning_about_the_contact_lifts_or_presses_it() -> None:
-    # The centre of mass circles the fixed contact: m w^2 r against the weight.
-    w_lift = (10.0 / (2.0 * 0.5)) ** 0.5
-    for w, mode in ((0.999 * w_lift, "f"), (1.001 * w_lift, "s")):
-        answer = ask(v=(-0.5 * w, 0.0), w=w)
-        assert (answer.verdict, letters(answer)) == (ModeVerdict.UNIQUE, [mode])
-    # Just before it lifts, the contact carries what of the weight the circle does not need.
-    slow = ask(v=(-0.5, 0.0), w=1.0).modes[0]
-    assert slow.acceleration == pytest.approx((0.0, -0.5))
-    assert slow.contact_forces[0] == pytest.approx((0.0, 9.0))
 
 
 def test_velocity_within_the_tolerance_counts_as_zero() -> None:

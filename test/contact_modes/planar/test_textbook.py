@@ -3,7 +3,7 @@
 
 Blocks on inclines and pushed or braked blocks, the ladder with a climber, the jamming diagram of a peg, two
 fingers that grasp, lecture 26's rod against its mass distribution, and its relation of wrenches and
-accelerations for a wrench in a tray. Others stand in `test_statics` and `test_lecture_rods`.
+accelerations for a wrench in a tray. Others stand in `test_statics`.
 """
 
 from __future__ import annotations

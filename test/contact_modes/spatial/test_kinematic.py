@@ -14,7 +14,6 @@ from scipy.optimize import linprog
 from contact_dynamics.contact.contact import ContactSet
 from contact_dynamics.contact.curvature import Curvatures
 from contact_dynamics.contact_modes import spatial_kinematic_modes
-from contact_dynamics.contact_modes.spatial import cone as spatial_cone
 from contact_dynamics.errors import InvalidFieldError, TooLargeError
 from contact_dynamics.rigid_body.body import BodyState
 from sweeps import seeds
@@ -48,8 +47,6 @@ def face_of_cube(axis: int, side: float) -> list[tuple[tuple[float, ...], tuple[
 
 
 TABLE = face_of_cube(2, -1.0)
-WALL = face_of_cube(0, -1.0)
-OTHER_WALL = face_of_cube(1, -1.0)
 
 
 def polygon_on_table(corners: int) -> list[tuple[tuple[float, ...], tuple[float, ...]]]:
@@ -108,23 +105,6 @@ def test_counts_by_hand(pairs: list, count: int) -> None:
     modes = spatial_kinematic_modes(state(), contact_set(pairs))
     assert len(modes) == count
     assert list(modes) == sorted(set(modes))
-
-
-@pytest.mark.parametrize(
-    "pairs",
-    [
-        TABLE[:2] + WALL[:2],
-        TABLE + WALL,
-        TABLE + WALL[:2],
-        [TABLE[0], WALL[0], OTHER_WALL[0], TABLE[2]],
-        [*TABLE[:3], *WALL[:2], *OTHER_WALL[:2]],
-        TABLE[:3] + face_of_cube(2, 1.0)[:3],
-        [*TABLE[:2], TABLE[0], WALL[1]],
-    ],
-)
-def test_cubes_at_walls(pairs: list) -> None:
-    contacts = contact_set(pairs)
-    assert set(spatial_kinematic_modes(state(), contacts)) == all_strings(state(), contacts)
 
 
 @seeds(range(12), slow=range(12, 30))
@@ -198,24 +178,6 @@ def test_misuse_is_refused_by_name() -> None:
         spatial_kinematic_modes(state(), contact_set(polygon_on_table(65)))
     with pytest.raises(InvalidFieldError, match="velocity_tolerance"):
         spatial_kinematic_modes(state(), contact_set(TABLE), velocity_tolerance=-1.0)
-
-
-@seeds(range(40))
-def test_rays_by_choice_are_those_of_a_hull(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    rng = np.random.default_rng(seed)
-    d, m = int(rng.integers(3, 7)), int(rng.integers(6, 10))
-    inner = rng.standard_normal(d)
-    rows = rng.integers(-2, 3, (m, d)) if seed % 2 else rng.standard_normal((m, d))
-    rows = rows * np.sign(rows @ inner)[:, None]
-    rows = rows[rows @ inner > 0.0]
-    rows /= np.linalg.norm(rows, axis=1)[:, None]
-    if np.linalg.matrix_rank(rows) < d:  # the cone would hold a line
-        rows = np.vstack([rows, np.eye(d) * np.sign(inner)[:, None]])
-    by_choice = spatial_cone.extreme_rays(rows, inner)
-    monkeypatch.setattr(spatial_cone, "_MAX_CHOICES", 0)
-    by_hull = spatial_cone.extreme_rays(rows, inner)
-    vanishing = [{tuple(np.abs(ray @ rows.T) <= 1e-8) for ray in rays} for rays in (by_choice, by_hull)]
-    assert vanishing[0] == vanishing[1]
 
 
 def test_a_few_contacts_do_not_import_scipy() -> None:

@@ -111,41 +111,6 @@ def test_a_block_on_a_turntable_slips_at_mu_g_over_the_square_of_its_rate(radius
             assert mode.acceleration_W[0] == pytest.approx(-MU * G, rel=1e-6)
 
 
-def test_a_turntable_that_speeds_up_drags_a_coin_sideways_until_it_slips() -> None:
-    coin, radius, w = cd.Body.box((2e-3, 2e-3, 2e-3), 0.01), 0.5, 2.0
-    state = cd.BodyState(
-        p_WB_W=[radius, 0, 1e-3], q_WB=[0, 0, 0, 1], v_WB_W=[0, w * radius, 0], w_WB_W=[0, 0, w]
-    )
-    slips = np.sqrt((MU * G) ** 2 - (w * w * radius) ** 2) / radius
-    for share, letters in ((0.99, "ffff"), (1.01, "cccc")):
-        table = surface("turntable", w_WS_W=[0, 0, w], alpha_WS_W=[0, 0, share * slips])
-        _, (mode,) = modes_on(coin, state, table)
-        assert mode.mode == letters
-        if letters == "ffff":
-            expected = [-(w * w) * radius, share * slips * radius, 0]
-            np.testing.assert_allclose(mode.acceleration_W, expected, atol=1e-11)
-            np.testing.assert_allclose(mode.angular_acceleration_W, [0, 0, share * slips], atol=1e-9)
-
-
-def test_a_tray_that_is_lifted_presses_and_one_that_falls_faster_leaves() -> None:
-    for a, letters in ((3.0, "ffff"), (-0.5 * G, "ffff"), (-1.5 * G, "ssss")):
-        _, (mode,) = modes_on(BOX, ON_FLOOR, surface("tray", a_WS_W=[0, 0, a]))
-        assert mode.mode == letters
-        assert mode.contact_forces_W[:, 2].sum() == pytest.approx(max(0.0, 2.0 * (G + a)), abs=1e-11)
-        assert mode.acceleration_W[2] == pytest.approx(max(a, -G), abs=1e-12)
-
-
-def test_a_tray_that_tilts_about_an_axis_far_away_carries_its_load_or_throws_it() -> None:
-    for alpha, letters in ((4.0, "ffff"), (-1.2 * G, "ssss")):
-        tray = surface("tray", p_WS_W=[-2, 0, 0], alpha_WS_W=[0, -alpha, 0])
-        box = replace(ON_FLOOR, p_WB_W=np.array([-0.5, 0, 0.05]))
-        _, (mode,) = modes_on(BOX, box, tray)
-        assert mode.mode == letters
-        if letters == "ffff":
-            np.testing.assert_allclose(mode.angular_acceleration_W, [0, -alpha, 0], atol=1e-12)
-            np.testing.assert_allclose(mode.acceleration_W, [-0.05 * alpha, 0, 1.5 * alpha], atol=1e-12)
-
-
 @pytest.mark.parametrize(("angle", "rate"), [(0.4, 0.0), (0.0, 3.0), (-0.3, 2.0), (0.9, 5.0)])
 def test_a_cup_on_a_tray_that_swings_freely_feels_no_force_along_it(angle: float, rate: float) -> None:
     """The waiter's trick: a tray that swings from a pivot pulls on the cup along its normal only."""

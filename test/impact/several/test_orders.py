@@ -102,28 +102,6 @@ def test_sliding_cube_on_its_face_at_once(restitution: float) -> None:
         assert (2.0 * leading - total) * 0.05 == pytest.approx(0.1 * total * 0.05, rel=1e-8)
 
 
-@pytest.mark.parametrize(("law", "restitution_law"), LAWS)
-def test_cube_on_an_edge(law: SeveralContactsLaw, restitution_law: RestitutionLaw) -> None:
-    """Frictionless, the edge a distance d beside the centre: impulse v / (1/m + d^2/I), both ends alike.
-
-    One end after the other comes to the same in the limit of many strikes, for e = 0.
-    """
-    offset = 0.02
-    contacts = floor_contacts([[offset, -0.05, 0.0], [offset, 0.05, 0.0]], friction=0.0, restitution=0.0)
-    answer = several_impact(
-        CUBE,
-        falling(0.07, [0.0, 0.0, -1.0]),
-        contacts,
-        several_contacts_law=law,
-        restitution_law=restitution_law,
-    )
-    assert answer.verdict is SeveralVerdict.RESOLVED
-    inertia = float(CUBE.I_B[0, 0])
-    total = 1.0 / (1.0 / 0.5 + offset**2 / inertia)
-    assert answer.impulses_W.sum(axis=0) == pytest.approx([0.0, 0.0, total], abs=2e-9)
-    assert answer.state.w_WB_W == pytest.approx([0.0, -offset * total / inertia, 0.0], abs=1e-7)
-
-
 @pytest.mark.parametrize("law", RestitutionLaw)
 def test_level_rod_on_two_supports(law: RestitutionLaw) -> None:
     """The strikes are elastic and frictionless, at one end, then at the other. Both orders are mirror images.
@@ -146,32 +124,6 @@ def test_level_rod_on_two_supports(law: RestitutionLaw) -> None:
     assert outcomes.complete
     assert outcomes.orders == ((), (0, 1, 0), (1, 0, 1))
     assert outcomes.velocities_W == pytest.approx(np.array([[0, 0, 1, 0, 0, 0]] * 3), abs=1e-12)
-
-
-def test_rocking_block() -> None:
-    """Housner 1963: a block that rocks over keeps 1 - 3/2 sin^2(alpha) of its spin; one corner lifts off."""
-    half_width, half_height = 0.1, 0.4
-    mass = 3.0
-    inertia = mass * (half_width**2 + half_height**2) / 3.0
-    block = MassProperties(mass=mass, I_B=np.diag([inertia, inertia, mass * 2.0 * half_width**2 / 3.0]))
-    # Turning about its left corner (v_n = 0 there), it comes down on its right one.
-    w = np.array([0.0, 2.0, 0.0])
-    state = BodyState(
-        p_WB_W=[0.0, 0.0, half_height],
-        q_WB=IDENTITY,
-        v_WB_W=np.cross(w, [half_width, 0.0, half_height]),
-        w_WB_W=w,
-    )
-    contacts = floor_contacts(
-        [[-half_width, 0.0, 0.0], [half_width, 0.0, 0.0]], friction=5.0, restitution=0.0
-    )
-    kept = 1.0 - 1.5 * half_width**2 / (half_width**2 + half_height**2)
-    for law in SeveralContactsLaw:
-        answer = several_impact(block, state, contacts, several_contacts_law=law)
-        assert answer.verdict is SeveralVerdict.RESOLVED
-        assert answer.state.w_WB_W == pytest.approx([0.0, 2.0 * kept, 0.0], abs=1e-9)
-        assert answer.velocities_after_W[0, 2] > 0.0
-        assert answer.velocities_after_W[1] == pytest.approx([0.0, 0.0, 0.0], abs=1e-9)
 
 
 def random_set(seed: int) -> tuple[MassProperties, BodyState, ContactSet]:
