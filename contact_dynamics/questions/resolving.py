@@ -8,12 +8,13 @@ for two.
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, TypeAlias, TypedDict
 
 import numpy as np
 
 from contact_dynamics.impact import (
     BodiesImpact,
+    ImpactOutcome,
     PathEvent,
     SequenceEnd,
     SeveralContactsLaw,
@@ -192,7 +193,16 @@ def _energies(before: Sequence[Before], after: Sequence[BodyState]) -> tuple[flo
     )
 
 
-def _told_by(strikes: Sequence[tuple[int, SpatialImpact]], contact_count: int) -> dict[str, Any]:
+class _OfStrikes(TypedDict, total=False):
+    outcome: ImpactOutcome
+    jams: bool
+    compression_impulses_W: FloatArray
+    path_W: FloatArray
+    path_events: tuple[PathEvent, ...]
+    path_contacts: tuple[int, ...]
+
+
+def _told_by(strikes: Sequence[tuple[int, SpatialImpact]], contact_count: int) -> _OfStrikes:
     """Return the fields that only a sequence of strikes has. Its outcome is that of the hardest strike."""
     if not strikes:
         return {}

@@ -8,6 +8,7 @@ from collections import Counter
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from contact_dynamics.contact.contact import ContactSet
 from contact_dynamics.contact_modes import (
@@ -195,3 +196,22 @@ def test_two_feet_that_leave_a_squeezed_box_are_found() -> None:
     )
     assert answer.verdict == ModeVerdict.INDETERMINATE
     assert {mode.mode for mode in answer.modes} == {"ffffff", "ffcccc", "cccssc", "cccccc"}
+
+
+@pytest.mark.parametrize("draw", range(4))
+def test_three_fingers_around_a_part_hold_it_let_it_slip_or_turn_about_two_of_them(draw: int) -> None:
+    # In equilibrium the three normal forces are equal. If two contacts began to slide down beside one that
+    # sticks, their friction would be at its limit, and the torque of the third, which is not, would lower it.
+    rng = np.random.default_rng(draw)
+    around = 2.0 * np.pi / 3.0 * np.arange(3) + rng.uniform(0.0, 2.0)
+    normals = -np.column_stack([np.cos(around), np.sin(around), np.zeros(3)])
+    turn = Rotation.random(random_state=draw).as_matrix()
+    fingers = ContactSet(
+        p_WC_W=-0.05 * normals @ turn.T, normals_W=normals @ turn.T, frictions=rng.uniform(0.2, 1.2)
+    )
+    part = MassProperties(mass=0.5, I_B=1e-3 * turn @ np.diag([1.0, 1.2, 1.5]) @ turn.T)
+    answer = contact_modes(
+        SpatialContactProblem(body=part, state=AT_REST, contacts=fingers, force_W=turn @ [0.0, 0.0, -4.9])
+    )
+    assert answer.verdict == ModeVerdict.INDETERMINATE
+    assert sorted(mode.mode for mode in answer.modes) == ["ccc", "cff", "fcf", "ffc", "fff"]
