@@ -78,17 +78,14 @@ def typed_constructors() -> list[tuple[str, str, list[str]]]:
     return found
 
 
-@pytest.mark.parametrize(("module", "name", "arguments"), typed_constructors())
-def test_what_type_checkers_see_of_a_constructor_is_what_it_takes(
-    module: str, name: str, arguments: list[str]
-) -> None:
-    owner = getattr(importlib.import_module(module), name)
-    taken = []
-    for one in fields(owner):
-        if one.init:
-            optional = one.default is not MISSING or one.default_factory is not MISSING
-            taken.append(f"{one.name}{'?' if optional else ''}")
-    assert sorted(arguments) == sorted(taken)
+def test_what_type_checkers_see_of_a_constructor_is_what_it_takes() -> None:
+    for module, name, arguments in typed_constructors():
+        taken = []
+        for one in fields(getattr(importlib.import_module(module), name)):
+            if one.init:
+                optional = one.default is not MISSING or one.default_factory is not MISSING
+                taken.append(f"{one.name}{'?' if optional else ''}")
+        assert sorted(arguments) == sorted(taken), name
 
 
 EYE = [[1, 0, 0], [0, 1, 0], [0, 0, 1]]
@@ -156,13 +153,13 @@ LISTS: dict[str, dict[str, Any]] = {
 }
 
 
-@pytest.mark.parametrize(("module", "name", "arguments"), typed_constructors())
-def test_what_is_typed_as_array_like_may_be_a_list(module: str, name: str, arguments: list[str]) -> None:
-    given = LISTS[name]
-    assert set(given) <= {argument.removesuffix("?") for argument in arguments}
-    made = getattr(importlib.import_module(module), name)(**given)
-    for field in (field for field, value in given.items() if isinstance(value, list)):
-        array = getattr(made, field)
-        assert array.dtype == np.float64
-        assert not array.flags.writeable
-        assert np.array_equal(array, given[field])
+def test_what_is_typed_as_array_like_may_be_a_list() -> None:
+    for module, name, arguments in typed_constructors():
+        given = LISTS[name]
+        assert set(given) <= {argument.removesuffix("?") for argument in arguments}, name
+        made = getattr(importlib.import_module(module), name)(**given)
+        for field in (field for field, value in given.items() if isinstance(value, list)):
+            array = getattr(made, field)
+            assert array.dtype == np.float64, (name, field)
+            assert not array.flags.writeable, (name, field)
+            assert np.array_equal(array, given[field]), (name, field)

@@ -12,6 +12,7 @@ import contextlib
 import dataclasses
 import importlib
 import inspect
+import itertools
 import math
 import signal
 from collections.abc import Callable, Iterator
@@ -63,38 +64,14 @@ SECONDS = 10
 pytestmark = pytest.mark.filterwarnings("ignore::contact_dynamics.errors.FarContactWarning")
 
 HOSTILE = [
-    math.nan,
-    math.inf,
-    -math.inf,
-    -1.0,
-    0.0,
-    8.5,
-    1e308,
-    1e300,
-    1e160,
-    1e61,
-    1e-300,
-    10**7,
-    10**400,
-    1.0 + 2.0j,
-    "text",
-    None,
-    True,
-    [],
-    [[1.0]],
-    [1.0, 2.0],
-    {"a": 1.0},
-    b"bytes",
-    object(),
-    Body,
-    BALL,
-    BOX,
-    STATE,
-    ROD,
-    CONTACT,
-    CONTACTS,
+    *(math.nan, math.inf, -1.0, 0.0, 1e308, 1e160, 10**400, 1.0 + 2.0j, "text", None, True, [], [[1.0]]),
+    *(object(), BALL, BOX, STATE, CONTACTS),
+]
+MORE = [
+    *(-math.inf, 8.5, 1e300, 1e61, 1e-300, 10**7, [1.0, 2.0], {"a": 1.0}, b"bytes", Body, ROD, CONTACT),
     WORLD,
 ]
+"""Values much like the others."""
 
 
 ALIASES = {
@@ -147,10 +124,10 @@ def parameters(call: Callable[..., Any], arguments: dict[str, Any]) -> dict[str,
     return {one.name: one.default for one in own if one.kind != one.VAR_KEYWORD} | arguments
 
 
-def hostile_cases(name: str) -> Iterator[tuple[str, object]]:
+def hostile_cases(name: str, values: list[object]) -> Iterator[tuple[str, object]]:
     """All arguments of a call, each with all values that it gets. Functions of users may do anything."""
     for argument, good in parameters(*CALLS[name]).items():
-        for value in [*HOSTILE, [good]]:
+        for value in [*values, [good]]:
             if not (argument in FUNCTIONS and callable(value)):
                 yield argument, value
             if isinstance(value, float) and numeric(good):
@@ -286,33 +263,35 @@ def test_every_call_of_the_pages_meets_them() -> None:
     assert missed == UNCHECKED
 
 
-@pytest.mark.parametrize("name", CALLS)
-def test_hostile_values_are_answered_or_refused_by_name(name: str) -> None:
-    call, arguments = CALLS[name]
-    call(**arguments)
+@pytest.mark.parametrize("values", [HOSTILE, pytest.param(MORE, marks=pytest.mark.slow)], ids=["", "more"])
+def test_hostile_values_are_answered_or_refused_by_name(values: list[object]) -> None:
     wrong = []
-    for argument, value in hostile_cases(name):
-        found = answered_or_refused(lambda a=argument, v=value: call(**{**arguments, a: v}))
-        if name in NAN_ALLOWED and found == "not finite":
-            continue
-        named = any(one in found for one in (argument, *ALIASES.get(argument, ())))
-        if found and not (found.startswith(":") and named):
-            wrong.append((argument, value, found))
+    for name, (call, arguments) in CALLS.items():
+        call(**arguments)
+        for argument, value in hostile_cases(name, values):
+            found = answered_or_refused(lambda c=call, a=arguments, n=argument, v=value: c(**{**a, n: v}))
+            if name in NAN_ALLOWED and found == "not finite":
+                continue
+            named = any(one in found for one in (argument, *ALIASES.get(argument, ())))
+            if found and not (found.startswith(":") and named):
+                wrong.append((name, argument, value, found))
     assert wrong == []
 
 
+SLOW = [name for name in CALLS if "interleavings" in name]
+"""They take half a second for each of some fifty values."""
+
+
 @pytest.mark.parametrize(
-    "name",
-    # Interleavings take half a second for each of some fifty values.
-    [pytest.param(one, marks=pytest.mark.slow if "interleavings" in one else ()) for one in CALLS],
+    "names", [[*CALLS.keys() - SLOW], pytest.param(SLOW, marks=pytest.mark.slow)], ids=["", "slow"]
 )
-def test_extreme_objects_are_answered_or_refused(name: str) -> None:
-    call, arguments = CALLS[name]
+def test_extreme_objects_are_answered_or_refused(names: list[str]) -> None:
     wrong = []
-    for argument, values in extreme_objects().items():
+    for name, (argument, values) in itertools.product(names, extreme_objects().items()):
+        call, arguments = CALLS[name]
         for value in values:
             if isinstance(value, type(arguments.get(argument))):
-                found = answered_or_refused(lambda a=argument, v=value: call(**{**arguments, a: v}))
+                found = answered_or_refused(lambda c=call, a=arguments, n=argument, v=value: c(**{**a, n: v}))
                 if found and not found.startswith(":"):
-                    wrong.append((argument, value, found))
+                    wrong.append((name, argument, value, found))
     assert wrong == []

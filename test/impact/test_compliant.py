@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The rigid answers are the limit of a stiff spring with friction, in every outcome class.
 
-The spring gives back the part e^2 of its work, so that its limit is the energetic law; the other laws
-share the impulse path, and their ends are in `test_planar` and `test_spatial`.
+The spring gives back the part e^2 of its work, so that its limit is the energetic law. The other laws
+share the impulse path, and their ends are in `spatial/test_one_contact`. The plane is a part of space there.
 """
 
 from __future__ import annotations
@@ -13,51 +13,9 @@ from contact_dynamics.impact import (
     ImpactOutcome,
     RestitutionLaw,
     StrikingBodies,
-    planar_impacts,
     spatial_impacts,
 )
-from oracles import impact_spring_plane, impact_spring_space
-
-
-def many_planar_problems(count: int) -> impact_spring_plane.Problems:
-    """Draw problems of every outcome class; every sixth contact neither slides nor turns at first."""
-    rng = np.random.default_rng(0)
-    r = np.column_stack((rng.uniform(-1.0, 1.0, count), -rng.uniform(0.3, 1.0, count)))
-    w, slide = rng.normal(size=count), rng.normal(size=count) * 10.0 ** rng.uniform(-1.5, 0.3, count)
-    slide[::6], w[::6] = 0.0, 0.0
-    fall = -rng.uniform(0.5, 1.5, count)
-    return impact_spring_plane.Problems(
-        mass=rng.uniform(0.5, 2.0, count),
-        inertia=10.0 ** rng.uniform(-1.0, 0.3, count),
-        r=r,
-        v=np.column_stack((slide + w * r[:, 1], fall - w * r[:, 0])),
-        w=w,
-        mu=10.0 ** rng.uniform(-1.3, 0.3, count),
-        e=rng.uniform(0.3, 1.0, count),
-    )
-
-
-def test_stiff_springs_in_the_plane_by_the_hundred() -> None:
-    """Nine hundred random problems: ten times as stiff in time, a tenth of the error, in every class."""
-    problems = many_planar_problems(900)
-    rigid = planar_impacts(
-        masses=problems.mass,
-        inertias=problems.inertia,
-        v=problems.v,
-        w=problems.w,
-        r=problems.r,
-        normals=(0.0, 1.0),
-        frictions=problems.mu,
-        restitutions=problems.e,
-        restitution_law=RestitutionLaw.ENERGETIC,
-    )
-    after = np.column_stack((rigid.v, rigid.w))
-    first, second = (
-        impact_spring_plane.velocities_after(problems, duration=seconds, steps=steps) - after
-        for seconds, steps in ((1e-3, 500), (1e-4, 5000))
-    )
-    changes = after - np.column_stack((problems.v, problems.w))
-    check_tenfold(first, second, changes, rigid.outcomes)
+from oracles import impact_spring_space
 
 
 def many_spatial_problems(count: int) -> impact_spring_space.Problems:
@@ -89,7 +47,7 @@ def many_spatial_problems(count: int) -> impact_spring_space.Problems:
 
 
 def test_stiff_springs_in_space_by_the_hundred() -> None:
-    """Six hundred random problems, as in the plane."""
+    """Six hundred random problems: ten times as stiff in time, a tenth of the error, in every class."""
     problems = many_spatial_problems(600)
     rigid = spatial_impacts(
         StrikingBodies(

@@ -70,24 +70,12 @@ def ball_to_plane(center: Vector, radius: Any, point: Vector, normal: Vector) ->
     return lambda pose: dot(normal, pose[0] + pose[1] * center - point) - radius
 
 
-def ellipsoid_to_plane(semiaxes: Vector, point: Vector, normal: Vector) -> Gap:
-    def gap(pose: Pose) -> Any:
-        n = pose[1].T * normal
-        return dot(normal, pose[0] - point) - mp.sqrt(sum((semiaxes[i] * n[i]) ** 2 for i in range(3)))
-
-    return gap
-
-
 def ellipsoid_to_ball(semiaxes: Vector, center: Vector, radius: Any) -> Gap:
     return lambda pose: outside_ellipsoid(semiaxes, pose[1].T * (center - pose[0])) - radius
 
 
 def flat_to_point(face_point: Vector, inward: Vector, point: Vector) -> Gap:
     return lambda pose: dot(pose[1] * inward, pose[0] + pose[1] * face_point - point)
-
-
-def flat_to_ball(face_point: Vector, inward: Vector, center: Vector, radius: Any) -> Gap:
-    return lambda pose: dot(pose[1] * inward, pose[0] + pose[1] * face_point - center) - radius
 
 
 def edge_to_edge(point_B: Vector, along_B: Vector, point: Vector, along: Vector, into_body: Vector) -> Gap:

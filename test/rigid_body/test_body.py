@@ -21,7 +21,6 @@ from contact_dynamics.rigid_body.body import (
     momentum,
     rotational_energy,
 )
-from contact_dynamics.rotations.one import cross_matrix
 
 REST = {
     "p_WB_W": np.zeros(3),
@@ -135,17 +134,6 @@ def test_momenta_and_energy_are_the_sums_over_particles(
     assert kinetic_energy(body, state) == pytest.approx(0.5 * mass * float((velocities**2).sum()), abs=scale)
     assert rotational_energy(body, state) == pytest.approx(0.5 * float(w @ L_W), abs=scale)
     np.testing.assert_allclose(state.velocity_of_point(arms_W), velocities, atol=1e-12)
-
-
-@given(q=quaternions)
-def test_the_rotation_matrix_is_that_of_scipy(q: np.ndarray) -> None:
-    state = BodyState(**{**REST, "q_WB": q})
-    np.testing.assert_allclose(state.R_WB, Rotation.from_quat(q).as_matrix(), atol=1e-15)
-
-
-@given(a=vectors, b=vectors)
-def test_the_cross_matrix_is_the_cross_product(a: np.ndarray, b: np.ndarray) -> None:
-    np.testing.assert_allclose(cross_matrix(a) @ b, np.cross(a, b), atol=1e-14)
 
 
 def test_the_radius_of_gyration_of_a_thin_ring() -> None:

@@ -7,7 +7,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
@@ -63,7 +63,6 @@ def test_products_turned_vectors_and_quaternions_of_vectors_are_those_of_scipy()
     np.testing.assert_allclose(matrices_of(found), DRAWN.as_matrix(), rtol=0.0, atol=3e-15)
 
 
-@settings(deadline=None)
 @given(axis=axes, angle=st.sampled_from(ANGLES))
 def test_turning_and_asking_by_how_much_are_inverse(axis: tuple, angle: float) -> None:
     """The error is last bits of the angle, however small, and near half a turn last bits of the attitude."""

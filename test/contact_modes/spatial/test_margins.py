@@ -18,7 +18,6 @@ from contact_dynamics.contact_modes import (
     contact_modes,
     mode_margins,
 )
-from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_modes.evidence import spatial_problem
 from oracles.modes_on_planes import INERTIA, MASS, made
@@ -306,10 +305,3 @@ def test_what_is_not_known_of_a_mode_that_begins_to_slide_is_not_told() -> None:
         assert math.isnan(margin.margin)
         assert margin.mode in margin.modes_beyond
         np.testing.assert_array_equal(margin.change_W, np.zeros(6))
-
-
-def test_misuse_is_refused_by_name() -> None:
-    with pytest.raises(InvalidFieldError, match="margin_length"):
-        mode_margins(
-            spatial_problem(BODY, state(), feet(0.2, 0.4), DOWN, friction_facets=16), margin_length=0.0
-        )

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from contact_dynamics.contact.contact import Contact
 from contact_dynamics.impact import PathEvent, RestitutionLaw, spatial_impact
 from contact_dynamics.rigid_body.body import BodyState, MassProperties, kinetic_energy
-from impact.spatial.drawn_problem import IDENTITY, random_problem, random_rotation, solve
+from impact.spatial.drawn_problem import random_problem, solve
 from sweeps import seeds
 
 
@@ -59,36 +59,6 @@ def test_laws_mean_what_they_say(law: RestitutionLaw, seed: int) -> None:
         + answer.inverse_inertia_W @ answer.compression_W
     )
     assert at_end @ normal == pytest.approx(0.0, abs=1e-10 * float(np.linalg.norm(at_end) + 1.0))
-
-
-@given(seed=st.integers(0, 2**32), mirror=st.booleans())
-def test_turned_and_mirrored_problems_have_turned_and_mirrored_answers(seed: int, mirror: bool) -> None:  # noqa: FBT001
-    problem = random_problem(seed)
-    problem["friction"] = min(problem["friction"], 1.0)
-    state, body = problem["state"], problem["body"]
-    turn = random_rotation(np.random.default_rng(seed + 1))
-    if mirror:
-        turn = turn @ np.diag([1.0, 1.0, -1.0])
-    sign = np.linalg.det(turn)
-    inertia = turn @ body.inertia_in_world(state.R_WB) @ turn.T
-    image = {
-        **problem,
-        "body": MassProperties(mass=body.mass, I_B=0.5 * (inertia + inertia.T)),
-        "state": BodyState(
-            p_WB_W=turn @ state.p_WB_W,
-            q_WB=IDENTITY,
-            v_WB_W=turn @ state.v_WB_W,
-            w_WB_W=sign * (turn @ state.w_WB_W),
-        ),
-        "p_WC_W": turn @ problem["p_WC_W"],
-        "n_W": turn @ problem["n_W"],
-    }
-    answer, other = solve(problem), solve(image)
-    # Paths that pass close to a stop amplify rounding: that is the problem's, so the bound is far above
-    # rounding.
-    assert other.impulse_W == pytest.approx(
-        turn @ answer.impulse_W, abs=1e-7 * float(np.linalg.norm(answer.impulse_W))
-    )
 
 
 @pytest.mark.parametrize("law", RestitutionLaw)
