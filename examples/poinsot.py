@@ -12,8 +12,8 @@ import rerun.blueprint as rrb
 
 from contact_dynamics import BodyState, MassProperties, free_motion
 from contact_dynamics.tumbling import RollingCurves, poinsot, rolling_curves
-from contact_dynamics.viewing.blueprint import poinsot_view
-from contact_dynamics.viewing.entities import TIMELINE
+from contact_dynamics.viewing.blueprint import diagram_view
+from contact_dynamics.viewing.entities import POINSOT, TIMELINE
 from contact_dynamics.viewing.measured import set_time
 from contact_dynamics.viewing.poinsot import draw_poinsot, draw_rolling
 
@@ -41,4 +41,4 @@ with rr.RecordingStream("contact_dynamics") as recording:
     panel = rrb.TimePanel(
         timeline=TIMELINE, play_state="Playing", loop_mode="All", state=rrb.PanelState.Collapsed
     )
-    recording.send_blueprint(rrb.Blueprint(poinsot_view(), panel, collapse_panels=True))
+    recording.send_blueprint(rrb.Blueprint(diagram_view(POINSOT), panel, collapse_panels=True))

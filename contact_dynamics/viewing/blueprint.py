@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 import rerun.blueprint as rrb
@@ -41,13 +41,15 @@ from contact_dynamics.viewing.entities import (
     SUMMARY,
     TIMELINE,
     TOSSES,
+    TRAILS,
     WHOSE,
-    contacts_entity,
-    trail_entity,
+    entity,
 )
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Sequence
+
+    from numpy.typing import ArrayLike
 
     from contact_dynamics.validation import FloatArray
 
@@ -76,6 +78,65 @@ DIAGRAMS: Final = {
     POINSOT: "Poinsot",
 }
 """The diagrams. Each has a tab beside the scene once there is something to see, and the first is open."""
+
+_CURVES: Final = {
+    HEIGHT: "Height, m (thin: predicted)",
+    SPEED: "Speed, m/s (thin: predicted)",
+    ERROR: "Error of the predicted position, m",
+    ENERGY: "Energy, J (thin: predicted)",
+    MOMENTUM: "Momentum, kg m/s (thin: predicted)",
+    ANGULAR_MOMENTUM: "Angular momentum, kg m²/s (thin: predicted)",
+    ANGULAR_VELOCITY: "Angular velocity, rad/s (thin: predicted)",
+}
+_WORDS: Final = {
+    NEWEST_ANSWERS: "Newest answers",
+    SUMMARY: "Newest answer",
+    LEGEND: "Legend",
+    WHOSE: "Whose curves",
+}
+_EYES: Final[dict[str, tuple[ArrayLike, ArrayLike]]] = {
+    POINSOT: ((1.35, -1.65, 0.55), (0.0, 0.0, -0.25)),
+    IMPULSE_SPACE_IN_3D: (EYE, TARGET),
+}
+_OF_ANSWERS: Final = (PREDICTED, IMPACTS, CONTACTS, TOSSES, MANY)  # what scenes have of them
+_BACKGROUND: Final = rrb.Background(color=palette.BACKGROUND, kind=rrb.BackgroundKind.SolidColor)
+
+
+class _Page(NamedTuple):
+    """What a page has beside its scene."""
+
+    name: str
+    diagrams: tuple[tuple[str, ...], ...] = ()  # some are tabs of one panel
+    below: tuple[str, ...] = ()
+    words: tuple[str, ...] = ()
+    scene: str = ""  # its name, by default the page's
+    drawn: tuple[str, ...] = ()  # what the scene has of answers, by default of the page's own
+    below_scene: str = ""
+
+
+_PAGES: Final = {
+    PREDICTED: _Page("Flight", ((POINSOT,),), (HEIGHT, SPEED, ERROR)),
+    IMPACTS: _Page(
+        "Impact",
+        ((IMPULSE_SPACE,),),
+        (SPEED, NEWEST_ANSWERS),
+        drawn=(IMPACTS, PREDICTED),
+        below_scene=IMPULSE_SPACE_IN_3D,
+    ),
+    CONTACTS: _Page(
+        "Contact modes", ((PLANAR_MODES,), (MODE_MAP, FORCE_DUAL)), (NEWEST_ANSWERS,), scene="Contacts"
+    ),
+    TOSSES: _Page("Toss", below=(HEIGHT, SPEED, NEWEST_ANSWERS)),
+    MANY: _Page("Many states", below=(NEWEST_ANSWERS,)),
+    ENERGY: _Page(
+        "Energy and momentum",
+        below=(ENERGY, MOMENTUM, ANGULAR_MOMENTUM, ANGULAR_VELOCITY),
+        words=(WHOSE,),
+        scene="Motion",
+        drawn=(PREDICTED,),
+    ),
+}
+"""The page of each question, by what there is to see."""
 
 COLORS_IN_WORDS: Final = "solid: measured, orange: predicted, red: impact, violet: friction cone"
 """The short legend, in the title of each scene."""
@@ -129,35 +190,12 @@ def make_blueprint(
             `IMPACTS`, `CONTACTS`, `TOSSES`, `MANY` and `ANSWERS`. What is not among it has no panel.
     """
     pages = [_overview(_scene("Scene", body_names, eye), shown)]
-    if PREDICTED in shown:
-        scene = _scene("Flight", body_names, eye, without=_all_but(PREDICTED))
-        curves = [_height(), _speed(), *([_error()] if ERROR in shown else [])]
-        pages.append(_page("Flight", scene, [_diagram(POINSOT)] if POINSOT in shown else [], curves))
-    if IMPACTS in shown:
-        left: rrb.Spatial3DView | rrb.Vertical = _scene(
-            "Impact", body_names, eye, without=_all_but(IMPACTS, PREDICTED)
-        )
-        spaces = [_diagram(IMPULSE_SPACE)] if IMPULSE_SPACE in shown else []
-        if IMPULSE_SPACE_IN_3D in shown:
-            left = rrb.Vertical(left, _diagram(IMPULSE_SPACE_IN_3D), row_shares=[3, 2])
-        pages.append(_page("Impact", left, spaces, [_speed(), _told()]))
-    if CONTACTS in shown:
-        scene = _scene("Contacts", body_names, eye, without=_all_but(CONTACTS))
-        diagrams = [_diagram(PLANAR_MODES)] if PLANAR_MODES in shown else []
-        wrenches = [_diagram(origin) for origin in (MODE_MAP, FORCE_DUAL) if origin in shown]
-        charts = [*diagrams, *([rrb.Tabs(*wrenches, active_tab=0)] if wrenches else [])]
-        pages.append(_page("Contact modes", scene, charts, [_told()]))
-    if TOSSES in shown:
-        scene = _scene("Toss", body_names, eye, without=_all_but(TOSSES))
-        pages.append(_page("Toss", scene, [], [_height(), _speed(), _told()]))
-    if MANY in shown:
-        scene = _scene("Many states", body_names, eye, without=_all_but(MANY))
-        pages.append(_page("Many states", scene, [], [_told()]))
-    if ENERGY in shown:
-        scene = _scene("Motion", body_names, eye, without=_all_but(PREDICTED))
-        whose = rrb.TextDocumentView(origin=WHOSE, name="Whose curves")
-        pages.append(_page("Energy and momentum", scene, [], _of_one_body(), words=[whose]))
-    pages.append(_words(shown))
+    for kind, page in _PAGES.items():
+        if kind in shown:
+            scene = _scene(page.scene or page.name, body_names, eye, drawn=page.drawn or (kind,))
+            pages.append(_page(page, scene, shown))
+    answers = [rrb.Vertical(_view(NEWEST_ANSWERS), _view(ANSWER_LOG))] if ANSWERS in shown else []
+    pages.append(rrb.Horizontal(*answers, _view(LEGEND), name="Answers and legend"))
     return rrb.Blueprint(
         rrb.Tabs(*pages, active_tab=0),
         rrb.BlueprintPanel(state=rrb.PanelState.Collapsed),
@@ -166,147 +204,88 @@ def make_blueprint(
     )
 
 
-def _all_but(*drawn: str) -> list[str]:
-    """Return what is drawn of answers in the scene and belongs to other pages."""
-    return [each for each in (PREDICTED, IMPACTS, CONTACTS, TOSSES, MANY) if each not in drawn]
-
-
 def _overview(scene: rrb.Spatial3DView, shown: Collection[str]) -> rrb.Horizontal:
     """Return the page that opens first: a large scene, a diagram, a curve, the newest answer in a line."""
-    views = [_diagram(origin) for origin in DIAGRAMS if origin in shown]
+    views = [_view(origin) for origin in DIAGRAMS if origin in shown]
     diagrams = [rrb.Tabs(*views, active_tab=0)] if views else []
-    curve = _error() if ERROR in shown else _height()
+    curve = _view(ERROR if ERROR in shown else HEIGHT)
     aside = rrb.Vertical(*diagrams, curve, row_shares=[3] * len(diagrams) + [2])
     main: rrb.Spatial3DView | rrb.Vertical = scene
     if ANSWERS in shown:
-        summary = rrb.TextDocumentView(origin=SUMMARY, name="Newest answer")
-        main = rrb.Vertical(scene, summary, row_shares=[7, 1])
+        main = rrb.Vertical(scene, _view(SUMMARY), row_shares=[7, 1])
     return rrb.Horizontal(main, aside, column_shares=[3, 2], name="Overview")
 
 
-def _words(shown: Collection[str]) -> rrb.Horizontal:
-    words: list[rrb.View] = []
-    if ANSWERS in shown:
-        words = [_told(), rrb.TextLogView(origin=ANSWER_LOG, name="All answers")]
-    legend = rrb.TextDocumentView(origin=LEGEND, name="Legend")
-    return rrb.Horizontal(*([rrb.Vertical(*words)] if words else []), legend, name="Answers and legend")
-
-
-def _page(
-    name: str,
-    scene: rrb.Spatial3DView | rrb.Vertical,
-    diagrams: Sequence[rrb.View | rrb.Tabs],
-    below: Sequence[rrb.View],
-    *,
-    words: Sequence[rrb.View] = (),
-) -> rrb.Horizontal:
+def _page(page: _Page, scene: rrb.Spatial3DView, shown: Collection[str]) -> rrb.Horizontal:
     """Return a page: the scene on the left, on the right a few words, diagrams and what stands below them.
 
     Two diagrams need all of the height, so that their words are apart. Then the rest is below the scene.
     """
+    left: rrb.Spatial3DView | rrb.Vertical = scene
+    if page.below_scene in shown:
+        left = rrb.Vertical(scene, _view(page.below_scene), row_shares=[3, 2])
+    tabs = [[_view(origin) for origin in each if origin in shown] for each in page.diagrams]
+    diagrams = [rrb.Tabs(*each, active_tab=0) if len(each) > 1 else each[0] for each in tabs if each]
+    below = [_view(origin) for origin in page.below if origin != ERROR or ERROR in shown]
     if len(diagrams) > 1:
-        scene, below = rrb.Vertical(scene, *below, row_shares=[5] + [1] * len(below)), ()
+        left, below = rrb.Vertical(scene, *below, row_shares=[5] + [1] * len(below)), []
+    words = [_view(origin) for origin in page.words]
     shares = [1] * len(words) + [4] * len(diagrams) + [2] * len(below)
     aside = rrb.Vertical(*words, *diagrams, *below, row_shares=shares)
-    return rrb.Horizontal(scene, aside, column_shares=[1 if diagrams else 2, 1], name=name)
+    return rrb.Horizontal(left, aside, column_shares=[1 if diagrams else 2, 1], name=page.name)
 
 
 def _scene(
-    name: str, body_names: Sequence[str], eye: Eye | None, *, without: Sequence[str] = ()
+    name: str, body_names: Sequence[str], eye: Eye | None, *, drawn: Sequence[str] = _OF_ANSWERS
 ) -> rrb.Spatial3DView:
-    controls = None
-    if eye is not None:
-        controls = rrb.EyeControls3D(
-            kind=rrb.Eye3DKind.Orbital, position=eye.position_W, look_target=eye.target_W, eye_up=eye.up_W
-        )
+    """Return a view of the scene with what is drawn of some answers."""
+    without = [part for part in _OF_ANSWERS if part not in drawn]
     return rrb.Spatial3DView(
         origin="/",
         contents=[f"+ {SCENE}/**", *(f"- {part}/**" for part in without)],
         name=f"{name} ({COLORS_IN_WORDS})",
-        background=rrb.Background(color=palette.BACKGROUND, kind=rrb.BackgroundKind.SolidColor),
+        background=_BACKGROUND,
         line_grid=False,
-        eye_controls=controls,
+        eye_controls=None if eye is None else _orbit(eye.position_W, eye.target_W, eye.up_W),
         overrides={
-            **{trail_entity(name): _window() for name in body_names},
+            **{entity(TRAILS, name): _window() for name in body_names},
             **{
-                f"{contacts_entity(name)}/{mode}": rrb.EntityBehavior(visible=False)
+                f"{entity(CONTACTS, name)}/{mode}": rrb.EntityBehavior(visible=False)
                 for name in body_names
                 for mode in mode_names()[1:]
-                if CONTACTS not in without  # each costs 3 kB, in every arrangement that is sent
+                if CONTACTS in drawn  # each costs 3 kB, in every arrangement that is sent
             },
         },
     )
 
 
-def _height() -> rrb.TimeSeriesView:
-    return _curves(HEIGHT, "Height, m (thin: predicted)")
+def _view(origin: str) -> rrb.View:
+    """Return the view of curves, words or a diagram."""
+    if origin in _CURVES:
+        # A legend would hide curves. The name says what is thin, and bodies have their colours in the scene.
+        legend = rrb.PlotLegend(visible=False)
+        name = _CURVES[origin]
+        return rrb.TimeSeriesView(origin=origin, name=name, plot_legend=legend, time_ranges=_window())
+    if origin in _WORDS:
+        return rrb.TextDocumentView(origin=origin, name=_WORDS[origin])
+    if origin == ANSWER_LOG:
+        return rrb.TextLogView(origin=origin, name="All answers")
+    return diagram_view(origin)
 
 
-def _speed() -> rrb.TimeSeriesView:
-    return _curves(SPEED, "Speed, m/s (thin: predicted)")
-
-
-def _of_one_body() -> list[rrb.View]:
-    return [
-        _curves(ENERGY, "Energy, J (thin: predicted)"),
-        _curves(MOMENTUM, "Momentum, kg m/s (thin: predicted)"),
-        _curves(ANGULAR_MOMENTUM, "Angular momentum, kg m²/s (thin: predicted)"),
-        _curves(ANGULAR_VELOCITY, "Angular velocity, rad/s (thin: predicted)"),
-    ]
-
-
-def _error() -> rrb.TimeSeriesView:
-    return _curves(ERROR, "Error of the predicted position, m")
-
-
-def _told() -> rrb.TextDocumentView:
-    return rrb.TextDocumentView(origin=NEWEST_ANSWERS, name="Newest answers")
-
-
-def poinsot_view() -> rrb.Spatial3DView:
-    """Return the view of Poinsot's picture, with the invariable plane below."""
+def diagram_view(origin: str) -> rrb.Spatial2DView | rrb.Spatial3DView:
+    """Return the view of one of `DIAGRAMS`. In space, the third coordinate is upwards."""
+    name = DIAGRAMS[origin]
+    if origin not in _EYES:
+        return rrb.Spatial2DView(origin=origin, name=name, background=palette.BACKGROUND)
+    eye = _orbit(*_EYES[origin], (0, 0, 1))
     return rrb.Spatial3DView(
-        origin=POINSOT,
-        name="Poinsot",
-        background=rrb.Background(color=palette.BACKGROUND, kind=rrb.BackgroundKind.SolidColor),
-        line_grid=False,
-        eye_controls=rrb.EyeControls3D(
-            kind=rrb.Eye3DKind.Orbital,
-            position=(1.35, -1.65, 0.55),
-            look_target=(0.0, 0.0, -0.25),
-            eye_up=(0, 0, 1),
-        ),
+        origin=origin, name=name, background=_BACKGROUND, line_grid=False, eye_controls=eye
     )
 
 
-def impulse_space_in_3d_view() -> rrb.Spatial3DView:
-    """Return the view of impulse space in three dimensions, with the normal impulse upwards."""
-    return rrb.Spatial3DView(
-        origin=IMPULSE_SPACE_IN_3D,
-        name=DIAGRAMS[IMPULSE_SPACE_IN_3D],
-        background=rrb.Background(color=palette.BACKGROUND, kind=rrb.BackgroundKind.SolidColor),
-        line_grid=False,
-        eye_controls=rrb.EyeControls3D(
-            kind=rrb.Eye3DKind.Orbital,
-            position=EYE,
-            look_target=TARGET,
-            eye_up=(0, 0, 1),
-        ),
-    )
-
-
-def _diagram(origin: str) -> rrb.Spatial2DView | rrb.Spatial3DView:
-    if origin == POINSOT:
-        return poinsot_view()
-    if origin == IMPULSE_SPACE_IN_3D:
-        return impulse_space_in_3d_view()
-    return rrb.Spatial2DView(origin=origin, name=DIAGRAMS[origin], background=palette.BACKGROUND)
-
-
-def _curves(origin: str, name: str) -> rrb.TimeSeriesView:
-    # A legend would hide curves. The name says what is thin, and bodies have their colours in the scene.
-    legend = rrb.PlotLegend(visible=False)
-    return rrb.TimeSeriesView(origin=origin, name=name, plot_legend=legend, time_ranges=_window())
+def _orbit(position: ArrayLike, target: ArrayLike, up: ArrayLike) -> rrb.EyeControls3D:
+    return rrb.EyeControls3D(kind=rrb.Eye3DKind.Orbital, position=position, look_target=target, eye_up=up)
 
 
 def _window() -> rrb.VisibleTimeRanges:

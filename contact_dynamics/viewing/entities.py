@@ -18,6 +18,8 @@ ORDER: Final = "order of events"
 
 SCENE: Final = "world"
 SURFACES: Final = "world/surfaces"
+BODIES: Final = "world/bodies"  # what is below a body moves with it
+TRAILS: Final = "world/trails"
 PREDICTED: Final = "world/predicted"
 IMPACTS: Final = "world/impact"
 CONTACTS: Final = "world/contacts"
@@ -29,6 +31,7 @@ MODE_MAP: Final = "mode_map"
 FORCE_DUAL: Final = "force_dual"
 PLANAR_MODES: Final = "planar_modes"
 POINSOT: Final = "poinsot"
+POINSOT_BODIES: Final = "poinsot/bodies"
 POINSOT_WORDS: Final = "poinsot/words"
 HEIGHT: Final = "height"
 SPEED: Final = "speed"
@@ -46,45 +49,5 @@ LEGEND: Final = "legend"
 
 
 def entity(parent: str, *names: str) -> str:
-    """Return the path of a thing below ``parent``. Names may have any characters."""
-    return f"{parent}{rr.new_entity_path(list(names))}"
-
-
-def body_entity(body_name: str) -> str:
-    """Return the path of a body's pose. What lies below it moves with the body."""
-    return entity("world/bodies", body_name or "unnamed")
-
-
-def trail_entity(body_name: str) -> str:
-    """Return the path of where a body has been."""
-    return entity("world/trails", body_name or "unnamed")
-
-
-def predicted_entity(body_name: str) -> str:
-    """Return the path of where a body was predicted to be."""
-    return entity(PREDICTED, body_name or "unnamed")
-
-
-def impact_entity(body_name: str) -> str:
-    """Return the path of a body's predicted impact."""
-    return entity(IMPACTS, body_name or "unnamed")
-
-
-def many_entity(body_name: str) -> str:
-    """Return the path of the newest answer about many states of a body."""
-    return entity(MANY, body_name or "unnamed")
-
-
-def toss_entity(body_name: str) -> str:
-    """Return the path of the newest answer about a toss of a body."""
-    return entity(TOSSES, body_name or "unnamed")
-
-
-def contacts_entity(body_name: str) -> str:
-    """Return the path of a body's contact modes."""
-    return entity(CONTACTS, body_name or "unnamed")
-
-
-def poinsot_entity(body_name: str) -> str:
-    """Return the path of Poinsot's picture of a body's rotation."""
-    return entity(f"{POINSOT}/bodies", body_name or "unnamed")
+    """Return the path of a thing below ``parent``. Names may have any characters, or none."""
+    return f"{parent}{rr.new_entity_path([name or 'unnamed' for name in names])}"

@@ -17,7 +17,7 @@ import rerun as rr
 from contact_dynamics.constants import ns_after
 from contact_dynamics.diagrams.contact_scene import LETTERS
 from contact_dynamics.diagrams.impact_scene import LABELS
-from contact_dynamics.viewing.entities import WHOSE, contacts_entity, entity, impact_entity
+from contact_dynamics.viewing.entities import CONTACTS, IMPACTS, WHOSE, entity
 from contact_dynamics.viewing.measured import (
     OF_ONE_BODY,
     curves_of,
@@ -70,13 +70,13 @@ class ImpactsInView:
 
     def _clear(self, body_name: str, stamp_ns: int) -> None:
         set_time(self._recording, stamp_ns)
-        self._recording.log(impact_entity(body_name), rr.Clear(recursive=True))
+        self._recording.log(entity(IMPACTS, body_name), rr.Clear(recursive=True))
         self._until_ns.pop(body_name, None)
 
     def _clear_labels(self, stamp_ns: int) -> None:
         if self._labelled:
             _clear_each(
-                self._recording, (f"{impact_entity(self._labelled)}/{label}" for label in LABELS), stamp_ns
+                self._recording, (f"{entity(IMPACTS, self._labelled)}/{label}" for label in LABELS), stamp_ns
             )
             self._labelled = ""
 
@@ -128,7 +128,7 @@ class LettersInView:
     def come(self, body_name: str, stamp_ns: int) -> None:
         """Note the body that the newest answer is about, and clear the letters of another, at a stamp, ns."""
         if self._lettered not in {"", body_name}:
-            _clear_each(self._recording, [f"{contacts_entity(self._lettered)}/{LETTERS}"], stamp_ns)
+            _clear_each(self._recording, [f"{entity(CONTACTS, self._lettered)}/{LETTERS}"], stamp_ns)
         self._lettered = body_name
 
 

@@ -28,16 +28,16 @@ from contact_dynamics.viewing.drawing import draw_marks
 from contact_dynamics.viewing.entities import (
     ANGULAR_MOMENTUM,
     ANGULAR_VELOCITY,
+    BODIES,
     ENERGY,
     ERROR,
     HEIGHT,
+    IMPACTS,
     MOMENTUM,
     SPEED,
     TIMELINE,
-    body_entity,
+    TRAILS,
     entity,
-    impact_entity,
-    trail_entity,
 )
 
 if TYPE_CHECKING:
@@ -128,11 +128,11 @@ def draw_states(
     measured = trajectory_of(states)
     points = measured.p_WB_W
     poses = pose_columns(points, measured.q_WB)
-    recording.send_columns(body_entity(body_name), indexes=[stamps], columns=poses)
+    recording.send_columns(entity(BODIES, body_name), indexes=[stamps], columns=poses)
     way = trajectory_of([before or states[0], *states])
     segments = np.stack([way.p_WB_W[:-1], points], axis=1)
     segments[_put_elsewhere(way), 0] = points[_put_elsewhere(way)]
-    recording.send_columns(trail_entity(body_name), indexes=[stamps], columns=strip_columns(segments))
+    recording.send_columns(entity(TRAILS, body_name), indexes=[stamps], columns=strip_columns(segments))
     curves = curves_of(measured, up_W=up_W, body=body, gravity_W=gravity_W)
     _draw_curves(recording, body_name, "measured", stamps, curves)
 
@@ -262,4 +262,4 @@ def draw_after_impact(
         recording.log(path, rr.Clear(recursive=False))
     set_time(recording, end_ns)
     measured = measured_marks(found.answer, found.v_WB_W, size=shape.size, color=color)
-    draw_marks(recording, measured, impact_entity(name))
+    draw_marks(recording, measured, entity(IMPACTS, name))

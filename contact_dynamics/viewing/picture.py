@@ -38,11 +38,7 @@ from contact_dynamics.viewing.entities import (
     POINSOT,
     PREDICTED,
     TOSSES,
-    contacts_entity,
-    impact_entity,
-    many_entity,
-    predicted_entity,
-    toss_entity,
+    entity,
 )
 from contact_dynamics.viewing.in_view import ImpactsInView, LettersInView, PredictionsInView
 from contact_dynamics.viewing.measured import SET_BACK_S, draw_after_impact, set_time
@@ -173,14 +169,14 @@ class Picture:
         shape = self._bodies.shape(name)
         trajectory, in_the_way = outside(answer.trajectory, shape, self._world.surfaces)
         if len(trajectory) == 0:
-            self.recording.log(predicted_entity(name), rr.Clear(recursive=True))
+            self.recording.log(entity(PREDICTED, name), rr.Clear(recursive=True))
         else:
             flight = flight_marks(shape, trajectory, covariance=answer.covariance)
-            draw_marks(self.recording, flight, predicted_entity(name))
+            draw_marks(self.recording, flight, entity(PREDICTED, name))
         earlier = self._predictions.newest(name)
         if earlier is not None and len(earlier.trajectory) > 0 and self._earlier > 0:
             path = path_mark(f"earlier/{earlier.number % self._earlier}", earlier.trajectory, **EARLIER)
-            draw_marks(self.recording, [path], predicted_entity(name))
+            draw_marks(self.recording, [path], entity(PREDICTED, name))
         shown = [PREDICTED, *self._predict(name, trajectory, begin_ns=stamp_ns)]
         self._look_along(trajectory)
         if rotation is not None and answer.curves is not None and rotation.regime is not Regime.AT_REST:
@@ -195,7 +191,7 @@ class Picture:
         strike_ns = ns_after(stamp_ns, answer.seconds_to_contact)
         self._impacts.come(name, stamp_ns=stamp_ns, strike_ns=strike_ns)
         impact = impact_marks(self._bodies.shape(name), answer, other_shape=other_shape)
-        draw_marks(self.recording, impact, impact_entity(name))
+        draw_marks(self.recording, impact, entity(IMPACTS, name))
         self._awaited.expect(answer, now_ns=stamp_ns)
         drawn = self._diagrams.draw_impact(
             answer,
@@ -209,8 +205,8 @@ class Picture:
         name, plane = answer.body_name, answer.plane
         shape, body = self._bodies.shape(name), self._bodies.mass_properties(name)
         self._letters.come(name, stamp_ns)
-        self.recording.log(contacts_entity(name), rr.Clear(recursive=True))
-        draw_marks(self.recording, contact_marks(shape, answer, body=body), contacts_entity(name))
+        self.recording.log(entity(CONTACTS, name), rr.Clear(recursive=True))
+        draw_marks(self.recording, contact_marks(shape, answer, body=body), entity(CONTACTS, name))
         if self._eye is None:
             self._look_at(self._across_from(answer))
         if plane is None:
@@ -220,9 +216,9 @@ class Picture:
 
     def draw_toss(self, answer: TossAnswer, stamp_ns: int) -> tuple[list[str], list[str]]:
         """Draw a whole toss with its other ways, and the fan of samples with the tree of their strikes."""
-        shape, entity = self._bodies.shape(answer.body_name), toss_entity(answer.body_name)
-        self.recording.log(entity, rr.Clear(recursive=True))
-        draw_marks(self.recording, toss_marks(shape, answer, up_W=self._world.up_W), entity)
+        shape, path = self._bodies.shape(answer.body_name), entity(TOSSES, answer.body_name)
+        self.recording.log(path, rr.Clear(recursive=True))
+        draw_marks(self.recording, toss_marks(shape, answer, up_W=self._world.up_W), path)
         curves = self._predict(answer.body_name, answer.toss.trajectory, begin_ns=stamp_ns)
         self._look_along(answer.toss.trajectory)
         return [TOSSES, *curves], []
@@ -233,9 +229,9 @@ class Picture:
         stamp_ns: int,  # noqa: ARG002  as all
     ) -> tuple[list[str], list[str]]:
         """Draw many states."""
-        shape, entity = self._bodies.shape(answer.body_name), many_entity(answer.body_name)
-        self.recording.log(entity, rr.Clear(recursive=True))
-        draw_marks(self.recording, many_states_marks(shape, answer), entity)
+        shape, path = self._bodies.shape(answer.body_name), entity(MANY, answer.body_name)
+        self.recording.log(path, rr.Clear(recursive=True))
+        draw_marks(self.recording, many_states_marks(shape, answer), path)
         return [MANY], []
 
     def tell(self, kind: str, text: str, *, stamp_ns: int, is_error: bool = False) -> None:

@@ -22,7 +22,7 @@ from contact_dynamics.diagrams import palette
 from contact_dynamics.diagrams.poinsot import ARROW_RADIUS, poinsot_axes, poinsot_marks
 from contact_dynamics.rotations.one import rotation_matrix
 from contact_dynamics.viewing.drawing import draw_marks
-from contact_dynamics.viewing.entities import POINSOT_WORDS, poinsot_entity
+from contact_dynamics.viewing.entities import POINSOT_BODIES, POINSOT_WORDS, entity
 from contact_dynamics.viewing.measured import set_time, time_column
 
 if TYPE_CHECKING:
@@ -56,7 +56,7 @@ def draw_poinsot(
 
     The body must rotate, because there is no plane at rest.
     """
-    path = poinsot_entity(body_name)
+    path = entity(POINSOT_BODIES, body_name)
     _tell(recording, body_name or "the body")
     unit = float(picture.ellipsoid_semi_axes.max())
     recording.log(path, rr.Transform3D(mat3x3=poinsot_axes(picture) / unit))
@@ -78,7 +78,7 @@ def clear_poinsot(recording: rr.RecordingStream, body_name: str) -> None:
 
 def hide_poinsot(recording: rr.RecordingStream, body_name: str) -> None:
     """Remove the picture at the recording's current time, because that of another body comes."""
-    recording.log(poinsot_entity(body_name), rr.Clear(recursive=True))
+    recording.log(entity(POINSOT_BODIES, body_name), rr.Clear(recursive=True))
 
 
 def _tell(recording: rr.RecordingStream, words: str) -> None:
@@ -91,7 +91,7 @@ def draw_rolling(recording: rr.RecordingStream, body_name: str, states: Sequence
     """Turn the ellipsoid with the body, and draw its angular velocity, at the stamps of states."""
     if not states:
         return
-    path = poinsot_entity(body_name)
+    path = entity(POINSOT_BODIES, body_name)
     stamps = time_column([state.stamp_ns for state in states])
     turns = rr.Transform3D.columns(quaternion=np.array([state.q_WB for state in states]))
     recording.send_columns(f"{path}/body", indexes=[stamps], columns=turns)

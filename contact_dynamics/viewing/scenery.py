@@ -18,7 +18,7 @@ from contact_dynamics.diagrams.shape import Shape, convex_shape, drawn_shape, pa
 from contact_dynamics.numerics.vectors import tangents_near_x
 from contact_dynamics.shapes.convex import NO_SHAPE
 from contact_dynamics.viewing.columns import strips_3d
-from contact_dynamics.viewing.entities import SCENE, SURFACES, body_entity, entity, trail_entity
+from contact_dynamics.viewing.entities import BODIES, SCENE, SURFACES, TRAILS, entity
 from contact_dynamics.viewing.measured import set_time, style_after_impact, style_series
 from contact_dynamics.world import Surface
 
@@ -185,7 +185,7 @@ def draw_trail_style(
 ) -> None:
     """Tell the viewer how the trail of a body looks."""
     trail = rr.LineStrips3D.from_fields(colors=palette.translucent(color, 0.9), radii=_TRAIL_WIDTH)
-    recording.log(trail_entity(body_name), trail, static=True)
+    recording.log(entity(TRAILS, body_name), trail, static=True)
 
 
 def solid(shape: Shape, color: palette.Color) -> rr.Mesh3D:
@@ -286,7 +286,7 @@ class WorldInView:
 
     def add_body(self, name: str, *, stamp_ns: int) -> None:
         """Draw a body that has its first state at a stamp, ns."""
-        self._scenery.draw(body_entity(name), self.bodies.parts(name))
+        self._scenery.draw(entity(BODIES, name), self.bodies.parts(name))
         draw_trail_style(self._recording, name, self.bodies.color(name))
         self._in_scene.append(name)
         if self._first_ns is None:
@@ -303,7 +303,7 @@ class WorldInView:
         self.bodies.change(world)
         wanted = self._surfaces()
         gone = self._scenery.paths - wanted.keys()
-        wanted |= {body_entity(name): self.bodies.parts(name) for name in self._in_scene}
+        wanted |= {entity(BODIES, name): self.bodies.parts(name) for name in self._in_scene}
         wanted |= {path: {} for path in gone - wanted.keys()}
         for path, parts in wanted.items():
             if self._first_ns is None:

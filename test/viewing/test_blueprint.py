@@ -37,9 +37,8 @@ from contact_dynamics.viewing.entities import (
     POINSOT,
     PREDICTED,
     TOSSES,
-    contacts_entity,
+    TRAILS,
     entity,
-    trail_entity,
 )
 from contact_dynamics.viewing.kept_recording import KeptRecording
 
@@ -180,9 +179,9 @@ def test_every_scene_has_the_eye_and_keeps_the_trails(tmp_path: Path, eye: Eye |
     poinsots = 2  # of the overview and of the flight
     assert sum("EyeControls3D" in path for path in paths) == (scenes if eye else 0) + poinsots
     for name in ("brick", "arm/tool 1"):
-        assert sum(f"overrides/{trail_entity(name)}/" in path for path in paths) == scenes
+        assert sum(f"overrides/{entity(TRAILS, name)}/" in path for path in paths) == scenes
         hidden = {
-            path for path in paths if "overrides/" in path and f"{contacts_entity(name)}/mode_2" in path
+            path for path in paths if "overrides/" in path and f"{entity(CONTACTS, name)}/mode_2" in path
         }
         assert len(hidden) == 2  # in the overview and among the contact modes; other scenes have no contacts
 
@@ -210,7 +209,7 @@ def test_names_may_hold_any_characters() -> None:
     assert entity("world/bodies", "arm/tool 1") == r"world/bodies/arm\/tool\ 1"
 
 
-MANY = 20
+COUNT = 20
 
 
 def threads() -> int:
@@ -224,9 +223,9 @@ def test_further_arrangements_cost_no_threads(tmp_path: Path) -> None:
     recording.open(rr.FileSink(tmp_path / "picture.rrd", write_footer=False))
     recording.send_blueprint(make_blueprint(["brick"], eye=None, shown=set()))
     before = threads()
-    for number in range(MANY):
+    for number in range(COUNT):
         recording.send_blueprint(make_blueprint([f"brick_{number}"], eye=None, shown=set()))
-    assert threads() < before + MANY // 2
+    assert threads() < before + COUNT // 2
     recording.disconnect()
 
 

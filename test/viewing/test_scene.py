@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from contact_dynamics.diagrams.shape import convex_shape
 from contact_dynamics.numerics.vectors import tangents_near_x
 from contact_dynamics.shapes.obstacle import Obstacle
-from contact_dynamics.viewing.entities import body_entity
+from contact_dynamics.viewing.entities import BODIES, entity
 from contact_dynamics.viewing.picture import Picture
 from contact_dynamics.viewing.scenery import (
     MAX_GRID_LINES,
@@ -92,7 +92,7 @@ def test_tangents_and_normal_are_a_right_handed_frame(direction: tuple[float, fl
 def test_a_body_is_drawn_in_its_own_axes(
     recording: rr.RecordingStream, read: Callable[[], Drawn], body: Body
 ) -> None:
-    Scenery(recording).draw(body_entity("brick"), body_parts(convex_shape(body.vertices_B)))
+    Scenery(recording).draw(entity(BODIES, "brick"), body_parts(convex_shape(body.vertices_B)))
     drawn = read()
     faces = drawn.array("/world/bodies/brick/faces", "Mesh3D:vertex_positions")
     np.testing.assert_allclose(np.unique(np.abs(faces), axis=0), [[0.075, 0.045, 0.025]], rtol=1e-6)
@@ -113,7 +113,7 @@ def test_an_obstacle_is_drawn_where_it_stands(
 
 
 def test_a_body_without_shape_is_a_ball(recording: rr.RecordingStream, read: Callable[[], Drawn]) -> None:
-    Scenery(recording).draw(body_entity(""), body_parts(convex_shape(np.zeros((0, 3)))))
+    Scenery(recording).draw(entity(BODIES, ""), body_parts(convex_shape(np.zeros((0, 3)))))
     assert read().last("/world/bodies/unnamed/faces", "Points3D:radii")[0] > 0.0
 
 
