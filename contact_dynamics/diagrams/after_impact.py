@@ -23,12 +23,8 @@ if TYPE_CHECKING:
     from contact_dynamics.rigid_body.body import BodyState
     from contact_dynamics.validation import FloatArray
 
-SPAN_S: Final = WINDOW
-"""s. Velocities are found from the poses of this time after the impact."""
-
-LATE_S: Final = 0.003
-"""s. A strike may come this much later than predicted. Poses before that are left out."""
-
+SPAN_S: Final = WINDOW  # s. Velocities are found from the poses of this time after the impact.
+LATE_S: Final = 0.003  # s. A strike may come this much later than predicted. Poses before that are left out.
 
 KEPT_S: Final = 0.5
 """s. States of this time are kept for answers that come after them. Where states are drawn seldom, or an

@@ -37,18 +37,13 @@ if TYPE_CHECKING:
 FORCE_LENGTH: Final = 0.6
 """Length of the longest force arrow, relative to the body's size. Labels say how much force it stands for."""
 
-MAX_MODES: Final = 6
-"""Largest number of modes that are drawn. Further modes are only listed in words."""
-
-LETTERS: Final = "letters"
-"""The labels of the contacts. Only those of the newest answer are in view."""
+MAX_MODES: Final = 6  # largest number of modes that are drawn. Further modes are only listed in words.
+LETTERS: Final = "letters"  # the labels of the contacts. Only those of the newest answer are in view.
 
 LABEL_DEPTH: Final = 0.6
 """How far below the contacts their label is, relative to the body's size, so that they are seen."""
 
-CENTRE_LENGTH: Final = 0.6
-"""Length of the arrows at the centre of mass, relative to the body's size."""
-
+CENTRE_LENGTH: Final = 0.6  # length of the arrows at the centre of mass, relative to the body's size
 _SLIDING_LENGTH: Final = 0.3  # length of the arrows of sliding directions, relative to the body's size
 _CONE_HEIGHT: Final = 0.25  # relative to the body's size
 _POINT_SIZE: Final = 0.035  # radius of points, relative to the body's size

@@ -29,9 +29,7 @@ if TYPE_CHECKING:
     from contact_dynamics.plane.types import PlanarContact, PlanarWrench
     from contact_dynamics.validation import FloatArray
 
-_PARALLEL: Final = 1e-9
-"""1 - cos of the angle below which a generator is a friction cone's edge."""
-
+_PARALLEL: Final = 1e-9  # 1 - cos of the angle below which a generator is a friction cone's edge
 _NEAR: Final = 0.02  # points nearer than this share a label, relative to a part's side
 _NAME: Final = np.array([0.03, 0.03])  # where a label is, beside its point, relative to a part's side
 _FILL: Final = 0.55  # share of the mode's colour in its region

@@ -29,23 +29,18 @@ if TYPE_CHECKING:
 ARROW_LENGTH: Final = 1.1
 """Length of the longest arrow of a kind, relative to the body's size. Labels say how much it stands for."""
 
-ARROW_WIDTH: Final = 0.016
-"""Relative to the size of the body."""
-
-LABEL_REACH: Final = 1.15
-"""How far out the label of a velocity is, relative to its arrow."""
+ARROW_WIDTH: Final = 0.016  # relative to the size of the body
+LABEL_REACH: Final = 1.15  # how far out the label of a velocity is, relative to its arrow
 
 LABEL_DEPTH: Final = 0.35
 """How far below the contact the label of its impulse is, relative to the body's size."""
 
-AFTER_DEPTH: Final = 0.95
-"""The same for the label of the velocity after it."""
+AFTER_DEPTH: Final = 0.95  # the same for the label of the velocity after it
 
 LABELS: Final = ("impulse_label", "velocity_label")
 """The labels of an impact. Only those of the newest impact are in view."""
 
-CONE_HEIGHT: Final = 0.35
-"""Relative to the size of the body."""
+CONE_HEIGHT: Final = 0.35  # relative to the size of the body
 
 MAX_STRIKES: Final = 5
 """This many strikes of a sequence, those with the largest impulses, have a label and the body drawn."""

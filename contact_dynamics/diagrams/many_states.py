@@ -24,9 +24,7 @@ if TYPE_CHECKING:
 MAX_OUTLINES: Final = 100
 """Outlines of the body for this many states, evenly among all. Each state has its point and its arrows."""
 
-ARROW_SECONDS: Final = 0.1
-"""s. An arrow of a velocity is as long as the way in this time."""
-
+ARROW_SECONDS: Final = 0.1  # s. An arrow of a velocity is as long as the way in this time.
 _MARKERS: Final = "os^Dv<>Pp*"  # beside the colours, for print in grey
 
 

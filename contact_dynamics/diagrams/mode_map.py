@@ -38,8 +38,7 @@ if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
 
 OUTSIDE: Final = 0
-NO_MODE: Final = 1
-"""Classes of the picture's points. The numbers of modes count up from here."""
+NO_MODE: Final = 1  # classes of the picture's points; the numbers of modes count up from here
 
 LIVE_RESOLUTION: Final = 240
 """Number of points on a side. The view of the visualizer shows as many. Such a map takes about 0.1 s to draw.

@@ -15,8 +15,7 @@ from typing import Final, NamedTuple, TypeAlias
 
 Color: TypeAlias = tuple[int, int, int, int]
 
-LEAST_DIFFERENCE: Final = 20.0
-"""Difference of two colours, CIE 1976 ΔE*ab, as in `paper`."""
+LEAST_DIFFERENCE: Final = 20.0  # difference of two colours, CIE 1976 ΔE*ab, as in `paper`
 
 WORD_CONTRAST: Final = 7.0
 """Least contrast of a word with the background, as WCAG 2.2 asks for at its level AAA."""
@@ -24,35 +23,19 @@ WORD_CONTRAST: Final = 7.0
 MEASURED: Final[Color] = (94, 152, 198, 255)
 """Blue grey is for what was measured: the body, its trail, its height and speed."""
 
-MEASURED_EDGE: Final[Color] = (35, 60, 85, 255)
-"""Edges of the body."""
-
-PREDICTED: Final[Color] = (255, 160, 40, 255)
-"""Orange: where the body was predicted to be."""
-
-IMPACT: Final[Color] = (218, 36, 51, 255)
-"""Red: the body at a predicted impact, and the impulse on it."""
-
-BEFORE_IMPACT: Final[Color] = (172, 160, 109, 255)
-"""Pale yellow: the velocity before an impact."""
-
-AFTER_IMPACT: Final[Color] = (255, 255, 76, 255)
-"""Bright yellow: the velocity after it."""
+MEASURED_EDGE: Final[Color] = (35, 60, 85, 255)  # edges of the body
+PREDICTED: Final[Color] = (255, 160, 40, 255)  # orange: where the body was predicted to be
+IMPACT: Final[Color] = (218, 36, 51, 255)  # red: the body at a predicted impact, and the impulse on it
+BEFORE_IMPACT: Final[Color] = (172, 160, 109, 255)  # pale yellow: the velocity before an impact
+AFTER_IMPACT: Final[Color] = (255, 255, 76, 255)  # bright yellow: the velocity after it
 
 FRICTION_CONE: Final[Color] = (138, 87, 200, 110)
 """Translucent violet: the forces and impulses that friction allows."""
 
-NORMAL: Final[Color] = (255, 255, 255, 255)
-"""White: contact normals."""
-
-SEPARATE: Final[Color] = (84, 225, 251, 255)
-"""Cyan: a contact that separates (`s`)."""
-
-SLIDE: Final[Color] = (245, 144, 197, 255)
-"""Pink: a contact that slides (`l`, `r`, in space `c`)."""
-
-FIXED: Final[Color] = (31, 131, 90, 255)
-"""Green: a contact that stays fixed (`f`)."""
+NORMAL: Final[Color] = (255, 255, 255, 255)  # white: contact normals
+SEPARATE: Final[Color] = (84, 225, 251, 255)  # cyan: a contact that separates (`s`)
+SLIDE: Final[Color] = (245, 144, 197, 255)  # pink: a contact that slides (`l`, `r`, in space `c`)
+FIXED: Final[Color] = (31, 131, 90, 255)  # green: a contact that stays fixed (`f`)
 
 UNDECIDED: Final[Color] = (255, 255, 255, 255)
 """White: a contact whose letter differs between the consistent modes, or that has none."""
@@ -60,8 +43,7 @@ UNDECIDED: Final[Color] = (255, 255, 255, 255)
 NO_MODE: Final[Color] = (0, 0, 0, 255)
 """Black, in the map of modes: wrenches under which no mode is consistent."""
 
-SURFACE: Final[Color] = (150, 160, 150, 70)
-"""Translucent grey: a surface of the world."""
+SURFACE: Final[Color] = (150, 160, 150, 70)  # translucent grey: a surface of the world
 
 SURFACE_GRID: Final[Color] = (170, 180, 170, 70)
 """Lines on it, 0.1 m apart, or on a large surface 1 m, 10 m and so on."""
@@ -72,14 +54,9 @@ STICKING_LINE: Final[Color] = FIXED
 COMPRESSION_LINE: Final[Color] = SEPARATE
 """Cyan, in impulse space: impulses after which the contact does not approach."""
 
-POLHODE: Final[Color] = PREDICTED
-"""Orange: where the angular velocity goes on the inertia ellipsoid."""
-
-HERPOLHODE: Final[Color] = FIXED
-"""Green: where it goes on the invariable plane."""
-
-BACKGROUND: Final[Color] = (24, 27, 32, 255)
-"""Behind the 3D view and impulse space."""
+POLHODE: Final[Color] = PREDICTED  # orange: where the angular velocity goes on the inertia ellipsoid
+HERPOLHODE: Final[Color] = FIXED  # green: where it goes on the invariable plane
+BACKGROUND: Final[Color] = (24, 27, 32, 255)  # behind the 3D view and impulse space
 
 LETTER_COLORS: Final[dict[str, Color]] = {"s": SEPARATE, "l": SLIDE, "r": SLIDE, "c": SLIDE, "f": FIXED}
 """By the letter of a contact's mode."""

@@ -13,35 +13,16 @@ LEAST_DIFFERENCE: Final = 20.0
 """Difference of two colours, CIE 1976 ΔE*ab. Patches side by side are told apart from about 2 on, and thin
 lines far apart on a page need about ten times that."""
 
-BLACK: Final = "#000000"
-"""What happens: paths, applied wrenches, totals."""
-
-BLUE: Final = "#0060b0"
-"""The first of several: x, contacts that stay fixed, lines on which nothing slides."""
-
-ORANGE: Final = "#e08000"
-"""The second: y, accelerations and their centres, lines on which nothing approaches."""
-
-SKY: Final = "#56b4e9"
-"""The third: z, contacts that separate."""
-
-RED: Final = "#b03000"
-"""Forces."""
-
-YELLOW: Final = "#f0d000"
-"""Contacts that slide."""
-
-PURPLE: Final = "#a060a0"
-"""Friction cones."""
-
-GREY: Final = "#999999"
-"""The body."""
-
-AXIS: Final = "#d8d8d8"
-"""Lines through zero, grids and walls, which only help to read."""
-
-SERIES: Final = (BLUE, ORANGE, SKY, BLACK)
-"""Curves in one diagram."""
+BLACK: Final = "#000000"  # what happens: paths, applied wrenches, totals
+BLUE: Final = "#0060b0"  # the first of several: x, contacts that stay fixed, lines on which nothing slides
+ORANGE: Final = "#e08000"  # the second: y, accelerations and their centres, lines on which nothing approaches
+SKY: Final = "#56b4e9"  # the third: z, contacts that separate
+RED: Final = "#b03000"  # forces
+YELLOW: Final = "#f0d000"  # contacts that slide
+PURPLE: Final = "#a060a0"  # friction cones
+GREY: Final = "#999999"  # the body
+AXIS: Final = "#d8d8d8"  # lines through zero, grids and walls, which only help to read
+SERIES: Final = (BLUE, ORANGE, SKY, BLACK)  # curves in one diagram
 
 MODES: Final = (
     *("#bbddff", "#aa8800", "#8899bb", "#00cc55", "#ee88ff", "#eeee99", "#226699", "#77ccbb", "#aadd44"),
@@ -52,14 +33,9 @@ MODES: Final = (
 DARK: Final = ("#226699", "#446633", "#1177ff", "#6644bb", "#556677", "#6622ff")
 """Those of them on which words are white."""
 
-SEVERAL: Final = "#ffffff"
-"""Regions of the map in which several modes are consistent."""
-
-NONE: Final = "#000000"
-"""Regions of the map in which no mode is consistent."""
-
-MARK: Final = "#b00000"
-"""The applied wrench on the map, and its way into another mode."""
+SEVERAL: Final = "#ffffff"  # regions of the map in which several modes are consistent
+NONE: Final = "#000000"  # regions of the map in which no mode is consistent
+MARK: Final = "#b00000"  # the applied wrench on the map, and its way into another mode
 
 LETTERS: Final = {"s": SKY, "l": YELLOW, "r": YELLOW, "c": YELLOW, "f": BLUE}
 """By the letter of a contact's mode."""

@@ -31,8 +31,7 @@ if TYPE_CHECKING:
     from contact_dynamics.rigid_body.body import MassProperties
     from contact_dynamics.validation import FloatArray
 
-NO_SIZE: Final = 0.1
-"""m. A body without shape is drawn with this size at its only contact."""
+NO_SIZE: Final = 0.1  # m. A body without shape is drawn with this size at its only contact.
 
 MAX_SETS: Final = 100
 """A map of more modes than this is not drawn, because its regions are too small to see and take seconds."""

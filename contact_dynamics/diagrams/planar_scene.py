@@ -25,15 +25,9 @@ if TYPE_CHECKING:
     from contact_dynamics.plane.types import PlanarContact
     from contact_dynamics.validation import FloatArray
 
-CONE_LENGTH: Final = 0.2
-"""Length of a friction cone's edges, relative to the body's size."""
-
-ARROW_LENGTH: Final = 0.4
-"""Length of the longest arrow of a kind, relative to the body's size."""
-
-LABEL_OFFSET: Final = 0.11
-"""Distance of a label from its contact, relative to the body's size."""
-
+CONE_LENGTH: Final = 0.2  # length of a friction cone's edges, relative to the body's size
+ARROW_LENGTH: Final = 0.4  # length of the longest arrow of a kind, relative to the body's size
+LABEL_OFFSET: Final = 0.11  # distance of a label from its contact, relative to the body's size
 _COVERED: Final = 0.2  # labels nearer than this would cover each other, relative to the body's size
 _ALIGNED: Final = 0.95  # length of the mean of unit normals that are taken for those of one surface
 _SHOWN: Final = 1e-6  # arrows shorter than this are left out, relative to the longest

@@ -31,9 +31,7 @@ _NET_POINTS: Final = 73
 _MERIDIANS: Final = 8
 _PARALLELS: Final = 7
 
-ARROW_RADIUS: Final = 0.02
-"""Relative to the largest semi-axis."""
-
+ARROW_RADIUS: Final = 0.02  # relative to the largest semi-axis
 _NET: Final = Paint(palette.MEASURED, paper.GREY)
 _PLANE: Final = Paint(palette.SURFACE_GRID, paper.AXIS)
 _PATCH: Final = Paint(palette.SURFACE, paper.AXIS)

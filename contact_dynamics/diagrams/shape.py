@@ -32,8 +32,7 @@ MAX_BALLS: Final = 100
 SHARP: Final = 0.06
 """1 - cos of the angle, 20 degrees. Facets of a round body that meet at less are one side of it."""
 
-NO_SIZE: Final = 0.05
-"""m. A body without shape is drawn with this size."""
+NO_SIZE: Final = 0.05  # m. A body without shape is drawn with this size.
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -118,12 +117,9 @@ def _polyhedron(vertices_B: FloatArray, center: FloatArray, size: float, smooth:
     return Shape(triangles_B=triangles, normals_B=normals, edges_B=ends, size=size)
 
 
-NO_FACES: Final = _skeleton(np.zeros((0, 2, 3)), NO_SIZE)
-"""The shape of a point."""
-
+NO_FACES: Final = _skeleton(np.zeros((0, 2, 3)), NO_SIZE)  # the shape of a point
 _TURNS: Final = np.linspace(0.0, 2.0 * np.pi, ROUND_FACETS + 1)
-_PLANES: Final = np.eye(3)[[[0, 1], [1, 2], [2, 0]]]
-"""Two axes of each of three planes."""
+_PLANES: Final = np.eye(3)[[[0, 1], [1, 2], [2, 0]]]  # two axes of each of three planes
 
 
 def _radii(shape: ConvexShape) -> list[Radii]:

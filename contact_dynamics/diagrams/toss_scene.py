@@ -31,10 +31,7 @@ if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
 
 
-MAX_FACES: Final = 3
-"""Faces of rest that a label names. A longer one hides the labels of strikes."""
-
-
+MAX_FACES: Final = 3  # faces of rest that a label names. A longer one hides the labels of strikes.
 _ABOVE: Final = 0.28  # height of a label above its interval, in rows
 _HALF_OF_TIMES: Final = "half of the times"
 _NINE_TENTHS: Final = "nine tenths"
@@ -153,12 +150,8 @@ MAX_OUTLINES: Final = 4
 MAX_GHOSTS: Final = 12
 """Outlines of the body along its way on paper, where nothing moves. They are equally far apart."""
 
-MAX_STRIKING: Final = 6
-"""Samples whose strikes have outlines. More would hide the toss."""
-
-MAX_POINTS: Final = 2000
-"""Points of the line that a toss without samples of time is drawn as."""
-
+MAX_STRIKING: Final = 6  # samples whose strikes have outlines. More would hide the toss.
+MAX_POINTS: Final = 2000  # points of the line that a toss without samples of time is drawn as
 _LABELS_APART: Final = 0.55  # relative to the body's size, so that labels do not hide each other
 _THIN: Final = 0.7
 

@@ -23,9 +23,7 @@ if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
 
 
-DEVIATIONS: Final = 2.0
-"""Half of the width of the bands of uncertainty, in standard deviations."""
-
+DEVIATIONS: Final = 2.0  # half of the width of the bands of uncertainty, in standard deviations
 _DASHES: Final = ("-", "--", "-.", ":")  # beside the colours, for print in grey
 _MARGIN: Final = 0.05  # room about the curves, relative to their extent
 _ROUNDING: Final = 1e-9  # relative: what differs by less is rounding

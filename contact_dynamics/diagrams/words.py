@@ -30,11 +30,8 @@ if TYPE_CHECKING:
     from contact_dynamics.tumbling.flips import Flips
     from contact_dynamics.validation import FloatArray
 
-AFTER_IMPACT: Final = "After the impact"
-"""The kind of words about what was measured after an answer."""
-
-MAX_LISTED: Final = 8
-"""Up to this number of refused modes are listed. The others are only counted."""
+AFTER_IMPACT: Final = "After the impact"  # the kind of words about what was measured after an answer
+MAX_LISTED: Final = 8  # up to this number of refused modes are listed. The others are only counted.
 
 REGIMES: Final = {
     Regime.UNKNOWN: "a torque acts",

@@ -33,8 +33,7 @@ if TYPE_CHECKING:
 
 ANTICLOCKWISE: Final = 0
 CLOCKWISE: Final = 1
-HIDDEN: Final = -1
-"""Parts of a chart. What is on none of them is hidden."""
+HIDDEN: Final = -1  # parts of a chart. What is on none of them is hidden.
 
 _ON_RIM: Final = 1e-9
 """Sine of the angle to the pure forces. A wrench below it is on the rim, which both discs show."""

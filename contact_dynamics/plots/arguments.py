@@ -7,8 +7,7 @@ import argparse
 from pathlib import Path
 from typing import Final
 
-MAX_QUESTIONS: Final = 100
-"""This many questions of a log are drawn unless the command says otherwise."""
+MAX_QUESTIONS: Final = 100  # this many questions of a log are drawn unless the command says otherwise
 
 
 def plot_parser() -> argparse.ArgumentParser:

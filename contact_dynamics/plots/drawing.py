@@ -20,9 +20,7 @@ if TYPE_CHECKING:
     from contact_dynamics.diagrams.marks import Diagram, Mark
     from contact_dynamics.validation import FloatArray
 
-DOTS_PER_INCH: Final = 130
-"""The resolution of PNG files."""
-
+DOTS_PER_INCH: Final = 130  # the resolution of PNG files
 _ROOM: Final = 8.0  # points between the numbers of an axis in three dimensions and its name
 _TICKS: Final = 4  # numbers on each axis there, few enough not to cover each other
 _ROWS: Final = 18  # entries of a legend in one column

@@ -65,9 +65,7 @@ if TYPE_CHECKING:
     from contact_dynamics.world import Body
 
 
-MAX_MODES: Final = 6
-"""Figures of this many consistent modes are made, the first ones."""
-
+MAX_MODES: Final = 6  # figures of this many consistent modes are made, the first ones
 _LEAST: Final = 0.25  # width and height of a view, relative to the largest
 _MARGIN: Final = 0.05  # around what is drawn, relative to its size
 _RESOLUTION: Final = 600  # points on a side of the charts of wrenches

@@ -53,8 +53,7 @@ if TYPE_CHECKING:
 
     from contact_dynamics.validation import FloatArray
 
-LOWEST_DISTANCE: Final = 0.3
-"""m. The eye stays at least this far from what it looks at."""
+LOWEST_DISTANCE: Final = 0.3  # m. The eye stays at least this far from what it looks at.
 
 NO_TRAVEL: Final = 1e-3
 """m. A path that is shorter than this, seen from above, has no sides to choose between."""
@@ -63,11 +62,8 @@ STRAIGHT: Final = 0.01
 """Relative to the length of a path. A path that bulges by less counts as straight, and the eye looks at it
 from its right."""
 
-WINDOW_S: Final = 10.0
-"""s. How long trails stay in view, and how far back the curves go."""
-
-WINDOW_STEPS: Final = 1000
-"""Steps. The same on the timeline of events."""
+WINDOW_S: Final = 10.0  # s. How long trails stay in view, and how far back the curves go.
+WINDOW_STEPS: Final = 1000  # steps. The same on the timeline of events.
 
 DIAGRAMS: Final = {
     IMPULSE_SPACE: "Impulse space",

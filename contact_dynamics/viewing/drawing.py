@@ -41,6 +41,7 @@ _FURTHER: Final = 7.5  # the same, for each further line of it
 _BELOW: Final = 2.8  # lines below the axes, with numbers and a name
 
 EYE: Final = np.array([0.8, -1.7, 1.07])
+
 TARGET: Final = np.array([0.0, 0.0, 0.32])
 """The place of the eye that sees a diagram in three dimensions with its words, and where it looks."""
 _SPACE: Final = 115.0  # points, the height of a diagram in three dimensions

@@ -7,11 +7,8 @@ from typing import Final
 
 import rerun as rr
 
-TIMELINE: Final = "stamp"
-"""Name of the timeline. It is in ns since the epoch of the stamps' clock."""
-
-SINCE_START: Final = "time since start"
-"""Name of the timeline on which the first stamp is zero."""
+TIMELINE: Final = "stamp"  # name of the timeline. It is in ns since the epoch of the stamps' clock.
+SINCE_START: Final = "time since start"  # name of the timeline on which the first stamp is zero
 
 ORDER: Final = "order of events"
 """Name of the timeline that counts what was drawn, in the order in which it came."""

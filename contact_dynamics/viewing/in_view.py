@@ -36,8 +36,7 @@ if TYPE_CHECKING:
     from contact_dynamics.viewing.scenery import BodiesInWorld
 
 
-LABELS_S: Final = 0.5
-"""s. The labels of an impact go this long after it, since they would cover the body."""
+LABELS_S: Final = 0.5  # s. The labels of an impact go this long after it, since they would cover the body.
 
 
 class ImpactsInView:

@@ -33,14 +33,9 @@ if TYPE_CHECKING:
 
 APPLICATION: Final = "contact_dynamics"
 
-LAST_S: Final = 2.0
-"""s. The newest part of each trail and curve that stays in memory, by the stamps."""
-
-LAST_BATCHES: Final = 100
-"""The most batches of states that this can be. Stamps may stand still or go back."""
-
-LAST_WORDS: Final = 200
-"""Lines of the list of all answers that stay in memory."""
+LAST_S: Final = 2.0  # s. The newest part of each trail and curve that stays in memory, by the stamps.
+LAST_BATCHES: Final = 100  # the most batches of states that this can be. Stamps may stand still or go back.
+LAST_WORDS: Final = 200  # lines of the list of all answers that stay in memory
 
 
 class _Timed(NamedTuple):

@@ -58,8 +58,7 @@ OF_ONE_BODY: Final = (ENERGY, MOMENTUM, ANGULAR_MOMENTUM, ANGULAR_VELOCITY)
 _MAX_ACCELERATION: Final = 20.0
 """m/s^2. A body that was struck or lost from view for a while is not taken for one that was put elsewhere."""
 
-_SLACK: Final = 0.05
-"""m. The same for one whose measured velocities are off."""
+_SLACK: Final = 0.05  # m. The same for one whose measured velocities are off.
 
 SET_BACK_S: Final = 0.5
 """s. Where the stamps of a body fall by more than this, its clock was set back, as by a simulation that

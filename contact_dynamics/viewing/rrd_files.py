@@ -19,9 +19,7 @@ if TYPE_CHECKING:
 
     from contact_dynamics.viewing.kept_recording import KeptRecording
 
-_ROOM: Final = 10**6
-"""Bytes that there must be room for where a file begins."""
-
+_ROOM: Final = 10**6  # bytes that there must be room for where a file begins
 _PATIENCE_S: Final = 1.0  # with a file that has not grown
 
 

@@ -17,12 +17,8 @@ from contact_dynamics.records import Record
 if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
 
-MAX_DRAWN: Final = 48
-"""Events that are drawn: more could not be told apart."""
-
-COLUMN_COUNT: Final = 6
-"""Events in one row."""
-
+MAX_DRAWN: Final = 48  # events that are drawn: more could not be told apart
+COLUMN_COUNT: Final = 6  # events in one row
 EVENTS: Final = "events"
 TABLE: Final = "table"
 

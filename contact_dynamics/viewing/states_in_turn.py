@@ -18,11 +18,8 @@ if TYPE_CHECKING:
     from contact_dynamics.rigid_body.body import BodyState
     from contact_dynamics.viewing.picture import Picture
 
-SHORTEST_S: Final = 0.05
-"""s. The time between two drawings of states while they are cheap."""
-
-LONGEST_S: Final = 0.5
-"""s. The time between two drawings of states however dear they are."""
+SHORTEST_S: Final = 0.05  # s. The time between two drawings of states while they are cheap.
+LONGEST_S: Final = 0.5  # s. The time between two drawings of states however dear they are.
 
 SHARE: Final = 0.2
 """The share of one processor that the drawing of states takes, unless the longest time is too short."""
