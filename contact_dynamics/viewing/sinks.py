@@ -33,7 +33,6 @@ from contact_dynamics.viewing.kept_recording import KeptRecording
 from contact_dynamics.viewing.ports import (
     DEFAULT_PORT,
     LOCAL,
-    Presence,
     connection_problem,
     host_and_port,
     local_url,
@@ -151,9 +150,8 @@ class OpenRecording:
         If it did not within ``timeout``, s, or if a file could not be written, rerun would wait for ever when
         the process exits.
         """
-        for opened in (self._web, self._viewer):
-            if opened is not None:
-                opened.close()
+        if self._web is not None:
+            self._web.close()
         if self._files is not None:
             self._files.check()
         thread = threading.Thread(target=self.stream.disconnect, daemon=True)
@@ -273,7 +271,11 @@ _PATIENCE_S: Final = 0.01  # a viewer that takes what is drawn has taken it with
 
 
 class LiveViewer:
-    """A viewer at a URL."""
+    """A viewer at a URL.
+
+    Attributes:
+        hangs: Whether nothing is drawn to it, because it has not taken what was drawn before.
+    """
 
     def __init__(self, picture: KeptRecording, url: str, *, on_problem: Callable[[str], object]) -> None:
         """Draw a picture to the viewer that listens at a URL."""
@@ -281,56 +283,43 @@ class LiveViewer:
         self._url = url
         self._on_problem = on_problem
         self._place = picture.open(rr.GrpcSink(url))
-        self._presence = self._present()
-        self._is_there = True
+        self._is_gone = self.hangs = False
         self._behind = 0  # the looks since it has taken all
-
-    @property
-    def hangs(self) -> bool:
-        """Whether nothing is drawn to it, because it has not taken what was drawn before."""
-        return self._behind >= MAX_BEHIND
 
     def look(self) -> None:
         """Find out whether the viewer lives and keeps up, and give the picture to one that is back."""
-        if self._presence is not None and self._presence.lasts():
-            self._look_how_far_behind()
+        if self._is_gone or self.hangs:
+            if speaks_http2(*host_and_port(self._url)):  # one that hangs does not greet
+                self._picture.reopen(self._place, rr.GrpcSink(self._url))
+                back = (
+                    "a viewer listens at {} again, and"
+                    if self._is_gone
+                    else "the viewer at {} responds again and"
+                )
+                self._is_gone = self.hangs = False
+                self._on_problem(f"{back.format(self._url)} has the picture")
             return
-        if self._is_there:
-            self._is_there, self._presence, self._behind = False, None, 0
-            self._picture.reopen(self._place)
-            self._on_problem(f"no viewer listens at {self._url} any more: one that does gets the picture")
-        if speaks_http2(*host_and_port(self._url)):
-            self._picture.reopen(self._place, rr.GrpcSink(self._url))
-            self._is_there, self._presence = True, self._present()
-            self._on_problem(f"a viewer listens at {self._url} again, and has the picture")
-
-    def close(self) -> None:
-        """Look no longer. The viewer stays open."""
-        if self._presence is not None:
-            self._presence.close()
-
-    def _look_how_far_behind(self) -> None:
-        hung = self.hangs
-        self._behind = 0 if self._has_taken_all() else self._behind + 1
-        if self.hangs and not hung:
+        problem = self._problem()
+        self._behind = self._behind + 1 if problem else 0
+        # Other errors are that not all was taken in time.
+        self._is_gone = "severed" in problem or bool(
+            problem and connection_problem(*host_and_port(self._url))
+        )
+        self.hangs = not self._is_gone and self._behind >= MAX_BEHIND
+        if self._is_gone or self.hangs:
+            self._behind = 0
             self._picture.leave(self._place)
+        if self._is_gone:
+            self._on_problem(f"no viewer listens at {self._url} any more: one that does gets the picture")
+        elif self.hangs:
             self._on_problem(
                 f"the viewer at {self._url} does not respond; it receives the picture once it does"
             )
-        elif hung and not self.hangs:
-            self._picture.reopen(self._place, rr.GrpcSink(self._url))
-            self._on_problem(f"the viewer at {self._url} responds again and has the picture")
 
-    def _has_taken_all(self) -> bool:
+    def _problem(self) -> str:
+        """Return rerun's reason why the viewer has not taken all, or an empty string if it has."""
         try:
             self._place.flush(timeout_sec=_PATIENCE_S)
-        except RuntimeError:
-            return False
-        return True
-
-    def _present(self) -> Presence | None:
-        """Return a connection to the viewer, or None if it has gone already, which the next look finds."""
-        try:
-            return Presence(*host_and_port(self._url))
-        except OSError:
-            return None
+        except RuntimeError as error:
+            return str(error)
+        return ""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""rerun's own server, in the place of a viewer, hangs and goes on."""
+"""rerun's own server, in the place of a viewer, hangs and goes on, or is there again at once."""
 
 from __future__ import annotations
 
@@ -27,20 +27,24 @@ if TYPE_CHECKING:
 FILL = rr.Points3D(np.random.default_rng(1).normal(size=(20_000, 3)))  # 240 kB
 
 
-@pytest.fixture
-def server(free_port: int) -> Iterator[subprocess.Popen[bytes]]:
-    command = [viewer_executable(), "--serve-grpc", "--bind", LOCAL, "--port", str(free_port)]
+def serving(port: int) -> subprocess.Popen[bytes]:
+    command = [viewer_executable(), "--serve-grpc", "--bind", LOCAL, "--port", str(port)]
     quiet = subprocess.DEVNULL
     environment = {**os.environ, "RERUN_APP_ONLY": "true"}
-    with subprocess.Popen(command, env=environment, stdin=quiet, stdout=quiet, stderr=quiet) as process:
-        try:
-            deadline = time.monotonic() + 60.0
-            while connection_problem(LOCAL, free_port):
-                assert time.monotonic() < deadline, "it does not listen"
-                time.sleep(0.1)
-            yield process
-        finally:
-            process.kill()
+    process = subprocess.Popen(command, env=environment, stdin=quiet, stdout=quiet, stderr=quiet)
+    deadline = time.monotonic() + 60.0
+    while connection_problem(LOCAL, port):
+        assert time.monotonic() < deadline, "it does not listen"
+        time.sleep(0.05)
+    return process
+
+
+@pytest.fixture
+def server(free_port: int) -> Iterator[subprocess.Popen[bytes]]:
+    process = serving(free_port)
+    yield process
+    process.kill()
+    process.wait()
 
 
 def resident() -> int:
@@ -83,5 +87,29 @@ def test_nothing_is_drawn_to_it_until_it_goes_on(server: subprocess.Popen[bytes]
     assert told[1:] == [f"the viewer at {url} responds again and has the picture"]
     draw(recording, 1)
     recording.flush(timeout_sec=10.0)
-    viewer.close()
     recording.disconnect()
+
+
+def test_one_that_is_there_again_before_anybody_looked_gets_the_picture(
+    server: subprocess.Popen[bytes], free_port: int
+) -> None:
+    """Nothing is drawn meanwhile: rerun tells at once that the connection is severed."""
+    told: list[str] = []
+    recording = KeptRecording()
+    viewer = LiveViewer(recording, local_url(free_port), on_problem=told.append)
+    viewer.look()
+    server.kill()
+    server.wait()
+    again = serving(free_port)
+    try:
+        deadline = time.monotonic() + 60.0
+        while len(told) < 2:
+            assert time.monotonic() < deadline, told
+            viewer.look()
+            time.sleep(0.05)
+        assert [each.split(" at ")[0] for each in told] == ["no viewer listens", "a viewer listens"]
+        recording.flush(timeout_sec=10.0)
+        recording.disconnect()
+    finally:
+        again.kill()
+        again.wait()

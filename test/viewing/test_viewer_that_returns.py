@@ -27,7 +27,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
 PATIENCE_S = 120.0
-IDLE_S = 34
 
 
 @contextlib.contextmanager
@@ -117,22 +116,6 @@ def test_one_that_is_drawn_to_gets_the_picture_again(free_port: int, closing: co
         wait_until(lambda: "/later" in shown(free_port), second)
         assert recording.close()
     assert len(told) == 2
-
-
-def test_one_to_which_nothing_is_drawn_stays(free_port: int, closing: contextlib.ExitStack) -> None:
-    """It asks its clients after 10 s whether they live, and leaves those that do not answer after 30 s."""
-    told: list[str] = []
-    with viewer(free_port) as only:
-        sinks = Sinks(viewer=ViewerMode.CONNECT, url=local_url(free_port))
-        recording = OpenRecording(sinks, on_problem=told.append)
-        closing.callback(recording.close)
-        draw(recording)
-        wait_until(lambda: {STATIC, NEWEST} <= shown(free_port), only)
-        for _ in range(IDLE_S):
-            recording.tend()
-            time.sleep(1.0)
-        assert only.poll() is None
-    assert told == []
 
 
 def test_one_that_looks_at_what_is_served_gets_the_picture_again(closing: contextlib.ExitStack) -> None:
