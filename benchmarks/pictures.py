@@ -43,10 +43,9 @@ from contact_dynamics.questions import (
 from contact_dynamics.shapes import box
 from contact_dynamics.tumbling import free_motion
 from contact_dynamics.viewing.picture import Picture
-from contact_dynamics.viewing.ports import LOCAL, local_url
 from contact_dynamics.viewing.sinks import OpenRecording, Sinks, ViewerMode
 from contact_dynamics.viewing.states_in_turn import StatesInTurn
-from contact_dynamics.viewing.viewer_process import viewer_executable
+from contact_dynamics.viewing.viewer_process import LOCAL, local_url, viewer_executable
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -41,9 +41,8 @@ from contact_dynamics.questions import (
 from contact_dynamics.shapes import box
 from contact_dynamics.toss import TossUncertainty
 from contact_dynamics.viewing.picture import Picture
-from contact_dynamics.viewing.ports import LOCAL, local_url
 from contact_dynamics.viewing.sinks import OpenRecording, Sinks
-from contact_dynamics.viewing.viewer_process import viewer_executable
+from contact_dynamics.viewing.viewer_process import LOCAL, local_url, viewer_executable
 
 DOCS = Path(__file__).parents[1] / "docs"
 PORT = 9877

@@ -9,7 +9,7 @@ In reading order: how diagrams are drawn (`drawing`), names of what is drawn (`e
 lecture 25's picture of rotations (`poinsot`), the diagrams of answers (`diagrams_in_view`), answers and
 colours in words (`words`), the arrangement of the views and where they look (`blueprint`), all of it together
 (`picture`), states that wait (`states_in_turn`), events beside each other (`side_by_side`), and where it goes
-(`sinks`): files (`rrd_files`), a viewer (`viewer_process`, `ports`), a browser. All
+(`sinks`): files (`rrd_files`), a viewer (`viewer_process`), a browser. All
 of these are places of one recording (`kept_recording`). The diagrams come from `contact_dynamics.diagrams`.
 
 Everything is drawn on the timeline `stamp`: the stamps of the states, to the nanosecond. `kept_recording` has

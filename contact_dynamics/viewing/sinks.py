@@ -30,17 +30,18 @@ import rerun as rr
 
 from contact_dynamics.errors import ContactDynamicsError, InvalidFieldError
 from contact_dynamics.viewing.kept_recording import KeptRecording
-from contact_dynamics.viewing.ports import (
+from contact_dynamics.viewing.rrd_files import RrdFiles
+from contact_dynamics.viewing.viewer_process import (
     DEFAULT_PORT,
     LOCAL,
+    ViewerProcess,
     connection_problem,
     host_and_port,
     local_url,
     serving_problem,
     speaks_http2,
+    viewer_executable,
 )
-from contact_dynamics.viewing.rrd_files import RrdFiles
-from contact_dynamics.viewing.viewer_process import ViewerProcess, viewer_executable
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -15,13 +15,11 @@ from matplotlib.collections import PolyCollection
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 
-from contact_dynamics.contact_modes import PlanarContactProblem, contact_modes, mode_margins, wrench_sets
+from contact_dynamics.contact_modes import PlanarContactProblem, contact_modes, mode_margins
 from contact_dynamics.diagrams import paper as colors
-from contact_dynamics.diagrams.force_dual import split_generators
-from contact_dynamics.diagrams.impulse_space import EVENTS, impulse_space_in_3d
+from contact_dynamics.diagrams.impulse_space import impulse_space_in_3d
 from contact_dynamics.diagrams.many_states import ARROW_SECONDS
-from contact_dynamics.impact.law import ImpactOutcome, PathEvent
-from contact_dynamics.plane.force_dual import acceleration_centre
+from contact_dynamics.impact.law import ImpactOutcome
 from contact_dynamics.plane.types import PlanarWrench
 from contact_dynamics.plots import draw_impulse_space, draw_many_states, save_figure
 from contact_dynamics.rigid_body.body import kinetic_energy, rotational_energy
@@ -29,7 +27,6 @@ from plots.drawn_figures import (
     APPLIED,
     BRICK,
     DIRECTIONS,
-    DUALS,
     GRAVITY_W,
     IN_TRAY,
     KEY,
@@ -49,35 +46,6 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 ROUNDING = 1e-12  # relative; a sum in another order
-NAMED = {PathEvent.COMPRESSION_ENDS: "compression", PathEvent.SLIDING_STOPS: "sticking"}
-
-
-def distance(point: np.ndarray, line: np.ndarray) -> float:
-    along, across = line[1] - line[0], point - line[0]
-    return float(abs(along[0] * across[1] - along[1] * across[0]) / np.linalg.norm(along))
-
-
-@pytest.mark.parametrize("in_plane", [True, False])
-def test_every_dot_of_impulse_space_lies_on_the_line_that_names_it(*, in_plane: bool) -> None:
-    answer = impact(in_plane=in_plane)
-    _, axes = drawn("impulse space in the plane" if in_plane else "impulse space")
-    path = curve(axes, "path")
-    sizes = np.linalg.norm(answer.impact.path_W, axis=1)
-    if in_plane:
-        np.testing.assert_allclose(np.linalg.norm(path, axis=1), sizes, rtol=ROUNDING)
-    assert np.all(np.linalg.norm(path, axis=1) <= (1.0 + ROUNDING) * sizes + ROUNDING)
-    along = np.linalg.norm(answer.impact.impulses_W[0, :2])
-    np.testing.assert_allclose(np.abs(path[-1]), [along, answer.impact.impulses_W[0, 2]], rtol=1e-9)
-    events = [event for event in answer.impact.path_events if event in EVENTS]
-    checked = 0
-    for i, event in enumerate(events):
-        (dot,) = curve(axes, f"event_{i}")
-        if event in NAMED:
-            lines = [line for line in axes.lines if str(line.get_gid()).startswith(NAMED[event])]
-            extent = axes.get_xlim()[1]
-            assert min(distance(dot, np.column_stack(line.get_data())) for line in lines) < 1e-9 * extent
-            checked += 1
-    assert checked >= 1
 
 
 def test_the_path_in_three_dimensions_is_the_diagrams() -> None:
@@ -202,21 +170,6 @@ def test_the_map_has_the_colours_of_the_modes_and_marks_the_wrench() -> None:
     change = np.array([*margin.change.f, margin.change.moment])
     end = np.array([*APPLIED.f, APPLIED.moment]) + change
     np.testing.assert_allclose(curve(axes, "applied/way_out")[-1], DIRECTIONS.place(end[None])[0][0])
-
-
-def test_a_centre_of_acceleration_is_where_the_body_would_turn() -> None:
-    (mode,) = contact_modes(IN_TRAY).modes
-    _, axes = drawn("force dual")
-    one = next(one for one in wrench_sets(IN_TRAY) if one.mode == mode.mode)
-    _, motions = split_generators(one, TRAY)
-    rows = np.array([[*wrench.f, wrench.moment] for wrench in motions])
-    places, part = DUALS.place(rows)
-    np.testing.assert_array_equal(curve(axes, "acceleration_centres"), places[part >= 0])
-    for wrench, place, there in zip(motions, places, part, strict=True):
-        acceleration = wrench.f[0] / KEY.mass, wrench.f[1] / KEY.mass
-        centre = acceleration_centre(acceleration, wrench.moment / KEY.inertia)
-        assert centre is not None
-        np.testing.assert_allclose(DUALS.place_points(np.array([centre.point]), there)[0], place)
 
 
 def test_the_herpolhode_lies_in_the_plane_and_the_polhode_touches_it_at_the_angular_velocity() -> None:

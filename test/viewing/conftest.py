@@ -18,7 +18,7 @@ from contact_dynamics.contact.contact import ContactSet
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.tumbling import free_motion
 from contact_dynamics.viewing.measured import set_time
-from contact_dynamics.viewing.ports import LOCAL
+from contact_dynamics.viewing.viewer_process import LOCAL
 from contact_dynamics.world import Body, Surface, World, box_vertices
 from viewing.drawn import STAMP_NS, Drawn, read_drawn
 

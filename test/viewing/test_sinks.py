@@ -10,8 +10,8 @@ import pytest
 import rerun as rr
 
 from contact_dynamics.errors import InvalidFieldError
-from contact_dynamics.viewing.ports import local_url
 from contact_dynamics.viewing.sinks import NowhereToDrawError, OpenRecording, Sinks, ViewerMode
+from contact_dynamics.viewing.viewer_process import local_url
 from viewing.drawn import read_drawn
 
 

@@ -16,9 +16,8 @@ import pytest
 import rerun as rr
 from rerun.experimental import ViewerClient
 
-from contact_dynamics.viewing.ports import LOCAL
 from contact_dynamics.viewing.sinks import OpenRecording, Sinks, ViewerMode
-from contact_dynamics.viewing.viewer_process import viewer_executable
+from contact_dynamics.viewing.viewer_process import LOCAL, viewer_executable
 from viewing.drawn import read_drawn
 
 if TYPE_CHECKING:

@@ -16,9 +16,8 @@ import rerun as rr
 
 from contact_dynamics.viewing.kept_recording import KeptRecording
 from contact_dynamics.viewing.measured import set_time
-from contact_dynamics.viewing.ports import LOCAL, connection_problem, local_url
 from contact_dynamics.viewing.sinks import MAX_BEHIND, LiveViewer
-from contact_dynamics.viewing.viewer_process import viewer_executable
+from contact_dynamics.viewing.viewer_process import LOCAL, connection_problem, local_url, viewer_executable
 from viewing.drawn import STAMP_NS
 
 if TYPE_CHECKING:

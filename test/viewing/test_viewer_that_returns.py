@@ -18,9 +18,8 @@ from rerun.experimental import ViewerClient
 
 from contact_dynamics.viewing.kept_recording import APPLICATION
 from contact_dynamics.viewing.measured import set_time
-from contact_dynamics.viewing.ports import LOCAL, connection_problem, local_url
 from contact_dynamics.viewing.sinks import OpenRecording, Sinks, ViewerMode
-from contact_dynamics.viewing.viewer_process import viewer_executable
+from contact_dynamics.viewing.viewer_process import LOCAL, connection_problem, local_url, viewer_executable
 from viewing.drawn import STAMP_NS
 
 if TYPE_CHECKING:

@@ -8,8 +8,8 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from contact_dynamics.viewing.ports import LOCAL, connection_problem, serving_problem
 from contact_dynamics.viewing.sinks import OpenRecording, Sinks, ViewerMode, WebViewer
+from contact_dynamics.viewing.viewer_process import LOCAL, connection_problem, serving_problem
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
