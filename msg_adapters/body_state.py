@@ -18,8 +18,8 @@ from contact_dynamics.validation import check_unit
 from contact_dynamics_interfaces.msg import BodyState as BodyStateMsg
 from msg_adapters.field_names import renamed
 from msg_adapters.geometry import quaternion_from_msg, vector_from_msg
-from msg_adapters.in_world import check_frame
 from msg_adapters.stamps import stamp_ns_from_msg, stamp_to_msg
+from msg_adapters.transforms import check_frame
 
 if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray

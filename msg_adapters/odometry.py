@@ -24,10 +24,10 @@ from contact_dynamics.rotations.one import rotation_matrix
 from contact_dynamics.validation import check_unit
 from contact_dynamics.validation_batches import unit_rows
 from msg_adapters.geometry import pose_to_msg, quaternion_from_msg, vector_from_msg, vector_to_msg
-from msg_adapters.in_world import check_frame, in_world
 from msg_adapters.published_covariance import covariance_from_msg, of_pose_and_twist, with_covariance
 from msg_adapters.stamps import stamp_ns_from_msg, stamp_to_msg
-from msg_adapters.state_adapter import StateAdapter, StateRows
+from msg_adapters.state_adapter import StateAdapter, StateRows, in_world
+from msg_adapters.transforms import check_frame
 
 if TYPE_CHECKING:
     from contact_dynamics.questions.uncertain_state import KnownState

@@ -19,10 +19,10 @@ from contact_dynamics.rigid_body.published_frame import (
 from contact_dynamics.rotations.one import rotation_matrix
 from contact_dynamics.validation import check_unit
 from msg_adapters.geometry import quaternion_from_msg, vector_from_msg
-from msg_adapters.in_world import check_frame, in_world
 from msg_adapters.published_covariance import covariance_from_msg, of_pose_and_twist, with_covariance
 from msg_adapters.stamps import stamp_ns_from_msg
-from msg_adapters.state_adapter import StateAdapter
+from msg_adapters.state_adapter import StateAdapter, in_world
+from msg_adapters.transforms import check_frame
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

@@ -14,8 +14,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from contact_dynamics.questions.uncertain_state import KnownState
-from msg_adapters.transforms import TransformTree
+from contact_dynamics.questions.uncertain_state import KnownState, UncertainState
+from contact_dynamics.rigid_body.body import BodyState
+from contact_dynamics.rotations.one import rotation_matrix
+from msg_adapters.transforms import FramePose, TransformTree
 
 if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
@@ -43,6 +45,33 @@ class SourceSettings:
     p_FB_F: FloatArray
     velocity_window: float
     static: TransformTree
+
+
+def in_world(known: KnownState, frame: str, settings: SourceSettings) -> KnownState:
+    """Return a state that is given in a frame, the header's, as one in the world frame.
+
+    Raises:
+        FrameMismatchError: it is not the world frame, and no static transform leads from it to the world.
+    """
+    if frame == settings.world_frame:
+        return known
+    pose = settings.static.pose(
+        frame, in_frame=settings.world_frame, stamp_ns=known.stamp_ns, field="header.frame_id"
+    )
+    R = rotation_matrix(pose.q)
+    state = known if isinstance(known, BodyState) else known.state
+    there = pose.of(FramePose(p=state.p_WB_W, q=state.q_WB))
+    moved = BodyState(
+        p_WB_W=there.p,
+        q_WB=there.q,
+        v_WB_W=R @ state.v_WB_W,
+        w_WB_W=R @ state.w_WB_W,
+        stamp_ns=state.stamp_ns,
+    )
+    if isinstance(known, BodyState):
+        return moved
+    turn = np.kron(np.eye(4), R)
+    return UncertainState(state=moved, covariance=turn @ known.covariance @ turn.T)
 
 
 class StateRows(NamedTuple):

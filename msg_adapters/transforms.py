@@ -154,3 +154,10 @@ def _link_from_msg(msg: TransformStamped, field: str, *, is_static: bool) -> _Li
 def _quaternion(q: FloatArray) -> Quaternion:
     x, y, z, w = q.tolist()
     return x, y, z, w
+
+
+def check_frame(field: str, found: str, expected: str) -> None:
+    """Raise `FrameMismatchError` if a message's frame is not the expected one."""
+    if found != expected:
+        message = f"{field} must be {expected!r}, got {found!r}"
+        raise FrameMismatchError(message)

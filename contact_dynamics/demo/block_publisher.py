@@ -8,22 +8,25 @@ the configured surfaces.
 from __future__ import annotations
 
 import math
+import sys
 import time
-from typing import TYPE_CHECKING, Final
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final, Protocol
 
+from geometry_msgs.msg import Vector3Stamped, WrenchStamped
 from nav_msgs.msg import Odometry
 from rclpy.node import Node
 from rclpy.qos import QoSProfile
 from rclpy.utilities import remove_ros_args
 
-from contact_dynamics.constants import to_ns, to_seconds
+from contact_dynamics.constants import STANDARD_GRAVITY_W, to_ns, to_seconds
 from contact_dynamics.demo.arguments import PUSHED_BLOCK, block_publisher_parser
-from contact_dynamics.demo.situations import PushedBlock, TiltingTray
-from contact_dynamics.demo.sprung_block import SprungBlock
-from contact_dynamics.demo.until_stopped import run_until_stopped
-from contact_dynamics.errors import NotSupportedError
+from contact_dynamics.demo.sprung_block import Load, SprungBlock
+from contact_dynamics.errors import ContactDynamicsError, NotSupportedError
 from contact_dynamics.nodes.node_parameters import NodeParameters
 from contact_dynamics.nodes.parameters import read_server_parameters
+from contact_dynamics.nodes.running import ros_until_stopped
+from msg_adapters.geometry import vector_to_msg
 from msg_adapters.odometry import odometry_from_body_state
 from msg_adapters.stamps import stamp_to_msg
 
@@ -31,7 +34,6 @@ if TYPE_CHECKING:
     import argparse
     import threading
 
-    from contact_dynamics.demo.situations import Situation
 
 QOS: Final = QoSProfile(depth=1000)
 
@@ -39,6 +41,104 @@ PERIOD_S: Final = 0.005
 """s between two states."""
 
 _DISCOVERY_S: Final = 30.0  # how long to wait for somebody who listens
+
+
+_GRAVITY: Final = -STANDARD_GRAVITY_W[2]
+
+BEGINS_S: Final = 1.0
+"""s for which nothing happens at first, so that one sees the block at rest."""
+
+MAX_PUSHED: Final = 0.1
+"""m after which the finger stops."""
+
+MAX_TIPPED: Final = 0.3
+"""rad after which the finger stops: the block falls over by itself."""
+
+
+class Situation(Protocol):
+    """Something that happens to the block.
+
+    Attributes:
+        topic: Where a robot would measure it.
+        msg_type: What it measures.
+    """
+
+    topic: str
+    msg_type: type
+
+    def load(self, seconds: float, block: SprungBlock) -> Load:
+        """Return what acts on the block after so many s, besides the flats that it touches."""
+
+    def measured(self) -> Vector3Stamped | WrenchStamped:
+        """Return what a sensor measures of it now. The stamp and the frame are still missing."""
+
+
+@dataclass(slots=True, kw_only=True)
+class PushedBlock:
+    """A finger pushes a block towards x, harder and harder, until the block slides or falls over.
+
+    The finger is smooth, and stays at its height. Its sensor measures the wrench on the block in world axes
+    and about the world's origin.
+
+    Attributes:
+        height: m over the floor. Above half the block's depth over the friction, the block tips.
+        rate: N/s.
+    """
+
+    height: float
+    rate: float
+    topic: str = "/finger/wrench"
+    msg_type: type = WrenchStamped
+    _force: float = 0.0
+    _is_over: bool = False
+
+    def load(self, seconds: float, block: SprungBlock) -> Load:
+        """Return the weight and the push."""
+        self._is_over = self._is_over or block.x > MAX_PUSHED or abs(block.angle) > MAX_TIPPED
+        self._force = 0.0 if self._is_over else max(0.0, self.rate * (seconds - BEGINS_S))
+        return Load(
+            force_x=self._force,
+            force_z=-block.mass * _GRAVITY,
+            moment=(self.height - block.z) * self._force,
+        )
+
+    def measured(self) -> WrenchStamped:
+        """Return the wrench of the finger."""
+        msg = WrenchStamped()
+        msg.wrench.force = vector_to_msg([self._force, 0.0, 0.0])
+        msg.wrench.torque = vector_to_msg([0.0, self.height * self._force, 0.0])
+        return msg
+
+
+@dataclass(slots=True, kw_only=True)
+class TiltingTray:
+    """A tray tilts about its axis y, so slowly that it does not throw what stands on it.
+
+    All is in the axes of the tray, in which gravity turns. What the tray's rotation adds is left out: at 0.05
+    rad/s it is 0.05 m/s^2 on a block that slides with 0.5 m/s. The sensor is the tray's accelerometer.
+
+    Attributes:
+        max_tilt: rad, where the tray stops.
+        rate: rad/s.
+    """
+
+    max_tilt: float
+    rate: float
+    topic: str = "/tray/gravity"
+    msg_type: type = Vector3Stamped
+    _tilt: float = 0.0
+
+    def load(self, seconds: float, block: SprungBlock) -> Load:
+        """Return the weight in the tray's axes."""
+        self._tilt = min(self.max_tilt, max(0.0, self.rate * (seconds - BEGINS_S)))
+        weight = block.mass * _GRAVITY
+        return Load(force_x=weight * math.sin(self._tilt), force_z=-weight * math.cos(self._tilt))
+
+    def measured(self) -> Vector3Stamped:
+        """Return the acceleration of gravity."""
+        g = _GRAVITY
+        turned = vector_to_msg([g * math.sin(self._tilt), 0.0, -g * math.cos(self._tilt)])
+        return Vector3Stamped(vector=turned)
 
 
 class BlockPublisher(Node):
@@ -100,11 +200,13 @@ class BlockPublisher(Node):
 def main(arguments: list[str]) -> int:
     """Publish one situation until it ends or the process is told to stop, and return the exit code."""
     given = block_publisher_parser().parse_args(remove_ros_args(arguments))
-
-    def work(stop: threading.Event) -> None:
-        BlockPublisher(_situation(given)).play(given.seconds, stop)
-
-    return run_until_stopped(arguments, work)
+    with ros_until_stopped(arguments) as stop:
+        try:
+            BlockPublisher(_situation(given)).play(given.seconds, stop)
+        except ContactDynamicsError as error:
+            print(f"configuration: {error}", file=sys.stderr)
+            return 2
+    return 0
 
 
 def _situation(given: argparse.Namespace) -> Situation:

@@ -6,8 +6,9 @@ It asks four times a second. It takes the server's parameters too, and asks abou
 
 from __future__ import annotations
 
+import sys
 import time
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import numpy as np
 from geometry_msgs.msg import Vector3Stamped, WrenchStamped
@@ -21,17 +22,14 @@ from contact_dynamics.contact_modes import ModeVerdict
 from contact_dynamics.contact_modes.letters import mode_in_words
 from contact_dynamics.demo.arguments import PUSHED_BLOCK, THROWN_BOX, TRAY, commentator_parser
 from contact_dynamics.demo.patience import Patience
-from contact_dynamics.demo.until_stopped import run_until_stopped
 from contact_dynamics.diagrams.words import OUTCOMES, VERDICTS
-from contact_dynamics.errors import NotSupportedError
+from contact_dynamics.errors import ContactDynamicsError, NotSupportedError
 from contact_dynamics.impact import ImpactOutcome
 from contact_dynamics.nodes.node_parameters import NodeParameters
 from contact_dynamics.nodes.parameters import read_server_parameters
+from contact_dynamics.nodes.running import ros_until_stopped
 from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact
 from msg_adapters.geometry import vector_from_msg, vector_to_msg
-
-if TYPE_CHECKING:
-    import threading
 
 QOS: Final = QoSProfile(depth=1000)
 """Deep queues, since replies can get lost otherwise when many ask at once."""
@@ -208,12 +206,14 @@ class Commentator(Node):
 def main(arguments: list[str]) -> int:
     """Comment until the states end or the process is told to stop, and return the exit code."""
     given = commentator_parser().parse_args(remove_ros_args(arguments))
-
-    def work(stop: threading.Event) -> None:
-        commentator = Commentator(given.situation, given.server)
+    with ros_until_stopped(arguments) as stop:
+        try:
+            commentator = Commentator(given.situation, given.server)
+        except ContactDynamicsError as error:
+            print(f"configuration: {error}", file=sys.stderr)
+            return 2
         while not (stop.is_set() or commentator.get_ready()):
             pass
         while not (stop.is_set() or commentator.is_over):
             commentator.comment()
-
-    return run_until_stopped(arguments, work)
+    return 0

@@ -4,16 +4,17 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final, NamedTuple, TypeAlias
 
 import numpy as np
 
+from contact_dynamics.contact_modes import ModeVerdict
 from contact_dynamics.demo.questioner import LAST_MOMENT
+from contact_dynamics.diagrams.words import OUTCOMES
+from contact_dynamics.impact import ImpactOutcome
 from contact_dynamics.motion.velocity_estimate import WINDOW
 from contact_dynamics.rotations.many import rotation_vectors
-from contact_dynamics_interfaces.msg import Impact
 from msg_adapters.geometry import vector_from_msg
 
 if TYPE_CHECKING:
@@ -33,33 +34,13 @@ passes until the bounce is out of it. Shorter flights are left out without a wor
 
 _AVERAGED: Final = 12  # number of frames at each end of the rest, whose means show whether the body moved
 
-_OUTCOMES: Final = {
-    getattr(Impact, name): name.lower().replace("_", " ")
-    for name in (
-        "NO_IMPULSE",
-        "SLIDES",
-        "STICKS_IN_COMPRESSION",
-        "STICKS_IN_RESTITUTION",
-        "REVERSES_IN_COMPRESSION",
-        "REVERSES_IN_RESTITUTION",
-        "STICKS_THROUGHOUT",
-    )
-}
-_VERDICTS: Final = ("unique", "indeterminate", "inconsistent", "impact")
+_UNKNOWN: Final = "no clean strike"
+
+Row: TypeAlias = tuple[str, str, str, str]
+"""A line of the table: the quantity, what was predicted, what was measured, and the difference."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Row:
-    """A line of the table, as text."""
-
-    quantity: str
-    predicted: str
-    measured: str
-    difference: str
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Section:
+class Section(NamedTuple):
     """A question, and the rows of its answer.
 
     Attributes:
@@ -86,8 +67,8 @@ def print_table(toss: Toss, strikes: Sequence[Strike], questioner: Questioner) -
     print(f"\n{'':34}{'predicted':>27}{'measured':>27}{'difference':>16}")
     for section in sections(toss, strikes, questioner):
         print(f"\nt = {section.time:.3f} s, {section.title}")
-        for row in section.rows:
-            print(f"  {row.quantity:32}{row.predicted:>27}{row.measured:>27}{row.difference:>16}")
+        for quantity, predicted, measured, difference in section.rows:
+            print(f"  {quantity:32}{predicted:>27}{measured:>27}{difference:>16}")
     if missed := not_asked(strikes, [asked.time for asked in questioner.flights]):
         times = ", ".join(f"{time:.3f} s" for time in missed)
         print(f"\nNot asked in time, so not in the table: the landing at t = {times}. The machine was busy.")
@@ -121,127 +102,73 @@ def _strike_at(strikes: Sequence[Strike], time: float) -> Strike | None:
 def _flight_section(asked: Asked, strikes: Sequence[Strike], questioner: Questioner) -> Section:
     response = asked.response
     landing = questioner.seconds_of(response.state.header.stamp) + response.event_time
-    return Section(
-        time=asked.time,
-        title=f"in flight, {landing - asked.time:.2f} s before landing: where will it be? {_answered(asked)}",
-        rows=_landing_rows(response, landing, _strike_at(strikes, landing)),
-    )
+    title = f"in flight, {landing - asked.time:.2f} s before landing: where will it be? {_answered(asked)}"
+    strike = _strike_at(strikes, landing)
+    if strike is None:
+        return Section(asked.time, title, [("time of landing, s", f"{landing:.4f}", _UNKNOWN, "")])
+    state = strike.before.state
+    position = np.array(response.trajectory.positions[-3:])
+    turn = rotation_vectors(np.array(response.trajectory.orientations[-4:])[None], state.q_WB)[0]
+    late, off = 1e3 * (landing - strike.time), 1e3 * _length(position - state.p_WB_W)
+    rows = [
+        ("time of landing, s", f"{landing:.4f}", f"{strike.time:.4f}", f"{late:+.1f} ms"),
+        ("position then, m", _vector(position), _vector(state.p_WB_W), f"{off:.1f} mm"),
+        ("attitude then", "", "", f"{math.degrees(_length(turn)):.1f} deg"),
+    ]
+    return Section(asked.time, title, rows)
 
 
 def _impact_section(asked: Asked, strikes: Sequence[Strike], questioner: Questioner) -> Section:
     response = asked.response
     if response.status != response.OK:
-        return Section(time=asked.time, title=f"what after the impact? {response.message}", rows=[])
-    strike = questioner.seconds_of(response.state_before.header.stamp)
-    before = 1e3 * (strike - asked.time)
-    return Section(
-        time=asked.time,
-        title=f"{before:.0f} ms before landing: what after the impact? {_answered(asked)}",
-        rows=_impact_rows(response, _strike_at(strikes, strike)),
-    )
+        return Section(asked.time, f"what after the impact? {response.message}", [])
+    time = questioner.seconds_of(response.state_before.header.stamp)
+    title = f"{1e3 * (time - asked.time):.0f} ms before landing: what after the impact? {_answered(asked)}"
+    after, strike = response.impact.state_after, _strike_at(strikes, time)
+    v, w = vector_from_msg(after.linear_velocity), vector_from_msg(after.angular_velocity)
+    outcome = OUTCOMES[ImpactOutcome(response.impact.outcome)]
+    measured_v = measured_w = (_UNKNOWN, "")
+    if strike is not None:
+        before, measured = strike.before.state, strike.after.state
+        measured_v = _measured(v, before.v_WB_W, measured.v_WB_W)
+        measured_w = _measured(w, before.w_WB_W, measured.w_WB_W)
+    rows = [
+        ("velocity after, m/s", _vector(v), *measured_v),
+        ("spin after, rad/s", _vector(w), *measured_w),
+        ("the contact", outcome, "", ""),
+    ]
+    return Section(asked.time, title, rows)
+
+
+def _measured(predicted: FloatArray, before: FloatArray, after: FloatArray) -> tuple[str, str]:
+    """Return what was measured, and the error of the prediction beside the jump."""
+    return _vector(after), f"{_length(predicted - after):.2f} of {_length(after - before):.2f}"
 
 
 def _mode_section(asked: Asked, toss: Toss) -> Section:
-    response = asked.response
+    response, title = asked.response, "it rests, or nearly: which contact mode?"
     if response.status != response.OK:
-        return Section(
-            time=asked.time, title=f"it rests, or nearly: which contact mode? {response.message}", rows=[]
-        )
-    title = f"it rests, or nearly: which contact mode? {_answered(asked)}"
-    return Section(time=asked.time, title=title, rows=_mode_rows(asked, toss))
+        return Section(asked.time, f"{title} {response.message}", [])
+    modes = " or ".join(mode.mode for mode in response.modes) or "none"
+    verdict = ModeVerdict(response.verdict).name.lower()
+    later = toss.p_WB_W[toss.times > asked.time]
+    few = max(1, min(_AVERAGED, len(later) // 2))
+    moved = _length(later[-few:].mean(axis=0) - later[:few].mean(axis=0)) if len(later) else 0.0
+    row = (
+        f"modes of {len(response.contacts.frictions)} contacts",
+        f"{modes} ({verdict})",
+        f"moved {1e3 * moved:.1f} mm",
+        f"in {toss.times[-1] - asked.time:.2f} s",
+    )
+    return Section(asked.time, f"{title} {_answered(asked)}", [row])
 
 
 def _answered(asked: Asked) -> str:
     return f"[answered in {1e3 * asked.round_trip:.1f} ms]"
 
 
-def _landing_rows(response: Any, landing: float, strike: Strike | None) -> list[Row]:
-    position = np.array(response.trajectory.positions[-3:])
-    rows = [
-        Row(
-            quantity="time of landing, s",
-            predicted=f"{landing:.4f}",
-            measured="no clean strike",
-            difference="",
-        )
-    ]
-    if strike is None:
-        return rows
-    state = strike.before.state
-    turn = rotation_vectors(np.array(response.trajectory.orientations[-4:])[None], state.q_WB)[0]
-    return [
-        Row(
-            quantity="time of landing, s",
-            predicted=f"{landing:.4f}",
-            measured=f"{strike.time:.4f}",
-            difference=f"{1e3 * (landing - strike.time):+.1f} ms",
-        ),
-        Row(
-            quantity="position then, m",
-            predicted=_vector(position),
-            measured=_vector(state.p_WB_W),
-            difference=f"{1e3 * float(np.linalg.norm(position - state.p_WB_W)):.1f} mm",
-        ),
-        Row(
-            quantity="attitude then",
-            predicted="",
-            measured="",
-            difference=f"{math.degrees(float(np.linalg.norm(turn))):.1f} deg",
-        ),
-    ]
-
-
-def _impact_rows(response: Any, strike: Strike | None) -> list[Row]:
-    after = response.impact.state_after
-    v, w = vector_from_msg(after.linear_velocity), vector_from_msg(after.angular_velocity)
-    outcome = _OUTCOMES[response.impact.outcome]
-    if strike is None:
-        return [
-            Row(
-                quantity="velocity after, m/s",
-                predicted=_vector(v),
-                measured="no clean strike",
-                difference="",
-            ),
-            Row(
-                quantity="spin after, rad/s", predicted=_vector(w), measured="no clean strike", difference=""
-            ),
-            Row(quantity="the contact", predicted=outcome, measured="", difference=""),
-        ]
-    measured = strike.after.state
-    jump_v = float(np.linalg.norm(measured.v_WB_W - strike.before.state.v_WB_W))
-    jump_w = float(np.linalg.norm(measured.w_WB_W - strike.before.state.w_WB_W))
-    return [
-        _after("velocity after, m/s", v, measured.v_WB_W, jump_v),
-        _after("spin after, rad/s", w, measured.w_WB_W, jump_w),
-        Row(quantity="the contact", predicted=outcome, measured="", difference=""),
-    ]
-
-
-def _after(quantity: str, predicted: FloatArray, measured: FloatArray, jump: float) -> Row:
-    error = float(np.linalg.norm(predicted - measured))
-    return Row(
-        quantity=quantity,
-        predicted=_vector(predicted),
-        measured=_vector(measured),
-        difference=f"{error:.2f} of {jump:.2f}",
-    )
-
-
-def _mode_rows(asked: Asked, toss: Toss) -> list[Row]:
-    response = asked.response
-    modes = " or ".join(mode.mode for mode in response.modes) or "none"
-    later = toss.p_WB_W[toss.times > asked.time]
-    few = max(1, min(_AVERAGED, len(later) // 2))
-    moved = float(np.linalg.norm(later[-few:].mean(axis=0) - later[:few].mean(axis=0))) if len(later) else 0.0
-    return [
-        Row(
-            quantity=f"modes of {len(response.contacts.frictions)} contacts",
-            predicted=f"{modes} ({_VERDICTS[response.verdict]})",
-            measured=f"moved {1e3 * moved:.1f} mm",
-            difference=f"in {toss.times[-1] - asked.time:.2f} s",
-        )
-    ]
+def _length(vector: FloatArray) -> float:
+    return float(np.linalg.norm(vector))
 
 
 def _vector(vector: FloatArray) -> str:

@@ -13,7 +13,7 @@ import gc
 import signal
 import threading
 import time
-from contextlib import contextmanager, suppress
+from contextlib import ExitStack, contextmanager, suppress
 from functools import partial
 from typing import TYPE_CHECKING, Final, Protocol
 
@@ -78,17 +78,29 @@ def run_node(
     """
     args = ros_arguments(parser, arguments)
     never_wait_for_readers()
-    ensure_ros_log_directory()
     keep_reserved_memory_untouched()
     leave_out_numpy_warnings()
-    with stop_signals() as stop:
+    with ExitStack() as stack:
         try:
-            rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.NO)
+            stop = stack.enter_context(ros_until_stopped(args))
         except RuntimeError as error:  # what rclpy raises for arguments and files that it cannot read
             get_logger(verb).fatal(f"configuration: {error}")
             return 2
+        return _run(partial(make_node, args), verb, stop)
+
+
+@contextmanager
+def ros_until_stopped(arguments: list[str]) -> Iterator[threading.Event]:
+    """Begin ROS with its arguments, and end it when the context is left; yield what `stop_signals` yields.
+
+    Raises:
+        RuntimeError: rclpy cannot read the arguments, or a file that they name.
+    """
+    ensure_ros_log_directory()
+    with stop_signals() as stop:
+        rclpy.init(args=arguments, signal_handler_options=SignalHandlerOptions.NO)
         try:
-            return _run(partial(make_node, args), verb, stop)
+            yield stop
         finally:
             rclpy.try_shutdown()
 

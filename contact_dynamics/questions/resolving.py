@@ -193,7 +193,9 @@ def _energies(before: Sequence[Before], after: Sequence[BodyState]) -> tuple[flo
     )
 
 
-class _OfStrikes(TypedDict, total=False):
+class _Told(TypedDict, total=False):
+    """The fields that only a sequence of strikes has."""
+
     outcome: ImpactOutcome
     jams: bool
     compression_impulses_W: FloatArray
@@ -202,8 +204,8 @@ class _OfStrikes(TypedDict, total=False):
     path_contacts: tuple[int, ...]
 
 
-def _told_by(strikes: Sequence[tuple[int, SpatialImpact]], contact_count: int) -> _OfStrikes:
-    """Return the fields that only a sequence of strikes has. Its outcome is that of the hardest strike."""
+def _told_by(strikes: Sequence[tuple[int, SpatialImpact]], contact_count: int) -> _Told:
+    """Return what only a sequence of strikes has. Its outcome is that of the hardest strike."""
     if not strikes:
         return {}
     hardest = max(strikes, key=lambda strike: float(strike[1].impulse_W @ strike[1].impulse_W))[1]

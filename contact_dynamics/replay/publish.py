@@ -26,13 +26,11 @@ from rclpy.duration import Duration
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.serialization import deserialize_message
-from rclpy.signals import SignalHandlerOptions
 from rosgraph_msgs.msg import Clock
 
 from contact_dynamics.constants import NS_PER_S
 from contact_dynamics.errors import InvalidFieldError
-from contact_dynamics.nodes.own_process import ensure_ros_log_directory
-from contact_dynamics.nodes.running import stop_signals
+from contact_dynamics.nodes.running import ros_until_stopped
 from contact_dynamics.recording.bag_reader import BagReader
 from contact_dynamics.recording.cdr_stamp import leading_stamp_ns
 from contact_dynamics.recording.decoding import message_class
@@ -174,9 +172,7 @@ def publish(given: argparse.Namespace, of_ros: list[str], *, span: Span) -> int:
     path = Path(given.log)
     start_ns, end_ns = BagReader(path).extent()
     progress = Progress(str(path), begin=start_ns, end=end_ns)
-    ensure_ros_log_directory()
-    with stop_signals() as stop, single_keys():
-        rclpy.init(args=of_ros, signal_handler_options=SignalHandlerOptions.NO)
+    with ros_until_stopped(of_ros) as stop, single_keys():
         try:
             publisher = _LogPublisher(path, given, span=span)
             pacing = Pacing(
@@ -191,7 +187,6 @@ def publish(given: argparse.Namespace, of_ros: list[str], *, span: Span) -> int:
             complete = stop.is_set() or (publisher.wait_for_answers() and publisher.has_published)
         finally:
             progress.end()
-            rclpy.try_shutdown()
     print(publisher.told, file=sys.stderr)
     if publisher.found is None:
         return 0 if complete else 1
