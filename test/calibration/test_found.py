@@ -20,7 +20,7 @@ from contact_dynamics.calibration.plots import write_plots
 from contact_dynamics.calibration.report import content_of, report, server_parameters
 from contact_dynamics.calibration.result import Outlier
 from contact_dynamics.calibration.toss_uncertainty import toss_uncertainty
-from contact_dynamics.nodes.given_parameters import ParameterFile
+from contact_dynamics.nodes.parameter_file import ParameterFile
 from contact_dynamics.nodes.parameters import read_server_parameters
 
 TRUTH = Truth()
