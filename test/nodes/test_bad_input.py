@@ -15,7 +15,6 @@ from geometry_msgs.msg import Point
 from nav_msgs.msg import Odometry
 
 from changed_requests import put
-from contact_dynamics.demo.processes import claim_domain
 from contact_dynamics_interfaces.msg import BodyState, BodyStates, ContactSet
 from contact_dynamics_interfaces.srv import (
     PredictContactMode,
@@ -25,9 +24,10 @@ from contact_dynamics_interfaces.srv import (
     PredictTumblingBatch,
 )
 from message_words import says
-from running_server import ROOT, Client, process, server_and_client
+from running_server import ROOT, Client, process
 
 SERVICES = (PredictContactMode, PredictImpact, PredictTumbling)
+ARGUMENTS = ("--params-file", str(ROOT / "config" / "server.yaml"), "--ros-args")
 
 
 def good(service: Any) -> Any:
@@ -432,17 +432,27 @@ def test_no_state_published_yet(client: Client, service: Any) -> None:
     assert says_nothing(answer)
 
 
-@pytest.fixture
-def client_alone(tmp_path: Path) -> Iterator[Client]:
-    """A client of a server that no other test asks, so that states may be published."""
-    domain_id = claim_domain()
-    with server_and_client(tmp_path, domain_id=domain_id) as client:
-        yield client
+def test_states_that_are_stale_or_make_no_sense(tmp_path: Path) -> None:
+    """A stale state is refused with its age. One with a NaN, in another frame or too far away is not kept.
+
+    Nor is one that spins beyond reason. NumPy once warned of each such state again after each answer, and of
+    questions that overflow.
+    """
+    with process("server", *ARGUMENTS, "-p", f"log_directory:={tmp_path}", ready="ready") as server:
+        client = Client()
+        try:
+            publish_nonsense(client)
+            flood(client)
+        finally:
+            client.close()
+        server.send_signal(signal.SIGINT)
+        assert server.stdout is not None
+        printed = server.stdout.read()
+        assert "message ignored" in printed
+        assert "RuntimeWarning" not in printed
 
 
-def test_states_that_are_stale_or_make_no_sense(client_alone: Client) -> None:
-    """A stale state is refused with its age. One with a NaN, in another frame or too far away is not kept."""
-    client = client_alone
+def publish_nonsense(client: Client) -> None:
     publisher = client.publisher(Odometry, "/brick/odometry")
     nonsense = Odometry()
     nonsense.header.frame_id = "world"
@@ -454,14 +464,15 @@ def test_states_that_are_stale_or_make_no_sense(client_alone: Client) -> None:
     far = Odometry()
     far.header = nonsense.header
     far.pose.pose.position.x = 1e300
+    spins = Odometry()
+    spins.header = nonsense.header
+    spins.twist.twist.angular.x = 1e9
     old = Odometry()
     old.header.frame_id = "world"
     old.header.stamp.sec = nonsense.header.stamp.sec - 3
     publisher.publish(b"\0\1\0\0no message at all")
-    publisher.publish(nonsense)
-    publisher.publish(elsewhere)
-    publisher.publish(far)
-    publisher.publish(old)
+    for each in (nonsense, elsewhere, far, spins, old):
+        publisher.publish(each)
     request = PredictTumbling.Request(body_name="brick", times=[0.1])
     answers: list[Any] = []
 
@@ -477,32 +488,20 @@ def test_states_that_are_stale_or_make_no_sense(client_alone: Client) -> None:
     assert client.ask(asked).status == 0
 
 
-def test_numbers_without_measure_flood_no_console(tmp_path: Path) -> None:
-    """NumPy warned of each such state again after each answer, and of questions that overflow."""
-    arguments = ("--params-file", str(ROOT / "config" / "server.yaml"), "--ros-args", "-p", "workers:=1")
-    with process("server", *arguments, "-p", f"log_directory:={tmp_path}", ready="ready") as server:
-        client = Client()
-        try:
-            states = client.publisher(Odometry, "/brick/odometry")
-            msg = Odometry(child_frame_id="brick")
-            msg.header.frame_id, msg.header.stamp = "world", client.node.get_clock().now().to_msg()
-            far = PredictTumblingBatch.Request(body_name="brick", times=[1e300])
-            far.states = BodyStates(
-                positions=[0.0, 0.0, 1.0],
-                orientations=[0.0, 0.0, 0.0, 1.0],
-                linear_velocities=[1e30, 0.0, -1.0],
-                angular_velocities=[0.0, 3.0, 0.0],
-            )
-            for number in (math.inf, 1e308, math.nan):
-                for _ in range(20):
-                    msg.twist.twist.linear.x = msg.twist.twist.angular.y = number
-                    msg.pose.covariance[0] = number
-                    states.publish(msg)
-                    assert client.ask(far).status != 0
-        finally:
-            client.close()
-        server.send_signal(signal.SIGINT)
-        assert server.stdout is not None
-        printed = server.stdout.read()
-        assert "message ignored" in printed
-        assert "RuntimeWarning" not in printed
+def flood(client: Client) -> None:
+    states = client.publisher(Odometry, "/brick/odometry")
+    msg = Odometry(child_frame_id="brick")
+    msg.header.frame_id, msg.header.stamp = "world", client.node.get_clock().now().to_msg()
+    far = PredictTumblingBatch.Request(body_name="brick", times=[1e300])
+    far.states = BodyStates(
+        positions=[0.0, 0.0, 1.0],
+        orientations=[0.0, 0.0, 0.0, 1.0],
+        linear_velocities=[1e30, 0.0, -1.0],
+        angular_velocities=[0.0, 3.0, 0.0],
+    )
+    for number in (math.inf, 1e308, math.nan):
+        for _ in range(20):
+            msg.twist.twist.linear.x = msg.twist.twist.angular.y = number
+            msg.pose.covariance[0] = number
+            states.publish(msg)
+            assert client.ask(far).status != 0

@@ -25,7 +25,7 @@ from contact_dynamics.nodes.situations import Part, Situation
 from contact_dynamics_interfaces.srv import PredictImpact, PredictTumbling
 from msg_adapters.stamps import stamp_ns_from_msg, stamp_to_msg
 from nodes.monitor import Monitor, monitored, odometry
-from running_server import ROOT, process
+from running_server import ROOT, process, wait_for
 
 BEST_EFFORT = QoSProfile(depth=10, reliability=ReliabilityPolicy.BEST_EFFORT)
 HOUR_NS = 3_600_000_000_000
@@ -167,8 +167,11 @@ def test_a_body_that_is_gone_from_a_shared_topic(monitor: Monitor) -> None:
 
 def test_a_second_server_of_the_same_name(monitor: Monitor) -> None:
     domain_id = monitor.client.node.context.get_domain_id()
-    with process("server", "--ros-args", "-p", "log:=false", ready="ready", domain_id=domain_id):
+    told = "/contact_dynamics: another node has this name, and both answer the same requests"
+    with process("server", "--ros-args", "-p", "log:=false", ready="ready", domain_id=domain_id) as second:
         monitor.wait(Situation.SAME_NAME)
+        assert told in wait_for(second, "another node has this name")
+    assert second.returncode == 0
     monitor.wait_until_ok(Part.ANSWERS)
 
 

@@ -36,28 +36,8 @@ def ports_in_memory(pid: int) -> set[int]:
     return {int(port) for port in re.findall(r"/fastrtps_port(\d+)", Path(f"/proc/{pid}/maps").read_text())}
 
 
-def test_nothing_is_sent_to_the_server_through_shared_memory_which_a_kill_could_leave_locked() -> None:
-    with (
-        process("server", *ARGUMENTS, ready="ready"),
-        subprocess.Popen(
-            [sys.executable, "-c", STAYS],
-            cwd=ROOT,
-            env=environment(),
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            text=True,
-        ) as client,
-    ):
-        wait_for(client, "answered")
-        ports = ports_in_memory(client.pid)
-        of_servers = {first_port(DOMAIN_ID) + FIRST_OFFSET + each for each in range(2 * PORTS)}
-        assert ports  # the client has one of its own
-        assert not ports & of_servers
-        client.communicate("end\n", timeout=PATIENCE_S)
-
-
-def test_a_client_with_the_profile_for_it_is_answered_over_udp() -> None:
-    """It has nothing in shared memory that a server could take for that of one that was killed."""
+def test_what_a_kill_could_leave_locked_in_shared_memory_is_not_used() -> None:
+    """Nothing is sent to a server through it, and nothing to a client with the profile for it."""
     profile = ROOT / "config" / "fast_dds_back_at_once.xml"
     with process("server", *ARGUMENTS, ready="ready") as server:
         for variables, is_in_memory in (({}, True), ({VARIABLE: str(profile)}, False)):
@@ -72,6 +52,10 @@ def test_a_client_with_the_profile_for_it_is_answered_over_udp() -> None:
             ) as client:
                 wait_for(client, "answered")
                 assert bool(ports_in_memory(server.pid) - before) is is_in_memory
+                ports = ports_in_memory(client.pid)
+                of_servers = {first_port(DOMAIN_ID) + FIRST_OFFSET + each for each in range(2 * PORTS)}
+                assert bool(ports) is is_in_memory  # the client has one of its own
+                assert not ports & of_servers
                 client.communicate("end\n", timeout=PATIENCE_S)
 
 

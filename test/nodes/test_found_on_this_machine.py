@@ -15,7 +15,7 @@ from contact_dynamics.nodes.fast_dds import PORTS_OF_DOMAIN, first_port, ports_i
 from running_server import PATIENCE_S, ROOT, environment
 
 FIRST_DISCOVERY = 10  # the port at which the first participant of a machine discovers others, in the domain
-SERVER = ("server", "--ros-args", "-p", "log:=false")
+SERVER = ("server", "--ros-args", "-p", "log:=false", "-p", "workers:=0")
 PYTHON = (sys.executable, "-m", "contact_dynamics")
 SCRIPT = (str(Path(sys.executable).with_name("contact-dynamics")),)
 EXECUTABLE = (sys.executable, str(ROOT / "executables" / "server"), *SERVER[1:])
@@ -23,13 +23,10 @@ TRAY = str(ROOT / "config" / "tray.yaml")
 BLOCK = (*PYTHON, "block_publisher", "tray", "--ros-args", "--params-file", TRAY)
 ASKS_FOR_MORE = {DISCOVERY_RANGE: "SUBNET"}
 STARTS: list[tuple[tuple[str, ...], dict[str, str]]] = [
-    ((*PYTHON, *SERVER), {}),
     ((*SCRIPT, *SERVER), {}),
-    (EXECUTABLE, {}),
     (EXECUTABLE, {DISCOVERY_RANGE: ""}),  # which ROS takes as if it were not set
     (BLOCK, {}),
     ((*PYTHON, *SERVER), ASKS_FOR_MORE),
-    (BLOCK, ASKS_FOR_MORE),
 ]
 
 

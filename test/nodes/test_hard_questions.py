@@ -163,8 +163,7 @@ def test_requests_that_wait_when_the_server_is_told_to_end_are_answered_or_refus
             client.close()
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_the_server_ends_soon_whatever_is_being_computed(number: signal.Signals) -> None:
+def test_the_server_ends_soon_whatever_is_being_computed() -> None:
     arguments = ("-p", "answer_deadline:=3600.0", "-p", "workers:=1")
     with process("server", *ARGUMENTS, *APART, *arguments, ready="ready") as server:
         client = Client(NAMESPACE)
@@ -174,7 +173,7 @@ def test_the_server_ends_soon_whatever_is_being_computed(number: signal.Signals)
             answer = client.ask(quick())  # the others came before it
             assert answer.status == answer.OK, answer.message
             begun = time.monotonic()
-            server.send_signal(number)
+            server.send_signal(signal.SIGTERM)
             assert server.wait(PATIENCE_S) == 0
             assert time.monotonic() - begun < ENDS_S
         finally:

@@ -24,7 +24,7 @@ from contact_dynamics_interfaces.srv import PredictImpact, PredictTumbling
 from msg_adapters.stamps import stamp_ns_from_msg
 from running_server import PATIENCE_S, ROOT, Client, environment, process
 
-QUESTIONS = 120
+QUESTIONS = 60
 LONG_EVERY = 12  # one question in so many has a long answer
 BURST = 900  # questions at once, which leave 1800 events while the server is busy
 FEW = 60  # in a simulation, whose log has another clock and the same queues

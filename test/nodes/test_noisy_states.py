@@ -3,22 +3,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-import pytest
 from nav_msgs.msg import Odometry
 from scipy.spatial.transform import Rotation
 
-from contact_dynamics.demo.processes import claim_domain
 from contact_dynamics_interfaces.srv import PredictContactMode
 from msg_adapters.stamps import stamp_to_msg
 from running_server import Client, server_and_client
 
 DEVIATIONS = [2e-4, 2e-3, 0.02, 0.2]  # m, rad, m/s, rad/s
-DRAWS = 25
+DRAWS = 10
 VARIANCES = np.repeat(np.square(DEVIATIONS), 3)
 
 
@@ -70,26 +67,15 @@ def share_at_rest(client: Client, *, has_covariance: bool, **asked: Any) -> floa
     return right / DRAWS
 
 
-@pytest.fixture
-def configured(tmp_path: Path, request: pytest.FixtureRequest) -> Iterator[Client]:
-    """A client of a server of its own, with a parameter beside the configuration or none."""
-    with server_and_client(
-        tmp_path, domain_id=claim_domain(), parameters=["state_timeout:=1000.0", *request.param]
-    ) as client:
-        yield client
-
-
-@pytest.mark.parametrize("configured", [[]], indirect=True)
-def test_a_published_covariance_tells_noise_from_motion(configured: Client) -> None:
-    """Without it, no tolerance does."""
-    assert (
-        share_at_rest(configured, has_covariance=True, include_margins=True, include_probabilities=True)
-        >= (DRAWS - 1) / DRAWS
-    )
-    tolerances = {"velocity_tolerance": 0.02, "distance_tolerance": 0.001}
-    assert share_at_rest(configured, has_covariance=False, **tolerances) < 0.2
-
-
-@pytest.mark.parametrize("configured", [[f"body.brick.state_deviations:={DEVIATIONS}"]], indirect=True)
-def test_so_does_a_configured_noise(configured: Client) -> None:
-    assert share_at_rest(configured, has_covariance=False) >= (DRAWS - 1) / DRAWS
+def test_a_published_or_configured_covariance_tells_noise_from_motion(
+    tmp_path: Path,
+) -> None:
+    """Without them, no tolerance does."""
+    with server_and_client(tmp_path, parameters=["state_timeout:=1000.0"]) as client:
+        asked = {"include_margins": True, "include_probabilities": True}
+        assert share_at_rest(client, has_covariance=True, **asked) >= (DRAWS - 1) / DRAWS
+        tolerances = {"velocity_tolerance": 0.02, "distance_tolerance": 0.001}
+        assert share_at_rest(client, has_covariance=False, **tolerances) < 0.2
+    deviations = f"body.brick.state_deviations:={DEVIATIONS}"
+    with server_and_client(tmp_path, parameters=["state_timeout:=1000.0", deviations]) as client:
+        assert share_at_rest(client, has_covariance=False) >= (DRAWS - 1) / DRAWS

@@ -9,7 +9,6 @@ import time
 from pathlib import Path
 from typing import Any
 
-import pytest
 import rclpy
 import yaml
 from nav_msgs.msg import Odometry
@@ -75,29 +74,33 @@ def test_an_override_of_one_topic_leaves_the_others_as_they_were() -> None:
     assert qos.depth == 7
 
 
-@pytest.mark.parametrize(
-    ("offers", "reliability", "durability"),
-    [
-        ([BEST_EFFORT], ReliabilityPolicy.BEST_EFFORT, DurabilityPolicy.VOLATILE),
-        ([BEST_EFFORT, LATCHED], ReliabilityPolicy.RELIABLE, DurabilityPolicy.TRANSIENT_LOCAL),
-        ([OfferedQos(reliability="unknown")], ReliabilityPolicy.RELIABLE, DurabilityPolicy.VOLATILE),
-        ([], ReliabilityPolicy.RELIABLE, DurabilityPolicy.VOLATILE),
-    ],
-    ids=["best effort", "several", "unknown", "nothing known"],
-)
-def test_a_log_is_published_as_it_was(
-    tmp_path: Path, offers: list[Any], reliability: ReliabilityPolicy, durability: DurabilityPolicy
-) -> None:
+def test_a_log_is_published_as_it_was(tmp_path: Path) -> None:
+    unknown = [OfferedQos(reliability="unknown")]
+    expected: dict[str, tuple[list[Any], ReliabilityPolicy, DurabilityPolicy]] = {
+        "/best_effort": ([BEST_EFFORT], ReliabilityPolicy.BEST_EFFORT, DurabilityPolicy.VOLATILE),
+        "/several": (
+            [BEST_EFFORT, LATCHED],
+            ReliabilityPolicy.RELIABLE,
+            DurabilityPolicy.TRANSIENT_LOCAL,
+        ),
+        "/unknown": (unknown, ReliabilityPolicy.RELIABLE, DurabilityPolicy.VOLATILE),
+        "/nothing": ([], ReliabilityPolicy.RELIABLE, DurabilityPolicy.VOLATILE),
+    }
     with BagWriter(tmp_path / "log") as writer:
-        writer.add_topic(TOPIC, "nav_msgs/msg/Odometry", offers)
-        for number in range(100):
-            writer.write(TOPIC, bytes([0, 1, 0, 0]) + bytes(720), log_time_ns=100_000_000 * number)
+        for topic, (offers, _, _) in expected.items():
+            writer.add_topic(topic, "nav_msgs/msg/Odometry", offers)
+            for number in range(100):
+                data = bytes([0, 1, 0, 0]) + bytes(720)
+                writer.write(topic, data, log_time_ns=100_000_000 * number)
     client = Client(wait=False)
     command = [sys.executable, "-m", "contact_dynamics", "replay", "publish", str(tmp_path / "log")]
     with subprocess.Popen([*command, "--loop", "--wait", "0"], cwd=ROOT, env=environment()) as publishing:
-        client.spin_until(lambda: client.node.get_publishers_info_by_topic(TOPIC))
-        (found,) = client.node.get_publishers_info_by_topic(TOPIC)
+        found = {}
+        for topic in expected:
+            client.spin_until(lambda topic=topic: client.node.get_publishers_info_by_topic(topic))
+            (each,) = client.node.get_publishers_info_by_topic(topic)
+            found[topic] = each.qos_profile
         client.close()
         publishing.terminate()
-    assert found.qos_profile.reliability is reliability
-    assert found.qos_profile.durability is durability
+    for topic, (_, reliability, durability) in expected.items():
+        assert (found[topic].reliability, found[topic].durability) == (reliability, durability), topic

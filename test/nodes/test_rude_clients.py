@@ -3,34 +3,53 @@
 
 from __future__ import annotations
 
+import fcntl
+import os
 import re
 import subprocess
 import sys
 from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
+
+import pytest
 
 from contact_dynamics.demo.processes import claim_domain
 from contact_dynamics_interfaces.srv import PredictTumbling
 from running_server import PATIENCE_S, ROOT, SERVICES, Client, environment, process, wait_for
 
 ARGUMENTS = ("--params-file", str(ROOT / "config" / "server.yaml"), "--ros-args", "-p", "log:=false")
-EACH = 10  # messages to each service; a pipe that nobody reads takes no more of what ROS complains about them
+EACH = 10
+"""Messages to each of seven services, of which ROS complains several times as much as the pipe holds."""
+
+PIPE_BYTES = 4096
+"""The smallest size of a pipe. A few messages fill it, where the usual size takes a server a minute."""
+
 LARGE = 100_000_000  # bytes
 MEMORY_KB = 1_500_000  # far above what the server takes with such a request, and below what would end a robot
 
 
-@contextmanager
-def served() -> Iterator[tuple[subprocess.Popen[str], Client, int]]:
+class Served(NamedTuple):
     """A server in a domain of its own, and a client."""
+
+    server: subprocess.Popen[str]
+    client: Client
+    domain_id: int
+
+
+@pytest.fixture(scope="module")
+def served() -> Iterator[Served]:
+    """It goes on answering although it has more to say of each test than the pipe holds that nobody reads."""
     domain_id = claim_domain()
     with process("server", *ARGUMENTS, ready="ready", domain_id=domain_id) as server:
+        assert server.stdout is not None
+        fcntl.fcntl(server.stdout, fcntl.F_SETPIPE_SZ, PIPE_BYTES)
         client = Client(domain_id=domain_id)
         try:
-            yield server, client, domain_id
+            yield Served(server, client, domain_id)
         finally:
             client.close()
+        assert not fcntl.fcntl(server.stdout, fcntl.F_GETFL) & os.O_NONBLOCK
     assert server.returncode == 0
 
 
@@ -41,68 +60,69 @@ def good(frame: str = "") -> Any:
     return request
 
 
-def test_bytes_that_are_no_requests_disturb_nobody_who_asks() -> None:
-    with served() as (_, client, domain_id):
-        rude = subprocess.Popen(
-            [sys.executable, str(Path(__file__).with_name("raw_requests.py")), str(EACH), "12"],
-            env={**environment(domain_id), "PYTHONPATH": f"{ROOT}:{ROOT / 'test'}"},
-            stdout=subprocess.PIPE,
-            text=True,
-        )
-        try:
-            assert int(wait_for(rude, "\n")) == len(SERVICES)
-            asked = 0
-            while rude.poll() is None or not asked:
-                answer = client.ask(good())
-                assert answer.status == answer.OK, answer.message
-                asked += 1
-            assert rude.returncode == 0
-        finally:
-            rude.kill()
-            rude.wait(PATIENCE_S)
-            assert rude.stdout is not None
-            rude.stdout.close()
+def test_bytes_that_are_no_requests_disturb_nobody_who_asks(served: Served) -> None:
+    _, client, domain_id = served
+    rude = subprocess.Popen(
+        [sys.executable, str(Path(__file__).with_name("raw_requests.py")), str(EACH), "12"],
+        env={**environment(domain_id), "PYTHONPATH": f"{ROOT}:{ROOT / 'test'}"},
+        stdout=subprocess.PIPE,
+        text=True,
+    )
+    try:
+        assert int(wait_for(rude, "\n")) == len(SERVICES)
+        asked = 0
+        while rude.poll() is None or not asked:
+            answer = client.ask(good())
+            assert answer.status == answer.OK, answer.message
+            asked += 1
+        assert rude.returncode == 0
+    finally:
+        rude.kill()
+        rude.wait(PATIENCE_S)
+        assert rude.stdout is not None
+        rude.stdout.close()
+    answer = client.ask(good())
+    assert answer.status == answer.OK, answer.message
+
+
+def test_a_request_of_a_hundred_megabytes_is_refused_in_a_short_message(served: Served) -> None:
+    server, client, _ = served
+    answer = client.ask(good("x" * LARGE))
+    assert answer.status == answer.FRAME_MISMATCH
+    assert len(answer.message) < 2100
+    after = client.ask(good())
+    assert after.status == after.OK, after.message
+    status = Path(f"/proc/{server.pid}/status").read_text(encoding="ascii")
+    (peak,) = re.findall(r"VmHWM:\s+(\d+) kB", status)
+    assert int(peak) < MEMORY_KB
+
+
+def test_who_comes_late_and_who_leaves_with_requests_pending_are_nothing_special(served: Served) -> None:
+    _, client, domain_id = served
+    for _ in range(3):
+        late = Client(domain_id=domain_id)  # it waits until it has had an answer
+        answer = late.ask(good())
+        assert answer.status == answer.OK, answer.message
+        for _ in range(20):
+            late.begin_to_ask(good())
+        late.close()
         answer = client.ask(good())
         assert answer.status == answer.OK, answer.message
 
 
-def test_a_request_of_a_hundred_megabytes_is_refused_in_a_short_message() -> None:
-    with served() as (server, client, _):
-        answer = client.ask(good("x" * LARGE))
-        assert answer.status == answer.FRAME_MISMATCH
-        assert len(answer.message) < 2100
-        after = client.ask(good())
-        assert after.status == after.OK, after.message
-        status = Path(f"/proc/{server.pid}/status").read_text(encoding="ascii")
-        (peak,) = re.findall(r"VmHWM:\s+(\d+) kB", status)
-        assert int(peak) < MEMORY_KB
-
-
-def test_who_comes_late_and_who_leaves_with_requests_pending_are_nothing_special() -> None:
-    with served() as (_, client, domain_id):
-        for _ in range(3):
-            late = Client(domain_id=domain_id)  # it waits until it has had an answer
-            answer = late.ask(good())
-            assert answer.status == answer.OK, answer.message
-            for _ in range(20):
-                late.begin_to_ask(good())
-            late.close()
-            answer = client.ask(good())
-            assert answer.status == answer.OK, answer.message
-
-
-def test_two_servers_of_one_name_both_tell() -> None:
-    domain_id = claim_domain()
-    told = "another node has this name, and both answer the same requests"
-    with process("server", *ARGUMENTS, ready="ready", domain_id=domain_id) as first:
-        with process("server", *ARGUMENTS, ready="ready", domain_id=domain_id) as second:
-            assert f"/contact_dynamics: {told}" in wait_for(first, told)
-            assert f"/contact_dynamics: {told}" in wait_for(second, told)
-        assert second.returncode == 0
-        client = Client(domain_id=domain_id)
-        try:
-            answer = client.ask(good())
-            assert answer.status == answer.OK, answer.message
-        finally:
-            client.close()
-    assert first.returncode == 0
+def test_others_with_the_same_pipe_wait_as_before() -> None:
+    reader, writer = os.pipe()
+    code = "from contact_dynamics.nodes.own_process import never_wait_for_readers as f; f(); "
+    code += "import os; print(os.get_blocking(1), os.get_blocking(2), flush=True)"
+    with os.fdopen(reader) as printed:
+        subprocess.run(
+            [sys.executable, "-c", code],
+            cwd=ROOT,
+            check=True,
+            stdout=writer,
+            stderr=writer,
+            timeout=PATIENCE_S,
+        )
+        assert printed.readline() == "False False\n"
+        assert os.get_blocking(writer)
+        os.close(writer)
