@@ -123,13 +123,6 @@ def test_a_box_that_lands_flat_tells_that_the_order_of_its_corners_is_open() -> 
     assert went.end == TossEnd.RESTS
 
 
-def test_the_same_question_has_the_same_answer_to_the_last_bit() -> None:
-    body, state, world = drawn(3)
-    once, again = (toss(body, state, world, max_alternatives=0) for _ in range(2))
-    assert once.state.p_WB_W.tolist() == again.state.p_WB_W.tolist()
-    assert [event.seconds for event in once.events] == [event.seconds for event in again.events]
-
-
 def test_bad_input_is_refused_by_name() -> None:
     body, state, world = drawn(0)
     for wrong in ({"horizon": 0.0}, {"max_events": 0}, {"max_alternatives": -1}, {"error": math.nan}):

@@ -304,13 +304,6 @@ def test_energy_never_grows_and_nothing_sinks_in(seed: int, e: float, mu: float,
         assert sequence.staying
 
 
-def test_no_friction_and_no_loss_keep_the_energy() -> None:
-    body, state = random_toss(7)
-    sequence = impact_sequence(body, state, world_of(body, floor(e=1.0)), window=0.2, max_strikes=20)
-    assert len(sequence.strikes) > 3
-    assert energy(body, sequence.state) == pytest.approx(energy(body, state), rel=1e-12)
-
-
 def test_a_corner_that_turns_up_leaves_even_without_restitution() -> None:
     """At e = 0 the corner's velocity is zero; fast spin takes it up (w^2 r > g), and the flight goes on."""
     body = Body(

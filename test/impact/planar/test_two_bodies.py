@@ -188,22 +188,6 @@ def test_balls_in_line(restitution: float) -> None:
     assert answer.other_velocity.v[0] == pytest.approx((1.0 + restitution) * 2.0 / 4.0, rel=1e-15)
 
 
-def test_ball_against_the_corner_of_a_free_block() -> None:
-    """A ball strikes a block off its centre, without friction: effective mass 1/(1/m + 1/M + d^2/I)."""
-    answer = spatial_pair_impact(
-        MassProperties(mass=0.5, I_B=0.001 * np.eye(3)),
-        BodyState(p_WB_W=[0.3, 0.0, 1.05], q_WB=IDENTITY, v_WB_W=[0.0, 0.0, -2.0]),
-        MassProperties(mass=2.0, I_B=np.diag([0.2, 0.25, 0.3])),
-        BodyState(p_WB_W=np.zeros(3), q_WB=IDENTITY),
-        Contact(p_WC_W=[0.3, 0.0, 1.0], normal_W=[0.0, 0.0, 1.0], friction=0.0, restitution=0.8),
-    )
-    impulse = 1.8 * 2.0 / (1.0 / 0.5 + 1.0 / 2.0 + 0.3**2 / 0.25)
-    assert answer.impulse_W == pytest.approx([0.0, 0.0, impulse], rel=1e-14)
-    assert answer.other_state is not None
-    assert answer.other_state.v_WB_W == pytest.approx([0.0, 0.0, -impulse / 2.0], rel=1e-14)
-    assert answer.other_state.w_WB_W == pytest.approx([0.0, 0.3 * impulse / 0.25, 0.0], rel=1e-14)
-
-
 def test_bodies_that_separate_are_refused() -> None:
     first, before, second, other_before, contact, other_r = planar_draw(3)
     away = replace(contact, normal=(-contact.normal[0], -contact.normal[1]))
