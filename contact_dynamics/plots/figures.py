@@ -14,6 +14,11 @@ from contact_dynamics.contact_modes import (
     SpatialModeAnswer,
 )
 from contact_dynamics.contact_modes.letters import mode_in_words
+from contact_dynamics.diagrams import trajectory_curves
+from contact_dynamics.diagrams.contact_scene import contact_forces
+from contact_dynamics.diagrams.force_dual import force_dual
+from contact_dynamics.diagrams.impulse_space import impulse_space, impulse_space_in_3d
+from contact_dynamics.diagrams.mode_map import mode_map
 from contact_dynamics.diagrams.planar_modes import (
     dual_chart_of,
     map_of_answer,
@@ -21,26 +26,11 @@ from contact_dynamics.diagrams.planar_modes import (
     side_by_side,
 )
 from contact_dynamics.diagrams.planar_scene import silhouette
+from contact_dynamics.diagrams.poinsot import poinsot_diagram
 from contact_dynamics.diagrams.shape import drawn_shape
-from contact_dynamics.plots.draw import (
-    draw_angular_momentum,
-    draw_angular_velocity,
-    draw_attitude,
-    draw_contact_forces,
-    draw_energy,
-    draw_event_tree,
-    draw_force_dual,
-    draw_impulse_space,
-    draw_impulse_space_in_3d,
-    draw_many_states,
-    draw_mode_map,
-    draw_momentum,
-    draw_planar_scene,
-    draw_poinsot,
-    draw_position,
-    draw_toss,
-    draw_velocity,
-)
+from contact_dynamics.diagrams.toss_scene import event_tree
+from contact_dynamics.plots.draw import draw_many_states, draw_toss
+from contact_dynamics.plots.drawing import draw_diagram
 from contact_dynamics.questions.services import service_of
 from contact_dynamics.shapes.convex import NO_SHAPE
 from contact_dynamics.tumbling.regime import Regime
@@ -52,6 +42,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+    from contact_dynamics.diagrams.marks import Diagram
     from contact_dynamics.questions.contact_modes import ContactModeAnswer
     from contact_dynamics.questions.impact_question import ImpactAnswer
     from contact_dynamics.questions.many import ManyImpactsAnswer, ManyTumblingsAnswer
@@ -116,24 +107,18 @@ def figures_of_toss(answer: TossAnswer, *, shape: ConvexShape, **_: object) -> I
     drawn = from_side_and_above(lambda axes, up: draw_toss(axes, answer, outline, across="x", up=up))
     yield NamedFigure("toss", drawn)
     if answer.distribution is not None and answer.distribution.branches:
-        figure = blank_figure(9.0, 5.0)
-        draw_event_tree(figure.add_subplot(), answer.distribution)
-        yield NamedFigure("toss-tree", figure)
+        yield NamedFigure("toss-tree", _figure_of(event_tree(answer.distribution), 9.0, 5.0))
 
 
 def figures_of_impact(
     answer: ImpactAnswer, *, body: HasMassProperties | None, other: HasMassProperties | None, **_: object
 ) -> Iterator[NamedFigure]:
     """Yield the main contact in impulse space, in 3D too for an impact in space."""
-    if len(answer.impact.path_W) == 0:
-        return
-    figure = blank_figure(8.0, 4.6)
-    draw_impulse_space(figure.add_subplot(), body, answer, other=other)
-    yield NamedFigure("impulse-space", figure)
-    if answer.plane is None:
-        figure = blank_figure(9.0, 6.0)
-        draw_impulse_space_in_3d(figure.add_subplot(projection="3d"), body, answer, other=other)
-        yield NamedFigure("impulse-space-in-3d", figure)
+    if len(answer.impact.path_W) > 0:
+        yield NamedFigure("impulse-space", _figure_of(impulse_space(body, answer, other=other)))
+        if answer.plane is None:
+            in_3d = impulse_space_in_3d(body, answer, other=other)
+            yield NamedFigure("impulse-space-in-3d", _figure_of(in_3d, 9.0, 6.0))
 
 
 def figures_of_tumbling(
@@ -142,27 +127,24 @@ def figures_of_tumbling(
     """Yield the motion over time, and Poinsot's construction if the answer has its curves."""
     trajectory = answer.trajectory
     if len(trajectory) > 0:
+        curves = [
+            trajectory_curves.position(trajectory, covariance=answer.covariance),
+            trajectory_curves.attitude(trajectory),
+            trajectory_curves.velocity(trajectory),
+            trajectory_curves.angular_velocity(trajectory),
+        ]
+        if body is not None:
+            curves.append(trajectory_curves.momentum(trajectory, body))
+            curves.append(trajectory_curves.angular_momentum(trajectory, body))
+            curves.append(trajectory_curves.energy(trajectory, body, gravity_W=gravity_W))
         figure = blank_figure(13.0, 11.0)
         figure.suptitle(f"{answer.body_name or 'a body'}: predicted motion")
-        places = iter(range(1, 8))
-
-        def axes() -> Axes:
-            return figure.add_subplot(4, 2, next(places))
-
-        draw_position(axes(), trajectory, covariance=answer.covariance)
-        draw_attitude(axes(), trajectory)
-        draw_velocity(axes(), trajectory)
-        draw_angular_velocity(axes(), trajectory)
-        if body is not None:
-            draw_momentum(axes(), trajectory, body)
-            draw_angular_momentum(axes(), trajectory, body)
-            draw_energy(axes(), trajectory, body, gravity_W=gravity_W)
+        for place, diagram in enumerate(curves, start=1):
+            draw_diagram(figure.add_subplot(4, 2, place), diagram)
         yield NamedFigure("motion", figure)
-    rotation, curves = answer.poinsot, answer.curves
-    if rotation is not None and curves is not None and rotation.regime is not Regime.AT_REST:
-        figure = blank_figure(8.0, 6.0)
-        draw_poinsot(figure.add_subplot(projection="3d"), rotation, curves, answer.state)
-        yield NamedFigure("poinsot", figure)
+    rotation, rolling = answer.poinsot, answer.curves
+    if rotation is not None and rolling is not None and rotation.regime is not Regime.AT_REST:
+        yield NamedFigure("poinsot", _figure_of(poinsot_diagram(rotation, rolling, answer.state), 8.0, 6.0))
 
 
 def figures_of_modes(
@@ -170,35 +152,28 @@ def figures_of_modes(
 ) -> Iterator[NamedFigure]:
     """Yield the contact forces of each mode and, in the plane, the body, the map of modes and force duals."""
     for i, mode in enumerate(answer.modes[:MAX_MODES], start=1):
-        figure = blank_figure(7.0, 4.6)
-        draw_contact_forces(
-            figure.add_subplot(), answer.contacts, mode, title=f"contact forces in {mode.mode}"
-        )
-        yield NamedFigure(f"contact-forces-{i}", figure)
+        forces = contact_forces(answer.contacts, mode, title=f"contact forces in {mode.mode}")
+        yield NamedFigure(f"contact-forces-{i}", _figure_of(forces, 7.0))
     plane = answer.plane
     if plane is None:
         return
     outline = silhouette(drawn_shape(shape), plane.axes_W @ answer.state.R_WB)
     view = modes_side_by_side(answer, plane, outline=outline)
     for i, scene in enumerate(view.scenes[:MAX_MODES], start=1):
-        figure = blank_figure(8.0, 4.6)
-        draw_planar_scene(figure.add_subplot(), scene)
-        yield NamedFigure(f"planar-scene-{i}", figure)
+        yield NamedFigure(f"planar-scene-{i}", _figure_of(scene))
     masses = None if body is None else body.mass_properties
     shown = map_of_answer(answer, plane, body=masses, resolution=_RESOLUTION)
     if shown is None:
         return
-    figure = blank_figure(11.0, 5.0)
-    draw_mode_map(figure.add_subplot(), shown.sets, shown.chart, applied=shown.applied, change=shown.change)
-    yield NamedFigure("mode-map", figure)
+    map_of_modes = mode_map(shown.sets, shown.chart, applied=shown.applied, change=shown.change)
+    yield NamedFigure("mode-map", _figure_of(map_of_modes, 11.0, 5.0))
     chart = dual_chart_of(view, shown, resolution=_RESOLUTION)
     if chart is None:
         return
     for i, seen in enumerate(view.modes[:MAX_MODES], start=1):
         one = next(one for one in shown.sets if one.mode == seen.mode)
-        figure = blank_figure(11.0, 5.0)
-        draw_force_dual(figure.add_subplot(), one, view.contacts, chart, outlines=[outline])
-        yield NamedFigure(f"force-dual-{i}", figure)
+        dual = force_dual(one, view.contacts, chart, outlines=[outline])
+        yield NamedFigure(f"force-dual-{i}", _figure_of(dual, 11.0, 5.0))
 
 
 def from_side_and_above(draw: Callable[[Axes, str], None]) -> Figure:
@@ -223,6 +198,14 @@ def from_side_and_above(draw: Callable[[Axes, str], None]) -> Figure:
         axes.label_outer()
     views[0].get_gridspec().set_height_ratios([float(np.diff(axes.get_ylim())[0]) for axes in views])
     views[1].get_legend().remove()
+    return figure
+
+
+def _figure_of(diagram: Diagram, width: float = 8.0, height: float = 4.6) -> Figure:
+    """Return a figure of one diagram, with a size in inches."""
+    figure = blank_figure(width, height)
+    projection = "3d" if len(diagram.axes) == 3 else None
+    draw_diagram(figure.add_subplot(projection=projection), diagram)
     return figure
 
 
@@ -274,9 +257,9 @@ def modes(answer: PlanarModeAnswer | SpatialModeAnswer) -> Figure:
             outline=np.zeros((0, 2)),
         )
         for axes, scene in zip(each, view.scenes, strict=True):
-            draw_planar_scene(axes, scene)
+            draw_diagram(axes, scene)
     elif isinstance(answer, SpatialModeAnswer) and isinstance(problem, SpatialContactProblem):
         for axes, mode, title in zip(each, answer.modes, titles, strict=False):
-            draw_contact_forces(axes, problem.contacts, mode, title=title)
+            draw_diagram(axes, contact_forces(problem.contacts, mode, title=title))
     figure.suptitle(answer.in_short())
     return figure
