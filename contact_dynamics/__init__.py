@@ -66,7 +66,7 @@ if TYPE_CHECKING:  # the same as `_HOMES`
         several_impact,
         spatial_impact,
     )
-    from contact_dynamics.landing import next_landing
+    from contact_dynamics.landing import next_landing, next_meeting
     from contact_dynamics.motion import motion_of
     from contact_dynamics.plane import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
     from contact_dynamics.rigid_body import BodyState, MassProperties, inertia, state_covariance
@@ -94,7 +94,7 @@ _HOMES: Final = {
         "several_impact",
         "spatial_impact",
     ),
-    "landing": ("next_landing",),
+    "landing": ("next_landing", "next_meeting"),
     "motion": ("motion_of",),
     "plane": ("PlanarBody", "PlanarContact", "PlanarVelocity", "PlanarWrench"),
     "rigid_body": ("BodyState", "MassProperties", "inertia", "state_covariance"),
@@ -164,6 +164,7 @@ __all__ = [
     "motion",
     "motion_of",
     "next_landing",
+    "next_meeting",
     "planar_impact",
     "plane",
     "questions",

@@ -29,7 +29,7 @@ obstacle's overlap, the extreme points are corners of either within the other, a
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Final, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, Final, NamedTuple, Protocol, TypeAlias
 
 import numpy as np
 
@@ -37,7 +37,7 @@ from contact_dynamics.errors import NotSupportedError
 from contact_dynamics.numerics.convex_hull import hull_of
 from contact_dynamics.numerics.vectors import along_least, tangent_rows
 from contact_dynamics.shapes.hull_features import Features, features_of
-from contact_dynamics.shapes.obstacle import Obstacle, closest_points
+from contact_dynamics.shapes.obstacle import closest_points
 from contact_dynamics.shapes.rim import Radii, radii_of
 from contact_dynamics.tolerances import PARALLEL_EDGES, SAME_POINT
 
@@ -128,6 +128,21 @@ def _of_rim(
             yield Touch(p_WC_W, n_W, (1.0 / radius, corner, around), flat)
 
 
+_ANY: Final = np.array([0.0, 0.0, 1.0])
+
+
+class Hull(Protocol):
+    """What a body may touch: an obstacle, or another body."""
+
+    @property
+    def name(self) -> str:
+        """The name in messages."""
+
+    @property
+    def features(self) -> Features:
+        """Its corners, edges and faces, in the axes in which the pose is given."""
+
+
 class Site(NamedTuple):
     """Where a body is nearest to an obstacle, or deepest in it."""
 
@@ -136,16 +151,16 @@ class Site(NamedTuple):
     level: float  # m, the obstacle's furthest extent along the normal: its points have n . p <= level
 
 
-def site_of(shape: ConvexShape, p_WB_W: FloatArray, R_WB: FloatArray, obstacle: Obstacle) -> Site:
-    """Return where a body at a pose is nearest to an obstacle.
+def site_of(shape: ConvexShape, p_WB_W: FloatArray, R_WB: FloatArray, hull: Hull) -> Site:
+    """Return where a body at a pose is nearest to a hull.
 
     For polyhedra that are apart, the gap is the largest one along the directions above. It is their distance
     where a corner faces a face or edges cross. It is less, never more, where only edges or corners are
     nearest.
     """
-    theirs = obstacle.features
+    theirs = hull.features
     axes = _axes(shape, p_WB_W, R_WB, theirs)
-    best = Site(-math.inf, theirs.normals[0], 0.0)
+    best = Site(-math.inf, _ANY, 0.0)
     for group in axes:
         if len(group) == 0:
             continue
@@ -196,21 +211,20 @@ def lowest_along(shape: ConvexShape, p_WB_W: FloatArray, R_WB: FloatArray, axes:
 
 
 def touches_of(
-    shape: ConvexShape, p_WB_W: FloatArray, R_WB: FloatArray, obstacle: Obstacle, tolerance: float
+    shape: ConvexShape, p_WB_W: FloatArray, R_WB: FloatArray, hull: Hull, tolerance: float
 ) -> list[Touch]:
-    """Return the contacts of a body at a pose with an obstacle, within a tolerance, m. There may be none.
+    """Return the contacts of a body at a pose with a hull, within a tolerance, m. There may be none.
 
     Raises:
-        NotSupportedError: a rim is at an edge or a corner of the obstacle.
+        NotSupportedError: a rim is at an edge or a corner of the hull.
     """
-    site = site_of(shape, p_WB_W, R_WB, obstacle)
+    theirs = hull.features
+    site = site_of(shape, p_WB_W, R_WB, hull)
     if site.gap > tolerance:
         return []
-    theirs, n_W = obstacle.features, site.normal_W
+    n_W = site.normal_W
     if shape.rims and float((theirs.normals @ n_W).max()) < 1.0 - SAME_POINT:
-        message = (
-            f"shape must touch with a rim at a face only, got a rim at an edge of obstacle {obstacle.name!r}"
-        )
+        message = f"shape must touch with a rim at a face only, got a rim at an edge of {hull.name!r}"
         raise NotSupportedError(message)
     frame = tangent_rows(n_W)
     touches = list(flat_touches(shape, p_WB_W, R_WB, n_W, level=site.level, tolerance=tolerance))

@@ -23,6 +23,7 @@ from contact_dynamics.impact.several.result import SeveralContactsLaw
 from contact_dynamics.tolerances import DISTANCE_TOLERANCE, LARGEST_NUMBER, LEAST_PHASE_ERROR, PHASE_ERROR
 from contact_dynamics.toss.distinct_corners import with_distinct_corners
 from contact_dynamics.toss.impacts import check_laws
+from contact_dynamics.toss.result import carried_by
 from contact_dynamics.toss.simulation import Simulation, TossSettings
 from contact_dynamics.toss.solid import numbers_of, solid_of
 from contact_dynamics.toss.uncertainty import check_factors
@@ -109,7 +110,7 @@ def toss(
         other = Simulation(settings, y, ways, began_ns).toss()
         others.append(other)
         waiting.extend(_other_ways(other, len(ways)))
-    return replace(main, alternatives=tuple(others), all_followed=not waiting).carried_by(frame)
+    return carried_by(replace(main, alternatives=tuple(others), all_followed=not waiting), frame)
 
 
 def _other_ways(one: Toss, decided: int) -> list[tuple[int, ...]]:

@@ -199,26 +199,6 @@ class Toss(Record):
     began_ns: int = field(repr=False)
     frame: SurfaceFrame | None = field(repr=False, default=None)
 
-    def carried_by(self, frame: SurfaceFrame | None) -> Toss:
-        """Return a toss that is described in the frame of moving surfaces as it is in the world."""
-        if frame is None:
-            return self
-        events = [
-            replace(
-                event,
-                p_WC_W=event.p_WC_W + frame.displacement(event.seconds),
-                state=frame.in_world(event.state, event.seconds),
-            )
-            for event in self.events
-        ]
-        return replace(
-            self,
-            state=frame.in_world(self.state, self.seconds),
-            events=tuple(events),
-            alternatives=tuple(other.carried_by(frame) for other in self.alternatives),
-            frame=frame,
-        )
-
     def in_short(self) -> str:
         """Return the reason and the time of the end, and the times of the branch points."""
         words = [f"Toss: {self.end} at {self.seconds:.4g} s", f"{len(self.events)} events"]
@@ -290,3 +270,24 @@ class Toss(Record):
             w_WB_W=row.w_WB_W[0],
             stamp_ns=ns_after(self.began_ns, seconds),
         )
+
+
+def carried_by(toss: Toss, frame: SurfaceFrame | None) -> Toss:
+    """Return a toss that is described in the frame of moving surfaces as it is in the world."""
+    if frame is None:
+        return toss
+    events = [
+        replace(
+            event,
+            p_WC_W=event.p_WC_W + frame.displacement(event.seconds),
+            state=frame.in_world(event.state, event.seconds),
+        )
+        for event in toss.events
+    ]
+    return replace(
+        toss,
+        state=frame.in_world(toss.state, toss.seconds),
+        events=tuple(events),
+        alternatives=tuple(carried_by(other, frame) for other in toss.alternatives),
+        frame=frame,
+    )

@@ -336,7 +336,7 @@ ALONG = Rotation.from_euler("x", 90.0, degrees=True)  # the edge of the table at
 
 
 def test_a_rim_at_an_edge_is_refused() -> None:
-    with pytest.raises(NotSupportedError, match=r"shape must .*, got a rim at an edge of obstacle 'it'"):
+    with pytest.raises(NotSupportedError, match=r"shape must .*, got a rim at an edge of 'it'"):
         find_contacts(
             body(CAN), at((1.06, 0.0, 0.08), ALONG), World(surfaces=(TABLE,)), distance_tolerance=1e-3
         )

@@ -1,6 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Calls about contacts, worlds and contact problems."""
 
+from dataclasses import replace
+
+import numpy as np
+
 from contact_dynamics import (
     Body,
     Contact,
@@ -17,6 +21,7 @@ from contact_dynamics import (
     free_motion,
     largest_load,
     next_landing,
+    next_meeting,
     shapes,
 )
 from contact_dynamics.contact import (
@@ -70,6 +75,22 @@ CALLS_WITH_CONTACTS: Calls = {
             "body": BOX,
             "state": STATE,
             "world": WORLD,
+            "horizon": 0.5,
+            "distance_tolerance": 1e-6,
+            "velocity_tolerance": 1e-9,
+        },
+    ),
+    "next_meeting": (
+        next_meeting,
+        {
+            "body": BOX,
+            "state": STATE,
+            "other": BOX,
+            "other_state": replace(STATE, p_WB_W=STATE.p_WB_W + np.array([0.0, 0.0, 5.0])),
+            "friction": 0.3,
+            "restitution": 0.5,
+            "gravity_W": [0.0, 0.0, -9.8],
+            "other_gravity_W": [0.0, 0.0, -12.0],
             "horizon": 0.5,
             "distance_tolerance": 1e-6,
             "velocity_tolerance": 1e-9,

@@ -81,25 +81,6 @@ class ImpactSequence(Record):
     limit_seconds: float | None
     order_is_open: bool = False
 
-    def carried_by(self, frame: SurfaceFrame | None) -> ImpactSequence:
-        """Return a sequence in the frame of moving surfaces as it is in the world, except its contacts."""
-        if frame is None:
-            return self
-        after: dict[int, BodyState] = {}  # strikes as one share the state after them
-        strikes = []
-        for one in self.strikes:
-            state = after.setdefault(id(one.impact.state), frame.in_world(one.impact.state, one.seconds))
-            strikes.append(
-                replace(
-                    one,
-                    p_WC_W=one.p_WC_W + frame.displacement(one.seconds),
-                    state_before=frame.in_world(one.state_before, one.seconds),
-                    impact=replace(one.impact, state=state),
-                )
-            )
-        last = strikes[-1].impact.state if strikes else frame.in_world(self.state, 0.0)
-        return replace(self, strikes=tuple(strikes), state=last)
-
     @property
     def seconds(self) -> float:
         """Return the time of the last strike, s after the initial state's stamp, or 0 without a strike."""
@@ -147,3 +128,23 @@ class ImpactSequence(Record):
             for _, group in groupby(self.strikes, key=lambda strike: id(strike.impact.state))
             for strikes in [tuple(group)]
         )
+
+
+def carried_by(sequence: ImpactSequence, frame: SurfaceFrame | None) -> ImpactSequence:
+    """Return a sequence in the frame of moving surfaces as it is in the world, except its contacts."""
+    if frame is None:
+        return sequence
+    after: dict[int, BodyState] = {}  # strikes as one share the state after them
+    strikes = []
+    for one in sequence.strikes:
+        state = after.setdefault(id(one.impact.state), frame.in_world(one.impact.state, one.seconds))
+        strikes.append(
+            replace(
+                one,
+                p_WC_W=one.p_WC_W + frame.displacement(one.seconds),
+                state_before=frame.in_world(one.state_before, one.seconds),
+                impact=replace(one.impact, state=state),
+            )
+        )
+    last = strikes[-1].impact.state if strikes else frame.in_world(sequence.state, 0.0)
+    return replace(sequence, strikes=tuple(strikes), state=last)

@@ -29,6 +29,7 @@ from contact_dynamics.constants import STANDARD_GRAVITY_W
 from contact_dynamics.contact.found import check_not_inside
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.impact.in_time.meetings import FoundMeetings, NamedMeetings
+from contact_dynamics.impact.in_time.result import carried_by
 from contact_dynamics.impact.in_time.strike_by_strike import StrikeByStrike
 from contact_dynamics.impact.law import RestitutionLaw
 from contact_dynamics.landing.search_work import SearchWork
@@ -115,7 +116,7 @@ def impact_sequence(
         hold_step=held,
         work=work,
     )
-    return sequence.run(state, check_positive("window", window), max_strikes).carried_by(frame)
+    return carried_by(sequence.run(state, check_positive("window", window), max_strikes), frame)
 
 
 def impact_sequence_of(

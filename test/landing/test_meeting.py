@@ -1,0 +1,145 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Two bodies that meet in flight, beside closed forms of balls and distances of hulls by optimisation."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+import contact_dynamics as cd
+from contact_dynamics.errors import InvalidFieldError, NoShapeError, NotSupportedError
+from contact_dynamics.impact import bodies_impact, spatial_pair_impact
+from contact_dynamics.shapes import box, rounded
+from oracles.hull_distance import distance
+from sweeps import seeds
+
+G = 9.80665
+PAIR = {"friction": 0.2, "restitution": 0.9}
+SMALL, LARGE = cd.Body.sphere(0.1, 1.0, name="small"), cd.Body.sphere(0.2, 3.0, name="large")
+
+
+def at(p: list[float], v: list[float], w: list[float] | None = None) -> cd.BodyState:
+    return cd.BodyState(p_WB_W=p, q_WB=[0, 0, 0, 1], v_WB_W=v, w_WB_W=[0.0] * 3 if w is None else w)
+
+
+def test_two_thrown_balls_meet_when_a_quadratic_says_and_bounce_off_each_other() -> None:
+    one, other = at([0, 0, 1], [1, 0, 2], [1, 2, 3]), at([2, 0.1, 1.2], [-1, 0, 1.8], [5, 0, 0])
+    meeting = cd.next_meeting(SMALL, one, LARGE, other, **PAIR)
+    assert meeting is not None
+    p, v = one.p_WB_W - other.p_WB_W, one.v_WB_W - other.v_WB_W  # in free fall, v is constant
+    b, c = p @ v, p @ p - 0.3**2
+    t = (-b - math.sqrt(b * b - v @ v * c)) / (v @ v)
+    assert meeting.seconds == pytest.approx(t, rel=1e-14)
+    (contact,) = meeting.contacts
+    normal = (p + v * t) / 0.3
+    np.testing.assert_allclose(contact.normal_W, normal, atol=1e-14)
+    center = other.p_WB_W + other.v_WB_W * t - [0, 0, 0.5 * G * t * t]
+    np.testing.assert_allclose(contact.p_WC_W, center + 0.2 * normal, atol=1e-14)
+    assert (meeting.strikes, contact.surface) == (True, "large")
+    impact = spatial_pair_impact(SMALL, meeting.state, LARGE, meeting.other_state, contact)
+    assert impact.other_state is not None
+    before = 1.0 * meeting.state.v_WB_W + 3.0 * meeting.other_state.v_WB_W
+    np.testing.assert_allclose(impact.state.v_WB_W + 3.0 * impact.other_state.v_WB_W, before, atol=1e-14)
+    assert cd.next_meeting(SMALL, impact.state, LARGE, impact.other_state, **PAIR) is None
+
+
+def test_a_carried_body_does_not_fall() -> None:
+    # A ball falls past a racket that is carried sideways at 2 m/s.
+    racket = cd.Body.box((0.2, 0.4, 0.02), 0.3, name="racket")
+    ball, hand = at([1.0, 0, 1.11], [0, 0, 0]), at([0, 0, 0.0], [2.0, 0, 0])
+    t = math.sqrt(2.0 * 1.0 / G)  # from 1.11 m down to half the racket's thickness and the ball's radius
+    carried = cd.next_meeting(SMALL, ball, racket, hand, other_gravity_W=[0, 0, 0], **PAIR)
+    assert carried is not None
+    assert carried.seconds == pytest.approx(t, rel=1e-12)
+    np.testing.assert_allclose(carried.contacts.normals_W, [[0, 0, 1]], atol=1e-15)
+    np.testing.assert_allclose(carried.velocities_W, [[-2.0, 0, -G * t]], rtol=1e-12)
+    assert cd.next_meeting(SMALL, ball, racket, hand, **PAIR) is None  # let go, it falls as fast
+
+
+def test_boxes_that_meet_face_to_face_have_four_contacts() -> None:
+    one, other = cd.Body.box((0.2, 0.2, 0.2), 1.0), cd.Body.box((0.2, 0.1, 0.3), 2.0, name="other")
+    meeting = cd.next_meeting(one, at([-1, 0, 0], [1, 0, 0]), other, at([1, 0, 0], [-1, 0, 0]), **PAIR)
+    assert meeting is not None
+    assert meeting.seconds == pytest.approx(0.9, rel=1e-14)
+    corners = meeting.contacts.p_WC_W + np.array([0, 0, 0.5 * G * 0.9**2])
+    expected = [[0, y, z] for y in (-0.05, 0.05) for z in (-0.1, 0.1)]
+    np.testing.assert_allclose(sorted(corners.round(12).tolist()), expected, atol=1e-12)
+    impact = bodies_impact([one, other], [meeting.state, meeting.other_state], meeting.contacts, [(0, 1)] * 4)
+    gap = impact.states[1].v_WB_W - impact.states[0].v_WB_W
+    assert gap[0] == pytest.approx(0.9 * 2.0, rel=1e-12)
+
+
+@seeds(range(12), slow=range(12, 2000))
+def test_spinning_bodies_meet_when_their_hulls_first_touch(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    rounding = 0.02 * (seed % 3)  # also rounded boxes, and a rod or a ball beside a box
+    bodies, states = [], []
+    for side in (-1.0, 1.0):
+        size = rng.uniform(0.05, 0.3, 3)
+        if seed % 4 == 3 and side > 0.0:
+            size[1:] = 1e-3
+        shape = rounded(box(size), radius=rounding)
+        mass = cd.MassProperties(mass=1.0, I_B=np.diag([0.002, 0.003, 0.004]))
+        bodies.append(cd.Body(name=f"b{side}", mass_properties=mass, shape=shape))
+        states.append(
+            cd.BodyState(
+                p_WB_W=np.array([side, 0, 0]) + rng.uniform(-0.15, 0.15, 3),
+                q_WB=Rotation.random(random_state=rng).as_quat(),
+                v_WB_W=[-1.5 * side, 0, 0],
+                w_WB_W=rng.normal(0, 6, 3),
+            )
+        )
+    flights = [cd.free_motion(body, state) for body, state in zip(bodies, states, strict=True)]
+
+    def gap(seconds: float) -> float:
+        hulls = [
+            then.p_WB_W + body.vertices_B @ then.R_WB.T
+            for body, then in zip(bodies, (flight.state_at(seconds) for flight in flights), strict=True)
+        ]
+        return distance(*hulls) - 2.0 * rounding
+
+    found = cd.next_meeting(bodies[0], states[0], bodies[1], states[1], **PAIR)
+    swapped = cd.next_meeting(bodies[1], states[1], bodies[0], states[0], **PAIR)
+    times = np.linspace(0.0, 2.0 if found is None else 0.999 * found.seconds, 100)
+    # They are never nearer than the search may miss, and at the end as near as Newton's step leaves them.
+    assert min(map(gap, times.tolist())) > 1e-9
+    if found is None:
+        assert swapped is None
+        return
+    assert abs(gap(found.seconds)) <= 1e-12
+    assert found.strikes
+    assert swapped is not None
+    assert swapped.seconds == pytest.approx(found.seconds, abs=1e-12)
+    np.testing.assert_allclose(swapped.contacts.p_WC_W, found.contacts.p_WC_W, atol=1e-9)
+    np.testing.assert_allclose(swapped.contacts.normals_W, -found.contacts.normals_W, atol=1e-9)
+    np.testing.assert_allclose(swapped.velocities_W, -found.velocities_W, atol=1e-8)
+
+
+def test_bodies_that_touch_meet_at_once_unless_they_part() -> None:
+    beside = at([0.3, 0, 0], [0, 0, 0])
+    for v, seconds in ((1.0, 0.0), (0.0, 0.0), (-1.0, None)):
+        meeting = cd.next_meeting(SMALL, at([0, 0, 0], [v, 0, 0]), LARGE, beside, **PAIR)
+        assert (None if meeting is None else meeting.seconds) == seconds
+        assert meeting is None or meeting.strikes is (v > 0.0)
+    # A ball that is thrown up from a carried one comes back after 2 v / g.
+    up = cd.next_meeting(
+        SMALL, at([0, 0, 0.3], [0, 0, 3]), LARGE, at([0, 0, 0], [0, 0, 0]), other_gravity_W=[0, 0, 0], **PAIR
+    )
+    assert up is not None
+    assert up.seconds == pytest.approx(6.0 / G, rel=1e-12)
+
+
+def test_what_cannot_meet_is_refused_by_name() -> None:
+    here, there = at([0, 0, 0], [0, 0, 0]), at([0.25, 0, 0], [0, 0, 0])
+    with pytest.raises(
+        InvalidFieldError, match=r"other_state must be at most 1e-06 m deep .*'large' 0.05 m deep"
+    ):
+        cd.next_meeting(SMALL, here, LARGE, there, **PAIR)
+    with pytest.raises(NotSupportedError, match="body 'can' must have a shape without circular rims"):
+        cd.next_meeting(cd.Body.cylinder(0.1, 0.2, 1.0, name="can"), here, LARGE, there, **PAIR)
+    bare = cd.Body(name="large", mass_properties=LARGE.mass_properties)
+    with pytest.raises(NoShapeError, match="body 'large' must have"):
+        cd.next_meeting(SMALL, here, bare, there, **PAIR)
