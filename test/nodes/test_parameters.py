@@ -418,14 +418,7 @@ def test_a_wrong_value_ends_the_server_and_is_named(
     ("arguments", "words"),
     [
         ([], "one of rrd_path, spawn, serve and connect is required"),
-        (
-            ["-p", "spawn:=true", "-p", "serve:=true"],
-            "only one of spawn, serve and connect must be set, got spawn and serve",
-        ),
-        (["-p", "serve:=true", "-p", "port:=0"], "port"),
-        (["-p", "serve:=true", "-p", "port:=70000"], "port"),
         (["-p", "serve:=maybe"], "serve"),
-        (["-p", "rrd_path:=a.rrd", "-p", "surface_side:=0.0"], "surface_side"),
         (["-p", "rrd_path:=a.rrd", "-p", "body.brick.mass:=-1.0"], "body.brick.mass must be ..., got -1.0"),
     ],
 )

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
-from geometry_msgs.msg import Vector3
 from rclpy.serialization import serialize_message
 from scipy.spatial.transform import Rotation
 from service_msgs.msg import ServiceEventInfo
@@ -18,11 +17,13 @@ with warnings.catch_warnings():
     warnings.simplefilter("ignore", DeprecationWarning)  # of Python 3.10, at rerun's import
     from viewing.drawn import STAMP_NS
 
+from contact_dynamics.nodes.given_parameters import GivenParameters
 from contact_dynamics.nodes.inbox import Taken
+from contact_dynamics.nodes.parameters import read_server_parameters
+from contact_dynamics.questions import services
 from contact_dynamics_interfaces.msg import (
     ContactMode,
     Impact,
-    ModeWrenches,
 )
 from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact
 
@@ -32,7 +33,7 @@ if TYPE_CHECKING:
 
 from nodes.visualizer_bench import (
     CENTER,
-    SPATIAL,
+    CONFIGURATION,
     STAMP_NS,
     TURNED,
     Bench,
@@ -49,38 +50,6 @@ def bench(tmp_path: Path, request: pytest.FixtureRequest) -> Iterator[Bench]:
     bench = Bench(tmp_path / "drawn.rrd", strict=getattr(request, "param", True))
     yield bench
     bench.end()
-
-
-def test_a_struck_body_and_strikes_in_sequence_are_told(bench: Bench) -> None:
-    answer = impact_answer(two_contacts())
-    bat = body_state(body_name="bat")
-    answer.other_state_before = [bat]
-    answer.impact.other_state_after = [bat]
-    answer.impact.strike_times, answer.impact.strike_contacts = [0.0, 0.004], [0, 1]
-    answer.impact.strike_outcomes = [Impact.SLIDES, Impact.SLIDES]
-    answer.impact.strike_positions = [0.1, 0.0, 0.0, -0.1, 0.0, 0.0]
-    answer.impact.strike_impulses = [0.0, 0.0, 0.4, 0.0, 0.0, 0.2]
-    answer.impact.strike_body_positions = [0.5, 0.0, 1.0] * 2
-    answer.impact.strike_body_orientations = TURNED * 2
-    answer.impact.strike_velocities_before = answer.impact.strike_velocities_after = [0.0] * 12
-    answer.impact.sequence_end = Impact.STAYS
-    bench.answer("predict_impact", answer)
-    drawn = bench.drawn()
-    labels = drawn.last("/world/impact/brick/impulse_label", "Points3D:labels")
-    assert labels == ["1. at 0.0 ms: 0.4 N s", "2. at 4.0 ms: 0.2 N s"]
-    text = drawn.last("/answers/newest", "TextDocument:text")[0]
-    assert "that of bat becomes (1, 0, -2) m/s" in text
-    assert "2 strikes within 4 ms; then a contact stays" in text
-    assert "J lost" not in text
-
-
-def test_an_impact_at_several_contacts_at_once_is_told(bench: Bench) -> None:
-    answer = impact_answer(two_contacts())
-    answer.impact.outcome = Impact.NOT_TOLD
-    bench.answer("predict_impact", answer)
-    text = bench.drawn().last("/answers/newest", "TextDocument:text")[0]
-    assert "strikes in 0.05 s: several at once" in text
-    assert "0.75 J lost" in text
 
 
 def center_of_mass(position: list[float], orientation: list[float]) -> np.ndarray:
@@ -112,53 +81,6 @@ def test_a_trajectory_is_that_of_the_centre_of_mass(bench: Bench) -> None:
     assert "it tumbles about its major axis (1.2 ms)" in text
 
 
-def test_covariances_are_drawn_where_the_answer_carries_them(bench: Bench) -> None:
-    answer = tumbling_answer()
-    covariance = np.diag([1e-4, 4e-4, 9e-4] + [1.0] * 9)
-    answer.trajectory.covariances = [*covariance.ravel(), *(4.0 * covariance).ravel()]
-    answer.trajectory.covariances_trusted = [True, True]
-    bench.answer("predict_tumbling", answer)
-    half_sizes = bench.drawn().array(
-        "/world/predicted/brick/uncertainty/relied_on", "Ellipsoids3D:half_sizes"
-    )
-    np.testing.assert_allclose(np.sort(half_sizes[-1]), [0.04, 0.08, 0.12], rtol=1e-5)
-
-
-def test_polhode_and_herpolhode_are_drawn_where_the_answer_carries_them(bench: Bench) -> None:
-    answer = tumbling_answer()
-    answer.poinsot.rotational_energy = 0.5
-    answer.poinsot.principal_moments = [0.01, 0.04, 0.0625]
-    answer.poinsot.principal_axes = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0]
-    answer.poinsot.angular_momentum = [0.0, 0.0, 0.2]
-    answer.poinsot.invariable_plane_distance = 5.0
-    answer.poinsot.polhode = answer.poinsot.herpolhode = [0.0, 0.0, 5.0, 1.0, 0.0, 5.0]
-    bench.answer("predict_tumbling", answer)
-    turning = odometry(STAMP_NS + 7, 0.1)
-    w_WB_B = Rotation.from_quat(TURNED).inv().apply(answer.poinsot.angular_momentum) / [0.01, 0.04, 0.0625]
-    turning.twist.twist.angular = Vector3(x=w_WB_B[0], y=w_WB_B[1], z=w_WB_B[2])
-    bench.states.publish(turning)
-    bench.states.publish(odometry(STAMP_NS + 8, 0.1))  # something has stopped it
-    bench.spin_until(lambda: bench.received == 3)
-    drawn = bench.drawn()
-    assert drawn.stamps("/poinsot/bodies/brick", "Clear:is_recursive") == [STAMP_NS + 8]
-    net = np.vstack(drawn.array("/poinsot/bodies/brick/body/ellipsoid", "LineStrips3D:strips"))
-    np.testing.assert_allclose(net.max(axis=0), [10.0, 5.0, 4.0], rtol=1e-3)
-    assert drawn.stamps("/poinsot/bodies/brick/body", "Transform3D:quaternion") == [STAMP_NS, STAMP_NS + 7]
-
-
-def test_flips_and_how_probable_outcomes_are_is_told(bench: Bench) -> None:
-    answer = tumbling_answer()
-    answer.poinsot.flip_times, answer.poinsot.flip_time_deviations = [0.4, 1.25], [0.01, float("nan")]
-    bench.answer("predict_tumbling", answer)
-    struck = impact_answer(two_contacts())
-    struck.impact.outcome_probabilities = [0.0, 0.25, 0.7, 0.0, 0.0, 0.0, 0.0]
-    struck.impact.miss_probability = 0.05
-    bench.answer("predict_impact", struck)
-    text = str(bench.drawn().values["/answers/log", "TextLog:text"])
-    assert "its middle axis turns over after 0.4 s (±0.01 s), 1.25 s" in text
-    assert "outcomes: sticks in compression 70 %, slides 25 %, separates 5 %" in text
-
-
 def test_an_impact_is_drawn_when_it_was_asked_for(bench: Bench) -> None:
     bench.answer("predict_impact", impact_answer(two_contacts()))
     drawn = bench.drawn()
@@ -172,13 +94,13 @@ def test_an_impact_is_drawn_when_it_was_asked_for(bench: Bench) -> None:
     assert "0.75 J lost" in text
 
 
-def contact_mode_answer(problem: int = SPATIAL, **fields: Any) -> PredictContactMode.Response:
+def contact_mode_answer(**fields: Any) -> PredictContactMode.Response:
     modes = [
         ContactMode(
             mode=mode,
             contact_forces=[0.0, 0.0, 2.0, 0.0, 0.0, 2.0],
             contact_accelerations=[0.0] * 6,
-            tangential_directions=[0.0] * 6 if problem == SPATIAL else [],
+            tangential_directions=[0.0] * 6,
             forces_unique=mode == "fl",
             margin=0.25,
             margin_length=0.05,
@@ -196,7 +118,7 @@ def contact_mode_answer(problem: int = SPATIAL, **fields: Any) -> PredictContact
         contact_velocities=[0.0] * 6,
         state=body_state(),
         contacts=two_contacts(),
-        problem=problem,
+        problem=PredictContactMode.Request.SPATIAL,
         **fields,
     )
 
@@ -216,37 +138,61 @@ def test_contact_modes_are_drawn_with_every_mode_in_words(bench: Bench) -> None:
     assert "equilibrium possible, jammed no, wedged no" in text
 
 
-def test_the_impact_that_settles_a_case_is_told_with_what_follows(bench: Bench) -> None:
+def in_words(name: str, response: Any) -> str:
+    """What the answer of a response is in words."""
+    world = read_server_parameters(GivenParameters(CONFIGURATION)).world
+    (service,) = (each for each in services.SERVICES if each.name == name)
+    return "; ".join(service.in_words(service.answer_from_msg(response, world=world)))
+
+
+def test_a_struck_body_and_strikes_in_sequence_are_told() -> None:
+    answer = impact_answer(two_contacts())
+    bat = body_state(body_name="bat")
+    answer.other_state_before = [bat]
+    answer.impact.other_state_after = [bat]
+    answer.impact.strike_times, answer.impact.strike_contacts = [0.0, 0.004], [0, 1]
+    answer.impact.strike_outcomes = [Impact.SLIDES, Impact.SLIDES]
+    answer.impact.strike_positions = [0.1, 0.0, 0.0, -0.1, 0.0, 0.0]
+    answer.impact.strike_impulses = [0.0, 0.0, 0.4, 0.0, 0.0, 0.2]
+    answer.impact.strike_body_positions = [0.5, 0.0, 1.0] * 2
+    answer.impact.strike_body_orientations = TURNED * 2
+    answer.impact.strike_velocities_before = answer.impact.strike_velocities_after = [0.0] * 12
+    answer.impact.sequence_end = Impact.STAYS
+    text = in_words("predict_impact", answer)
+    assert "that of bat becomes (1, 0, -2) m/s" in text
+    assert "2 strikes within 4 ms; then a contact stays" in text
+    assert "J lost" not in text
+
+
+def test_several_contacts_at_once_and_probable_outcomes_are_told() -> None:
+    answer = impact_answer(two_contacts())
+    answer.impact.outcome = Impact.NOT_TOLD
+    text = in_words("predict_impact", answer)
+    assert "strikes in 0.05 s: several at once" in text
+    assert "0.75 J lost" in text
+    answer.impact.outcome_probabilities = [0.0, 0.25, 0.7, 0.0, 0.0, 0.0, 0.0]
+    answer.impact.miss_probability = 0.05
+    told = "outcomes: sticks in compression 70 %, slides 25 %, separates 5 %"
+    assert told in in_words("predict_impact", answer)
+
+
+def test_flips_are_told() -> None:
+    answer = tumbling_answer()
+    answer.poinsot.flip_times, answer.poinsot.flip_time_deviations = [0.4, 1.25], [0.01, float("nan")]
+    told = "its middle axis turns over after 0.4 s (±0.01 s), 1.25 s"
+    assert told in in_words("predict_tumbling", answer)
+
+
+def test_the_impact_that_settles_a_case_is_told_with_what_follows() -> None:
     answer = contact_mode_answer(approaching_contacts=[1], impact=[impact_answer(two_contacts()).impact])
     answer.verdict, answer.modes = answer.IMPACT, []
     answer.contact_velocities = [0.0, 0.0, 0.0, 0.0, 0.0, -0.5]
     answer.verdict_after_impact = answer.UNIQUE
     answer.modes_after_impact = [ContactMode(mode="fs", forces_unique=True)]
-    bench.answer("predict_contact_mode", answer)
-    text = bench.drawn().last("/answers/newest", "TextDocument:text")[0]
+    text = in_words("predict_contact_mode", answer)
     assert "contact 2 approaches with 0.5 m/s" in text
     assert "an impact settles it: sticks in compression; velocity becomes (1, 0, -2) m/s" in text
     assert "then it has one consistent mode: fs" in text
-
-
-def test_a_planar_answer_is_drawn_in_its_plane_with_the_map(bench: Bench) -> None:
-    answer = contact_mode_answer(PredictContactMode.Request.PLANAR, plane_normal=Vector3(y=-1.0))
-    rho = 0.05
-    for mode, sign in (("ff", 1.0), ("ss", -1.0)):  # all wrenches below, all above
-        a = [0.0, 0.0, 0.6 * sign, 0.0, -0.8 * sign / rho, 0.0, 0.0]
-        answer.wrench_sets.append(ModeWrenches(mode=mode, vertices=[0.0] * 6, half_spaces=a))
-    bench.answer("predict_contact_mode", answer)
-    drawn = bench.drawn()
-    titles = drawn.last("/planar_modes/mode_1/frame/title", "LineStrips2D:labels")
-    assert "fl: 1 contact slides left, 1 stays fixed\n(margin 0.25 N to ff)" in titles
-    center = center_of_mass([0.5, 0.0, 1.0], TURNED)
-    first = drawn.array("/planar_modes/mode_1/contacts/fixed", "Points2D:positions")[0]
-    np.testing.assert_allclose(first, [0.1 - center[0], center[2]], atol=1e-6)  # the second axis down
-    outline = drawn.array("/planar_modes/mode_2/body", "LineStrips2D:strips")[0]
-    sides = np.linalg.norm(np.diff(outline, axis=0), axis=1)
-    np.testing.assert_allclose(np.sort(sides), [0.09, 0.09, 0.15, 0.15], atol=1e-6)  # as turned, along its z
-    assert set(drawn.last("/mode_map/names", "LineStrips2D:labels")) == {"ff", "ss"}
-    assert ("/mode_map/applied", "Points2D:positions") in drawn.values
 
 
 def test_a_refusal_is_told(bench: Bench) -> None:

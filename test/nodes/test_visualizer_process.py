@@ -70,27 +70,6 @@ def test_a_file_that_cannot_be_written_ends_the_process_with_its_name(tmp_path: 
         assert started.wait(PATIENCE_S) == 2
 
 
-def test_answers_of_a_server_are_drawn_by_a_process_beside_it(tmp_path: Path) -> None:
-    path = tmp_path / "drawn.rrd"
-    state = body_state()
-    asked = PredictTumbling.Request(
-        body_name="brick", state_source=PredictTumbling.Request.STATE_EXPLICIT, state=state
-    )
-    asked.sampling, asked.rate, asked.duration = PredictTumbling.Request.AT_RATE, 100.0, 0.25
-    with (
-        server_and_client(tmp_path / "log") as client,
-        process("visualizer", *visualizer_with(rrd_path=path), ready="ready") as started,
-    ):
-        answer = client.ask(asked)
-        assert answer.status == answer.OK, answer.message
-        # Events from before the two processes have found each other are lost: ask until one is drawn.
-        client.spin_until(lambda: client.ask(asked) and b"brick/newest_end" in path.read_bytes())
-    assert started.returncode == 0
-    drawn = read_drawn(path)
-    strip = drawn.array("/world/predicted/brick/path", "LineStrips3D:strips")[0]
-    np.testing.assert_allclose(strip, np.array(answer.trajectory.positions).reshape(-1, 3), atol=1e-6)
-
-
 def height_of_the_table(path: Path) -> float:
     """Where a picture has the surface that came while it was drawn, before states came or after."""
     drawn = read_drawn(path)
@@ -98,7 +77,14 @@ def height_of_the_table(path: Path) -> float:
     return float(drawn.array(patch, "Mesh3D:vertex_positions")[0, 2])
 
 
-def test_the_picture_follows_the_configuration_of_the_server(tmp_path: Path) -> None:
+def flight() -> PredictTumbling.Request:
+    request = PredictTumbling.Request(body_name="brick", state=body_state())
+    request.state_source, request.sampling = request.STATE_EXPLICIT, request.AT_RATE
+    request.rate, request.duration = 100.0, 0.25
+    return request
+
+
+def test_the_picture_has_a_servers_answers_and_follows_its_configuration(tmp_path: Path) -> None:
     path = tmp_path / "drawn.rrd"
     arguments = (
         "--params-file",
@@ -143,6 +129,13 @@ def test_the_picture_follows_the_configuration_of_the_server(tmp_path: Path) -> 
             # What comes after all events of the changes stands in the next line.
             configure({"surfaces": ["floor"]})
             assert wait_for(visualizer, "configured with now").endswith("now: brick, floor\n")
+            answer = client.ask(flight())
+            assert answer.status == answer.OK, answer.message
+            # Events from before the two processes have found each other are lost: ask until one is drawn.
+            client.spin_until(lambda: client.ask(flight()) and b"brick/newest_end" in path.read_bytes())
+        assert visualizer.returncode == 0
+        strip = read_drawn(path).array("/world/predicted/brick/path", "LineStrips3D:strips")[0]
+        np.testing.assert_allclose(strip, np.array(answer.trajectory.positions).reshape(-1, 3), atol=1e-6)
         assert height_of_the_table(path) == 0.75
         log = next(each for each in tmp_path.iterdir() if each.is_dir())
     again = tmp_path / "again.rrd"

@@ -31,7 +31,7 @@ from contact_dynamics_interfaces.msg import (
     Poinsot,
     Trajectory,
 )
-from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact, PredictTumbling
+from contact_dynamics_interfaces.srv import PredictImpact, PredictTumbling
 from msg_adapters.stamps import stamp_to_msg
 from running_server import DOMAIN_ID
 
@@ -53,7 +53,6 @@ CONFIGURATION = {
 }
 TURNED = [0.1, -0.5, 0.7, 0.5]  # x, y, z, w
 SERVICES = {each.name: each.service_type for each in services.SERVICES}
-SPATIAL = PredictContactMode.Request.SPATIAL
 PATIENCE = 300  # spins of up to 0.1 s
 
 
