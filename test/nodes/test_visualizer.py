@@ -17,8 +17,8 @@ with warnings.catch_warnings():
     warnings.simplefilter("ignore", DeprecationWarning)  # of Python 3.10, at rerun's import
     from viewing.drawn import STAMP_NS
 
-from contact_dynamics.nodes.given_parameters import GivenParameters
 from contact_dynamics.nodes.inbox import Taken
+from contact_dynamics.nodes.parameter_reader import ParameterSource
 from contact_dynamics.nodes.parameters import read_server_parameters
 from contact_dynamics.questions import services
 from contact_dynamics_interfaces.msg import (
@@ -140,7 +140,7 @@ def test_contact_modes_are_drawn_with_every_mode_in_words(bench: Bench) -> None:
 
 def in_words(name: str, response: Any) -> str:
     """What the answer of a response is in words."""
-    world = read_server_parameters(GivenParameters(CONFIGURATION)).world
+    world = read_server_parameters(ParameterSource(CONFIGURATION)).world
     (service,) = (each for each in services.SERVICES if each.name == name)
     return "; ".join(service.in_words(service.answer_from_msg(response, world=world)))
 
