@@ -17,10 +17,11 @@ import rerun as rr
 
 from contact_dynamics.diagrams import palette
 from contact_dynamics.diagrams.shape import drawn_shape
+from contact_dynamics.diagrams.world_scene import body_marks
 from contact_dynamics.records import Record
+from contact_dynamics.viewing.drawing import parts_of
 from contact_dynamics.viewing.entities import entity
 from contact_dynamics.viewing.kept_recording import APPLICATION
-from contact_dynamics.viewing.scenery import solid
 from contact_dynamics.viewing.side_by_side import EVENTS, MAX_DRAWN, TABLE, SideBySide
 
 if TYPE_CHECKING:
@@ -141,11 +142,9 @@ def _draw_body(recording: rr.RecordingStream, path: str, row: DrawnStrike, found
     at_W = state.p_WB_W + state.R_WB @ (found.body.p_FB_F - motion.body.p_FB_F)
     pose = rr.Transform3D(translation=at_W, quaternion=rr.Quaternion(xyzw=state.q_WB))
     recording.log(f"{path}/body", pose, static=True)
-    if len(shape.triangles_B) > 0:
-        recording.log(f"{path}/body/faces", solid(shape, palette.MEASURED), static=True)
-    color = palette.IMPACT if row.rejected else palette.MEASURED_EDGE
-    edges = rr.LineStrips3D(list(shape.edges_B), colors=color, radii=_WIDTH)
-    recording.log(f"{path}/body/edges", edges, static=True)
+    marks = body_marks(shape, edges=palette.IMPACT if row.rejected else palette.MEASURED_EDGE)
+    for name, part in parts_of(marks).items():
+        recording.log(f"{path}/body/{name}", part, static=True)
     paths = [motion.p_WB_W[frames] for frames in (row.strike.frames_before, row.strike.frames_after)]
     trail = rr.LineStrips3D(paths, colors=palette.MEASURED, radii=_WIDTH)
     recording.log(f"{path}/path", trail, static=True)

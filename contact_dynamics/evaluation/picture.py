@@ -17,13 +17,14 @@ import rerun as rr
 
 from contact_dynamics.diagrams import palette
 from contact_dynamics.diagrams.shape import drawn_shape, outline
+from contact_dynamics.diagrams.world_scene import body_marks
 from contact_dynamics.evaluation.report import COLUMNS, UNITS
 from contact_dynamics.evaluation.settings import Method
 from contact_dynamics.measured.events import EventKind, find_events
 from contact_dynamics.records import Record
+from contact_dynamics.viewing.drawing import parts_of
 from contact_dynamics.viewing.entities import entity
 from contact_dynamics.viewing.kept_recording import APPLICATION
-from contact_dynamics.viewing.scenery import solid
 from contact_dynamics.viewing.side_by_side import EVENTS, MAX_DRAWN, TABLE, SideBySide
 
 if TYPE_CHECKING:
@@ -132,10 +133,8 @@ def _draw(recording: rr.RecordingStream, number: int, cell: _Cell, places: SideB
     recording.log(path, rr.Transform3D(translation=places.place(number) - at_W), static=True)
     pose = rr.Transform3D(translation=at_W, quaternion=rr.Quaternion(xyzw=event.state.q_WB))
     recording.log(f"{path}/measured", pose, static=True)
-    if len(shape.triangles_B) > 0:
-        recording.log(f"{path}/measured/faces", solid(shape, palette.MEASURED), static=True)
-    edges = rr.LineStrips3D(list(shape.edges_B), colors=palette.MEASURED_EDGE, radii=_WIDTH)
-    recording.log(f"{path}/measured/edges", edges, static=True)
+    for name, part in parts_of(body_marks(shape)).items():
+        recording.log(f"{path}/measured/{name}", part, static=True)
     near = np.abs(motion.times - event.time) <= TRAIL_S
     trail = rr.LineStrips3D([motion.p_WB_W[near]], colors=palette.MEASURED, radii=_WIDTH)
     recording.log(f"{path}/path", trail, static=True)

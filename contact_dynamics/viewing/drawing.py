@@ -118,6 +118,11 @@ def draw_marks(
             recording.log(f"{entity}/{mark.name}", drawn or rr.Clear(recursive=False))
 
 
+def parts_of(marks: Iterable[Mark]) -> dict[str, Any]:
+    """Return what rerun draws of marks, by their names."""
+    return {mark.name: drawn for mark in marks if (drawn := _drawn(mark, 0.0)) is not None}
+
+
 def _lifted(mark: Mark, point: float) -> Mark:
     if not isinstance(mark, Labels) or len(mark.places) == 0:
         return mark

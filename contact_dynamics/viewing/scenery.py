@@ -8,22 +8,22 @@ is moved to places of its own, one for each form, from the time when it came unt
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final, TypeAlias
+from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 import numpy as np
 import rerun as rr
 
 from contact_dynamics.diagrams import palette
-from contact_dynamics.diagrams.shape import Shape, convex_shape, drawn_shape, part_above
-from contact_dynamics.numerics.vectors import tangents_near_x
+from contact_dynamics.diagrams.shape import Shape, drawn_shape
+from contact_dynamics.diagrams.world_scene import body_marks, obstacle_marks, surface_marks
 from contact_dynamics.shapes.convex import NO_SHAPE
-from contact_dynamics.viewing.columns import strips_3d
+from contact_dynamics.viewing.drawing import parts_of
 from contact_dynamics.viewing.entities import BODIES, SCENE, SURFACES, TRAILS, entity
 from contact_dynamics.viewing.measured import set_time, style_after_impact, style_series
 from contact_dynamics.world import Surface
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Mapping
 
     from contact_dynamics.rigid_body.body import MassProperties
     from contact_dynamics.shapes.obstacle import Obstacle
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from contact_dynamics.world import World
 
 
-Part: TypeAlias = rr.Mesh3D | rr.LineStrips3D | rr.Points3D
+Part: TypeAlias = Any  # something that rerun draws
 
 
 class Scenery:
@@ -87,15 +87,7 @@ class Scenery:
             self._recording.log(f"{path}/{name}/{form}", part)
 
 
-GRID_SPACING: Final = 0.1
-"""m. The distance of the lines on a surface. It is ten times wider, and so on, if there would be more than
-`MAX_GRID_LINES` lines."""
-
-MAX_GRID_LINES: Final = 100
-
-_EDGE_WIDTH: Final = -1.5  # a negative size is in points of the screen
-_GRID_WIDTH: Final = -0.6
-_TRAIL_WIDTH: Final = -1.5
+_TRAIL_WIDTH: Final = -1.5  # a negative size is in points of the screen
 
 
 def draw_axes(recording: rr.RecordingStream, up_W: FloatArray) -> None:
@@ -106,96 +98,12 @@ def draw_axes(recording: rr.RecordingStream, up_W: FloatArray) -> None:
     recording.log(SCENE, getattr(rr.ViewCoordinates, f"{names[axis]}_{sign}"), static=True)
 
 
-def surface_path(name: str) -> str:
-    """Return where a surface is drawn."""
-    return entity(SURFACES, name)
-
-
-def surface_parts(
-    surface: Surface, *, center_W: FloatArray, side: float, among: Sequence[Surface] = ()
-) -> dict[str, Part]:
-    """Return a square of a surface with that side, m, about the point nearest to ``center_W``, (3,), m.
-
-    It ends where it meets the surfaces that it is ``among``.
-    """
-    others = [other for other in among if float(np.linalg.norm(np.cross(other.normal_W, surface.normal_W)))]
-    p_W = center_W - float(surface.gaps(center_W)) * surface.normal_W
-    u_W, v_W = (0.5 * side * tangent for tangent in tangents_near_x(surface.normal_W))
-    corners = _clipped(p_W + np.array([-u_W - v_W, u_W - v_W, u_W + v_W, v_W - u_W]), others)
-    if len(corners) < 3:
-        return {}
-    patch = rr.Mesh3D(
-        vertex_positions=corners,
-        triangle_indices=[[0, i, i + 1] for i in range(1, len(corners) - 1)],
-        vertex_normals=np.tile(surface.normal_W, (len(corners), 1)),
-        albedo_factor=palette.SURFACE,
-    )
-    spacing = GRID_SPACING
-    while side / spacing > MAX_GRID_LINES:
-        spacing *= 10.0
-    places = np.arange(-1.0, 1.0 + spacing / side, 2.0 * spacing / side)
-    whole = [
-        p_W + np.array([a * s - b, a * s + b]) for a, b in ((u_W, v_W), (v_W, u_W)) for s in places.tolist()
-    ]
-    lines = [line[:2] for line in (_clipped(line, others) for line in whole) if len(line) > 1]
-    return {
-        "patch": patch,
-        "grid": rr.LineStrips3D(strips_3d(lines), colors=palette.SURFACE_GRID, radii=_GRID_WIDTH),
-    }
-
-
-def _clipped(corners_W: FloatArray, others: Sequence[Surface]) -> FloatArray:
-    """Return the corners of the part of a convex polygon or line, (n, 3), m, that is above other surfaces."""
-    for other in others:
-        corners_W = part_above(corners_W, other.gaps(corners_W))
-    return corners_W
-
-
-def obstacle_parts(obstacle: Obstacle) -> dict[str, Part]:
-    """Return a convex piece of the world."""
-    shape = convex_shape(obstacle.vertices_W)
-    return {
-        "patch": solid(shape, palette.SURFACE),
-        "grid": rr.LineStrips3D(strips_3d(shape.edges_B), colors=palette.SURFACE_GRID, radii=_EDGE_WIDTH),
-    }
-
-
-def body_parts(shape: Shape, *, color: palette.Color = palette.MEASURED, name: str = "") -> dict[str, Part]:
-    """Return a body's shape, which moves with the body's pose, and its name, if one is given.
-
-    A body without shape is a ball.
-    """
-    parts: dict[str, Part] = {}
-    if len(shape.triangles_B) > 0:
-        parts["faces"] = solid(shape, color)
-    if len(shape.edges_B) > 0:
-        edges = list(shape.edges_B)
-        parts["edges"] = rr.LineStrips3D(strips_3d(edges), colors=palette.MEASURED_EDGE, radii=_EDGE_WIDTH)
-    else:
-        parts["faces"] = rr.Points3D([[0.0, 0.0, 0.0]], radii=0.5 * shape.size, colors=color)
-    if name:
-        parts["name"] = rr.Points3D(
-            [[0.0, 0.0, 0.0]], radii=0.0, colors=palette.NORMAL, labels=[name], show_labels=True
-        )
-    return parts
-
-
 def draw_trail_style(
     recording: rr.RecordingStream, body_name: str, color: palette.Color = palette.MEASURED
 ) -> None:
     """Tell the viewer how the trail of a body looks."""
     trail = rr.LineStrips3D.from_fields(colors=palette.translucent(color, 0.9), radii=_TRAIL_WIDTH)
     recording.log(entity(TRAILS, body_name), trail, static=True)
-
-
-def solid(shape: Shape, color: palette.Color) -> rr.Mesh3D:
-    """Return the faces of a shape, in body axes."""
-    return rr.Mesh3D(
-        vertex_positions=shape.triangles_B.reshape(-1, 3),
-        triangle_indices=np.arange(3 * len(shape.triangles_B)).reshape(-1, 3),
-        vertex_normals=np.repeat(shape.normals_B, 3, axis=0),
-        albedo_factor=color,
-    )
 
 
 class BodiesInWorld:
@@ -234,7 +142,7 @@ class BodiesInWorld:
     def parts(self, name: str) -> dict[str, Part]:
         """Return the parts of a body. Where there are several bodies, each has its name."""
         written = name if len(self._world.bodies) > 1 else ""
-        return body_parts(self.shape(name), color=self.color(name), name=written)
+        return parts_of(body_marks(self.shape(name), color=self.color(name), name=written))
 
     def color(self, name: str) -> palette.Color:
         """Return the colour of a body, which is its own among `palette.BODIES` of the world."""
@@ -319,14 +227,13 @@ class WorldInView:
     def _surfaces(self) -> dict[str, dict[str, Part]]:
         """Return the parts of the surfaces by their paths."""
         flats = [surface for surface in self._world.surfaces if isinstance(surface, Surface)]
-        return {
-            surface_path(surface.name): surface_parts(
-                surface,
-                center_W=surface.p_WS_W if self._center_W is None else self._center_W,
-                side=min(self._surface_side, GROUND * self._extent or self._surface_side),
-                among=flats,
-            )
-            if isinstance(surface, Surface)
-            else obstacle_parts(surface)
-            for surface in self._world.surfaces
-        }
+        side = min(self._surface_side, GROUND * self._extent or self._surface_side)
+        parts: dict[str, dict[str, Part]] = {}
+        for surface in self._world.surfaces:
+            if isinstance(surface, Surface):
+                center_W = surface.p_WS_W if self._center_W is None else self._center_W
+                marks = surface_marks(surface, center_W=center_W, side=side, among=flats)
+            else:
+                marks = obstacle_marks(surface)
+            parts[entity(SURFACES, surface.name)] = parts_of(marks)
+        return parts

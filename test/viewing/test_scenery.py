@@ -12,19 +12,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from contact_dynamics.diagrams.shape import convex_shape
+from contact_dynamics.diagrams.world_scene import MAX_GRID_LINES, body_marks, surface_marks
 from contact_dynamics.numerics.vectors import tangents_near_x
 from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.shapes.obstacle import Obstacle
-from contact_dynamics.viewing.entities import BODIES, entity
+from contact_dynamics.viewing.drawing import parts_of
+from contact_dynamics.viewing.entities import BODIES, SURFACES, entity
 from contact_dynamics.viewing.picture import Picture
-from contact_dynamics.viewing.scenery import (
-    MAX_GRID_LINES,
-    Scenery,
-    body_parts,
-    draw_axes,
-    surface_parts,
-    surface_path,
-)
+from contact_dynamics.viewing.scenery import Scenery, draw_axes
 from contact_dynamics.world import Body, Surface, World, box_vertices
 from viewing.drawn import STAMP_NS
 
@@ -48,8 +43,8 @@ def test_a_surface_is_a_square_in_its_plane_below_the_centre(
     recording: rr.RecordingStream, read: Callable[[], Drawn], side: float
 ) -> None:
     center = np.array([2.0, 3.0, 4.0])
-    parts = surface_parts(TILTED, center_W=center, side=side)
-    Scenery(recording).draw(surface_path(TILTED.name), parts)
+    parts = parts_of(surface_marks(TILTED, center_W=center, side=side))
+    Scenery(recording).draw(entity(SURFACES, TILTED.name), parts)
     drawn = read()
     corners = drawn.array("/world/surfaces/ramp/patch", "Mesh3D:vertex_positions")
     tolerance = 1e-6 * (side + 5.0)  # float32
@@ -71,8 +66,8 @@ def test_a_wall_rises_from_the_floor_and_the_floor_ends_at_the_wall(
     floor = Surface(name="floor", p_WS_W=np.zeros(3), normal_W=[0.0, 0.0, 1.0], friction=0.3, restitution=0.5)
     wall = Surface(name="wall", p_WS_W=[0.15, 0, 0], normal_W=[-1.0, 0.0, 0.0], friction=0.3, restitution=0.5)
     for surface in (floor, wall):
-        parts = surface_parts(surface, center_W=np.zeros(3), side=1.0, among=(floor, wall))
-        Scenery(recording).draw(surface_path(surface.name), parts)
+        parts = parts_of(surface_marks(surface, center_W=np.zeros(3), side=1.0, among=(floor, wall)))
+        Scenery(recording).draw(entity(SURFACES, surface.name), parts)
     drawn = read()
     tolerance = 1e-6  # m, float32
     for name in ("floor", "wall"):
@@ -96,7 +91,7 @@ def test_tangents_and_normal_are_a_right_handed_frame(direction: tuple[float, fl
 def test_a_body_is_drawn_in_its_own_axes(
     recording: rr.RecordingStream, read: Callable[[], Drawn], body: Body
 ) -> None:
-    Scenery(recording).draw(entity(BODIES, "brick"), body_parts(convex_shape(body.vertices_B)))
+    Scenery(recording).draw(entity(BODIES, "brick"), parts_of(body_marks(convex_shape(body.vertices_B))))
     drawn = read()
     faces = drawn.array("/world/bodies/brick/faces", "Mesh3D:vertex_positions")
     np.testing.assert_allclose(np.unique(np.abs(faces), axis=0), [[0.075, 0.045, 0.025]], rtol=1e-6)
@@ -117,7 +112,7 @@ def test_an_obstacle_is_drawn_where_it_stands(
 
 
 def test_a_body_without_shape_is_a_ball(recording: rr.RecordingStream, read: Callable[[], Drawn]) -> None:
-    Scenery(recording).draw(entity(BODIES, ""), body_parts(convex_shape(np.zeros((0, 3)))))
+    Scenery(recording).draw(entity(BODIES, ""), parts_of(body_marks(convex_shape(np.zeros((0, 3))))))
     assert read().last("/world/bodies/unnamed/faces", "Points3D:radii")[0] > 0.0
 
 
