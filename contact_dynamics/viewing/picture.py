@@ -50,6 +50,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from contact_dynamics.diagrams.after_impact import AfterImpact
+    from contact_dynamics.diagrams.marks import Mark
     from contact_dynamics.questions.contact_modes import ContactModeAnswer
     from contact_dynamics.questions.impact_question import ImpactAnswer
     from contact_dynamics.questions.many import ManyImpactsAnswer, ManyTumblingsAnswer
@@ -205,8 +206,7 @@ class Picture:
         name, plane = answer.body_name, answer.plane
         shape, body = self._bodies.shape(name), self._bodies.mass_properties(name)
         self._letters.come(name, stamp_ns)
-        self.recording.log(entity(CONTACTS, name), rr.Clear(recursive=True))
-        draw_marks(self.recording, contact_marks(shape, answer, body=body), entity(CONTACTS, name))
+        self._draw_anew(CONTACTS, answer, contact_marks(shape, answer, body=body))
         if self._eye is None:
             self._look_at(self._across_from(answer))
         if plane is None:
@@ -216,9 +216,8 @@ class Picture:
 
     def draw_toss(self, answer: TossAnswer, stamp_ns: int) -> tuple[list[str], list[str]]:
         """Draw a whole toss with its other ways, and the fan of samples with the tree of their strikes."""
-        shape, path = self._bodies.shape(answer.body_name), entity(TOSSES, answer.body_name)
-        self.recording.log(path, rr.Clear(recursive=True))
-        draw_marks(self.recording, toss_marks(shape, answer, up_W=self._world.up_W), path)
+        shape = self._bodies.shape(answer.body_name)
+        self._draw_anew(TOSSES, answer, toss_marks(shape, answer, up_W=self._world.up_W))
         curves = self._predict(answer.body_name, answer.toss.trajectory, begin_ns=stamp_ns)
         self._look_along(answer.toss.trajectory)
         return [TOSSES, *curves], []
@@ -229,10 +228,14 @@ class Picture:
         stamp_ns: int,  # noqa: ARG002  as all
     ) -> tuple[list[str], list[str]]:
         """Draw many states."""
-        shape, path = self._bodies.shape(answer.body_name), entity(MANY, answer.body_name)
-        self.recording.log(path, rr.Clear(recursive=True))
-        draw_marks(self.recording, many_states_marks(shape, answer), path)
+        self._draw_anew(MANY, answer, many_states_marks(self._bodies.shape(answer.body_name), answer))
         return [MANY], []
+
+    def _draw_anew(self, kind: str, answer: Answer, marks: list[Mark]) -> None:
+        """Draw an answer in the scene in place of the one before about its body."""
+        path = entity(kind, answer.body_name)
+        self.recording.log(path, rr.Clear(recursive=True))
+        draw_marks(self.recording, marks, path)
 
     def tell(self, kind: str, text: str, *, stamp_ns: int, is_error: bool = False) -> None:
         """Write an answer in words, both into the list of all answers and as the newest of its kind."""

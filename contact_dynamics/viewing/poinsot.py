@@ -70,17 +70,6 @@ def draw_poinsot(
     recording.log(f"{path}/angular_velocity", style)
 
 
-def clear_poinsot(recording: rr.RecordingStream, body_name: str) -> None:
-    """Remove the picture at the recording's current time, and say that the flight is over."""
-    hide_poinsot(recording, body_name)
-    _tell(recording, f"the flight of {body_name or 'the body'} is over")
-
-
-def hide_poinsot(recording: rr.RecordingStream, body_name: str) -> None:
-    """Remove the picture at the recording's current time, because that of another body comes."""
-    recording.log(entity(POINSOT_BODIES, body_name), rr.Clear(recursive=True))
-
-
 def _tell(recording: rr.RecordingStream, words: str) -> None:
     """Write words above the picture, or where it was."""
     told = rr.Points3D([_ABOVE], colors=palette.NORMAL, radii=0.0, labels=[words], show_labels=True)
@@ -118,7 +107,7 @@ class PoinsotInView:
     ) -> None:
         """Draw the picture of a body in a state, at a stamp, ns, in place of another body's."""
         if self._rolling is not None and self._rolling[0] != body_name:
-            hide_poinsot(self._recording, self._rolling[0])
+            self._recording.log(entity(POINSOT_BODIES, self._rolling[0]), rr.Clear(recursive=True))
         draw_poinsot(self._recording, body_name, picture, curves)
         draw_rolling(self._recording, body_name, [replace(state, stamp_ns=stamp_ns)])
         self._rolling = (body_name, picture)
@@ -131,5 +120,6 @@ class PoinsotInView:
         draw_rolling(self._recording, body_name, states[:count])
         if count < len(states):
             set_time(self._recording, states[count].stamp_ns)
-            clear_poinsot(self._recording, body_name)
+            self._recording.log(entity(POINSOT_BODIES, body_name), rr.Clear(recursive=True))
+            _tell(self._recording, f"the flight of {body_name or 'the body'} is over")
             self._rolling = None
