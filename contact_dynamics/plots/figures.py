@@ -19,13 +19,13 @@ from contact_dynamics.diagrams.contact_scene import contact_forces
 from contact_dynamics.diagrams.force_dual import force_dual
 from contact_dynamics.diagrams.impulse_space import impulse_space, impulse_space_in_3d
 from contact_dynamics.diagrams.mode_map import mode_map
-from contact_dynamics.diagrams.planar_modes import (
+from contact_dynamics.diagrams.planar_scene import (
     dual_chart_of,
     map_of_answer,
     modes_side_by_side,
     side_by_side,
+    silhouette,
 )
-from contact_dynamics.diagrams.planar_scene import silhouette
 from contact_dynamics.diagrams.poinsot import poinsot_diagram
 from contact_dynamics.diagrams.shape import drawn_shape
 from contact_dynamics.diagrams.toss_scene import event_tree

@@ -23,7 +23,7 @@ from contact_dynamics.diagrams.mode_map import (
     mode_map,
     paint_of_modes,
 )
-from contact_dynamics.diagrams.planar_modes import (
+from contact_dynamics.diagrams.planar_scene import (
     applied_of,
     dual_chart_of,
     map_of_answer,
@@ -41,7 +41,7 @@ from contact_dynamics.viewing.entities import (
 
 if TYPE_CHECKING:
     from contact_dynamics.diagrams.marks import Diagram, Mark
-    from contact_dynamics.diagrams.planar_modes import AnswersMap, ModesSideBySide
+    from contact_dynamics.diagrams.planar_scene import AnswersMap, ModesSideBySide
     from contact_dynamics.diagrams.wrench_chart import ForceDualChart
     from contact_dynamics.plane.projection import PlaneOfMotion
     from contact_dynamics.plane.types import PlanarWrench
@@ -78,10 +78,7 @@ class DiagramsInView:
     ) -> list[str]:
         """Draw an impact in impulse space, in 3-D too if it is not planar, and return what there is to see.
 
-        Args:
-            answer: The impact.
-            body: Mass properties of the body, or None if they are not known.
-            other: Those of the body that is struck, or None.
+        ``body`` and ``other``, which is struck, are None if they are not known.
         """
         if len(answer.impact.path_W) == 0:
             return []
@@ -106,11 +103,7 @@ class DiagramsInView:
     ) -> list[str]:
         """Draw the modes of a planar answer, their map and the force dual, and return what there is to see.
 
-        Args:
-            answer: The answer, in world axes.
-            plane: The plane of motion.
-            outline: Outline of the body, a closed strip, (k, 2), m from the centre of mass. It may be empty.
-            body: Mass properties of the body, or None if they are not known.
+        The ``outline`` of the body is a closed strip, (k, 2), m from the centre of mass. It may be empty.
         """
         view = modes_side_by_side(answer, plane, outline=outline)
         draw_side_by_side(self._recording, view.scenes[:MAX_MODES], PLANAR_MODES, name="mode")

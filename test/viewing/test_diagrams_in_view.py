@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from contact_dynamics.contact.contact import ContactSet
-from contact_dynamics.diagrams.planar_modes import MAX_SETS
-from contact_dynamics.diagrams.planar_scene import silhouette
+from contact_dynamics.diagrams.planar_scene import MAX_SETS, silhouette
 from contact_dynamics.diagrams.shape import convex_shape
 from contact_dynamics.plane.projection import PlaneOfMotion
 from contact_dynamics.questions import ContactModeQuestion, Context, Problem

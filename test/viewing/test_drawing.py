@@ -15,7 +15,7 @@ from contact_dynamics.contact_modes import contact_modes, wrench_sets
 from contact_dynamics.contact_modes.letters import mode_in_words
 from contact_dynamics.diagrams.impulse_space import impulse_space, impulse_space_in_3d
 from contact_dynamics.diagrams.mode_map import mode_map
-from contact_dynamics.diagrams.planar_modes import side_by_side
+from contact_dynamics.diagrams.planar_scene import side_by_side
 from contact_dynamics.plane.projection import PlaneOfMotion
 from contact_dynamics.plane.types import PlanarWrench
 from contact_dynamics.questions import ImpactQuestion, Problem, ask
