@@ -109,8 +109,7 @@ class ParameterSource:
         """
         found = self.values.get(name)
         if found is None and default is float:
-            meant = likely_misspelling(name, self.values)
-            message = f"{self._before}{name} is required ({description}){meant}"
+            message = f"{self._before}{name} is required ({description})"
             raise ConfigurationError(message)
         value, allowed = _as_default(default if found is None else found, default)
         if not allowed and bounds is not None and not bounds[0] <= value <= bounds[1]:
@@ -214,19 +213,25 @@ class ParameterSource:
             message = f"{prefix}.{told}" if prefix else str(told)
             raise ConfigurationError(message) from None
 
-    def refuse_unknown(self, early: Collection[str] | None = None) -> None:
-        """Refuse parameters that are given and that nothing has read.
-
-        Args:
-            early: the names of all parameters, where an error has left some unread. Topics are not known
-                then, and overrides of their quality of service are not refused.
+    def refuse_unknown(self, known: Iterable[str]) -> None:
+        """Refuse parameters that are given and not known, but for overrides of the quality of service.
 
         Raises:
             ConfigurationError: there are such. The message names each, with the most similar known one.
         """
-        known = {*self.read, *self._also_known, *_qos_overrides_of(self.topics.values()), *(early or ())}
-        is_allowed = _OF_ROS.fullmatch if early is None else is_of_ros
-        unknown = sorted(name for name in self.values if name not in known and not is_allowed(name))
+        given = [name for name in self.values if not is_of_ros(name)]
+        self._refuse_others(given, {*known, *self._also_known})
+
+    def refuse_unknown_overrides(self) -> None:
+        """Refuse overrides of the quality of service of topics that were not read; it raises as above."""
+        overrides = {
+            f"{_QOS}.{topic}.subscription.{policy}" for topic in self.topics.values() for policy in _POLICIES
+        }
+        given = [name for name in self.values if name.startswith(f"{_QOS}.")]
+        self._refuse_others(given, {*self.read, *overrides})
+
+    def _refuse_others(self, given: Iterable[str], known: Collection[str]) -> None:
+        unknown = sorted(name for name in given if name not in known)
         if unknown:
             told = "\n".join(self._unknown(name, known) for name in unknown)
             message = f"{self._before}{told}"
@@ -283,8 +288,6 @@ _OF_ROS: Final = re.compile(r"use_sim_time|start_type_description_service")
 _QOS: Final = "qos_overrides"
 _POLICIES: Final = ("history", "depth", "reliability")
 """What ROS lets parameters override of a subscription, unless a node asks for more."""
-_LIKELY: Final = 0.7
-"""Similarity from which on a name counts as a misspelled one, by `difflib`. One letter in four makes 0.75."""
 _MEANT: Final = {"radius": "sphere", "size": "box", "com": "center_of_mass", "mu": "friction"}
 """Names that others have for a parameter, with ours."""
 _LISTED_BY: Final = {"body": "bodies", "surface": "surfaces"}
@@ -293,16 +296,3 @@ _LISTED_BY: Final = {"body": "bodies", "surface": "surfaces"}
 def is_of_ros(name: str) -> bool:
     """Tell whether a parameter is one that ROS gives every node."""
     return _OF_ROS.fullmatch(name) is not None or name.startswith(f"{_QOS}.")
-
-
-def _qos_overrides_of(topics: Iterable[str]) -> set[str]:
-    """Return the parameters that override the quality of service of subscriptions to topics."""
-    return {f"{_QOS}.{topic}.subscription.{policy}" for topic in topics for policy in _POLICIES}
-
-
-def likely_misspelling(missing: str, given: Iterable[str]) -> str:
-    """Return words about a given name that is probably meant by the missing one, or nothing."""
-    group, _, last = missing.rpartition(".")
-    beside = [name.rpartition(".")[2] for name in given if name.rpartition(".")[0] == group]
-    close = difflib.get_close_matches(last, beside, n=1, cutoff=_LIKELY)
-    return f" Given is {group}.{close[0]}, which may be misspelled." if close else ""

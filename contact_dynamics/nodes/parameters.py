@@ -11,6 +11,7 @@ the worker processes stay as they are for as long as the node is configured.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 from typing import TYPE_CHECKING, Final
 
 from contact_dynamics.constants import STANDARD_GRAVITY_W
@@ -79,6 +80,7 @@ class ServerParameters:
     log_limits: LogLimits
 
 
+@cache
 def described_server_parameters() -> tuple[DeclaredParameter, ...]:
     """Return the parameters of a server with a body NAME and a surface NAME, without values if required."""
     source = ParameterSource(
@@ -91,7 +93,7 @@ def described_server_parameters() -> tuple[DeclaredParameter, ...]:
             "surface.NAME.restitution": 0.0,
         }
     )
-    read_server_parameters(source)
+    _read_parameters(source, *_read_names(source))
     defaults = {"body.NAME.sphere": [0.0]}
     return tuple(
         each._replace(value=defaults.get(name)) if name in source.values else each
@@ -117,19 +119,16 @@ def read_server_parameters(source: ParameterSource) -> ServerParameters:
         ConfigurationError: a parameter is missing, has another type, or a value that is not allowed. The
             message names it.
     """
-    body_names = source.names("bodies", "Names of the configured bodies.")
-    surface_names = source.names("surfaces", "Names of the surfaces: planes and obstacles.")
-    try:
-        parameters = _read_parameters(source, body_names, surface_names)
-    except ConfigurationError as error:  # whose cause may be a name that is not known
-        try:
-            source.refuse_unknown(_known_names(body_names, surface_names))
-        except ConfigurationError as unknown:
-            message = f"{unknown}\n{error}"
-            raise ConfigurationError(message) from None
-        raise
-    source.refuse_unknown()
+    body_names, surface_names = _read_names(source)
+    source.refuse_unknown(_known_names(body_names, surface_names))
+    parameters = _read_parameters(source, body_names, surface_names)
+    source.refuse_unknown_overrides()
     return parameters
+
+
+def _read_names(source: ParameterSource) -> tuple[list[str], list[str]]:
+    bodies = source.names("bodies", "Names of the configured bodies.")
+    return bodies, source.names("surfaces", "Names of the surfaces: planes and obstacles.")
 
 
 def _read_parameters(

@@ -216,10 +216,10 @@ NAN, INF = float("nan"), float("inf")
 BRICK = [3.5e-4, 8.4e-4, 1.0e-3]
 WRONG = [
     (drop("body.brick.mass"), "body.brick.mass is required (Mass, kg.)"),
-    (misspell("body.brick.mass", "body.brick.maas"), "Given is body.brick.maas, which may be misspelled."),
+    (misspell("body.brick.mass", "body.brick.maas"), "body.brick.maas: there ... nearest is body.brick.mass"),
     (
         two_balls,
-        "body.ball.radius: there is no ... nearest is body.ball.sphere...body.ball.inertia must be six",
+        "body.ball.radius: there is no such parameter; the nearest is body.ball.sphere",
     ),
     (put(body__brick__sphere=0.03), "body.brick.sphere must be a list..., got 0.03"),
     (put(body__brick__mass="heavy"), "body.brick.mass"),
