@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Seeds of sweeps: a few that run each time, and the many that run with `make test-slow`."""
+"""Sweeps that are one test: over seeds, of which many run with `make test-slow` only, and over any items."""
 
 from __future__ import annotations
 
@@ -45,3 +45,29 @@ def seeds(fast: Sequence[int], *, slow: Sequence[int] = ()) -> Callable[[Test], 
 def sweep(few: int, *, whole: int) -> list[Any]:
     """Return ``whole`` numbers of blocks, from 0 on, of which all but the first ``few`` are slow."""
     return [pytest.param(number, marks=() if number < few else pytest.mark.slow) for number in range(whole)]
+
+
+def each(argument: str, items: Sequence[Any]) -> Callable[[Test], Test]:
+    """Return a decorator that calls a test with each item, and names the items for which it fails.
+
+    All of them are one test for pytest, as with `seeds`.
+    """
+
+    def of_each(test: Test) -> Test:
+        @functools.wraps(test)
+        def of_all(**given: Any) -> None:
+            failures = []
+            for item in items:
+                try:
+                    test(**{argument: item}, **given)
+                except AssertionError as error:  # noqa: PERF203  each failure is told
+                    failures.append(f"{item}: {error}")
+            assert items
+            assert not failures, "\n".join(failures)
+
+        signature = inspect.signature(test)
+        fixtures = [one for name, one in signature.parameters.items() if name != argument]
+        of_all.__signature__ = signature.replace(parameters=fixtures)  # type: ignore[attr-defined]
+        return of_all
+
+    return of_each

@@ -12,7 +12,7 @@ import sys
 from functools import cache
 from pathlib import Path
 
-import pytest
+from sweeps import each
 
 ROOT = Path(__file__).parents[2]
 PACKAGE = ROOT / "contact_dynamics"
@@ -113,7 +113,7 @@ def test_every_file_has_a_chapter() -> None:
     assert len(INSIDE) > 150
 
 
-@pytest.mark.parametrize("path", INSIDE, ids=relative)
+@each("path", INSIDE)
 def test_an_import_goes_to_a_chapter_above(path: Path) -> None:
     mine = chapter_of(module_of(path))
     for module in imports_of(path):
@@ -124,13 +124,13 @@ def test_an_import_goes_to_a_chapter_above(path: Path) -> None:
         assert (mine, theirs) not in SIDE_BY_SIDE, f"{relative(path)} imports {module}"
 
 
-@pytest.mark.parametrize("path", INSIDE, ids=relative)
+@each("path", INSIDE)
 def test_nobody_asks_the_table_of_contents(path: Path) -> None:
     """Inside, names come from the file that defines them. `contact_dynamics` itself is for users."""
     assert "contact_dynamics" not in imports_of(path), relative(path)
 
 
-@pytest.mark.parametrize("path", [p for p in INSIDE if p.name != "__init__.py"], ids=relative)
+@each("path", [p for p in INSIDE if p.name != "__init__.py"])
 def test_a_file_does_not_import_its_own_chapters_door(path: Path) -> None:
     package = module_of(path).rpartition(".")[0]
     parts = package.split(".")
@@ -158,7 +158,7 @@ def test_no_files_import_each_other_in_a_circle() -> None:
         follow(module, [])
 
 
-@pytest.mark.parametrize("path", [p for p in INSIDE if chapter_of(module_of(p)) in WITHOUT_ROS], ids=relative)
+@each("path", [p for p in INSIDE if chapter_of(module_of(p)) in WITHOUT_ROS])
 def test_physics_and_questions_import_numpy_scipy_and_themselves_only(path: Path) -> None:
     allowed = {"numpy", "scipy", "contact_dynamics"}
     if path.name == "records.py":
@@ -170,7 +170,7 @@ def test_physics_and_questions_import_numpy_scipy_and_themselves_only(path: Path
         assert root in allowed or root in sys.stdlib_module_names, f"{relative(path)} imports {module}"
 
 
-@pytest.mark.parametrize("chapter", ["contact_modes", "impact"])
+@each("chapter", ["contact_modes", "impact"])
 def test_plane_and_space_are_sisters(chapter: str) -> None:
     """What both have has one name: a reader who knows one folder finds the same in the other."""
     plane, space = (

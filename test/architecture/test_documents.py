@@ -5,9 +5,8 @@ from __future__ import annotations
 
 import re
 
-import pytest
-
 from architecture.test_chapters import CHAPTERS, PACKAGE, ROOT
+from sweeps import each
 
 PAGE = (ROOT / "docs" / "architecture.md").read_text(encoding="utf-8")
 NAMED = sorted(set(re.findall(r"`([a-z_]+(?:/[a-z_]*)*(?:\.(?:py|yaml))?)`", PAGE)))
@@ -22,7 +21,7 @@ ANYWHERE = {"answer.py", "problem.py", "margins.py", "statics.py", "wrench_sets.
 """Names of files that stand in several folders, or in the folder that their row is about."""
 
 
-@pytest.mark.parametrize("path", PATHS)
+@each("path", PATHS)
 def test_what_the_page_names_exists(path: str) -> None:
     if path in ANYWHERE:
         assert list(PACKAGE.rglob(path)), path

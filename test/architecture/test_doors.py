@@ -17,6 +17,7 @@ import pytest
 
 import contact_dynamics
 from contact_dynamics.shapes import convex
+from sweeps import each
 
 CHAPTERS = (
     "rigid_body",
@@ -51,14 +52,14 @@ def test_the_first_page_is_short() -> None:
     assert {*first, *chapters} == set(contact_dynamics.__all__)
 
 
-@pytest.mark.parametrize("chapter", ["", *CHAPTERS])
+@each("chapter", ["", *CHAPTERS])
 def test_completion_shows_what_is_for_users(chapter: str) -> None:
     module = door(chapter) if chapter else contact_dynamics
     assert set(dir(module)) - {"__version__"} == set(module.__all__)
     assert all(hasattr(module, name) for name in module.__all__)
 
 
-@pytest.mark.parametrize("chapter", CHAPTERS)
+@each("chapter", CHAPTERS)
 def test_no_name_hides_a_file(chapter: str) -> None:
     """`import contact_dynamics.x.y as m` gives the file, not a function of its name."""
     module = door(chapter)
@@ -68,7 +69,7 @@ def test_no_name_hides_a_file(chapter: str) -> None:
         assert isinstance(getattr(module, name), ModuleType), name
 
 
-@pytest.mark.parametrize("chapter", CHAPTERS)
+@each("chapter", CHAPTERS)
 def test_a_chapters_page_names_its_files(chapter: str) -> None:
     """Every file and folder of it stands in its docstring, and nothing that is no longer there."""
     module = door(chapter)

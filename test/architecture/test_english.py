@@ -19,6 +19,7 @@ from pathlib import Path
 import pytest
 
 from architecture.test_chapters import ROOT
+from sweeps import each
 
 FOLDERS = ("contact_dynamics", "msg_adapters", "benchmarks", "examples", "launch", "scripts")
 PYTHON = sorted(path for folder in FOLDERS for path in (ROOT / folder).rglob("*.py"))
@@ -83,12 +84,12 @@ def texts_of(path: Path) -> list[str]:
     return list(texts_of_python(source) if path.suffix == ".py" else texts_of_comments(source))
 
 
-@pytest.mark.parametrize("path", [*PYTHON, *COMMENTED], ids=lambda path: str(path.relative_to(ROOT)))
+@each("path", [*PYTHON, *COMMENTED])
 def test_no_text_begins_with_a_dangling_word(path: Path) -> None:
     assert [text.splitlines()[0] for text in texts_of(path) if DANGLING.match(text)] == []
 
 
-@pytest.mark.parametrize("path", [*PYTHON, *COMMENTED], ids=lambda path: str(path.relative_to(ROOT)))
+@each("path", [*PYTHON, *COMMENTED])
 def test_no_text_is_a_telegram(path: Path) -> None:
     texts = texts_of(path)
     assert [found for text in texts for found in (*TELEGRAM.findall(text), *LIKEWISE.findall(text))] == []
@@ -143,7 +144,7 @@ def names() -> set[str]:
     return found
 
 
-@pytest.mark.parametrize("path", PACKAGE, ids=lambda path: str(path.relative_to(ROOT)))
+@each("path", PACKAGE)
 def test_what_a_text_names_exists(path: Path, names: set[str]) -> None:
     texts = " ".join(texts_of(path))
     assert [name for name in NAMED.findall(texts) if not names.issuperset(name.split("."))] == []

@@ -41,6 +41,7 @@ from contact_dynamics_interfaces.srv import (
     PredictTumbling,
     PredictTumblingBatch,
 )
+from sweeps import each
 
 INTERFACES = Path(__file__).parents[2] / "contact_dynamics_interfaces"
 FILES = sorted([*INTERFACES.glob("msg/*.msg"), *INTERFACES.glob("srv/*.srv")])
@@ -57,7 +58,7 @@ def blocks(path: Path) -> list[list[str]]:
     ]
 
 
-@pytest.mark.parametrize("path", FILES, ids=lambda path: path.name)
+@each("path", FILES)
 def test_every_block_of_fields_begins_with_a_comment(path: Path) -> None:
     fields = 0
     for block in blocks(path):
@@ -67,7 +68,7 @@ def test_every_block_of_fields_begins_with_a_comment(path: Path) -> None:
     assert fields > 0
 
 
-@pytest.mark.parametrize("path", FILES, ids=lambda path: path.name)
+@each("path", FILES)
 def test_every_line_is_understood(path: Path) -> None:
     for line in path.read_text(encoding="utf-8").splitlines():
         assert (

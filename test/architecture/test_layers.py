@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 
 from architecture.test_chapters import PACKAGE, ROOT, WITHOUT_ROS, imports_of, relative
+from sweeps import each
 
 ROS = {
     "rclpy",
@@ -42,7 +43,7 @@ WORDS_OF_ROS = re.compile(
 )
 
 
-@pytest.mark.parametrize("path", sorted((ROOT / "msg_adapters").glob("*.py")), ids=relative)
+@each("path", sorted((ROOT / "msg_adapters").glob("*.py")))
 def test_adapters_know_messages_and_no_middleware(path: Path) -> None:
     assert not {module for module in imports_of(path) if module.split(".")[0] == "rclpy"}, relative(path)
 
@@ -72,7 +73,7 @@ def words_said(source: str) -> list[str]:
     ]
 
 
-@pytest.mark.parametrize("path", LIBRARY, ids=relative)
+@each("path", LIBRARY)
 def test_errors_of_the_library_are_not_in_the_words_of_ros(path: Path) -> None:
     """Who asks in Python has no service, no request and no parameter to look for."""
     said = words_said(path.read_text(encoding="utf-8"))

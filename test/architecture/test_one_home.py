@@ -6,7 +6,7 @@ from __future__ import annotations
 import ast
 from pathlib import Path
 
-import pytest
+from sweeps import each
 
 ROOT = Path(__file__).parents[2]
 PACKAGE = ROOT / "contact_dynamics"
@@ -50,7 +50,7 @@ def relative(path: Path) -> str:
     return str(path.relative_to(PACKAGE))
 
 
-@pytest.mark.parametrize("path", [p for p in PHYSICS if p.name != "tolerances.py"], ids=relative)
+@each("path", [p for p in PHYSICS if p.name != "tolerances.py"])
 def test_small_numbers_are_thresholds_and_those_stand_in_one_file(path: Path) -> None:
     small = {number for number in written_numbers(path) if 0.0 < number <= SMALL}
     allowed = ALLOWED.get(relative(path), set())

@@ -6,9 +6,8 @@ from __future__ import annotations
 import ast
 from pathlib import Path
 
-import pytest
-
 from architecture.test_chapters import PACKAGE, ROOT, imports_of, relative
+from sweeps import each
 
 NODES = sorted((PACKAGE / "nodes").glob("*.py"))
 WAY = [
@@ -18,13 +17,13 @@ WAY = [
 """Where a request goes, and where its answer comes back."""
 
 
-@pytest.mark.parametrize("path", NODES, ids=relative)
+@each("path", NODES)
 def test_nodes_do_no_arithmetic(path: Path) -> None:
     roots = {module.split(".")[0] for module in imports_of(path)}
     assert not roots & {"numpy", "scipy"}, relative(path)
 
 
-@pytest.mark.parametrize("path", WAY, ids=relative)
+@each("path", WAY)
 def test_no_any_on_the_way_of_a_question(path: Path) -> None:
     """Strict mypy follows a request to its response, as far as ROS's own messages have types."""
     names = {
