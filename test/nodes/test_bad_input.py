@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from geometry_msgs.msg import Point
+from geometry_msgs.msg import Inertia, Point
 from nav_msgs.msg import Odometry
 
 from changed_requests import put
@@ -198,7 +198,119 @@ def crooked_plane(request: Any) -> None:
     request.plane_normal.y = 2.0
 
 
+def lying(request: Any, tilt: float = 0.0) -> Any:
+    """Ask about the brick at rest on the floor, on one edge where it is tilted."""
+    request.body_name, request.inertia, request.state = "brick", Inertia(), BodyState()
+    request.contact_source, request.contacts = request.CONTACTS_FROM_GEOMETRY, ContactSet()
+    request.state.pose.position.z = 0.025 * math.cos(tilt) + 0.075 * math.sin(tilt)
+    orientation = request.state.pose.orientation
+    orientation.y, orientation.w = math.sin(0.5 * tilt), math.cos(0.5 * tilt)
+    return request
+
+
+def on_an_edge_in_time(request: Any) -> None:
+    lying(request, 0.1).several_contacts_law = request.SEQUENTIAL_IN_TIME
+    request.strike_window = 0.2
+
+
+def thrown_up_in_time(request: Any) -> None:
+    """It comes back after 0.2 s."""
+    request.several_contacts_law, request.strike_window = request.SEQUENTIAL_IN_TIME, 0.01
+    request.state.linear_velocity.z = 1.0
+
+
+def in_time(**fields: Any) -> Callable[[Any], None]:
+    """Return what asks for strikes in time together with what they are not asked with."""
+
+    def change(request: Any) -> None:
+        request.several_contacts_law = request.SEQUENTIAL_IN_TIME
+        for name, value in fields.items():
+            setattr(request, name, value)
+
+    return change
+
+
+def touching(request: Any, count: int) -> Any:
+    """Touch the floor at this many points of a circle."""
+    angles = [2.0 * math.pi * i / count for i in range(count)]
+    points = [number for each in angles for number in (math.cos(each), math.sin(each), -1.0)]
+    request.contacts.positions, request.contacts.normals = points, [0.0, 0.0, 1.0] * count
+    request.contacts.frictions, request.contacts.restitutions = [0.5] * count, [0.0] * count
+    return request
+
+
+def many_facets(request: Any) -> None:
+    lying(request).problem = request.SPATIAL
+    request.include_wrenches, request.friction_facets = True, 16
+
+
+def strong_torque(request: Any) -> None:
+    request.applied_wrench.torque.z, request.times = 1000.0, [60.0]
+
+
+def endless_search(request: Any) -> None:
+    """A body that spins for ever, never touching."""
+    request.gravity, request.sampling, request.times = request.GRAVITY_NONE, request.UNTIL_PLANE, []
+    request.duration, request.plane_normal.z, request.state.pose.position.z = 1e9, 1.0, 1.0
+    request.state.angular_velocity.z = 10.0
+
+
+def long_covariance(request: Any) -> None:
+    request.state.covariance = (1e-6 * np.eye(12)).ravel().tolist()
+    request.include_covariance, request.linear_drag = True, 0.5
+    request.state.angular_velocity.z, request.times = 10.0, [25.0]
+
+
+BEYOND_REASON = [
+    (PredictImpact, lying, "NO_CONTACT", "touches 'floor' and does not approach it"),
+    (PredictImpact, on_an_edge_in_time, "NO_CONTACT", "hold_step continues beyond it"),
+    (PredictImpact, thrown_up_in_time, "SEPARATING", "comes back within the strike_window of 0.01 s"),
+    (
+        PredictImpact,
+        in_time(problem=PredictImpact.Request.PLANAR),
+        "NOT_SUPPORTED",
+        "problem must be ..., got PLANAR",
+    ),
+    (PredictImpact, in_time(include_orders=True), "NOT_SUPPORTED", "include_orders must be ..., got true"),
+    (
+        PredictImpact,
+        in_time(include_covariance=True),
+        "NOT_SUPPORTED",
+        "include_covariance must be ..., got true",
+    ),
+    (
+        PredictContactMode,
+        lambda request: setattr(touching(request, 65), "problem", request.SPATIAL),
+        "TOO_LARGE",
+        "contacts must be ..., got 65",
+    ),
+    (
+        PredictContactMode,
+        lambda request: setattr(touching(request, 17), "uncertainty_normals", [1e-6]),
+        "TOO_LARGE",
+        "17 contacts",
+    ),
+    (
+        PredictContactMode,
+        put("uncertainty_points", [1e-3, 1e-3]),
+        "INVALID_FIELD",
+        "must be one number, or one for each of 1 contacts",
+    ),
+    (
+        PredictContactMode,
+        put("uncertainty_points", [-1e-3]),
+        "INVALID_FIELD",
+        "uncertainty_points must be ..., got -0.001",
+    ),
+    (PredictContactMode, many_facets, "TOO_LARGE", "fewer friction_facets"),
+    (PredictTumbling, strong_torque, "INVALID_FIELD", "no further than 6000 steps of the integrator"),
+    (PredictTumbling, endless_search, "INVALID_FIELD", "duration must be ..., got 1.59155e+09 turns"),
+    (PredictTumbling, long_covariance, "INVALID_FIELD", "times must be at most 30 with cov..., got 39.7887"),
+]
+"""Questions that make sense, and cannot be answered."""
+
 CASES = [
+    *BEYOND_REASON,
     *[(service, *case) for service in SERVICES for case in EVERY_SERVICE],
     *[(service, *case) for service in (PredictContactMode, PredictImpact) for case in CONTACTS],
     *[

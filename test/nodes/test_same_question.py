@@ -1,50 +1,52 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A question over a real server and the same question in Python: one answer, to the last bit."""
+"""A question over a real server and the same question in Python: one answer, to the last bit.
+
+That a service passes on what is asked and answered is shown here, for each service and option. What is
+right is shown where it is computed.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
+import pytest
+from nav_msgs.msg import Path as RosPath
 
 from contact_dynamics.contact.contact import ContactSet
+from contact_dynamics.contact.uncertainty import ContactUncertainty
+from contact_dynamics.impact import RestitutionLaw, SeveralContactsLaw
 from contact_dynamics.motion.forces import ConstantWrench, Drag, WrenchAxes
+from contact_dynamics.nodes.given_parameters import ParameterFile
+from contact_dynamics.nodes.parameters import read_server_parameters
+from contact_dynamics.plane.projection import PlaneOfMotion
 from contact_dynamics.questions import (
     AtRate,
+    AtStamps,
     ContactModeQuestion,
     Context,
-    Defaults,
     ImpactQuestion,
+    InTime,
     Problem,
+    TossQuestion,
+    TossSampling,
     TumblingQuestion,
     UncertainState,
     UntilContact,
-    contact_modes,
-    impact,
-    tumbling,
+    UntilPlane,
+    ask,
 )
+from contact_dynamics.questions.many import ManyImpactsQuestion, ManyStates, ManyTumblingsQuestion
+from contact_dynamics.questions.many_contact_modes import ManyContactModesQuestion
+from contact_dynamics.questions.services import SERVICES, service_of
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
-from contact_dynamics.world import Body, Surface, World, box_vertices
-from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact, PredictTumbling
-from msg_adapters.contact_mode import contact_mode_answer_to_msg
-from msg_adapters.contacts import contacts_to_msg
-from msg_adapters.geometry import mass_properties_to_msg
-from msg_adapters.impact import impact_answer_to_msg
-from msg_adapters.tumbling import tumbling_answer_to_msg
-from running_server import Client
+from contact_dynamics.world import Body
+from contact_dynamics_interfaces.srv import PredictTumbling
+from running_server import ROOT, Client
 
-# As config/server.yaml, which the server runs with, says.
-BRICK = Body(
-    name="brick",
-    mass_properties=MassProperties(mass=0.4, I_B=np.diag([0.000353333, 0.000833333, 0.00102])),
-    vertices_B=box_vertices([0.15, 0.09, 0.05]),
-)
-FLOOR = Surface(name="floor", p_WS_W=[0, 0, 0], normal_W=[0, 0, 1], friction=0.3, restitution=0.45)
-CONTEXT = Context(
-    world=World(bodies=(BRICK,), surfaces=(FLOOR,), gravity_W=[0.0, 0.0, -9.80665]),
-    defaults=Defaults(velocity_tolerance=1e-9, distance_tolerance=1e-6, out_of_plane_tolerance=1e-6),
-)
+PARAMETERS = read_server_parameters(ParameterFile(ROOT / "config" / "server.yaml"))
+CONTEXT = Context(world=PARAMETERS.world, defaults=PARAMETERS.defaults)
 ROD = Body(
     name="",
     mass_properties=MassProperties(mass=1.5, I_B=np.diag([0.3, 0.4, 0.5])),
@@ -60,7 +62,10 @@ TOSSED = BodyState(
 LEVEL = BodyState(
     p_WB_W=[0.0, 0.0, 0.025], q_WB=[0, 0, 0, 1], v_WB_W=[0, 0, 0], w_WB_W=[0, 0, 0], stamp_ns=77
 )
-COVARIANCE = np.diag([1e-6] * 3 + [1e-5] * 3 + [1e-4] * 3 + [1e-3] * 3)
+TILTED = replace(LEVEL, p_WB_W=[0.0, 0.0, 0.06], q_WB=[0, np.sin(0.17), 0, np.cos(0.17)])
+UNCERTAIN = UncertainState(
+    state=TOSSED, covariance=np.diag([1e-6] * 3 + [1e-5] * 3 + [1e-4] * 3 + [1e-3] * 3)
+)
 FEET = ContactSet(
     p_WC_W=[[-0.1, 0.0, 0.5], [0.3, 0.1, 0.5]],
     normals_W=[[0, 0, 1]] * 2,
@@ -68,29 +73,92 @@ FEET = ContactSet(
     restitutions=[0.2, 0.8],
     surfaces=("left", "right"),
 )
-
-
-def say_state(msg: Any, state: BodyState, body: Body) -> None:
-    """Fill a message with a state of a body, by its published frame."""
-    p_WF_W = state.p_WB_W - state.R_WB @ body.p_FB_F if body.p_FB_F.any() else state.p_WB_W
-    msg.header.stamp.sec, msg.header.stamp.nanosec = divmod(state.stamp_ns, 1_000_000_000)
-    msg.pose.position.x, msg.pose.position.y, msg.pose.position.z = p_WF_W.tolist()
-    q = msg.pose.orientation
-    q.x, q.y, q.z, q.w = state.q_WB.tolist()
-    v, w = msg.linear_velocity, msg.angular_velocity
-    v.x, v.y, v.z = state.v_WB_W.tolist()
-    w.x, w.y, w.z = state.w_WB_W.tolist()
-
-
-def about(service: Any, body: Body, state: BodyState, **fields: Any) -> Any:
-    """Return a request about a body, known or described, in an explicit state."""
-    request = service.Request(state_source=service.Request.STATE_EXPLICIT, **fields)
-    if body is BRICK:
-        request.body_name = "brick"
-    else:
-        request.inertia = mass_properties_to_msg(body.mass_properties, body.p_FB_F)
-    say_state(request.state, state, body)
-    return request
+MANY = ManyStates(
+    p_WB_W=[[0, 0, 1.0], [0.5, 0, 1.0]],
+    q_WB=[[0, 0, 0, 1]] * 2,
+    v_WB_W=[[0.3, 0, -1.0], [0, 0, 2.0]],
+    w_WB_W=[[0, 3.0, 0]] * 2,
+)
+PUSHED = ContactModeQuestion(body="brick", state=LEVEL, force_W=[0.75, 0, 0])
+QUESTIONS: dict[str, Any] = {
+    "until contact": TumblingQuestion(body="brick", state=TOSSED, sampling=UntilContact()),
+    "under forces, uncertain": TumblingQuestion(
+        body=ROD,
+        state=UNCERTAIN,
+        sampling=AtRate(rate=20.0, duration=0.5),
+        wrench=ConstantWrench(force=[0.5, 0, 0], torque=[0, 0, 0.25], axes=WrenchAxes.BODY),
+        drag=Drag(linear=0.1),
+        include_covariance=True,
+    ),
+    "until a plane, with curves": TumblingQuestion(
+        body=ROD,
+        state=TOSSED,
+        sampling=UntilPlane(plane_point=[0, 0, 0.2], plane_normal=[0, 0, 1], body_point=[0.1, 0, 0]),
+        curve_points=7,
+    ),
+    "at stamps, without weight": TumblingQuestion(
+        body=ROD, state=TOSSED, sampling=AtStamps(stamps_ns=[12_000_000_000]), gravity_W=[0, 0, 0]
+    ),
+    "a landing": ImpactQuestion(body="brick", state=TOSSED),
+    "orders": ImpactQuestion(body=ROD, state=TOSSED, contacts=FEET, include_orders=True),
+    "in time": ImpactQuestion(
+        body="brick", state=TILTED, several_contacts_law=InTime(strike_window=0.1, hold_step=0.001)
+    ),
+    "at once": ImpactQuestion(
+        body="brick",
+        state=TOSSED,
+        restitution_law=RestitutionLaw.NEWTON,
+        several_contacts_law=SeveralContactsLaw.SIMULTANEOUS,
+    ),
+    "in a plane": ImpactQuestion(
+        body=ROD,
+        state=replace(LEVEL, p_WB_W=[0, 0, 0.8], v_WB_W=[1.0, 0, -2.0], w_WB_W=[0, 2.0, 0]),
+        contacts=FEET.subset([0]),
+        problem=Problem.PLANAR,
+        plane=PlaneOfMotion(normal_W=[0, -1, 0]),
+        out_of_plane_tolerance=1e-3,
+    ),
+    "two bodies": ImpactQuestion(
+        body=ROD, state=TOSSED, other="brick", other_state=LEVEL, contacts=FEET.subset([1])
+    ),
+    "probable outcomes": ImpactQuestion(
+        body=ROD, state=UNCERTAIN, contacts=FEET.subset([1]), include_covariance=True
+    ),
+    "margins, wrenches, statics": replace(
+        PUSHED, include_margins=True, include_wrenches=True, include_statics=True
+    ),
+    "in space": replace(
+        PUSHED, force_W=[1.0, 1.0, 0], include_margins=True, include_wrenches=True, friction_facets=4
+    ),
+    "settled by an impact": ContactModeQuestion(
+        body=ROD, state=TOSSED, contacts=FEET, problem=Problem.SPATIAL, include_impact=True
+    ),
+    "uncertain contacts": ContactModeQuestion(
+        body=ROD,
+        state=replace(LEVEL, p_WB_W=[0, 0, 0.8]),
+        contacts=FEET,
+        problem=Problem.SPATIAL,
+        uncertainty=ContactUncertainty(frictions=0.1),
+        include_geometry_margins=True,
+    ),
+    "a toss": TossQuestion(
+        body="brick", state=UNCERTAIN, sampling=TossSampling(count=5, seed=3), max_alternatives=1
+    ),
+    "many impacts": ManyImpactsQuestion(
+        body="brick",
+        states=MANY,
+        p_WC_W=[[0.05, 0, 0.98], [0.5, 0, 0.98]],
+        normals_W=[[0, 0, 1.0]],
+        frictions=[0.3],
+        restitutions=[0.5],
+    ),
+    "many tumblings": ManyTumblingsQuestion(body="brick", states=MANY, seconds=[0.25, 0.5]),
+    "many contact modes": ManyContactModesQuestion(
+        asked=replace(PUSHED, force_W=[0, 0, 0], include_margins=True),
+        forces_W=[[0, 0, 0], [0.3, 0, 0], [2.0, 0, 0]],
+        torques_W=np.zeros((3, 3)),
+    ),
+}
 
 
 def contents(msg: Any) -> Any:
@@ -105,115 +173,41 @@ def contents(msg: Any) -> Any:
     return [contents(each) for each in (msg.tolist() if hasattr(msg, "tolist") else msg)]
 
 
-def check_same(client: Client, request: Any, in_python: Any) -> None:
-    """Compare the server's answer with the one that was found here."""
+def test_every_service_is_asked() -> None:
+    assert {service_of(each).name for each in QUESTIONS.values()} == {each.name for each in SERVICES}
+
+
+@pytest.mark.parametrize("name", QUESTIONS)
+def test_a_server_answers_as_python_does(client: Client, name: str) -> None:
+    """The question is read back from its request, since the position of a body goes over by another point."""
+    question = QUESTIONS[name]
+    service = service_of(question)
+    request = service.question_to_msg(question, world=CONTEXT.world, world_frame="world")
+    answer = ask(service.question_of(request, world=CONTEXT.world, world_frame="world"), CONTEXT)
+    here: Any = service.answer_to_msg(answer, world_frame="world", into=service.service_type.Response())
     response = client.ask(request)
-    assert (response.status, response.message) == (response.OK, in_python.message)
-    assert contents(response) == contents(in_python)
+    assert response.status == response.OK, response.message
+    assert contents(response) == contents(here)
 
 
-def exact(state: BodyState, body: Body) -> BodyState:
-    """Return a state as the server reads it, when its position went over by the published frame."""
-    if not body.p_FB_F.any():
-        return state
-    lever = state.R_WB @ body.p_FB_F
-    return BodyState(
-        p_WB_W=(state.p_WB_W - lever) + lever,
-        q_WB=state.q_WB,
-        v_WB_W=state.v_WB_W,
-        w_WB_W=state.w_WB_W,
-        stamp_ns=state.stamp_ns,
-    )
+def test_a_path_for_rviz_is_published_while_somebody_listens(client: Client) -> None:
+    paths: list[RosPath] = []
+    topic = "/contact_dynamics/predicted_path"
+    subscription = client.node.create_subscription(RosPath, topic, paths.append, 1)
+    request = PredictTumbling.Request(body_name="brick", state_source=PredictTumbling.Request.STATE_EXPLICIT)
+    request.gravity, request.state.linear_velocity.x = request.GRAVITY_NONE, 1.0
+    request.state.angular_velocity.z = 2.0
+    request.sampling, request.rate, request.duration = request.AT_RATE, 1000.0, 1.0
 
+    def heard() -> bool:
+        client.ask(request)
+        return bool(paths)
 
-def tumbling_asked_twice() -> Iterator[tuple[Any, TumblingQuestion]]:
-    """Yield requests about tumbling with the same questions in Python."""
-    contact = about(PredictTumbling, BRICK, TOSSED, sampling=PredictTumbling.Request.UNTIL_CONTACT)
-    yield contact, TumblingQuestion(body="brick", state=TOSSED, sampling=UntilContact())
-    pushed = about(
-        PredictTumbling,
-        ROD,
-        TOSSED,
-        sampling=PredictTumbling.Request.AT_RATE,
-        rate=20.0,
-        duration=0.5,
-        wrench_in_body_axes=True,
-        linear_drag=0.1,
-        include_covariance=True,
-    )
-    pushed.applied_wrench.force.x, pushed.applied_wrench.torque.z = 0.5, 0.25
-    pushed.state.covariance = COVARIANCE.ravel().tolist()
-    yield (
-        pushed,
-        TumblingQuestion(
-            body=ROD,
-            state=UncertainState(state=exact(TOSSED, ROD), covariance=COVARIANCE),
-            sampling=AtRate(rate=20.0, duration=0.5),
-            wrench=ConstantWrench(force=[0.5, 0, 0], torque=[0, 0, 0.25], axes=WrenchAxes.BODY),
-            drag=Drag(linear=0.1),
-            include_covariance=True,
-        ),
-    )
-
-
-def test_tumbling(client: Client) -> None:
-    for request, question in tumbling_asked_twice():
-        answer = tumbling.answer(question, CONTEXT)
-        check_same(client, request, tumbling_answer_to_msg(answer, world_frame="world"))
-
-
-def impacts_asked_twice() -> Iterator[tuple[Any, ImpactQuestion]]:
-    """Yield requests about impacts with the same questions in Python."""
-    yield about(PredictImpact, BRICK, TOSSED), ImpactQuestion(body="brick", state=TOSSED)
-    on_feet = about(PredictImpact, ROD, TOSSED, contact_source=1, include_orders=True)
-    contacts_to_msg(FEET, into=on_feet.contacts)
-    yield (
-        on_feet,
-        ImpactQuestion(body=ROD, state=exact(TOSSED, ROD), contacts=FEET, include_orders=True),
-    )
-
-
-def test_impact(client: Client) -> None:
-    for request, question in impacts_asked_twice():
-        answer = impact.answer(question, CONTEXT)
-        check_same(client, request, impact_answer_to_msg(answer, world_frame="world"))
-
-
-def modes_asked_twice() -> Iterator[tuple[Any, ContactModeQuestion]]:
-    """Yield requests about contact modes with the same questions in Python."""
-    pushed = about(
-        PredictContactMode, BRICK, LEVEL, include_margins=True, include_wrenches=True, include_statics=True
-    )
-    pushed.applied_wrench.force.x = 0.75
-    yield (
-        pushed,
-        ContactModeQuestion(
-            body="brick",
-            state=LEVEL,
-            force_W=[0.75, 0, 0],
-            include_margins=True,
-            include_wrenches=True,
-            include_statics=True,
-        ),
-    )
-    dropped = about(
-        PredictContactMode,
-        ROD,
-        TOSSED,
-        contact_source=1,
-        problem=PredictContactMode.Request.SPATIAL,
-        include_impact=True,
-    )
-    contacts_to_msg(FEET, into=dropped.contacts)
-    yield (
-        dropped,
-        ContactModeQuestion(
-            body=ROD, state=exact(TOSSED, ROD), contacts=FEET, problem=Problem.SPATIAL, include_impact=True
-        ),
-    )
-
-
-def test_contact_modes(client: Client) -> None:
-    for request, question in modes_asked_twice():
-        answer = contact_modes.answer(question, CONTEXT)
-        check_same(client, request, contact_mode_answer_to_msg(answer, world_frame="world"))
+    client.spin_until(heard)
+    client.node.destroy_subscription(subscription)
+    path = paths[0]
+    assert path.header.frame_id == "world"
+    assert 2 < len(path.poses) <= 200
+    assert [path.poses[0].pose.position.x, path.poses[-1].pose.position.x] == [0.0, 1.0]
+    assert path.poses[-1].header.stamp.sec == 1
+    assert path.poses[-1].pose.orientation.z == pytest.approx(np.sin(1.0), abs=1e-14)

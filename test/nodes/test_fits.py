@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Uncertain and noisy states over the services: covariances carried along, and fits to what was published."""
+"""Fits to published states over the services."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from nav_msgs.msg import Odometry
 
-from contact_dynamics_interfaces.srv import PredictImpact, PredictTumbling
+from contact_dynamics_interfaces.srv import PredictTumbling
 from message_words import says
 from running_server import Client, server_and_client
 
@@ -23,77 +23,11 @@ COUNT = 12  # states of a fit
 BEGINS_NS = (time.time_ns() - 60_000_000_000 + each for each in count(0, 3_000_000_000))
 """When the states of a test begin: more than a fit looks back after those of the test before it."""
 
-COVARIANCE = np.diag([1e-6] * 3 + [1e-6] * 3 + [1e-4] * 3 + [1e-2] * 3)  # m, rad, m/s, rad/s, squared
-
 
 @pytest.fixture(scope="module")
 def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Client]:
     with server_and_client(Path(tmp_path_factory.mktemp("log"))) as client:
         yield client
-
-
-def test_a_ball_in_flight_spreads_by_its_velocity(client: Client) -> None:
-    """Without tumbling: var(p) = var(p0) + t^2 var(v), and the same of the orientation."""
-    request = PredictTumbling.Request(
-        state_source=PredictTumbling.Request.STATE_EXPLICIT, include_covariance=True
-    )
-    request.inertia.m = request.inertia.ixx = request.inertia.iyy = request.inertia.izz = 1.0
-    request.state.covariance = COVARIANCE.ravel().tolist()
-    request.times = [0.0, 0.5]
-    answer = client.ask(request)
-    assert answer.status == answer.OK, answer.message
-    carried = np.array(answer.trajectory.covariances).reshape(2, 12, 12)
-    np.testing.assert_allclose(carried[0], COVARIANCE, atol=1e-18)
-    np.testing.assert_allclose(carried[1].diagonal()[:3], 1e-6 + 0.25 * 1e-4, rtol=1e-9)
-    np.testing.assert_allclose(carried[1].diagonal()[3:6], 1e-6 + 0.25 * 1e-2, rtol=1e-9)
-    np.testing.assert_allclose(carried[1].diagonal()[6:], COVARIANCE.diagonal()[6:], rtol=1e-9)
-    assert list(answer.trajectory.covariances_trusted) == [True, True]
-
-
-def test_drag_lets_errors_of_velocity_fade(client: Client) -> None:
-    """With linear drag k: var(v) e^(-2 k t), and var(p) + var(v) ((1 - e^(-k t)) / k)^2."""
-    request = PredictTumbling.Request(
-        state_source=PredictTumbling.Request.STATE_EXPLICIT, include_covariance=True
-    )
-    request.inertia.m = request.inertia.ixx = request.inertia.iyy = request.inertia.izz = 1.0
-    request.state.covariance = COVARIANCE.ravel().tolist()
-    request.state.linear_velocity.x = 3.0
-    request.linear_drag, request.linear_angular_drag = 0.5, 2.0
-    request.times = [0.0, 0.8]
-    answer = client.ask(request)
-    assert answer.status == answer.OK, answer.message
-    assert answer.method == answer.INTEGRATED
-    carried = np.array(answer.trajectory.covariances).reshape(2, 12, 12)
-    np.testing.assert_allclose(carried[0], COVARIANCE, atol=1e-18)
-    variances = carried[1].diagonal()
-    for first, k in ((0, 0.5), (3, 2.0)):
-        before = COVARIANCE[first, first], COVARIANCE[first + 6, first + 6]
-        gone, left = -math.expm1(-0.8 * k) / k, math.exp(-0.8 * k)
-        np.testing.assert_allclose(variances[first : first + 3], before[0] + before[1] * gone**2, rtol=1e-9)
-        np.testing.assert_allclose(variances[first + 6 : first + 9], before[1] * left**2, rtol=1e-9)
-    assert list(answer.trajectory.covariances_trusted) == [True, True]
-    request.state.angular_velocity.z, request.times = 10.0, [25.0]
-    answer = client.ask(request)
-    assert answer.status == answer.INVALID_FIELD
-    assert says(answer.message, "times must be at most 30 with cov..., got 39.7887 turns of the body ahead")
-
-
-def test_an_uncertain_landing_has_probabilities_that_sum_to_one(client: Client) -> None:
-    request = PredictImpact.Request(body_name="brick", state_source=PredictImpact.Request.STATE_EXPLICIT)
-    request.state.pose.position.z = 0.5
-    request.state.pose.orientation.y, request.state.pose.orientation.w = math.sin(0.3), math.cos(0.3)
-    request.state.linear_velocity.x = 0.5
-    request.state.angular_velocity.x = 3.0
-    request.state.covariance = COVARIANCE.ravel().tolist()
-    request.include_covariance = True
-    answer = client.ask(request)
-    assert answer.status == answer.OK, answer.message
-    impact = answer.impact
-    assert math.fsum(impact.outcome_probabilities) + impact.miss_probability == pytest.approx(1.0, abs=1e-12)
-    assert impact.outcome_probabilities[impact.outcome] > 0.0
-    after = np.array(impact.state_after.covariance).reshape(12, 12)
-    np.testing.assert_allclose(after, after.T, atol=1e-15)
-    assert np.linalg.eigvalsh(after).min() > -1e-12
 
 
 def test_a_fit_to_the_last_states_does_not_care_for_a_bad_velocity(client: Client) -> None:
