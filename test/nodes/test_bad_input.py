@@ -6,6 +6,7 @@ from __future__ import annotations
 import math
 import signal
 from collections.abc import Callable, Iterator
+from copy import copy
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +20,7 @@ from contact_dynamics_interfaces.msg import BodyState, BodyStates, ContactSet
 from contact_dynamics_interfaces.srv import (
     PredictContactMode,
     PredictImpact,
+    PredictImpactBatch,
     PredictToss,
     PredictTumbling,
     PredictTumblingBatch,
@@ -542,6 +544,32 @@ def test_no_state_published_yet(client: Client, service: Any) -> None:
     assert answer.status == answer.NO_STATE
     assert "no state of 'brick': none has been received on /brick/odometry (0 publishers)" in answer.message
     assert says_nothing(answer)
+
+
+def test_a_row_that_is_not_allowed_is_named(client: Client) -> None:
+    count = 9
+    states = BodyStates(
+        positions=[0.0] * 3 * count,
+        orientations=[0.0, 0.0, 0.0, 1.0] * count,
+        linear_velocities=[0.0, 0.0, -1.0] * count,
+        angular_velocities=[0.0] * 3 * count,
+    )
+    for field, value, words in (
+        (
+            "states.orientations",
+            [0.0, 0.0, 0.0, 0.5] * count,
+            "[0] must be a unit..., got [0.0, 0.0, 0.0, 0.5]",
+        ),
+        ("frictions", [0.1, 0.2], " must be 9, or one for all..., got 2 rows"),
+        ("states.linear_velocities", [0.0] * 4, " must be rows of 3, got 4 numbers"),
+    ):
+        request = PredictImpactBatch.Request(body_name="brick", states=copy(states), restitutions=[0.5])
+        request.contact_positions, request.contact_normals = [0.0, 0.0, -0.1] * count, [0.0, 0.0, 1.0]
+        request.frictions = [0.3]
+        put(field, value)(request)
+        answer = client.ask(request)
+        assert answer.status == answer.INVALID_FIELD
+        assert says(answer.message, f"{field}{words}")
 
 
 def test_states_that_are_stale_or_make_no_sense(tmp_path: Path) -> None:
