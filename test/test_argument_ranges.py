@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from contact_dynamics import impact
 from contact_dynamics.contact import linearised_cone
 from contact_dynamics.errors import InvalidFieldError, TooLargeError
 from contact_dynamics.questions import UncertainState
@@ -45,6 +46,7 @@ RANGES: list[tuple[str, str, Any]] = [
     *[("BodyState", "stamp_ns", value) for value in (NAN, 0.5, "now", 10**400)],
     ("forced_motion", "max_steps", 0.5),
     ("spatial_sliding_modes", "planes", 2.5),
+    *[("SpatialContactProblem", "friction_facets", value) for value in (2, 8.5, 1_000_000)],
 ]
 
 
@@ -53,6 +55,27 @@ def test_a_number_out_of_its_range_is_named(name: str, argument: str, value: Any
     with pytest.raises(InvalidFieldError) as raised:
         call(name, **{argument: value})
     assert str(raised.value).startswith(argument)
+
+
+BATCH = {
+    "masses": np.ones(4),
+    "inertias": np.ones(4),
+    "v": np.tile([0.3, -1.0], (4, 1)),
+    "w": np.zeros(4),
+    "r": np.tile([0.1, -0.5], (4, 1)),
+    "normals": np.tile([0.0, 1.0], (4, 1)),
+    "frictions": np.full(4, 0.3),
+    "restitutions": np.full(4, 0.5),
+}
+
+
+@pytest.mark.parametrize("field", BATCH)
+@pytest.mark.parametrize("value", [NAN, math.inf])
+def test_what_is_not_finite_in_a_batch_is_named_with_its_row(field: str, value: float) -> None:
+    rows = BATCH[field].copy()
+    rows[2] = value
+    with pytest.raises(InvalidFieldError, match=rf"^{field}\[2\] must be finite.*, got .*(nan|inf).*"):
+        impact.planar_impacts(**{**BATCH, field: rows})
 
 
 def test_a_curve_of_ten_million_points_is_too_large() -> None:

@@ -53,7 +53,7 @@ MOTIONS: Calls = {
     ),
     "covariance_along": (
         motion.covariance_along,
-        {"motion": FREE, "covariance": VARIANCES, "times": [0.1], "samples": 10, "seed": 0},
+        {"motion": FREE, "covariance": VARIANCES, "times": [0.1], "samples": 50, "seed": 0},
     ),
     "propagate_covariance": (
         motion.propagate_covariance,

@@ -7,6 +7,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
+import pytest
 
 from benchmarks._toss_strikes import second_arrival
 from contact_dynamics.calibration.observed import observe
@@ -98,6 +99,7 @@ def test_second_strikes_of_made_tosses_are_in_their_regions() -> None:
     assert 0.85 < most.mean() < 0.95
 
 
+@pytest.mark.slow
 def test_regions_hold_where_the_law_is_off_by_impulses_at_the_contact() -> None:
     """The impulses are drawn here, and the toss goes on from the velocities that they leave."""
     chance = np.random.default_rng(8)

@@ -105,7 +105,7 @@ def test_known_counts(contacts: ContactSet, count: int) -> None:
     assert len(spatial_sliding_modes(contacts)) == count
 
 
-@pytest.mark.parametrize(("seed", "planes"), [(0, 2), (1, 2), (2, 3), (3, 2), (5, 3), (7, 2)])
+@pytest.mark.parametrize(("seed", "planes"), [(0, 2), (3, 2), (5, 3)])
 def test_every_string_of_two_contacts(seed: int, planes: int) -> None:
     contacts = drawn(seed)
     strings = ["".join(letters) for letters in itertools.product("sf" + WAYS[: 4 * planes], repeat=2)]
