@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from contact_dynamics.diagrams import palette, paper
-from contact_dynamics.diagrams.marks import Faces, Labels, Lines, Points
+from contact_dynamics.diagrams.marks import Arrows, Faces, Labels, Lines, Points
 from contact_dynamics.diagrams.palette import Paint
 from contact_dynamics.diagrams.shape import convex_shape, part_above, solid
 from contact_dynamics.numerics.vectors import tangents_near_x
@@ -32,6 +32,9 @@ _OPACITY: Final = palette.SURFACE[3] / 255
 _EDGE_WIDTH: Final = 1.875
 _GRID_WIDTH: Final = 0.75
 
+_ARROWS_AT: Final = (-0.4, 0.0, 0.4)  # relative to half the side
+_LONGEST: Final = 0.1  # relative to the side
+
 _PATCH: Final = Paint(palette.SURFACE, paper.AXIS)
 _GRID: Final = Paint(palette.SURFACE_GRID, paper.AXIS)
 _NAME: Final = Paint(palette.NORMAL, paper.BLACK)
@@ -43,7 +46,8 @@ def surface_marks(
 ) -> list[Mark]:
     """Return a square of a surface with that side, m, about the point nearest to ``center_W``, (3,), m.
 
-    It ends where it meets the surfaces that it is ``among``.
+    It ends where it meets the surfaces that it is ``among``. Arrows show how a surface moves: the longest is
+    a tenth of the side, whatever the speed, which their labels tell.
     """
     others = [other for other in among if float(np.linalg.norm(np.cross(other.normal_W, surface.normal_W)))]
     p_W = center_W - float(surface.gaps(center_W)) * surface.normal_W
@@ -60,10 +64,19 @@ def surface_marks(
     ]
     lines = [line[:2] for line in (_clipped(line, others) for line in whole) if len(line) > 1]
     normals = np.tile(surface.normal_W, (len(corners), 1))
-    return [
+    marks: list[Mark] = [
         Faces("patch", _PATCH, corners, normals=normals, opacity=_OPACITY),
         Lines("grid", _GRID, lines, width=_GRID_WIDTH, opacity=_OPACITY),
     ]
+    if surface.moves:
+        places = p_W + np.array([a * u_W + b * v_W for a in _ARROWS_AT for b in _ARROWS_AT])
+        places = places[[all(float(other.gaps(place)) >= 0.0 for other in others) for place in places]]
+        velocities, _ = surface.motion_at(places)
+        speeds = np.linalg.norm(velocities, axis=1)
+        vectors = velocities * (_LONGEST * side / max(float(speeds.max(initial=0.0)), np.finfo(float).tiny))
+        labels = [f"{speed:.3g} m/s" for speed in speeds.tolist()]
+        marks.append(Arrows("motion", _GRID, places, vectors, width=_EDGE_WIDTH, labels=labels))
+    return marks
 
 
 def _clipped(corners_W: FloatArray, others: Sequence[Surface]) -> FloatArray:

@@ -60,6 +60,31 @@ def test_a_surface_is_a_square_in_its_plane_below_the_centre(
     assert distances <= 0.5 * side * (1.0 + 1e-5) + tolerance
 
 
+def test_arrows_show_how_a_turntable_moves_above_the_floor_alone(
+    recording: rr.RecordingStream, read: Callable[[], Drawn]
+) -> None:
+    floor = Surface(name="floor", p_WS_W=np.zeros(3), normal_W=[0.0, 0.0, 1.0], friction=0.3, restitution=0.5)
+    disc = Surface(
+        name="disc",
+        p_WS_W=np.zeros(3),
+        normal_W=[1.0, 0.0, 0.0],
+        friction=0.3,
+        restitution=0.5,
+        w_WS_W=[2.0, 0.0, 0.0],
+    )
+    for surface in (floor, disc):
+        parts = parts_of(surface_marks(surface, center_W=np.zeros(3), side=1.0, among=(floor, disc)))
+        assert ("motion" in parts) is surface.moves
+        Scenery(recording).draw(entity(SURFACES, surface.name), parts)
+    drawn = read()
+    places = drawn.array("/world/surfaces/disc/motion", "Arrows3D:origins")
+    vectors = drawn.array("/world/surfaces/disc/motion", "Arrows3D:vectors")
+    assert places[:, 2].min() >= 0.0
+    velocities = np.cross([2.0, 0.0, 0.0], places)
+    longest = np.linalg.norm(velocities, axis=1).max()
+    np.testing.assert_allclose(vectors, 0.1 * velocities / longest, atol=1e-7)
+
+
 def test_a_wall_rises_from_the_floor_and_the_floor_ends_at_the_wall(
     recording: rr.RecordingStream, read: Callable[[], Drawn]
 ) -> None:
