@@ -8,8 +8,6 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from contact_dynamics.contact.contact import MAX_CONTACTS, ContactSet
@@ -20,7 +18,6 @@ from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.shapes import box, capsule, cylinder, sphere
 from contact_dynamics.shapes.convex import ConvexShape
 from contact_dynamics.shapes.obstacle import Obstacle
-from contact_dynamics.tolerances import DISTANCE_TOLERANCE
 from contact_dynamics.world import MAX_VERTICES, Body, Surface, World, box_vertices
 
 STUFF = MassProperties(mass=1.0, I_B=np.eye(3))
@@ -89,20 +86,6 @@ def test_edges_corners_and_two_surfaces_at_once() -> None:
     assert in_the_corner.surfaces == ("floor",) * 4 + ("wall",) * 4
     assert len(find_contacts(BOX, at((0.0, 0.0, 30.0)), World(surfaces=(FLOOR,)))) == 0
     assert len(find_contacts(BOX, at((0.0, 0.0, 3.0)), World(surfaces=()))) == 0
-
-
-@given(gap=st.floats(-0.1, 0.1), tolerance=st.floats(0.0, 0.05))
-def test_the_tolerance_decides_what_touches(gap: float, tolerance: float) -> None:
-    height = (3.0 + gap) - 3.0
-    state = at((0.0, 0.0, 3.0 + gap))
-    if height < -max(tolerance, DISTANCE_TOLERANCE):
-        with pytest.raises(
-            InvalidFieldError, match=r"must be at most .*\(distance_tolerance\), got .*deep in 'floor'"
-        ):
-            find_contacts(BOX, state, World(surfaces=(FLOOR,)), distance_tolerance=tolerance)
-        return
-    found = find_contacts(BOX, state, World(surfaces=(FLOOR,)), distance_tolerance=tolerance)
-    assert len(found) == (4 if height <= tolerance else 0)
 
 
 def contacts(**changes: object) -> ContactSet:

@@ -131,7 +131,9 @@ def test_a_capsule_a_cone_and_a_rounded_box() -> None:
 
 @given(gap=st.floats(-0.05, 0.05), tolerance=st.floats(0.0, 0.04))
 def test_the_tolerance_decides_what_touches(gap: float, tolerance: float) -> None:
-    for shape, height in ((sphere(radius=0.25), 0.25), (cylinder(radius=0.5, length=0.5), 0.25)):
+    shapes = (sphere(radius=0.25), cylinder(radius=0.5, length=0.5), box(size=(1.0, 1.0, 0.5)))
+    for shape in shapes:
+        height = 0.25
         state = at((0.0, 0.0, height + gap))
         if height - (height + gap) > max(tolerance, 1e-6):
             with pytest.raises(

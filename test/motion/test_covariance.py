@@ -185,34 +185,6 @@ def test_no_times() -> None:
         assert carried.trusted.shape == (0,)
 
 
-def spoiled(row: int, column: int, value: float) -> np.ndarray:
-    covariance = np.eye(12)
-    covariance[row, column] = value
-    return covariance
-
-
-@pytest.mark.parametrize(
-    ("covariance", "message"),
-    [
-        (np.eye(6), "shape"),
-        (spoiled(3, 3, math.nan), "finite"),
-        (spoiled(3, 3, -1e-3), "variances >= 0"),
-        (spoiled(3, 4, 1e-3), "symmetric"),
-        (spoiled(3, 4, 3.0) + spoiled(4, 3, 3.0), "positive semidefinite"),
-        (np.diag([1.0] * 11 + [0.0]) + 0.1 * (np.eye(12, k=1) + np.eye(12, k=-1)), "zero variance"),
-        (0.5 * np.eye(12) - 0.2 * np.ones((12, 12)) + 0.2 * np.eye(12), "positive semidefinite"),
-    ],
-)
-def test_what_is_no_covariance_is_refused(covariance: np.ndarray, message: str) -> None:
-    with pytest.raises(InvalidFieldError, match=f"covariance.*{message}"):
-        covariance_along(motion_of("flat"), covariance, TIMES)
-
-
 def test_too_few_samples_are_refused() -> None:
     with pytest.raises(InvalidFieldError, match="samples"):
         covariance_along(motion_of("flat"), np.eye(12), TIMES, method=PropagationMethod.SAMPLED, samples=10)
-
-
-def test_times_are_finite() -> None:
-    with pytest.raises(InvalidFieldError, match="times"):
-        covariance_along(motion_of("flat"), np.eye(12), [math.inf])

@@ -113,13 +113,6 @@ def test_any_body_any_window(a: float, b: float, share: float, w: tuple, gaps: l
     assert (wrong < limits).all(), wrong / limits
 
 
-def test_a_radian_from_state_to_state_is_no_obstacle() -> None:
-    motion = motion_of("about the major axis")
-    found = fit(motion, published(motion, np.linspace(0.0, 8.0, 12), None))
-    assert found.converged
-    np.testing.assert_allclose(error(found.state, motion.state_at(8.0)), 0.0, rtol=0.0, atol=2e-8)
-
-
 # Noise
 
 
@@ -230,13 +223,6 @@ def test_it_says_how_the_state_changes_with_gravity(noise: StateNoise | None) ->
         assert rate == pytest.approx(0.2 / 2.0, rel=0.01)
 
 
-def test_velocities_make_the_answer_surer() -> None:
-    motion = motion_of("about the major axis")
-    states = published(motion, WINDOW, WITH_RATES)
-    poses, all_of_it = fit(motion, states, NOISE), fit(motion, states, WITH_RATES)
-    assert (all_of_it.covariance.diagonal() < poses.covariance.diagonal()).all()
-
-
 @pytest.mark.parametrize("noise", [NOISE, WITH_RATES])
 def test_another_minimiser_finds_the_same(noise: StateNoise) -> None:
     motion = motion_of("near the middle axis")
@@ -303,12 +289,6 @@ def test_noise_is_positive(field: str, value: float) -> None:
     good = {"position": 1.0, "orientation": 1.0}
     with pytest.raises(InvalidFieldError, match=f"{field}_noise"):
         StateNoise(**{**good, field: value})
-
-
-def test_gravity_is_finite() -> None:
-    motion = motion_of("flat")
-    with pytest.raises(InvalidFieldError, match="gravity"):
-        fit_free_motion(motion.body, published(motion, WINDOW, None), gravity_W=[0.0, 0.0, math.nan])
 
 
 @seeds(range(6))

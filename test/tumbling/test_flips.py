@@ -8,7 +8,6 @@ import math
 import numpy as np
 import pytest
 
-from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.tumbling import FreeMotion, free_motion
 from contact_dynamics.tumbling.flips import next_flips
@@ -86,11 +85,6 @@ def test_deviations_are_those_of_noisy_states(name: str, w_deviation: float, ang
     # The deviation of a logarithm, with its long tail: these samples know it to some 5 %, the 1000 of the
     # answer to 6 %; three times both together.
     assert flips.deviations == pytest.approx(np.std(samples, axis=0), rel=0.25)
-
-
-def test_a_covariance_of_another_shape_is_refused() -> None:
-    with pytest.raises(InvalidFieldError, match="covariance"):
-        next_flips(motion_of(FLIPPING[0]), 1, covariance=np.eye(6))
 
 
 def test_no_noise_no_deviation() -> None:
