@@ -228,7 +228,7 @@ class ParameterSource:
             f"{_QOS}.{topic}.subscription.{policy}" for topic in self.topics.values() for policy in _POLICIES
         }
         given = [name for name in self.values if name.startswith(f"{_QOS}.")]
-        self._refuse_others(given, {*self.read, *overrides})
+        self._refuse_others(given, {*self.read, *self._also_known, *overrides})
 
     def _refuse_others(self, given: Iterable[str], known: Collection[str]) -> None:
         unknown = sorted(name for name in given if name not in known)
