@@ -12,13 +12,13 @@ from typing import Any
 
 import numpy as np
 import pytest
-from contact_dynamics.nodes.given_parameters import ParameterFile
 from nav_msgs.msg import Path as RosPath
 
 from contact_dynamics.contact.contact import ContactSet
 from contact_dynamics.contact.uncertainty import ContactUncertainty
 from contact_dynamics.impact import RestitutionLaw, SeveralContactsLaw
 from contact_dynamics.motion.forces import ConstantWrench, Drag, WrenchAxes
+from contact_dynamics.nodes.parameter_file import ParameterFile
 from contact_dynamics.nodes.parameters import read_server_parameters
 from contact_dynamics.plane.projection import PlaneOfMotion
 from contact_dynamics.questions import (
