@@ -3,22 +3,27 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
+from typing import Any
 
 import pytest
 import rclpy
 from rclpy.context import Context
 from rclpy.node import Node
 
+from contact_dynamics import questions
 from contact_dynamics.nodes import server
 from contact_dynamics.nodes.parameter_file import ParameterFile, Section, check_sections, read_sections
 from contact_dynamics.nodes.parameter_reader import ConfigurationError, ParameterSource
 from contact_dynamics.nodes.parameters import read_server_parameters
 from contact_dynamics.nodes.state_sources import state_sources
+from contact_dynamics.rigid_body.body import BodyState
 from message_words import says
 from msg_adapters.transforms import TransformTree
 
 ROOT = Path(__file__).parents[2]
+FALL = 0.5 * 9.80665 * 0.3**2  # m, in 0.3 s
 
 
 def test_the_commented_configuration_is_read_as_it_says() -> None:
@@ -187,3 +192,42 @@ def test_two_bodies_of_one_frame_on_one_topic_are_refused() -> None:
         match=r"body\.b\.frame must be another frame than that of body\.a.*, got 'cup'",
     ):
         state_sources(parameters, static=TransformTree())
+
+
+SHAPES = {
+    "bodies": ["ball", "can", "brick"],
+    **{f"body.{name}.mass": 1.0 for name in ("ball", "can", "brick")},
+    **{f"body.{name}.inertia": [0.0] for name in ("ball", "can", "brick")},
+    "body.ball.sphere": [0.25],
+    "body.can.cylinder": [0.1, 0.3],
+    "body.brick.box": [0.4, 0.2, 0.1],
+    "surfaces": ["floor", "table"],
+    "surface.floor.point": [0.0, 0.0, -1.0],
+    "surface.table.point": [5.0, 0.0, 0.0],
+    "surface.table.vertices": [-1.0, -1.0, 0.0, 1.0, -1.0, 0.0, 1.0, 1.0, 0.0, -1.0, 1.0, 0.0],
+    **{f"surface.{name}.friction": 0.5 for name in ("floor", "table")},
+    **{f"surface.{name}.restitution": 0.0 for name in ("floor", "table")},
+}
+ACROSS = [math.sqrt(0.5), 0, 0, math.sqrt(0.5)]
+
+
+@pytest.mark.parametrize(
+    ("name", "state", "lands_on"),
+    [
+        ("ball", {"p_WB_W": [0, 0, -0.75 + FALL]}, ("floor",)),
+        ("can", {"p_WB_W": [0, 0, -0.9 + FALL], "q_WB": ACROSS}, ("floor",) * 2),
+        ("brick", {"p_WB_W": [6.0, 0, 0.05 + FALL]}, ("table",) * 4),  # half over its edge
+        ("brick", {"p_WB_W": [6.3, 0, -0.95 + FALL]}, ("floor",) * 4),  # past it
+    ],
+)
+def test_configured_shapes_land_on_configured_surfaces(
+    name: str, state: dict[str, Any], lands_on: tuple[str, ...]
+) -> None:
+    known = questions.Context(world=read_server_parameters(GivenParameters(SHAPES)).world)
+    nothing = {"q_WB": [0, 0, 0, 1], "v_WB_W": [0, 0, 0], "w_WB_W": [0, 0, 0]}
+    landing = questions.ask(
+        questions.ImpactQuestion(body=name, state=BodyState(**{**nothing, **state})), known
+    )
+    # A contact begins up to 1e-9 m from a surface, the distance_tolerance, and they meet with 2.9 m/s.
+    assert landing.seconds_to_contact == pytest.approx(0.3, abs=1e-9)
+    assert landing.contacts.surfaces == lands_on
