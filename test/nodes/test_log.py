@@ -11,6 +11,7 @@ import dataclasses
 import json
 import platform
 import random
+import re
 import signal
 import subprocess
 import sys
@@ -248,6 +249,21 @@ def test_rosbags_reads_what_was_sent_and_received(session: Session) -> None:
         assert responses[topic] == [text(response) for _, response in calls]
 
 
+def test_mcap_finds_all_by_its_index(session: Session) -> None:
+    with session.path.open("rb") as stream:
+        reader = make_reader(stream, validate_crcs=True)
+        assert reader.get_header().profile == "ros2"
+        summary = reader.get_summary()
+        assert summary is not None
+        channels = summary.channels.values()
+        types = {each.topic: summary.schemas[each.schema_id].name for each in channels}
+        assert types[STATES_TOPIC] == "nav_msgs/msg/Odometry"
+        assert all(channel.metadata["topic_type_hash"].startswith("RIHS01_") for channel in channels)
+        assert Counter(channel.topic for _, channel, _ in reader.iter_messages()) == session.counts
+    with AnyReader([session.path]) as rosbags:  # one file of the folder
+        assert rosbags.message_count == sum(session.counts.values())
+
+
 def test_mcap_ros2_reads_the_states_that_were_sent(session: Session) -> None:
     with session.path.open("rb") as stream:
         reader = make_reader(stream, decoder_factories=[DecoderFactory()])
@@ -316,3 +332,16 @@ def test_rerun_finds_nothing_to_complain_of(session: Session) -> None:
         line for line in done.stdout.splitlines() if any(f" {topic} " in line for topic in session.counts)
     ]
     assert [line.split()[0] for line in lines] == ["ok"] * len(session.counts), done.stdout
+
+
+def test_rerun_draws_nothing_of_a_log_by_itself(session: Session, tmp_path: Path) -> None:
+    """As `docs/log.md` says, the values are there, but nothing that its 3D view would show."""
+    rerun, converted = Path(sys.executable).with_name("rerun"), tmp_path / "log.rrd"
+    subprocess.run([str(rerun), "mcap", "convert", str(session.path), "-o", str(converted)], check=True)
+    printed = subprocess.run(
+        [str(rerun), "rrd", "print", "-v", str(converted)], capture_output=True, text=True, check=True
+    ).stdout
+    assert "nav_msgs.msg.Odometry:message" in printed
+    drawn = "Transform3D|Transform|Points3D|Boxes3D|Mesh3D|Asset3D|Arrows3D|LineStrips3D"
+    assert re.findall(rf"\b(?:{drawn}):", printed) == []
+    assert "viewport stays empty" in (ROOT / "docs" / "log.md").read_text(encoding="utf-8")
