@@ -281,7 +281,7 @@ def _frame_of(diagram: Diagram, page: _Page, *, has_legend: bool = True) -> list
     shown = [mark for mark in diagram.marks if has_legend and mark.legend and mark.in_viewer]
     noted = [mark for mark in shown if isinstance(mark, Points) and mark.is_noted and len(mark.places) > 0]
     legend = [mark for mark in shown if not (mark.is_obvious or (isinstance(mark, Points) and mark.is_noted))]
-    nearer = 0.16 * across if len(diagram.axes) == 3 else 0.0  # the upright axis is, and so farther left
+    nearer = 0.13 * across if len(diagram.axes) == 3 else 0.0  # the upright axis is, and so farther left
     aside, up = -0.5 * _widest(legend) - 7.0 * _LETTER - 8.0 - nearer, top
     for mark in legend:
         lines = mark.legend.count("\n")
