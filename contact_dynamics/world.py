@@ -306,7 +306,8 @@ class Surface(Record):
         lasting_factor: Factor of the friction coefficient for sustained contact in tosses (`toss`), >= 0: the
             friction of a sliding face can differ from that of striking corners.
         v_WS_W: (3,), m/s, velocity of the surface's material point at ``p_WS_W``, world axes.
-        w_WS_W: (3,), rad/s, angular velocity of the surface, world axes.
+        w_WS_W: (3,), rad/s, angular velocity of the surface, world axes. If ``v_WS_W`` is zero, the axis goes
+            through ``p_WS_W``.
         a_WS_W: (3,), m/s^2, acceleration of the surface's material point at ``p_WS_W``, world axes.
         alpha_WS_W: (3,), rad/s^2, angular acceleration of the surface, world axes.
         moves: Whether any of these four is not zero.
@@ -442,6 +443,17 @@ def _alike(one: Surface, other: Surface) -> bool:
     return bool(alike and not turns)
 
 
+def _motion_in_words(surface: Surface | Obstacle) -> str:
+    if not isinstance(surface, Surface):
+        return f"the obstacle {surface.name!r}, which is at rest"
+    if surface.w_WS_W.any() or surface.alpha_WS_W.any():
+        return f"{surface.name!r}, which turns"
+    if not surface.moves:
+        return f"{surface.name!r}, which is at rest"
+    v, a = surface.v_WS_W.tolist(), surface.a_WS_W.tolist()
+    return f"{surface.name!r}, which moves at {v} m/s" + (f" and {a} m/s^2" if any(a) else "")
+
+
 def _vanishes(difference: FloatArray, *terms: FloatArray) -> bool:
     """Return whether a difference of some terms is nothing but rounding."""
     largest = max(float(np.abs(term).max()) for term in terms)
@@ -545,9 +557,11 @@ class World(Record):
         first = planes[0]
         for each in self.surfaces:
             if not (isinstance(each, Surface) and _alike(first, each)):
+                found = [_motion_in_words(one) for one in dict.fromkeys((first, each))]
                 message = (
                     f"world must have surfaces at rest in {call}, or surfaces that all move with the same "
-                    f"v_WS_W and a_WS_W and do not turn, got {each.name!r}, which turns or moves differently"
+                    f"v_WS_W and a_WS_W and do not turn, got {' and '.join(found)}; next_landing and "
+                    "contact_modes accept other motions"
                 )
                 raise NotSupportedError(message)
         at_rest = [replace(each, v_WS_W=_AT_REST, a_WS_W=_AT_REST) for each in planes]

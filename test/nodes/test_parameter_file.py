@@ -223,7 +223,7 @@ ACROSS = [math.sqrt(0.5), 0, 0, math.sqrt(0.5)]
 def test_configured_shapes_land_on_configured_surfaces(
     name: str, state: dict[str, Any], lands_on: tuple[str, ...]
 ) -> None:
-    known = questions.Context(world=read_server_parameters(GivenParameters(SHAPES)).world)
+    known = questions.Context(world=read_server_parameters(ParameterSource(SHAPES)).world)
     nothing = {"q_WB": [0, 0, 0, 1], "v_WB_W": [0, 0, 0], "w_WB_W": [0, 0, 0]}
     landing = questions.ask(
         questions.ImpactQuestion(body=name, state=BodyState(**{**nothing, **state})), known

@@ -333,7 +333,10 @@ WRONG = [
 
 
 WRONG_FOR_ROS = [
-    (misspell("body.brick.mass", "body.brick.maas"), "Given is body.brick.maas, which may be misspelled."),
+    (
+        misspell("body.brick.mass", "body.brick.maas"),
+        "body.brick.maas: there is no such parameter; the nearest is body.brick.mass",
+    ),
     (put(state_timeout=NAN), "state_timeout must be in [0.001, 1e+06] (Largest age..., got nan"),
     (put(body__brick__sphere=0.03), "body.brick.sphere must be a list..., got 0.03"),
     (

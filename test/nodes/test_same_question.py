@@ -7,158 +7,238 @@ right is shown where it is computed.
 
 from __future__ import annotations
 
-from dataclasses import replace
-from typing import Any
+import math
+from typing import Any, TypeAlias
 
 import numpy as np
 import pytest
 from nav_msgs.msg import Path as RosPath
 
-from contact_dynamics.contact.contact import ContactSet
-from contact_dynamics.contact.uncertainty import ContactUncertainty
-from contact_dynamics.impact import RestitutionLaw, SeveralContactsLaw
-from contact_dynamics.motion.forces import ConstantWrench, Drag, WrenchAxes
 from contact_dynamics.nodes.parameter_file import ParameterFile
 from contact_dynamics.nodes.parameters import read_server_parameters
-from contact_dynamics.plane.projection import PlaneOfMotion
-from contact_dynamics.questions import (
-    AtRate,
-    AtStamps,
-    ContactModeQuestion,
-    Context,
-    ImpactQuestion,
-    InTime,
-    Problem,
-    TossQuestion,
-    TossSampling,
-    TumblingQuestion,
-    UncertainState,
-    UntilContact,
-    UntilPlane,
-    ask,
+from contact_dynamics.questions import Context, ask
+from contact_dynamics.questions.services import SERVICES
+from contact_dynamics_interfaces.msg import BodyState
+from contact_dynamics_interfaces.srv import (
+    PredictContactMode,
+    PredictContactModeBatch,
+    PredictImpact,
+    PredictImpactBatch,
+    PredictToss,
+    PredictTumbling,
+    PredictTumblingBatch,
 )
-from contact_dynamics.questions.many import ManyImpactsQuestion, ManyStates, ManyTumblingsQuestion
-from contact_dynamics.questions.many_contact_modes import ManyContactModesQuestion
-from contact_dynamics.questions.services import SERVICES, service_of
-from contact_dynamics.rigid_body.body import BodyState, MassProperties
-from contact_dynamics.world import Body
-from contact_dynamics_interfaces.srv import PredictTumbling
 from running_server import ROOT, Client
+
+Fields: TypeAlias = "dict[str, Any]"
 
 PARAMETERS = read_server_parameters(ParameterFile(ROOT / "config" / "server.yaml"))
 CONTEXT = Context(world=PARAMETERS.world, defaults=PARAMETERS.defaults)
-ROD = Body(
-    name="",
-    mass_properties=MassProperties(mass=1.5, I_B=np.diag([0.3, 0.4, 0.5])),
-    p_FB_F=[0.02, -0.01, 0.03],
-)
-TOSSED = BodyState(
-    p_WB_W=[0.1, -0.2, 1.0],
-    q_WB=[0.5, -0.5, 0.5, 0.5],
-    v_WB_W=[1.0, 0.3, -0.5],
-    w_WB_W=[1.0, 6.0, 2.0],
-    stamp_ns=12_345_678_901,
-)
-LEVEL = BodyState(
-    p_WB_W=[0.0, 0.0, 0.025], q_WB=[0, 0, 0, 1], v_WB_W=[0, 0, 0], w_WB_W=[0, 0, 0], stamp_ns=77
-)
-TILTED = replace(LEVEL, p_WB_W=[0.0, 0.0, 0.06], q_WB=[0, np.sin(0.17), 0, np.cos(0.17)])
-UNCERTAIN = UncertainState(
-    state=TOSSED, covariance=np.diag([1e-6] * 3 + [1e-5] * 3 + [1e-4] * 3 + [1e-3] * 3)
-)
-FEET = ContactSet(
-    p_WC_W=[[-0.1, 0.0, 0.5], [0.3, 0.1, 0.5]],
-    normals_W=[[0, 0, 1]] * 2,
-    frictions=[0.5, 0.1],
-    restitutions=[0.2, 0.8],
-    surfaces=("left", "right"),
-)
-MANY = ManyStates(
-    p_WB_W=[[0, 0, 1.0], [0.5, 0, 1.0]],
-    q_WB=[[0, 0, 0, 1]] * 2,
-    v_WB_W=[[0.3, 0, -1.0], [0, 0, 2.0]],
-    w_WB_W=[[0, 3.0, 0]] * 2,
-)
-PUSHED = ContactModeQuestion(body="brick", state=LEVEL, force_W=[0.75, 0, 0])
-QUESTIONS: dict[str, Any] = {
-    "until contact": TumblingQuestion(body="brick", state=TOSSED, sampling=UntilContact()),
-    "under forces, uncertain": TumblingQuestion(
-        body=ROD,
-        state=UNCERTAIN,
-        sampling=AtRate(rate=20.0, duration=0.5),
-        wrench=ConstantWrench(force=[0.5, 0, 0], torque=[0, 0, 0.25], axes=WrenchAxes.BODY),
-        drag=Drag(linear=0.1),
-        include_covariance=True,
+ROD: Fields = {"inertia": {"m": 1.5, "com": {"x": 0.02, "y": -0.01}, "ixx": 0.3, "iyy": 0.4, "izz": 0.5}}
+TOSSED: Fields = {
+    "header": {"stamp": {"sec": 12, "nanosec": 345_678_901}},
+    "pose": {
+        "position": {"x": 0.1, "y": -0.2, "z": 1.0},
+        "orientation": {"x": 0.5, "y": -0.5, "z": 0.5, "w": 0.5},
+    },
+    "linear_velocity": {"x": 1.0, "y": 0.3, "z": -0.5},
+    "angular_velocity": {"x": 1.0, "y": 6.0, "z": 2.0},
+}
+UNCERTAIN = {**TOSSED, "covariance": np.diag(np.repeat([1e-6, 1e-5, 1e-4, 1e-3], 3)).ravel().tolist()}
+
+
+def lying(z: float, **fields: Any) -> Fields:
+    return {"pose": {"position": {"z": z}}, **fields}
+
+
+TILTED: Fields = {
+    "pose": {"position": {"z": 0.06}, "orientation": {"y": math.sin(0.17), "w": math.cos(0.17)}}
+}
+LEFT: Fields = {
+    "positions": [-0.1, 0.0, 0.5],
+    "normals": [0.0, 0.0, 1.0],
+    "frictions": [0.5],
+    "restitutions": [0.2],
+    "surface_names": ["left"],
+}
+RIGHT: Fields = {**LEFT, "positions": [0.3, 0.1, 0.5], "frictions": [0.1], "restitutions": [0.8]}
+FEET: Fields = {name: LEFT[name] + RIGHT[name] for name in LEFT}
+MANY: Fields = {
+    "positions": [0.0, 0.0, 1.0, 0.5, 0.0, 1.0],
+    "orientations": [0.0, 0.0, 0.0, 1.0] * 2,
+    "linear_velocities": [0.3, 0.0, -1.0, 0.0, 0.0, 2.0],
+    "angular_velocities": [0.0, 3.0, 0.0] * 2,
+}
+BRICK: Fields = {"body_name": "brick"}
+PUSHED: Fields = {**BRICK, "state_source": 1, "state": lying(0.025)}
+FLIES: Fields = {"state_source": 1, "state": TOSSED}
+REQUESTS: dict[str, tuple[Any, Fields]] = {
+    "until contact": (PredictTumbling, {**BRICK, **FLIES, "sampling": 3}),
+    "under forces, uncertain": (
+        PredictTumbling,
+        {
+            **ROD,
+            "state_source": 1,
+            "state": UNCERTAIN,
+            "sampling": 2,
+            "rate": 20.0,
+            "duration": 0.5,
+            "applied_wrench": {"force": {"x": 0.5}, "torque": {"z": 0.25}},
+            "wrench_in_body_axes": True,
+            "linear_drag": 0.1,
+            "include_covariance": True,
+        },
     ),
-    "until a plane, with curves": TumblingQuestion(
-        body=ROD,
-        state=TOSSED,
-        sampling=UntilPlane(plane_point=[0, 0, 0.2], plane_normal=[0, 0, 1], body_point=[0.1, 0, 0]),
-        curve_points=7,
+    "until a plane, with curves": (
+        PredictTumbling,
+        {
+            **ROD,
+            **FLIES,
+            "sampling": 4,
+            "plane_point": {"z": 0.2},
+            "plane_normal": {"z": 1.0},
+            "body_point": {"x": 0.1},
+            "curve_points": 7,
+        },
     ),
-    "at stamps, without weight": TumblingQuestion(
-        body=ROD, state=TOSSED, sampling=AtStamps(stamps_ns=[12_000_000_000]), gravity_W=[0, 0, 0]
+    "at stamps, without weight": (
+        PredictTumbling,
+        {**ROD, **FLIES, "sampling": 1, "stamps_ns": [12_000_000_000], "gravity": 1},
     ),
-    "a landing": ImpactQuestion(body="brick", state=TOSSED),
-    "orders": ImpactQuestion(body=ROD, state=TOSSED, contacts=FEET, include_orders=True),
-    "in time": ImpactQuestion(
-        body="brick", state=TILTED, several_contacts_law=InTime(strike_window=0.1, hold_step=0.001)
+    "a landing": (PredictImpact, {**BRICK, **FLIES}),
+    "orders": (
+        PredictImpact,
+        {**ROD, **FLIES, "contact_source": 1, "contacts": FEET, "include_orders": True},
     ),
-    "at once": ImpactQuestion(
-        body="brick",
-        state=TOSSED,
-        restitution_law=RestitutionLaw.NEWTON,
-        several_contacts_law=SeveralContactsLaw.SIMULTANEOUS,
+    "in time": (
+        PredictImpact,
+        {
+            **BRICK,
+            "state_source": 1,
+            "state": TILTED,
+            "several_contacts_law": 2,
+            "strike_window": 0.1,
+            "hold_step": 0.001,
+        },
     ),
-    "in a plane": ImpactQuestion(
-        body=ROD,
-        state=replace(LEVEL, p_WB_W=[0, 0, 0.8], v_WB_W=[1.0, 0, -2.0], w_WB_W=[0, 2.0, 0]),
-        contacts=FEET.subset([0]),
-        problem=Problem.PLANAR,
-        plane=PlaneOfMotion(normal_W=[0, -1, 0]),
-        out_of_plane_tolerance=1e-3,
+    "at once": (PredictImpact, {**BRICK, **FLIES, "restitution_law": 1, "several_contacts_law": 1}),
+    "in a plane": (
+        PredictImpact,
+        {
+            **ROD,
+            "state_source": 1,
+            "state": lying(0.8, linear_velocity={"x": 1.0, "z": -2.0}, angular_velocity={"y": 2.0}),
+            "contact_source": 1,
+            "contacts": {**LEFT, "positions": [-0.1, -0.01, 0.5]},
+            "problem": 1,
+            "plane_normal": {"y": -1.0},
+            "out_of_plane_tolerance": 1e-3,
+        },
     ),
-    "two bodies": ImpactQuestion(
-        body=ROD, state=TOSSED, other="brick", other_state=LEVEL, contacts=FEET.subset([1])
+    "two bodies": (
+        PredictImpact,
+        {
+            **ROD,
+            **FLIES,
+            "other_body_name": "brick",
+            "other_state": [lying(0.025)],
+            "contact_source": 1,
+            "contacts": RIGHT,
+        },
     ),
-    "probable outcomes": ImpactQuestion(
-        body=ROD, state=UNCERTAIN, contacts=FEET.subset([1]), include_covariance=True
+    "probable outcomes": (
+        PredictImpact,
+        {
+            **ROD,
+            "state_source": 1,
+            "state": UNCERTAIN,
+            "contact_source": 1,
+            "contacts": RIGHT,
+            "include_covariance": True,
+        },
     ),
-    "margins, wrenches, statics": replace(
-        PUSHED, include_margins=True, include_wrenches=True, include_statics=True
+    "margins, wrenches, statics": (
+        PredictContactMode,
+        {
+            **PUSHED,
+            "applied_wrench": {"force": {"x": 0.75}},
+            "include_margins": True,
+            "include_wrenches": True,
+            "include_statics": True,
+        },
     ),
-    "in space": replace(
-        PUSHED, force_W=[1.0, 1.0, 0], include_margins=True, include_wrenches=True, friction_facets=4
+    "in space": (
+        PredictContactMode,
+        {
+            **PUSHED,
+            "applied_wrench": {"force": {"x": 1.0, "y": 1.0}},
+            "include_margins": True,
+            "include_wrenches": True,
+            "friction_facets": 4,
+        },
     ),
-    "settled by an impact": ContactModeQuestion(
-        body=ROD, state=TOSSED, contacts=FEET, problem=Problem.SPATIAL, include_impact=True
+    "settled by an impact": (
+        PredictContactMode,
+        {**ROD, **FLIES, "contact_source": 1, "contacts": FEET, "problem": 2, "include_impact": True},
     ),
-    "uncertain contacts": ContactModeQuestion(
-        body=ROD,
-        state=replace(LEVEL, p_WB_W=[0, 0, 0.8]),
-        contacts=FEET,
-        problem=Problem.SPATIAL,
-        uncertainty=ContactUncertainty(frictions=0.1),
-        include_geometry_margins=True,
+    "uncertain contacts": (
+        PredictContactMode,
+        {
+            **ROD,
+            "state_source": 1,
+            "state": lying(0.8),
+            "contact_source": 1,
+            "contacts": FEET,
+            "problem": 2,
+            "uncertainty_frictions": [0.1],
+            "include_geometry_margins": True,
+        },
     ),
-    "a toss": TossQuestion(
-        body="brick", state=UNCERTAIN, sampling=TossSampling(count=5, seed=3), max_alternatives=1
+    "a toss": (
+        PredictToss,
+        {
+            **BRICK,
+            "state_source": 1,
+            "state": UNCERTAIN,
+            "samples": 5,
+            "seed": 3,
+            "max_alternatives": 1,
+        },
     ),
-    "many impacts": ManyImpactsQuestion(
-        body="brick",
-        states=MANY,
-        p_WC_W=[[0.05, 0, 0.98], [0.5, 0, 0.98]],
-        normals_W=[[0, 0, 1.0]],
-        frictions=[0.3],
-        restitutions=[0.5],
+    "many impacts": (
+        PredictImpactBatch,
+        {
+            **BRICK,
+            "states": MANY,
+            "contact_positions": [0.05, 0.0, 0.98, 0.5, 0.0, 0.98],
+            "contact_normals": [0.0, 0.0, 1.0],
+            "frictions": [0.3],
+            "restitutions": [0.5],
+        },
     ),
-    "many tumblings": ManyTumblingsQuestion(body="brick", states=MANY, seconds=[0.25, 0.5]),
-    "many contact modes": ManyContactModesQuestion(
-        asked=replace(PUSHED, force_W=[0, 0, 0], include_margins=True),
-        forces_W=[[0, 0, 0], [0.3, 0, 0], [2.0, 0, 0]],
-        torques_W=np.zeros((3, 3)),
+    "many tumblings": (PredictTumblingBatch, {**BRICK, "states": MANY, "times": [0.25, 0.5]}),
+    "many contact modes": (
+        PredictContactModeBatch,
+        {
+            **PUSHED,
+            "forces": [0.0, 0.0, 0.0, 0.3, 0.0, 0.0, 2.0, 0.0, 0.0],
+            "include_margins": True,
+        },
     ),
 }
+
+
+def filled(msg: Any, fields: Fields) -> Any:
+    """Fill a message with the fields that are given, and return it."""
+    types = msg.get_fields_and_field_types()
+    for name, value in fields.items():
+        if isinstance(value, dict):
+            filled(getattr(msg, name), value)
+        elif types[name].startswith("sequence<contact_dynamics_interfaces/BodyState"):
+            setattr(msg, name, [filled(BodyState(), each) for each in value])
+        else:
+            setattr(msg, name, value)
+    return msg
 
 
 def contents(msg: Any) -> Any:
@@ -174,17 +254,16 @@ def contents(msg: Any) -> Any:
 
 
 def test_every_service_is_asked() -> None:
-    assert {service_of(each).name for each in QUESTIONS.values()} == {each.name for each in SERVICES}
+    assert {asked for asked, _ in REQUESTS.values()} == {each.service_type for each in SERVICES}
 
 
-@pytest.mark.parametrize("name", QUESTIONS)
+@pytest.mark.parametrize("name", REQUESTS)
 def test_a_server_answers_as_python_does(client: Client, name: str) -> None:
-    """The question is read back from its request, since the position of a body goes over by another point."""
-    question = QUESTIONS[name]
-    service = service_of(question)
-    request = service.question_to_msg(question, world=CONTEXT.world, world_frame="world")
+    asked, fields = REQUESTS[name]
+    (service,) = (each for each in SERVICES if each.service_type is asked)
+    request = filled(asked.Request(), fields)
     answer = ask(service.question_of(request, world=CONTEXT.world, world_frame="world"), CONTEXT)
-    here: Any = service.answer_to_msg(answer, world_frame="world", into=service.service_type.Response())
+    here: Any = service.answer_to_msg(answer, world_frame="world", into=asked.Response())
     response = client.ask(request)
     assert response.status == response.OK, response.message
     assert contents(response) == contents(here)

@@ -179,7 +179,7 @@ def test_a_body_without_a_shape_has_no_outside() -> None:
 
 def test_contacts_that_are_taken_as_flush_warn_where_the_verdict_is_undecided_otherwise() -> None:
     for noise, count in ((0.0, 0), (1e-9, 0), (2e-7, 1)):
-        box = flush(6, noise)
+        box = flush(2, noise)
         body = Body(name="peg", mass_properties=MassProperties(mass=BOX_MASS, I_B=np.diag(box.inertia)))
         answer = modes_questions.answer(
             ContactModeQuestion(

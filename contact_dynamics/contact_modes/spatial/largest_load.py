@@ -480,7 +480,9 @@ def _check_rests(problem: SpatialContactProblem) -> None:
     found = spatial_contact_modes(problem)
     if STICKS * len(problem.contacts) not in {mode.mode for mode in found.modes}:
         raise InvalidFieldError(
-            "problem", found.in_short(), "one of a body that stays fixed without the load"
+            "problem",
+            found.in_short(),
+            "one of a body that stays fixed without the additional load or motion",
         )
 
 
