@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -12,10 +13,12 @@ import pytest
 from contact_dynamics.contact.contact import ContactSet
 from contact_dynamics.contact_modes import Certainty, ModeVerdict
 from contact_dynamics.errors import InvalidFieldError, NoContactError, OutOfPlaneError, TooLargeError
+from contact_dynamics.impact import ImpactOutcome
 from contact_dynamics.plane.projection import PlaneOfMotion
-from contact_dynamics.questions import ContactModeQuestion, Problem
+from contact_dynamics.questions import ContactModeQuestion, Problem, SettledImpact
 from contact_dynamics.questions.contact_modes import answer
-from contact_dynamics.world import World
+from contact_dynamics.rigid_body.body import BodyState, MassProperties
+from contact_dynamics.world import Body, World
 from questions.known_world import CONTEXT, CUBE, FRICTION, GRAVITY, MASS, RESTING, SIDE, below, state
 
 ROUNDING = 1e-12  # a few operations on numbers of order 1 to 10
@@ -168,6 +171,103 @@ def test_a_foot_that_approaches_is_settled_by_an_impact(problem: Problem) -> Non
     np.testing.assert_allclose(found.settled.impact.impulses_W, [[0, 0, MASS]], rtol=0.0, atol=1e-9)
     assert [mode.mode for mode in found.settled.modes] == ["f"]
     assert found.settled.verdict is ModeVerdict.UNIQUE
+
+
+def settling(problem: Problem, body: Body, points: list[tuple[float, float]], **fields: Any) -> SettledImpact:
+    """What settles the case of a body at the origin that touches the world at points of the plane."""
+    normals_W = [[0, 0, sign] for sign in fields.pop("signs")]
+    contacts = ContactSet(
+        p_WC_W=[[x, 0, z] for x, z in points],
+        normals_W=normals_W,
+        frictions=fields.pop("friction"),
+        restitutions=fields.pop("restitution", 0.0),
+    )
+    plane = FROM_THE_SIDE if problem is Problem.PLANAR else None
+    at_origin = BodyState(p_WB_W=[0, 0, 0], q_WB=[0, 0, 0, 1], **fields.pop("velocities"))
+    question = ContactModeQuestion(
+        body=body,
+        state=at_origin,
+        contacts=contacts,
+        problem=problem,
+        plane=plane,
+        include_impact=True,
+        **fields,
+    )
+    settled = answer(question).settled
+    assert settled is not None
+    return settled
+
+
+@pytest.mark.parametrize("problem", [Problem.PLANAR, Problem.SPATIAL])
+@pytest.mark.parametrize(("restitution", "after"), [(0.0, "f"), (0.5, "s")])
+def test_an_impact_settles_the_inconsistent_rod(problem: Problem, restitution: float, after: str) -> None:
+    """Its tip sticks throughout restitution too, by hand: K I is the change of the tip's velocity."""
+    x, z = tip = (-4.0 * math.cos(math.radians(75.0)), -4.0 * math.sin(math.radians(75.0)))
+    settled = settling(
+        problem,
+        Body(name="rod", mass_properties=MassProperties(mass=1.0, I_B=np.eye(3))),
+        [tip],
+        signs=[1],
+        friction=math.tan(math.radians(30.0)),
+        restitution=restitution,
+        velocities={"v_WB_W": [-1.0, 0, 0], "w_WB_W": [0, 0, 0]},
+    )
+    assert settled.impact.outcome is ImpactOutcome.STICKS_IN_COMPRESSION
+    assert settled.impact.jams
+    K = np.array([[1.0 + z * z, -x * z], [-x * z, 1.0 + x * x]])
+    normal = (1.0 + restitution) * np.linalg.solve(K, [1.0, 0.0])[1]
+    friction = (1.0 - K[0, 1] * normal) / K[0, 0]
+    np.testing.assert_allclose(settled.impact.impulses_W, [[friction, 0.0, normal]], rtol=0.0, atol=1e-9)
+    assert (settled.verdict, [mode.mode for mode in settled.modes]) == (ModeVerdict.UNIQUE, [after])
+
+
+@pytest.mark.parametrize("problem", [Problem.PLANAR, Problem.SPATIAL])
+def test_an_impact_settles_a_point_that_jams_in_a_slot(problem: Problem) -> None:
+    """It stops dead. By hand: the point's inverse inertia takes its velocity (-1, 0) to zero."""
+    x, z = 1.0, -3.0
+    settled = settling(
+        problem,
+        Body(name="handle", mass_properties=MassProperties(mass=2.0, I_B=np.eye(3) / 3.0)),
+        [(x, z)] * 2,
+        signs=[1, -1],
+        friction=2.0,
+        velocities={"v_WB_W": [2.0, 0, 1.0], "w_WB_W": [0, 1.0, 0]},
+        gravity_W=[0, 0, 0],
+        force_W=[3.0, 0, 3.0],
+        torque_W=[0, -1.0, 0],
+    )
+    K = np.eye(2) / 2.0 + 3.0 * np.array([[z * z, -x * z], [-x * z, x * x]])
+    expected = np.linalg.solve(K, [1.0, 0.0])
+    total = settled.impact.impulses_W.sum(axis=0)
+    # 1e-6 is what the load does to jammed contacts in the short time that it acts for.
+    np.testing.assert_allclose(total, [expected[0], 0.0, expected[1]], rtol=0.0, atol=1e-6)
+    np.testing.assert_allclose(settled.impact.velocities_after_W, 0.0, rtol=0.0, atol=1e-9)
+    assert settled.impact.kinetic_energy_after < settled.impact.kinetic_energy_before
+    assert (settled.verdict, [mode.mode for mode in settled.modes]) == (ModeVerdict.UNIQUE, ["ff"])
+
+
+@pytest.mark.parametrize("problem", [Problem.PLANAR, Problem.SPATIAL])
+def test_two_feet_that_land_strike_in_turn_and_every_order_is_told(problem: Problem) -> None:
+    """With m = I = 1 an impulse p at a foot changes its v_n by 2 p, and that of the other not at all."""
+    settled = settling(
+        problem,
+        Body(name="feet", mass_properties=MassProperties(mass=1.0, I_B=np.eye(3))),
+        [(-1.0, -1.0), (1.0, -1.0)],
+        signs=[1, 1],
+        friction=0.0,
+        velocities={"v_WB_W": [0, 0, -1.0], "w_WB_W": [0, 0, 0]},
+    )
+    np.testing.assert_allclose(settled.impact.impulses_W, [[0.0, 0.0, 0.5]] * 2, rtol=0.0, atol=ROUNDING)
+    assert sorted(settled.impact.orders) == [(), (0, 1), (1, 0)]  # both at once, and each first
+    np.testing.assert_allclose(settled.impact.order_velocities_W, 0.0, rtol=0.0, atol=ROUNDING)
+
+
+@pytest.mark.parametrize(("share", "holds"), [(0.9, Certainty.CERTAIN), (1.001, Certainty.NO)])
+def test_statics_in_space(share: float, holds: Certainty) -> None:
+    push = share * HOLDS * np.array([math.cos(0.5), math.sin(0.5), 0.0])
+    found = answer(replace(AT_REST, force_W=push, problem=Problem.SPATIAL, include_statics=True), CONTEXT)
+    assert found.statics is not None
+    assert (found.statics.equilibrium, found.statics.jammed) == (holds, holds)
 
 
 def test_automatic_says_why_it_went_to_space() -> None:

@@ -170,6 +170,21 @@ def test_an_uncertain_state_has_a_chance_of_each_outcome() -> None:
     assert found.covariance[8, 8] == pytest.approx(RESTITUTION**2 * 1e-2, rel=0.1)  # v_n becomes -e v_n
 
 
+def test_an_uncertain_landing_carries_its_covariance_to_the_strike() -> None:
+    tilted = replace(state(), q_WB=[0, math.sin(0.3), 0, math.cos(0.3)], w_WB_W=[3.0, 0, 0])
+    uncertain = UncertainState(state=tilted, covariance=np.diag([1e-6] * 6 + [1e-4] * 3 + [1e-2] * 3))
+    found = answer(ImpactQuestion(body="cube", state=uncertain, include_covariance=True), CONTEXT)
+    assert found.seconds_to_contact > 0.0
+    impact = found.impact
+    assert impact.outcome_probabilities is not None
+    assert impact.outcome_probabilities.sum() + impact.miss_probability == pytest.approx(1.0, abs=ROUNDING)
+    assert impact.outcome is not None
+    assert impact.outcome_probabilities[impact.outcome] > 0.0
+    assert impact.covariance is not None
+    np.testing.assert_allclose(impact.covariance, impact.covariance.T, rtol=0.0, atol=1e-15)
+    assert np.linalg.eigvalsh(impact.covariance).min() > -ROUNDING
+
+
 @pytest.mark.parametrize("law", list(RestitutionLaw))
 def test_the_law_of_restitution_is_the_one_asked_for(law: RestitutionLaw) -> None:
     """Straight below the centre, sliding throughout, all three are one."""
