@@ -243,7 +243,7 @@ def touching(request: Any, count: int) -> Any:
 
 def many_facets(request: Any) -> None:
     lying(request).problem = request.SPATIAL
-    request.include_wrenches, request.friction_facets = True, 16
+    request.include_wrenches, request.friction_facets = True, 32
 
 
 def strong_torque(request: Any) -> None:
