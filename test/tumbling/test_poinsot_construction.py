@@ -153,6 +153,7 @@ def test_principal_axes_are_those_of_mass_properties(name: str) -> None:
     picture, axes = poinsot(motion), principal_axes(motion.body.I_B)
     np.testing.assert_array_equal(picture.principal_moments, axes.moments)
     np.testing.assert_array_equal(picture.principal_axes_B, axes.R_BP)
+    np.testing.assert_allclose(picture.I_B, motion.body.I_B, rtol=0.0, atol=1e-15)
 
 
 @pytest.mark.parametrize("name", MOTIONS)

@@ -146,7 +146,7 @@ def test_a_box_that_just_slides_has_one_mode_although_its_feet_share_the_load() 
 
 
 @pytest.mark.parametrize("make", [turned_feet, pivoting, degenerate])
-@seeds(range(8), slow=range(8, 1000))
+@seeds(range(20), slow=range(20, 1000))
 def test_modes_obey_the_laws(make: Callable[[int], SpatialContactProblem], seed: int) -> None:
     check(make(seed))
 

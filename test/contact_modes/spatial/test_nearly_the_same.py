@@ -62,7 +62,7 @@ def test_a_body_at_rest_by_construction_may_stick(seed: int) -> None:
     check_sticking(problem_of(resting(seed)))
 
 
-@seeds(range(4), slow=range(4, 1000))
+@seeds(range(8), slow=range(8, 1000))
 def test_friction_up_to_a_million_and_arms_of_ten_thousand_radii_of_gyration(seed: int) -> None:
     case, gyration = rough(seed)
     body = MassProperties(mass=1.0, I_B=gyration**2 * np.diag([0.6, 0.8, 1.0]))

@@ -193,8 +193,8 @@ def check(draw: Draw, seed: int) -> str:
 
 
 def test_answers_do_not_contradict_each_other() -> None:
-    undecided = [check(drawn(seed), seed) for seed in range(3)]
-    assert undecided.count("") >= 1
+    undecided = [check(drawn(seed), seed) for seed in range(6)]
+    assert undecided.count("") >= 2
 
 
 @settings(max_examples=6)

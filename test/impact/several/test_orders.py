@@ -23,6 +23,7 @@ from contact_dynamics.impact import (
     several_impact,
     spatial_impact,
 )
+from contact_dynamics.impact.several import simultaneous
 from contact_dynamics.rigid_body.body import (
     BodyState,
     MassProperties,
@@ -318,7 +319,7 @@ def corners(seed: int, order: tuple[int, ...]) -> tuple[MassProperties, BodyStat
     return MassProperties(mass=1.0, I_B=np.diag([0.02, 0.03, 0.04])), state, contacts
 
 
-@seeds(range(2), slow=range(2, 4))
+@seeds(range(4))
 def test_the_simultaneous_outcome_does_not_depend_on_the_list(seed: int) -> None:
     outcomes = []
     for order in ((0, 1, 2, 3), (3, 2, 1, 0), (2, 0, 3, 1)):
@@ -348,3 +349,14 @@ def test_the_default_order_is_among_the_orders(seed: int) -> None:
     answer = several_impact(body, state, contacts)
     outcomes = outcomes_over_orders(body, state, contacts)
     assert answer.order in outcomes.orders
+
+
+def test_impulses_that_do_not_settle_in_the_allowed_sweeps_say_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(simultaneous, "MAX_SWEEPS", 2)
+    monkeypatch.setattr(simultaneous, "_MAX_STEPS", 1)
+    contacts = floor_contacts(FACE, friction=0.3, restitution=0.5)
+    for listed in (contacts, contacts.subset([3, 1, 0, 2])):
+        answer = several_impact(
+            CUBE, falling(0.05, [3.0, 0.5, -1.0], [1.0, 2.0, 3.0]), listed, several_contacts_law=SIMULTANEOUS
+        )
+        assert answer.verdict is SeveralVerdict.NOT_CONVERGED
