@@ -94,7 +94,7 @@ def test_the_horizon_and_the_law_have_one_name_and_one_default() -> None:
                     found.add(name)
                 if "restitution_law" in parameters:
                     assert parameters["restitution_law"].default is RestitutionLaw.POISSON, name
-    assert found == {"first_contact", "next_landing", "sampled_toss", "toss"}
+    assert found == {"first_contact", "next_landing", "next_meeting", "sampled_toss", "toss"}
 
 
 def test_a_sampled_toss_says_which_face_is_on_top_and_how_sure_that_is() -> None:

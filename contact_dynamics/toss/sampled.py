@@ -112,7 +112,8 @@ def sampled_toss(
         seed: Seed of the samples, >= 0. The same seed yields the same samples.
         restitution_law: Law of restitution. ENERGETIC requires SEQUENTIAL.
         several_contacts_law: Law for several contacts that strike at one instant, in samples that are
-            followed to rest.
+            followed to rest, from then on: the strikes of the tree are those of one corner each, also of a
+            face that lands flat.
         horizon: s, > 0. Duration of the longest motion that is followed.
         processes: Number of processes that share the samples followed to rest, or an executor of
             `concurrent.futures`, which keeps its processes from toss to toss. The answer is the same bit for
