@@ -98,9 +98,16 @@ class Monitor:
 
 @contextmanager
 def monitored(
-    folder: Path, *arguments: str, ready: str = "ready", **changes: Any
+    folder: Path,
+    *arguments: str,
+    ready: str = "ready",
+    at_start: Callable[[subprocess.Popen[str]], object] = lambda _: None,
+    **changes: Any,
 ) -> Iterator[tuple[subprocess.Popen[str], Monitor]]:
-    """A server of the commented configuration with some changes, and a monitor of it."""
+    """A server of the commented configuration with some changes, and a monitor of it.
+
+    ``at_start`` is called before the monitor waits for the server's services.
+    """
     domain_id = claim_domain()  # since another server of the same name is a situation
     settings = yaml.safe_load((ROOT / "config" / "server.yaml").read_text(encoding="utf-8"))
     settings["/**"]["ros__parameters"] |= changes
@@ -109,6 +116,7 @@ def monitored(
     workers = ("--ros-args", "-p", f"workers:={changes.get('workers', 0)}")
     given = ("--params-file", str(path), *arguments, *workers)
     with process("server", *given, ready=ready, domain_id=domain_id) as server:
+        at_start(server)
         client = Client(domain_id=domain_id)
         try:
             yield server, Monitor(client)

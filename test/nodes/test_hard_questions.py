@@ -209,9 +209,16 @@ def fork_server_of(server: subprocess.Popen[str]) -> int:
 
 def test_a_server_is_ready_once_its_workers_are(tmp_path: Path) -> None:
     """Quick questions are answered before. What starts the workers stands still here, as if it took long."""
-    with monitored(tmp_path, ready="", log=False, workers=2) as (server, monitor):
-        fork_server = fork_server_of(server)
-        os.kill(fork_server, signal.SIGSTOP)
+    stopped: list[int] = []
+
+    def stop_what_starts_workers(server: subprocess.Popen[str]) -> None:
+        stopped.append(fork_server_of(server))
+        os.kill(stopped[0], signal.SIGSTOP)
+
+    with monitored(tmp_path, ready="", at_start=stop_what_starts_workers, log=False, workers=2) as (
+        server,
+        monitor,
+    ):
         try:
             monitor.wait(Situation.WORKERS, "0 of 2 workers are ready")
             assert monitor.client.ask(quick()).status == 0
@@ -220,7 +227,7 @@ def test_a_server_is_ready_once_its_workers_are(tmp_path: Path) -> None:
             assert told.startswith("contact-dynamics server: starting")
             assert "2 workers start; quick questions are answered meanwhile" in told
         finally:
-            os.kill(fork_server, signal.SIGCONT)
+            os.kill(stopped[0], signal.SIGCONT)
         wait_for(server, "ready: bodies brick")
         monitor.wait_until_ok(Part.ANSWERS)
 
