@@ -56,6 +56,9 @@ _SENT_AGAIN_FOR_S: Final = 1.0
 """s. Many answers at once overflow the socket of a client that a busy machine stops meanwhile. DDS sends them
 again, for as long as the service is there."""
 
+_HANDED_OVER_WITHIN_S: Final = 0.1
+"""s. A server that ends waits so long for requests that had arrived, and that DDS has not handed over yet."""
+
 _REFUSES_FOR_S: Final = 3.0
 """s. A server that ends refuses what still arrives for so long at most."""
 
@@ -191,7 +194,8 @@ class Serving:
 
     def refuse_all(self) -> None:
         """Refuse the questions whose answers are not there yet, and stay until clients have that."""
-        begun = until = time.monotonic()
+        begun = time.monotonic()
+        until = begun + _HANDED_OVER_WITHIN_S
         while True:
             if sum(front.refuse_all() for front in self._fronts) > 0:
                 until = min(time.monotonic() + _SENT_AGAIN_FOR_S, begun + _REFUSES_FOR_S)
