@@ -14,8 +14,8 @@ BESIDE = {name for line in re.findall(r'^beside="([^"]*)"', SCRIPT, re.MULTILINE
 INSTALLED = {"hypothesis", "mcap", "mpmath", "numpy", "pytest", "scipy", "typing_extensions"}
 """What setup/matrix.sh installs."""
 
-OWN = {"benchmarks", "contact_dynamics", *(path.stem for path in TEST.iterdir())} - {"running_server"}
-"""Helpers of the tests. The one that is left out starts ROS."""
+OWN = {"benchmarks", "contact_dynamics", *(path.stem for path in TEST.iterdir())} - {"msg_adapters", "running_server"}
+"""Helpers of the tests. Those that are left out need ROS, or its messages."""
 
 
 def what_it_imports(path: Path) -> set[str]:
