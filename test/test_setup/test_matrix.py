@@ -14,7 +14,10 @@ BESIDE = {name for line in re.findall(r'^beside="([^"]*)"', SCRIPT, re.MULTILINE
 INSTALLED = {"hypothesis", "mcap", "mpmath", "numpy", "pytest", "scipy", "typing_extensions"}
 """What setup/matrix.sh installs."""
 
-OWN = {"benchmarks", "contact_dynamics", *(path.stem for path in TEST.iterdir())} - {"msg_adapters", "running_server"}
+OWN = {"benchmarks", "contact_dynamics", *(path.stem for path in TEST.iterdir())} - {
+    "msg_adapters",
+    "running_server",
+}
 """Helpers of the tests. Those that are left out need ROS, or its messages."""
 
 
