@@ -31,9 +31,10 @@ from contact_dynamics.questions import (
 )
 from contact_dynamics.questions.subject import NEWEST
 from contact_dynamics.rigid_body.body import BodyState
-from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact, PredictTumbling
+from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact, PredictToss, PredictTumbling
 from msg_adapters.contact_mode import contact_mode_question_from_msg
 from msg_adapters.impact import impact_question_from_msg
+from msg_adapters.toss import toss_question_from_msg
 from msg_adapters.tumbling import tumbling_question_from_msg
 from questions.known_world import CUBE, WORLD
 
@@ -104,6 +105,29 @@ def explicit(service: Any) -> Any:
     if service is PredictTumbling:
         request.times = [0.0]
     return request
+
+
+def test_each_number_of_an_uncertain_toss_goes_to_its_own_field() -> None:
+    request = explicit(PredictToss)
+    request.horizon, request.rate, request.max_alternatives = 1.5, 50.0, 3
+    request.samples, request.strikes, request.to_rest, request.seed = 40, 4, True, 7
+    request.velocity_spread, request.spin_spread, request.height_spread = 0.01, 0.02, 0.03
+    request.lasting_factors, request.lasting_factor_stds = [0.8], [0.1]
+    asked = toss_question_from_msg(request, world=WORLD, world_frame="world")
+    assert (asked.horizon, asked.rate, asked.max_alternatives) == (1.5, 50.0, 3)
+    sampling = asked.sampling
+    assert (sampling.count, sampling.strikes, sampling.to_rest, sampling.seed) == (40, 4, True, 7)
+    spread = sampling.uncertainty
+    assert (spread.velocity, spread.spin, spread.height) == (0.01, 0.02, 0.03)
+    assert (*spread.lasting_factors, *spread.lasting_factor_stds, *asked.lasting_factors) == (0.8, 0.1, 0.8)
+
+
+def test_each_error_of_contacts_goes_to_its_own_field() -> None:
+    request = explicit(PredictContactMode)
+    request.uncertainty_points, request.uncertainty_normals = [0.01], [0.02]
+    request.uncertainty_frictions = [0.03]
+    box = read(request).uncertainty
+    assert [float(np.max(each)) for each in (box.points, box.normals, box.frictions)] == [0.01, 0.02, 0.03]
 
 
 def test_an_explicit_state_may_be_uncertain() -> None:
