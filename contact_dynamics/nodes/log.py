@@ -5,11 +5,12 @@ from __future__ import annotations
 
 import time
 from datetime import datetime, timezone
+from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from contact_dynamics.nodes.parameter_reader import ConfigurationError
-from contact_dynamics.nodes.situations import RECENT_S, Present, Situation
+from contact_dynamics.nodes.situations import NO_MCAP, RECENT_S, Present, Situation
 from contact_dynamics.recording.bag_writer import BagWriter
 from contact_dynamics.recording.errors import LogExistsError
 from contact_dynamics.recording.recorder import LogProblem, Recorder
@@ -45,6 +46,9 @@ class Log:
     ) -> None:
         """Create a folder in ``directory``, where empty means the current folder and None means no log.
 
+        Without the library mcap, which ROS's package index does not have, no log is written either, and
+        ``on_problem`` and `present` say so.
+
         Args:
             directory: where the folder of the log is made.
             run: how the run is made.
@@ -57,6 +61,10 @@ class Log:
             ConfigurationError: the folder cannot be made, so that a log that was asked for is never missing
                 silently.
         """
+        self._lacks_mcap = directory is not None and find_spec("mcap") is None
+        if self._lacks_mcap:
+            on_problem(NO_MCAP)
+            directory = None
         self._writer = None if directory is None else _new_bag(directory, run, limits, on_notice)
         self.folder = self._writer.folder if self._writer is not None else None
         self._recorder: Recorder | None = None
@@ -118,7 +126,7 @@ class Log:
     def present(self) -> list[Present]:
         """Return what is wrong."""
         if self._recorder is None:
-            return []
+            return [Situation.NO_MCAP.present()] if self._lacks_mcap else []
         status, now, present = self._recorder.status, time.monotonic(), list[Present]()
         for kind, problem in status.problems.items():
             is_recent = now - problem.last < RECENT_S

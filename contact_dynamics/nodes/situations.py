@@ -15,6 +15,8 @@ from typing import Final, NamedTuple
 RECENT_S: Final = 3.0
 """s. A monitor that looks every few seconds sees what happened at an instant, and it is over soon after."""
 
+NO_MCAP: Final = "no log is written, because the Python package mcap is not installed: pip install mcap"
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FaultLimits:
@@ -108,6 +110,7 @@ class Situation(Enum):
     FAULT = _Row(Part.ANSWERS, Level.ERROR, "internal errors of the server, {count} so far")
     OVERLOADED = _Row(Part.ANSWERS, Level.WARN, "requests were rejected as BUSY or TIMEOUT, {count} so far")
     WORKERS = _Row(Part.ANSWERS, Level.WARN, "{ready} of {count} workers are ready")
+    NO_MCAP = _Row(Part.LOG, Level.WARN, NO_MCAP)
     LOG_INTERRUPTED = _Row(Part.LOG, Level.ERROR, "{problem}; {lost} messages are missing so far")
     LOG_DROPPING = _Row(Part.LOG, Level.ERROR, "{problem}; {lost} messages are lost so far")
     LOG_REJECTING = _Row(Part.LOG, Level.WARN, "{problem}")

@@ -8,8 +8,6 @@ import json
 import os
 from typing import TYPE_CHECKING, Any, Final
 
-from mcap.writer import CompressionType, Writer
-
 from contact_dynamics.recording.bag_metadata import (
     OFFERED_QOS,
     RUN_RECORD,
@@ -28,12 +26,6 @@ if TYPE_CHECKING:
     from contact_dynamics.recording.qos import OfferedQos
 
 CHUNK_BYTES: Final = 256 * 1024
-
-_COMPRESSIONS: Final = {
-    Compression.NONE: CompressionType.NONE,
-    Compression.LZ4: CompressionType.LZ4,
-    Compression.ZSTD: CompressionType.ZSTD,
-}
 
 
 class BagFile:
@@ -55,6 +47,8 @@ class BagFile:
             opened_ns: the present time, ns since the epoch, which is the span of the file before its first
                 message.
         """
+        from mcap.writer import CompressionType, Writer  # a server can do without it, and then writes no log
+
         self.path = path
         self.failure: str | None = None
         self.start_ns: int | None = None
@@ -70,7 +64,7 @@ class BagFile:
         self._writer: Any = Writer(  # Any: the library is typed in part only
             self._file,  # type: ignore[arg-type]  # has what the library calls: write, tell, flush
             chunk_size=CHUNK_BYTES,
-            compression=_COMPRESSIONS[compression],
+            compression=CompressionType[compression.name],
             enable_data_crcs=True,
         )
         try:

@@ -24,7 +24,6 @@ from contact_dynamics.recording.bag_metadata import BAG_KEY, METADATA_FILE
 from contact_dynamics.recording.definitions import standard_definition
 from contact_dynamics.recording.errors import DamagedLogWarning, NotALogError
 from contact_dynamics.recording.file_messages import Loss, MessageFile, Span, Topic
-from contact_dynamics.recording.mcap_messages import McapMessages
 from contact_dynamics.recording.packed import SUFFIXES, unpacked_file, unpacked_message
 from contact_dynamics.recording.sqlite_messages import SqliteMessages
 from contact_dynamics.validation_types import checks_types
@@ -212,6 +211,8 @@ class BagReader:
     @contextmanager
     def _opened(self, path: Path) -> Iterator[MessageFile]:
         """Open a file, and say at the end what was lost."""
+        from contact_dynamics.recording.mcap_messages import McapMessages  # a server can do without mcap
+
         with unpacked_file(path) as (plain, cut):
             match = _NAME.search(path.name)
             is_sqlite = match is not None and match["kind"] == ".db3"

@@ -6,9 +6,10 @@ from __future__ import annotations
 import re
 import subprocess
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 import yaml
@@ -102,20 +103,22 @@ def monitored(
     *arguments: str,
     ready: str = "ready",
     at_start: Callable[[subprocess.Popen[str]], object] = lambda _: None,
+    settings: Mapping[str, str] = MappingProxyType({}),
     **changes: Any,
 ) -> Iterator[tuple[subprocess.Popen[str], Monitor]]:
     """A server of the commented configuration with some changes, and a monitor of it.
 
-    ``at_start`` is called before the monitor waits for the server's services.
+    ``at_start`` is called before the monitor waits for the server's services. The server has ``settings`` in
+    its environment.
     """
     domain_id = claim_domain()  # since another server of the same name is a situation
-    settings = yaml.safe_load((ROOT / "config" / "server.yaml").read_text(encoding="utf-8"))
-    settings["/**"]["ros__parameters"] |= changes
+    parameters = yaml.safe_load((ROOT / "config" / "server.yaml").read_text(encoding="utf-8"))
+    parameters["/**"]["ros__parameters"] |= changes
     path = folder / "server.yaml"
-    path.write_text(yaml.safe_dump(settings), encoding="utf-8")
+    path.write_text(yaml.safe_dump(parameters), encoding="utf-8")
     workers = ("--ros-args", "-p", f"workers:={changes.get('workers', 0)}")
     given = ("--params-file", str(path), *arguments, *workers)
-    with process("server", *given, ready=ready, domain_id=domain_id) as server:
+    with process("server", *given, ready=ready, domain_id=domain_id, settings=settings) as server:
         at_start(server)
         client = Client(domain_id=domain_id)
         try:

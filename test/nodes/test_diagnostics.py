@@ -242,6 +242,22 @@ def test_questions_that_take_too_long(overloaded: tuple[subprocess.Popen[str], M
     monitor.wait_until_ok(Part.ANSWERS)
 
 
+def test_a_server_without_mcap_answers_and_says_how_to_get_a_log(tmp_path: Path) -> None:
+    """ROS's package index has no key for mcap, so that a server from binary packages starts without it."""
+    (tmp_path / "sitecustomize.py").write_text("import sys; sys.modules['mcap'] = None", encoding="utf-8")
+    path = os.pathsep.join(filter(None, (str(tmp_path), os.environ.get("PYTHONPATH"))))
+    with monitored(tmp_path, log=True, log_directory=str(tmp_path), settings={"PYTHONPATH": path}) as (
+        _,
+        monitor,
+    ):
+        monitor.wait(Situation.NO_MCAP, "pip install mcap")
+        question = PredictTumbling.Request(body_name="brick", times=[0.0])
+        states = monitor.client.publisher(Odometry, "/brick/odometry")
+        states.publish(odometry())
+        monitor.client.spin_until(lambda: monitor.client.ask(question).status == 0)
+    assert not any(each.is_dir() for each in tmp_path.iterdir() if each.name != "__pycache__")
+
+
 def test_the_table_in_the_documents_is_that_of_the_code() -> None:
     page = (ROOT / "docs" / "diagnostics.md").read_text(encoding="utf-8")
     rows = re.findall(r"^\| (\S+) \| (\S+) \| `([^|]*)` \| [^|]+ \|$", page, re.MULTILINE)
