@@ -83,7 +83,8 @@ class CarefulProgram:
             raised.update(dict.fromkeys(further.raised, further.least))
             if further.rows is not None:
                 tagged[further.tag] = further.rows, further.equalities
-        zero, positive = [np.zeros((0, 7))], [np.zeros((0, 7))]
+        nothing = np.zeros((0, len(self._motion) + 1))
+        zero, positive = [nothing], [nothing]
         for name, row in zip(self._names, self._named, strict=True):
             if name in zeroed:
                 zero.append(row[None, :])
@@ -106,10 +107,10 @@ class CarefulProgram:
 
 
 def merged(rows: FloatArray, tolerance: float = ROW_TOLERANCE) -> FloatArray | None:
-    """Return equivalent equations, (k, 7), with orthonormal rows, or None if no motion satisfies them.
+    """Return equivalent equations, (k, d + 1), with orthonormal rows, or None if no motion satisfies them.
 
     Args:
-        rows: (m, 7), of about unit length. Each demands that its product with the motion, followed by 1,
+        rows: (m, d + 1), of about unit length. Each demands that its product with the motion, followed by 1,
             is zero.
         tolerance: Rows that differ by no more count as one.
     """

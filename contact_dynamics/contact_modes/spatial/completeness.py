@@ -389,7 +389,7 @@ class _Work(PyramidPrograms):
         return self._slides_together(letters, near)
 
     def _slides_together(self, letters: str, near: Sequence[FloatArray]) -> bool:
-        """Return whether all modes with some letters are known, after a search near some motions, (6,)."""
+        """Return whether all modes with some letters are known, after a search near some motions, (d,)."""
         held = sliding_together(self._search, letters, near)
         if held.forces is None:
             return held.certain

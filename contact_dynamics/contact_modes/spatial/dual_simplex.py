@@ -31,9 +31,6 @@ if TYPE_CHECKING:
 
     from contact_dynamics.validation import FloatArray
 
-_HEAD: Final = 7
-"""The number of rows of the table before the conditions: the weighted sum of edge forces, then the motion."""
-
 _COMPILED: Final = hasattr(simplex_steps, "SOURCE_CRC")
 
 _DEAD: Final = -1
@@ -77,8 +74,8 @@ class Narrowing(NamedTuple):
         zeroed: The names of variables that are zero.
         raised: The names of variables that are at least ``least``.
         least: The least value of the ``raised`` variables.
-        rows: (k, 7), combinations of the motion and a constant. The first ``equalities`` of them are zero,
-            and the others are not negative.
+        rows: (k, d + 1), combinations of the motion and a constant. The first ``equalities`` of them are
+            zero, and the others are not negative.
         equalities: The number of ``rows`` that are zero.
         tag: The name of the ``rows``, < -1. They replace earlier rows with that tag, and must imply these.
     """
@@ -99,7 +96,7 @@ class Program:
         doubtful: Whether rounding may have decided that nothing satisfies the conditions.
     """
 
-    __slots__ = ("_columns", "_fixed", "_noise", "_rows", "_table", "asked", "doubtful")
+    __slots__ = ("_columns", "_fixed", "_head", "_noise", "_rows", "_table", "asked", "doubtful")
 
     def __init__(
         self,
@@ -114,17 +111,18 @@ class Program:
         self.asked: tuple[Narrowing, ...] = ()
         self.doubtful = False
         self._table = table
+        self._head = len(table) - len(fixed)  # rows before conditions: the weighted sum, then the motion
         self._rows = rows  # the name of each condition's variable, after the head
         self._columns = columns
         self._fixed = fixed  # 1.0 where the row's variable is zero; 0.0 where it is not negative
 
     @staticmethod
     def stated(motion: FloatArray, named: FloatArray, names: Sequence[int]) -> Program:
-        """Return the program whose motion, (6, K + 1), is given for K edge forces and a constant.
+        """Return the program whose motion, (d, K + 1), is given for K edge forces and a constant.
 
         Args:
             motion: The motion, in the units in which conditions are stated.
-            named: (k, 7), combinations of the motion and a constant that are not negative.
+            named: (k, d + 1), combinations of the motion and a constant that are not negative.
             names: The names of these rows for `narrowed`, each >= K. Edge forces have the names 0 to K - 1.
         """
         count = motion.shape[1] - 1
@@ -151,7 +149,7 @@ class Program:
         names, fixed = self._rows, self._fixed
         if tag in names:
             held = [k for k, name in enumerate(names) if name != tag]
-            table = table.take([*range(_HEAD), *(k + _HEAD for k in held)], axis=0)
+            table = table.take([*range(self._head), *(k + self._head for k in held)], axis=0)
             names = [names[k] for k in held]
             fixed = fixed[held]
         else:
@@ -160,11 +158,11 @@ class Program:
             fixed[names.index(name)] = 1.0
         for name in raised:
             if name in names:
-                table[_HEAD + names.index(name), -1] -= least
+                table[self._head + names.index(name), -1] -= least
             else:
                 table[:, -1] += least * table[:, columns.index(name)]
         if rows is not None and len(rows):
-            table = np.concatenate([table, _rows_of(rows, table[1:_HEAD])])
+            table = np.concatenate([table, _rows_of(rows, table[1 : self._head])])
             names += [tag] * len(rows)
             added = np.zeros(len(rows))
             added[:equalities] = 1.0
@@ -184,7 +182,7 @@ class Program:
         count = weights.shape[1]
         rows, columns = np.array(self._rows, dtype=int), np.array(self._columns, dtype=int)
         ours = ((rows >= 0) & (rows < count)).nonzero()[0]
-        sums = weights[:, rows[ours]] @ self._table[_HEAD + ours]
+        sums = weights[:, rows[ours]] @ self._table[self._head + ours]
         beside = ((columns >= 0) & (columns < count)).nonzero()[0]
         sums[:, beside] += weights[:, columns[beside]]
         sums[:, -1] += constants - least
@@ -202,8 +200,8 @@ class Program:
 
     @property
     def motion(self) -> FloatArray:
-        """The motion, (6,), that the table's edge forces cause."""
-        found: FloatArray = self._table[1:_HEAD, -1]
+        """The motion, (d,), that the table's edge forces cause."""
+        found: FloatArray = self._table[1 : self._head, -1]
         return found
 
     def solve(self, least_pivot: float = ROW_TOLERANCE) -> bool:
@@ -230,8 +228,8 @@ class Program:
 
     def _stepped(self, least_pivot: float) -> tuple[float, float]:
         """Exchange variables with NumPy, as `simplex_steps.solved` does, whose values this returns."""
-        table, fixed = self._table, self._fixed
-        values, entries, costs = table[_HEAD:, -1], table[_HEAD:, :-1], table[0]
+        table, fixed, head = self._table, self._fixed, self._head
+        values, entries, costs = table[head:, -1], table[head:, :-1], table[0]
         equations = int(np.count_nonzero(fixed))
         for _ in range(_MAX_STEPS):
             # Equations are mostly settled first. Then the least value is missed most.
@@ -257,14 +255,14 @@ class Program:
         """
         table = self._table
         column = table[:, enters].copy()
-        pivot = column[_HEAD + leaves]
+        pivot = column[self._head + leaves]
         if abs(pivot) < TABLE_SMALL_PIVOT:
             self._noise *= TABLE_SMALL_PIVOT / abs(float(pivot))
-        row = table[_HEAD + leaves] / -pivot
+        row = table[self._head + leaves] / -pivot
         row[enters] = 1.0 / pivot
         table[:, enters] = 0.0
         table += column[:, None] * row
-        table[_HEAD + leaves] = row
+        table[self._head + leaves] = row
         name = self._rows[leaves]
         self._rows[leaves] = self._columns[enters]
         self._columns[enters] = name
@@ -276,7 +274,7 @@ class Program:
     def shares(self, count: int) -> FloatArray:
         """Return the edge forces, (count,), that the table holds."""
         found = np.zeros(count)
-        for name, value in zip(self._rows, self._table[_HEAD:, -1], strict=True):
+        for name, value in zip(self._rows, self._table[self._head :, -1], strict=True):
             if 0 <= name < count:
                 found[name] = max(0.0, value)
         return found
@@ -315,7 +313,7 @@ class Program:
     def _settle_fixed(self) -> None:
         """Exchange variables that are fixed at zero for columns, as far as those columns change them."""
         for k in np.flatnonzero(self._fixed):
-            row = np.abs(self._table[_HEAD + k, :-1])
+            row = np.abs(self._table[self._head + k, :-1])
             if row.size and row.max() > ROW_TOLERANCE:
                 self._pivot(int(k), int(row.argmax()))
 
@@ -325,7 +323,7 @@ class Program:
         table[0] = 0.0
         for k, name in enumerate(self._rows):
             if 0 <= name < len(weights):
-                table[0] += weights[name] * table[_HEAD + k]
+                table[0] += weights[name] * table[self._head + k]
         for k, name in enumerate(self._columns):
             if 0 <= name < len(weights):
                 table[0, k] += weights[name]
@@ -334,10 +332,10 @@ class Program:
             if gains.size == 0:
                 return True
             enters = int(gains[0] if 5 * step > _MAX_STEPS else gains[table[0, gains].argmin()])
-            falls = (table[_HEAD:, enters] < -ROW_TOLERANCE).nonzero()[0]
+            falls = (table[self._head :, enters] < -ROW_TOLERANCE).nonzero()[0]
             if falls.size == 0:
                 return False
-            steps = np.maximum(table[_HEAD + falls, -1], 0.0) / -table[_HEAD + falls, enters]
+            steps = np.maximum(table[self._head + falls, -1], 0.0) / -table[self._head + falls, enters]
             self._pivot(int(falls[steps.argmin()]), enters)
         return True
 

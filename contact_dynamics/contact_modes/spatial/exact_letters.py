@@ -40,9 +40,6 @@ if TYPE_CHECKING:
 _MAX_STEPS: Final = 25
 """The largest number of Newton's steps. From forces that are close, some five are enough."""
 
-_FREEDOMS: Final = 6
-"""The freedoms of a body in space."""
-
 _MAX_SWAPPED: Final = 5
 """The largest number of contacts that are tried sticking and sliding. Each of them doubles the number of
 letters."""
@@ -172,8 +169,8 @@ class _System:
 
     @property
     def may_be_regular(self) -> bool:
-        """Whether shares of force are so few that they can differ in the motion, which has six components."""
-        return sum(not is_angle for _, is_angle in self._unknowns) <= _FREEDOMS
+        """Whether shares of force are so few that they can all differ in the motion."""
+        return sum(not is_angle for _, is_angle in self._unknowns) <= self._search.freedoms
 
     def start(self, forces: FloatArray) -> FloatArray:
         """Return the unknowns that are nearest to given forces."""
@@ -200,7 +197,7 @@ class _System:
         at = 0
         for i, letter in enumerate(self._letters):
             contact, frame = self._search.touching[i], self._frames[i]
-            point, moved = contact.point @ motion, contact.point[:, :6] @ of_unknowns
+            point, moved = contact.point @ motion, contact.point[:, :-1] @ of_unknowns
             if letter == STICKS:
                 missed += point.tolist()
                 slopes += list(moved)
@@ -282,8 +279,8 @@ class _System:
     def equations(self, unknowns: FloatArray) -> Equations:
         """Return the equations at a solution, with as many unknowns."""
         forces, changes = self._forces_and_changes(unknowns)
-        rows, rows_turn = np.zeros((2, len(unknowns), 7))
-        changes_turn = np.zeros((6, len(unknowns)))
+        rows, rows_turn = np.zeros((2, len(unknowns), self._search.freedoms + 1))
+        changes_turn = np.zeros((self._search.freedoms, len(unknowns)))
         angles = []
         for k, (i, is_angle) in enumerate(self._unknowns):
             contact, frame = self._search.touching[i], self._frames[i]

@@ -46,11 +46,6 @@ _QUARTER: Final = 0.5 * math.pi
 Ranges: TypeAlias = dict[int, tuple[float, float]]
 """For contacts that slide, the first and the last direction, rad, in the frames of their pyramids."""
 
-_FREEDOMS: Final = 6
-"""The freedoms of a body in space."""
-
-_CONSTANT: Final = np.eye(1, 7, 6)[0]
-
 
 class Within(NamedTuple):
     """A region of common motions.
@@ -75,7 +70,7 @@ class _Edges(NamedTuple):
 
     Attributes:
         edges: (k, 3).
-        moved: (k, 6), the motion that each causes.
+        moved: (k, d), the motion that each causes.
         sizes: (k,), the motion that a unit normal part of each causes.
         owners: (k,), the contact of each.
     """
@@ -96,20 +91,21 @@ class HoldingPrograms:
         n = len(search.touching)
         self._normals = np.array([one.normal for one in search.touching])
         self._frictions = np.array([one.friction for one in search.touching])
-        self._points = np.array([one.point for one in search.touching])  # (n, 3, 7)
+        self._points = np.array([one.point for one in search.touching])  # (n, 3, d + 1)
         self._rising = np.einsum("ij,ijk->ik", self._normals, self._points)
         frames = np.array([np.zeros((2, 3)) if p.frame is None else p.frame for p in search.pyramids])
-        self._across = frames @ self._points  # (n, 2, 7)
+        self._across = frames @ self._points  # (n, 2, d + 1)
         # Each contact's only edge, or the middle of its edges, and its tangents, with what they cause.
         axes = [
             p.edges[0] if p.frame is None else of.normal
             for p, of in zip(search.pyramids, search.touching, strict=True)
         ]
         units = np.concatenate([np.array(axes)[:, None], frames], axis=1)
-        of_forces = search.of_forces.reshape(6, n, 3).transpose(1, 2, 0)  # (n, 3, 6)
-        self._units = np.concatenate([units, units @ of_forces], axis=2)  # (n, 3, 9)
+        of_forces = search.of_forces.reshape(search.freedoms, n, 3).transpose(1, 2, 0)  # (n, 3, d)
+        self._units = np.concatenate([units, units @ of_forces], axis=2)  # (n, 3, 3 + d)
         power = search.mass @ search.motion[:, -1]
-        self._power = np.zeros((0, 7))
+        self._constant = np.eye(1, search.freedoms + 1, search.freedoms)[0]
+        self._power = np.zeros((0, search.freedoms + 1))
         if search.at_rest and power.any():
             self._power = np.append(power / np.linalg.norm(power), 0.0)[None, :]
         self._nothing = self._leaning([], np.zeros((0, 1)), np.zeros((0, 1)))
@@ -132,7 +128,11 @@ class HoldingPrograms:
         """
         turning = list(ranges)
         zero, leaving, whole = self._fixed(letters, tuple(turning), facets)
-        if len(zero) == _FREEDOMS and not zero[:, -1].any() and np.any(leaving[:, -1] < -FEASIBLE):
+        if (
+            len(zero) == self._search.freedoms
+            and not zero[:, -1].any()
+            and np.any(leaving[:, -1] < -FEASIBLE)
+        ):
             return None, False  # a body that cannot move leaves no contact
         positive = [leaving]
         edges, moved, sizes, owners = whole
@@ -166,9 +166,9 @@ class HoldingPrograms:
         return found, careful
 
     def _rows_of(self, letters: str) -> FloatArray:
-        """Return independent rows, (k, 7), that vanish with some letters."""
+        """Return independent rows, (k, d + 1), that vanish with some letters."""
         if letters not in self._equations:
-            rows = [np.zeros((0, 7))]
+            rows = [self._power[:0]]
             for i, letter in enumerate(letters):
                 if letter != SEPARATES:
                     rows.append(self._points[i] if letter == STICKS else self._rising[i][None, :])
@@ -194,7 +194,7 @@ class HoldingPrograms:
             whole = [self._nothing, *(self._whole(facets)[i] for i in others)]
             self._parts[key] = (
                 self._rows_of(letters),
-                np.concatenate([self._power, self._rising[leaving] - self._least * _CONSTANT]),
+                np.concatenate([self._power, self._rising[leaving] - self._least * self._constant]),
                 _Edges(*(np.concatenate(one) for one in zip(*whole, strict=True))),
             )
         return self._parts[key]
@@ -218,7 +218,7 @@ class HoldingPrograms:
         """Return edges that lean by some slopes, (m, k), against directions, (m, k) rad."""
         parts = np.ones((*leans.shape, 3))
         parts[..., 1], parts[..., 2] = -leans * np.cos(turns), -leans * np.sin(turns)
-        both = (parts @ self._units[contacts]).reshape(-1, 9)
+        both = (parts @ self._units[contacts]).reshape(-1, self._units.shape[2])
         edges, moved = both[:, :3], both[:, 3:]
         sizes = np.sqrt((moved * moved).sum(axis=1))  # so that the unit of mass does not matter
         owners = np.repeat(np.array(contacts, dtype=np.intp), leans.shape[1])
@@ -238,14 +238,14 @@ class HoldingPrograms:
         return self._leaning(turning, leans, low[:, None] + half[:, None] * shares)
 
     def _conditions(self, turning: list[int], ends: FloatArray) -> FloatArray:
-        """Return the conditions of contacts that slide in ranges of directions, (3 m, 7)."""
+        """Return the conditions of contacts that slide in ranges of directions, (3 m, d + 1)."""
         low, high = ends.T
         turns = np.column_stack([low + _QUARTER, 0.5 * (low + high), high - _QUARTER])  # (m, 3)
         ways = np.empty((len(turning), 3, 2))
         ways[..., 0], ways[..., 1] = np.cos(turns), np.sin(turns)
         rows: FloatArray = ways @ self._across[turning]
         rows[:, 1, -1] -= MILDER * self._least
-        return rows.reshape(-1, 7)
+        return rows.reshape(-1, rows.shape[2])
 
     def _has_power(
         self,

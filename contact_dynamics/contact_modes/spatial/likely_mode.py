@@ -2,9 +2,10 @@
 """The most likely mode: what a body does whose contacts give way a little.
 
 A contact that would penetrate presses in proportion to that. Friction opposes its sliding in the same
-proportion, up to Coulomb's limit. So the motion solves six equations, however many contacts there are.
-Newton's method solves them for stiffer and stiffer contacts. What gives way in the end separates or slides,
-and then forces with these letters are made exact (`exact_letters`). This finds one mode at most.
+proportion, up to Coulomb's limit. So the motion solves as many equations as it has components, however
+many contacts there are. Newton's method solves them for stiffer and stiffer contacts. What gives way in the
+end separates or slides, and then forces with these letters are made exact (`exact_letters`). This finds one
+mode at most.
 """
 
 from __future__ import annotations
@@ -60,7 +61,7 @@ class _Response(NamedTuple):
     """What compliant contacts do under a motion.
 
     Attributes:
-        missed: (6,), the force and torque that the equations of motion miss.
+        missed: (d,), the force and torque that the equations of motion miss.
         forces: (n, 3), on the body.
         rising: (n,), the normal accelerations.
         speeds: (n,), the tangential ones.
@@ -82,8 +83,8 @@ class _Compliant:
     def __init__(self, search: Search) -> None:
         touching = search.touching
         self.mass, self._wrench = search.mass, search.mass @ search.motion[:, -1]
-        points = np.array([one.point for one in touching]).reshape(-1, 7)
-        self._points, self._constant = np.ascontiguousarray(points[:, :6]), points[:, 6]
+        points = np.array([one.point for one in touching]).reshape(-1, search.freedoms + 1)
+        self._points, self._constant = np.ascontiguousarray(points[:, :-1]), points[:, -1]
         self._normals = np.array([one.normal for one in touching]).reshape(-1, 3)
         self._frictions = np.array([one.friction for one in touching])
         self._rests = np.array([one.frame is not None for one in search.pyramids], dtype=bool)
@@ -92,7 +93,7 @@ class _Compliant:
         self._along = self._normals[:, :, None] * self._normals[:, None, :]
 
     def response(self, motion: FloatArray, stiffness: float) -> _Response:
-        """Return what the contacts do under a motion, (6,)."""
+        """Return what the contacts do under a motion, (d,)."""
         accelerations = (self._points @ motion + self._constant).reshape(-1, 3)
         rising = (self._normals * accelerations).sum(axis=1)
         across = accelerations - rising[:, None] * self._normals
@@ -107,7 +108,7 @@ class _Compliant:
         return _Response(missed, forces, rising, speeds, ways, grips)
 
     def step(self, now: _Response, stiffness: float) -> FloatArray:
-        """Return Newton's step, (6,)."""
+        """Return Newton's step, (d,)."""
         presses = np.where(now.rising < 0.0, stiffness, 0.0)
         slips = np.where(now.grips, 0.0, 1.0)
         leaning = self._normals - (slips * self._frictions)[:, None] * now.ways
@@ -117,7 +118,8 @@ class _Compliant:
         rates = presses[:, None, None] * leaning[:, :, None] * self._normals[:, None, :]
         turns = slips[:, None, None] * now.ways[:, :, None] * now.ways[:, None, :]
         rates += holding[:, None, None] * (np.eye(3) - self._along - turns)
-        slopes = self.mass + self._points.T @ (rates @ self._points.reshape(-1, 3, 6)).reshape(-1, 6)
+        of_motion = rates @ self._points.reshape(len(rates), 3, -1)
+        slopes = self.mass + self._points.T @ of_motion.reshape(self._points.shape)
         found: FloatArray = np.linalg.solve(slopes, now.missed)
         return found
 

@@ -62,7 +62,7 @@ def narrowly(search: Search) -> Narrowly:
     modes: list[Narrow] = []
     nearby: dict[str, None] = {}
     for _ in range(_LOADS):
-        way = chance.normal(size=6)
+        way = chance.normal(size=search.freedoms)
         way *= BEHIND_BOUNDARY / float(np.linalg.norm(way))
         for beside in (search.loaded(free + way), search.loaded(free - way)):
             try:

@@ -44,9 +44,9 @@ class _Contacts(NamedTuple):
     Attributes:
         normals: (n, 3), unit.
         frictions: (n,), Coulomb's mu.
-        points: (n, 3, 6), their accelerations on unit motions.
-        rising: (n, 6), the normal ones.
-        across: (n, 3, 6), the tangential ones.
+        points: (n, 3, d), their accelerations on unit motions.
+        rising: (n, d), the normal ones.
+        across: (n, 3, d), the tangential ones.
         turns: (n,), whether their friction may turn, which is that of contacts at rest.
     """
 
@@ -96,13 +96,18 @@ def rests_alone(search: Search) -> bool:
     """
     if not search.at_rest or not search.touching:
         return False
-    if held_by_round_cones(search, np.eye(6, 7), smooth=True).forces is not None:
+    if (
+        held_by_round_cones(search, np.eye(search.freedoms, search.freedoms + 1), smooth=True).forces
+        is not None
+    ):
         return True
     contacts = _contacts(search, list(range(len(search.touching))))
     wrench = search.mass @ search.motion[:, -1]
-    normal = contacts.rising.T  # (6, n)
+    normal = contacts.rising.T  # (d, n)
     gripping = contacts.frictions[:, None, None] * contacts.across
-    seen = seen_and_unseen(gripping.reshape(-1, 6) / max(1.0, float(contacts.frictions.max())))[0].T
+    seen = seen_and_unseen(gripping.reshape(-1, search.freedoms) / max(1.0, float(contacts.frictions.max())))[
+        0
+    ].T
     pressing = np.linalg.lstsq(normal, -wrench, rcond=ROW_TOLERANCE)[0]
     common = np.zeros(seen.shape[1])
     enough = FORCES_ROUNDING * float(np.linalg.norm(wrench))
@@ -126,7 +131,7 @@ def rests_alone(search: Search) -> bool:
 def _contacts(search: Search, everyone: list[int]) -> _Contacts:
     touching = [search.touching[i] for i in everyone]
     normals = np.array([one.normal for one in touching]).reshape(-1, 3)
-    points = np.array([one.point[:, :6] for one in touching]).reshape(-1, 3, 6)
+    points = np.array([one.point[:, :-1] for one in touching]).reshape(-1, 3, search.freedoms)
     rising = np.einsum("ij,ijk->ik", normals, points)
     return _Contacts(
         normals=normals,
@@ -150,7 +155,7 @@ def _excludes_others(
         speeds: (n,), how fast they begin to slide; zero where they stick, or slide already.
         within: Whether all these contacts stay.
     """
-    basis = seen_and_unseen(contacts.rising)[1].T if within else np.eye(6)
+    basis = seen_and_unseen(contacts.rising)[1].T if within else np.eye(search.freedoms)
     if basis.size == 0:
         return True
     if len(ways) == 0:
@@ -164,7 +169,7 @@ def _excludes_others(
     # The virtual motions that have these accelerations and turn friction least are taken.
     tangents = contacts.turns[:, None, None] * contacts.across
     others = seen_and_unseen(E)[1].T
-    tangential = tangents.reshape(-1, 6)
+    tangential = tangents.reshape(-1, search.freedoms)
     z -= others @ (np.linalg.pinv(tangential @ others, rcond=ROW_TOLERANCE) @ (tangential @ z))
     turned = tangents @ z  # (n, 3, p)
     mass = basis.T @ search.mass @ basis
@@ -199,7 +204,10 @@ def _most_pressing(search: Search, contacts: _Contacts) -> float:
     helps = along - contacts.frictions * np.sqrt(np.maximum(1.0 - along * along, 0.0))
     if helps.min() <= 0.0:
         return math.inf
-    virtual = np.append(way / size, np.zeros(3))
+    points, ways = contacts.points.reshape(-1, search.freedoms), np.tile(way / size, len(contacts.normals))
+    virtual = np.linalg.lstsq(points, ways, rcond=ROW_TOLERANCE)[0]
+    if np.abs(points @ virtual - ways).max() > ROW_TOLERANCE:  # no motion moves all contacts alike
+        return math.inf
     free = search.motion[:, -1]
     wrench = search.mass @ free
     most = math.sqrt(float(free @ wrench) * float(virtual @ search.mass @ virtual))

@@ -32,12 +32,12 @@ class Equations(NamedTuple):
     Attributes:
         unknowns: (k,). The share of a contact stands just before its direction.
         angles: The numbers of the unknowns that are directions, and of the equations that turn with them.
-        rows: (k, 7), whose products with the motion, followed by 1, vanish.
-        rows_turn: (k, 7), bounds on how fast the rows turn with the direction of their contact, per rad.
-        changes: (6, k), the changes of the motion with the unknowns.
-        changes_turn: (6, k), how fast the change with a share turns at most with the direction. For a
+        rows: (k, d + 1), whose products with the motion, followed by 1, vanish.
+        rows_turn: (k, d + 1), bounds on how fast the rows turn with the direction of their contact, per rad.
+        changes: (d, k), the changes of the motion with the unknowns.
+        changes_turn: (d, k), how fast the change with a share turns at most with the direction. For a
             direction it is the same of its contact.
-        motion: (7,), the motion, followed by 1.
+        motion: (d + 1,), the motion, followed by 1.
         slopes: (k, k), the derivatives of the equations.
     """
 
@@ -82,7 +82,7 @@ def _is_regular(
         turn: The angle.
     """
     unknowns, angles, rows, rows_turn, changes, changes_turn, motion, _ = equations
-    of_rows = np.abs(rows[:, :6])
+    of_rows = np.abs(rows[:, :-1])
     # The equations of the shares do not turn. So the shares are bounded first.
     error = inverse @ (of_rows[shares] @ (turn * changes_turn[:, shares]))
     if not _contracts(error):
@@ -95,9 +95,9 @@ def _is_regular(
     spread[:, angles] = changes_turn[:, angles] * (turn * sizes[of_share] + off[of_share])
     moved = np.abs(changes[:, shares]) @ off[shares]
     moved += turn * changes_turn[:, shares] @ (sizes[shares] + off[shares])
-    bounds = (of_rows + turn * rows_turn[:, :6]) @ spread + turn * rows_turn[:, :6] @ np.abs(changes)
+    bounds = (of_rows + turn * rows_turn[:, :-1]) @ spread + turn * rows_turn[:, :-1] @ np.abs(changes)
     for i in angles:
-        bounds[i, i] += turn * float(rows_turn[i] @ np.abs(motion)) + float(rows_turn[i, :6] @ moved)
+        bounds[i, i] += turn * float(rows_turn[i] @ np.abs(motion)) + float(rows_turn[i, :-1] @ moved)
     return _contracts(of_all @ bounds)
 
 

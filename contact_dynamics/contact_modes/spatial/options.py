@@ -38,7 +38,7 @@ class Option(NamedTuple):
         item: The item of sliding, or -1 where there is none or several.
         zeroed: The names of edge forces, and of a normal acceleration, that are zero.
         raised: The name of the normal acceleration where that is positive, or None.
-        rows: (k, 7), whose products with the motion, followed by 1, are zero or not negative.
+        rows: (k, d + 1), whose products with the motion, followed by 1, are zero or not negative.
         equalities: The number of rows, from the first, whose products are zero.
         parts: The smaller groups that it consists of; empty if it is a single letter.
     """
@@ -104,11 +104,11 @@ def any_letter(pyramid: Pyramid, point: FloatArray, normal_name: int) -> Option:
 
     Args:
         pyramid: Its force edges.
-        point: (3, 7), its acceleration as a function of the motion.
+        point: (3, d + 1), its acceleration as a function of the motion.
         normal_name: The name of its normal acceleration.
     """
     own = range(pyramid.first, pyramid.first + len(pyramid.edges))
-    nothing = np.zeros((0, 7))
+    nothing = np.zeros((0, point.shape[1]))
     separates = Option(SEPARATES, -1, frozenset(own), normal_name, nothing, 0, ())
     zeroed = frozenset([normal_name])
     if pyramid.frame is None:
@@ -126,7 +126,7 @@ def ways_of_sliding(
 
     Args:
         pyramid: Its force edges, more than one.
-        point: (3, 7), its acceleration as a function of the motion.
+        point: (3, d + 1), its acceleration as a function of the motion.
         acting: The first of some neighbouring edges and their number, where only these can oppose the
             sliding; None where any edge can. Then the arcs together go around the circle.
     """
@@ -147,7 +147,7 @@ def way_of_sliding(pyramid: Pyramid, point: FloatArray, item: int) -> Option:
 
 
 def _along_edges(pyramid: Pyramid, point: FloatArray) -> FloatArray:
-    """Return the acceleration along each edge's tangential part, (K, 7), as functions of the motion."""
+    """Return the acceleration along each edge's tangential part, (K, d + 1), as functions of the motion."""
     count = len(pyramid.edges)
     angles = 2.0 * math.pi * np.arange(count) / count
     along: FloatArray = np.column_stack([np.cos(angles), np.sin(angles)]) @ np.array(pyramid.frame) @ point

@@ -44,7 +44,7 @@ class Touching(NamedTuple):
         normal: (3,), unit.
         friction: Coulomb's mu.
         sliding: (3,), m/s, its tangential velocity; zero where it is at rest.
-        point: (3, 7), its acceleration as a function of the motion.
+        point: (3, d + 1), its acceleration as a function of the motion, which has d components.
         free: (3,), its acceleration without contact forces.
     """
 
@@ -58,8 +58,8 @@ class Touching(NamedTuple):
 class PyramidPrograms(ABC):
     """Touching contacts, and programs about their forces.
 
-    Motions, (a, alpha) in units that the caller chooses so that contact points' accelerations are about 1,
-    are affine functions of the edge forces.
+    Motions have d components, such as (a, alpha), in units that the caller chooses so that the accelerations
+    of contact points are about 1. They are affine functions of the edge forces.
     """
 
     def __init__(
@@ -77,9 +77,9 @@ class PyramidPrograms(ABC):
 
         Args:
             touching: The contacts.
-            of_forces: (6, 3 n), the motion that unit contact forces cause.
-            free: (6,), the motion without contact forces.
-            mass: (6, 6), the forces and torques that unit motion needs.
+            of_forces: (d, 3 n), the motion that unit contact forces cause.
+            free: (d,), the motion without contact forces.
+            mass: (d, d), the forces and torques that unit motion needs.
             at_rest: Whether nothing moves, so that the applied wrench has power >= 0.
             facets: The number of edges of a friction pyramid.
             least: By how much contacts that separate must do so.
@@ -106,6 +106,7 @@ class PyramidPrograms(ABC):
             last = pyramid.first + len(pyramid.edges)
             self.edges[3 * i : 3 * i + 3, pyramid.first : last] = pyramid.edges.T
         self.of_forces = of_forces
+        self.freedoms = len(free)  # the number of components of the motion
         motion = of_forces @ self.edges
         sizes = np.linalg.norm(motion, axis=0)
         sizes[sizes == 0.0] = 1.0
@@ -115,7 +116,7 @@ class PyramidPrograms(ABC):
         self.examined = 0  # the number of programs solved so far
         self.most_examined = MAX_EXAMINED
         self._first_normal = first  # the name of contact 0's normal acceleration
-        self._normals = np.array([c.normal @ c.point for c in touching]).reshape(-1, 7)
+        self._normals = np.array([c.normal @ c.point for c in touching]).reshape(-1, self.freedoms + 1)
         named = self._normals
         names = [first + i for i in range(len(touching))]
         self.mass = mass
@@ -225,7 +226,7 @@ class PyramidPrograms(ABC):
                 zeroed=frozenset(staying).union(*(one.zeroed for one in letters)),
                 raised=[one.raised for one in letters if one.raised is not None],
                 least=self._least,
-                rows=np.concatenate([np.zeros((0, 7)), *equations, *others]),
+                rows=np.concatenate([self._normals[:0], *equations, *others]),
                 equalities=sum(one.equalities for one in letters),
                 tag=CONTACT_TAG - len(self.touching),
             )

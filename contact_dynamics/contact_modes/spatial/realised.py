@@ -216,7 +216,8 @@ def _forces(search: Search, letters: str, edges: list[FloatArray]) -> FloatArray
     of_edges = search.of_forces @ spread
     sizes = np.linalg.norm(of_edges, axis=0)
     sizes[sizes == 0.0] = 1.0
-    zero, positive = [np.zeros((0, 7))], [np.zeros((0, 7))]
+    nothing = np.zeros((0, search.freedoms + 1))
+    zero, positive = [nothing], [nothing]
     for contact, letter in zip(search.touching, letters, strict=True):
         if letter == SEPARATES:
             positive.append((contact.normal @ contact.point)[None, :])

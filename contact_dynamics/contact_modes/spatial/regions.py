@@ -44,8 +44,8 @@ class Image(NamedTuple):
     """The tangential accelerations of some contacts under the motions in which others stay as well.
 
     Attributes:
-        coordinates: (p, 6), rows that give the coordinates of a motion.
-        unseen: (q, 6), motions without tangential acceleration.
+        coordinates: (p, d), rows that give the coordinates of a motion.
+        unseen: (q, d), motions without tangential acceleration.
         maps: (m, 2, p), from coordinates to the contacts' accelerations in their pyramids' frames.
     """
 
@@ -67,9 +67,9 @@ class Region(NamedTuple):
     inside: FloatArray
 
     def rows(self, image: Image) -> FloatArray:
-        """Return the conditions on the motion, (p + 1, 7), that it slides, within the region."""
+        """Return the conditions on the motion, (p + 1, d + 1), that it slides, within the region."""
         inside = self.inside / np.sqrt((self.inside * self.inside).sum(axis=1))[:, None]
-        found = np.zeros((len(inside), 7))
+        found = np.zeros((len(inside), image.coordinates.shape[1] + 1))
         found[:, :-1] = inside @ image.coordinates
         found[-1, -1] = -MILDER * STRICT
         return found
@@ -149,7 +149,7 @@ class Flat(NamedTuple):
     Attributes:
         chosen: The contacts that were asked to stick.
         stuck: These contacts, and all that stick with them.
-        rows: (k, 6), combinations of the motion that are zero.
+        rows: (k, d), combinations of the motion that are zero.
         image: The tangential motions of the contacts that need not stick.
     """
 
@@ -177,7 +177,7 @@ def flat_of(normals: FloatArray, frames: FloatArray, chosen: tuple[int, ...]) ->
         frames: The tangential ones, as for `image_of`, of all contacts that may stick or slide.
         chosen: The contacts.
     """
-    sticking = frames[list(chosen)].reshape(-1, 6)
+    sticking = frames[list(chosen)].reshape(-1, normals.shape[1])
     image = image_of(np.vstack([normals, sticking]), frames)
     moves = np.abs(image.maps).max(axis=(1, 2), initial=0.0) > ROW_TOLERANCE
     stuck = frozenset(np.flatnonzero(~moves).tolist())
@@ -188,11 +188,11 @@ def image_of(normals: FloatArray, frames: FloatArray) -> Image:
     """Return the space of common tangential accelerations.
 
     Args:
-        normals: (k, 6), normal accelerations of the contacts that stay, as functions of the motion.
-        frames: (m, 2, 6), tangential accelerations of the contacts whose sliding is asked for.
+        normals: (k, d), normal accelerations of the contacts that stay, as functions of the motion.
+        frames: (m, 2, d), tangential accelerations of the contacts whose sliding is asked for.
     """
     free = seen_and_unseen(normals)[1]
-    along = frames.reshape(-1, 6) @ free.T
+    along = frames.reshape(-1, normals.shape[1]) @ free.T
     basis, rest = seen_and_unseen(along)
     return Image(basis @ free, rest @ free, (along @ basis.T).reshape(len(frames), 2, -1))
 
@@ -229,8 +229,8 @@ def gains_in(image: Image, power: FloatArray, mass: FloatArray) -> FloatArray:
 
     Args:
         image: The space of the coordinates.
-        power: (6,), the power of the applied wrench on unit motions.
-        mass: (6, 6), the forces and torques that unit motions need.
+        power: (d,), the power of the applied wrench on unit motions.
+        mass: (d, d), the forces and torques that unit motions need.
     """
     unseen = image.unseen @ mass
     rest = np.linalg.solve(unseen @ image.unseen.T, image.unseen @ power)

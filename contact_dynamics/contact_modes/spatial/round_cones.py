@@ -70,12 +70,12 @@ class Held(NamedTuple):
 
 
 def sticking(search: Search) -> FloatArray:
-    """Return rows, (k, 7), that vanish where all contacts stay, and those with friction stick."""
+    """Return rows, (k, d + 1), that vanish where all contacts stay, and those with friction stick."""
     rows = [
         contact.point if contact.friction > 0.0 else (contact.normal @ contact.point)[None, :]
         for contact in search.touching
     ]
-    return np.vstack([np.zeros((0, 7)), *rows])
+    return np.vstack([np.zeros((0, search.freedoms + 1)), *rows])
 
 
 def held_by_round_cones(
@@ -85,7 +85,7 @@ def held_by_round_cones(
 
     Args:
         search: The case. What slides already counts as at rest.
-        rows: (k, 7), of about unit length.
+        rows: (k, d + 1), of about unit length.
         smooth: Whether friction is left out.
         tolerance: Rows that differ by less are one.
     """
@@ -104,14 +104,14 @@ def moved_by_round_cones(search: Search, axes: FloatArray, frictions: FloatArray
         axes: (n, 3), for each touching contact the axis of the cone of its forces, with a unit normal part.
             It is zero for a contact without force.
         frictions: (n,), how far forces in each cone may lean from its axis.
-        way: (6,), the least motion in that direction.
+        way: (d,), the least motion in that direction.
     """
     acting = axes.any(axis=1)
-    of_forces = search.of_forces.reshape(6, -1, 3)[:, acting]
+    of_forces = search.of_forces.reshape(search.freedoms, -1, 3)[:, acting]
     # The motion's further size counts as one more force.
-    sizes = np.zeros((6, 1, 3))
+    sizes = np.zeros((search.freedoms, 1, 3))
     sizes[:, 0, 0] = -way / np.linalg.norm(way)
-    effects = search.mass @ np.concatenate([of_forces, sizes], axis=1).reshape(6, -1)
+    effects = search.mass @ np.concatenate([of_forces, sizes], axis=1).reshape(search.freedoms, -1)
     demand = _balanced(effects, search.mass @ (way - search.motion[:, -1]))
     cones = np.vstack([axes[acting], [1.0, 0.0, 0.0]])
     held = _nearest(demand, cones, np.append(frictions[acting], 0.0))
@@ -178,7 +178,9 @@ def hold_alone(search: Search, forces: FloatArray) -> bool:
     against what these can balance.
     """
     normals, frictions = _cones(search)
-    wrenches = (search.mass @ search.of_forces).reshape(6, -1, 3).transpose(1, 0, 2)  # (n, 6, 3)
+    wrenches = (
+        (search.mass @ search.of_forces).reshape(search.freedoms, -1, 3).transpose(1, 0, 2)
+    )  # (n, d, 3)
     wrenches = wrenches / max(float(np.abs(wrenches).max(initial=0.0)), np.finfo(float).tiny)
     sizes = np.linalg.norm(forces, axis=1)
     idle = sizes <= LETTERS_NO_FORCE * sizes.max(initial=0.0)
@@ -187,13 +189,14 @@ def hold_alone(search: Search, forces: FloatArray) -> bool:
         for one, normal, friction, rests in zip(wrenches, normals, frictions, idle, strict=True)
         if not rests
     ]
-    columns = np.hstack([np.zeros((6, 0)), *acting])
+    columns = np.hstack([np.zeros((search.freedoms, 0)), *acting])
     basis = row_space(columns.T)
     if len(basis) < columns.shape[1] or not idle.any():
         return bool(len(basis) == columns.shape[1])
     left = wrenches[idle] - basis.T @ (basis @ wrenches[idle])
     images = np.concatenate([left, normals[idle][:, None, :]], axis=1)  # the last row sums normal forces
-    held = _nearest(_Demand(images, np.eye(7)[-1], np.ones(7)), normals[idle], frictions[idle])
+    one = np.ones(search.freedoms + 1)
+    held = _nearest(_Demand(images, np.eye(len(one))[-1], one), normals[idle], frictions[idle])
     return held.forces is None and held.certain
 
 

@@ -111,7 +111,7 @@ class Search(PyramidPrograms):
 
     def _decide_staying(self, program: AnyProgram, trials: list[Option], /) -> None:
         open_ones = [i for i, letters in enumerate(trials) if letters.parts]
-        frames = np.array([trials[i].parts[0].rows for i in open_ones]).reshape(-1, 2, 7)
+        frames = np.array([trials[i].parts[0].rows for i in open_ones]).reshape(-1, 2, self.freedoms + 1)
         if len(open_ones) < 2 or np.any(frames[:, :, -1]):
             # One contact's letters are as few as regions; with centripetal terms directions are not cones.
             for i in open_ones:
@@ -247,7 +247,7 @@ class Search(PyramidPrograms):
         solved = self._solved(self._with_all(self._root, letters))
         if solved is None:
             return
-        mixture = np.random.default_rng(26).normal(size=6)
+        mixture = np.random.default_rng(26).normal(size=self.freedoms)
         found = Found(letters, solved, solved.ends(mixture @ self.motion[:, :-1]))
         self._found[key] = found
         if self._grouped and not found.motion.unique:

@@ -50,7 +50,7 @@ def sliding_together(search: Search, letters: str, motions: Sequence[FloatArray]
     Args:
         search: The case, of a body at rest.
         letters: s, c or f for each touching contact.
-        motions: Motions, (6,), in directions near to which the body may slide.
+        motions: Motions, (d,), in directions near to which the body may slide.
     """
     if any(contact.point[:, -1].any() or contact.sliding.any() for contact in search.touching):
         return Held(None, certain=False)
@@ -109,10 +109,10 @@ class _Problem(NamedTuple):
         normals: (m, 3 n), the normal forces of the contacts that begin to slide.
         tangents: (m, 2, 3 n), their unit frictions, times the coefficient.
         others: (k, 3 n), the edges of the other contacts' forces.
-        motions: (p, 6), the motions with the letters, but for the sliding.
+        motions: (p, d), the motions with the letters, but for the sliding.
         slides: (m, 2, p), the tangential accelerations that these cause.
-        of_forces: (6, 3 n), the motion that unit forces cause.
-        free: (6,), the motion without forces.
+        of_forces: (d, 3 n), the motion that unit forces cause.
+        free: (d,), the motion without forces.
     """
 
     normals: FloatArray
@@ -134,13 +134,13 @@ class _Problem(NamedTuple):
 
 
 def _motions(search: Search, letters: str) -> FloatArray:
-    """Return the motions, (p, 6), with some letters, whatever else they do."""
+    """Return the motions, (p, d), with some letters, whatever else they do."""
     still = [
-        one.point[:, :6] if letter == STICKS else (one.normal @ one.point)[None, :6]
+        one.point[:, :-1] if letter == STICKS else (one.normal @ one.point)[None, :-1]
         for letter, one in zip(letters, search.touching, strict=True)
         if letter != SEPARATES
     ]
-    return seen_and_unseen(np.vstack([np.zeros((0, 6)), *still]))[1]
+    return seen_and_unseen(np.vstack([np.zeros((0, search.freedoms)), *still]))[1]
 
 
 def _problem(search: Search, letters: str, free_motions: FloatArray) -> _Problem:
@@ -157,7 +157,7 @@ def _problem(search: Search, letters: str, free_motions: FloatArray) -> _Problem
             frame = np.array(pyramid.frame)
             normals.append(contact.normal @ spread)
             tangents.append(contact.friction * frame @ spread)
-            slides.append(frame @ contact.point[:, :6])
+            slides.append(frame @ contact.point[:, :-1])
         else:
             others.append(pyramid.edges @ spread)
     return _Problem(
@@ -165,7 +165,7 @@ def _problem(search: Search, letters: str, free_motions: FloatArray) -> _Problem
         tangents=np.array(tangents).reshape(-1, 2, size),
         others=np.vstack(others),
         motions=free_motions,
-        slides=np.array(slides).reshape(-1, 2, 6) @ free_motions.T,
+        slides=np.array(slides).reshape(-1, 2, search.freedoms) @ free_motions.T,
         of_forces=search.of_forces,
         free=search.motion[:, -1],
     )
