@@ -30,7 +30,7 @@ NOT_REFUSED = {
     "contact_modes.spatial.excluded.MAX_PROGRAMS",
     "contact_modes.spatial.margins_of_sliding.MAX_CORNERS",
     "impact.in_time.sequence.MAX_STRIKES",
-    "impact.in_time.strike_by_strike.MAX_HELD",
+    "impact.in_time.sequence.MAX_HELD",
     "impact.several.interleavings.MAX_INCREMENTS",
     "impact.several.orders.MAX_ORDERS",
     "impact.several.sequential.MAX_STRIKES",

@@ -17,15 +17,14 @@ The modules of this package are internal. `law` contains the laws of restitution
 many cases (`batch`); `result` contains the types of their results. `several` treats several contacts at one
 instant, `in_time` strikes one after the other, and `distribution` uncertain states.
 
-- In the plane, the impulse path is Routh's construction (`routh`). In `two_bodies`, both bodies may move.
+- In the plane, the impulse path is Routh's construction (`routh`).
 - In space, a contact responds in all directions (`response`), and its sliding direction changes continuously,
   so the impulse `path` is curved. A mechanism, such as a robot arm, is described by its response alone.
 - Several contacts strike one after the other (`sequential`, over all `orders`) or all at once
-  (`simultaneous`), also in the plane (`planar`). Their impulses may also interleave in any way
+  (`simultaneous`), also in the plane. Their impulses may also interleave in any way
   (`interleavings`). Contacts that do not approach can jam (`jamming`) until a mode is consistent
   (`settling`).
-- In time, `meetings` finds the contact that strikes next, and `sequence` proceeds from strike to strike
-  (`strike_by_strike`).
+- In time, `meetings` finds the contact that strikes next, and `sequence` proceeds from strike to strike.
 """
 
 from contact_dynamics.impact.distribution import (
@@ -37,14 +36,17 @@ from contact_dynamics.impact.in_time.result import ImpactSequence, SequenceEnd, 
 from contact_dynamics.impact.in_time.sequence import impact_sequence, impact_sequence_of
 from contact_dynamics.impact.law import ImpactOutcome, PathEvent, RestitutionLaw
 from contact_dynamics.impact.planar.batch import PlanarImpacts, planar_impacts
-from contact_dynamics.impact.planar.one_contact import planar_impact
+from contact_dynamics.impact.planar.one_contact import planar_impact, planar_pair_impact
 from contact_dynamics.impact.planar.result import PlanarImpact
 from contact_dynamics.impact.planar.routh import ImpulsePath, InverseInertia
-from contact_dynamics.impact.planar.two_bodies import planar_pair_impact
 from contact_dynamics.impact.several.interleavings import outcomes_over_interleavings
 from contact_dynamics.impact.several.jamming import jamming_impact
-from contact_dynamics.impact.several.orders import outcomes_at_once, outcomes_over_orders, several_impact
-from contact_dynamics.impact.several.planar import planar_several_impact
+from contact_dynamics.impact.several.orders import (
+    outcomes_at_once,
+    outcomes_over_orders,
+    planar_several_impact,
+    several_impact,
+)
 from contact_dynamics.impact.several.result import (
     BodiesImpact,
     InterleavedOutcomes,

@@ -10,7 +10,8 @@
 
 `outcomes_over_orders` gives the outcomes that the sequential law reaches over its admissible orders. Their
 spread says how far the answer is undecided. `outcomes_at_once` does the same for the solutions of
-SIMULTANEOUS. `impact.several.planar` has the laws in the plane.
+SIMULTANEOUS. In the plane (`planar_several_impact`) the laws are the same: the plane is put into space, where
+the body gets equal moments about all axes, and so moves in the plane as the planar one does.
 
 Moments at the contacts are left out. So are resting contacts that their own sliding would jam, which
 `impact.spatial` answers for one contact.
@@ -18,8 +19,9 @@ Moments at the contacts are left out. So are resting contacts that their own sli
 
 from __future__ import annotations
 
+import math
 from itertools import islice, permutations
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, TypeAlias
 
 import numpy as np
 
@@ -31,6 +33,7 @@ from contact_dynamics.impact.several.result import (
     SeveralContactsLaw,
     SeveralImpact,
     SeveralVerdict,
+    of_only_body,
 )
 from contact_dynamics.impact.several.sequential import (
     Touching,
@@ -39,15 +42,22 @@ from contact_dynamics.impact.several.sequential import (
     strike_at_once,
     strike_in_turn,
 )
+from contact_dynamics.plane.lifting import planar_in_space
 from contact_dynamics.tolerances import SAME_IMPULSES, VELOCITY_TOLERANCE
 from contact_dynamics.validation import check_positive, check_whole
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Iterator, Sequence
+
+    from numpy.typing import ArrayLike
 
     from contact_dynamics.contact.contact import ContactSet
+    from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity
     from contact_dynamics.rigid_body.body import BodyState, HasMassProperties, MassProperties
     from contact_dynamics.validation import FloatArray
+
+    _Outcome: TypeAlias = tuple[tuple[int, ...], Sequence[BodyState], SeveralVerdict]
+    """An order, the states of all bodies after it, and whether it converged."""
 
 MAX_ORDERS: Final = 120
 """Number of orders that `outcomes_over_orders` tries. These are all orders of up to five contacts."""
@@ -87,25 +97,54 @@ def several_impact(
             combined.
     """
     warn_if_far(body, state, contacts.p_WC_W)
-    answer = bodies_impact(
-        [body],
-        [state],
-        contacts,
-        [(0, None)] * len(contacts),
+    return of_only_body(
+        bodies_impact(
+            [body],
+            [state],
+            contacts,
+            [(0, None)] * len(contacts),
+            several_contacts_law=several_contacts_law,
+            restitution_law=restitution_law,
+            velocity_tolerance=velocity_tolerance,
+        )
+    )
+
+
+_X_AND_Y: Final = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0))
+
+
+def planar_several_impact(
+    body: PlanarBody,
+    velocity: PlanarVelocity,
+    contacts: Sequence[PlanarContact],
+    *,
+    several_contacts_law: SeveralContactsLaw = SeveralContactsLaw.SEQUENTIAL,
+    restitution_law: RestitutionLaw = RestitutionLaw.POISSON,
+    velocity_tolerance: float = VELOCITY_TOLERANCE,
+    axes_W: ArrayLike = _X_AND_Y,
+) -> SeveralImpact:
+    """Return the outcome of an impact of a planar body at all its contacts, under the chosen laws.
+
+    Args:
+        body: Mass and angular inertia.
+        velocity: Velocity of the body just before the impact.
+        contacts: All touching contacts, whether or not they approach; at least one.
+        several_contacts_law: Law for several contacts.
+        restitution_law: Law of restitution. ENERGETIC requires SEQUENTIAL.
+        velocity_tolerance: m/s, > 0. A contact that approaches more slowly does not strike.
+        axes_W: (2, 3), the x and y axes of the plane in world axes. The result is in world axes, with the
+            centre of mass at the origin of the world.
+
+    Raises:
+        SeparatingContactError: all contacts separate.
+        InvalidFieldError: `several_impact` rejects a field, or the axes are not orthogonal unit vectors.
+    """
+    spatial = planar_in_space(body, velocity, contacts, axes_W=axes_W)
+    return several_impact(
+        *spatial,
         several_contacts_law=several_contacts_law,
         restitution_law=restitution_law,
         velocity_tolerance=velocity_tolerance,
-    )
-    return SeveralImpact(
-        several_contacts_law=several_contacts_law,
-        restitution_law=restitution_law,
-        verdict=answer.verdict,
-        state=answer.states[0],
-        impulses_W=answer.impulses_W,
-        velocities_before_W=answer.velocities_before_W,
-        velocities_after_W=answer.velocities_after_W,
-        strikes=answer.strikes,
-        order_is_open=answer.order_is_open,
     )
 
 
@@ -141,35 +180,25 @@ def outcomes_over_orders(
             number >= 1.
         TooLargeError: the orders take more strikes in total than `MAX_STRIKES_OVER_ORDERS`.
     """
-    body = body.mass_properties
-    tolerance = check_positive("velocity_tolerance", velocity_tolerance)
+    touching = _touching(body, state, contacts, restitution_law, velocity_tolerance)
     max_orders = check_whole("max_orders", max_orders, 1)
-    touching = Touching([body], contacts, [(0, None)] * len(contacts), restitution_law, tolerance)
-    check_touching(touching, [state])
+    return _outcomes(_in_turn(touching, state, max_orders), complete=_order_count(contacts) <= max_orders)
+
+
+def _in_turn(touching: Touching, state: BodyState, max_orders: int) -> Iterator[_Outcome]:
     own = strike_in_turn(touching, [state])
-    found: dict[tuple[int, ...], FloatArray] = {}
     if own.ties and own.verdict == SeveralVerdict.RESOLVED:
-        found[()] = _velocities(own.states[0])
-    lost, struck = 0, len(own.strikes)
-    priorities = permutations(range(len(contacts)))
-    for priority in islice(priorities, max_orders):
+        yield (), own.states, own.verdict
+    struck = len(own.strikes)
+    for priority in islice(permutations(range(len(touching.contacts))), max_orders):
         turn = strike_in_turn(touching, [state], priority=priority)
         struck += len(turn.strikes)
         if struck > MAX_STRIKES_OVER_ORDERS:
-            count = f"{len(contacts)} contacts, over whose orders there are more strikes"
+            count = f"{len(touching.contacts)} contacts, over whose orders there are more strikes"
             raise TooLargeError("contacts", count, f"at most {MAX_STRIKES_OVER_ORDERS} over all orders")
-        if turn.verdict == SeveralVerdict.RESOLVED:
-            found[turn.order] = _velocities(turn.states[0])
-        else:
-            lost += 1
+        yield turn.order, turn.states, turn.verdict
     if not own.ties and own.verdict == SeveralVerdict.RESOLVED:
-        found[own.order] = _velocities(own.states[0])
-    return OrderedOutcomes(
-        orders=tuple(found),
-        velocities_W=np.array(list(found.values())).reshape(-1, 6),
-        complete=next(priorities, None) is None,
-        not_converged=lost,
-    )
+        yield own.order, own.states, own.verdict
 
 
 def order_warning(
@@ -238,24 +267,44 @@ def outcomes_at_once(
         InvalidFieldError: there are no contacts, the tolerance is not > 0, ``max_orders`` is not a whole
             number >= 1, or the law is ENERGETIC.
     """
-    body = body.mass_properties
-    tolerance = check_positive("velocity_tolerance", velocity_tolerance)
+    touching = _touching(body, state, contacts, restitution_law, velocity_tolerance)
     max_orders = check_whole("max_orders", max_orders, 1)
-    touching = Touching([body], contacts, [(0, None)] * len(contacts), restitution_law, tolerance)
+    orders = (None, *islice(permutations(range(len(contacts))), max_orders))
+    solutions = ((order or (), *strike_at_once(touching, [state], order=order)[1:]) for order in orders)
+    return _outcomes(solutions, complete=_order_count(contacts) <= max_orders)
+
+
+def _touching(
+    body: HasMassProperties,
+    state: BodyState,
+    contacts: ContactSet,
+    restitution_law: RestitutionLaw,
+    velocity_tolerance: float,
+) -> Touching:
+    """Return one body that touches the world. Refuse sets in which nothing strikes."""
+    tolerance = check_positive("velocity_tolerance", velocity_tolerance)
+    pairs = [(0, None)] * len(contacts)
+    touching = Touching([body.mass_properties], contacts, pairs, restitution_law, tolerance)
     check_touching(touching, [state])
+    return touching
+
+
+def _order_count(contacts: ContactSet) -> int:
+    return math.factorial(len(contacts))
+
+
+def _outcomes(tried: Iterable[_Outcome], *, complete: bool) -> OrderedOutcomes:
     found: dict[tuple[int, ...], FloatArray] = {}
     lost = 0
-    orders = permutations(range(len(contacts)))
-    for order in (None, *islice(orders, max_orders)):
-        _, (after,), verdict = strike_at_once(touching, [state], order=order)
+    for order, (after,), verdict in tried:
         if verdict == SeveralVerdict.RESOLVED:
-            found[order or ()] = _velocities(after)
+            found[order] = _velocities(after)
         else:
             lost += 1
     return OrderedOutcomes(
         orders=tuple(found),
         velocities_W=np.array(list(found.values())).reshape(-1, 6),
-        complete=next(orders, None) is None,
+        complete=complete,
         not_converged=lost,
     )
 

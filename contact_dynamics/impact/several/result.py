@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """The result of an impact at several contacts, of one body or of several, and the names of the laws.
 
-`SeveralImpact` and `BodiesImpact` have all fields in common but one, the state or the states. They are two
-types, so that a caller with one body does not take it out of a tuple.
+`SeveralImpact` and `BodiesImpact` are two types, so that a caller with one body does not take its state out
+of a tuple.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 
@@ -37,8 +37,8 @@ class SeveralVerdict(NamedInt):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class SeveralImpact(Record):
-    """Outcome of an impact at several contacts of one body.
+class AtContacts(Record):
+    """Outcome of an impact at several contacts, of one body or of several.
 
     Row i belongs to contact i, and all axes are those of the world.
 
@@ -46,54 +46,6 @@ class SeveralImpact(Record):
         several_contacts_law: Law for several contacts.
         restitution_law: Law of restitution.
         verdict: Whether the law converged.
-        state: State after the impact: the pose before it, with the new velocities.
-        impulses_W: (n, 3), N s, total impulses on the body.
-        velocities_before_W: (n, 3), m/s, velocities of the contacts before the impact, relative to their
-            surfaces.
-        velocities_after_W: (n, 3), m/s, velocities of the contacts after the impact, relative to their
-            surfaces.
-        strikes: Contacts that struck, in order, with their impacts. Contacts of equal approach speed strike
-            as one: they are listed one after the other, each with its share of the impulse and the state
-            after all of them. Empty with SIMULTANEOUS.
-        order_is_open: Whether several contacts approached at the same time under SEQUENTIAL, so that
-            rigid-body mechanics also admits other orders. `outcomes_over_orders` returns their outcomes.
-    """
-
-    several_contacts_law: SeveralContactsLaw
-    restitution_law: RestitutionLaw
-    verdict: SeveralVerdict
-    state: BodyState
-    impulses_W: FloatArray
-    velocities_before_W: FloatArray
-    velocities_after_W: FloatArray
-    strikes: tuple[tuple[int, SpatialImpact], ...]
-    order_is_open: bool = False
-
-    @property
-    def energy_change(self) -> float:
-        """Return the change of kinetic energy, J: the impulses times the contacts' mean velocities.
-
-        The work of moving surfaces, the impulses times their velocities, is not part of it.
-        """
-        return _energy_change(self)
-
-    @property
-    def order(self) -> tuple[int, ...]:
-        """Return the contacts that were struck, in order. SIMULTANEOUS strikes none in turn."""
-        return tuple(contact for contact, _ in self.strikes)
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class BodiesImpact(Record):
-    """Outcome of an impact at several contacts of several bodies.
-
-    Row i belongs to contact i, and all axes are those of the world.
-
-    Attributes:
-        several_contacts_law: Law for several contacts.
-        restitution_law: Law of restitution.
-        verdict: Whether the law converged.
-        states: State of each body after the impact: the pose before it, with the new velocities.
         impulses_W: (n, 3), N s, total impulses on the first body of each contact.
         velocities_before_W: (n, 3), m/s, velocities of the first body's points relative to the second's, or
             to the surface, before the impact.
@@ -108,7 +60,6 @@ class BodiesImpact(Record):
     several_contacts_law: SeveralContactsLaw
     restitution_law: RestitutionLaw
     verdict: SeveralVerdict
-    states: tuple[BodyState, ...]
     impulses_W: FloatArray
     velocities_before_W: FloatArray
     velocities_after_W: FloatArray
@@ -121,7 +72,8 @@ class BodiesImpact(Record):
 
         The work of moving surfaces, the impulses times their velocities, is not part of it.
         """
-        return _energy_change(self)
+        rows = (self.impulses_W, self.velocities_before_W, self.velocities_after_W)
+        return math.fsum(energy_change(*each) for each in zip(*(of.tolist() for of in rows), strict=True))
 
     @property
     def order(self) -> tuple[int, ...]:
@@ -129,16 +81,32 @@ class BodiesImpact(Record):
         return tuple(contact for contact, _ in self.strikes)
 
 
-def _energy_change(impact: SeveralImpact | BodiesImpact) -> float:
-    return math.fsum(
-        energy_change(*of_contact)
-        for of_contact in zip(
-            impact.impulses_W.tolist(),
-            impact.velocities_before_W.tolist(),
-            impact.velocities_after_W.tolist(),
-            strict=True,
-        )
-    )
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class BodiesImpact(AtContacts):
+    """Outcome of an impact at several contacts of several bodies; `AtContacts` documents the other fields.
+
+    Attributes:
+        states: State of each body after the impact: the pose before it, with the new velocities.
+    """
+
+    states: tuple[BodyState, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class SeveralImpact(AtContacts):
+    """Outcome of an impact at several contacts of one body; `AtContacts` documents the other fields.
+
+    Attributes:
+        state: State after the impact: the pose before it, with the new velocities.
+    """
+
+    state: BodyState
+
+
+def of_only_body(impact: BodiesImpact) -> SeveralImpact:
+    """Return the impact of one body, which is the only one."""
+    shared = {field.name: getattr(impact, field.name) for field in fields(AtContacts)}
+    return SeveralImpact(state=impact.states[0], **shared)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
