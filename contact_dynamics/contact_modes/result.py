@@ -299,16 +299,14 @@ class PlanarModeAnswer(AnyModeAnswer):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class SpatialMode(AnyMode):
-    """Consistent mode in space, with its accelerations and contact forces, in world axes.
+class ResponseMode(AnyMode):
+    """Consistent mode in space, with the forces and accelerations of its contacts, in world axes.
 
     Attributes:
         mode: One letter for each contact: s, f or c.
-        acceleration_W: (3,), m/s^2, acceleration of the centre of mass.
-        angular_acceleration_W: (3,), rad/s^2.
-        contact_forces_W: (n, 3), N, contact forces on the body.
-        contact_accelerations_W: (n, 3), m/s^2, accelerations of the body's contact points relative to the
-            surfaces, in their axes, which turn with them.
+        contact_forces_W: (n, 3), N, contact forces on the body into which the normals point.
+        contact_accelerations_W: (n, 3), m/s^2, accelerations of the contact points relative to the surfaces,
+            in their axes, which turn with them.
         tangential_directions_W: (n, 3), unit direction in which each contact slides on its surface, or zero
             if it does not slide.
         misdirection: rad, largest angle between friction and the direction opposite to sliding. It is at the
@@ -318,14 +316,27 @@ class SpatialMode(AnyMode):
     """
 
     mode: str
-    acceleration_W: FloatArray
-    angular_acceleration_W: FloatArray
     contact_forces_W: FloatArray
     contact_accelerations_W: FloatArray
     tangential_directions_W: FloatArray
     misdirection: float
     forces_unique: bool
     motion_unique: bool
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class SpatialMode(ResponseMode):
+    """Consistent mode of a body in space, with its accelerations and contact forces, in world axes.
+
+    Attributes:
+        acceleration_W: (3,), m/s^2, acceleration of the centre of mass.
+        angular_acceleration_W: (3,), rad/s^2.
+
+    The others are those of `ResponseMode`.
+    """
+
+    acceleration_W: FloatArray
+    angular_acceleration_W: FloatArray
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)

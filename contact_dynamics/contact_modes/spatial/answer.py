@@ -24,6 +24,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING, Final, NamedTuple, cast
 
 import numpy as np
@@ -32,6 +33,7 @@ from contact_dynamics.contact_modes.letters import SEPARATES, SPATIAL_LETTERS, S
 from contact_dynamics.contact_modes.result import (
     SOME_MODE,
     ModeVerdict,
+    ResponseMode,
     SpatialMode,
     SpatialModeAnswer,
     verdict_on,
@@ -74,7 +76,7 @@ from contact_dynamics.tolerances import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
 
     from contact_dynamics.contact_modes.spatial.problem import SpatialContactProblem
     from contact_dynamics.contact_modes.spatial.search import Search
@@ -111,7 +113,7 @@ class Evidence(NamedTuple):
         undecided_modes: The letters of modes that hold with friction pyramids, and may not with round cones.
     """
 
-    modes: list[SpatialMode]
+    modes: list[ResponseMode]
     undecided: str
     undecided_modes: tuple[str, ...] = ()
 
@@ -124,10 +126,18 @@ def spatial_contact_modes(problem: SpatialContactProblem) -> SpatialModeAnswer:
             more trials than `pyramid_programs.MAX_EXAMINED`, which happens where hundreds of sectors are
             consistent and ``sharpen`` is false.
     """
-    found = considered(problem)
+    found = considered(
+        partial(_case_within, problem),
+        facets=FRICTION_FACETS if problem.sharpen else problem.friction_facets,
+        sharpen=problem.sharpen,
+    )
     if not isinstance(found, Considered):
         return _answer(problem, Evidence([], ""), approaching=found)
     return _answered(problem, found)
+
+
+def _case_within(problem: SpatialContactProblem, within: float) -> SpatialCase | tuple[int, ...]:
+    return spatial_case(problem, within=within)
 
 
 class Considered(NamedTuple):
@@ -146,32 +156,44 @@ class Considered(NamedTuple):
     within: float
 
 
-def considered(problem: SpatialContactProblem) -> Considered | tuple[int, ...]:
+def considered(
+    case_within: Callable[[float], SpatialCase | tuple[int, ...]],
+    *,
+    facets: int = FRICTION_FACETS,
+    sharpen: bool = True,
+) -> Considered | tuple[int, ...]:
     """Return the modes of a problem, or the contacts that approach.
 
     Contacts that are flush but for noise are taken as flush: to within `FLUSH` always, and to within
     `FLUSH_ROUGHLY` if it is undecided otherwise.
+
+    Args:
+        case_within: The case of the problem, or the contacts that approach, whose contacts may be moved so
+            far to be flush (`problem.spatial_case`).
+        facets: The number of edges of a friction pyramid.
+        sharpen: Whether the modes are those of round cones.
     """
-    rough = spatial_case(problem, within=FLUSH_ROUGHLY)
+    rough = case_within(FLUSH_ROUGHLY)
     if not isinstance(rough, SpatialCase):
         return rough
-    facets = FRICTION_FACETS if problem.sharpen else problem.friction_facets
     tried: list[Considered] = []
-    for case, within, hurried in _cases(problem, rough):
+    for case, within, hurried in _cases(case_within, rough):
         search = search_of(case, facets)
-        found = evidence_of(problem, case, search, hurried=hurried)
+        found = evidence_of(case, search, sharpen=sharpen, hurried=hurried)
         tried.append(Considered(case, search, found, within))
         if not found.undecided:
             return tried[-1]
     return tried[-1]
 
 
-def _cases(problem: SpatialContactProblem, rough: SpatialCase) -> Iterator[tuple[SpatialCase, float, bool]]:
+def _cases(
+    case_within: Callable[[float], SpatialCase | tuple[int, ...]], rough: SpatialCase
+) -> Iterator[tuple[SpatialCase, float, bool]]:
     """Yield the cases to consider, how far they may be from the given one, and whether to give up soon."""
     if rough.given is None:
         yield rough, 0.0, False
         return
-    near = cast("SpatialCase", spatial_case(problem, within=FLUSH))
+    near = cast("SpatialCase", case_within(FLUSH))
     alike = np.array_equal(near.contacts.normals_W, rough.contacts.normals_W) and np.array_equal(
         near.contacts.p_WC_W, rough.contacts.p_WC_W
     )
@@ -197,20 +219,20 @@ def modes_of_case(
     Raises:
         TooLargeError: the search takes more trials than `pyramid_programs.MAX_EXAMINED`.
     """
-    found = evidence_of(problem, case, search, beside_rest=beside_rest)
+    found = evidence_of(case, search, sharpen=problem.sharpen, beside_rest=beside_rest)
     return _answered(problem, Considered(case, search, found, 0.0))
 
 
 def evidence_of(
-    problem: SpatialContactProblem,
     case: SpatialCase,
     search: Search,
     *,
+    sharpen: bool,
     beside_rest: bool = False,
     hurried: bool = False,
 ) -> Evidence:
-    """Return the modes of a case, of Coulomb's cones or of friction pyramids as the problem asks."""
-    if problem.sharpen:
+    """Return the modes of a case, of Coulomb's cones if friction is sharpened, or of friction pyramids."""
+    if sharpen:
         found = evidenced(case, search, beside_rest=beside_rest, hurried=hurried)
     else:
         found = Evidence(found_by(case, search, sharpen=False), _DOUBT if search.doubtful else "")
@@ -222,10 +244,13 @@ def evidence_of(
 
 
 def _answered(problem: SpatialContactProblem, one: Considered) -> SpatialModeAnswer:
-    case, search, found, within = one
-    modes = [as_given(case, with_least_forces(case, mode)) for mode in found.modes]
-    answer = _answer(problem, found._replace(modes=modes), examined=search.examined)
-    return answer if within == 0.0 else replace(answer, flush_within=within)
+    answer = _answer(problem, one.found._replace(modes=shown_modes(one)), examined=one.search.examined)
+    return answer if one.within == 0.0 else replace(answer, flush_within=one.within)
+
+
+def shown_modes(one: Considered) -> list[ResponseMode]:
+    """Return the modes that were found, with their least forces, at the contacts that were given."""
+    return [as_given(one.case, with_least_forces(one.case, mode)) for mode in one.found.modes]
 
 
 def _answer(
@@ -233,7 +258,7 @@ def _answer(
 ) -> SpatialModeAnswer:
     return SpatialModeAnswer(
         verdict=ModeVerdict.IMPACT if approaching else verdict_of(found),
-        modes=tuple(found.modes),
+        modes=tuple(cast("list[SpatialMode]", found.modes)),
         approaching=approaching,
         velocity_tolerance=problem.velocity_tolerance,
         friction_facets=problem.friction_facets,
@@ -277,7 +302,7 @@ def evidenced(
     return Evidence(exact, found.undecided or turned, letters)
 
 
-def _with_clear_motion(case: SpatialCase, mode: SpatialMode) -> SpatialMode:
+def _with_clear_motion(case: SpatialCase, mode: ResponseMode) -> ResponseMode:
     """Return a mode with the motion of its least forces, if others are so large that rounding hides it.
 
     Forces that wedge a body between contacts may be as large as one likes, and cancel.
@@ -294,14 +319,14 @@ def _with_clear_motion(case: SpatialCase, mode: SpatialMode) -> SpatialMode:
     )
 
 
-def _rounding(case: SpatialCase, mode: SpatialMode) -> float:
+def _rounding(case: SpatialCase, mode: ResponseMode) -> float:
     """Return by how much rounding of forces may change the accelerations of contacts that they cause."""
     motion = case.motion
     caused = np.abs(motion.points) @ (np.abs(motion.of_forces) @ np.abs(mode.contact_forces_W).ravel())
     return FEASIBLE * float(caused.max(initial=0.0))
 
 
-def _penetrates(case: SpatialCase, mode: SpatialMode) -> bool:
+def _penetrates(case: SpatialCase, mode: ResponseMode) -> bool:
     """Return whether contacts penetrate by more than rounding, as rounding may let modes seem consistent.
 
     So do those of which nobody can tell, since rounding hides the motion.
@@ -363,7 +388,7 @@ def _sought(case: SpatialCase, search: Search, *, beside_rest: bool, hurried: bo
     kept = found_by(case, search, sharpen=True)
     if all(one.frame is None for one in search.pyramids):
         return Evidence(kept, _DOUBT if search.doubtful else "")
-    every = each_once([*by_letters(case, search, kept), *found.modes])
+    every = each_once(case, [*by_letters(case, search, kept), *found.modes])
     if not found.undecided and len(every) == len(found.modes):
         return found
     return _with_others(case, search, every, beside_rest=beside_rest, most=MAX_PROGRAMS)
@@ -379,7 +404,7 @@ def _nearly_alike(case: SpatialCase) -> bool:
 
 
 def _with_others(
-    case: SpatialCase, search: Search, modes: list[SpatialMode], *, beside_rest: bool, most: int
+    case: SpatialCase, search: Search, modes: list[ResponseMode], *, beside_rest: bool, most: int
 ) -> Evidence:
     """Return modes that were found, with all others."""
     known = Evidence(modes, "")
@@ -395,7 +420,7 @@ def _with_others(
     return found._replace(undecided=found.undecided or known.undecided)
 
 
-def _is_alone(case: SpatialCase, search: Search, modes: list[SpatialMode]) -> bool:
+def _is_alone(case: SpatialCase, search: Search, modes: list[ResponseMode]) -> bool:
     """Return whether it is proven that a mode that was found has no others beside it."""
     exact = [mode for mode in modes if is_exact(mode)]
     if len(exact) != 1 or not exact[0].motion_unique:
@@ -403,13 +428,13 @@ def _is_alone(case: SpatialCase, search: Search, modes: list[SpatialMode]) -> bo
     return is_only_motion(search, exact[0].contact_forces_W[case.touching] / case.motion.scale)
 
 
-def _mode_of(case: SpatialCase, known: Known) -> SpatialMode:
+def _mode_of(case: SpatialCase, known: Known) -> ResponseMode:
     return mode_with_forces(
         case, known.letters, known.forces, forces_unique=known.forces_unique, motion_unique=known.alone
     )
 
 
-def _completed(case: SpatialCase, search: Search, found: list[SpatialMode], *, most: int) -> Evidence:
+def _completed(case: SpatialCase, search: Search, found: list[ResponseMode], *, most: int) -> Evidence:
     """Return the modes that were found and are exact, and those that were missed."""
     exact = [mode for mode in found if is_exact(mode)]
     known = [
@@ -428,10 +453,10 @@ def _completed(case: SpatialCase, search: Search, found: list[SpatialMode], *, m
         open_ones = _of_all(case, missed.unended)
         undecided = _UNENDED.format(open_ones)
         names += [*(mode.mode for mode in found if not is_exact(mode)), open_ones]
-    return Evidence(each_once(exact), undecided, tuple(dict.fromkeys(names)))
+    return Evidence(each_once(case, exact), undecided, tuple(dict.fromkeys(names)))
 
 
-def found_by(case: SpatialCase, search: Search, *, sharpen: bool) -> list[SpatialMode]:
+def found_by(case: SpatialCase, search: Search, *, sharpen: bool) -> list[ResponseMode]:
     """Return the modes of a case with friction pyramids.
 
     If friction is sharpened, each mode is returned once. Two modes are the same if their letters and their
@@ -442,10 +467,10 @@ def found_by(case: SpatialCase, search: Search, *, sharpen: bool) -> list[Spatia
     found = [realised(case, search, one, sharpen=sharpen) for one in search.run(grouped=sharpen)]
     if not sharpen:
         return found
-    return each_once(sorted(found, key=lambda mode: _unique_and_slow(case, mode)))
+    return each_once(case, sorted(found, key=lambda mode: _unique_and_slow(case, mode)))
 
 
-def _unique_and_slow(case: SpatialCase, mode: SpatialMode) -> tuple[bool, float]:
+def _unique_and_slow(case: SpatialCase, mode: ResponseMode) -> tuple[bool, float]:
     """Return whether a mode's motion is unique, and if not, how slow the slowest beginning of sliding is."""
     if mode.motion_unique:
         return True, 0.0
@@ -455,7 +480,7 @@ def _unique_and_slow(case: SpatialCase, mode: SpatialMode) -> tuple[bool, float]
     return False, -float(np.linalg.norm(across, axis=1).min(initial=math.inf))
 
 
-def _of_one_contact(case: SpatialCase, search: Search) -> list[SpatialMode]:
+def _of_one_contact(case: SpatialCase, search: Search) -> list[ResponseMode]:
     """Return all modes of one contact at rest."""
     (contact,) = search.touching
     G = (
@@ -469,7 +494,7 @@ def _of_one_contact(case: SpatialCase, search: Search) -> list[SpatialMode]:
     ]
 
 
-def _all_stick(case: SpatialCase, search: Search, mode: SpatialMode) -> bool:
+def _all_stick(case: SpatialCase, search: Search, mode: ResponseMode) -> bool:
     return all(
         mode.mode[i] == STICKS or (contact.friction == 0.0 and mode.mode[i] == STAYS)
         for i, contact in zip(case.touching.tolist(), search.touching, strict=True)

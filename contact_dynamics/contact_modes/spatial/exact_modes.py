@@ -9,8 +9,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from contact_dynamics.contact_modes.letters import STAYS, STICKS
 from contact_dynamics.contact_modes.spatial.exact_letters import forces_with_letters, letters_near
 from contact_dynamics.contact_modes.spatial.mode_with_forces import are_the_same, mode_with_forces
@@ -21,31 +19,31 @@ from contact_dynamics.tolerances import MODE_STRAIGHT
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from contact_dynamics.contact_modes.result import SpatialMode
+    from contact_dynamics.contact_modes.result import ResponseMode
     from contact_dynamics.contact_modes.spatial.problem import SpatialCase
     from contact_dynamics.contact_modes.spatial.search import Search
 
 
-def is_exact(mode: SpatialMode) -> bool:
+def is_exact(mode: ResponseMode) -> bool:
     """Return whether friction opposes the sliding to rounding."""
     return mode.misdirection <= MODE_STRAIGHT
 
 
-def each_once(found: list[SpatialMode]) -> list[SpatialMode]:
+def each_once(case: SpatialCase, found: list[ResponseMode]) -> list[ResponseMode]:
     """Return the modes without those that are the same as an earlier one."""
-    kept: list[SpatialMode] = []
+    kept: list[ResponseMode] = []
     for mode in found:
-        if not any(are_the_same(mode, other) for other in kept):
+        if not any(are_the_same(case, mode, other) for other in kept):
             kept.append(mode)
     return kept
 
 
-def by_letters(case: SpatialCase, search: Search, found: list[SpatialMode]) -> list[SpatialMode]:
+def by_letters(case: SpatialCase, search: Search, found: list[ResponseMode]) -> list[ResponseMode]:
     """Return the modes, where exact solutions replace those whose friction could not be turned.
 
     Those that are certain to have none are left out.
     """
-    kept: list[SpatialMode] = []
+    kept: list[ResponseMode] = []
     for mode in found:
         if is_exact(mode):
             kept.append(mode)
@@ -73,10 +71,10 @@ def by_letters(case: SpatialCase, search: Search, found: list[SpatialMode]) -> l
         kept += near
         if not near and not refused:
             kept.append(mode)
-    return each_once(kept)
+    return each_once(case, kept)
 
 
-def _shared(case: SpatialCase, search: Search, letters: str, modes: Sequence[SpatialMode]) -> Held:
+def _shared(case: SpatialCase, search: Search, letters: str, modes: Sequence[ResponseMode]) -> Held:
     """Return forces of contacts that share a load, or whether it is certain that there are none.
 
     Args:
@@ -90,7 +88,7 @@ def _shared(case: SpatialCase, search: Search, letters: str, modes: Sequence[Spa
     if forces is not None:
         return Held(forces, certain=True)
     units = case.motion.lengths / case.motion.scale
-    motions = [units * np.append(one.acceleration_W, one.angular_acceleration_W) for one in modes]
+    motions = [units * case.motion.motion(one.contact_forces_W) for one in modes]
     held = sliding_together(search, letters, motions)
     if held.forces is None:
         return held
@@ -98,7 +96,7 @@ def _shared(case: SpatialCase, search: Search, letters: str, modes: Sequence[Spa
     return Held(forces, certain=forces is not None)
 
 
-def letters_of(mode: SpatialMode, case: SpatialCase, search: Search) -> str:
+def letters_of(mode: ResponseMode, case: SpatialCase, search: Search) -> str:
     """Return the letters of the touching contacts, where c stands for all that stay without friction."""
     return "".join(
         STAYS if contact.friction == 0.0 and mode.mode[i] == STICKS else mode.mode[i]

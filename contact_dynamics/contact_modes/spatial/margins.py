@@ -67,7 +67,7 @@ from contact_dynamics.tolerances import (
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from contact_dynamics.contact_modes.result import SpatialMode, SpatialModeAnswer
+    from contact_dynamics.contact_modes.result import ResponseMode, SpatialModeAnswer
     from contact_dynamics.contact_modes.spatial.problem import SpatialContactProblem
     from contact_dynamics.contact_modes.spatial.search import Search
     from contact_dynamics.contact_modes.spatial.wrenches import RoundSum
@@ -181,11 +181,11 @@ def _under(
     """Return the verdict under another wrench, and the letters of the modes that it brings about."""
     other = replace(problem, force_W=wrench_W[:3], torque_W=wrench_W[3:], sharpen=True)
     case = cast("SpatialCase", spatial_case(other, within=within))
-    found = evidence_of(other, case, search_of(case, FRICTION_FACETS))
+    found = evidence_of(case, search_of(case, FRICTION_FACETS), sharpen=True)
     return verdict_of(found), _letters(found.modes)
 
 
-def _letters(modes: Sequence[SpatialMode]) -> tuple[str, ...]:
+def _letters(modes: Sequence[ResponseMode]) -> tuple[str, ...]:
     return tuple(dict.fromkeys(mode.mode for mode in modes))
 
 

@@ -13,12 +13,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
 from contact_dynamics.contact_modes.letters import SEPARATES, STAYS, STICKS
-from contact_dynamics.contact_modes.result import SpatialMode
+from contact_dynamics.contact_modes.result import ResponseMode, SpatialMode
 from contact_dynamics.numerics.vectors import cross_of_two
 from contact_dynamics.tolerances import (
     LEAST_FORCE_FLAT,
@@ -43,11 +43,11 @@ def mode_with_forces(
     forces_unique: bool,
     motion_unique: bool,
     slowest: float = STRICT,
-) -> SpatialMode:
+) -> ResponseMode:
     """Return the mode that forces bring about.
 
     Args:
-        case: The body with its contacts.
+        case: The body, or the mechanism, with its contacts.
         touching_letters: s, c or f for each touching contact.
         own: (n, 3), the forces of the touching contacts, in the units of the motion.
         forces_unique: Whether the forces are the only ones with this mode.
@@ -58,8 +58,8 @@ def mode_with_forces(
     motion, contacts, sliding, touching, _ = case
     forces = np.zeros((len(contacts), 3))
     forces[touching] = own * motion.scale
-    body = motion.free + motion.of_forces @ forces.ravel()
-    points = (motion.points @ body).reshape(-1, 3) + motion.turning
+    accelerations = motion.motion(forces)
+    points = motion.accelerations(accelerations)
     across = points - np.sum(points * contacts.normals_W, axis=1)[:, None] * contacts.normals_W
     letters = [SEPARATES] * len(contacts)
     directions = np.zeros_like(points)
@@ -75,20 +75,23 @@ def mode_with_forces(
             if size <= STRICT * motion.scale and friction.any():
                 way, size = -friction, float(np.linalg.norm(friction))  # the sliding is hardly above rounding
             directions[i] = way / size if size > 0.0 else way
+    of_contacts: dict[str, Any] = {
+        "mode": "".join(letters),
+        "contact_forces_W": forces,
+        "contact_accelerations_W": points,
+        "tangential_directions_W": directions,
+        "misdirection": misdirection(forces, directions, contacts.normals_W),
+        "forces_unique": forces_unique,
+        "motion_unique": motion_unique,
+    }
+    if not motion.of_body:
+        return ResponseMode(**of_contacts)
     return SpatialMode(
-        mode="".join(letters),
-        acceleration_W=body[:3],
-        angular_acceleration_W=body[3:],
-        contact_forces_W=forces,
-        contact_accelerations_W=points,
-        tangential_directions_W=directions,
-        misdirection=misdirection(forces, directions, contacts.normals_W),
-        forces_unique=forces_unique,
-        motion_unique=motion_unique,
+        acceleration_W=accelerations[:3], angular_acceleration_W=accelerations[3:], **of_contacts
     )
 
 
-def with_least_forces(case: SpatialCase, mode: SpatialMode) -> SpatialMode:
+def with_least_forces(case: SpatialCase, mode: ResponseMode) -> ResponseMode:
     """Return a mode with those of its forces that have the least sum of squares."""
     if (
         mode.forces_unique or mode.misdirection > MODE_STRAIGHT
@@ -111,14 +114,13 @@ def with_least_forces(case: SpatialCase, mode: SpatialMode) -> SpatialMode:
     )
 
 
-def are_the_same(mode: SpatialMode, other: SpatialMode) -> bool:
-    """Return whether two modes have the same letters and, where it is unique, the same motion."""
+def are_the_same(case: SpatialCase, mode: ResponseMode, other: ResponseMode) -> bool:
+    """Return whether two modes of a case have the same letters and, where it is unique, the same motion."""
     if mode.mode != other.mode:
         return False
     if not (mode.motion_unique and other.motion_unique):
         return True
-    one = np.concatenate([mode.acceleration_W, mode.angular_acceleration_W])
-    two = np.concatenate([other.acceleration_W, other.angular_acceleration_W])
+    one, two = case.motion.motion(mode.contact_forces_W), case.motion.motion(other.contact_forces_W)
     return bool(np.abs(one - two).max() <= SAME_MOTION * (1.0 + np.abs(one).max()))
 
 

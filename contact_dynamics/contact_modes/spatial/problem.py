@@ -186,47 +186,99 @@ class SpatialContactProblem(Record):
 
 
 class AccelerationMap:
-    """Accelerations of the body and of its contact points as affine functions of the contact forces."""
+    """Motions of a body, or of a mechanism, and of its contact points, as affine functions of contact forces.
+
+    Attributes:
+        points: (3 n, d), the accelerations of the contact points on unit motions.
+        turning: (n, 3), m/s^2, the part of these that no motion causes.
+        of_forces: (d, 3 n), the motions on unit forces.
+        free: (d,), the motion without contact forces.
+        points_free: (n, 3), m/s^2, the accelerations of the contact points without contact forces.
+        inertia: (d, d), the wrenches that unit motions need.
+        wrench: (d,), that of the motion without contact forces.
+        mass: kg, which makes forces of accelerations.
+        lengths: (d,), by which a motion is multiplied, so that points of the body have about as much.
+        scale: The largest acceleration, the unit of motions.
+        at_rest: Whether nothing moves.
+        of_body: Whether motions are those of one body, linear and angular accelerations.
+    """
 
     def __init__(
         self,
-        mass: float,
-        inertia: FloatArray,
+        points: FloatArray,
         *,
-        r_W: FloatArray,
-        w_W: FloatArray,
-        wrench_W: FloatArray,
-        rolling_W: FloatArray,
+        of_forces: FloatArray,
+        free: FloatArray,
+        turning: FloatArray,
+        inertia: FloatArray,
+        wrench: FloatArray,
+        mass: float,
+        lengths: FloatArray,
         at_rest: bool,
+        of_body: bool,
     ) -> None:
-        # J maps (a, alpha) to the accelerations of the contact points, its transpose forces to wrenches.
-        J = point_jacobians(r_W).reshape(-1, 6)
-        inverse = inverse_mass_matrix(mass, inertia)
-        self.mass = mass
-        self.inertia = inertia
-        self.points = J
-        # (n, 3), m/s^2, the part that a and alpha do not cause: of the points, and of contact that wanders
-        # over curved sides, less the motion of surfaces.
-        self.at_rest = at_rest
-        self.turning, self.wrench = rolling_W, wrench_W
-        if np.any(w_W):
-            self.turning = np.cross(w_W, np.cross(w_W, r_W)) + rolling_W
-            self.wrench = wrench_W - np.concatenate([np.zeros(3), np.cross(w_W, inertia @ w_W)])
-        self.of_forces = inverse @ J.T  # (6, 3 n)
-        self.free = inverse @ self.wrench
-        self.points_free = (J @ self.free).reshape(-1, 3) + self.turning
-        # In these units a motion is six accelerations, of which points of the body have about 1.
-        reach = float(np.linalg.norm(r_W, axis=1).max(initial=0.0))
-        self.lengths = np.array([1.0, 1.0, 1.0, *[reach if reach > 0.0 else 1.0] * 3])
+        self.points, self.turning, self.of_forces, self.free = points, turning, of_forces, free
+        self.inertia, self.wrench, self.mass, self.lengths = inertia, wrench, mass, lengths
+        self.at_rest, self.of_body = at_rest, of_body
+        self.points_free = (points @ free).reshape(-1, 3) + turning
         largest = max(
             float(np.abs(self.points_free).max(initial=0.0)),
-            float(np.abs(self.free * self.lengths).max()),
+            float(np.abs(free * lengths).max(initial=0.0)),
         )
         self.scale = largest if largest > 0.0 else 1.0
 
+    def motion(self, forces: FloatArray) -> FloatArray:
+        """Return the motion, (d,), under contact forces, (n, 3), N."""
+        found: FloatArray = self.free + self.of_forces @ forces.ravel()
+        return found
+
+    def accelerations(self, motion: FloatArray) -> FloatArray:
+        """Return the accelerations, (n, 3), m/s^2, of the contact points in a motion, (d,)."""
+        found: FloatArray = (self.points @ motion).reshape(-1, 3) + self.turning
+        return found
+
+
+def _body_map(
+    mass: float,
+    inertia_W: FloatArray,
+    *,
+    r_W: FloatArray,
+    w_W: FloatArray,
+    wrench_W: FloatArray,
+    rolling_W: FloatArray,
+    at_rest: bool,
+) -> AccelerationMap:
+    """Return the map of one body.
+
+    Its ``rolling_W``, (n, 3), m/s^2, are accelerations of contacts that wander over curved sides, less the
+    motion of surfaces.
+    """
+    J = point_jacobians(r_W).reshape(-1, 6)
+    inverse = inverse_mass_matrix(mass, inertia_W)
+    turning, wrench = rolling_W, wrench_W
+    if np.any(w_W):
+        turning = np.cross(w_W, np.cross(w_W, r_W)) + rolling_W
+        wrench = wrench_W - np.concatenate([np.zeros(3), np.cross(w_W, inertia_W @ w_W)])
+    inertia = np.zeros((6, 6))
+    inertia[:3, :3] = mass * np.eye(3)
+    inertia[3:, 3:] = inertia_W
+    reach = float(np.linalg.norm(r_W, axis=1).max(initial=0.0))
+    return AccelerationMap(
+        J,
+        of_forces=inverse @ J.T,
+        free=inverse @ wrench,
+        turning=turning,
+        inertia=inertia,
+        wrench=wrench,
+        mass=mass,
+        lengths=np.array([1.0, 1.0, 1.0, *[reach if reach > 0.0 else 1.0] * 3]),
+        at_rest=at_rest,
+        of_body=True,
+    )
+
 
 class SpatialCase(NamedTuple):
-    """A body with its contacts, none of which approaches."""
+    """A body, or a mechanism, with its contacts, none of which approaches."""
 
     motion: AccelerationMap
     contacts: ContactSet
@@ -245,15 +297,42 @@ def spatial_case(problem: SpatialContactProblem, *, within: float = 0.0) -> Spat
     """
     state, contacts, tolerance = problem.state, problem.contacts, problem.velocity_tolerance
     velocities = relative_velocities(state, contacts)
+    touching = touching_of(contacts, velocities, tolerance)
+    if isinstance(touching, tuple):
+        return touching
+    flush = contacts if within == 0.0 else made_flush(contacts, state.p_WB_W, within)
+    given = None if flush is contacts else _case_of(problem, contacts, velocities, touching)
+    return _case_of(problem, flush, velocities, touching)._replace(given=given)
+
+
+def touching_of(
+    contacts: ContactSet, velocities: FloatArray, tolerance: float
+) -> NDArray[np.intp] | tuple[int, ...]:
+    """Return the contacts that neither approach nor leave, or a tuple of those that approach.
+
+    Args:
+        contacts: n contacts.
+        velocities: (n, 3), m/s, relative to the surfaces.
+        tolerance: m/s, >= 0.
+
+    Raises:
+        TooLargeError: more contacts touch than `MAX_DYNAMIC_CONTACTS`.
+    """
     v_n = np.sum(contacts.normals_W * velocities, axis=1)
     if np.any(v_n < -tolerance):
         return tuple(int(i) for i in np.flatnonzero(v_n < -tolerance))
     touching = np.flatnonzero(v_n <= tolerance)
     if len(touching) > MAX_DYNAMIC_CONTACTS:
         raise TooLargeError("contacts", f"{len(touching)} contacts", f"at most {MAX_DYNAMIC_CONTACTS}")
-    flush = contacts if within == 0.0 else made_flush(contacts, state.p_WB_W, within)
-    given = None if flush is contacts else _case_of(problem, contacts, velocities, touching)
-    return _case_of(problem, flush, velocities, touching)._replace(given=given)
+    return touching
+
+
+def sliding_of(contacts: ContactSet, velocities: FloatArray, tolerance: float) -> FloatArray:
+    """Return the tangential parts of velocities, (n, 3), m/s, which are zero up to a tolerance."""
+    v_n = np.sum(contacts.normals_W * velocities, axis=1)
+    sliding: FloatArray = velocities - v_n[:, None] * contacts.normals_W
+    sliding[np.linalg.norm(sliding, axis=1) <= tolerance] = 0.0
+    return sliding
 
 
 def _case_of(
@@ -262,9 +341,7 @@ def _case_of(
     """Return the case of contacts whose points have given velocities, (n, 3), relative to the surfaces."""
     body, state, tolerance = problem.body, problem.state, problem.velocity_tolerance
     r_W = contacts.p_WC_W - state.p_WB_W
-    v_n = np.sum(contacts.normals_W * velocities, axis=1)
-    sliding = velocities - v_n[:, None] * contacts.normals_W
-    sliding[np.linalg.norm(sliding, axis=1) <= tolerance] = 0.0
+    sliding = sliding_of(contacts, velocities, tolerance)
     w = state.w_WB_W
     if len(r_W) > 0 and np.linalg.norm(w) * _reach(body, r_W, contacts) <= tolerance:
         w = np.zeros(3)
@@ -273,7 +350,7 @@ def _case_of(
         relative = velocities.copy()
         relative[touching] = sliding[touching]
     rolling = velocity_accelerations(contacts, relative, w)
-    motion = AccelerationMap(
+    motion = _body_map(
         body.mass,
         body.inertia_in_world(state.R_WB),
         r_W=r_W,
@@ -315,15 +392,12 @@ def search_of(case: SpatialCase, facets: int) -> Search:
                 free=motion.points_free[i],
             )
         )
-    mass = np.zeros((6, 6))
-    mass[:3, :3] = motion.mass * np.eye(3)
-    mass[3:, 3:] = motion.inertia / motion.lengths[3] ** 2
     forces = (3 * touching[:, None] + np.arange(3)).ravel()
     return Search(
         stated,
         of_forces=motion.lengths[:, None] * motion.of_forces[:, forces],
         free=motion.free * motion.lengths / motion.scale,
-        mass=mass,
+        mass=motion.inertia / np.outer(motion.lengths, motion.lengths),
         at_rest=motion.at_rest and not np.any(sliding[touching]),
         facets=facets,
     )

@@ -31,7 +31,7 @@ from contact_dynamics.tolerances import (
 )
 
 if TYPE_CHECKING:
-    from contact_dynamics.contact_modes.result import SpatialMode
+    from contact_dynamics.contact_modes.result import ResponseMode
     from contact_dynamics.contact_modes.spatial.options import Pyramid
     from contact_dynamics.contact_modes.spatial.problem import SpatialCase
     from contact_dynamics.contact_modes.spatial.search import Found, Search
@@ -50,7 +50,7 @@ _FAST: Final = 0.1
 more, Newton's method, which needs derivatives, takes over."""
 
 
-def realised(case: SpatialCase, search: Search, found: Found, *, sharpen: bool) -> SpatialMode:
+def realised(case: SpatialCase, search: Search, found: Found, *, sharpen: bool) -> ResponseMode:
     """Return a mode that the search found, with accelerations and forces that realise it."""
     count = search.edges.shape[1]
     shares = found.program.shares(count)
@@ -70,7 +70,7 @@ def realised(case: SpatialCase, search: Search, found: Found, *, sharpen: bool) 
     return mode_with_forces(case, letters, own, forces_unique=forces_unique, motion_unique=unique)
 
 
-def as_given(case: SpatialCase, mode: SpatialMode) -> SpatialMode:
+def as_given(case: SpatialCase, mode: ResponseMode) -> ResponseMode:
     """Return a mode of flush contacts, with forces under which the given ones rest if all of them stick.
 
     Any other mode stays that of the flush contacts.

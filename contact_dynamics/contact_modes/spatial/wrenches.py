@@ -99,13 +99,10 @@ def needed_wrenches(
     motion = case.motion
     free = null_space(unit_rows(zero))  # (7, k)
     inside = cone_of(unit_rows(np.vstack([positive, np.eye(1, 7, 6)]) @ free))
-    inertia = np.zeros((6, 6))
-    inertia[:3, :3] = np.eye(3) * motion.mass
-    inertia[3:, 3:] = motion.inertia
 
     def needed(motions: FloatArray) -> FloatArray:
         accelerations = motions @ free.T
-        wrenches = accelerations[:, :6] / motion.lengths @ inertia / metric / motion.mass
+        wrenches = accelerations[:, :6] / motion.lengths @ motion.inertia / metric / motion.mass
         return np.column_stack([wrenches, accelerations[:, 6]])
 
     return Generators(unit_rows(needed(inside.rays)), unit_rows(needed(inside.lines)))
