@@ -21,7 +21,7 @@ export PIP_USER := 0
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help demo test test-matrix wheels test-slow sweeps fuzz coverage lint types bench docs pictures setup venv clean FORCE
+.PHONY: help demo test test-matrix wheels release-tree test-slow sweeps fuzz coverage lint types bench docs pictures setup venv clean FORCE
 
 help: ## print this
 	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(MAKEFILE_LIST) | while IFS='	' read -r name text; do \
@@ -43,6 +43,9 @@ test-matrix: ## the physics with the oldest and newest NumPy and SciPy, on every
 
 wheels: ## in dist/: wheels of library and interfaces for every Python of this machine or PYTHONS=3.12, a plain one for all platforms, the sdist
 	@setup/wheels.sh $(VENV)-wheels
+
+release-tree: ## in dist/release: both packages of the last commit beside each other, as bloom needs them
+	@setup/release_trees.sh dist/release
 
 SWEEP ?= test
 CERTAINTY := test/contact_modes/spatial/test_no_mode_missed.py test/contact_modes/spatial/test_nearly_the_same.py test/contact_modes/spatial/test_boxes_nearly_flush.py test/toss/test_among_flats.py

@@ -52,6 +52,9 @@ KEYS = {
     "zstandard": "mcap-ros2-support",
 }
 
+ONLY_IN_PIP = {"mcap-ros2-support", "python3-rosbags-pip"}
+"""Keys whose packages ROS's build farm does not have."""
+
 EVALUATION = ("dask", "matplotlib", "pyarrow")
 """What the options of `contact-dynamics evaluate` need, each the one that says so."""
 
@@ -239,6 +242,22 @@ def test_colcon_finds_both_packages_from_the_root() -> None:
     ]
     # `make clean` leaves that folder alone, because it may be a user's.
     assert set(ROOT.glob("log*")) == before
+
+
+def test_both_packages_of_a_release_are_found_and_need_nothing_that_pip_alone_has(tmp_path: Path) -> None:
+    script = ROOT / "setup" / "release_trees.sh"
+    done = subprocess.run([script, tmp_path], capture_output=True, text=True, check=False)
+    if "not a git repository" in done.stderr:
+        pytest.skip("NOT RUN: a release is made of the last commit, and this is no clone")
+    assert done.returncode == 0, done.stderr
+    packages = find_packages(tmp_path)
+    assert set(packages) == {"contact_dynamics", "contact_dynamics_interfaces"}
+    for name, package in packages.items():
+        assert all((tmp_path / name / text.file).exists() for text in package.licenses)
+        needed = {each.name for each in (*package.exec_depends, *package.test_depends)}
+        whole = {"contact_dynamics": declared("exec_depend") | declared("test_depend")}.get(name, needed)
+        assert whole - needed <= ONLY_IN_PIP
+        assert needed.isdisjoint(ONLY_IN_PIP)
 
 
 def paths_of_quick_start(command: str) -> list[list[str]]:
