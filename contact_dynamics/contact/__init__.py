@@ -8,8 +8,9 @@ The modules of this package are internal. `contact` contains one contact and set
 contains the curvatures of body and surface at a contact, and the terms that velocities add to the
 accelerations there. `found` detects contacts, with the points at which a body touches a plane or a solid
 (`touches`). `velocities` determines which contacts count as at rest, and warns of contacts out of the body's
-reach. `friction` computes pyramids inside friction cones. `uncertainty` contains the errors of contacts, and
-`noise` determines which contacts touch and are at rest if the state is measured.
+reach. `pairs` contains the contacts between several bodies. `friction` computes pyramids inside friction
+cones. `uncertainty` contains the errors of contacts, and `noise` determines which contacts touch and are at
+rest if the state is measured.
 """
 
 from contact_dynamics.contact.contact import Contact, ContactSet

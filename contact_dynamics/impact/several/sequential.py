@@ -14,12 +14,11 @@ Not covered: moments at the contacts.
 
 from __future__ import annotations
 
-import operator
-from collections.abc import Sized
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
+from contact_dynamics.contact.pairs import check_pairs
 from contact_dynamics.errors import NORMAL_HINT, InvalidFieldError, SeparatingContactError
 from contact_dynamics.impact.law import RestitutionLaw
 from contact_dynamics.impact.several.result import BodiesImpact, SeveralContactsLaw, SeveralVerdict
@@ -77,7 +76,7 @@ def bodies_impact(
     """
     masses = [each.mass_properties for each in bodies]
     tolerance = check_positive("velocity_tolerance", velocity_tolerance)
-    _check_pairs(masses, states, contacts, pairs)
+    check_pairs(len(masses), states, contacts, pairs)
     touching = Touching(masses, contacts, pairs, restitution_law, tolerance)
     before = check_touching(touching, states)
     strikes: tuple[tuple[int, SpatialImpact], ...] = ()
@@ -126,13 +125,6 @@ def check_touching(touching: Touching, states: Sequence[BodyState]) -> FloatArra
     contacts, tolerance = touching.contacts, touching.tolerance
     if len(contacts) == 0:
         raise InvalidFieldError("contacts", "none", "at least one contact")
-    if contacts.surface_velocities_W is not None:
-        for i, (surface, (_, second)) in enumerate(
-            zip(contacts.surface_velocities_W, touching.pairs, strict=True)
-        ):
-            if second is not None and surface.any():
-                between = f"zero between bodies {touching.pairs[i]}, since only surfaces of the world move"
-                raise InvalidFieldError(f"contacts.surface_velocities_W[{i}]", surface.tolist(), between)
     _ = contacts.impact_restitutions
     for index, (body, state) in enumerate(zip(touching.bodies, states, strict=True)):
         check_striking(body, state, contacts.p_WC_W[[i for i, p in enumerate(touching.pairs) if index in p]])
@@ -294,25 +286,3 @@ def _next_contacts(
         return [i for i in priority if approach[i] < -touching.tolerance][:1]
     materials = materials_of(touching.contacts)
     return next_to_strike(approach.tolist(), materials, tolerance=touching.tolerance, tie=tie)
-
-
-def _check_pairs(
-    bodies: Sequence[MassProperties],
-    states: Sequence[BodyState],
-    contacts: ContactSet,
-    pairs: Sequence[tuple[int, int | None]],
-) -> None:
-    if len(states) != len(bodies):
-        raise InvalidFieldError("states", f"{len(states)} states", f"{len(bodies)}, one for each body")
-    if not isinstance(pairs, Sized) or len(pairs) != len(contacts):
-        raise InvalidFieldError("pairs", pairs, f"{len(contacts)}, one for each contact")
-    for i, pair in enumerate(pairs):
-        allowed = f"two different indices below {len(bodies)}, or None as the second for the world"
-        try:
-            first, second = pair
-            others = () if second is None else (second,)
-            known = all(0 <= operator.index(one) < len(bodies) for one in (first, *others))
-        except (TypeError, ValueError):
-            raise InvalidFieldError(f"pairs[{i}]", pair, allowed) from None
-        if not known or first == second:
-            raise InvalidFieldError(f"pairs[{i}]", (first, second), allowed)

@@ -24,10 +24,11 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from contact_dynamics.contact.pairs import pair_jacobians
 from contact_dynamics.impact.law import RestitutionLaw
 from contact_dynamics.impact.spatial.path import SlidingLaw, SpatialPath, trace
 from contact_dynamics.impact.spatial.result import SpatialImpact
-from contact_dynamics.numerics.vectors import cross_of_two, point_jacobians, tangents_by_sign
+from contact_dynamics.numerics.vectors import cross_of_two, tangents_by_sign
 from contact_dynamics.rigid_body.body import inverse_mass_matrix
 from contact_dynamics.tolerances import NO_SHARED_RESPONSE
 
@@ -67,15 +68,10 @@ def response_of(
 
     Surfaces of the world have velocities there, (n, 3), m/s, or None if all are at rest.
     """
-    size = 6 * len(bodies) + (surface_velocities_W is not None)
-    jacobian = np.zeros((len(points_W), 3, size))
+    jacobian = pair_jacobians(states, points_W, pairs)
     if surface_velocities_W is not None:
-        jacobian[:, :, -1] = -surface_velocities_W
-    for i, pair in enumerate(pairs):
-        for index, sign in zip(pair, (1.0, -1.0), strict=True):
-            if index is not None:
-                arm = points_W[i] - states[index].p_WB_W
-                jacobian[i, :, 6 * index : 6 * index + 6] = sign * point_jacobians(arm[None])[0]
+        jacobian = np.concatenate([jacobian, -surface_velocities_W[:, :, None]], axis=2)
+    size = jacobian.shape[2]
     inverse_mass = np.zeros((size, size))
     for index, (body, state) in enumerate(zip(bodies, states, strict=True)):
         own = slice(6 * index, 6 * index + 6)

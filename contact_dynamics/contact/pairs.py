@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Contacts between several bodies: each has the pair of bodies that touch there, or a body and the world."""
+
+from __future__ import annotations
+
+import operator
+from collections.abc import Sized
+from typing import TYPE_CHECKING, TypeAlias
+
+import numpy as np
+
+from contact_dynamics.errors import InvalidFieldError
+from contact_dynamics.numerics.vectors import point_jacobians
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from contact_dynamics.contact.contact import ContactSet
+    from contact_dynamics.rigid_body.body import BodyState
+    from contact_dynamics.validation import FloatArray
+
+Pairs: TypeAlias = "Sequence[tuple[int, int | None]]"
+"""For each contact, the body into which its normal points, and the other body, or None for the world."""
+
+
+def check_pairs(bodies: int, states: Sequence[BodyState], contacts: ContactSet, pairs: Pairs) -> None:
+    """Refuse lists of different length, pairs of other bodies, and surfaces of bodies that move.
+
+    Raises:
+        InvalidFieldError: one of these.
+    """
+    if len(states) != bodies:
+        raise InvalidFieldError("states", f"{len(states)} states", f"{bodies}, one for each body")
+    if not isinstance(pairs, Sized) or len(pairs) != len(contacts):
+        raise InvalidFieldError("pairs", pairs, f"{len(contacts)}, one for each contact")
+    for i, pair in enumerate(pairs):
+        allowed = f"two different indices below {bodies}, or None as the second for the world"
+        try:
+            first, second = pair
+            others = () if second is None else (second,)
+            known = all(0 <= operator.index(one) < bodies for one in (first, *others))
+        except (TypeError, ValueError):
+            raise InvalidFieldError(f"pairs[{i}]", pair, allowed) from None
+        if not known or first == second:
+            raise InvalidFieldError(f"pairs[{i}]", (first, second), allowed)
+    between = [i for i, (_, second) in enumerate(pairs) if second is not None]
+    for field in contacts.SURFACE_MOTION:
+        motion = getattr(contacts, field)
+        for i in between if motion is not None else ():
+            if motion[i].any():
+                allowed = f"zero between bodies {pairs[i]}, since only surfaces of the world move"
+                raise InvalidFieldError(f"contacts.{field}[{i}]", motion[i].tolist(), allowed)
+
+
+def pair_jacobians(states: Sequence[BodyState], points_W: FloatArray, pairs: Pairs) -> FloatArray:
+    """Return the matrix, (n, 3, 6 k), from the velocities of k bodies to those of contact points.
+
+    Args:
+        states: Those of the bodies, whose velocities, or accelerations, are v then w of each.
+        points_W: (n, 3), m, contact points, of which the first body of each pair moves relative to the other.
+        pairs: The pair of each contact.
+    """
+    jacobians = np.zeros((len(points_W), 3, 6 * len(states)))
+    for i, pair in enumerate(pairs):
+        for index, sign in zip(pair, (1.0, -1.0), strict=True):
+            if index is not None:
+                arm = points_W[i] - states[index].p_WB_W
+                jacobians[i, :, 6 * index : 6 * index + 6] = sign * point_jacobians(arm[None])[0]
+    return jacobians
