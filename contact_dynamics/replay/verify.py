@@ -28,12 +28,17 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
     from pathlib import Path
 
+    from numpy.typing import NDArray
+
     from contact_dynamics.replay.again import ServerAgain
 
 _PUBLISHERS: Final = re.compile(r" \(\d+ publishers?\)")
 """In a message: how many publishers there were, which no log has. It is not compared either."""
 
 _LONGEST_VALUE: Final = 120  # characters, since a message that an answer carries can be pages long
+
+_QUATERNION: Final = "geometry_msgs/Quaternion"
+_QUATERNIONS: Final = "orientations"  # how the names of lists of quaternions end, row-major (n, 4)
 
 MEASURED: Final = frozenset({"computation_time"})
 """These fields of a response say how the answer was made, not what it is. They are not compared."""
@@ -47,8 +52,9 @@ class Difference:
         field: Path of the field within the response, as in "modes[2].margin".
         logged: Its value in the log, or the name of that value if it has one.
         recomputed: Its value when the question is asked again, or its name.
-        size: The difference relative to the larger of the two, or to 1 if both are smaller. It is infinite if
-            the values are not numbers, if one of them is not finite, or if arrays have unequal lengths.
+        size: The difference relative to the larger of the two, or to 1 if both are smaller. For quaternions
+            it is that of the attitudes, which q and -q share. It is infinite if the values are not numbers,
+            if one of them is not finite, or if arrays have unequal lengths.
         is_length: Whether it is the number of elements of an array.
     """
 
@@ -109,8 +115,17 @@ def _of_one(field: Field, name: str, ours: Any, theirs: Any) -> Iterator[Differe
     elif field.type_name == "string":
         if _PUBLISHERS.sub("", ours) != _PUBLISHERS.sub("", theirs):
             yield Difference(field=name, logged=ours, recomputed=theirs, size=math.inf)
+    elif field.type_name == _QUATERNION:
+        sign = _signs(*([[getattr(each, part) for part in "xyzw"]] for each in (ours, theirs)))[0]
+        for each in differences(ours, theirs, path=name):
+            yield replace(each, size=_size(each.logged, sign * each.recomputed))  # type: ignore[arg-type]
     else:
         yield from differences(ours, theirs, path=name)
+
+
+def _signs(ours: Any, theirs: Any) -> NDArray[np.float64]:
+    """Return -1 for each pair of quaternions, (n, 4), in opposite halves, since q and -q are one attitude."""
+    return np.where(np.einsum("ni,ni->n", ours, theirs) < 0.0, -1.0, 1.0)
 
 
 def _of_numbers(
@@ -124,12 +139,15 @@ def _of_numbers(
     if one.tobytes() == other.tobytes():
         return
     to_python = PYTHON_TYPES[field.type_name]
+    signs = np.ones(len(one))
+    if field.name.endswith(_QUATERNIONS) and len(one) % 4 == 0:
+        signs = np.repeat(_signs(one.reshape(-1, 4), other.reshape(-1, 4)), 4)
     for index in range(len(one)):
         x, y = to_python(one[index]), to_python(other[index])
         if one[index].tobytes() == other[index].tobytes() or (math.isnan(x) and math.isnan(y)):
             continue
         where = f"{name}[{index}]" if is_array else name
-        size = _size(x, y) if to_python is float else math.inf
+        size = _size(x, float(signs[index]) * y) if to_python is float else math.inf
         logged, recomputed = field.names.get(x, x), field.names.get(y, y)
         yield Difference(field=where, logged=logged, recomputed=recomputed, size=size)
 
@@ -264,7 +282,7 @@ def verify_log(
     Args:
         path: a log of the server, as its folder or as an ``.mcap`` file.
         tolerance: >= 0. How much a number may differ, relative to the larger one, or to 1 if both are
-            smaller. With zero every bit counts.
+            smaller; quaternions are compared with the sign that fits. With zero every bit counts.
         instead: values of parameters that count instead of those in the log, by name: what would have been
             answered with them?
         on_progress: a function that is called after each message, with its log time, ns, and with what was
