@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 
 import numpy as np
 
@@ -21,14 +21,11 @@ from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.toss import (
     Toss,
     TossDistribution,
-    TossEnd,
-    TossEnergy,
-    TossEvent,
     TossUncertainty,
-    Undecided,
     sampled_toss,
     toss,
 )
+from contact_dynamics.toss.result import TossOutcome
 from contact_dynamics.toss.sampled import MAX_SAMPLES, MAX_STRIKES
 from contact_dynamics.toss.uncertainty import EXACT, check_factors
 from contact_dynamics.tumbling import Trajectory
@@ -123,28 +120,14 @@ class TossQuestion(Question["TossAnswer"]):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class TossPath(Record):
-    """One way in which a toss can go.
+class TossPath(TossOutcome):
+    """One way in which a toss can go; `TossOutcome` documents the other fields.
 
     Attributes:
-        end: Why there is no further event.
-        seconds: s after the state's stamp, the time of rest, or how far the motion is known.
         trajectory: The motion at the rate asked for. Its last sample is at ``seconds``.
-        events: The events in the order of time.
-        resting_corners: The indices of the corners on which the body rests, sorted; empty if it moves.
-        resting_normal_B: (3,), unit, the normal of the surface below, body axes, or zero if it moves.
-        energy: Where the energy goes.
-        undecided: The points at which mechanics does not decide, and which way was taken there.
     """
 
-    end: TossEnd
-    seconds: float
     trajectory: Trajectory
-    events: tuple[TossEvent, ...]
-    resting_corners: tuple[int, ...]
-    resting_normal_B: FloatArray
-    energy: TossEnergy
-    undecided: tuple[Undecided, ...]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -244,13 +227,5 @@ def _path(went: Toss, rate: float) -> TossPath:
         found = f"{count:.9g} samples until {went.seconds:.3g} s"
         raise TooLargeError("rate", found, f"at most {MAX_TIMES}")
     times = np.append(np.arange(math.ceil(count - 1e-9)) / rate, went.seconds)  # without a last one twice
-    return TossPath(
-        end=went.end,
-        seconds=went.seconds,
-        trajectory=went.at(times),
-        events=went.events,
-        resting_corners=went.resting_corners,
-        resting_normal_B=went.resting_normal_B,
-        energy=went.energy,
-        undecided=went.undecided,
-    )
+    shared = {each.name: getattr(went, each.name) for each in fields(TossOutcome)}
+    return TossPath(trajectory=went.at(times), **shared)

@@ -159,14 +159,12 @@ Piece: TypeAlias = "FlightPiece | PhaseStep"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class Toss(Record):
-    """Motion of a body from an initial state to rest.
+class TossOutcome(Record):
+    """End of a toss, and what happens on the way.
 
     Attributes:
-        restitution_law: Law of restitution of all strikes.
         end: Reason for the end of the toss.
         seconds: Time of rest, or time up to which the motion is predicted, s after the initial state's stamp.
-        state: State at that time. At rest its velocities are those of the surfaces.
         events: Events in the order of time. Strikes of one instant are in the order of resolution.
         resting_corners: Indices of the corners on which the body rests, sorted. It is empty if the body
             moves.
@@ -175,6 +173,24 @@ class Toss(Record):
         energy: Energy balance. If the surfaces move, it is the energy relative to them.
         undecided: Branch points of this toss, at which mechanics does not determine the motion. All of them
             are listed, whether or not the other branches were followed.
+    """
+
+    end: TossEnd
+    seconds: float
+    events: tuple[TossEvent, ...]
+    resting_corners: tuple[int, ...]
+    resting_normal_B: FloatArray
+    energy: TossEnergy
+    undecided: tuple[Undecided, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class Toss(TossOutcome):
+    """Motion of a body from an initial state to rest; `TossOutcome` documents the other fields.
+
+    Attributes:
+        restitution_law: Law of restitution of all strikes.
+        state: State at the end. At rest its velocities are those of the surfaces.
         alternatives: Tosses that follow other branches, up to ``max_alternatives``, which is 0 by default.
         all_followed: Whether ``alternatives`` contains all other branches.
         pieces: Flights and steps of contact phases, in the order of time.
@@ -184,14 +200,7 @@ class Toss(Record):
     """
 
     restitution_law: RestitutionLaw
-    end: TossEnd
-    seconds: float
     state: BodyState
-    events: tuple[TossEvent, ...]
-    resting_corners: tuple[int, ...]
-    resting_normal_B: FloatArray
-    energy: TossEnergy
-    undecided: tuple[Undecided, ...]
     alternatives: tuple[Toss, ...] = ()
     all_followed: bool = True
     pieces: tuple[Piece, ...] = field(repr=False)
