@@ -85,10 +85,10 @@ NOT_MEASURED: dict[
     "docs/quick-start-ros.md": ["slide at 4.9 N"],  # half its weight
     "docs/replay.md": ["the next 50 ms", "again within 50 ms", "advances by 0.1 s", "every 0.1 s"],
     "docs/several-contacts.md": [
-        "A coin of 24 mm",
+        "Coin of 24 mm",
         "flat at 1 m/s",
         "level at 0.5 m/s",
-        "spin differs by up to 70 rad/s",
+        "varies by more than 70 rad/s",
         "some milliseconds apart",
         "within 1 cm",
         "default 0.05 s",
