@@ -72,6 +72,9 @@ TITLE = re.compile(r"\A\^+\n(.*)\n\^+\n")
 INTERFACE_FILES = "interface-files.md"
 """The page with all definitions of the interfaces, which is made of them."""
 
+DEFINITIONS = ("contact_dynamics_interfaces/srv", "contact_dynamics_interfaces/msg")
+"""The folders that this page shows."""
+
 
 def interface_files() -> str:
     """Return the page with each service and each message as its file has it."""
@@ -165,7 +168,8 @@ def on_nav(nav: Navigation, files: Files, **_: Any) -> Navigation:
         listed = [child for child in section.children or [] if isinstance(child, Page)]
         first = listed[0].file
         linked = LINK.findall(first.content_string) if first.src_uri in SECTION_PAGES else []
-        found = [files.get_file_from_path(target.replace(".ipynb", ".md")) for _, target, _ in linked]
+        paths = (os.path.normpath(f"docs/{target}") for _, target, _ in linked)
+        found = [files.get_file_from_path(page_of(path) or path) for path in paths]
         pages = [file.page for file in found if file is not None and file.page is not None]
         for page in [listed[0], *pages, *listed[1:]]:
             page.parent = page.parent or section
@@ -193,16 +197,22 @@ def on_page_content(html: str, **_: Any) -> str:
     return CELL.sub(marked, html)
 
 
+def page_of(path: str) -> str | None:
+    """Return the page of the site that shows a file of the repository, or None if there is none."""
+    elsewhere = {of: page for page, of in (PAGES | CODE | NOTEBOOKS | WHEEL).items()}
+    elsewhere |= dict.fromkeys(DEFINITIONS, INTERFACE_FILES)
+    return elsewhere.get(path, path.removeprefix("docs/") if path.startswith("docs/") else None)
+
+
 def link_on_site(link: re.Match[str], name: str, source: PurePosixPath) -> str:
     """Return the link as the page of that name needs it. What leads nowhere stays, and MkDocs complains."""
     text, target, anchor = link.groups()
     path = os.path.normpath(source.parent / target)
-    elsewhere = {of: page for page, of in (PAGES | CODE | NOTEBOOKS | WHEEL).items()}
     definition = re.fullmatch(r"contact_dynamics_interfaces/(?:srv|msg)/(\w+)\.(?:srv|msg)", path)
     if definition and (ROOT / path).is_file():
-        to = os.path.relpath(INTERFACE_FILES, PurePosixPath(name).parent)
-        return f"[{text}]({to}#{definition[1].lower()})"
-    if path in elsewhere or path.startswith("docs/"):
-        to = elsewhere.get(path, path.removeprefix("docs/"))
+        definitions = os.path.relpath(INTERFACE_FILES, PurePosixPath(name).parent)
+        return f"[{text}]({definitions}#{definition[1].lower()})"
+    to = page_of(path)
+    if to is not None:
         return f"[{text}]({os.path.relpath(to, PurePosixPath(name).parent)}{anchor or ''})"
     return str(text) if (ROOT / path).exists() else link.group()
