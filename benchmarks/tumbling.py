@@ -22,8 +22,8 @@ from contact_dynamics.landing.plane_arrival import first_contact
 from contact_dynamics.motion.integrated import forced_motion
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.tumbling import FreeMotion, Precision, free_motion, rotations_of_many, states_of_many
-from contact_dynamics.tumbling.constants import constants_of
 from contact_dynamics.tumbling.flips import next_flips
+from contact_dynamics.tumbling.motion import constants_of
 from contact_dynamics.tumbling.poinsot_construction import poinsot
 
 if TYPE_CHECKING:

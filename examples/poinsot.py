@@ -14,8 +14,8 @@ from contact_dynamics import BodyState, MassProperties, free_motion
 from contact_dynamics.tumbling import RollingCurves, poinsot, rolling_curves
 from contact_dynamics.viewing.blueprint import diagram_view
 from contact_dynamics.viewing.entities import POINSOT, TIMELINE
+from contact_dynamics.viewing.in_view import draw_poinsot, draw_rolling
 from contact_dynamics.viewing.measured import set_time
-from contact_dynamics.viewing.poinsot import draw_poinsot, draw_rolling
 
 body = MassProperties(mass=0.2, I_B=np.diag([1.0e-4, 2.0e-4, 2.6e-4]))
 spin = BodyState(

@@ -26,7 +26,7 @@ is consistent in the whole box and that no other mode is (in space `excluded`).
 - In the plane, `answer` solves a single contact in closed form. For several contacts, `coincident` first
   merges those that coincide. `enumeration` then lists the kinematically possible modes, which are faces of a
   `cone`, and `judgement` determines which of them are consistent with mechanics. If the equations of a mode
-  are independent, `determined` solves them; otherwise `wrench_cone` decides by the cone of wrenches that can
+  are independent, it solves them; otherwise `wrench_cone` decides by the cone of wrenches that can
   cause the mode.
 - In space, `kinematic` lists the strings of closed and separating contacts, and the sectors of sliding
   directions. With mechanics, the `likely_mode` is tried first; a single contact at rest has its own file

@@ -6,11 +6,12 @@ functions draws one diagram into the `Axes` that it is given. What it draws are 
 `contact_dynamics.diagrams`, which the viewer draws too. `contact_dynamics.plots` can be imported without
 Matplotlib, which the extra ``[plot]`` brings.
 
-In reading order: how marks are drawn (`drawing`), the diagrams (`draw`), figures of an answer and of what
-the physics returns (`figures`), and the command `contact-dynamics plot` (`arguments`, `run`).
+In reading order: how marks are drawn (`drawing`), the diagrams, and figures of an answer and of what the
+physics returns (`figures`), and the command `contact-dynamics plot` (`arguments`, `run`).
 """
 
-from contact_dynamics.plots.draw import (
+from contact_dynamics.plots.drawing import save_figure
+from contact_dynamics.plots.figures import (
     draw_angular_momentum,
     draw_angular_velocity,
     draw_attitude,
@@ -28,9 +29,10 @@ from contact_dynamics.plots.draw import (
     draw_position,
     draw_toss,
     draw_velocity,
+    figures_of,
+    modes,
+    toss,
 )
-from contact_dynamics.plots.drawing import save_figure
-from contact_dynamics.plots.figures import figures_of, modes, toss
 
 __all__ = [
     "draw_angular_momentum",

@@ -6,10 +6,10 @@ bodies. `Regime` is the kind of rotation, `next_flips` returns the flips of a bo
 axis, and `poinsot` Poinsot's construction: an ellipsoid that rolls on a plane.
 
 The modules of this package are internal. `motion` treats one body and `many` many at once. `regime`, `flips`
-and `poinsot_construction` contain the other functions. `constants` computes the constants of a rotation from
-the principal axes (`rigid_body.inertia`) and from its initial point on the `polhode`, with `elliptic`
-integrals. The attitude consists of quotients of `theta` functions, which `attitude_form` sets up.
-`double_double` keeps their phases exact over many turns.
+and `poinsot_construction` contain the other functions. The constants of a rotation follow from the principal
+axes (`rigid_body.inertia`) and from its initial point on the `polhode`, with `elliptic` integrals. The
+attitude consists of quotients of `theta` functions, which `attitude_form` sets up. `double_double` keeps
+their phases exact over many turns.
 """
 
 from contact_dynamics.numerics.arithmetic import Precision

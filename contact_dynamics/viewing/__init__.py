@@ -5,12 +5,12 @@ It draws the answers of `contact_dynamics.questions` and their parts. They may c
 Python, from a live server, or from its log.
 
 In reading order: how diagrams are drawn (`drawing`), names of what is drawn (`entities`), bodies and surfaces
-(`scenery`), what was measured (`measured`) at many times (`columns`), what is in view of answers (`in_view`),
-lecture 25's picture of rotations (`poinsot`), the diagrams of answers (`diagrams_in_view`), answers and
+(`scenery`), what was measured (`measured`) at many times (`columns`), what is in view of answers, also
+lecture 25's picture of rotations (`in_view`), the diagrams of answers (`diagrams_in_view`), answers and
 colours in words (`words`), the arrangement of the views and where they look (`blueprint`), all of it together
 (`picture`), states that wait (`states_in_turn`), events beside each other (`side_by_side`), and where it goes
-(`sinks`): files (`rrd_files`), a viewer (`viewer_process`), a browser. All
-of these are places of one recording (`kept_recording`). The diagrams come from `contact_dynamics.diagrams`.
+(`sinks`): files, a viewer (`viewer_process`), a browser. All of these are places of one recording
+(`kept_recording`). The diagrams come from `contact_dynamics.diagrams`.
 
 Everything is drawn on the timeline `stamp`: the stamps of the states, to the nanosecond. `kept_recording` has
 two more, the time since the start and the order of events. An answer appears at the stamp of the state that

@@ -40,9 +40,8 @@ from contact_dynamics.viewing.entities import (
     TOSSES,
     entity,
 )
-from contact_dynamics.viewing.in_view import ImpactsInView, LettersInView, PredictionsInView
+from contact_dynamics.viewing.in_view import ImpactsInView, LettersInView, PoinsotInView, PredictionsInView
 from contact_dynamics.viewing.measured import SET_BACK_S, draw_after_impact, set_time
-from contact_dynamics.viewing.poinsot import PoinsotInView
 from contact_dynamics.viewing.scenery import WorldInView
 from contact_dynamics.viewing.words import LEGEND_TEXT, AnswersInWords, sentence
 

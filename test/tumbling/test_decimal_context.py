@@ -14,8 +14,8 @@ import pytest
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.rigid_body.inertia.principal_frame import _of_bytes, in_doubles
 from contact_dynamics.tumbling import free_motion
-from contact_dynamics.tumbling.constants import constants_of
 from contact_dynamics.tumbling.flips import next_flips
+from contact_dynamics.tumbling.motion import constants_of
 from contact_dynamics.tumbling.poinsot_construction import poinsot, polhode
 
 BODY = MassProperties(mass=1.0, I_B=[[0.1, 0.01, 0.0], [0.01, 0.2, 0.02], [0.0, 0.02, 0.25]])

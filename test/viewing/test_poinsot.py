@@ -11,12 +11,12 @@ from contact_dynamics.diagrams.poinsot import ellipsoid_net
 from contact_dynamics.rotations.one import rotation_matrix
 from contact_dynamics.tumbling import free_motion
 from contact_dynamics.tumbling.poinsot_construction import poinsot, rolling_curves
-from contact_dynamics.viewing.picture import Picture
-from contact_dynamics.viewing.poinsot import (
+from contact_dynamics.viewing.in_view import (
     count_of_flight,
     draw_poinsot,
     draw_rolling,
 )
+from contact_dynamics.viewing.picture import Picture
 from viewing.answers import tumbling_answer
 from viewing.drawn import read_drawn
 

@@ -15,7 +15,7 @@ from rerun.chunk import RrdReader
 
 from contact_dynamics.viewing.kept_recording import KeptRecording
 from contact_dynamics.viewing.measured import set_time
-from contact_dynamics.viewing.rrd_files import RrdFiles
+from contact_dynamics.viewing.sinks import RrdFiles
 from viewing.drawn import STAMP_NS, read_drawn
 
 SIZE = 100_000
@@ -88,7 +88,7 @@ import os, resource, sys, time
 import numpy as np
 import rerun as rr
 from contact_dynamics.viewing.measured import set_time
-from contact_dynamics.viewing.rrd_files import RrdFiles
+from contact_dynamics.viewing.sinks import RrdFiles
 from contact_dynamics.viewing.kept_recording import KeptRecording
 
 recording = KeptRecording()

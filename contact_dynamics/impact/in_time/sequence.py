@@ -65,11 +65,8 @@ if TYPE_CHECKING:
 
     from contact_dynamics.contact.contact import ContactSet
     from contact_dynamics.impact.in_time.meetings import Meetings
-    from contact_dynamics.impact.in_time.result import ImpactSequence
-    from contact_dynamics.impact.law import RestitutionLaw
     from contact_dynamics.impact.spatial.result import SpatialImpact
     from contact_dynamics.landing.earliest import Landing
-    from contact_dynamics.landing.search_work import SearchWork
     from contact_dynamics.rigid_body.body import BodyState, HasMassProperties, MassProperties
     from contact_dynamics.validation import FloatArray
     from contact_dynamics.world import Body, World

@@ -7,7 +7,7 @@ the result for a `World`.
 
 All functions return a `distribution` of mass, and `composition` makes one of particles or of several parts.
 Mass properties are those of `solids`, `sheets_and_wires` (each with a `mass_or_density`), or a
-`triangle_mesh`, which is checked by `closed_surface` and integrated by `polyhedron_integrals`.
+`triangle_mesh`.
 `axes_of_inertia` contains principal axes and the inertia ellipsoid, and `principal_frame` the same in
 extended precision.
 """

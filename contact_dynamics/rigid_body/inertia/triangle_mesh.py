@@ -1,13 +1,25 @@
 # SPDX-License-Identifier: Apache-2.0
 """Triangles bound solids: closed meshes, and the convex hull of points.
 
-Density is uniform. Coordinates are in m, so scale a mesh in mm first. `closed_surface` says what makes a mesh
-closed. `polyhedron_integrals` has the integrals.
+Density is uniform. Coordinates are in m, so scale a mesh in mm first.
+
+A mesh is closed if each edge belongs to exactly two triangles, which pass it in opposite directions.
+Triangles that name a vertex twice have no area and are left out. Flat triangles with three different vertices
+are kept: they join their neighbours and enclose nothing. If the indices alone leave edges open, vertices at
+exactly the same place are taken as one, because STL files and meshes with texture seams repeat vertices.
+Places that differ in the last bit stay separate.
 
 A surface may have several parts that share no edge. A part with a positive volume is a solid. It must not lie
 within another, because its mass would count twice. A part with a negative volume is a cavity. It must lie
 within a solid. Otherwise it is inside out. This is tested at one point just inside each part: the winding
 number of the others about it, a sum of solid angles, is 0 or 1 (Van Oosterom and Strackee 1983).
+
+Volume, centre and second moments are exact integrals (lecture 25, eq. 4 to 9). Each triangle and the origin
+span a tetrahedron. The sign of its volume says on which side the origin is. Integrals of polynomials over it
+have closed forms in its corners (Tonon 2004; Eberly 2002, "Polyhedral mass properties"). The origin is first
+put at the mean of the vertices, then at the centre of mass, so that a mesh far away loses no digits. Rounding
+leaves errors of about 1e-15. The exception is a needle that is askew to the axes: if its length is a times
+its thickness, errors are up to 1e-16 a^2 (measured for a = 1e3 and 1e6: 4e-13 and 4e-7 of the volume).
 
 Not covered: surfaces that cut through themselves or each other. Their volumes count by winding number.
 """
@@ -16,24 +28,20 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, NoReturn
 
 import numpy as np
 
 from contact_dynamics.errors import InvalidFieldError, UndecidedError
 from contact_dynamics.numerics.convex_hull import hull_of
-from contact_dynamics.rigid_body.inertia.closed_surface import closed_surface
+from contact_dynamics.records import Record
 from contact_dynamics.rigid_body.inertia.distribution import MassDistribution, inertia_of_second_moments
 from contact_dynamics.rigid_body.inertia.mass_or_density import mass_of
-from contact_dynamics.rigid_body.inertia.polyhedron_integrals import polyhedron, signed_volumes
 from contact_dynamics.tolerances import EPSILON, SURFACES_TOUCH, VOLUME_ROUNDING
 from contact_dynamics.validation import FloatArray, check_array, check_magnitude
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
-
-    from contact_dynamics.rigid_body.inertia.closed_surface import ClosedSurface
-    from contact_dynamics.validation import FloatArray
 
 
 def mesh(
@@ -227,3 +235,172 @@ def _winding_number(corners: FloatArray, point: FloatArray) -> int:
 def _dots(x: FloatArray, y: FloatArray) -> FloatArray:
     dots: FloatArray = np.einsum("ij,ij->i", x, y)
     return dots
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class Polyhedron(Record):
+    """What triangles enclose.
+
+    Attributes:
+        volume: m^3.
+        center_F: (3,), m.
+        second: (3, 3), m^5, integral of x x^T dV about the centre, F's axes.
+    """
+
+    volume: float
+    center_F: FloatArray
+    second: FloatArray
+
+
+def polyhedron(p_FV_F: FloatArray, triangles: NDArray[np.int64]) -> Polyhedron:
+    """Return the integrals inside a surface, (m, 3) indices of vertices (n, 3), m, that encloses a volume."""
+    origin = p_FV_F[triangles[:, 0]].mean(axis=0)
+    points = p_FV_F - origin
+    volume, first, _ = _integrals(points, triangles)
+    center = first / volume
+    volume, _, second = _integrals(points - center, triangles)
+    return Polyhedron(volume=volume, center_F=origin + center, second=second)
+
+
+def signed_volumes(points: FloatArray, triangles: NDArray[np.int64]) -> FloatArray:
+    """Return the signed volumes, (m,), m^3, of the triangles' tetrahedra with the origin.
+
+    They are computed from a corner and two edges, so that small triangles far from the origin keep their
+    digits. The edges are the two shorter ones, so that needles keep theirs.
+    """
+    corners = points[triangles.T]  # (3, m, 3)
+    edges = np.roll(corners, -1, axis=0) - corners  # each from its corner to the next
+    longest = np.einsum("eij,eij->ei", edges, edges).argmax(axis=0)
+    each = np.arange(len(triangles))
+    normals = np.cross(edges[(longest + 1) % 3, each], edges[(longest + 2) % 3, each])
+    volumes: FloatArray = np.einsum("ij,ij->i", corners[0], normals) / 6.0
+    return volumes
+
+
+def _integrals(points: FloatArray, triangles: NDArray[np.int64]) -> tuple[float, FloatArray, FloatArray]:
+    """Return the integrals of 1, x and x x^T.
+
+    Over one tetrahedron: V, V s / 4 and V (a a^T + b b^T + c c^T + s s^T) / 20, with s = a + b + c.
+    """
+    volumes = signed_volumes(points, triangles)
+    corners = [points[triangles[:, i]] for i in range(3)]
+    total = corners[0] + corners[1] + corners[2]
+    second = np.zeros((3, 3))
+    for x in (*corners, total):
+        second += (x * volumes[:, None]).T @ x / 20.0
+    return float(volumes.sum()), volumes @ total / 4.0, 0.5 * (second + second.T)
+
+
+_CLOSED: Final = "a closed surface: each edge in exactly two triangles"
+_WOUND: Final = "triangles wound alike: both pass their common edge in opposite directions"
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class ClosedSurface(Record):
+    """Triangles that close and are wound alike.
+
+    Attributes:
+        triangles: (m, 3), indices of vertices.
+        numbers: (m,), each triangle's number in the caller's list.
+        neighbors: (3 m / 2, 2), the two triangles at each edge, indices into ``triangles``.
+    """
+
+    triangles: NDArray[np.int64]
+    numbers: NDArray[np.int64]
+    neighbors: NDArray[np.int64]
+
+
+def closed_surface(p_FV_F: FloatArray, triangles: ArrayLike) -> ClosedSurface:
+    """Return the surface of (m, 3) vertex indices, or raise `InvalidFieldError` with the offending edge."""
+    indices = _check_indices(triangles, len(p_FV_F))
+    surface = _Edges.of(indices)
+    if (surface.counts == 1).any():
+        surface = _Edges.of(_same_places(p_FV_F)[indices])
+    return surface.closed()
+
+
+@dataclass(frozen=True, slots=True)
+class _Edges:
+    """The directed edges of triangles, sorted so that those between the same two vertices stand together."""
+
+    triangles: NDArray[np.int64]  # (m, 3)
+    numbers: NDArray[np.int64]  # (m,)
+    tails: NDArray[np.int64]  # (3 m,), first vertex of each directed edge
+    heads: NDArray[np.int64]  # (3 m,), second vertex
+    owners: NDArray[np.int64]  # (3 m,), index of its triangle
+    starts: NDArray[np.int64]  # (e,), where each undirected edge begins
+    counts: NDArray[np.int64]  # (e,), how many triangles it has
+
+    @classmethod
+    def of(cls, indices: NDArray[np.int64]) -> _Edges:
+        a, b, c = indices.T
+        numbers = np.flatnonzero((a != b) & (b != c) & (c != a))
+        if len(numbers) == 0:
+            raise InvalidFieldError("triangles", "none with three different vertices", "at least four")
+        triangles = indices[numbers]
+        tails, heads = triangles.ravel(), np.roll(triangles, -1, axis=1).ravel()
+        low, high = np.minimum(tails, heads), np.maximum(tails, heads)
+        key = low * (int(indices.max()) + 1) + high
+        order = np.argsort(key, kind="stable")
+        starts = np.flatnonzero(np.diff(key[order], prepend=-1))
+        return cls(
+            triangles=triangles,
+            numbers=numbers,
+            tails=tails[order],
+            heads=heads[order],
+            owners=order // 3,
+            starts=starts,
+            counts=np.diff(starts, append=len(key)),
+        )
+
+    def closed(self) -> ClosedSurface:
+        """Return the surface, or raise with its first edge that is open, crowded, or passed one way."""
+        opened = np.flatnonzero(self.counts == 1)
+        if len(opened):
+            self._refuse(opened, "has no second triangle: the mesh is open", _CLOSED)
+        crowded = np.flatnonzero(self.counts > 2)
+        if len(crowded):
+            self._refuse(crowded, "has more than two triangles", _CLOSED)
+        one_way = np.flatnonzero(self.tails[self.starts] == self.tails[self.starts + 1])
+        if len(one_way):
+            self._refuse(one_way, "is passed in one direction by both", _WOUND)
+        neighbors = np.column_stack([self.owners[self.starts], self.owners[self.starts + 1]])
+        return ClosedSurface(triangles=self.triangles, numbers=self.numbers, neighbors=neighbors)
+
+    def _refuse(self, edges: NDArray[np.int64], reason: str, allowed: str) -> NoReturn:
+        start, count = int(self.starts[edges[0]]), int(self.counts[edges[0]])
+        owners = ", ".join(str(number) for number in self.numbers[self.owners[start : start + min(count, 4)]])
+        edge = (
+            f"edge {int(self.tails[start])}-{int(self.heads[start])} of triangle{'s' * (count > 1)} {owners}"
+        )
+        also = f" (and {len(edges) - 1} more)" if len(edges) > 1 else ""
+        raise InvalidFieldError("triangles", f"{edge} {reason}{also}", allowed)
+
+
+def _check_indices(triangles: ArrayLike, vertices: int) -> NDArray[np.int64]:
+    try:
+        given = np.asarray(triangles)
+    except (TypeError, ValueError, OverflowError):
+        raise InvalidFieldError("triangles", triangles, "whole numbers of shape (n, 3)") from None
+    if given.ndim != 2 or given.shape[1] != 3:
+        raise InvalidFieldError("triangles", f"shape {given.shape}", "of shape (n, 3)")
+    if given.dtype.kind not in "iu":
+        raise InvalidFieldError(
+            "triangles", f"numbers of type {given.dtype}", "whole numbers of an integer type"
+        )
+    indices = given.astype(np.int64)
+    wrong = np.flatnonzero(((indices < 0) | (indices >= vertices)).any(axis=1))
+    if len(wrong):
+        found = f"{indices[wrong[0]].tolist()} in triangle {wrong[0]}"
+        raise InvalidFieldError("triangles", found, f"indices in [0, {vertices - 1}], of {vertices} vertices")
+    return indices
+
+
+def _same_places(points: FloatArray) -> NDArray[np.int64]:
+    """Return for each vertex, (n,), the lowest index of a vertex at exactly its place."""
+    order = np.lexsort(points.T)  # stable: the lowest index comes first
+    new = np.ones(len(points), dtype=bool)
+    new[1:] = (points[order][1:] != points[order][:-1]).any(axis=1)
+    lowest = np.empty(len(points), dtype=np.int64)
+    lowest[order] = order[new][np.cumsum(new) - 1]
+    return lowest
