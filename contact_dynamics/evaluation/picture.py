@@ -179,7 +179,7 @@ def _draw_velocities(recording: rr.RecordingStream, path: str, cell: _Cell, size
 
 def _table(cells: Sequence[_Cell]) -> str:
     """Return a row for each event, with the errors of its shortest horizon, in Markdown."""
-    lines = ["| | event | asked | answer |", "| --- | --- | --- | --- |"]
+    lines = ["| | event | horizon | error |", "| --- | --- | --- | --- |"]
     for number, cell in enumerate(cells):
         lines += [f"| {number} | {cell.name} | {answer} |" for answer in _answers(cell)]
     return "\n".join(lines)
@@ -190,7 +190,7 @@ def _answers(cell: _Cell) -> Iterator[str]:
         if event is None or not rows:
             continue
         row = min(rows, key=lambda each: (each.horizon, list(Method).index(each.method)))
-        asked = f"{1e3 * row.horizon:.0f} ms before{f', {row.law.value}' if row.law else ''}"
+        asked = f"{1e3 * row.horizon:.0f} ms{f', {row.law.value}' if row.law else ''}"
         if row.predicted_mode:
             yield f"{asked} | {row.predicted_mode.replace('|', ' or ')}, measured {row.measured_mode}"
             continue
@@ -199,4 +199,4 @@ def _answers(cell: _Cell) -> Iterator[str]:
             for name in COLUMNS[event.kind]
             if (error := getattr(row, name)) is not None
         ]
-        yield f"{asked} | off by {', '.join(errors)}"
+        yield f"{asked} | {', '.join(errors)}"

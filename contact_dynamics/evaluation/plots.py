@@ -108,7 +108,7 @@ def _draw_errors(figure: Any, kind: EventKind, rows: Sequence[Comparison]) -> No
                 box.set_facecolor(color)
             axes.plot([], [], color=color, linewidth=6.0, label=_way(method, law))
         axes.set_xticks(range(len(horizons)), [f"{1e3 * horizon:.0f}" for horizon in horizons])
-        axes.set_xlabel("asked before, ms")
+        axes.set_xlabel("horizon, ms")
         axes.set_ylabel(f"error of {label}")
         axes.set_yscale("log")
         axes.grid(visible=True, axis="y", alpha=0.3)

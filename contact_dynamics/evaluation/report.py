@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 UNITS: Final = {
     "time_error": ("time, ms", 1e3),
-    "position_error": ("place, mm", 1e3),
+    "position_error": ("position, mm", 1e3),
     "attitude_error": ("attitude, deg", math.degrees(1.0)),
     "velocity_error": ("velocity, m/s", 1.0),
     "spin_error": ("spin, rad/s", 1.0),
@@ -38,14 +38,14 @@ COLUMNS: Final = {
 """The errors that tables and plots show of each kind of event."""
 
 TITLES: Final = {
-    EventKind.FLIGHT: "flights: where is the body near the flight's end?",
-    EventKind.LANDING: "first contacts: when, where and how does it land?",
-    EventKind.IMPACT: "impacts of one corner: which velocities does it have afterwards?",
-    EventKind.REST: "rests: which contact mode?",
-    EventKind.SLIDING: "slides: which contact mode?",
+    EventKind.FLIGHT: "flights: pose near the end of the flight",
+    EventKind.LANDING: "first contacts: time and pose",
+    EventKind.IMPACT: "impacts of a single corner: velocities after the impact",
+    EventKind.REST: "rests: contact mode",
+    EventKind.SLIDING: "slides: contact mode",
 }
 
-SEVERAL: Final = "impacts of several corners, or longer ones: which velocities does it have afterwards?"
+SEVERAL: Final = "impacts of several corners, or longer ones: velocities after the impact"
 """The title of impacts whose outcome depends on which corners strike, and when."""
 
 SIGNIFICANT: Final = 0.05
@@ -72,7 +72,7 @@ def report(evaluation: Evaluation) -> str:
     ]
     rows = [row for result in done for row in result.comparisons]
     if any(row.distance is not None for row in rows):
-        lines.append("inside: share of measured values, %, in the regions predicted with these probabilities")
+        lines.append("inside: share of measured values inside the 50, 90 and 95 % prediction regions, %")
     for (kind, body, surface, several), grouped in groupby(
         summarise(rows), key=lambda each: (each.kind, each.body, each.surface, each.several)
     ):
@@ -90,9 +90,9 @@ def report_changes(found: Sequence[Change], *, names: tuple[str, str]) -> str:
         for each in found
         if each.method is not Method.NO_IMPACT and each.error in ("wrong_mode", *COLUMNS[each.kind])
     ]
-    lines = ["", f"from A, {names[0]}, to B, {names[1]}: mean errors of the same events"]
+    lines = ["", f"mean errors of the same events, A: {names[0]}, B: {names[1]}"]
     if not shown:
-        return "\n".join([*lines, "  no event that both have answered"])
+        return "\n".join([*lines, "  no event was predicted in both"])
     lines.append(f"  {'':43}{'error':>15}{'events':>8}{'A':>10}{'B':>10}{'95 % of B - A':>22}{'p':>9}")
     for each in shown:
         name, factor = UNITS[each.error]
@@ -106,8 +106,8 @@ def report_changes(found: Sequence[Change], *, names: tuple[str, str]) -> str:
         )
     units = sorted({each.units for each in shown})
     lines.append(
-        f"  p: Wilcoxon's signed-rank test over {' or '.join(units)}, adjusted for the number of lines "
-        f"by Holm; * below {SIGNIFICANT:g}"
+        f"  p: Wilcoxon's signed-rank test over {' or '.join(units)}, corrected for multiple comparisons by "
+        f"Holm's method; * below {SIGNIFICANT:g}"
     )
     return "\n".join(lines)
 
@@ -123,27 +123,28 @@ def _gaps(evaluation: Evaluation) -> Iterator[str]:
         spread = spread_of(found)
         yield (
             f"{body} above {surface} at first contact: median {1e3 * spread.bias:.2f} mm, "
-            f"90 % within {1e3 * spread.most:.2f} mm (measured; zero were ideal)"
+            f"90 % within {1e3 * spread.most:.2f} mm (measured; ideally 0)"
         )
 
 
 def _table(kind: EventKind, summaries: Sequence[Summary]) -> Iterator[str]:
     columns = COLUMNS[kind]
     if not columns:
-        yield f"  {'ms before':>9}  {'asked':>6}{'refused':>9}{'right':>8}"
+        yield f"  {'horizon, ms':>11}  {'requests':>8}{'rejected':>10}{'correct, %':>12}"
         for each in summaries:
-            right = "" if each.modes_right is None else f"{100.0 * each.modes_right:.0f} %"
-            yield f"  {1e3 * each.horizon:>9.0f}  {each.asked:>6}{each.refused:>9}{right:>8}"
+            correct = "" if each.modes_right is None else f"{100.0 * each.modes_right:.0f}"
+            yield f"  {1e3 * each.horizon:>11.0f}  {each.asked:>8}{each.refused:>10}{correct:>12}"
         return
     heads = "".join(f"{UNITS[name][0]:>{_WIDE}}" for name in columns)
     inside = "/".join(f"{100.0 * level:.0f}" for level in LEVELS)
-    yield f"  {'ms before':>9}  {'from':<18}{'asked':>6}{'refused':>9}{heads}{f'inside {inside} %':>20}"
-    yield f"  {'':>9}  {'':<18}{'':>6}{'':>9}{''.join(f'{_heads(name):>{_WIDE}}' for name in columns)}"
+    counts = f"{'requests':>8}{'rejected':>10}"
+    yield f"  {'horizon, ms':>11}  {'method':<12}{counts}{heads}{f'inside {inside}, %':>20}"
+    yield f"  {'':>11}  {'':<12}{'':>8}{'':>10}{''.join(f'{_heads(name):>{_WIDE}}' for name in columns)}"
     for each in summaries:
         cells = "".join(f"{_cell(each, name):>{_WIDE}}" for name in columns)
         covered = "/".join(f"{100.0 * share:.0f}" for share in each.covered)
         yield (
-            f"  {1e3 * each.horizon:>9.0f}  {_method(each):<18}{each.asked:>6}{each.refused:>9}"
+            f"  {1e3 * each.horizon:>11.0f}  {_method(each):<12}{each.asked:>8}{each.refused:>10}"
             f"{cells}{covered:>20}"
         )
 
@@ -156,14 +157,14 @@ def _conclusion(summaries: Sequence[Summary]) -> Iterator[str]:
     if without and laws:
         best = min(laws, key=lambda each: each.errors["velocity_error"].median)
         yield (
-            f"  with the configured coefficients, {_method(best)} is best: of a change of velocity of "
-            f"{without[0].errors['velocity_error'].median:.2g} m/s in the median, it leaves "
-            f"{best.errors['velocity_error'].median:.2g} m/s unpredicted"
+            f"  with the configured coefficients, {_method(best)} has the smallest median error: "
+            f"{best.errors['velocity_error'].median:.2g} m/s of a median velocity change of "
+            f"{without[0].errors['velocity_error'].median:.2g} m/s"
         )
     if summaries[0].several:
         yield (
-            "  which corners strike here, and when, decides as much as the law: judge laws and coefficients "
-            "by impacts of one corner"
+            "  here, the error also depends on which corners hit, and when: compare laws and coefficients on "
+            "impacts of a single corner"
         )
 
 
