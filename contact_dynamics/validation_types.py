@@ -176,7 +176,7 @@ def _refuse_places(
     words += f", and {twice[0]} by name too" if twice else ""
     also = f", and by name only {', '.join(by_name)}" if by_name else ""
     order = f"{by_place[0]}{_meaning(function, by_place[0])}" if len(by_place) == 1 else ""
-    order = order or f"{', '.join(by_place)} in this order"
+    order = order or (f"{', '.join(by_place)} in this order" if by_place else "nothing by place")
     raise UnknownArgumentError(f"{words}. It takes {order}{also}")
 
 

@@ -279,7 +279,7 @@ class ContactModeAnswer(Answer):
 
 
 _IN_PLANE_ONLY: Final = (
-    "margins and statics are for changes of the wrench in the plane of motion; SPATIAL has those for all",
+    "margins and statics hold for wrench changes in the plane of motion; problem=SPATIAL has them for all",
 )
 """The plane is found from the load and the motion, so a user need not know that the answer is planar."""
 

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
 
 _PAIRS: Final = 20
-_PAIRS_A_LOOK: Final = 5
+_PAIRS_A_LOOK: Final = 20  # so that the first throw is enough
 _APART_S: Final = 0.02  # noise of 1 mm in a position is 0.1 m/s of a velocity
 _LONGEST_S: Final = 0.5
 _SLOW: Final = 0.1  # m/s

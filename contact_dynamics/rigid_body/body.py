@@ -222,9 +222,16 @@ def inverse_mass_matrix(mass: float, inertia_W: FloatArray) -> FloatArray:
 
 
 def state_covariance(
-    *, position: float = 0.0, rotation: float = 0.0, velocity: float = 0.0, angular_velocity: float = 0.0
+    *,
+    position: ArrayLike = 0.0,
+    rotation: ArrayLike = 0.0,
+    velocity: ArrayLike = 0.0,
+    angular_velocity: ArrayLike = 0.0,
 ) -> FloatArray:
-    """Return the covariance of a state, (12, 12), from standard deviations that are the same along all axes.
+    """Return the covariance of a state, (12, 12), from standard deviations of independent errors.
+
+    Each is a number, which is the same along all axes, or has one number for each world axis, (3,). The order
+    of rows and columns is that of the arguments.
 
     Args:
         position: m, >= 0, of the centre of mass.
@@ -232,10 +239,21 @@ def state_covariance(
         velocity: m/s, >= 0, of the centre of mass.
         angular_velocity: rad/s, >= 0.
     """
-    names = ("position", "rotation", "velocity", "angular_velocity")
-    numbers = (position, rotation, velocity, angular_velocity)
-    deviations = [check_within(name, x, 0.0, LARGEST_NUMBER) for name, x in zip(names, numbers, strict=True)]
-    return np.diag(np.repeat(np.square(deviations), 3))
+    named = {
+        "position": position,
+        "rotation": rotation,
+        "velocity": velocity,
+        "angular_velocity": angular_velocity,
+    }
+    deviations = [_three_deviations(name, value) for name, value in named.items()]
+    return np.diag(np.square(np.concatenate(deviations)))
+
+
+def _three_deviations(name: str, value: ArrayLike) -> FloatArray:
+    """Return a standard deviation for each axis, (3,)."""
+    if isinstance(value, (list, tuple, np.ndarray)) and np.ndim(value) > 0:
+        return np.array([check_within(name, x, 0.0, LARGEST_NUMBER) for x in check_array(name, value, (3,))])
+    return np.full(3, check_within(name, value, 0.0, LARGEST_NUMBER))
 
 
 def momentum(body: HasMassProperties, state: BodyState) -> FloatArray:

@@ -193,8 +193,8 @@ def test_every_example_is_found(service: Any) -> None:
 
 
 IN_PLANE = (
-    "warning: margins and statics are for changes of the wrench in the plane of motion; "
-    "SPATIAL has those for all"
+    "warning: margins and statics hold for wrench changes in the plane of motion; "
+    "problem=SPATIAL has them for all"
 )
 
 

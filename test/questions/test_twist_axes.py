@@ -60,9 +60,8 @@ def found(rate: float, *, in_world: bool, noise: float = 0.0, jump: float = 0.0)
 @pytest.mark.parametrize("rate", [5.0, 30.0, 100.0, 1000.0])
 def test_a_twist_in_world_axes_is_found_within_seconds(rate: float) -> None:
     results = found(rate, in_world=True, noise=1e-4)
-    assert results[:2] == [None, None]
     if rate > 5.0:  # where the body bounces between nearly all states
-        assert all(speed is not None and 1.0 < speed < 5.0 for speed in results[4:])
+        assert all(speed is not None and 0.5 < speed < 5.0 for speed in results)
 
 
 @pytest.mark.parametrize("rate", [5.0, 30.0, 100.0, 1000.0])

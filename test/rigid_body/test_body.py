@@ -20,6 +20,7 @@ from contact_dynamics.rigid_body.body import (
     kinetic_energy,
     momentum,
     rotational_energy,
+    state_covariance,
 )
 
 REST = {
@@ -151,3 +152,11 @@ def test_a_state_with_other_velocities_keeps_pose_and_time_and_refuses_what_a_st
     for velocities in (((math.nan, 0.0, 0.0), (0.0, 0.0, 0.0)), ((0.0, 0.0, 0.0), (0.0, 0.0))):
         with pytest.raises(InvalidFieldError, match="_WB_W"):
             state.with_velocities(*velocities)
+
+
+def test_a_covariance_has_one_deviation_for_all_axes_or_one_for_each() -> None:
+    deviations = {"position": 1e-3, "rotation": [0.1, 0.2, 0.0], "velocity": (0.0, 0.3, 0.4)}
+    expected = [1e-3, 1e-3, 1e-3, 0.1, 0.2, 0.0, 0.0, 0.3, 0.4, 0.0, 0.0, 0.0]
+    np.testing.assert_allclose(state_covariance(**deviations), np.diag(np.square(expected)), rtol=1e-15)
+    with pytest.raises(InvalidFieldError, match=r"velocity must be of shape \(3,\), got shape \(2,\)"):
+        state_covariance(velocity=[0.1, 0.2])
