@@ -49,6 +49,10 @@ class TooLargeError(InvalidFieldError):
     """A list is longer than its limit, or a computation exceeds a limit on its work."""
 
 
+class NotInFlightError(InvalidFieldError):
+    """A flight was to be fitted to states of a body that strikes something, rests, slides or is carried."""
+
+
 class OutOfPlaneError(InvalidFieldError):
     """A planar problem deviates from its plane of motion by more than the tolerance."""
 

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 _CODE_NAMES: Final[tuple[tuple[type[errors.ContactDynamicsError], str], ...]] = (
     # A subclass must come before the class that it refines.
     (errors.TooLargeError, "TOO_LARGE"),
+    (errors.NotInFlightError, "NOT_IN_FLIGHT"),
     (errors.OutOfPlaneError, "OUT_OF_PLANE"),
     (errors.SeparatingContactError, "SEPARATING"),
     (errors.InvalidFieldError, "INVALID_FIELD"),

@@ -41,6 +41,7 @@ OFF_GRAVITY: Final = 0.5
 
 _FIRST: Final = 6  # states of the first round
 _LEAST: Final = 2  # states of a line
+_FEWEST_OF_PARABOLA: Final = 4  # a parabola fits any three positions
 
 
 def velocity_jump(seconds: FloatArray, misses_W: FloatArray) -> float | None:
@@ -73,7 +74,7 @@ def is_held(seconds: FloatArray, misses_W: FloatArray, gravity_W: FloatArray) ->
         gravity_W: (3,), m/s^2, world axes.
     """
     n, gravity = len(seconds), float(np.linalg.norm(gravity_W))
-    if n < _FIRST or gravity == 0.0:
+    if n < _FEWEST_OF_PARABOLA or gravity == 0.0:
         return False
     length = float(seconds[-1] - seconds[0])
     powers, bent, curved = _parabola(seconds, misses_W)

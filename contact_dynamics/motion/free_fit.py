@@ -112,6 +112,8 @@ class FitResult(Record):
             covariance are meaningless if one of them may be true.
         velocity_jump: Time of a jump of the velocity, as in an impact, s relative to the newest stamp, < 0.
             None if the positions show no jump.
+        falls: Whether the positions accelerate as in flight, at least by half of gravity. It is false if the
+            body rests, slides or is carried.
     """
 
     state: BodyState
@@ -127,6 +129,7 @@ class FitResult(Record):
     turns_known: bool = True
     alternatives: tuple[BodyState, ...] = ()
     velocity_jump: float | None = None
+    falls: bool = True
 
 
 def fit_free_motion(
@@ -163,7 +166,8 @@ def fit_free_motion(
     gravity = check_magnitude("gravity_W", check_array("gravity_W", gravity_W, (3,)))
     place = _fit_place(states, seconds, gravity, noise)
     jump = velocity_jump(seconds, place.misses_W)
-    flies = jump is None and not is_held(seconds, place.misses_W, gravity)
+    falls = not is_held(seconds, place.misses_W, gravity)
+    flies = jump is None and falls
     spin = _fit_rotation(body, states, seconds, noise, search=flies)
     covariance = np.zeros((12, 12))
     at_place, at_spin = np.r_[0:3, 6:9], np.r_[3:6, 9:12]
@@ -183,6 +187,7 @@ def fit_free_motion(
         rounds=spin.rounds,
         converged=spin.converged and place.fits_noise and flies,
         velocity_jump=jump,
+        falls=falls,
         turns_known=spin.turns_known,
         alternatives=tuple(alternatives),
         position_misses_W=place.misses_W,

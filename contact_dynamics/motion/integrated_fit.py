@@ -97,6 +97,7 @@ def fit_motion(
     position, orientation = window.residuals(fit.model)
     misses = window.misses(fit.model)
     jump = velocity_jump(window.seconds, misses[:, :3])
+    falls = not is_held(window.seconds, misses[:, :3], gravity)
     return FitResult(
         state=fit.model.state,
         covariance=fit.inverse @ fit.inverse.T,
@@ -104,8 +105,9 @@ def fit_motion(
         orientation_residual=orientation,
         count=len(states),
         rounds=fit.rounds,
-        converged=converged and jump is None and not is_held(window.seconds, misses[:, :3], gravity),
+        converged=converged and jump is None and falls,
         velocity_jump=jump,
+        falls=falls,
         turns_known=chosen.turns_known,
         alternatives=chosen.alternatives,
         position_misses_W=misses[:, :3],

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Final, TypeAlias
 import numpy as np
 
 from contact_dynamics.constants import seconds_between
-from contact_dynamics.errors import InvalidFieldError
+from contact_dynamics.errors import InvalidFieldError, NotInFlightError
 from contact_dynamics.motion.between_states import share_between, state_between
 from contact_dynamics.motion.covariance import covariance_along
 from contact_dynamics.motion.free_fit import FitResult, fit_free_motion
@@ -125,6 +125,7 @@ def subject_of(
         InvalidFieldError: a published state is asked for and the body has no name, or the window cannot be
             fitted, or no motion fits it, or several do that differ by whole turns from state to state, or the
             stamp is further ahead of the newest state than the default horizon.
+        NotInFlightError: an impact lies in the window, or the body rests, slides or is carried.
         TooLargeError: the window has more states than are fitted.
     """
     if isinstance(body, str):
@@ -164,6 +165,9 @@ def subject_of(
     return _moved(found, None, source.stamp_ns, context)
 
 
+_WITHOUT_FIT: Final = "0 takes the newest state as it is"
+
+
 def _check_fit(fit: FitResult, states: Sequence[BodyState]) -> None:
     """Raise an error for a motion that does not fit the states, and for one that may not be the only one.
 
@@ -171,10 +175,18 @@ def _check_fit(fit: FitResult, states: Sequence[BodyState]) -> None:
     if it is seen to turn by less than a third.
     """
     if fit.velocity_jump is not None:
-        raise InvalidFieldError(
+        raise NotInFlightError(
             "fit_window",
             f"a window whose velocity jumps as in an impact, {-fit.velocity_jump:.3g} s before its end",
             "a window that begins after the impact",
+            _WITHOUT_FIT,
+        )
+    if not fit.falls:
+        raise NotInFlightError(
+            "fit_window",
+            f"{fit.count} states of a body that does not fall: it rests, slides or is carried",
+            "a window of free flight",
+            _WITHOUT_FIT,
         )
     if not fit.converged:
         raise InvalidFieldError(

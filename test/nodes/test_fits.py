@@ -97,9 +97,9 @@ def test_fits_are_of_flights_under_the_forces_asked_for(client: Client) -> None:
     assert answers[-1].state.linear_velocity.z == pytest.approx(2.0, abs=1e-6)
     request.gravity = request.GRAVITY_AS_CONFIGURED
     falling = client.ask(request)
-    assert falling.status == falling.INVALID_FIELD
+    assert falling.status == falling.NOT_IN_FLIGHT
     assert says(
-        falling.message, "fit_window must be ..., got one whose 12 states the fitted flight misses by 0.0"
+        falling.message, "fit_window must be ..., got 12 states of a body that does not fall: it rests"
     )
     # What keeps it at its speed: a force as large as its weight, or as its weight and drag.
     request.applied_wrench.force.z = 0.4 * G
