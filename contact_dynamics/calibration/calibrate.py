@@ -23,10 +23,10 @@ from contact_dynamics.calibration.problems import (
     check_that_it_flies,
     problems_of,
     recordings_apart,
+    relabelled,
     unlikely,
     warnings_of,
 )
-from contact_dynamics.calibration.relabelled import relabelled
 from contact_dynamics.calibration.result import Calibration, Estimate, MeasuredGravity, Outlier
 from contact_dynamics.calibration.slides import lasting_frictions
 from contact_dynamics.calibration.strikes import strikes_of

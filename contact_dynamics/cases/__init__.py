@@ -6,8 +6,7 @@
 `published` compares with numbers that others published.
 """
 
-from contact_dynamics.cases.case import Case
-from contact_dynamics.cases.catalog import CASES
+from contact_dynamics.cases.catalog import CASES, Case
 
 __all__ = ["CASES", "Case"]
 

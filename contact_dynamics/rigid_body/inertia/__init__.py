@@ -5,11 +5,9 @@ For a hammer: `from contact_dynamics import inertia`, then
 ``inertia.combined([inertia.cylinder(...), inertia.box(...).placed(p_GF_G=...)])``; `Body.of` makes a body of
 the result for a `World`.
 
-All functions return a `distribution` of mass, and `composition` makes one of particles or of several parts.
-Mass properties are those of `solids`, `sheets_and_wires` (each with a `mass_or_density`), or a
-`triangle_mesh`.
-`axes_of_inertia` contains principal axes and the inertia ellipsoid, and `principal_frame` the same in
-extended precision.
+All functions return a `distribution` of mass, that of particles, of several parts, of `solids`, sheets and
+wires, or of a `triangle_mesh`. `axes_of_inertia` contains principal axes and the inertia ellipsoid, and
+`principal_frame` the same in extended precision.
 """
 
 from contact_dynamics.rigid_body.inertia.axes_of_inertia import (
@@ -18,25 +16,22 @@ from contact_dynamics.rigid_body.inertia.axes_of_inertia import (
     inertia_ellipsoid,
     principal_axes,
 )
-from contact_dynamics.rigid_body.inertia.composition import combined, particles, without
-from contact_dynamics.rigid_body.inertia.distribution import MassDistribution
-from contact_dynamics.rigid_body.inertia.sheets_and_wires import (
-    cylindrical_shell,
-    disc,
-    plate,
-    ring,
-    rod,
-    spherical_shell,
-)
+from contact_dynamics.rigid_body.inertia.distribution import MassDistribution, combined, particles, without
 from contact_dynamics.rigid_body.inertia.solids import (
     box,
     capsule,
     cone,
     cylinder,
+    cylindrical_shell,
+    disc,
     ellipsoid,
     hemisphere,
     hollow_sphere,
+    plate,
+    ring,
+    rod,
     sphere,
+    spherical_shell,
     torus,
     tube,
 )

@@ -1,10 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Solids of uniform density have mass properties in closed form.
+"""Solids, sheets and wires of uniform density have mass properties in closed form.
 
-Each solid has axes of its own. An axis of symmetry is z. The origin is the centre. If the two ends of the
-axis differ (cone, hemisphere), the origin is the centre of the base, and the solid is on the side of +z.
+Each has axes of its own. An axis of symmetry is z. The origin is the centre. If the two ends of the axis
+differ (cone, hemisphere), the origin is the centre of the base, and the solid is on the side of +z.
 `MassDistribution.placed` moves it anywhere. Lengths are in m. Give either ``mass``, kg, or ``density``,
-kg/m^3.
+kg/m^3 for a solid, kg/m^2 for a sheet and kg/m for a wire.
+
+Sheets and wires have no thickness. A `rod` has no inertia about its own axis, so it can be a part of a body
+but not a body.
 
 All raise `InvalidFieldError` if a length is not > 0, or if not exactly one of mass and density is given.
 """
@@ -18,8 +21,8 @@ import numpy as np
 
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.rigid_body.inertia.distribution import MassDistribution
-from contact_dynamics.rigid_body.inertia.mass_or_density import check_length, check_length_or_none, mass_of
-from contact_dynamics.validation import check_array, check_sides
+from contact_dynamics.tolerances import LARGEST_NUMBER
+from contact_dynamics.validation import check_array, check_sides, check_within
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -174,3 +177,71 @@ def _lengths(field: str, value: ArrayLike) -> tuple[float, float, float]:
     if min(x, y, z) <= 0.0:
         raise InvalidFieldError(field, [x, y, z], "three numbers > 0")
     return check_length(field, x), check_length(field, y), check_length(field, z)
+
+
+def check_length(field: str, value: object) -> float:
+    """Return a length of a shape, m, between the inverse of `LARGEST_NUMBER` and that number."""
+    return check_within(field, value, 1.0 / LARGEST_NUMBER, LARGEST_NUMBER)
+
+
+def check_length_or_none(field: str, value: object) -> float:
+    """Return a length of a shape, m, which may be zero."""
+    return check_within(field, value, 0.0, LARGEST_NUMBER)
+
+
+def mass_of(measure: float, *, mass: float | None, density: float | None) -> float:
+    """Return the mass, kg, of a shape of that volume, area or length, from a mass or from a density."""
+    if (mass is None) == (density is None):
+        found = "neither" if mass is None else "both"
+        raise InvalidFieldError("mass or density", found, "given, and not both")
+    if density is None:
+        return check_within("mass", mass, 1.0 / LARGEST_NUMBER, LARGEST_NUMBER)
+    return check_within("density", density, 1.0 / LARGEST_NUMBER, LARGEST_NUMBER) * measure
+
+
+def rod(length: float, *, mass: float | None = None, density: float | None = None) -> MassDistribution:
+    """Return a straight wire along z; density in kg/m."""
+    h = check_length("length", length)
+    return centered(mass_of(h, mass=mass, density=density), (0.0, 0.0, h * h / 12.0))
+
+
+def ring(radius: float, *, mass: float | None = None, density: float | None = None) -> MassDistribution:
+    """Return a circle of wire about z; density in kg/m."""
+    r = check_length("radius", radius)
+    total = mass_of(2.0 * math.pi * r, mass=mass, density=density)
+    return centered(total, (r * r / 2.0, r * r / 2.0, 0.0))
+
+
+def plate(size: ArrayLike, *, mass: float | None = None, density: float | None = None) -> MassDistribution:
+    """Return a rectangular sheet of full side lengths (2,) along x, y, normal to z; density in kg/m^2."""
+    x, y = check_array("size", size, (2,)).tolist()
+    if min(x, y) <= 0.0:
+        raise InvalidFieldError("size", [x, y], "two numbers > 0")
+    x, y = check_length("size", x), check_length("size", y)
+    total = mass_of(x * y, mass=mass, density=density)
+    return centered(total, (x * x / 12.0, y * y / 12.0, 0.0))
+
+
+def disc(radius: float, *, mass: float | None = None, density: float | None = None) -> MassDistribution:
+    """Return a circular sheet, normal to z; density in kg/m^2."""
+    r = check_length("radius", radius)
+    total = mass_of(math.pi * r * r, mass=mass, density=density)
+    return centered(total, (r * r / 4.0, r * r / 4.0, 0.0))
+
+
+def spherical_shell(
+    radius: float, *, mass: float | None = None, density: float | None = None
+) -> MassDistribution:
+    """Return a sphere's surface; density in kg/m^2."""
+    r = check_length("radius", radius)
+    total = mass_of(4.0 * math.pi * r * r, mass=mass, density=density)
+    return centered(total, (r * r / 3.0, r * r / 3.0, r * r / 3.0))
+
+
+def cylindrical_shell(
+    radius: float, length: float, *, mass: float | None = None, density: float | None = None
+) -> MassDistribution:
+    """Return a cylinder's curved surface, open at both ends, along z; density in kg/m^2."""
+    r, h = check_length("radius", radius), check_length("length", length)
+    total = mass_of(2.0 * math.pi * r * h, mass=mass, density=density)
+    return centered(total, (r * r / 2.0, r * r / 2.0, h * h / 12.0))

@@ -36,7 +36,7 @@ from contact_dynamics.errors import InvalidFieldError, UndecidedError
 from contact_dynamics.numerics.convex_hull import hull_of
 from contact_dynamics.records import Record
 from contact_dynamics.rigid_body.inertia.distribution import MassDistribution, inertia_of_second_moments
-from contact_dynamics.rigid_body.inertia.mass_or_density import mass_of
+from contact_dynamics.rigid_body.inertia.solids import mass_of
 from contact_dynamics.tolerances import EPSILON, SURFACES_TOUCH, VOLUME_ROUNDING
 from contact_dynamics.validation import FloatArray, check_array, check_magnitude
 
