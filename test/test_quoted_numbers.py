@@ -44,6 +44,7 @@ NOT_MEASURED: dict[
         "(1e-6 rad if",
         "down to 1e-11 rad",
         "within 1e-11 rad",
+        "(5 s by default)",
         "too small by up to 8 %",  # test_contacts_of_shapes
         "by at most 8 % with the default",  # 1 - cos(pi / n)
         "by at most 2 % with 16",
