@@ -14,8 +14,16 @@ if TYPE_CHECKING:
 
 FILE: Final = ROOT / "docs" / "toss_reliability.svg"
 
-_QUANTITIES: Final = ("time", "place", "attitude", "velocity", "spin")
-_SETS: Final = (("first strike", "tosses.1"), ("second strike", "tosses.2"))
+_QUANTITIES: Final = {
+    "time": "time",
+    "place": "position",
+    "attitude": "attitude",
+    "velocity": "velocity",
+    "spin": "spin",
+}
+"""Titles by the names of the measured numbers."""
+
+_SETS: Final = (("first impact", "tosses.1"), ("second impact", "tosses.2"))
 _NORMAL_AT_95: Final = 1.6449
 """Standard deviations within which nine tenths of a normal distribution lie."""
 
@@ -34,11 +42,11 @@ def reliability_figure() -> Figure:
             axes.plot([low, high], [height, height], color="#9db8cf", linewidth=5.0, solid_capstyle="butt")
             axes.plot(shares[which], height, "o", color="#1f4e79")
             axes.text(shares[which], height - 0.22, f"{shares[which]:g} %", ha="center", fontsize="x-small")
-        axes.set(xlim=(0.0, 103.0), xlabel=f"% of measured values in regions of {nominal:g} %")
+        axes.set(xlim=(0.0, 103.0), xlabel=f"measured values inside the {nominal:g} % region, %")
     left.set_yticks(range(len(rows)), [f"{name} ({count})" for name, count, _ in rows])
     left.set_ylim(len(rows) - 0.5, -0.7)
     figure.suptitle(
-        "How often measured tosses were where they were predicted (how many values)", fontsize="medium"
+        "Coverage of the prediction regions of recorded tosses (number of values)", fontsize="medium"
     )
     return figure
 
@@ -56,9 +64,9 @@ def redraw() -> Path | None:
 def _rows(numbers: dict[str, dict[str, Any]]) -> list[tuple[str, int, tuple[float, float]]]:
     """Return for each row its name, the count of values, and the shares in regions of 50 and 90 %, %."""
     rows = [
-        (f"{title}, {name}", int(numbers[f"{key}.{name}.count"]["value"]), _shares(numbers, f"{key}.{name}"))
+        (f"{title}, {label}", int(numbers[f"{key}.{name}.count"]["value"]), _shares(numbers, f"{key}.{name}"))
         for title, key in _SETS
-        for name in _QUANTITIES
+        for name, label in _QUANTITIES.items()
     ]
     coordinates = 2 * int(numbers["tosses.rests"]["value"])
     return [*rows, ("rest, coordinates", coordinates, _shares(numbers, "tosses.rest.place"))]

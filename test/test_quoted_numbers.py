@@ -109,13 +109,17 @@ NOT_MEASURED: dict[
         "last 0.1 s",
     ],
     "docs/toss.md": [
-        "steps of 0.2 ms",
-        "50 % region",
-        "90 % region",
-        "ideal values are 50 % and 90 %",
-        "with a probability of 90 %",
-        "below a tenth of a millimetre",
-    ],  # SAMPLED_SETTLING_HEIGHT
+        "contain 50 % or 90 % of the outcomes",
+        "at most 0.2 ms",
+        "is less than 1 nm",
+        "scaled to contain 50 % or 90 % of them",
+        "below 0.1 mm",  # SAMPLED_SETTLING_HEIGHT
+        "coverage is 50 % or 90 %",
+        "inside the 50 % region",
+        "inside the 90 % region",
+        "a 90 % confidence interval",
+        "the 90 % regions",
+    ],
     "contact_dynamics_interfaces/README.md": [
         "as regions of 50 and 90 %",
         "the region of 50 or 90 %",
