@@ -22,6 +22,7 @@ import re
 import tempfile
 import time
 from contextlib import ExitStack, contextmanager, suppress
+from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
@@ -53,8 +54,11 @@ def ports_in_use() -> set[int]:
     return {int(port, 16) for port in _LOCAL_PORT.findall(text)}
 
 
-VARIABLE: Final = "FASTRTPS_DEFAULT_PROFILES_FILE"
-_IN_THIS_FOLDER: Final = "DEFAULT_FASTRTPS_PROFILES.xml"
+IS_VERSION_3: Final = int(version("rclpy").partition(".")[0]) > 7
+"""Whether Fast DDS is that of Kilted or newer, which renamed what its profiles are found and made of."""
+
+VARIABLE: Final = "FASTDDS_DEFAULT_PROFILES_FILE" if IS_VERSION_3 else "FASTRTPS_DEFAULT_PROFILES_FILE"
+_IN_THIS_FOLDER: Final = "DEFAULT_FASTDDS_PROFILES.xml" if IS_VERSION_3 else "DEFAULT_FASTRTPS_PROFILES.xml"
 
 _ANNOUNCED_EVERY_S: Final = 0.5
 """s. 64 small messages a second to this machine, which take half a thousandth of a processor."""
@@ -83,7 +87,7 @@ _PROFILE: Final = """<?xml version="1.0" encoding="UTF-8"?>
     </rtps>
   </participant>
   <data_writer profile_name="contact_dynamics_writer" is_default_profile="true">
-    <times><heartbeatPeriod><sec>0</sec><nanosec>{asked_every_ns}</nanosec></heartbeatPeriod></times>
+    <times><{period}><sec>0</sec><nanosec>{asked_every_ns}</nanosec></{period}></times>
   </data_writer>
 </profiles>
 """
@@ -102,6 +106,7 @@ def profile_of_fast_dds() -> Iterator[None]:
         offset=FIRST_OFFSET + PORTS_OF_PARTICIPANT * (int(time.monotonic()) % PORTS),
         announced_every_ns=round(NS_PER_S * _ANNOUNCED_EVERY_S),
         asked_every_ns=round(NS_PER_S * _ASKED_EVERY_S),
+        period="heartbeat_period" if IS_VERSION_3 else "heartbeatPeriod",
     )
     with ExitStack() as stack:
         with suppress(OSError):  # where no file can be written, Fast DDS goes by its own choice

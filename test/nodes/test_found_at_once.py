@@ -13,7 +13,14 @@ from pathlib import Path
 
 import pytest
 
-from contact_dynamics.nodes.fast_dds import FIRST_OFFSET, PORTS, VARIABLE, first_port, profile_of_fast_dds
+from contact_dynamics.nodes.fast_dds import (
+    FIRST_OFFSET,
+    IS_VERSION_3,
+    PORTS,
+    VARIABLE,
+    first_port,
+    profile_of_fast_dds,
+)
 from running_server import DOMAIN_ID, PATIENCE_S, ROOT, environment, process, wait_for
 
 ARGUMENTS = ["--params-file", str(ROOT / "config" / "server.yaml"), "--ros-args", "-p", "log:=false"]
@@ -36,6 +43,7 @@ def ports_in_memory(pid: int) -> set[int]:
     return {int(port) for port in re.findall(r"/fastrtps_port(\d+)", Path(f"/proc/{pid}/maps").read_text())}
 
 
+@pytest.mark.skipif(IS_VERSION_3, reason="NOT RUN: the profile for clients is one of Fast DDS 2")
 def test_what_a_kill_could_leave_locked_in_shared_memory_is_not_used() -> None:
     """Nothing is sent to a server through it, and nothing to a client with the profile for it."""
     profile = ROOT / "config" / "fast_dds_back_at_once.xml"
@@ -83,6 +91,6 @@ def test_the_profile_of_the_user_stays(monkeypatch: pytest.MonkeyPatch, tmp_path
     assert os.environ[VARIABLE] == "mine.xml"
     monkeypatch.delenv(VARIABLE)
     monkeypatch.chdir(tmp_path)
-    (tmp_path / "DEFAULT_FASTRTPS_PROFILES.xml").touch()
+    (tmp_path / f"DEFAULT_{VARIABLE.partition('_')[0]}_PROFILES.xml").touch()
     with profile_of_fast_dds():
         assert VARIABLE not in os.environ
