@@ -38,7 +38,7 @@ PROCESSES = $(if $(filter-out 1,$(JOBS)),-n $(JOBS) --dist loadfile)
 test: lint types $(MADE)/test ## lint, types and the tests; JOBS=1 runs them in one process
 	@$(BIN)/python -m pytest $(PROCESSES)
 
-test-matrix: ## the physics with the oldest and newest NumPy and SciPy, on every Python and several kinds of processors
+test-matrix: ## the physics with the oldest and newest NumPy and SciPy, on every Python and kind of processor; the nodes on Kilted
 	@setup/matrix.sh $(VENV)-matrix
 
 wheels: ## in dist/: wheels of library and interfaces for every Python of this machine or PYTHONS=3.12, a plain one for all platforms, the sdist

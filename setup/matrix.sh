@@ -1,11 +1,13 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
 # Runs the suite's physics with the oldest and the newest NumPy and SciPy, on every Python of this machine, and with the newest
-# wheels as if on several kinds of processors. Prints a table; fails where anything failed or could not be set up.
+# wheels as if on several kinds of processors. Then it runs the tests of the nodes on the wheels of another ROS. Prints a table;
+# fails where anything failed or could not be set up.
 # usage: matrix.sh FOLDER
 #   PYTHONS="3.10 3.13"     only these
-#   WHEELS=newest           only these of NumPy and SciPy (oldest, newest)
+#   WHEELS=newest           only these of NumPy and SciPy (oldest, newest), or none
 #   PROCESSORS=own          only the processor of this machine as it is
+#   ROS=""                  no other ROS (kilted)
 #   TESTS="test/impact"     only these files or folders
 set -u
 
@@ -15,6 +17,7 @@ tests=${TESTS:-test}
 # What needs ROS, rerun, Matplotlib or the built environment is not physics. test/test_setup/test_matrix.py holds that nothing else does.
 beside="nodes demo recording replay viewing plots msg_adapters evaluation test_setup architecture"
 beside="$beside test_examples.py test_document_types.py test_quoted_numbers.py test_site.py cases/test_page.py questions/test_services.py questions/test_warnings.py test_lecture_figures.py test_notebooks.py test_public_names.py"
+ros_tests="test/nodes test/recording test/replay test/demo test/msg_adapters"
 # pytest-xdist is one of them. The others compile the core.
 tools="$(grep -E '^(pytest|hypothesis|mpmath)\b' requirements/test.txt) $(grep -E '^(cython|setuptools)\b' requirements/build.txt)"
 
@@ -35,20 +38,24 @@ row() { # Python, wheels, processor, result
     printf '%s %s %s %s: %s\n' "$1" "$2" "$3" "$4" "$5"
 }
 
-run_suite() { # environment, Python, which wheels, processor
+run_tests() { # environment, Python, wheels, processor, tests
     log=$1/.made/suite-$4.log
-    ignored=""
-    for each in $beside; do ignored="$ignored --ignore=test/$each"; done
-    [ "$4" = own ] && unset OPENBLAS_CORETYPE || export OPENBLAS_CORETYPE="$4"
     # The lists are split into words on purpose.
     # shellcheck disable=SC2086
-    if "$1/bin/python" -m pytest -q -n "$jobs" --dist loadfile -p no:cacheprovider $ignored $tests >"$log" 2>&1; then
+    if "$1/bin/python" -m pytest -q -n "$jobs" --dist loadfile -p no:cacheprovider $5 >"$log" 2>&1; then
         row "$2" "$3" "$(wheels_of "$1")" "$4" "$(tail -n 1 "$log")"
     else
         failed=1
         grep -E '^(FAILED|ERROR)' "$log"
         row "$2" "$3" "$(wheels_of "$1")" "$4" "FAILED: $(tail -n 1 "$log"), see $log"
     fi
+}
+
+run_suite() { # environment, Python, which wheels, processor
+    ignored=""
+    for each in $beside; do ignored="$ignored --ignore=test/$each"; done
+    [ "$4" = own ] && unset OPENBLAS_CORETYPE || export OPENBLAS_CORETYPE="$4"
+    run_tests "$@" "$ignored $tests"
     unset OPENBLAS_CORETYPE
 }
 
@@ -63,6 +70,13 @@ install() { # environment, program, which wheels
         "$1/bin/python" setup.py -q build_ext --inplace
 }
 
+install_ros() { # environment, program, which ROS
+    "$here/make_venv.sh" "$1" "$2" || return 1
+    "$here/install.sh" "$1" -r "requirements/$3.txt" -r requirements/core.txt -r requirements/view.txt -r requirements/test.txt &&
+        "$1/bin/python" -m pip -q install --no-deps --no-build-isolation --editable . &&
+        "$here/build_interfaces.sh" "$1"
+}
+
 # OpenBLAS picks its kernels by the processor; these it can be told to take, where the processor has their instructions.
 processors="Prescott Nehalem"
 for pair in avx:Sandybridge avx2:Haswell avx2:Zen avx512f:SkylakeX; do
@@ -72,7 +86,7 @@ done
 newest=""
 while IFS='	' read -r version program; do
     [ -n "$version" ] || continue
-    for wheels in ${WHEELS:-oldest newest}; do
+    for wheels in ${WHEELS-oldest newest}; do
         environment=$folder/$version-$wheels
         if install "$environment" "$program" "$wheels"; then
             run_suite "$environment" "$version" "$wheels" own
@@ -91,6 +105,16 @@ if [ -n "$newest" ] && [ "${PROCESSORS:-all}" = all ]; then
         run_suite "$newest" "$newest_version" newest "$processor"
     done
 fi
+for ros in ${ROS-kilted}; do
+    environment=$folder/$ros
+    program=$(printf '%s\n' "$pythons" | head -n 1 | cut -f 2)
+    if install_ros "$environment" "$program" "$ros"; then
+        run_tests "$environment" "$("$program" -c 'import sys; print("%d.%d" % sys.version_info[:2])')" "$ros" own "$ros_tests"
+    else
+        failed=1
+        row "" "$ros" "" "" "FAILED: not installed"
+    fi
+done
 if [ ! -s "$table" ]; then
     failed=1
     echo "No Python could be tried." >&2
