@@ -139,7 +139,8 @@ class StateTopic:
         compatibility, reason = qos_check_compatible(offered, asked)
         if compatibility != QoSCompatibility.ERROR:
             return ""
-        return f"{reason.strip()} (see qos_overrides in config/server.yaml)"
+        reason = reason.replace("ERROR: ", "").strip(" ;")
+        return f"{reason} (see qos_overrides in config/server.yaml)"
 
     def _receive(self, taken: Taken) -> None:
         if not self.traffic.received:

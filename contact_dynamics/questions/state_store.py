@@ -38,7 +38,8 @@ class Arrivals:
         old: How many were too old for a question about now when they came.
         age: s. How old the last of these was.
         reason: Why the last one that was rejected was, in words.
-        rejected_ns: When that was, ns by the clock of the stamps, or None if that is not known.
+        rejected_ns: When that came, ns by the clock of the stamps, or None if that is not known.
+        kept_ns: When the last one that was kept came, also unread, or None if that is not known.
         newest_is_rejected: Whether none was kept since.
         discarded: When those that were kept were discarded, in words. It is empty if the last was rejected.
         expected: What to say where none came.
@@ -50,6 +51,7 @@ class Arrivals:
     age: float = 0.0
     reason: str = ""
     rejected_ns: int | None = None
+    kept_ns: int | None = None
     newest_is_rejected: bool = False
     discarded: str = ""
     expected: str = "none has been received yet"
@@ -77,23 +79,33 @@ class Arrivals:
             return ""
         return f" {to_seconds(now_ns - self.rejected_ns):.1f} s ago"
 
-    def keep(self) -> None:
+    def keep(self, now_ns: int | None) -> None:
         """Note a state that came and is kept."""
         self.came += 1
+        self.kept_ns = now_ns
         self.newest_is_rejected = False
 
     def refuse(self, reason: object, *, was_kept: bool, now_ns: int | None) -> None:
-        """Note a state that came and was not kept, or that was counted and kept, and cannot be read."""
+        """Note a state that came and was not kept, or that was counted and kept, and cannot be read.
+
+        The latter are read long after they came, and the newest first.
+        """
         self.came += not was_kept
         self.rejected += 1
+        if was_kept and _is_before(now_ns, self.rejected_ns):
+            return
         self.reason = str(reason)
         self.rejected_ns = now_ns
-        self.newest_is_rejected = True
+        self.newest_is_rejected = not (was_kept and _is_before(now_ns, self.kept_ns))
         self.discarded = ""
 
     def throw_away(self, reason: str) -> None:
         """Note that states that were kept are not any more."""
         self.discarded = reason
+
+
+def _is_before(one_ns: int | None, other_ns: int | None) -> bool:
+    return one_ns is not None and other_ns is not None and one_ns < other_ns
 
 
 FUTURE_TOLERANCE: Final = 0.5
@@ -339,7 +351,7 @@ class StateStore:
                 )
             self._forget_future(body_name, now_ns)
         arrivals = self._arrivals[body_name]
-        arrivals.keep()
+        arrivals.keep(now_ns)
         if now_ns is not None and now_ns - stamp_ns > self._timeout_ns:
             arrivals.old += 1
             arrivals.age = to_seconds(now_ns - stamp_ns)

@@ -120,7 +120,7 @@ def test_publishers_that_do_not_match(monitor: Monitor, states: Any) -> None:
     def publish() -> None:
         states.publish(odometry())
 
-    monitor.wait(Situation.NO_MATCH, "/brick/odometry: 1 of 2 publishers", "Best effort", work=publish)
+    monitor.wait(Situation.NO_MATCH, "1 of 2 publishers cannot be received: Best effort", work=publish)
     monitor.wait(Situation.NO_MATCH, "/pair/twist: 1 of 1 publishers", "they send geometry", work=publish)
     for each in others:
         node.destroy_publisher(each)

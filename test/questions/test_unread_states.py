@@ -146,6 +146,34 @@ def test_a_state_that_is_too_old_says_whether_newer_ones_were_rejected() -> None
     assert stale(store, now_ns=2_000_000_000).endswith("the last because it is NaN")
 
 
+def test_of_unread_states_the_last_one_that_came_says_why_it_was_rejected() -> None:
+    """They are read from the newest back, and one that came before a good one is no later message."""
+    second_ns = 1_000_000_000
+    store = StateStore(history=9.0, timeout=1.0)
+
+    def add(at: int, reason: str = "") -> None:
+        def read() -> BodyState | None:
+            if not reason:
+                return state(at * second_ns)
+            store.refuse("ball", reason, was_kept=True, now_ns=at * second_ns)
+            return None
+
+        store.add_unread("ball", at * second_ns, read, now_ns=at * second_ns)
+
+    add(1)
+    add(2, "it is NaN")
+    add(3, "it is NaN")
+    add(4, "it is in another frame")
+    told = stale(store, now_ns=5 * second_ns)
+    assert told.endswith("later messages were rejected, the last 1.0 s ago because it is in another frame")
+    add(5, "it is NaN")
+    add(6)
+    newest = store.newest("ball")
+    assert len(store.window("ball", newest, 9.0)) == 2
+    assert stale(store, now_ns=9 * second_ns).endswith("got 3.000 s")
+    assert store.arrivals("ball").rejected == 4
+
+
 def known_of(store: StateStore, stamp_ns: int | None, seconds: float, now_ns: int | None) -> object:
     """What a question finds: the states of its window and the one after its stamp, or why there is none."""
     try:
