@@ -10,7 +10,13 @@ from contact_dynamics.recording.bag_reader import BagReader, LoggedMessage
 from contact_dynamics.recording.bag_writer import BagWriter
 from contact_dynamics.recording.cdr import decode_without_ros
 from contact_dynamics.recording.decoding import decode
-from contact_dynamics.recording.errors import DamagedLogWarning, LogExistsError, LogFailedError, NotALogError
+from contact_dynamics.recording.errors import (
+    DamagedLogWarning,
+    LogExistsError,
+    LogFailedError,
+    NotALogError,
+    UnfinishedLogWarning,
+)
 from contact_dynamics.recording.file_messages import Loss
 from contact_dynamics.recording.limits import Compression, LogLimits
 from contact_dynamics.recording.qos import OfferedQos
@@ -34,6 +40,7 @@ __all__ = [
     "Recorder",
     "RecorderStatus",
     "ServiceCall",
+    "UnfinishedLogWarning",
     "decode",
     "decode_without_ros",
     "service_calls",

@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING, Final
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.recording.bag_metadata import BAG_KEY, METADATA_FILE
 from contact_dynamics.recording.definitions import standard_definition
-from contact_dynamics.recording.errors import DamagedLogWarning, NotALogError
+from contact_dynamics.recording.errors import DamagedLogWarning, NotALogError, UnfinishedLogWarning
 from contact_dynamics.recording.file_messages import Loss, MessageFile, Span, Topic
 from contact_dynamics.recording.packed import SUFFIXES, unpacked_file, unpacked_message
 from contact_dynamics.recording.sqlite_messages import SqliteMessages
@@ -229,7 +229,7 @@ class BagReader:
                     self.losses += losses
                     if self.losses[before:]:
                         told = _described(path, self.losses[before:])
-                        warnings.warn(told, DamagedLogWarning, stacklevel=4)
+                        warnings.warn(told, kind_of(self.losses[before:]), stacklevel=4)
 
 
 def _files_of(folder: Path) -> list[Path]:
@@ -239,8 +239,13 @@ def _files_of(folder: Path) -> list[Path]:
     return sorted(files, key=lambda path: (int(matches[path]["number"] or 0), path.name))
 
 
+def kind_of(losses: list[Loss]) -> type[DamagedLogWarning]:
+    """Return whether a log is damaged, or only lacks its end."""
+    return UnfinishedLogWarning if all(loss.begin == loss.end for loss in losses) else DamagedLogWarning
+
+
 def _described(path: Path, losses: list[Loss]) -> str:
-    if all(loss.begin == loss.end for loss in losses):
+    if kind_of(losses) is UnfinishedLogWarning:
         read = losses[0].end
         return f"{path} is still being written, or its writer was killed; all {read} bytes of it were read"
     told = "; ".join(str(loss) for loss in losses[:_MAX_TOLD])

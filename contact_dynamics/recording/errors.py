@@ -20,3 +20,7 @@ class NotALogError(ContactDynamicsError):
 
 class DamagedLogWarning(UserWarning):
     """A log ends early (crash, full disk) or fails its checksums. All but the damage was read."""
+
+
+class UnfinishedLogWarning(DamagedLogWarning):
+    """A log is still being written, or its writer was killed. All that it contains was read."""

@@ -24,7 +24,7 @@ from contact_dynamics.questions.sample_times import UntilContact
 from contact_dynamics.questions.services import ask, service_of, service_of_type
 from contact_dynamics.questions.subject import PublishedState
 from contact_dynamics.questions.tumbling import TumblingQuestion
-from contact_dynamics.recording.bag_reader import BagReader
+from contact_dynamics.recording.bag_reader import BagReader, kind_of
 from contact_dynamics.recording.errors import DamagedLogWarning
 from contact_dynamics.recording.message_types import Message
 from contact_dynamics.recording.service_calls import ServiceCall
@@ -144,6 +144,11 @@ class Events(ABC):
     def damage(self) -> str | None:
         """What of the recording could not be read, in words, or None if all was whole."""
         return self._reader.damage
+
+    def warn_of_damage(self) -> None:
+        """Warn whoever called the caller, unless all was whole."""
+        if self.damage is not None:
+            warnings.warn(self.damage, kind_of(self._reader.losses), stacklevel=3)
 
 
 class LoggedEvents(Events):

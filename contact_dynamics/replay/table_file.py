@@ -9,13 +9,11 @@ from __future__ import annotations
 import csv
 import json
 import sys
-import warnings
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, TextIO, TypeAlias
 
 from contact_dynamics.errors import InvalidFieldError, NotSupportedError
-from contact_dynamics.recording.errors import DamagedLogWarning
 from contact_dynamics.replay.events import LoggedEvents
 from contact_dynamics.replay.rows import COLUMNS, Rows
 
@@ -67,7 +65,8 @@ def log_to_frame(log: Path | str) -> Any:
         NotALogError: it is no log, or none of the server.
 
     Warns:
-        DamagedLogWarning: a part of the log could not be read.
+        DamagedLogWarning: a part of the log could not be read; `UnfinishedLogWarning` if only its end is
+            missing.
     """
     try:
         import pandas as pd  # few need it
@@ -75,8 +74,7 @@ def log_to_frame(log: Path | str) -> Any:
         raise NotSupportedError("log_to_frame needs pandas: pip install pandas") from None
     events = LoggedEvents(Path(log))
     rows = list(Rows(events, log=str(log)))
-    if events.damage is not None:
-        warnings.warn(events.damage, DamagedLogWarning, stacklevel=2)
+    events.warn_of_damage()
     types = {str: "string", int: "Int64", float: "float64"}
     return pd.DataFrame(
         {name: pd.Series([row[name] for row in rows], dtype=types[kind]) for name, kind in COLUMNS.items()}

@@ -23,7 +23,7 @@ from rclpy.qos import QoSProfile
 
 from contact_dynamics.nodes.log import Log
 from contact_dynamics.nodes.situations import Part, Situation
-from contact_dynamics.recording import BagReader, DamagedLogWarning
+from contact_dynamics.recording import BagReader, UnfinishedLogWarning
 from contact_dynamics.recording.bag_writer import Gap
 from contact_dynamics.recording.limits import UNLIMITED
 from contact_dynamics_interfaces.srv import PredictTumbling
@@ -73,7 +73,7 @@ def test_the_log_goes_on_once_there_is_room_and_says_what_is_missing(tmp_path: P
     written, lost = map(int, re.findall(r"\((\d+) messages, (\d+) lost", goodbye)[0])
     reader = BagReader(folder)
     with pytest.warns(
-        DamagedLogWarning, match="its writer was killed"
+        UnfinishedLogWarning, match="its writer was killed"
     ):  # the files that the disk refused to finish
         messages = list(reader.messages())
     assert len(messages) == written

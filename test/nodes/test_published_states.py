@@ -21,7 +21,7 @@ from rclpy.qos import QoSProfile, ReliabilityPolicy
 from rosgraph_msgs.msg import Clock
 
 from contact_dynamics.nodes.log import Log
-from contact_dynamics.recording import BagReader, DamagedLogWarning
+from contact_dynamics.recording import BagReader, UnfinishedLogWarning
 from contact_dynamics.recording.limits import LogLimits
 from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact, PredictTumbling
 from message_words import says
@@ -409,7 +409,7 @@ def test_without_simulated_time_nobody_minds_a_clock_that_jumps(servers: Servers
 
 def topics_of(folder: Path) -> set[str]:
     """Topics of the messages in a log that is still being written."""
-    with pytest.warns(DamagedLogWarning):
+    with pytest.warns(UnfinishedLogWarning, match="is still being written"):
         return {message.topic for message in BagReader(folder).messages()}
 
 

@@ -17,7 +17,13 @@ import pytest
 from mcap.opcode import Opcode
 from mcap.writer import CompressionType, Writer
 
-from contact_dynamics.recording import BagReader, BagWriter, DamagedLogWarning, NotALogError
+from contact_dynamics.recording import (
+    BagReader,
+    BagWriter,
+    DamagedLogWarning,
+    NotALogError,
+    UnfinishedLogWarning,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -63,7 +69,9 @@ def read(path: Path, data: bytes) -> tuple[list[LoggedMessage], list[Loss]]:
         warnings.simplefilter("always")
         messages = list(reader.messages())
     assert len(caught) == (reader.damage is not None)
-    assert all(warning.category is DamagedLogWarning for warning in caught)
+    is_cut = all(loss.begin == loss.end for loss in reader.losses)
+    expected = UnfinishedLogWarning if is_cut else DamagedLogWarning
+    assert all(warning.category is expected for warning in caught)
     assert (reader.damage is not None) == bool(reader.losses)
     return messages, reader.losses
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from contact_dynamics.recording import BagReader, BagWriter, DamagedLogWarning, Recorder
+from contact_dynamics.recording import BagReader, BagWriter, Recorder, UnfinishedLogWarning
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -84,7 +84,7 @@ def test_messages_reach_the_file_without_closing(tmp_path: Path, pose_cdr: PoseC
         deadline = time.monotonic() + 90.0
         while recorder.status.written == 0 and time.monotonic() < deadline:
             time.sleep(0.01)
-        with pytest.warns(DamagedLogWarning, match="its writer was killed"):  # no end yet
+        with pytest.warns(UnfinishedLogWarning, match="is still being written"):
             (message,) = BagReader(tmp_path / "log").messages()
     assert message.data == pose_cdr(1, 2.0)
 
@@ -228,7 +228,7 @@ def test_killed_process_leaves_all_that_it_called_written(tmp_path: Path) -> Non
         process.wait()
         process.stdout.close()
     reader = BagReader(tmp_path / "log")
-    with pytest.warns(DamagedLogWarning):
+    with pytest.warns(UnfinishedLogWarning):
         times = [message.log_time_ns for message in reader.messages()]
     assert len(times) >= written
     assert times == list(range(len(times)))
