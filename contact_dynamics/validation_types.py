@@ -115,7 +115,8 @@ def check_types_of(page: dict[str, Any]) -> None:
         call = f"{function.__name__}{inspect.signature(function)}".replace("'", "")
         gist, _, more = (inspect.getdoc(function) or "").partition("\n\n")
         others = textwrap.fill(", ".join(name for name in page["__all__"] if name != function.__name__), 100)
-        internal = "The modules under PACKAGE CONTENTS are internal. Other public names are:"
+        alone = f"help({page['__name__']}.{function.__name__}) shows this text alone."
+        internal = f"{alone} The modules under PACKAGE CONTENTS are internal. Other public names are:"
         # help of the chapter is that of the function
         chapter.__doc__ = f"{gist}\n\n{call}\n\n{more}\n\n{internal}\n{others}"
 
