@@ -32,7 +32,7 @@ from contact_dynamics.rigid_body.published_frame import centers_of_mass, origins
 from contact_dynamics.tumbling import Trajectory
 from contact_dynamics.tumbling.flips import Flips
 from contact_dynamics.tumbling.poinsot_construction import Poinsot, RollingCurves, semi_axes
-from contact_dynamics.tumbling.regime import Regime
+from contact_dynamics.tumbling.polhode import Regime
 from contact_dynamics_interfaces.msg import Poinsot as PoinsotMsg
 from contact_dynamics_interfaces.msg import Trajectory as TrajectoryMsg
 from contact_dynamics_interfaces.srv import PredictTumbling

@@ -52,8 +52,7 @@ import mujoco
 import numpy as np
 
 from contact_dynamics.measured.read_toss import DEFAULT_RECORDING
-from contact_dynamics.measured.recorded_toss import Toss
-from contact_dynamics.measured.toss_csv import COLUMNS, DECIMALS, write_toss_csv
+from contact_dynamics.measured.recorded_toss import COLUMNS, DECIMALS, Toss, write_toss_csv
 from contact_dynamics.motion.velocity_estimate import causal_velocities, frames_in_window
 from contact_dynamics.rigid_body.body import MassProperties
 from contact_dynamics.rotations.many import turned

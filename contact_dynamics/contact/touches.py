@@ -36,9 +36,8 @@ import numpy as np
 from contact_dynamics.errors import NotSupportedError
 from contact_dynamics.numerics.convex_hull import hull_of
 from contact_dynamics.numerics.vectors import along_least, tangent_rows
-from contact_dynamics.shapes.hull_features import Features, features_of
+from contact_dynamics.shapes.hull_features import Features, Radii, features_of, radii_of
 from contact_dynamics.shapes.obstacle import closest_points
-from contact_dynamics.shapes.rim import Radii, radii_of
 from contact_dynamics.tolerances import PARALLEL_EDGES, SAME_POINT
 
 if TYPE_CHECKING:

@@ -10,12 +10,12 @@ import numpy as np
 
 from contact_dynamics.diagrams.marks import Faces
 from contact_dynamics.rotations.one import rotation_matrix
-from contact_dynamics.shapes.rim import radii_of
+from contact_dynamics.shapes.hull_features import radii_of
 
 if TYPE_CHECKING:
     from contact_dynamics.diagrams.palette import Paint
     from contact_dynamics.shapes.convex import ConvexShape
-    from contact_dynamics.shapes.rim import Radii
+    from contact_dynamics.shapes.hull_features import Radii
     from contact_dynamics.validation import FloatArray
 
 FLAT: Final = 1e-6

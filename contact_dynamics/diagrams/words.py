@@ -14,7 +14,7 @@ from contact_dynamics.contact_modes.letters import LETTERS
 from contact_dynamics.impact import ImpactOutcome, SequenceEnd
 from contact_dynamics.toss import TossEnd, TossEventKind, UndecidedReason
 from contact_dynamics.toss.distribution import BranchKind, axis_in_words
-from contact_dynamics.tumbling.regime import Regime
+from contact_dynamics.tumbling.polhode import Regime
 
 if TYPE_CHECKING:
     from contact_dynamics.contact_modes import BodyStatics, GeometryMargin, SpatialModeMargin, VerdictsWithin

@@ -36,7 +36,7 @@ from contact_dynamics.landing.search_work import SEARCH_BEGUN, SearchWork
 from contact_dynamics.records import Record
 from contact_dynamics.rotations.one import conjugate, rotated
 from contact_dynamics.shapes.convex import ConvexShape
-from contact_dynamics.shapes.rim import radii_of
+from contact_dynamics.shapes.hull_features import radii_of
 from contact_dynamics.tolerances import GRAZING_DEPTH, RIM_ACCURACY
 from contact_dynamics.validation import (
     FloatArray,

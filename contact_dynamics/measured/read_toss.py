@@ -8,8 +8,7 @@ from typing import Final
 
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.measured.cube_tosses import read_cube_toss
-from contact_dynamics.measured.recorded_toss import Toss
-from contact_dynamics.measured.toss_csv import read_toss_csv
+from contact_dynamics.measured.recorded_toss import Toss, read_toss_csv
 
 __all__ = ["DEFAULT_RECORDING", "Toss", "read_toss"]
 

@@ -39,7 +39,7 @@ from contact_dynamics.diagrams.toss_scene import event_tree, toss_marks
 from contact_dynamics.plots.drawing import draw_diagram, draw_seen
 from contact_dynamics.questions.services import service_of
 from contact_dynamics.shapes.convex import NO_SHAPE
-from contact_dynamics.tumbling.regime import Regime
+from contact_dynamics.tumbling.polhode import Regime
 from contact_dynamics.validation_types import checks_types
 
 if TYPE_CHECKING:

@@ -2,9 +2,9 @@
 """Reads a log: a folder of rosbag2 or one file of it, ours or another's, in the order of its writing.
 
 The files are MCAP or SQLite (``.db3``), split or not, packed as a whole, by message or not at all. The reader
-checks every checksum of MCAP. It skips what is damaged and reads everything else (`mcap_walk`), and all whole
-chunks of a log that a crash or a full disk cut short. `BagReader.losses` then says what is missing, and the
-reader warns once for each file (`DamagedLogWarning`).
+checks every checksum of MCAP. It skips what is damaged and reads everything else (`mcap_messages`), and all
+whole chunks of a log that a crash or a full disk cut short. `BagReader.losses` then says what is missing, and
+the reader warns once for each file (`DamagedLogWarning`).
 
 It needs no ROS. Messages are bytes, and `decoding` turns them into message objects if their packages are
 installed.

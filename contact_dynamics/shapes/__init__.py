@@ -3,7 +3,7 @@
 
 `convex` contains the shapes of bodies, from spheres to rounded polyhedra, with a function for each. An
 `obstacle` is a convex part of the world with edges and corners. `concavity` warns of corners that are not
-those of a convex body. `hull_features` and `rim` contain the parts of a shape that can touch. `files` reads
+those of a convex body. `hull_features` contains the parts of a shape that can touch. `files` reads
 bodies from URDF and SDF files and from meshes.
 """
 

@@ -5,11 +5,11 @@
 bodies. `Regime` is the kind of rotation, `next_flips` returns the flips of a body that spins near its middle
 axis, and `poinsot` Poinsot's construction: an ellipsoid that rolls on a plane.
 
-The modules of this package are internal. `motion` treats one body and `many` many at once. `regime`, `flips`
-and `poinsot_construction` contain the other functions. The constants of a rotation follow from the principal
-axes (`rigid_body.inertia`) and from its initial point on the `polhode`, with `elliptic` integrals. The
-attitude consists of quotients of `theta` functions, which `attitude_form` sets up. `double_double` keeps
-their phases exact over many turns.
+The modules of this package are internal. `motion` treats one body and `many` many at once. `flips` and
+`poinsot_construction` contain the other functions. The constants of a rotation follow from the principal axes
+(`rigid_body.inertia`) and from its initial point on the `polhode`, which also has its regime, with `elliptic`
+integrals. The attitude consists of quotients of `theta` functions, which `attitude_form` sets up, with phases
+that stay exact over many turns.
 """
 
 from contact_dynamics.numerics.arithmetic import Precision
@@ -17,7 +17,7 @@ from contact_dynamics.tumbling.flips import Flips, next_flips
 from contact_dynamics.tumbling.many import flips_of_many, rotations_of_many, states_of_many
 from contact_dynamics.tumbling.motion import FreeMotion, Sample, Trajectory, free_motion
 from contact_dynamics.tumbling.poinsot_construction import Poinsot, RollingCurves, poinsot, rolling_curves
-from contact_dynamics.tumbling.regime import Regime
+from contact_dynamics.tumbling.polhode import Regime
 from contact_dynamics.validation_types import check_types_of
 
 __all__ = [

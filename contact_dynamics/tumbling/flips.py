@@ -17,8 +17,7 @@ from contact_dynamics.records import Record
 from contact_dynamics.rigid_body.inertia.principal_frame import in_doubles
 from contact_dynamics.rotations.one import cross_matrix
 from contact_dynamics.tumbling.many import flips_of_many
-from contact_dynamics.tumbling.polhode import Spin, Tumble
-from contact_dynamics.tumbling.regime import Regime
+from contact_dynamics.tumbling.polhode import Regime, Spin, Tumble
 from contact_dynamics.validation import check_whole
 from contact_dynamics.validation_batches import check_covariance
 

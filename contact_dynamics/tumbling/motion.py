@@ -43,8 +43,15 @@ from contact_dynamics.rotations.one import (
 )
 from contact_dynamics.tolerances import LARGEST_NUMBER
 from contact_dynamics.tumbling.attitude_form import AttitudeForm, attitude_form
-from contact_dynamics.tumbling.polhode import Rotation, Spin, Tumble, largest_rate, tumble_or_spin
-from contact_dynamics.tumbling.regime import Regime, regime_of
+from contact_dynamics.tumbling.polhode import (
+    Regime,
+    Rotation,
+    Spin,
+    Tumble,
+    largest_rate,
+    regime_of,
+    tumble_or_spin,
+)
 from contact_dynamics.validation import FloatArray, check_array, check_magnitude, check_within
 
 if TYPE_CHECKING:

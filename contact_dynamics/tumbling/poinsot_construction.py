@@ -25,8 +25,7 @@ from contact_dynamics.rigid_body.inertia.axes_of_inertia import axes_of_bytes
 from contact_dynamics.rotations.one import rotated, rotation_matrix
 from contact_dynamics.tolerances import SEPARATRIX_END, SMALLEST_COMPLEMENT
 from contact_dynamics.tumbling.elliptic import average_over_period, carlson_rf
-from contact_dynamics.tumbling.polhode import Rotation, Spin, Tumble, largest_rate
-from contact_dynamics.tumbling.regime import Regime
+from contact_dynamics.tumbling.polhode import Regime, Rotation, Spin, Tumble, largest_rate
 from contact_dynamics.validation import FloatArray, check_array, check_whole
 
 if TYPE_CHECKING:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The constants of a torque-free rotation follow from its initial angular velocity.
+"""The constants of a torque-free rotation, and its kind, follow from its initial angular velocity.
 
 Jacobi's order of axes: the angular velocity circles axis 3, which is the major axis (largest moment) where
 L^2 > 2 T I_2 and the minor one where L^2 < 2 T I_2; axis 2 is the middle one. With a, b, c > 0,
@@ -21,7 +21,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Generic, TypeAlias
 
 from contact_dynamics.numerics.arithmetic import Scalar, within
-from contact_dynamics.tolerances import MOTIONLESS
+from contact_dynamics.records import NamedInt
+from contact_dynamics.tolerances import EQUAL_MOMENTS_TOLERANCE, MOTIONLESS, STEADY_AXIS_TOLERANCE
 from contact_dynamics.tumbling.elliptic import average_over_period, carlson_rf
 
 if TYPE_CHECKING:
@@ -178,3 +179,33 @@ def _flipped(axis: tuple[Scalar, Scalar, Scalar]) -> tuple[Scalar, Scalar, Scala
 
 def _dot(axis: tuple[Scalar, Scalar, Scalar], w_B: Sequence[Scalar]) -> Scalar:
     return axis[0] * w_B[0] + axis[1] * w_B[1] + axis[2] * w_B[2]
+
+
+class Regime(NamedInt):
+    """Kind of rotation, as a label. The formulas do not use it, and are also valid between the regimes."""
+
+    UNKNOWN = 0  # a torque acts: Poinsot's picture does not apply
+    AT_REST = 1  # no rotation
+    SPHERICAL = 2  # three equal moments: the angular velocity is constant
+    PRINCIPAL_AXIS = 3  # about a principal axis, or within rounding of the major or minor one: it is constant
+    AXISYMMETRIC = 4  # two equal moments: steady precession
+    ABOUT_MINOR_AXIS = 5  # the polhode encircles the axis of the smallest moment
+    ABOUT_MAJOR_AXIS = 6  # the polhode encircles the axis of the largest moment
+    SEPARATRIX = 7  # between the two: one flip, and an infinite period
+
+
+def regime_of(frame: PrincipalFrame[Decimal], rotation: Rotation) -> Regime:
+    """Return the name of a rotation. Moments within `EQUAL_MOMENTS_TOLERANCE` count as equal."""
+    if isinstance(rotation, Spin) and rotation.rate == 0:
+        return Regime.AT_REST
+    small, middle, large = frame.moments
+    equal = large * EQUAL_MOMENTS_TOLERANCE
+    if large - small <= equal:
+        return Regime.SPHERICAL
+    if middle - small <= equal or large - middle <= equal:
+        return Regime.AXISYMMETRIC
+    if isinstance(rotation, Spin) or rotation.a2 <= STEADY_AXIS_TOLERANCE:
+        return Regime.PRINCIPAL_AXIS
+    if rotation.m1 == 0:
+        return Regime.SEPARATRIX
+    return Regime.ABOUT_MAJOR_AXIS if rotation.omega_p > 0 else Regime.ABOUT_MINOR_AXIS

@@ -23,7 +23,7 @@ from contact_dynamics.diagrams.words import (
 )
 from contact_dynamics.numerics.vectors import tangents_near_x
 from contact_dynamics.questions.services import service_of
-from contact_dynamics.tumbling.regime import Regime
+from contact_dynamics.tumbling.polhode import Regime
 from contact_dynamics.viewing.blueprint import NO_TRAVEL, WINDOW_S, Framing, make_blueprint, near_most
 from contact_dynamics.viewing.diagrams_in_view import DiagramsInView
 from contact_dynamics.viewing.drawing import draw_marks

@@ -8,7 +8,7 @@ import pytest
 
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.measured.read_toss import DEFAULT_RECORDING, read_toss
-from contact_dynamics.measured.toss_csv import write_toss_csv
+from contact_dynamics.measured.recorded_toss import write_toss_csv
 from contact_dynamics.motion.velocity_estimate import causal_velocities, frames_in_window
 from measured.brick_truth import TRUTH
 from oracles.rigid_flight import fly, matrix
