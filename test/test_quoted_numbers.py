@@ -97,7 +97,7 @@ NOT_MEASURED: dict[
     ],
     "docs/notation.md": ["−90°", "0.1 µs"],  # of a double at 1.8e9 s
     "docs/quick-start-ros.md": ["slide at 4.9 N"],  # half its weight
-    "docs/replay.md": ["the next 50 ms", "again within 50 ms", "advances by 0.1 s", "every 0.1 s"],
+    "docs/replay.md": ["the next 50 ms", "occurs within 50 ms", "advances by 0.1 s", "every 0.1 s"],
     "docs/several-contacts.md": [
         "Coin of 24 mm",
         "flat at 1 m/s",
@@ -130,8 +130,8 @@ NOT_MEASURED: dict[
         "the 90 % regions",
     ],
     "contact_dynamics_interfaces/README.md": [
-        "as regions of 50 and 90 %",
-        "the region of 50 or 90 %",
+        "as 50 and 90 % prediction regions",
+        "inside the 50 or 90 % prediction region",
         "pushed with 2 N",
         "with 0.5, 1 and 1.5 N",
         "last 0.1 s",
