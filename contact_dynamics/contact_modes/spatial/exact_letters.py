@@ -113,8 +113,12 @@ def solution_near(
     holds = system.has_letters(found)
     if not shared:
         return Solution(found, system.angles(unknowns), holds, system.equations(unknowns))
-    every = _System(search, letters, None)
-    return Solution(found, system.sliding(found), holds, None, every.is_motion_unique(every.start(found)))
+    every, angles = _System(search, letters, None), system.sliding(found)
+    start = every.start(found)
+    for k, (i, is_angle) in enumerate(every.unknowns):
+        if is_angle and not found[i].any():  # there is no friction to show the direction
+            start[k] = angles[i]
+    return Solution(found, angles, holds, None, every.is_motion_unique(start))
 
 
 def _solved(system: _System, forces: FloatArray, *, shared: bool) -> FloatArray | None:
@@ -160,17 +164,17 @@ class _System:
         self._frames = [None if one.frame is None else np.array(one.frame) for one in search.pyramids]
         sizes = np.ones(len(letters)) if acting is None else np.linalg.norm(acting, axis=1)
         self._acts = (sizes > LETTERS_NO_FORCE * sizes.max(initial=0.0)).tolist()
-        self._unknowns: list[tuple[int, bool]] = []  # the contact of each, and whether it is a direction
+        self.unknowns: list[tuple[int, bool]] = []  # the contact of each, and whether it is a direction
         for i, letter in enumerate(letters):
             if letter != SEPARATES and self._acts[i]:
-                self._unknowns += [(i, False)] * (3 if letter == STICKS else 1)
+                self.unknowns += [(i, False)] * (3 if letter == STICKS else 1)
                 if letter == STAYS and self._frames[i] is not None:
-                    self._unknowns.append((i, True))
+                    self.unknowns.append((i, True))
 
     @property
     def may_be_regular(self) -> bool:
         """Whether shares of force are so few that they can all differ in the motion."""
-        return sum(not is_angle for _, is_angle in self._unknowns) <= self._search.freedoms
+        return sum(not is_angle for _, is_angle in self.unknowns) <= self._search.freedoms
 
     def start(self, forces: FloatArray) -> FloatArray:
         """Return the unknowns that are nearest to given forces."""
@@ -274,7 +278,7 @@ class _System:
 
     def angles(self, unknowns: FloatArray) -> dict[int, float]:
         """Return the direction, rad, in which each contact begins to slide."""
-        return {i: float(unknowns[k]) for k, (i, is_angle) in enumerate(self._unknowns) if is_angle}
+        return {i: float(unknowns[k]) for k, (i, is_angle) in enumerate(self.unknowns) if is_angle}
 
     def equations(self, unknowns: FloatArray) -> Equations:
         """Return the equations at a solution, with as many unknowns."""
@@ -282,10 +286,10 @@ class _System:
         rows, rows_turn = np.zeros((2, len(unknowns), self._search.freedoms + 1))
         changes_turn = np.zeros((self._search.freedoms, len(unknowns)))
         angles = []
-        for k, (i, is_angle) in enumerate(self._unknowns):
+        for k, (i, is_angle) in enumerate(self.unknowns):
             contact, frame = self._search.touching[i], self._frames[i]
             if self._letters[i] == STICKS:
-                first = next(j for j, one in enumerate(self._unknowns) if one[0] == i)
+                first = next(j for j, one in enumerate(self.unknowns) if one[0] == i)
                 rows[k] = contact.point[k - first]
                 continue
             rows[k] = contact.normal @ contact.point

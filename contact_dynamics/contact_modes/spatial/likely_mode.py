@@ -18,11 +18,13 @@ import numpy as np
 from contact_dynamics.contact_modes.letters import SEPARATES, STAYS, STICKS
 from contact_dynamics.contact_modes.spatial.completeness import Known
 from contact_dynamics.contact_modes.spatial.exact_letters import solution_near
+from contact_dynamics.contact_modes.spatial.round_cones import summed_by_round_cones
 from contact_dynamics.tolerances import COMPLIANT_SETTLED, GIVES_WAY, STRICT
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from contact_dynamics.contact_modes.spatial.exact_letters import Solution
     from contact_dynamics.contact_modes.spatial.search import Search
     from contact_dynamics.validation import FloatArray
 
@@ -42,6 +44,7 @@ _ENOUGH: Final = 0.1
 def likely_mode(search: Search) -> Known | None:
     """Return the most likely mode of touching contacts, or None if there is none with its letters."""
     body, now = _settled(search)
+    others: list[tuple[str, Solution]] = []
     for gives_way in (GIVES_WAY, 0.0):
         letters = body.letters(now, gives_way)
         if set(letters) <= {SEPARATES}:
@@ -52,9 +55,49 @@ def likely_mode(search: Search) -> Known | None:
         solution = solution_near(search, letters, now.forces)
         solution = solution or solution_near(search, letters, now.forces, shared=True)
         if solution is not None and solution.has_letters:
-            unique = solution.equations is not None
-            return Known(letters, solution.forces, alone=solution.motion_unique, forces_unique=unique)
+            return _known(letters, solution)
+        if solution is not None and set(letters) != {STICKS}:  # round cones decide on that anyway
+            others.append((letters, solution))
+    for letters, other in others:
+        within = _in_round_cones(search, letters, other)
+        if within is not None and within.has_letters:
+            return _known(letters, within)
     return None
+
+
+def _known(letters: str, solution: Solution) -> Known:
+    unique = solution.equations is not None
+    return Known(letters, solution.forces, alone=solution.motion_unique, forces_unique=unique)
+
+
+def _in_round_cones(search: Search, letters: str, solution: Solution) -> Solution | None:
+    """Return a solution with the motion of another one, whose forces are in the round cones, or None.
+
+    Compliant contacts share friction by their motion, so that a foot with little load may exceed its limit
+    where others could take its share.
+    """
+    acting = [i for i, letter in enumerate(letters) if letter != SEPARATES]
+    caused = search.of_forces @ solution.forces.ravel()
+    motion = np.append(search.motion[:, -1] + caused, 1.0)
+    axes, leans = np.zeros((len(acting), 3)), np.zeros(len(acting))
+    for k, i in enumerate(acting):
+        contact, pyramid = search.touching[i], search.pyramids[i]
+        axes[k] = pyramid.edges[0] if pyramid.frame is None else contact.normal
+        if letters[i] == STICKS:
+            leans[k] = contact.friction
+        elif pyramid.frame is not None:
+            way = contact.point @ motion
+            speed = float(np.linalg.norm(way))
+            axes[k] = contact.normal - contact.friction * way / (speed if speed > 0.0 else 1.0)
+    columns = (3 * np.array(acting)[:, None] + np.arange(3)).ravel()
+    held = summed_by_round_cones(
+        search.mass @ search.of_forces[:, columns], search.mass @ caused, axes, leans
+    )
+    if held.forces is None:
+        return None
+    forces = np.zeros_like(solution.forces)
+    forces[acting] = held.forces
+    return solution_near(search, letters, forces, shared=True)
 
 
 class _Response(NamedTuple):

@@ -14,7 +14,8 @@ if M + z M, less these parts, is positive definite, d is zero.
 
 A contact that slides already has friction in a known direction, which does not turn. A contact that sticks
 has f* = n* (N - mu s) with |s| <= 1, which takes the place of u*. There z must vanish along the surface.
-Where all contacts are on one plane, it vanishes everywhere. Where normal forces alone hold a body, z is zero.
+Where contacts share friction, s is that of a common virtual motion, so that there is a z. Where all contacts
+of a body are on one plane, it vanishes everywhere. Where normal forces alone hold a body, z is zero.
 """
 
 from __future__ import annotations
@@ -31,11 +32,16 @@ from contact_dynamics.tolerances import FORCES_ROUNDING, ROW_TOLERANCE, SAME_MOT
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from numpy.typing import NDArray
+
     from contact_dynamics.contact_modes.spatial.search import Search
     from contact_dynamics.validation import FloatArray
 
 _MAX_STEPS: Final = 12
 """The largest number of Newton's steps to forces that friction of a common motion allows. Five are enough."""
+
+_SHARED: Final = 2
+"""The least number of contacts that stick whose friction can be shared in several ways."""
 
 
 class _Contacts(NamedTuple):
@@ -61,6 +67,9 @@ class _Contacts(NamedTuple):
 def is_only_motion(search: Search, forces: FloatArray, staying: Sequence[int] | None = None) -> bool:
     """Return whether it is proven that no mode has another motion than the one that forces bring about.
 
+    Where contacts stick, other forces may bring about the same motion. If the given ones prove nothing, those
+    are tried with which friction is that of a common virtual motion.
+
     Args:
         search: The case.
         forces: (n, 3), of a mode, in the units of the motion.
@@ -73,7 +82,8 @@ def is_only_motion(search: Search, forces: FloatArray, staying: Sequence[int] | 
     contacts = _contacts(search, everyone)
     own = forces[everyone]
     points = np.array([search.touching[i].point for i in everyone]) @ np.append(motion, 1.0)
-    across = points - np.sum(points * contacts.normals, axis=1)[:, None] * contacts.normals
+    rising = np.sum(points * contacts.normals, axis=1)
+    across = points - rising[:, None] * contacts.normals
     speeds = np.linalg.norm(across, axis=1) * contacts.turns
     slides = speeds > SAME_MOTION
     ways = across / np.where(slides, speeds, 1.0)[:, None] * slides[:, None]
@@ -85,7 +95,16 @@ def is_only_motion(search: Search, forces: FloatArray, staying: Sequence[int] | 
         speed = float(np.linalg.norm(search.touching[i].sliding))
         if speed > 0.0:
             ways[k] = search.touching[i].sliding / speed
-    return _excludes_others(search, contacts, ways, speeds * slides, within=staying is not None)
+    within = staying is not None
+    if _excludes_others(search, contacts, ways, speeds * slides, within=within):
+        return True
+    sticks = contacts.turns * (contacts.frictions > 0.0) * ~slides > 0.0
+    rests = np.abs(motion).max() <= SAME_MOTION  # `rests_alone` has tried these forces
+    if np.count_nonzero(sticks & (rising <= SAME_MOTION)) < _SHARED or (rests and not within):
+        return False
+    slid = np.where(sticks[:, None], 0.0, ways)
+    evened = _evened(search, contacts, motion, slid, sticks=sticks, rising=rising)
+    return evened is not None and _excludes_others(search, contacts, evened, speeds * slides, within=within)
 
 
 def rests_alone(search: Search) -> bool:
@@ -96,36 +115,69 @@ def rests_alone(search: Search) -> bool:
     """
     if not search.at_rest or not search.touching:
         return False
-    if (
-        held_by_round_cones(search, np.eye(search.freedoms, search.freedoms + 1), smooth=True).forces
-        is not None
-    ):
+    rest = np.eye(search.freedoms, search.freedoms + 1)
+    if held_by_round_cones(search, rest, smooth=True).forces is not None:
         return True
     contacts = _contacts(search, list(range(len(search.touching))))
-    wrench = search.mass @ search.motion[:, -1]
-    normal = contacts.rising.T  # (d, n)
-    gripping = contacts.frictions[:, None, None] * contacts.across
+    nothing = np.zeros(len(search.touching))
+    ways = _evened(
+        search,
+        contacts,
+        np.zeros(search.freedoms),
+        np.zeros((len(nothing), 3)),
+        sticks=nothing == 0.0,
+        rising=nothing,
+    )
+    return ways is not None and _excludes_others(search, contacts, ways, nothing, within=False)
+
+
+def _evened(
+    search: Search,
+    contacts: _Contacts,
+    motion: FloatArray,
+    ways: FloatArray,
+    *,
+    sticks: NDArray[np.bool_],
+    rising: FloatArray,
+) -> FloatArray | None:
+    """Return friction, (n, 3), with which forces bring a motion about, or None if none was found.
+
+    Where contacts stick, it is that of a common virtual motion, in parts of what slides would have.
+
+    Args:
+        search: The case.
+        contacts: The contacts.
+        motion: (d,), the motion.
+        ways: (n, 3), the friction of contacts that slide, reversed, in parts of the largest.
+        sticks: (n,), which contacts stick.
+        rising: (n,), their normal accelerations in the motion. Those that leave do not press.
+    """
+    left = search.mass @ (search.motion[:, -1] - motion)
+    normal = contacts.rising.T * (rising <= SAME_MOTION)  # (d, n)
+    gripping = (contacts.frictions * sticks)[:, None, None] * contacts.across
     seen = seen_and_unseen(gripping.reshape(-1, search.freedoms) / max(1.0, float(contacts.frictions.max())))[
         0
     ].T
-    pressing = np.linalg.lstsq(normal, -wrench, rcond=ROW_TOLERANCE)[0]
+    sliding = contacts.frictions[:, None] * ways
+    pressing = np.linalg.lstsq(normal, -left, rcond=ROW_TOLERANCE)[0]
     common = np.zeros(seen.shape[1])
-    enough = FORCES_ROUNDING * float(np.linalg.norm(wrench))
+    acting = (rising <= SAME_MOTION)[:, None]
+    enough = FORCES_ROUNDING * float(np.linalg.norm(search.mass @ search.motion[:, -1]))
     for _ in range(_MAX_STEPS):
-        ways = gripping @ (seen @ common)  # (n, 3), times the coefficient of friction
-        edges = normal - np.einsum("ijk,ij->ki", contacts.points, ways)
-        missed = wrench + edges @ pressing
+        leaning = sliding + gripping @ (seen @ common)  # (n, 3), times the coefficient of friction
+        edges = normal - np.einsum("ijk,ij->ki", contacts.points, leaning * acting)
+        missed = left + edges @ pressing
         if float(np.linalg.norm(missed)) <= enough:
-            slips = np.linalg.norm(ways, axis=1) > contacts.frictions
-            if pressing.min() < 0.0 or np.any(slips):
-                return False
-            ways = ways / np.where(contacts.frictions > 0.0, contacts.frictions, 1.0)[:, None]
-            return _excludes_others(search, contacts, ways, np.zeros(len(ways)), within=False)
-        turned = np.einsum("ijk,i,ijl->kl", contacts.points, pressing, gripping) @ seen
+            slips = np.linalg.norm(leaning, axis=1) > contacts.frictions
+            if pressing.min() < 0.0 or np.any(slips & sticks):
+                return None
+            found: FloatArray = leaning / np.where(contacts.frictions > 0.0, contacts.frictions, 1.0)[:, None]
+            return found
+        turned = np.einsum("ijk,i,ijl->kl", contacts.points, pressing, gripping * acting[:, :, None]) @ seen
         step = np.linalg.lstsq(np.column_stack([edges, -turned]), -missed, rcond=ROW_TOLERANCE)[0]
         pressing = pressing + step[: len(pressing)]
         common = common + step[len(pressing) :]
-    return False
+    return None
 
 
 def _contacts(search: Search, everyone: list[int]) -> _Contacts:
