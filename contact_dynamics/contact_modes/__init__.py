@@ -4,7 +4,8 @@
 Make a `PlanarContactProblem` or a `SpatialContactProblem`, and pass it to one of these functions:
 
 - `contact_modes` returns the verdict and all consistent modes, and `refused_modes` the reasons for which the
-  other modes are not consistent.
+  other modes are not consistent. `contact_modes` also takes the problem of several bodies that touch each
+  other, a `BodiesContactProblem`, or that of a mechanism, a `ResponseContactProblem`.
 - `mode_margins` returns the smallest change of the wrench that ends each mode, `largest_load` the largest
   load of a body at rest in space, and `geometry_margins` the errors of the contacts that change the answer.
 - `wrench_sets` returns the wrenches that can cause each mode.
@@ -38,8 +39,9 @@ is consistent in the whole box and that no other mode is (in space `excluded`).
   The modes found are made exact (`realised`, `exact_modes`, `exact_letters`), modes that are consistent only
   `narrowly` are found near others, and `round_cones` decides whether forces hold contacts. `mode_with_forces`
   computes the accelerations. The wrenches of a mode (`wrenches`, on a `cone`) are divided by sliding
-  directions. `margins` are distances to sums of round cones, also for modes in which contacts begin to slide
-  (`margins_of_sliding`), and so are the amounts of refused modes.
+  directions. The same search serves a mechanism whose contact points respond to forces in a known way
+  (`response`), and several `bodies`. `margins` are distances to sums of round cones, also for modes in which
+  contacts begin to slide (`margins_of_sliding`), and so are the amounts of refused modes.
 """
 
 from contact_dynamics.contact_modes.letters import Letter
@@ -58,6 +60,8 @@ from contact_dynamics.contact_modes.plane_or_space import (
     wrench_sets,
 )
 from contact_dynamics.contact_modes.result import (
+    BodiesMode,
+    BodiesModeAnswer,
     BodyStatics,
     Certainty,
     GeometryMargin,
@@ -67,10 +71,13 @@ from contact_dynamics.contact_modes.result import (
     PlanarModeAnswer,
     Refusal,
     RefusedMode,
+    ResponseMode,
+    ResponseModeAnswer,
     SpatialMode,
     SpatialModeAnswer,
     VerdictsWithin,
 )
+from contact_dynamics.contact_modes.spatial.bodies import BodiesContactProblem
 from contact_dynamics.contact_modes.spatial.kinematic import spatial_kinematic_modes, spatial_sliding_modes
 from contact_dynamics.contact_modes.spatial.largest_load import (
     Closure,
@@ -85,10 +92,14 @@ from contact_dynamics.contact_modes.spatial.largest_load import (
 )
 from contact_dynamics.contact_modes.spatial.margins import SpatialModeMargin
 from contact_dynamics.contact_modes.spatial.problem import SpatialContactProblem
+from contact_dynamics.contact_modes.spatial.response import ResponseContactProblem
 from contact_dynamics.contact_modes.spatial.wrench_sets import SpatialWrenchSet
 from contact_dynamics.validation_types import check_types_of
 
 __all__ = [
+    "BodiesContactProblem",
+    "BodiesMode",
+    "BodiesModeAnswer",
     "BodyStatics",
     "Certainty",
     "Closure",
@@ -105,6 +116,9 @@ __all__ = [
     "PlanarWrenchSet",
     "Refusal",
     "RefusedMode",
+    "ResponseContactProblem",
+    "ResponseMode",
+    "ResponseModeAnswer",
     "SpatialContactProblem",
     "SpatialMode",
     "SpatialModeAnswer",

@@ -2,7 +2,8 @@
 """These functions ask about contact modes. Each takes a problem in the plane or in space.
 
 You state a problem once, as a `PlanarContactProblem` or a `SpatialContactProblem`, and ask it every question.
-The files of `planar` and `spatial` answer them, under the same names.
+The files of `planar` and `spatial` answer them, under the same names. Of several bodies
+(`BodiesContactProblem`) and of a mechanism (`ResponseContactProblem`) only the modes are available.
 """
 
 from __future__ import annotations
@@ -15,10 +16,17 @@ from contact_dynamics.contact_modes.planar.problem import PlanarContactProblem
 from contact_dynamics.contact_modes.planar.statics import planar_statics
 from contact_dynamics.contact_modes.planar.uncertain import planar_boxes
 from contact_dynamics.contact_modes.planar.wrench_sets import planar_mode_margins, planar_wrench_sets
-from contact_dynamics.contact_modes.result import PlanarModeAnswer, SpatialModeAnswer
+from contact_dynamics.contact_modes.result import (
+    BodiesModeAnswer,
+    PlanarModeAnswer,
+    ResponseModeAnswer,
+    SpatialModeAnswer,
+)
 from contact_dynamics.contact_modes.spatial.answer import spatial_contact_modes
+from contact_dynamics.contact_modes.spatial.bodies import BodiesContactProblem, bodies_contact_modes
 from contact_dynamics.contact_modes.spatial.margins import spatial_mode_margins, spatial_refused_modes
 from contact_dynamics.contact_modes.spatial.problem import SpatialContactProblem
+from contact_dynamics.contact_modes.spatial.response import ResponseContactProblem, response_contact_modes
 from contact_dynamics.contact_modes.spatial.statics import spatial_statics
 from contact_dynamics.contact_modes.spatial.uncertain import spatial_boxes
 from contact_dynamics.contact_modes.spatial.wrench_sets import spatial_wrench_sets
@@ -44,15 +52,20 @@ if TYPE_CHECKING:
 def contact_modes(problem: PlanarContactProblem) -> PlanarModeAnswer: ...
 @overload
 def contact_modes(problem: SpatialContactProblem) -> SpatialModeAnswer: ...
+@overload
+def contact_modes(problem: BodiesContactProblem) -> BodiesModeAnswer: ...
+@overload
+def contact_modes(problem: ResponseContactProblem) -> ResponseModeAnswer: ...
 def contact_modes(
-    problem: PlanarContactProblem | SpatialContactProblem,
-) -> PlanarModeAnswer | SpatialModeAnswer:
+    problem: PlanarContactProblem | SpatialContactProblem | BodiesContactProblem | ResponseContactProblem,
+) -> PlanarModeAnswer | SpatialModeAnswer | ResponseModeAnswer:
     """Return the verdict on a contact problem and all consistent modes.
 
     Each mode contains its accelerations and contact forces.
 
     Args:
-        problem: The contact problem, such as SpatialContactProblem.of(body, state, world, force_W=push).
+        problem: The contact problem, such as SpatialContactProblem.of(body, state, world, force_W=push). It
+            may also be that of several bodies, or of a mechanism.
 
     Raises:
         TooLargeError: in space, more contacts touch than are supported, or the search takes too many trials.
@@ -69,6 +82,10 @@ def contact_modes(
             within = planar_boxes(seen, answer).verdicts_within(problem.uncertainty)
             answer = replace(answer, within=within)
         return answer if frame is None else frame.answer_in_world(answer, problem)
+    if isinstance(problem, BodiesContactProblem):
+        return bodies_contact_modes(problem)
+    if isinstance(problem, ResponseContactProblem):
+        return response_contact_modes(problem)
     in_frame = spatial_frame(problem)
     there = problem if in_frame is None else in_frame.problem
     in_space = spatial_contact_modes(there)

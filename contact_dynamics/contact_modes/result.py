@@ -340,6 +340,55 @@ class SpatialMode(ResponseMode):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class BodiesMode(ResponseMode):
+    """Consistent mode of several bodies, with their accelerations and contact forces, in world axes.
+
+    Attributes:
+        accelerations_W: (k, 3), m/s^2, accelerations of the centres of mass.
+        angular_accelerations_W: (k, 3), rad/s^2.
+
+    The others are those of `ResponseMode`.
+    """
+
+    accelerations_W: FloatArray
+    angular_accelerations_W: FloatArray
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class ResponseModeAnswer(AnyModeAnswer):
+    """Answer to a `ResponseContactProblem`.
+
+    Attributes:
+        verdict: Verdict on all contacts together.
+        modes: All consistent modes, sorted by their letters: separating, then sticking, then sliding.
+        approaching: Indices of the approaching contacts. Empty unless the verdict is IMPACT.
+        velocity_tolerance: m/s. Velocities of contacts up to this size count as zero.
+        examined: Number of cases that were tried, each with one letter or a group of letters.
+        undecided: The undecided cases and the reason. Empty unless the verdict is UNDECIDED.
+        undecided_modes: Letters of modes that could be neither found nor refuted.
+        flush_within: As in `SpatialModeAnswer`. It is 0 for a mechanism, whose contacts have no positions.
+        problem: The problem.
+    """
+
+    verdict: ModeVerdict
+    modes: tuple[ResponseMode, ...]
+    approaching: tuple[int, ...]
+    velocity_tolerance: float
+    examined: int
+    undecided: str = ""
+    undecided_modes: tuple[str, ...] = ()
+    flush_within: float = 0.0
+    problem: Record = field(repr=False)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class BodiesModeAnswer(ResponseModeAnswer):
+    """Answer to a `BodiesContactProblem`, whose fields are those of `ResponseModeAnswer`."""
+
+    modes: tuple[BodiesMode, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class SpatialModeAnswer(AnyModeAnswer):
     """Answer to a `SpatialContactProblem`.
 

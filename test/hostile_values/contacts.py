@@ -31,6 +31,8 @@ from contact_dynamics.contact import (
     spatial_contact_velocities,
 )
 from contact_dynamics.contact_modes import (
+    BodiesContactProblem,
+    ResponseContactProblem,
     closure,
     largest_acceleration,
     largest_spin,
@@ -120,6 +122,28 @@ CALLS_WITH_CONTACTS: Calls = {
             "force_W": [0.0, 0.0, -9.8],
             "torque_W": [0.0, 0.0, 0.0],
             "friction_facets": 8,
+            "velocity_tolerance": 1e-9,
+        },
+    ),
+    "BodiesContactProblem": (
+        BodiesContactProblem,
+        {
+            "bodies": [BALL],
+            "states": [RESTING],
+            "contacts": CONTACTS,
+            "pairs": [(0, None), (0, None)],
+            "forces_W": [[0.0, 0.0, -9.8]],
+            "torques_W": [[0.0, 0.0, 0.0]],
+            "velocity_tolerance": 1e-9,
+        },
+    ),
+    "ResponseContactProblem": (
+        ResponseContactProblem,
+        {
+            "inverse_inertia_W": np.eye(6),
+            "accelerations_W": [[0.0, 0.0, -9.8], [0.0, 0.0, -9.8]],
+            "contacts": CONTACTS,
+            "velocities_W": [0.0, 0.0, 0.0],
             "velocity_tolerance": 1e-9,
         },
     ),

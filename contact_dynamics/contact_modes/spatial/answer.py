@@ -23,9 +23,8 @@ A contact without friction has the letter c, whether it slides or not.
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING, Final, NamedTuple, cast
+from typing import TYPE_CHECKING, Any, Final, NamedTuple, cast
 
 import numpy as np
 
@@ -65,6 +64,7 @@ from contact_dynamics.contact_modes.spatial.round_cones import (
     polished,
     sticking,
 )
+from contact_dynamics.errors import TooLargeError
 from contact_dynamics.tolerances import (
     FEASIBLE,
     FLUSH,
@@ -99,9 +99,15 @@ _UNENDED: Final = (
 )
 
 
+_ENDLESS: Final = "the search for further modes did not end"
+
 _NARROW: Final = "rounding decides whether modes hold that hold under nearly the same load: {}"
 
 _NOT_REFUTED: Final = "no mode was found, and it could not be shown that there is none"
+
+
+_FREE: Final = 3
+"""Components of the motion with which a contact can move in every direction."""
 
 
 class Evidence(NamedTuple):
@@ -131,9 +137,7 @@ def spatial_contact_modes(problem: SpatialContactProblem) -> SpatialModeAnswer:
         facets=FRICTION_FACETS if problem.sharpen else problem.friction_facets,
         sharpen=problem.sharpen,
     )
-    if not isinstance(found, Considered):
-        return _answer(problem, Evidence([], ""), approaching=found)
-    return _answered(problem, found)
+    return _answer(problem, found)
 
 
 def _case_within(problem: SpatialContactProblem, within: float) -> SpatialCase | tuple[int, ...]:
@@ -220,7 +224,7 @@ def modes_of_case(
         TooLargeError: the search takes more trials than `pyramid_programs.MAX_EXAMINED`.
     """
     found = evidence_of(case, search, sharpen=problem.sharpen, beside_rest=beside_rest)
-    return _answered(problem, Considered(case, search, found, 0.0))
+    return _answer(problem, Considered(case, search, found, 0.0))
 
 
 def evidence_of(
@@ -243,30 +247,36 @@ def evidence_of(
     return found
 
 
-def _answered(problem: SpatialContactProblem, one: Considered) -> SpatialModeAnswer:
-    answer = _answer(problem, one.found._replace(modes=shown_modes(one)), examined=one.search.examined)
-    return answer if one.within == 0.0 else replace(answer, flush_within=one.within)
-
-
-def shown_modes(one: Considered) -> list[ResponseMode]:
-    """Return the modes that were found, with their least forces, at the contacts that were given."""
-    return [as_given(one.case, with_least_forces(one.case, mode)) for mode in one.found.modes]
-
-
-def _answer(
-    problem: SpatialContactProblem, found: Evidence, *, examined: int = 0, approaching: tuple[int, ...] = ()
-) -> SpatialModeAnswer:
+def _answer(problem: SpatialContactProblem, found: Considered | tuple[int, ...]) -> SpatialModeAnswer:
     return SpatialModeAnswer(
-        verdict=ModeVerdict.IMPACT if approaching else verdict_of(found),
-        modes=tuple(cast("list[SpatialMode]", found.modes)),
-        approaching=approaching,
-        velocity_tolerance=problem.velocity_tolerance,
+        modes=tuple(cast("list[SpatialMode]", shown_modes(found))),
         friction_facets=problem.friction_facets,
-        examined=examined,
-        undecided=found.undecided,
-        undecided_modes=found.undecided_modes,
         problem=problem,
+        **answer_fields(found, problem.velocity_tolerance),
     )
+
+
+def shown_modes(found: Considered | tuple[int, ...]) -> list[ResponseMode]:
+    """Return the modes that were found, with their least forces, at the contacts that were given."""
+    if not isinstance(found, Considered):
+        return []
+    return [as_given(found.case, with_least_forces(found.case, mode)) for mode in found.found.modes]
+
+
+def answer_fields(found: Considered | tuple[int, ...], velocity_tolerance: float) -> dict[str, Any]:
+    """Return what an answer contains beside its problem and its modes."""
+    fields: dict[str, Any] = {"velocity_tolerance": velocity_tolerance}
+    if not isinstance(found, Considered):
+        return {**fields, "verdict": ModeVerdict.IMPACT, "approaching": found, "examined": 0}
+    return {
+        **fields,
+        "verdict": verdict_of(found.found),
+        "approaching": (),
+        "examined": found.search.examined,
+        "undecided": found.found.undecided,
+        "undecided_modes": found.found.undecided_modes,
+        "flush_within": found.within,
+    }
 
 
 def verdict_of(found: Evidence) -> ModeVerdict:
@@ -347,6 +357,8 @@ def _narrow(case: SpatialCase, search: Search, found: Evidence, *, hurried: bool
         return found._replace(undecided=found.undecided or _NOT_REFUTED)
     if not (found.undecided or search.at_rest) and has_none(search):
         return found
+    if search.examined > search.most_examined:  # searches for modes nearby would not end either
+        return found
     near = narrowly(search)
     if near.modes:
         modes = [
@@ -377,7 +389,12 @@ def _sought(case: SpatialCase, search: Search, *, beside_rest: bool, hurried: bo
     if resting is not None and resting.modes:
         return resting
     slides = bool(np.any(case.sliding[case.touching]))
-    if not slides and len(case.touching) == 1 and search.touching[0].friction > 0.0:
+    if (
+        not slides
+        and len(case.touching) == 1
+        and search.touching[0].friction > 0.0
+        and search.freedoms >= _FREE
+    ):
         return Evidence(_of_one_contact(case, search), "")
     likely = likely_mode(search)
     modes = [] if likely is None else [_mode_of(case, likely)]
@@ -385,7 +402,15 @@ def _sought(case: SpatialCase, search: Search, *, beside_rest: bool, hurried: bo
     found = _with_others(case, search, modes, beside_rest=beside_rest, most=most)
     if hurried or (found.modes and not found.undecided and not _nearly_alike(case)):
         return found
-    kept = found_by(case, search, sharpen=True)
+    return _searched(case, search, found, beside_rest=beside_rest)
+
+
+def _searched(case: SpatialCase, search: Search, found: Evidence, *, beside_rest: bool) -> Evidence:
+    """Return the modes of a case, with those that a search of the pyramids finds beside known ones."""
+    try:
+        kept = found_by(case, search, sharpen=True)
+    except TooLargeError:
+        return found._replace(undecided=found.undecided or _ENDLESS)
     if all(one.frame is None for one in search.pyramids):
         return Evidence(kept, _DOUBT if search.doubtful else "")
     every = each_once(case, [*by_letters(case, search, kept), *found.modes])

@@ -221,6 +221,7 @@ class HoldingPrograms:
         both = (parts @ self._units[contacts]).reshape(-1, self._units.shape[2])
         edges, moved = both[:, :3], both[:, 3:]
         sizes = np.sqrt((moved * moved).sum(axis=1))  # so that the unit of mass does not matter
+        sizes[sizes == 0.0] = 1.0
         owners = np.repeat(np.array(contacts, dtype=np.intp), leans.shape[1])
         return _Edges(edges / sizes[:, None], moved / sizes[:, None], sizes, owners)
 

@@ -343,7 +343,7 @@ def _case_of(
     r_W = contacts.p_WC_W - state.p_WB_W
     sliding = sliding_of(contacts, velocities, tolerance)
     w = state.w_WB_W
-    if len(r_W) > 0 and np.linalg.norm(w) * _reach(body, r_W, contacts) <= tolerance:
+    if len(r_W) > 0 and np.linalg.norm(w) * reach_of(body, r_W, contacts) <= tolerance:
         w = np.zeros(3)
     relative = sliding
     if contacts.surfaces_move:  # where contacts leave, normal parts count too
@@ -403,7 +403,7 @@ def search_of(case: SpatialCase, facets: int) -> Search:
     )
 
 
-def _reach(body: MassProperties, r_W: FloatArray, contacts: ContactSet) -> float:
+def reach_of(body: MassProperties, r_W: FloatArray, contacts: ContactSet) -> float:
     """Return the length, m, by which an angular velocity counts, for curved sides with the body's size."""
     far = float(np.linalg.norm(r_W, axis=1).max())
     if contacts.body_curvatures is None and contacts.surface_curvatures is None:
