@@ -229,10 +229,10 @@ class Body(HasMassProperties):
         ImplausibleBodyWarning: the mass cannot lie inside the shape, so units or placeholders are probably
         wrong.
         """
-        from contact_dynamics.shapes.files import body_of_link
+        from contact_dynamics.shapes.files import read_link
 
-        found, mass, shape = body_of_link(source, link)
-        return cls.of(found if name is None else name, mass, shape_F=shape)
+        found = read_link(source, link)
+        return cls.of(found.name if name is None else name, found.mass, shape_F=found.shape)
 
     @classmethod
     @checks_types
@@ -304,7 +304,7 @@ class Surface(Record):
         friction: Coefficient of Coulomb friction between this surface and any body, >= 0.
         restitution: Coefficient of restitution between this surface and any body, in [0, 1].
         lasting_factor: Factor of the friction coefficient for sustained contact in tosses (`toss`), >= 0: the
-            friction of a sliding face can differ from that of striking corners.
+            friction coefficient of a sliding face can differ from that of corners in impacts.
         v_WS_W: (3,), m/s, velocity of the surface's material point at ``p_WS_W``, world axes.
         w_WS_W: (3,), rad/s, angular velocity of the surface, world axes. If ``v_WS_W`` is zero, the axis goes
             through ``p_WS_W``.
@@ -384,11 +384,11 @@ class Surface(Record):
     def after(self, seconds: float) -> Surface:
         """Return the surface after a time, s. Its accelerations are constant.
 
-        It may turn about its normal, as a turntable does, if the axis is fixed. Then `p_WS_W` of the result
+        It may rotate about its normal, as a turntable does, if the axis is fixed. Then `p_WS_W` of the result
         is on the axis.
 
         Raises:
-            NotSupportedError: the surface tilts, or it turns about its normal and its axis moves sideways.
+            NotSupportedError: the surface tilts, or it rotates about its normal and its axis moves sideways.
         """
         if not self.moves:
             return self

@@ -70,7 +70,11 @@ WRONG: list[tuple[Any, dict[str, Any], str]] = [
         {"body": ROD, "contacts": TOUCH, "wrench": PUSH},
         "contacts must be a sequence of PlanarContact, got a PlanarContact",
     ),
-    (contact_modes, {"problem": ROD}, "problem must be a PlanarContactProblem or a SpatialContactProblem or "),
+    (
+        contact_modes,
+        {"problem": ROD},
+        "problem must be a PlanarContactProblem or a SpatialContactProblem or ",
+    ),
     (
         impact.spatial_impacts,
         {"bodies": None, "normals_W": 0, "frictions": 0, "restitutions": 0},

@@ -40,7 +40,7 @@ MAX_CONTACTS: Final = 10_000
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class Contact(Record):
-    """One contact of a body in space. Vectors may be given as lists.
+    """One contact of a body in a spatial (3-D) problem. Vectors may be given as lists.
 
     Attributes:
         p_WC_W: (3,), m, contact point, world.
@@ -56,7 +56,7 @@ class Contact(Record):
         surface_velocity_W: (3,), m/s, velocity of the surface's material point at the contact, world axes, or
             None at rest.
         surface_angular_velocity_W: (3,), rad/s, angular velocity of the surface, world axes, or None if it
-            does not turn.
+            does not rotate.
         surface_acceleration_W: (3,), m/s^2, acceleration of the surface's material point at the contact,
             world axes, centripetal terms included, or None at rest.
 
@@ -128,7 +128,9 @@ class Contact(Record):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class ContactSet(Record):
-    """Contacts of one body in space. Contact i is row i of each array, and `contacts[i]` is a `Contact`.
+    """Contacts of one body in a spatial (3-D) problem.
+
+    Contact i is row i of each array, and `contacts[i]` is a `Contact`.
 
     Arrays may be given as lists. The normals, frictions and restitutions may be one value for all contacts.
 
@@ -145,7 +147,7 @@ class ContactSet(Record):
             axes, or None if all surfaces are at rest. Here and below, one vector may be given for all
             contacts.
         surface_angular_velocities_W: (n, 3), rad/s, angular velocities of the surfaces, world axes, or None
-            if none turns.
+            if none rotates.
         surface_accelerations_W: (n, 3), m/s^2, accelerations of the surfaces' material points at the
             contacts, world axes, centripetal terms included, or None if there are none.
 

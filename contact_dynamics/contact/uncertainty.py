@@ -29,7 +29,7 @@ Uncertain = float | tuple[float, ...]
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class ContactUncertainty(Record):
-    """Largest errors of the contacts of a problem, in the plane or in space.
+    """Largest errors of the contacts of a planar or spatial problem.
 
     Each field is one number for all contacts, or one number per contact in their order.
 

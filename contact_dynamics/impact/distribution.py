@@ -52,9 +52,9 @@ class ImpactDistribution(Record):
     """Distribution of the velocities after an impact, for a state with a covariance.
 
     Attributes:
-        mean: m/s and rad/s, mean velocity after the impact: in the plane (3,), v_x, v_y, w; in space (6,),
+        mean: m/s and rad/s, mean velocity after the impact: planar (3,), v_x, v_y, w; spatial (6,),
             linear then angular velocity, world axes.
-        covariance: In the plane (3, 3), covariance of the components of ``mean``. In space (12, 12),
+        covariance: Planar (3, 3), covariance of the components of ``mean``. Spatial (12, 12),
             covariance of position, rotation vector, linear and angular velocity.
         probabilities: (7,), probability of each ImpactOutcome, by its value. The sum of these and of
             ``missed`` is 1.

@@ -60,10 +60,10 @@ class ImpactOutcome(NamedInt):
     """Sliding stops during restitution, and then the contact sticks."""
     REVERSES_IN_COMPRESSION = 4
     """Sliding stops during compression. Friction cannot hold the contact, so it slides in another direction,
-    in the plane backwards."""
+    in planar problems backwards."""
     REVERSES_IN_RESTITUTION = 5
     """Sliding stops during restitution. Friction cannot hold the contact, so it slides in another direction,
-    in the plane backwards."""
+    in planar problems backwards."""
     STICKS_THROUGHOUT = 6
     """The contact is initially at rest, and friction holds it throughout the impact."""
 
@@ -85,7 +85,7 @@ class PathEvent(NamedInt):
     RESTITUTION_ENDS = 3
     """The contact separates, and the impulse is complete."""
     SAMPLE = 4
-    """A point on a curved part of the path, which occurs only in space."""
+    """A point on a curved part of the path, which occurs only in spatial problems."""
 
 
 _STICKING = frozenset(

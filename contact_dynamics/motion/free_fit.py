@@ -84,10 +84,10 @@ class StateNoise(Record):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class FitResult(Record):
-    """Fitted state at the newest stamp, with the quality of the fit.
+    """Fitted state at the latest stamp, with the quality of the fit.
 
     Attributes:
-        state: Fitted state at the newest stamp.
+        state: Fitted state at the latest stamp.
         covariance: (12, 12), covariance of position, rotation vector (world, applied after the attitude),
             linear and angular velocity.
         position_residual: m, root-mean-square distance of the positions.
@@ -106,11 +106,11 @@ class FitResult(Record):
             unknown, as under wrenches.
         turns_known: Whether the published angular velocities exclude motions with a different number of whole
             turns between states. They do if their errors are less than a third of a turn per interval.
-            Without angular velocities, or if all are zero although the body turns, the fit assumes the fewest
-            turns that are consistent with the states, and other numbers of turns are possible.
-        alternatives: Other states at the newest stamp whose motions fit equally well. ``state`` and its
+            Without angular velocities, or if all are zero although the body rotates, the fit assumes the
+            fewest turns that are consistent with the states, and other numbers of turns are possible.
+        alternatives: Other states at the latest stamp whose motions fit equally well. ``state`` and its
             covariance are meaningless if one of them may be true.
-        velocity_jump: Time of a jump of the velocity, as in an impact, s relative to the newest stamp, < 0.
+        velocity_jump: Time of a jump of the velocity, as in an impact, s relative to the latest stamp, < 0.
             None if the positions show no jump.
         falls: Whether the positions accelerate as in flight, at least by half of gravity. It is false if the
             body rests, slides or is carried.

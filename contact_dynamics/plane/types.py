@@ -214,7 +214,7 @@ class PlanarContact(Record):
 
     @property
     def tangent(self) -> Vector2:
-        """Return the unit tangent: the normal turned by -90 degrees."""
+        """Return the unit tangent: the normal rotated by -90 degrees."""
         n_x, n_y = self.normal
         return (n_y, -n_x)
 

@@ -109,15 +109,15 @@ class ContactModeQuestion(Question["ContactModeAnswer"]):
             zero.
         torque_W: (3,), N m, applied torque about the centre of mass, world axes. The default is zero.
         gravity_W: (3,), m/s^2, world axes. None means the gravity of the context's world.
-        problem: Whether to solve the problem in a plane of motion, in space, or to choose automatically.
+        problem: Whether to solve a planar or a spatial problem, or to choose automatically.
         plane: Plane of motion. If it is None, the plane that fits best is used.
         out_of_plane_tolerance: m/s, >= 0. Largest motion out of the plane that counts as planar. None means
             the default.
         velocity_tolerance: m/s, >= 0. Speed below which a contact counts as at rest. None means the default.
         distance_tolerance: m, >= 0. Largest gap at which a body counts as touching. None means the default.
         friction_facets: Number of edges, 3 to 32, of the pyramid that approximates the friction cone of a
-            contact at rest in space, in statics and wrench sets. None means 8 edges, and 4 in wrench sets.
-            Modes, verdicts and margins do not depend on it.
+            contact at rest, in statics and wrench sets of spatial problems. None means 8 edges, and 4 in
+            wrench sets. Modes, verdicts and margins do not depend on it.
         margin_length: m, > 0. Length that makes torque comparable with force in margins and statics. None
             means the radius of gyration.
         include_margins: Whether the answer contains the margin of each mode.
@@ -220,9 +220,9 @@ class ContactModeAnswer(Answer):
         approaching: Indices of the approaching contacts.
         contact_velocities_W: (n, 3), m/s, velocities of the body's contact points. Components within the
             tolerance are zero.
-        refused: Modes that are kinematically possible but not consistent. In space they are listed only with
+        refused: Modes that are kinematically possible but not consistent. For spatial problems only with
             margins.
-        kinematic_modes: All kinematically possible modes. In space these are strings of s and c only.
+        kinematic_modes: All kinematically possible modes. For spatial problems: strings of s and c only.
         wrench_sets: Applied wrenches of each mode, or None if not requested.
         statics: Statics of the body at rest, or None if not requested.
         undecided_modes: Modes for which it is undecided whether they are consistent.
@@ -232,19 +232,19 @@ class ContactModeAnswer(Answer):
             not requested. Modes below `LEAST_PROBABILITY` are omitted.
         settled: Impact that resolves the case, and the modes after it. None if not requested or not needed.
         problem: PLANAR or SPATIAL.
-        plane: Plane of motion, or None in space.
-        out_of_plane: m/s, largest motion out of the plane, or NaN in space.
+        plane: Plane of motion, or None for a spatial problem.
+        out_of_plane: m/s, largest motion out of the plane, or NaN for a spatial problem.
         out_of_plane_reason: Quantity that leaves the plane, if AUTOMATIC chose SPATIAL for that reason. Empty
             otherwise.
         velocity_tolerance: m/s, tolerance that was used.
-        acceleration_tolerance: m/s^2, tolerance that was used, or NaN in space.
+        acceleration_tolerance: m/s^2, tolerance that was used, or NaN for a spatial problem.
         distance_tolerance: m, tolerance that was used.
-        friction_facets: Number of edges of each friction pyramid in statics, or zero in the plane.
-        wrench_facets: Number of edges of each friction pyramid in the wrench sets in space, or zero if not
-            requested.
+        friction_facets: Number of edges of each friction pyramid in statics, or zero for a planar problem.
+        wrench_facets: Number of edges of each friction pyramid in the wrench sets of spatial problems, or
+            zero if not requested.
         warnings: Texts about limited validity: a contact outside the body's shape, contacts treated as flush
             because the verdict would otherwise be undecided, margins that are NaN, margins in a plane that
-            was found from the load, or a flush rim that is represented by a few points.
+            was chosen from the load, or a flush rim that is represented by a few points.
     """
 
     body_name: str

@@ -49,10 +49,10 @@ class Context(Record):
     Attributes:
         world: Bodies to which questions can refer by name, surfaces, and gravity. Surfaces may move if their
             motion is steady (`Surface.is_steady`), since questions are about states at different times.
-        states: Published states, by body, for questions about the newest state. By default there are none.
+        states: Published states, by body, for questions about the latest state. By default there are none.
         defaults: Values for fields that a question leaves out.
         now_ns: Function that returns the present time, ns, on the clock of the states' stamps, so that old
-            states are rejected. If it is None or returns None, there is no clock, and the newest state is
+            states are rejected. If it is None or returns None, there is no clock, and the latest state is
             accepted at any age.
 
     Raises:

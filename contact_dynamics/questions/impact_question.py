@@ -35,16 +35,16 @@ from contact_dynamics.world import Body
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class SequenceStrike(Record):
-    """One of several strikes in time.
+    """One impact of a sequence over time.
 
     Attributes:
-        seconds: Time of the strike, s after the first one.
+        seconds: Time of the impact, s after the first one.
         contact: Index into the answer's contacts.
-        outcome: Motion of the contact during the strike.
+        outcome: Motion of the contact during the impact.
         p_WC_W: (3,), m, position of the contact at that time, world.
         impulse_W: (3,), N s, impulse on the body, world axes.
-        state_before: State of the body just before the strike.
-        state_after: State of the body just after the strike.
+        state_before: State of the body just before the impact.
+        state_after: State of the body just after the impact.
     """
 
     seconds: float
@@ -76,7 +76,7 @@ class ResolvedImpact(Record):
         velocities_before_W: (n, 3), m/s, velocities of the contact points just before the impact, relative to
             what they touch.
         velocities_after_W: (n, 3), m/s, the same velocities just after the impact.
-        path_W: (k, 3), N s, vertices of the impulse path. Strikes in sequence are listed one after the other,
+        path_W: (k, 3), N s, vertices of the impulse path. Impacts in sequence are listed one after the other,
             each from the impulse that its contact had before. It has no rows if the law does not define a
             path.
         path_events: (k,), event at each vertex.
@@ -87,15 +87,15 @@ class ResolvedImpact(Record):
         orders: (m,), contacts that struck, for each admissible order. Empty if not requested.
         order_velocities_W: (m, 6), m/s and rad/s, linear then angular velocity after each order.
         orders_complete: Whether every order was tried. False if not requested.
-        orders_not_converged: Number of orders that are omitted because they reached the limit on strikes.
+        orders_not_converged: Number of orders that are omitted because they reached the limit on impacts.
         covariance: (12, 12), covariance of the state just after the impact, in the order of `UncertainState`,
             or None if not requested.
         outcome_probabilities: (7,), probability of each outcome, by its value, or None if not requested.
         miss_probability: Probability that the contact separates, without an impact, or NaN if not requested.
-        strikes: Strikes in the order of time. Empty if all contacts struck at one instant.
-        end: Reason for which there is no further strike, or None if all contacts struck at one instant.
+        strikes: Impacts in the order of time. Empty if all impacts are simultaneous.
+        end: Reason for which there is no further impact, or None if all impacts are simultaneous.
         staying: Indices of the contacts that stay closed at the end.
-        limit_seconds: Time from which they stay closed, s after the first strike, or None if none does.
+        limit_seconds: Time from which they stay closed, s after the first impact, or None if none does.
     """
 
     restitution_law: RestitutionLaw
@@ -150,21 +150,21 @@ class ImpactAnswer(Answer):
     Attributes:
         body_name: Name of the body, which may be empty.
         p_FB_F: (3,), m, centre of mass in the published frame F.
-        state: State just before the impact, or before the first of several strikes in time.
+        state: State just before the impact, or before the first of several impacts over time.
         fit: Quality of the fit to published states, or None without a fit.
-        other: Second body just before the impact, or None if the body strikes the world. Its state after the
+        other: Second body just before the impact, or None if the body hits the world. Its state after the
             impact is in ``impact``.
         seconds_to_contact: Time from the question's state to the impact, s. It is zero if the body already
             touches.
-        contacts: Contacts of the impact. For strikes in time, these are the contacts that strike or stay
-            closed.
+        contacts: Contacts of the impact. For impacts over time, these are the contacts with an impact or that
+            stay closed.
         impact: Result of the impact.
         problem: PLANAR or SPATIAL.
-        plane: Plane of motion, or None in space.
-        out_of_plane: m/s, largest motion out of the plane, or NaN in space.
+        plane: Plane of motion, or None for a spatial problem.
+        out_of_plane: m/s, largest motion out of the plane, or NaN for a spatial problem.
         velocity_tolerance: m/s, tolerance that was used.
         distance_tolerance: m, tolerance that was used.
-        warnings: Texts about limited validity: an order of strikes that mechanics does not determine, or a
+        warnings: Texts about limited validity: an order of impacts that mechanics does not determine, or a
             contact outside the body's shape.
     """
 
@@ -202,13 +202,13 @@ class ImpactAnswer(Answer):
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class InTime(Record):
-    """Law for several contacts that strike one after the other, with free flight between them.
+    """Law for impacts of several contacts over time, with free flight between them.
 
     Attributes:
-        strike_window: s, > 0. Longest flight between two strikes of one landing.
-        max_strikes: Largest number of strikes, >= 1.
+        strike_window: s, > 0. Longest flight between two impacts of one landing.
+        max_strikes: Largest number of impacts, >= 1.
         hold_step: s, > 0. Time step with which the sequence continues if a contact stays closed, until
-            another corner strikes or the contact separates. If it is None, the sequence ends there.
+            another corner touches or the contact separates. If it is None, the sequence ends there.
 
     Raises:
         InvalidFieldError: a number is out of range or not finite.
@@ -233,7 +233,7 @@ class ImpactQuestion(Question[ImpactAnswer]):
     Attributes:
         body: The body, or the name of a body of the context's world.
         state: State of the body, with or without a covariance, or a reference to a published state.
-        other: Second moving body that the first one strikes, or None if it strikes the world.
+        other: Second moving body that the first one hits, or None if it hits the world.
         other_state: State of the second body.
         contacts: Contacts in the given state. If it is None, the flight to the first contact with the
             context's world is predicted, and the impact there.
@@ -244,11 +244,11 @@ class ImpactQuestion(Question[ImpactAnswer]):
         include_orders: Whether the answer lists the outcomes over the admissible orders of several contacts.
         include_covariance: Whether to propagate the state's covariance through flight and impact. The answer
             contains no standard deviation of the time of impact.
-        problem: Whether to solve the problem in a plane of motion or in space.
+        problem: Whether to solve a planar or a spatial problem.
         plane: Plane of motion of a planar problem. If it is None, the plane that fits best is used.
         out_of_plane_tolerance: m/s, >= 0. Largest motion out of the plane that counts as planar. None means
             the default.
-        velocity_tolerance: m/s, >= 0. Speed of approach up to which a contact does not strike. None means the
+        velocity_tolerance: m/s, >= 0. Approach speed up to which a contact has no impact. None means the
             default.
         distance_tolerance: m, >= 0. Largest gap at which a body counts as touching. None means the default.
 

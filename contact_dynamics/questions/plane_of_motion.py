@@ -45,14 +45,13 @@ if TYPE_CHECKING:
 
 
 class Problem(NamedInt):
-    """Whether a question about contacts is solved in a plane or in space. Messages have the same numbers."""
+    """Whether a contact question is solved as planar or spatial. Messages have the same numbers."""
 
     AUTOMATIC = 0
-    """The question is solved in whichever suits, and the answer says in which. An impact is solved in space,
-    which contains the plane."""
+    """The server chooses, and the answer contains the choice. It solves impacts as spatial."""
     PLANAR = 1
-    """The question is solved in a plane of motion through the centre of mass. What leaves the plane is
-    refused."""
+    """The question is solved in a plane of motion through the centre of mass. A motion or load out of the
+    plane is rejected."""
     SPATIAL = 2
 
 

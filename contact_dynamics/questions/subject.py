@@ -44,8 +44,8 @@ class PublishedState(Record):
 
     Attributes:
         stamp_ns: ns, the time of the state. Between two published states it is interpolated
-            (`motion.between_states`). After the newest it follows the free motion under gravity, at most the
-            default horizon ahead. None means the newest state as it is.
+            (`motion.between_states`). After the latest one it follows the free motion under gravity, at most
+            the default horizon ahead. None means the latest state as it is.
         fit_window: s, >= 0. The motion is fitted to the states of this last time up to ``stamp_ns``, and
             followed to there. Zero means no fit.
 
@@ -72,10 +72,10 @@ StateSource: TypeAlias = "BodyState | UncertainState | PublishedState"
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class FitQuality(Record):
-    """How well the motion fits the published states that a state was found from.
+    """Quality of the fit of a motion to the published states.
 
     Attributes:
-        count: How many states were fitted.
+        count: Number of fitted states.
         position_residual: m, root mean square distance of the positions.
         orientation_residual: rad, root mean square angle between the orientations.
     """

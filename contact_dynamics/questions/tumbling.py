@@ -130,7 +130,7 @@ class TumblingAnswer(Answer):
         method: Whether the motion is exact or integrated.
         event: Event that ended the trajectory, or None if it contains all requested samples.
         poinsot: Poinsot's construction of the rotation, or None if a torque acts.
-        flips: Next flips of the middle axis, or None if a torque acts.
+        flips: Next flips about the intermediate axis, or None if a torque acts.
         curves: Polhode and herpolhode, or None if not requested or if a torque acts.
         warnings: Planes that the body would penetrate at some of the times, since the motion is not stopped
             by contacts.

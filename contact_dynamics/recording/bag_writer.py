@@ -138,7 +138,7 @@ class _Finished:
 
 
 class BagWriter(AbstractContextManager["BagWriter"]):
-    """A log that is being written, as a context manager. Methods raise `OSError` if the disk refuses."""
+    """A log that is being written, as a context manager. Methods raise `OSError` if a write fails."""
 
     @checks_types
     def __init__(

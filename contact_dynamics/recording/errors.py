@@ -11,7 +11,7 @@ class LogExistsError(ContactDynamicsError, FileExistsError):
 
 
 class LogFailedError(ContactDynamicsError):
-    """The log of a message is closed, or its disk refused an earlier write."""
+    """The log of a message is closed, or an earlier write to its disk failed."""
 
 
 class NotALogError(ContactDynamicsError):

@@ -114,7 +114,7 @@ class ConvexShape(Record):
         return not self.rims and self.rounding == 0.0
 
     def moved(self, offset: ArrayLike, q: ArrayLike = (0.0, 0.0, 0.0, 1.0)) -> ConvexShape:
-        """Return the same shape turned by a unit quaternion x, y, z, w, then shifted by ``offset``, (3,), m.
+        """Return the same shape rotated by a unit quaternion x, y, z, w, then shifted by ``offset``, (3,), m.
 
         Raises:
             InvalidFieldError: the offset is not three numbers of at most `LARGEST_NUMBER`, or the quaternion

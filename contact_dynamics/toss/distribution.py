@@ -58,23 +58,23 @@ class Region(Record):
         return _distances(off, self.covariance)
 
     def holds(self, values: ArrayLike) -> NDArray[np.bool_]:
-        """Return whether values, (n, k), are inside the regions of 50 and 90 %, (n, 2)."""
+        """Return whether values, (n, k), are inside the 50 and 90 % regions, (n, 2)."""
         held: NDArray[np.bool_] = self.distances(values)[:, None] <= self.radii
         return held
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class EventRegions(Record):
-    """Regions of the time and place of a strike, and of the velocities after it.
+    """Prediction regions of the time and pose of an impact, and of the velocities after it.
 
     Attributes:
-        probability: Share of all samples that have this strike. The regions are those of these samples.
+        probability: Share of all samples that have this impact. The regions are those of these samples.
         seconds: Time, s after the initial state's stamp (k = 1).
         position: Position of the centre of mass, m, world (k = 3).
         q_WB: (4,), mean attitude.
         turn: Rotation vectors from the mean attitude, rad, world axes (k = 3).
-        velocity: Velocity of the centre of mass after the strike, m/s, world axes (k = 3).
-        spin: Angular velocity after the strike, rad/s, world axes (k = 3).
+        velocity: Velocity of the centre of mass after the impact, m/s, world axes (k = 3).
+        spin: Angular velocity after the impact, rad/s, world axes (k = 3).
     """
 
     probability: float
@@ -90,13 +90,13 @@ class BranchKind(NamedInt):
     """Event of a branch."""
 
     STRIKES = 0
-    """A corner strikes."""
+    """A corner has an impact."""
     STAYS = 1
-    """The contact of the previous strike rebounds too little to be followed, and stays closed."""
+    """The rebounds of the previous contact are negligible, and it stays closed."""
     FLIES = 2
-    """The body touches nothing until the horizon."""
+    """The body has no contact until the horizon."""
     ENDS = 3
-    """There is no further strike: the body rests, or slides and rolls until the horizon."""
+    """There is no further impact: the body rests, or slides and rolls until the horizon."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -104,13 +104,13 @@ class Branch(Record):
     """Branch of the tree of possible next events.
 
     Attributes:
-        parent: Index of the branch that it follows, or -1 for the first strike.
-        strike: Number of the strike, from 1.
+        parent: Index of the branch that it follows, or -1 for the first impact.
+        strike: Number of the impact, from 1.
         kind: Event of the branch.
         probability: Share of all samples in this branch.
-        corner: Index of the corner that strikes, or -1.
-        surface: Name of the surface that is struck, or an empty string.
-        regions: Regions of the samples in this branch. None without a strike, or with fewer than `FEWEST`
+        corner: Index of the corner that has the impact, or -1.
+        surface: Name of the surface at this corner, or an empty string.
+        regions: Regions of the samples in this branch. None without an impact, or with fewer than `FEWEST`
             samples.
     """
 
@@ -173,15 +173,15 @@ class TossDistribution(Record):
 
     Attributes:
         samples: Number of samples.
-        strikes: Regions of the next strikes, at any corner. The list ends before the first strike that no
-            sample has.
+        strikes: Prediction regions of the next impacts, at any corner. The list ends before the first impact
+            that no sample has.
         branches: Tree of the next events. Each branch is listed after the one that it follows, and more
             probable branches are listed first.
         face_normals_B: (f, 3), unit normals of the surface below, body axes, one for each face on which
             samples rest, most probable first.
         face_probabilities: (f,), shares of all samples. The sum is less than 1 if some samples do not come to
             rest.
-        rest: Distribution of the time and place of rest. None if no sample rests, or if samples were not
+        rest: Distribution of the time and position of rest. None if no sample rests, or if samples were not
             followed to rest.
         ghosts: Poses of the first samples.
         to_rest: Whether samples were followed to rest. None if that is not recorded, as in a message.

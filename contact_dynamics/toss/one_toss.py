@@ -62,9 +62,9 @@ def toss(
         body: Mass properties and shape: corners, which may be rounded.
         state: Initial pose and velocities.
         world: Surfaces, which must be planes, and gravity. Surfaces may move if all have the same velocity
-            and acceleration and none turns. The body then comes to rest relative to them.
+            and acceleration and none rotates. The body then comes to rest relative to them.
         restitution_law: Law of restitution. ENERGETIC requires SEQUENTIAL.
-        several_contacts_law: Law for several contacts that strike at one instant.
+        several_contacts_law: Law for several simultaneous impacts.
         horizon: s, > 0. Duration of the longest motion that is followed.
         max_events: Largest number of events, >= 1.
         max_alternatives: Largest number of other branches to follow where mechanics does not determine the
@@ -73,13 +73,13 @@ def toss(
         error: m, m/s, at least `LEAST_PHASE_ERROR`. Largest error of one step of a contact phase. Angles are
             multiplied by the reach of the body (m).
         lasting_factors: (s,), >= 0, friction of sustained contact with each surface, relative to that of
-            strikes. If it is empty, the factors of the surfaces are used.
+            impacts. If it is empty, the factors of the surfaces are used.
         distance_tolerance: m, >= 0. Largest initial penetration of a surface; 1e-6 m is always accepted.
 
     Raises:
         NoContactError: the body has no shape that could touch anything.
         NotSupportedError: the shape has circular rims, a surface is an obstacle, or surfaces move differently
-            or turn.
+            or rotate.
         InvalidFieldError: a number is out of range, ENERGETIC and SIMULTANEOUS are combined, or the body
             penetrates a surface by more than the tolerance.
         TooLargeError: the search for the end of a flight takes too many steps.

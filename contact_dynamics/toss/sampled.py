@@ -90,7 +90,7 @@ def sampled_toss(
     processes: int | Executor = 1,
     distance_tolerance: float = DISTANCE_TOLERANCE,
 ) -> TossDistribution:
-    """Return the possible outcomes of a toss whose state, parameters or impacts are uncertain.
+    """Return the possible outcomes of a toss with an uncertain state, uncertain parameters or impacts.
 
     Args:
         body: Body with the best estimate of its parameters. Its shape has corners, which may be rounded.
@@ -106,14 +106,13 @@ def sampled_toss(
             of them are exact. The uncertainty of the state is ``covariance``.
         count: Number of samples, from 1 to `MAX_SAMPLES`. Standard errors of probabilities are at most 0.5 /
             sqrt(count), which is 0.035 for 200.
-        strikes: Depth of the tree of next strikes, from 1 to `MAX_STRIKES`.
-        to_rest: Whether to follow samples to rest. Otherwise, the result contains no face and no place of
-            rest.
+        strikes: Depth of the tree of next impacts, from 1 to `MAX_STRIKES`.
+        to_rest: Whether to follow samples to rest. Otherwise, the result contains no resting face and
+            position.
         seed: Seed of the samples, >= 0. The same seed yields the same samples.
         restitution_law: Law of restitution. ENERGETIC requires SEQUENTIAL.
-        several_contacts_law: Law for several contacts that strike at one instant, in samples that are
-            followed to rest, from then on: the strikes of the tree are those of one corner each, also of a
-            face that lands flat.
+        several_contacts_law: Law for several simultaneous impacts in samples that are followed to rest.
+            Impacts in the tree are those of one corner each, even if a face lands flat.
         horizon: s, > 0. Duration of the longest motion that is followed.
         processes: Number of processes that share the samples followed to rest, or an executor of
             `concurrent.futures`, which keeps its processes from toss to toss. The answer is the same bit for
@@ -127,7 +126,7 @@ def sampled_toss(
     Raises:
         NoContactError: the body has no shape that could touch anything.
         NotSupportedError: the shape has circular rims, a surface is an obstacle, or surfaces move differently
-            or turn.
+            or rotate.
         TooLargeError: there are more samples than `MAX_SAMPLES`, or the search for the end of a flight takes
             too many steps.
         InvalidFieldError: a number is out of range, the state's covariance is not positive semidefinite or

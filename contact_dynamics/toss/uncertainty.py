@@ -49,15 +49,15 @@ class TossUncertainty(Record):
         covariance: (2 s + 4, 2 s + 4) or (2 s + 7, 2 s + 7), covariance of the parameters, with s surfaces,
             in this order: the friction of each surface, the restitution of each surface, the centre of mass
             x, y, z in body axes (m), and the inertia as a relative change of all its components. The larger
-            matrix also contains the components of gravity in world axes (m/s^2), which apply to strikes and
+            matrix also contains the components of gravity in world axes (m/s^2), which apply to impacts and
             to the flights between them. If the matrix is empty, all parameters are exact.
-        velocity: m/s, >= 0, spread of the impact law in each component of the velocity after a strike. It is
-            the standard deviation of normal residuals with the same median (`law_spread`).
+        velocity: m/s, >= 0, model error of the impact law in each component of the velocity after an impact.
+            It is the standard deviation of normal residuals with the same median (`law_spread`).
         spin: rad/s, >= 0, the same for the angular velocity.
         height: m, >= 0, standard deviation of the distance of each corner from the centre of mass. It makes
-            the time of a strike uncertain.
+            the time of an impact uncertain.
         lasting_factors: (s,), >= 0, friction of sustained contact with each surface, relative to that of
-            strikes. If it is empty, the factors of the surfaces are used.
+            impacts. If it is empty, the factors of the surfaces are used.
         lasting_factor_stds: (s,), >= 0, standard deviations of these factors, which include the variation
             from toss to toss and the uncertainty of the estimates. If it is empty, the factors are exact.
 

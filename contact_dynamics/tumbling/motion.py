@@ -179,7 +179,7 @@ class FreeMotion(Record):
         """Return the body's state at one time, s after the state's stamp.
 
         Raises:
-            InvalidFieldError: the time is not finite, or the body has turned by more than
+            InvalidFieldError: the time is not finite, or the body has rotated by more than
                 `constants.MAX_TURNED` by then.
         """
         check_within("seconds", seconds, -self.farthest, self.farthest)
@@ -189,8 +189,8 @@ class FreeMotion(Record):
         """Return the motion at times (n,), s after the state's stamp, of any sign and in any order.
 
         Raises:
-            InvalidFieldError: the times are not a flat list of finite numbers, or the body has turned by more
-                than `constants.MAX_TURNED` by the farthest of them.
+            InvalidFieldError: the times are not a flat list of finite numbers, or the body has rotated by
+                more than `constants.MAX_TURNED` by the farthest of them.
         """
         times = check_magnitude("seconds", check_array("seconds", seconds, (None,)), self.farthest)
         if len(times) <= FEW:

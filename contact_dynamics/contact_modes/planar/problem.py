@@ -53,7 +53,7 @@ AT_REST: Final = PlanarVelocity(v=(0.0, 0.0), w=0.0)
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class PlanarContactProblem(Record):
-    """Contact problem of one planar body. `SpatialContactProblem` is its counterpart in space.
+    """Contact problem of one planar body. The 3-D counterpart is `SpatialContactProblem`.
 
     Attributes:
         body: Mass and angular inertia.

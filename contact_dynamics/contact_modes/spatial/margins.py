@@ -89,7 +89,7 @@ _APART: Final = 0.9
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class SpatialModeMargin(Record):
-    """Smallest change of the applied wrench that ends a mode in space, and the modes that follow.
+    """Smallest change of the applied wrench that ends a spatial mode, and the modes that follow.
 
     Attributes:
         mode: One letter for each contact.

@@ -65,7 +65,7 @@ FRICTION_FACETS: Final = 8
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class SpatialContactProblem(Record):
-    """Contact problem of one body in space. `PlanarContactProblem` is its counterpart in the plane.
+    """Spatial (3-D) contact problem of one body. The planar counterpart is `PlanarContactProblem`.
 
     ``SpatialContactProblem.of(body, state, world, force_W=push)`` detects the contacts and adds the weight:
 
@@ -73,7 +73,7 @@ class SpatialContactProblem(Record):
         problem = SpatialContactProblem.of(crate, state, world, force_W=[90, 0, 0], at_W=[-0.2, 0, 0.5])
         print(contact_modes(problem))
 
-    Modes, margins and the reasons of refused modes are those of round friction cones, regardless of the
+    Modes, margins and the reasons for rejected modes are those of round friction cones, regardless of the
     number of facets. In statics and wrench sets, pyramids approximate the cones of contacts at rest. With the
     default 8 facets, the largest disturbance that a body withstands is underestimated by 8 % of friction, 1 -
     cos(pi / facets), and with 16 facets by 2 %. The number of wrench sets grows with the square or cube of

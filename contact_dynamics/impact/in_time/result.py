@@ -17,31 +17,31 @@ from contact_dynamics.world import SurfaceFrame
 
 
 class SequenceEnd(NamedInt):
-    """Reason for the end of a sequence of strikes."""
+    """Reason for the end of a sequence of impacts."""
 
     NOTHING_STRIKES = 0
-    """There is no strike within the window after the last one. The body flies, and may land later."""
+    """There is no impact within the window after the last one. The body flies, and may land later."""
     STAYS = 1
     """A contact neither approaches nor separates, and free motion would penetrate, so the flight is over."""
     CHATTERS = 2
-    """The rebounds of a contact shrink by a constant ratio until they have no height. Infinitely many strikes
-    end at the limit time, and from then on the contact stays closed."""
+    """The rebounds of a contact decrease by a constant ratio. Infinitely many impacts accumulate
+    at the limit time, and from then on the contact stays closed."""
     MAX_STRIKES = 3
-    """The limit on the number of strikes was reached."""
+    """The limit on the number of impacts was reached."""
     WINDOW_ENDED = 4
-    """There is no strike within the window after the initial state. The body may land later."""
+    """There is no impact within the window after the initial state. The body may land later."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class TimedStrike(Record):
-    """One strike of a sequence.
+    """One impact of a sequence.
 
     Attributes:
-        seconds: Time of the strike, s after the stamp of the initial state.
+        seconds: Time of the impact, s after the stamp of the initial state.
         contact: Index into the contacts of the sequence.
         p_WC_W: (3,), m, position of the contact at that time, world.
-        state_before: State just before the strike, stamped with its time.
-        impact: Impact at this contact. Its ``state`` is the state just after the strike.
+        state_before: State just before the impact, stamped with its time.
+        impact: Impact at this contact. Its ``state`` is the state just after the impact.
     """
 
     seconds: float
@@ -53,22 +53,22 @@ class TimedStrike(Record):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class ImpactSequence(Record):
-    """Strikes of a landing at separate times, with free flight between them.
+    """Impacts of a landing at separate times, with free flight between them.
 
     Attributes:
-        restitution_law: Law of restitution of all strikes.
+        restitution_law: Law of restitution of all impacts.
         window: s, longest flight that was followed.
-        contacts: The given contacts. If contacts were detected from the shape, those that strike or stay
-            closed, each at the position of the first such event.
-        strikes: Strikes in the order of time; those of one instant are in the order of resolution. Contacts
-            of equal approach speed strike as one, each with its share of the impulse and the state after all
-            of them.
-        end: Reason for which there is no further strike.
-        state: State just after the last strike, or the initial state if there is no strike.
+        contacts: The given contacts. If contacts were detected from the shape, those with an impact or that
+            stay closed, each at the position of the first such event.
+        strikes: Impacts in the order of time; simultaneous ones are in the order of resolution. Contacts of
+            equal approach speed are resolved together, each with its share of the impulse and the state
+            after all of them.
+        end: Reason for which there is no further impact.
+        state: State just after the last impact, or the initial state if there is none.
         staying: Indices of the contacts that stay closed, if ``end`` is STAYS or CHATTERS.
         limit_seconds: Time from which these contacts stay closed, s after the initial state's stamp, or None.
-        order_is_open: Whether several contacts approached at one instant, so that rigid-body mechanics also
-            admits other orders of their strikes.
+        order_is_open: Whether several contacts approached at the same instant, so that rigid-body mechanics
+            also admits other orders of their impacts.
     """
 
     restitution_law: RestitutionLaw
@@ -83,7 +83,7 @@ class ImpactSequence(Record):
 
     @property
     def seconds(self) -> float:
-        """Return the time of the last strike, s after the initial state's stamp, or 0 without a strike."""
+        """Return the time of the last impact, s after the initial state's stamp, or 0 without an impact."""
         return self.strikes[-1].seconds if self.strikes else 0.0
 
     @property
@@ -108,15 +108,15 @@ class ImpactSequence(Record):
 
     @property
     def energy_change(self) -> float:
-        """Return the change of energy in all strikes, J. Flights between them conserve energy."""
+        """Return the change of energy in all impacts, J. Flights between them conserve energy."""
         return sum(strike.impact.energy_change for strike in self.strikes)
 
     @property
     def creates_energy(self) -> bool:
-        """Return whether a strike increased the energy by more than rounding error.
+        """Return whether an impact increased the energy by more than rounding error.
 
-        Only Newton's law can do this. Contacts that strike as one count together, since one can return energy
-        that another took.
+        Only Newton's law can do this. Contacts that are resolved together are added up, because one can
+        return energy that another absorbed.
         """
         return any(
             strikes[0].impact.creates_energy

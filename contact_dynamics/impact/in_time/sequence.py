@@ -91,27 +91,27 @@ def impact_sequence(
     velocity_tolerance: float = VELOCITY_TOLERANCE,
     hold_step: float | None = None,
 ) -> ImpactSequence:
-    """Return the strikes of a body's corners on the world's surfaces, from a state in contact or in flight.
+    """Return the impacts of a body's corners on the world's surfaces, from a state in contact or in flight.
 
     Args:
         body: Mass properties and corners.
-        state: Initial pose and velocities. The first strike must also be within the window.
+        state: Initial pose and velocities. The first impact must also be within the window.
         world: Surfaces and gravity. Surfaces may move if all have the same velocity and acceleration and none
-            turns.
+            rotates.
         restitution_law: Law of restitution, which defines the coefficient of restitution.
-        window: s, > 0. Longest flight between two strikes of one landing.
-        max_strikes: Largest number of strikes, >= 1.
+        window: s, > 0. Longest flight between two impacts of one landing.
+        max_strikes: Largest number of impacts, >= 1.
         distance_tolerance: m, >= 0. A corner within this distance of a surface touches it.
-        velocity_tolerance: m/s, > 0. A contact that approaches more slowly does not strike.
+        velocity_tolerance: m/s, > 0. A contact that approaches more slowly has no impact.
         hold_step: s, > 0. Time step with which the sequence continues if a contact stays closed. If it is
             None, the sequence ends there.
 
     Raises:
-        TooLargeError: the sequence takes too many strikes, or too many steps over contacts that stay closed.
+        TooLargeError: the sequence requires too many impacts, or too many time steps with closed contacts.
         InvalidFieldError: a number is out of range, or the body penetrates a surface by more than the
             tolerance.
         NoContactError: the body has no shape that could touch anything.
-        NotSupportedError: surfaces move differently or turn.
+        NotSupportedError: surfaces move differently or rotate.
     """
     tolerance = check_positive("velocity_tolerance", velocity_tolerance)
     held = None if hold_step is None else check_positive("hold_step", hold_step)
@@ -152,9 +152,9 @@ def impact_sequence_of(
     velocity_tolerance: float = VELOCITY_TOLERANCE,
     hold_step: float | None = None,
 ) -> ImpactSequence:
-    """Return the strikes at given contacts. Each contact is a point of the body on the plane that it touches.
+    """Return the impacts at given contacts. Each contact is a point of the body on the plane that it touches.
 
-    Each point can strike only its own plane: immediately if it approaches, and whenever it returns to the
+    Each point can hit only its own plane: immediately if it approaches, and whenever it returns to the
     plane.
 
     Args:
@@ -163,15 +163,15 @@ def impact_sequence_of(
         contacts: All touching contacts, whether or not they approach.
         gravity_W: (3,), m/s^2, world axes.
         restitution_law: Law of restitution, which defines the coefficient of restitution.
-        window: s, > 0. Longest flight between two strikes of one landing.
-        max_strikes: Largest number of strikes, >= 1.
+        window: s, > 0. Longest flight between two impacts of one landing.
+        max_strikes: Largest number of impacts, >= 1.
         distance_tolerance: m, >= 0. A point within this distance of its plane touches it.
-        velocity_tolerance: m/s, > 0. A contact that approaches more slowly does not strike.
+        velocity_tolerance: m/s, > 0. A contact that approaches more slowly has no impact.
         hold_step: s, > 0. Time step with which the sequence continues if a contact stays closed. If it is
             None, the sequence ends there.
 
     Raises:
-        TooLargeError: the sequence takes too many strikes, or too many steps over contacts that stay closed.
+        TooLargeError: the sequence requires too many impacts, or too many time steps with closed contacts.
         InvalidFieldError: a number is out of range, or a contact has a curvature and is therefore not a fixed
             point of the body.
     """

@@ -96,14 +96,14 @@ def outcomes_over_interleavings(
         body: A `Body`, or its `MassProperties`.
         state: Pose and velocities just before the impact.
         contacts: All touching contacts; at least one.
-        velocity_tolerance: m/s, > 0. A contact that approaches more slowly does not strike.
+        velocity_tolerance: m/s, > 0. A contact that approaches more slowly has no impact.
         samples: Number of random interleavings, from 1 to `MAX_INTERLEAVINGS`.
         seed: Seed of the samples. The same seed yields the same result.
 
     Raises:
         SeparatingContactError: all contacts separate.
         InvalidFieldError: there are no contacts, the tolerance is not > 0, or a count is out of range.
-        TooLargeError: the orders take more strikes in total than `outcomes_over_orders` allows.
+        TooLargeError: the orders require more impacts in total than `outcomes_over_orders` allows.
     """
     check_at_rest("contacts", contacts, "outcomes_over_interleavings")
     body = body.mass_properties

@@ -89,7 +89,7 @@ def several_impact(
         contacts: All touching contacts, whether or not they approach; at least one.
         several_contacts_law: Law for several contacts.
         restitution_law: Law of restitution. ENERGETIC requires SEQUENTIAL.
-        velocity_tolerance: m/s, > 0. A contact that approaches more slowly does not strike.
+        velocity_tolerance: m/s, > 0. A contact that approaches more slowly has no impact.
 
     Raises:
         SeparatingContactError: all contacts separate.
@@ -160,17 +160,17 @@ def outcomes_over_orders(
     """Return the outcomes of the sequential law over its admissible orders.
 
     Each order follows from a priority of the contacts: at each step, the first approaching contact in the
-    priority strikes. Different priorities can lead to the same order, which is listed once. The outcome of
-    `several_impact`, in which the fastest approach strikes first, is always included; it is the last one if
-    no priority leads to it. If contacts of equal approach speed strike as one in it, it has an empty order
-    and is the first one.
+    priority is resolved. Different priorities can lead to the same order, which is listed once. The outcome
+    of `several_impact`, in which the fastest approach is resolved first, is always included; it is the last
+    one if no priority leads to it. If it resolves contacts of equal approach speed together, it has an empty
+    order and is the first one.
 
     Args:
         body: A `Body`, or its `MassProperties`.
         state: Pose and velocities just before the impact.
         contacts: All touching contacts; at least one.
         restitution_law: Law of restitution, which defines the coefficient of restitution.
-        velocity_tolerance: m/s, > 0. A contact that approaches more slowly does not strike.
+        velocity_tolerance: m/s, > 0. A contact that approaches more slowly has no impact.
         max_orders: Largest number of priorities to try, >= 1. ``complete`` of the result is true if these
             were all.
 
@@ -178,7 +178,7 @@ def outcomes_over_orders(
         SeparatingContactError: all contacts separate.
         InvalidFieldError: there are no contacts, the tolerance is not > 0, or ``max_orders`` is not a whole
             number >= 1.
-        TooLargeError: the orders take more strikes in total than `MAX_STRIKES_OVER_ORDERS`.
+        TooLargeError: the orders require more impacts in total than `MAX_STRIKES_OVER_ORDERS`.
     """
     touching = _touching(body, state, contacts, restitution_law, velocity_tolerance)
     max_orders = check_whole("max_orders", max_orders, 1)
@@ -258,7 +258,7 @@ def outcomes_at_once(
         state: Pose and velocities just before the impact.
         contacts: All touching contacts; at least one.
         restitution_law: Poisson's or Newton's law.
-        velocity_tolerance: m/s, > 0. A contact that approaches more slowly does not strike.
+        velocity_tolerance: m/s, > 0. A contact that approaches more slowly has no impact.
         max_orders: Largest number of orders to try, >= 1. ``complete`` of the result is true if these were
             all.
 

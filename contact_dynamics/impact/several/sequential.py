@@ -67,7 +67,7 @@ def bodies_impact(
             into ``bodies``; the second is None for the world.
         several_contacts_law: Law for several contacts.
         restitution_law: Law of restitution. ENERGETIC requires SEQUENTIAL.
-        velocity_tolerance: m/s, > 0. A contact that approaches more slowly does not strike.
+        velocity_tolerance: m/s, > 0. A contact that approaches more slowly has no impact.
 
     Raises:
         SeparatingContactError: all contacts separate.

@@ -178,13 +178,13 @@ class ResponseImpacts(ManyEnergies):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class SpatialImpacts(ResponseImpacts):
-    """Outcomes of N impacts in space. Row i belongs to case i; `SpatialImpact` explains the fields.
+    """Outcomes of N spatial impacts. Row i belongs to case i; `SpatialImpact` explains the fields.
 
     Attributes:
         v_WB_W: (N, 3), m/s, velocities of the centres of mass after the impacts, world axes.
         w_WB_W: (N, 3), rad/s, angular velocities after the impacts, world axes.
         other_v_WB_W: (N, 3), m/s, velocities of the second bodies' centres of mass, or None if the bodies
-            strike the fixed world.
+            hit the fixed world.
         other_w_WB_W: (N, 3), rad/s, angular velocities of the second bodies, or None if the world is struck.
     """
 
@@ -213,7 +213,7 @@ def spatial_impacts(
         normals_W: (N, 3) or (3,), unit, world axes.
         frictions: (N,) or one number, >= 0.
         restitutions: (N,) or one number, in [0, 1].
-        others: Bodies that they strike, or None if they strike the fixed world.
+        others: Bodies that they strike, or None if they hit the fixed world.
         surface_velocities_W: (N, 3) or (3,), m/s, velocities of the world's surfaces at the contacts, world
             axes, or None if all are at rest.
         restitution_laws: (N,) or one value of RestitutionLaw.

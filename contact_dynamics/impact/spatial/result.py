@@ -14,12 +14,12 @@ from contact_dynamics.validation import FloatArray
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class ResponseImpact(Record):
-    """Outcome of one impact in space of a mechanism. All arrays are in world axes.
+    """Outcome of one spatial impact of a mechanism. All arrays are in world axes.
 
     Attributes:
         restitution_law: Law of restitution.
         outcome: Motion of the contact during the impact.
-        jams: Whether sliding initially drove the contact into compression.
+        jams: Whether sliding initially drove the contact into compression (dynamic jamming).
         impulse_W: (3,), N s, total impulse.
         compression_W: (3,), N s, impulse up to the end of compression.
         path_W: (k, 3), N s, points of the impulse path. Points with the event SAMPLE are on curved parts.
@@ -66,7 +66,7 @@ class ResponseImpact(Record):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class SpatialImpact(ResponseImpact):
-    """Outcome of one impact in space of a body, on which the impulses act.
+    """Outcome of one spatial impact of a body, on which the impulses act.
 
     `ResponseImpact` documents the other fields.
 
