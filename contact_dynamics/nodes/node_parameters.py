@@ -3,12 +3,14 @@
 
 from __future__ import annotations
 
+import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor
 from rclpy.parameter import Parameter
 
+from contact_dynamics.nodes.links import with_links_read
 from contact_dynamics.nodes.parameter_file import (
     ANY_NODE,
     Section,
@@ -58,7 +60,14 @@ class NodeParameters(ParameterSource):
         values = {name: plain(each.value) for name, each in self._overrides.items()}
         values |= values_given(ros_arguments, node.get_fully_qualified_name())
         of_ros = node._parameters  # noqa: SLF001  as above
-        super().__init__(values, also_known=[*also_known, *of_ros], resolve=self._resolved_by_ros)
+        with warnings.catch_warnings(record=True) as warned:
+            warnings.simplefilter("always", UserWarning)
+            found = with_links_read(values)
+        for each in warned:
+            node.get_logger().warning(str(each.message))
+        for name in values.keys() - found.keys():
+            self._overrides.pop(name, None)
+        super().__init__(found, also_known=[*also_known, *of_ros], resolve=self._resolved_by_ros)
 
     def value(
         self, name: str, default: Any, description: str, bounds: tuple[float, float] | None = None

@@ -15,6 +15,7 @@ import re
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
+from contact_dynamics.nodes.links import with_links_read
 from contact_dynamics.nodes.parameter_reader import NODE_NAME, ConfigurationError, ParameterSource
 from contact_dynamics.nodes.visualizer_parameters import VISUALIZER_PARAMETERS
 
@@ -231,7 +232,7 @@ class ParameterFile(ParameterSource):
         for text in topics:
             values.update(_topics(text))
         # One file may configure both nodes.
-        super().__init__(values, origin=str(path), also_known=VISUALIZER_PARAMETERS)
+        super().__init__(with_links_read(values), origin=str(path), also_known=VISUALIZER_PARAMETERS)
 
 
 def _flat(given: dict[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:

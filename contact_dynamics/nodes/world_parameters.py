@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Final, TypeAlias
 
 from contact_dynamics.errors import InvalidFieldError
+from contact_dynamics.nodes.links import LINK, URDF
 from contact_dynamics.nodes.parameter_reader import ConfigurationError
 from contact_dynamics.questions.extent import (
     MAX_IN_CONTACT,
@@ -82,6 +83,7 @@ def read_body(source: ParameterSource, name: str) -> tuple[Body, BodySources]:
         ConfigurationError: a parameter is missing or not allowed.
     """
     key = f"body.{name}"
+    _read_link(source, key)
     mass = source.value(f"{key}.mass", float, "Mass, kg.")
     inertia = source.value(
         f"{key}.inertia",
@@ -106,6 +108,19 @@ def read_body(source: ParameterSource, name: str) -> tuple[Body, BodySources]:
         state_deviations=_read_deviations(source, key),
         sources=_read_sources(source, key),
     )
+
+
+def _read_link(source: ParameterSource, key: str) -> None:
+    """Read the parameters in whose place the numbers of a link are by now (`links`)."""
+    of_body = "Mass, inertia, centre of mass and shape are then those of the link, and cannot be given too."
+    texts = {
+        URDF: f"URDF or SDF file with the body as a link, or its text (`robot_description`). {of_body}",
+        LINK: "Link of this file. It is optional if only one link has a mass.",
+    }
+    for leaf, text in texts.items():
+        if given := source.value(f"{key}.{leaf}", "", text):
+            message = f"{key}.{leaf} must be given when the server starts, got {given!r}"
+            raise ConfigurationError(message)
 
 
 def _read_deviations(source: ParameterSource, key: str) -> tuple[float, ...]:

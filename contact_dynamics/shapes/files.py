@@ -12,7 +12,7 @@ from __future__ import annotations
 import os
 import warnings
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 from xml.etree import ElementTree as ET
 
 import numpy as np
@@ -31,23 +31,62 @@ from contact_dynamics.shapes.convex import MAX_VERTICES, NO_SHAPE, ConvexShape
 from contact_dynamics.tolerances import DENSEST, THINNEST
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
     from xml.etree.ElementTree import Element
 
     from contact_dynamics.validation import FloatArray
 
+_MAKERS: Final[dict[str, Callable[..., ConvexShape]]] = {
+    "box": convex.box,
+    "sphere": convex.sphere,
+    "cylinder": convex.cylinder,
+    "capsule": convex.capsule,
+}
 _MOMENTS: Final = (("ixx", "ixy", "ixz"), ("ixy", "iyy", "iyz"), ("ixz", "iyz", "izz"))
 
 
-def body_of_link(source: str | Path, link: str | None) -> tuple[str, MassDistribution, ConvexShape]:
-    """Return the name, the mass and the shape of a link, in the link's frame; see `Body.from_urdf`."""
+class Primitive(NamedTuple):
+    """A collision shape of a link.
+
+    Attributes:
+        kind: "box", "sphere", "cylinder", "capsule" or "vertices".
+        numbers: What makes it: side lengths, a radius, a radius and a length, or corners (n, 3), m.
+        position: (3,), m, where it is in the link's frame.
+        orientation: Its unit quaternion there, x, y, z, w.
+    """
+
+    kind: str
+    numbers: FloatArray
+    position: FloatArray
+    orientation: FloatArray
+
+    def shape(self) -> ConvexShape:
+        """Return it as a shape in the link's frame."""
+        shape = (
+            convex.polyhedron(self.numbers) if self.kind == "vertices" else _MAKERS[self.kind](*self.numbers)
+        )
+        return shape.moved(self.position, self.orientation)
+
+
+class Link(NamedTuple):
+    """A link: its name, its mass and shape in its frame, and the collision shapes that make the latter."""
+
+    name: str
+    mass: MassDistribution
+    shape: ConvexShape
+    primitives: list[Primitive]
+
+
+def read_link(source: str | Path, link: str | None) -> Link:
+    """Return a link of a file or of its text; see `Body.from_urdf`."""
     root, folder = _read(source)
     element = _link(root, link)
     name = element.get("name", "")
     mass = _mass(element, f"link {name!r}")
-    shape = _shape(element, name, folder)
+    primitives = [_primitive(collision, folder) for collision in element.findall("collision")]
+    shape = _shape([each.shape() for each in primitives], name)
     _warn_if_implausible(name, mass, shape)
-    return name, mass, shape
+    return Link(name, mass, shape, primitives)
 
 
 def read_mesh(file: str | Path, scale: Sequence[float] = (1.0, 1.0, 1.0)) -> tuple[FloatArray, FloatArray]:
@@ -112,9 +151,8 @@ def _mass(link: Element, what: str) -> MassDistribution:
     return of_mass.placed(p_GF_G=p, q_GF=q)
 
 
-def _shape(link: Element, name: str, folder: Path) -> ConvexShape:
-    """Return the hull of a link's collision shapes, in its frame."""
-    shapes = [_one_shape(collision, folder) for collision in link.findall("collision")]
+def _shape(shapes: list[ConvexShape], name: str) -> ConvexShape:
+    """Return the hull of the collision shapes of a link, in its frame."""
     if len(shapes) <= 1:
         return shapes[0] if shapes else NO_SHAPE
     if len({shape.rounding for shape in shapes}) > 1:
@@ -130,26 +168,24 @@ def _shape(link: Element, name: str, folder: Path) -> ConvexShape:
     )
 
 
-def _one_shape(collision: Element, folder: Path) -> ConvexShape:
+def _primitive(collision: Element, folder: Path) -> Primitive:
     geometry = collision.find("geometry")
     solid = next(iter(geometry), None) if geometry is not None else None
     if solid is None:
         raise InvalidFieldError("collision", "no <geometry>", "a box, cylinder, sphere, capsule or mesh")
-    if solid.tag == "box":
-        shape = convex.box(_numbers(solid, "size", 3))
-    elif solid.tag == "sphere":
-        shape = convex.sphere(_numbers(solid, "radius", 1)[0])
-    elif solid.tag in {"cylinder", "capsule"}:
-        make = convex.cylinder if solid.tag == "cylinder" else convex.capsule
-        shape = make(_numbers(solid, "radius", 1)[0], _numbers(solid, "length", 1)[0])
-    elif solid.tag == "mesh":
+    kind = solid.tag
+    if kind == "box":
+        numbers = np.array(_numbers(solid, "size", 3))
+    elif kind in _MAKERS:
+        lengths = ("radius",) if kind == "sphere" else ("radius", "length")
+        numbers = np.array([_numbers(solid, length, 1)[0] for length in lengths])
+    elif kind == "mesh":
         file = _file(_text(solid, "filename") or _text(solid, "uri") or "", folder)
         scale = _parsed(_text(solid, "scale") or "1 1 1", "scale", 3)
-        shape = convex.polyhedron(_corners(f"mesh {file.name}", read_mesh(file, scale)[0]))
+        kind, numbers = "vertices", _corners(f"mesh {file.name}", read_mesh(file, scale)[0])
     else:
-        raise InvalidFieldError("geometry", f"<{solid.tag}>", "a box, cylinder, sphere, capsule or mesh")
-    p, q = _pose(collision)
-    return shape.moved(p, q)
+        raise InvalidFieldError("geometry", f"<{kind}>", "a box, cylinder, sphere, capsule or mesh")
+    return Primitive(kind, numbers, *_pose(collision))
 
 
 def _corners(what: str, vertices: FloatArray) -> FloatArray:

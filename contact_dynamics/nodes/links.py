@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Bodies that are links of a URDF or an SDF file: their parameters become the numbers of the link.
+
+So everything behind a configuration has numbers, as if they had been written there: `ros2 param`, changes
+while the server runs, and the log, which stands for itself when the file is gone.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Final
+
+from contact_dynamics.errors import ContactDynamicsError
+from contact_dynamics.nodes.parameter_reader import ConfigurationError
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from contact_dynamics.shapes.files import Link
+
+URDF: Final = "urdf"
+LINK: Final = "link"
+
+
+def with_links_read(values: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the values of parameters, with the numbers of each link in place of its file.
+
+    Raises:
+        ConfigurationError: a link cannot be read, or one of its numbers is given too.
+    """
+    found = dict(values)
+    for name in [each for each in values if each.startswith("body.") and each.endswith(f".{URDF}")]:
+        if not values[name]:
+            continue
+        key = name.removesuffix(f".{URDF}")
+        source, link = found.pop(name), found.pop(f"{key}.{LINK}", "")
+        numbers = {f"{key}.{leaf}": value for leaf, value in _numbers(name, source, link).items()}
+        for twice in numbers:
+            if twice in values:
+                message = f"{twice} must be left out, since {name} gives it, got {values[twice]!r}"
+                raise ConfigurationError(message)
+        found |= numbers
+    return found
+
+
+def _numbers(name: str, source: Any, link: Any) -> dict[str, Any]:
+    """Return the parameters of a body that are those of a link."""
+    from contact_dynamics.shapes.files import read_link  # loads SciPy
+
+    if not isinstance(source, str) or not isinstance(link, str):
+        message = f"{name} and link must be texts, got {source!r} and {link!r}"
+        raise ConfigurationError(message)
+    try:
+        found = read_link(source, link or None)
+    except ContactDynamicsError as error:
+        message = f"{name}: {error}"
+        raise ConfigurationError(message) from None
+    I_B = found.mass.I_B
+    return {
+        "mass": float(found.mass.mass),
+        "inertia": [float(I_B[i]) for i in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))],
+        "center_of_mass": found.mass.p_FB_F.tolist(),
+        **_shape(name, found),
+    }
+
+
+def _shape(name: str, link: Link) -> dict[str, Any]:
+    if len(link.primitives) == 1:
+        (one,) = link.primitives
+        return {
+            one.kind: one.numbers.ravel().tolist(),
+            "shape_position": one.position.tolist(),
+            "shape_orientation": one.orientation.tolist(),
+        }
+    if link.shape.is_empty:
+        return {}
+    if not link.shape.is_polyhedron:
+        message = f"{name}: the hull of several collision shapes must be one of boxes and meshes"
+        raise ConfigurationError(message)
+    return {"vertices": link.shape.vertices.ravel().tolist()}
