@@ -130,7 +130,7 @@ class Log:
         status, now, present = self._recorder.status, time.monotonic(), list[Present]()
         for kind, problem in status.problems.items():
             is_recent = now - problem.last < RECENT_S
-            if status.is_interrupted if kind is LogProblem.INTERRUPTED else is_recent:
+            if is_recent or (kind is LogProblem.INTERRUPTED and status.is_interrupted):
                 present.append(_SITUATIONS[kind].present(problem=problem.text, lost=status.lost))
         if now < self._hung + _TRUSTS_AFTER_S:
             present.append(Situation.LOG_NOT_AWAITED.present())
