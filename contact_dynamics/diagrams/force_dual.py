@@ -18,7 +18,7 @@ from contact_dynamics.diagrams.marks import Diagram, Labels, Lines, Points, Regi
 from contact_dynamics.diagrams.mode_map import NO_MODE, borders_of, chart_frame, mode_regions
 from contact_dynamics.diagrams.palette import Paint
 from contact_dynamics.diagrams.wrench_chart import ANTICLOCKWISE, CLOCKWISE, HIDDEN
-from contact_dynamics.plane.force_dual import friction_cone
+from contact_dynamics.plane.types import friction_cone
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

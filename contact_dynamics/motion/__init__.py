@@ -7,13 +7,13 @@
 - Covariances: `covariance_along`, `propagate_covariance`. Derivatives: `state_derivatives`,
   `forced_state_derivatives`.
 
-The modules of this package are internal. `forces` contains the loads on a body besides gravity. `integrated`
-computes its motion from the differential `equations`. `free_derivative` and `integrated_derivative` compute
-the derivatives of a motion with respect to its initial state, with which `covariance` propagates the
-covariance of that state. `free_fit` and `integrated_fit` find the motion that fits published states best, and
-`whole_turns` determines whether the states distinguish it from motions with more turns. `flight_check`
-detects impacts among the states. `between_states` interpolates, and `velocity_estimate` estimates velocities
-from poses.
+The modules of this package are internal. `forces` contains the loads on a body besides gravity, and its
+differential equations, from which `integrated` computes its motion. `free_derivative` and
+`integrated_derivative` compute the derivatives of a motion with respect to its initial state, with which
+`covariance` propagates the covariance of that state. `free_fit` and `integrated_fit` find the motion that
+fits published states best, and `whole_turns` determines whether the states distinguish it from motions with
+more turns. `flight_check` detects impacts among the states. `between_states` interpolates, and
+`velocity_estimate` estimates velocities from poses.
 """
 
 from contact_dynamics.motion.covariance import (

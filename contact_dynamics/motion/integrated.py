@@ -31,8 +31,15 @@ import numpy as np
 
 from contact_dynamics.constants import STANDARD_GRAVITY_W
 from contact_dynamics.errors import InvalidFieldError
-from contact_dynamics.motion.equations import VARIABLES, MotionLaw
-from contact_dynamics.motion.forces import NO_DRAG, NO_WRENCH, ConstantWrench, Drag, WrenchAxes
+from contact_dynamics.motion.forces import (
+    NO_DRAG,
+    NO_WRENCH,
+    VARIABLES,
+    ConstantWrench,
+    Drag,
+    MotionLaw,
+    WrenchAxes,
+)
 from contact_dynamics.records import NamedInt, Record
 from contact_dynamics.rigid_body.body import BodyState, HasMassProperties, MassProperties
 from contact_dynamics.rotations.many import make_continuous
@@ -47,7 +54,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
-    from contact_dynamics.motion.equations import MotionLaw, WrenchFunction
+    from contact_dynamics.motion.forces import MotionLaw, WrenchFunction
     from contact_dynamics.validation import FloatArray
 
 

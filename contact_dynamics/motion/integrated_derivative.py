@@ -34,7 +34,7 @@ from contact_dynamics.validation import FloatArray, check_array
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from contact_dynamics.motion.equations import WrenchFunction
+    from contact_dynamics.motion.forces import WrenchFunction
     from contact_dynamics.motion.integrated import ForcedMotion
     from contact_dynamics.rotations.one import Quaternion
     from contact_dynamics.tumbling import Trajectory

@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
-    from contact_dynamics.motion.equations import WrenchFunction
+    from contact_dynamics.motion.forces import WrenchFunction
 
 PASSES: Final = 3
 """Number of passes where the noise is not known and weights come from residuals. The residuals of the free

@@ -24,8 +24,8 @@ from contact_dynamics.nodes.calls import CallTimes, GoneClients
 from contact_dynamics.questions.effort import excerpt
 from contact_dynamics.recording.cdr import cut_to_its_end
 from contact_dynamics.recording.cdr_stamp import EventType
-from contact_dynamics.recording.decoding import message_class
 from contact_dynamics.recording.definitions import find_definition
+from contact_dynamics.recording.message_types import message_class
 from msg_adapters.stamps import stamp_to_msg
 from msg_adapters.status import report_error
 

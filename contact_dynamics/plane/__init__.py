@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Planar problems, and the conversion between space and a plane of motion.
 
-`types` contains a planar body, its velocity, contacts and wrench. `projection` converts a spatial problem to
-a planar one, or returns the deviation from the plane; `plane_search` finds that plane. `lifting` converts a
-planar answer back to space, and makes a spatial problem from a planar one. `force_dual` is the representation
-of planar wrenches in lecture 26.
+`types` contains a planar body, its velocity, contacts and wrench, which lecture 26's force dual represents.
+`projection` converts a spatial problem to a planar one, or returns the deviation from the plane;
+`plane_search` finds that plane. `lifting` converts a planar answer back to space, and makes a spatial problem
+from a planar one.
 """
 
 from contact_dynamics.plane.lifting import planar_in_space

@@ -6,7 +6,7 @@ checks every checksum of MCAP. It skips what is damaged and reads everything els
 whole chunks of a log that a crash or a full disk cut short. `BagReader.losses` then says what is missing, and
 the reader warns once for each file (`DamagedLogWarning`).
 
-It needs no ROS. Messages are bytes, and `decoding` turns them into message objects if their packages are
+It needs no ROS. Messages are bytes, and `message_types` turns them into message objects if their packages are
 installed.
 """
 
@@ -23,8 +23,15 @@ from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.recording.bag_metadata import BAG_KEY, METADATA_FILE
 from contact_dynamics.recording.definitions import standard_definition
 from contact_dynamics.recording.errors import DamagedLogWarning, NotALogError, UnfinishedLogWarning
-from contact_dynamics.recording.file_messages import Loss, MessageFile, Span, Topic
-from contact_dynamics.recording.packed import SUFFIXES, unpacked_file, unpacked_message
+from contact_dynamics.recording.file_messages import (
+    SUFFIXES,
+    Loss,
+    MessageFile,
+    Span,
+    Topic,
+    unpacked_file,
+    unpacked_message,
+)
 from contact_dynamics.recording.sqlite_messages import SqliteMessages
 from contact_dynamics.validation_types import checks_types
 

@@ -1,14 +1,26 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The readers of all kinds of files give these types to `bag_reader`."""
+"""The readers of all kinds of files give these types to `bag_reader`, and unpack what is packed.
+
+Chunks of MCAP, and files and messages of rosbag2's compression modes FILE and MESSAGE, are unpacked piece by
+piece, so that damaged data with a huge size take no memory. A packed file goes into a temporary one, because
+a reader has to jump about in it. A serialised message begins with a zero byte, and the magic number of packed
+data does not, so the first byte shows which of the two it is.
+"""
 
 from __future__ import annotations
 
+import tempfile
+from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple, Protocol
+from io import BytesIO
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final, NamedTuple, Protocol
+
+from contact_dynamics.errors import InvalidFieldError
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator
-    from pathlib import Path
+    from typing import BinaryIO
 
     from typing_extensions import Self
 
@@ -113,3 +125,90 @@ class MessageFile(Protocol):
 
     def run(self) -> dict[str, str] | None:
         """Return the record of the run that made it, or None if the record is missing or damaged."""
+
+
+MAGICS: Final = {b"\x28\xb5\x2f\xfd": b"zstd", b"\x04\x22\x4d\x18": b"lz4"}
+"""The first bytes of packed data, and MCAP's name of the packing."""
+
+SUFFIXES: Final = (".zstd", ".zst", ".lz4")
+"""The ending of a packed file's name."""
+
+MAX_BYTES: Final = 64 * 1024 * 1024
+"""The size of the largest message that is unpacked, bytes."""
+
+_PIECE: Final = 1024 * 1024  # bytes
+
+
+def uncompressed(compression: bytes, data: bytes, size: int) -> bytes:
+    """Return the unpacked data. Unpacking stops soon after ``size`` bytes.
+
+    Raises:
+        ValueError: MCAP has no such compression.
+        Exception: the data are damaged. The class is that of the unpacking library.
+    """
+    if compression == b"":
+        return data
+    found: list[bytes] = []
+    for piece in _pieces(compression, BytesIO(data)):
+        found.append(piece)
+        size -= len(piece)
+        if size < 0:
+            break
+    return b"".join(found)
+
+
+def unpacked_message(data: bytes) -> bytes:
+    """Return a message as it was serialised.
+
+    Raises:
+        InvalidFieldError: the message is damaged, or larger than `MAX_BYTES`.
+    """
+    compression = MAGICS.get(data[:4])
+    if compression is None:
+        return data
+    try:
+        found = uncompressed(compression, data, MAX_BYTES)
+    except Exception as error:  # noqa: BLE001  damaged bytes make the libraries raise nearly anything
+        raise InvalidFieldError("data", f"a packed message ({error})", "data that can be unpacked") from None
+    if len(found) > MAX_BYTES:
+        raise InvalidFieldError("data", "a packed message", f"at most {MAX_BYTES} bytes when unpacked")
+    return found
+
+
+@contextmanager
+def unpacked_file(path: Path) -> Iterator[tuple[Path, str | None]]:
+    """Yield the path of a file's content, and why it ends early, or None if it does not.
+
+    The content of a packed file is in a temporary one, which is deleted afterwards.
+    """
+    if path.suffix not in SUFFIXES:
+        yield path, None
+        return
+    with path.open("rb") as packed, tempfile.NamedTemporaryFile(suffix=Path(path.stem).suffix) as plain:
+        reason = None
+        compression = MAGICS.get(packed.read(4), b"zstd")
+        packed.seek(0)
+        try:
+            for piece in _pieces(compression, packed):
+                plain.write(piece)
+        except Exception as error:  # noqa: BLE001  see above
+            reason = f"the rest cannot be unpacked: {error}"
+        plain.flush()
+        yield Path(plain.name), reason
+
+
+def _pieces(compression: bytes, packed: BinaryIO) -> Iterator[bytes]:
+    stream: Any
+    if compression == b"zstd":
+        import zstandard  # it comes with the mcap library, as lz4 does, and a log needs one of them at most
+
+        stream = zstandard.ZstdDecompressor().stream_reader(packed, read_across_frames=True)
+    elif compression == b"lz4":
+        import lz4.frame
+
+        stream = lz4.frame.LZ4FrameFile(packed)
+    else:
+        message = f"compression must be zstd, lz4 or none, got {compression!r}"
+        raise ValueError(message)
+    while piece := stream.read(_PIECE):
+        yield piece

@@ -23,7 +23,7 @@ from mcap.records import Channel, Message, Metadata, Schema
 
 from contact_dynamics.recording.bag_metadata import OFFERED_QOS, RUN_RECORD, TYPE_HASH, unsealed_run
 from contact_dynamics.recording.errors import NotALogError
-from contact_dynamics.recording.file_messages import Loss, StoredMessage, Topic
+from contact_dynamics.recording.file_messages import Loss, StoredMessage, Topic, uncompressed
 from contact_dynamics.recording.mcap_file import (
     HEAD,
     MAGIC,
@@ -35,7 +35,6 @@ from contact_dynamics.recording.mcap_file import (
     parsed,
     read_summary,
 )
-from contact_dynamics.recording.packed import uncompressed
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterator

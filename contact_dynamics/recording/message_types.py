@@ -1,26 +1,31 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Makes classes of message types from the texts in a log. They need no ROS.
+"""Turns logged bytes into message objects: of ROS if it has the type, or of classes made from a log's texts.
 
-A log holds the full text of each type (`definitions`). Here the text becomes a class with the fields, the
-defaults and the constants of the type. What reads a message of ROS can read one of these.
+Such classes need no ROS. A log holds the full text of each type (`definitions`). Here it becomes a class with
+the fields, the defaults and the constants of the type. What reads a message of ROS can read one of these.
 
 Not covered: texts in another form than MCAP's ros2msg; wide strings.
 """
 
 from __future__ import annotations
 
+import importlib
 import re
 from array import array
 from dataclasses import dataclass, field
-from functools import lru_cache
+from functools import cache, lru_cache
 from typing import TYPE_CHECKING, Any, ClassVar, Final
 
 import numpy as np
 
 from contact_dynamics.errors import InvalidFieldError
+from contact_dynamics.recording.definitions import EVENT_SUFFIX
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
+
+    from contact_dynamics.recording.bag_reader import LoggedMessage
+
 
 PRIMITIVES: Final = {
     "bool": "?", "byte": "B", "char": "B", "int8": "b", "uint8": "B", "int16": "h", "uint16": "H",
@@ -186,3 +191,29 @@ def _value(text: str, type_name: str) -> Any:
         return float(word) if PYTHON_TYPES.get(type_name) is float else int(word, 0)
     except ValueError:
         raise InvalidFieldError("definition", f"{text!r} for a {type_name}", "a number") from None
+
+
+@cache
+def message_class(type_name: str) -> Any:
+    """Return the class of ``package/msg/Name``, or the event class of ``package/srv/Name_Event``.
+
+    Raises:
+        InvalidFieldError: the name has another form, or its package is not installed.
+    """
+    try:
+        package, folder, name = type_name.split("/")
+        module = importlib.import_module(f"{package}.{folder}")
+        if folder == "srv" and name.endswith(EVENT_SUFFIX):
+            return getattr(module, name[: -len(EVENT_SUFFIX)]).Event
+        return getattr(module, name)
+    except (ValueError, ImportError, AttributeError) as error:
+        raise InvalidFieldError(
+            "type_name", type_name, f"an interface whose package is installed ({error})"
+        ) from error
+
+
+def decode(message: LoggedMessage) -> Any:
+    """Return the logged ROS message. A service's event has ``info``, ``request`` and ``response``."""
+    from rclpy.serialization import deserialize_message  # here, for logs are read without ROS too
+
+    return deserialize_message(message.data, message_class(message.type_name))

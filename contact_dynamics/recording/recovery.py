@@ -23,10 +23,9 @@ from contact_dynamics.recording.bag_metadata import (
 from contact_dynamics.recording.bag_reader import BagReader
 from contact_dynamics.recording.definitions import EVENT_SUFFIX, TypeDefinition
 from contact_dynamics.recording.errors import LogExistsError
-from contact_dynamics.recording.file_messages import Span
+from contact_dynamics.recording.file_messages import Span, unpacked_file
 from contact_dynamics.recording.limits import Compression
 from contact_dynamics.recording.mcap_messages import McapMessages
-from contact_dynamics.recording.packed import unpacked_file
 from contact_dynamics.recording.qos import offered_qos
 
 if TYPE_CHECKING:

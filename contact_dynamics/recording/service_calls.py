@@ -12,8 +12,8 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 from contact_dynamics.recording.cdr_stamp import EventType, event_info
-from contact_dynamics.recording.decoding import decode
 from contact_dynamics.recording.definitions import EVENT_SUFFIX
+from contact_dynamics.recording.message_types import decode
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator

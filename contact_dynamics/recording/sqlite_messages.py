@@ -12,8 +12,7 @@ from contextlib import suppress
 from typing import TYPE_CHECKING, Any, Final
 
 from contact_dynamics.recording.errors import NotALogError
-from contact_dynamics.recording.file_messages import Loss, Span, StoredMessage, Topic
-from contact_dynamics.recording.packed import MAX_BYTES
+from contact_dynamics.recording.file_messages import MAX_BYTES, Loss, Span, StoredMessage, Topic
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator

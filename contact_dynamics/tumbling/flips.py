@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from contact_dynamics.records import Record
-from contact_dynamics.rigid_body.inertia.principal_frame import in_doubles
+from contact_dynamics.rigid_body.inertia.axes_of_inertia import in_doubles
 from contact_dynamics.rotations.one import cross_matrix
 from contact_dynamics.tumbling.many import flips_of_many
 from contact_dynamics.tumbling.polhode import Regime, Spin, Tumble

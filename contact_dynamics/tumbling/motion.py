@@ -27,7 +27,7 @@ from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.numerics.arithmetic import DECIMALS, DOUBLES, Arithmetic, Precision, Scalar, within
 from contact_dynamics.records import Record, Rows
 from contact_dynamics.rigid_body.body import BodyState, HasMassProperties, MassProperties
-from contact_dynamics.rigid_body.inertia.principal_frame import PrincipalFrame, in_doubles, principal_frame
+from contact_dynamics.rigid_body.inertia.axes_of_inertia import PrincipalFrame, in_doubles, principal_frame
 from contact_dynamics.rotations.many import make_continuous
 from contact_dynamics.rotations.one import (
     Quaternion,

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from decimal import Decimal
 
     from contact_dynamics.numerics.arithmetic import Arithmetic
-    from contact_dynamics.rigid_body.inertia.principal_frame import PrincipalFrame
+    from contact_dynamics.rigid_body.inertia.axes_of_inertia import PrincipalFrame
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,14 +13,16 @@ from hypothesis import strategies as st
 from contact_dynamics.contact.friction import linearised_cone
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.numerics.vectors import tangents_towards
-from contact_dynamics.plane.force_dual import (
+from contact_dynamics.plane.types import (
     OrientedPoint,
+    PlanarBody,
+    PlanarContact,
+    PlanarWrench,
     Turn,
     acceleration_centre,
     force_dual,
     friction_cone,
 )
-from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarWrench
 
 # Smaller forces have a force dual at a distance that no double holds.
 numbers = st.floats(-10.0, 10.0).filter(lambda x: x == 0.0 or abs(x) > 1e-100)

@@ -16,8 +16,7 @@ from contact_dynamics.diagrams.wrench_chart import (
     part_centre,
     picture_size,
 )
-from contact_dynamics.plane.force_dual import force_dual
-from contact_dynamics.plane.types import PlanarBody, PlanarWrench
+from contact_dynamics.plane.types import PlanarBody, PlanarWrench, force_dual
 
 BODY = PlanarBody(mass=2.0, inertia=0.5)
 RHO = BODY.radius_of_gyration

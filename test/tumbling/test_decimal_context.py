@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
-from contact_dynamics.rigid_body.inertia.principal_frame import _of_bytes, in_doubles
+from contact_dynamics.rigid_body.inertia.axes_of_inertia import _of_bytes, in_doubles
 from contact_dynamics.tumbling import free_motion
 from contact_dynamics.tumbling.flips import next_flips
 from contact_dynamics.tumbling.motion import constants_of

@@ -6,8 +6,7 @@ For a hammer: `from contact_dynamics import inertia`, then
 the result for a `World`.
 
 All functions return a `distribution` of mass, that of particles, of several parts, of `solids`, sheets and
-wires, or of a `triangle_mesh`. `axes_of_inertia` contains principal axes and the inertia ellipsoid, and
-`principal_frame` the same in extended precision.
+wires, or of a `triangle_mesh`. `axes_of_inertia` contains principal axes and the inertia ellipsoid.
 """
 
 from contact_dynamics.rigid_body.inertia.axes_of_inertia import (
