@@ -41,6 +41,7 @@ class Arrivals:
         rejected_ns: When that came, ns by the clock of the stamps, or None if that is not known.
         kept_ns: When the last one that was kept came, also unread, or None if that is not known.
         newest_is_rejected: Whether none was kept since.
+        last_is_old: Whether the last one that was kept was too old for a question about now when it came.
         discarded: When those that were kept were discarded, in words. It is empty if the last was rejected.
         expected: What to say where none came.
     """
@@ -53,6 +54,7 @@ class Arrivals:
     rejected_ns: int | None = None
     kept_ns: int | None = None
     newest_is_rejected: bool = False
+    last_is_old: bool = False
     discarded: str = ""
     expected: str = "none has been received yet"
 
@@ -69,9 +71,11 @@ class Arrivals:
 
     def why_old(self, now_ns: int) -> str:
         """Return in words what became of states since the newest that is kept, or nothing if none came."""
-        if not self.newest_is_rejected:
-            return ""
-        return f"; later messages were rejected, the last{self._ago(now_ns)} because {self.reason}"
+        if self.newest_is_rejected:
+            return f"; later messages were rejected, the last{self._ago(now_ns)} because {self.reason}"
+        if self.last_is_old:
+            return f"; the last message was {self.age:.1f} s old when it was received: do the clocks agree?"
+        return ""
 
     def _ago(self, now_ns: int | None) -> str:
         """Return how long ago the last one was rejected, which may have been by a program that has ended."""
@@ -79,11 +83,15 @@ class Arrivals:
             return ""
         return f" {to_seconds(now_ns - self.rejected_ns):.1f} s ago"
 
-    def keep(self, now_ns: int | None) -> None:
-        """Note a state that came and is kept."""
+    def keep(self, now_ns: int | None, *, old_s: float | None) -> None:
+        """Note a state that came and is kept. If it was too old when it came, its age then is ``old_s``."""
         self.came += 1
         self.kept_ns = now_ns
         self.newest_is_rejected = False
+        self.last_is_old = old_s is not None
+        if old_s is not None:
+            self.old += 1
+            self.age = old_s
 
     def refuse(self, reason: object, *, was_kept: bool, now_ns: int | None) -> None:
         """Note a state that came and was not kept, or that was counted and kept, and cannot be read.
@@ -350,11 +358,9 @@ class StateStore:
                     f"at most {to_seconds(self._future_tolerance_ns):g} s (future_tolerance)",
                 )
             self._forget_future(body_name, now_ns)
-        arrivals = self._arrivals[body_name]
-        arrivals.keep(now_ns)
-        if now_ns is not None and now_ns - stamp_ns > self._timeout_ns:
-            arrivals.old += 1
-            arrivals.age = to_seconds(now_ns - stamp_ns)
+        age_ns = 0 if now_ns is None else now_ns - stamp_ns
+        old_s = to_seconds(age_ns) if age_ns > self._timeout_ns else None
+        self._arrivals[body_name].keep(now_ns, old_s=old_s)
         track = self._tracks.get(body_name)
         if track is None:
             track = self._tracks[body_name] = _Track()

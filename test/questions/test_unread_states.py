@@ -146,6 +146,18 @@ def test_a_state_that_is_too_old_says_whether_newer_ones_were_rejected() -> None
     assert stale(store, now_ns=2_000_000_000).endswith("the last because it is NaN")
 
 
+def test_a_state_that_is_too_old_says_whether_it_was_when_it_came() -> None:
+    store = StateStore(history=9.0, timeout=1.0)
+    store.add("ball", state(4_000_000_000), now_ns=4_500_000_000)
+    assert stale(store, now_ns=6_000_000_000).endswith("got 2.000 s")
+    store.add("ball", state(1_000_000_000), now_ns=6_000_000_000)
+    assert stale(store, now_ns=7_000_000_000).endswith(
+        "got 3.000 s; the last message was 5.0 s old when it was received: do the clocks agree?"
+    )
+    store.refuse("ball", "it is NaN")
+    assert stale(store, now_ns=7_000_000_000).endswith("were rejected, the last because it is NaN")
+
+
 def test_of_unread_states_the_last_one_that_came_says_why_it_was_rejected() -> None:
     """They are read from the newest back, and one that came before a good one is no later message."""
     second_ns = 1_000_000_000
