@@ -159,7 +159,7 @@ def _read_parameters(
             "Topic of tf2_msgs/TFMessage with static transforms. Not used if empty.",
         ),
         world_frame=source.name("world_frame", "world", "Frame of states and responses."),
-        state_timeout=source.value("state_timeout", 0.5, "Largest age of the newest state, s.", (1e-3, 1e6)),
+        state_timeout=source.value("state_timeout", 0.5, "Largest age of the latest state, s.", (1e-3, 1e6)),
         state_history=source.value("state_history", 5.0, "Length of the history of states, s.", (0.0, 1e4)),
         future_tolerance=source.value(
             "future_tolerance",

@@ -30,7 +30,7 @@ _DECLARED: Final = (
         "Size limit of a file, MB, after which the next one begins. 0 means one file.",
         (0, MOST),
     ),
-    DeclaredParameter("rrd_max_files", 0, "Number of newest files to keep. 0 keeps all.", (0, MOST)),
+    DeclaredParameter("rrd_max_files", 0, "Number of latest files to keep. 0 keeps all.", (0, MOST)),
     DeclaredParameter(
         "spawn", value=False, description="Start rerun's viewer, unless one already listens at the port."
     ),
@@ -54,7 +54,7 @@ _DECLARED: Final = (
         "viewer_memory", "1GiB", "Memory limit of the viewer or of the served picture, such as 500MB."
     ),
     DeclaredParameter(
-        "predictions", DEFAULT_PREDICTIONS, "Number of newest predictions shown for a body.", (1, 100)
+        "predictions", DEFAULT_PREDICTIONS, "Number of latest predictions shown for a body.", (1, 100)
     ),
     DeclaredParameter("surface_side", 2.0, "Side of the square drawn for a surface, m.", (1e-3, 1e4)),
 )
