@@ -21,7 +21,8 @@ if landing is None:
 corner, velocity = landing.contacts.p_WC_W[0].round(4) + 0.0, landing.velocities_W[0].round(3)
 print(f"a corner strikes after {landing.seconds:.4f} s, at {corner} m, with {velocity} m/s")
 
-impact = spatial_impact(box, landing.state, landing.contacts[0])
+(contact,) = landing.contacts  # one corner; an edge or a face has several
+impact = spatial_impact(box, landing.state, contact)
 outcome = impact.outcome.name.lower().replace("_", " ")
 print(f"its contact {outcome}, with an impulse of {impact.impulse_W.round(3)} N s")
 after = impact.state
