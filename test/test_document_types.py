@@ -144,6 +144,20 @@ LISTS: dict[str, dict[str, Any]] = {
         "force_W": [0, 0, -1],
         "torque_W": [0, 0, 0],
     },
+    "BodiesContactProblem": {
+        "bodies": (MassProperties(mass=1, I_B=EYE),),
+        "states": (BodyState(**AT_REST),),
+        "contacts": ContactSet(**ONE_CONTACT),
+        "pairs": ((0, None),),
+        "forces_W": [[0, 0, -1]],
+        "torques_W": [[0, 0, 0]],
+    },
+    "ResponseContactProblem": {
+        "inverse_inertia_W": EYE,
+        "accelerations_W": [[0, 0, -1]],
+        "contacts": ContactSet(**ONE_CONTACT),
+        "velocities_W": [[0, 0, 0]],
+    },
     "UncertainState": {"state": BodyState(**AT_REST), "covariance": np.eye(12).tolist()},
     "TossUncertainty": {
         "covariance": np.eye(6).tolist(),
