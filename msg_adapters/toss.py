@@ -130,8 +130,10 @@ DISTRIBUTION: Final = fields.Table(
     fields.Row("branches", "branches", BRANCH.listed()),
     fields.Row("face_normals_B", "face_normals", fields.rows_of(3)),
     fields.Row("face_probabilities", "face_probabilities", fields.NUMBERS),
+    fields.Row("face_positions", "face_positions", REGION.listed()),
     fields.Row("rest", "", _REST.nested(lambda msg: not msg.rest_position)),
     fields.Row("ghosts", "ghosts", fields.Kind(_write_ghosts, _read_ghosts)),
+    fields.Row("to_rest", "to_rest"),
 )
 """What can happen in an uncertain toss."""
 

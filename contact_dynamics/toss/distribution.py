@@ -128,8 +128,8 @@ class RestSpread(Record):
     """Distribution of the time and place of rest.
 
     The place depends on the friction of sustained contact (docs/toss.md). The distribution contains all
-    samples that rest, on any face. `TossDistribution.ghosts` contains single poses of rest, whose attitudes
-    determine the face.
+    samples that rest, on any face; for each face there is `TossDistribution.face_positions`.
+    `TossDistribution.ghosts` contains single poses of rest.
 
     Attributes:
         seconds: (5,), s, the 5, 25, 50, 75 and 95 % quantiles of the time of rest.
@@ -181,12 +181,15 @@ class TossDistribution(Record):
             samples rest, most probable first.
         face_probabilities: (f,), shares of all samples. The sum is less than 1 if some samples do not come to
             rest.
+        face_positions: Regions of the position of the centre of mass at rest on each of these faces, m, world
+            (k = 3). Covariance and radii are NaN for a face with fewer than `FEWEST` samples.
         rest: Distribution of the time and position of rest. None if no sample rests, or if samples were not
             followed to rest.
         ghosts: Poses of the first samples.
-        to_rest: Whether samples were followed to rest. None if that is not recorded, as in a message.
+        to_rest: Whether samples were followed to rest.
         exact: Names of those inputs among friction, restitution and impact law that are the same in all
-            samples, because ``uncertainty`` does not include them. None if that is not recorded.
+            samples, because ``uncertainty`` does not include them. None if that is not recorded, as in a
+            message, whose request contains it.
     """
 
     samples: int
@@ -194,9 +197,10 @@ class TossDistribution(Record):
     branches: tuple[Branch, ...]
     face_normals_B: FloatArray
     face_probabilities: FloatArray
+    face_positions: tuple[Region, ...] = field(repr=False)
     rest: RestSpread | None
     ghosts: Ghosts
-    to_rest: bool | None = field(default=None, repr=False)
+    to_rest: bool = field(repr=False)
     exact: tuple[str, ...] | None = field(default=None, repr=False)
 
     def in_short(self) -> str:
@@ -263,6 +267,14 @@ def region_of(values: FloatArray) -> Region:
     covariance = off.T @ off / max(len(values) - 1, 1)
     distances = _distances(off, covariance)
     return Region(mean=mean, covariance=covariance, radii=np.quantile(distances, LEVELS))
+
+
+def region_of_face(positions: FloatArray) -> Region:
+    """Return the region of the positions, (n, 3), of samples that rest on one face."""
+    if len(positions) >= FEWEST:
+        return region_of(positions)
+    unknown = np.full((3, 3), math.nan)
+    return Region(mean=positions.mean(axis=0), covariance=unknown, radii=unknown[0, :2])
 
 
 def regions_of(

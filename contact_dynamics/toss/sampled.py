@@ -31,6 +31,7 @@ from contact_dynamics.toss.distribution import (
     EventRegions,
     Ghosts,
     TossDistribution,
+    region_of_face,
     regions_of,
     rest_of,
 )
@@ -57,7 +58,6 @@ if TYPE_CHECKING:
     from contact_dynamics.numerics.vectors import Vector3
     from contact_dynamics.toss.solid import Solid
     from contact_dynamics.toss.to_rest import Followed
-    from contact_dynamics.validation import FloatArray
     from contact_dynamics.world import Body, SurfaceFrame, World
 
 MAX_SAMPLES: Final = 2000
@@ -180,18 +180,18 @@ def sampled_toss(
         rests = {i: one for i, one in followed.items() if one.rests}
     if frame is not None:
         _carry(many, rests, frame)
-    faces, shares = _faces([each.normal_B for each in rests.values()], count)
-    rest = None
+    rest, positions = None, np.array([each.y[:3] for each in rests.values()])
+    faces = _faces([each.normal_B for each in rests.values()])
     if rests:
-        times = np.array([each.seconds for each in rests.values()])
-        rest = rest_of(times, np.array([each.y[:3] for each in rests.values()]))
+        rest = rest_of(np.array([each.seconds for each in rests.values()]), positions)
     marginals = tuple(_marginals(many, count))
     return TossDistribution(
         samples=count,
         strikes=marginals,
         branches=tuple(_branches(solid, many, marginals)),
-        face_normals_B=faces,
-        face_probabilities=shares,
+        face_normals_B=np.array([normal for normal, _ in faces]).reshape(-1, 3),
+        face_probabilities=np.array([len(which) / count for _, which in faces]),
+        face_positions=tuple(region_of_face(positions[which]) for _, which in faces),
         rest=rest,
         ghosts=_ghosts(many, rests, count),
         to_rest=to_rest,
@@ -280,19 +280,17 @@ def _branches(solid: Solid, many: ManyStrikes, marginals: tuple[EventRegions, ..
     return branches
 
 
-def _faces(rests: list[Vector3], count: int) -> tuple[FloatArray, FloatArray]:
-    """Return the normals, (n, 3), of the faces that samples rest on, and their shares, the largest first."""
-    faces: list[tuple[Vector3, int]] = []
-    for each in rests:
-        for k, (normal, number) in enumerate(faces):
+def _faces(rests: list[Vector3]) -> list[tuple[Vector3, list[int]]]:
+    """Return the normals of the faces that samples rest on, and the indices of these, the most first."""
+    faces: list[tuple[Vector3, list[int]]] = []
+    for i, each in enumerate(rests):
+        for normal, which in faces:
             if dot(normal, each) > _SAME_FACE:
-                faces[k] = (normal, number + 1)
+                which.append(i)
                 break
         else:
-            faces.append((each, 1))
-    faces.sort(key=lambda face: -face[1])
-    normals = np.array([normal for normal, _ in faces]).reshape(-1, 3)
-    return normals, np.array([number / count for _, number in faces])
+            faces.append((each, [i]))
+    return sorted(faces, key=lambda face: -len(face[1]))
 
 
 def _ghosts(many: ManyStrikes, rests: dict[int, Followed], count: int) -> Ghosts:

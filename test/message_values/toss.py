@@ -92,6 +92,8 @@ def toss_distributions(draw: st.DrawFn) -> TossDistribution:
         branches=draw(tuples_of(branches, draw(st.integers(0, 1)))),
         face_normals_B=draw(arrays(faces, 3)),
         face_probabilities=draw(arrays(faces)),
+        face_positions=draw(tuples_of(regions, faces)),
+        to_rest=draw(st.booleans()),
         rest=draw(some(rests)),
         ghosts=Ghosts(
             samples=np.array(draw(tuples_of(indices, count)), dtype=np.int64),

@@ -14,9 +14,12 @@ import pytest
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.impact import RestitutionLaw
 from contact_dynamics.rigid_body import inertia
-from contact_dynamics.rigid_body.body import BodyState
+from contact_dynamics.rigid_body.body import BodyState, state_covariance
+from contact_dynamics.rotations.many import matrices_of
 from contact_dynamics.shapes import box
 from contact_dynamics.toss import TossDistribution, TossUncertainty, sampled_toss
+from contact_dynamics.toss.distribution import FEWEST
+from contact_dynamics.toss.sampled import MAX_GHOSTS
 from contact_dynamics.toss.to_rest import PART
 from contact_dynamics.world import Body, Surface, World
 
@@ -28,6 +31,7 @@ BRICK = Body(
     name="brick", mass_properties=inertia.box(size=SIZE, mass=0.4).mass_properties, shape=box(size=SIZE)
 )
 FLOOR = Surface(name="floor", p_WS_W=[0, 0, 0], normal_W=[0, 0, 1], friction=0.2, restitution=0.3)
+CUBE = Body.box((0.1, 0.1, 0.1), mass=0.37, name="cube")
 COUNT = int(1.6 * PART)  # two parts
 
 
@@ -141,6 +145,36 @@ def test_samples_name_the_inputs_that_were_taken_as_exact(
     state = BodyState(p_WB_W=[0, 0, 1], q_WB=[0, 0, 0, 1])
     found = sampled_toss(BRICK, state, World(surfaces=(FLOOR,)), uncertainty=uncertainty, count=2, strikes=1)
     assert found.exact == exact
+
+
+def test_each_face_has_the_places_of_the_samples_that_rest_on_it() -> None:
+    """Of so few samples all poses are shown. Their faces are found here by the vertical in the body."""
+    found = sampled_toss(
+        CUBE,
+        BodyState(p_WB_W=[0, 0, 0.5], q_WB=[0.3, 0.2, 0.1, 0.9273618495], v_WB_W=[1, 0, 0], w_WB_W=[0, 3, 0]),
+        World(bodies=(CUBE,), surfaces=(FLOOR,)),
+        covariance=state_covariance(velocity=0.02, angular_velocity=0.1),
+        count=MAX_GHOSTS,
+        to_rest=True,
+    )
+    at_rest = found.ghosts.strikes == 0
+    places = found.ghosts.p_WB_W[at_rest]
+    vertical_B = matrices_of(found.ghosts.q_WB[at_rest])[:, 2]
+    counts = []
+    for normal_B, share, region in zip(
+        found.face_normals_B, found.face_probabilities, found.face_positions, strict=True
+    ):
+        own = places[vertical_B @ normal_B > 0.99]
+        counts.append(len(own))
+        assert share == len(own) / MAX_GHOSTS
+        np.testing.assert_allclose(region.mean, own.mean(axis=0), rtol=0.0, atol=1e-14)  # sums of 30 places
+        if len(own) < FEWEST:
+            assert np.isnan(region.covariance).all()
+            assert np.isnan(region.radii).all()
+        else:
+            np.testing.assert_allclose(region.covariance, np.cov(own.T), rtol=0.0, atol=1e-16)
+    assert max(counts) >= FEWEST
+    assert 0 < min(counts) < FEWEST
 
 
 def test_the_quantiles_of_rest_are_printed_and_named(alone: TossDistribution) -> None:
