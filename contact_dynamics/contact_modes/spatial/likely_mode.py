@@ -31,8 +31,9 @@ if TYPE_CHECKING:
 _STIFFNESSES: Final = (1.0, 1e1, 1e2, 1e3, 1e4, 1e6)
 """Forces of contacts that penetrate with unit acceleration, in parts of those that give it to the body."""
 
-_MAX_STEPS: Final = 8
-"""Newton's steps for each stiffness. Two are enough on average."""
+_MAX_STEPS: Final = 30
+"""Newton's steps for each stiffness. Two are enough on average, and some 25 where many feet are at their
+limits of friction."""
 
 _SHORTEST_STEP: Final = 0.02
 """The share of a step that is taken whatever it gains."""

@@ -27,7 +27,7 @@ import numpy as np
 
 from contact_dynamics.contact_modes.spatial.round_cones import held_by_round_cones
 from contact_dynamics.numerics.linear_spaces import seen_and_unseen
-from contact_dynamics.tolerances import FORCES_ROUNDING, ROW_TOLERANCE, SAME_MOTION
+from contact_dynamics.tolerances import FEASIBLE, ROW_TOLERANCE, SAME_MOTION
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -162,7 +162,7 @@ def _evened(
     pressing = np.linalg.lstsq(normal, -left, rcond=ROW_TOLERANCE)[0]
     common = np.zeros(seen.shape[1])
     acting = (rising <= SAME_MOTION)[:, None]
-    enough = FORCES_ROUNDING * float(np.linalg.norm(search.mass @ search.motion[:, -1]))
+    enough = FEASIBLE * float(np.linalg.norm(search.mass @ search.motion[:, -1]))
     for _ in range(_MAX_STEPS):
         leaning = sliding + gripping @ (seen @ common)  # (n, 3), times the coefficient of friction
         edges = normal - np.einsum("ijk,ij->ki", contacts.points, leaning * acting)

@@ -28,6 +28,13 @@ MAX_EXAMINED: Final = 30_000
 not unique, hundreds of combinations of their sectors may be consistent, and the search looks for all of
 them."""
 
+MAX_EXAMINED_OF_SEVERAL: Final = 3_000
+"""The same for motions with more components than those of one body. A trial takes some 0.5 ms then, and
+searches that need more trials rarely end."""
+
+_ONE_BODY: Final = 6
+"""The number of components of the motion of one body."""
+
 AnyProgram = Program | CarefulProgram
 
 _FLUSH: Final = 3
@@ -114,7 +121,7 @@ class PyramidPrograms(ABC):
         self._sizes = sizes
         self.motion = np.column_stack([motion / sizes, free])
         self.examined = 0  # the number of programs solved so far
-        self.most_examined = MAX_EXAMINED
+        self.most_examined = MAX_EXAMINED if self.freedoms <= _ONE_BODY else MAX_EXAMINED_OF_SEVERAL
         self._first_normal = first  # the name of contact 0's normal acceleration
         self._normals = np.array([c.normal @ c.point for c in touching]).reshape(-1, self.freedoms + 1)
         named = self._normals
