@@ -16,6 +16,7 @@ from __future__ import annotations
 import contextlib
 import math
 from decimal import Decimal
+from operator import mul
 from typing import TYPE_CHECKING, Final, TypeAlias
 
 import numpy as np
@@ -118,12 +119,12 @@ def exact_combination(columns: Sequence[Vector3], target: Vector3) -> tuple[list
         return [acting.get(i, Decimal(0)) for i in range(len(rows))], float(_inner(left, left).sqrt())
 
 
-def distance_from_cone(columns: Sequence[Vector3], target: Vector3) -> float:
-    """Return the distance of a target from the positive combinations of ``columns``, infinite if not known.
+def distance_of(combination: tuple[list[Decimal], float], target: Vector3) -> float:
+    """Return the distance of a target from its `exact_combination`, infinite if not known.
 
     It is not known if the target takes shares above `_LARGEST_SHARE` of it, because rounding then decides.
     """
-    x, distance = exact_combination(columns, target)
+    x, distance = combination
     size = math.sqrt(sum(part * part for part in target))
     return distance if float(sum(x)) <= _LARGEST_SHARE * size else math.inf
 
@@ -137,9 +138,11 @@ def _least_exact_forces(rows: list[_Decimals], right: _Decimals) -> dict[int, De
     acting = list(range(len(rows)))
     for _ in range(_GUESSES):
         used = [rows[i] for i in acting]
-        y = _solution(
-            [[sum((a[i] * a[j] for a in used), Decimal(0)) for j in range(3)] for i in range(3)], right
+        columns = list(zip(*used, strict=True)) if used else [()] * 3
+        (xx, xy, xz), (yy, yz), (zz,) = (
+            [sum(map(mul, columns[i], columns[j]), Decimal(0)) for j in range(i, 3)] for i in range(3)
         )
+        y = _solution([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]], right)
         sizes = [_inner(row, y) for row in rows]
         pushing = [i for i, size in enumerate(sizes) if size > 0]
         if pushing == acting:
@@ -208,7 +211,7 @@ def _solution(matrix: list[_Decimals], right: _Decimals) -> _Decimals:
 
 
 def _inner(a: _Decimals, b: _Decimals) -> Decimal:
-    return sum((x * y for x, y in zip(a, b, strict=True)), Decimal(0))
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
 def nearest_combination(columns: FloatArray, target: FloatArray) -> tuple[FloatArray, float] | None:

@@ -31,7 +31,7 @@ from contact_dynamics.contact_modes.planar.problem import (
 from contact_dynamics.contact_modes.planar.wrench_cone import edge_forces, sharp_reaction
 from contact_dynamics.contact_modes.result import BodyStatics, Certainty, ModeVerdict, check_length
 from contact_dynamics.errors import UndecidedError
-from contact_dynamics.numerics.nonnegative_least_squares import distance_from_cone
+from contact_dynamics.numerics.nonnegative_least_squares import distance_of, exact_combination
 from contact_dynamics.numerics.vectors import Vector3, combined, dot, normalised, opposite
 from contact_dynamics.tolerances import FORCES_ROUNDING
 
@@ -106,7 +106,7 @@ def _holds(balance: PolyhedralCone, target: Vector3, accuracy: float) -> bool:
     """Return whether the cone dual to ``balance`` contains the wrench."""
     tolerance = accuracy * math.sqrt(dot(target, target))
     if balance.exact:
-        return distance_from_cone(balance.rows, target) <= tolerance
+        return distance_of(exact_combination(balance.rows, target), target) <= tolerance
     outside = any(abs(dot(line, target)) > tolerance for line in balance.lineality)
     return not outside and all(dot(facet, target) >= -tolerance for facet in balance.rays)
 

@@ -27,7 +27,7 @@ from contact_dynamics.contact_modes.planar.problem import Lift, PlanarCase, lift
 from contact_dynamics.numerics.arithmetic import DECIMALS, within
 from contact_dynamics.numerics.linear_spaces import orthonormal
 from contact_dynamics.numerics.nonnegative_least_squares import (
-    distance_from_cone,
+    distance_of,
     exact_combination,
     least_force,
 )
@@ -83,7 +83,17 @@ class Evidence(NamedTuple):
 class ModeWrenches:
     """The cone of the applied wrenches of one mode, and where the problem's own wrench lies in it."""
 
-    __slots__ = ("_case", "_common", "_rays", "_reactions", "_sharp_lengths", "_target", "dual", "edges")
+    __slots__ = (
+        "_case",
+        "_combined",
+        "_common",
+        "_rays",
+        "_reactions",
+        "_sharp_lengths",
+        "_target",
+        "dual",
+        "edges",
+    )
 
     def __init__(self, case: PlanarCase, cell: Cell, *, exact: bool = False) -> None:
         """Build the cone. The rows of ``dual`` are the rays of the accelerations, and then the reactions.
@@ -99,6 +109,7 @@ class ModeWrenches:
         self.dual = PolyhedralCone([*cell.rays, *self._reactions.units], exact=exact, sharp=self._sharp_rows)
         self._target = lifted(lift, case.w, case.mass * lift.scale * lift.scale if lift else 0.0)
         self._common = self.dual.all_rows
+        self._combined: tuple[Vector3, tuple[list[Decimal], float]] | None = None
 
     def _sharp_rows(self) -> list[Vector3]:
         rays = [decimal_vector(ray) for ray in self._rays]
@@ -149,7 +160,7 @@ class ModeWrenches:
         tolerance = accuracy * norm(self._target)
         if self.dual.exact:
             # Beyond the edge of a narrow cone a wrench is near to its facets and still far from the cone.
-            distance = distance_from_cone(self.dual.rows, self._target)
+            distance = distance_of(self._exact_combination(self._target), self._target)
             if distance > tolerance:
                 return distance
         else:
@@ -194,7 +205,7 @@ class ModeWrenches:
         if self.dual.exact:
             used = list(range(len(self.dual.rows)))
             motion: Vector3 | None
-            shares, _ = exact_combination(self.dual.rows, rest)
+            shares, _ = self._exact_combination(rest)
             forces = self._exact_forces(shares)
             motion = scaled(inner, share)
             for ray, more in zip(self._rays, shares, strict=False):
@@ -211,6 +222,15 @@ class ModeWrenches:
                 idle.remove(self._reactions.edges[column - len(self._rays)])
         acting = [wrench for i, wrench in enumerate(self.edges.wrenches) if i not in idle]
         return Evidence(forces, motion, *self._uniqueness(acting))
+
+    def _exact_combination(self, target: Vector3) -> tuple[list[Decimal], float]:
+        """Return the combination of the cone's rows that is nearest to a target, and its distance.
+
+        A mode without a motion asks for that of the same target twice.
+        """
+        if self._combined is None or self._combined[0] != target:
+            self._combined = target, exact_combination(self.dual.rows, target)
+        return self._combined[1]
 
     def _forces(self, used: list[int], shares: list[float]) -> dict[int, Vector2]:
         """Return (f_t, f_n) at each position from the shares of the rows ``used``."""
