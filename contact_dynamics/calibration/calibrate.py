@@ -102,12 +102,12 @@ def calibrate_observed(
     data = _data(model, observed, free)
     covariances = jump_covariances(model, model.configured, data.strikes, data.gravity)
     if tell is not None:
-        tell("fitting velocities at strikes", 0, 2)
+        tell("fitting velocities at impacts", 0, 2)
     fitting, first = _first_way(model, data, free, observed, covariances)
     second = None
     if with_paths and len(data.strikes):
         if tell is not None:
-            tell("fitting trajectories through strikes", 1, 2)
+            tell("fitting trajectories through impacts", 1, 2)
         paths = Paths(fitting, observed)
         second = fitting.estimate(paths.groups_at, spread=first.spread, start=first.fit.parameters)
     choice = fitting.choice(first, covariances)
@@ -335,8 +335,8 @@ def _outliers(data: Data, observed: Sequence[Observed], found: Estimation) -> tu
     from contact_dynamics.numerics.clustered_fit import REJECTED
 
     rows = {
-        "velocities after strikes": (data.strikes.recordings, data.strikes.times),
-        "heights at strikes": (data.strikes.recordings, data.strikes.times),
+        "velocities after impacts": (data.strikes.recordings, data.strikes.times),
+        "heights at impacts": (data.strikes.recordings, data.strikes.times),
         "heights at rest": (data.resting.recordings, None),
         "first flights": (data.center.recordings, None),
         "turns of first flights": (data.center.recordings, None),

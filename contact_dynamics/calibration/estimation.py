@@ -230,7 +230,7 @@ class Fitting:
             derivatives=factors @ slopes,
             clusters=strikes.recordings,
         )
-        return [("velocities after strikes", group)]
+        return [("velocities after impacts", group)]
 
     def spread_at(self, x: FloatArray) -> Spread:
         """Return the spreads at which the medians of residuals are those of normal ones."""
@@ -265,7 +265,7 @@ class Fitting:
         if not set(self.free) & set(GEOMETRY):
             return found
         for name, touch, extra in (
-            ("heights at strikes", data.struck, spread.strike_height),
+            ("heights at impacts", data.struck, spread.strike_height),
             ("heights at rest", data.resting, spread.rest_height),
         ):
             if len(touch.stds) == 0:

@@ -115,7 +115,7 @@ class Paths:
         residuals[:, : small.shape[1]] = small[:, :, count]
         derivatives[:, : small.shape[1]] = small[:, :, :count]
         group = Group(residuals=residuals, derivatives=derivatives, clusters=self._data.strikes.recordings)
-        return [("trajectories through strikes", group)]
+        return [("trajectories through impacts", group)]
 
     def _first(self, values: FloatArray) -> FloatArray:
         strikes = self._data.strikes

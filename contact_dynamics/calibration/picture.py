@@ -108,7 +108,7 @@ def write_picture(path: Path, found: Calibration) -> int:
         above_W, below_W = (at_W + share * shape.size * places.up_W for share in (0.6, -0.75))
         _draw_arrows(recording, f"{at}/velocity_after", row, VELOCITY, begin_W=at_W, scale=scales[0])
         _draw_arrows(recording, f"{at}/spin_after", row, SPIN, begin_W=above_W, scale=scales[1])
-        text = f"{number}{' left out' if row.rejected else ''}"
+        text = f"{number}{' excluded' if row.rejected else ''}"
         label = rr.Points3D([below_W], labels=[text], radii=0.0, show_labels=True)
         recording.log(f"{at}/label", label, static=True)
     table = rr.TextDocument(table_of(rows), media_type=rr.MediaType.MARKDOWN)
@@ -130,7 +130,7 @@ def table_of(rows: list[DrawnStrike]) -> str:
             f"| {number} | {row.toss.name} | {row.strike.time:.3f} s | "
             f"{sizes[0]:.3f} of {sizes[1]:.2f} m/s | {row.deviations[0]:.1f} | "
             f"{sizes[2]:.2f} of {sizes[3]:.1f} rad/s | {row.deviations[1]:.1f} | "
-            f"{'left out' if row.rejected else ''} |"
+            f"{'excluded' if row.rejected else ''} |"
         )
     return "\n".join(lines)
 

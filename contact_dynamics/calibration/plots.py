@@ -36,7 +36,7 @@ def write_plots(folder: Path, found: Calibration) -> list[Path]:
         share = np.linspace(0.0, 1.0, len(left))
         axes.plot(left, share, color="#3f7fb5", label="predicted less measured")
         axes.plot(noise, share, color="#8a8a8a", label="noise of measurement")
-        axes.set(xlabel=label, ylabel="share of strikes below", xscale="log")
+        axes.set(xlabel=label, ylabel="share of impacts below", xscale="log")
         axes.legend()
     path = folder / "residuals.png"
     figure.savefig(path, dpi=130)

@@ -86,9 +86,9 @@ def check_that_it_flies(observed: Sequence[Observed]) -> None:
         seconds = sum(float(each.motion.times[-1] - each.motion.times[0]) for each in observed)
         raise InvalidFieldError(
             "recordings",
-            f"{len(observed)} stretches of states, {seconds:.1f} s, in which the body never flies",
-            "tosses: flights of 0.05 s and more that end in strikes of a corner. If the body does fly in "
-            "them, gravity, the world's axes or the unit of the stamps are not what the configuration says",
+            f"{len(observed)} stretches of states, {seconds:.1f} s, without a flight",
+            "tosses: flights of at least 0.05 s that end with an impact of a corner. If the body does fly in "
+            "the recordings, check gravity, the world axes and the unit of the stamps in the configuration",
         )
 
 
@@ -114,20 +114,21 @@ def problems_of(
         pass
     elif strikes == 0:
         found.append(
-            f"No strike of a single corner was found in {len(observed)} tosses with {flights} flights; "
-            f"{several} strikes were of several corners at once. Friction, restitution and inertia are not "
-            "determined."
+            f"The recordings contain no impact of a single corner in {len(observed)} tosses with "
+            f"{flights} flights, "
+            f"and {several} impacts of several corners. Friction, restitution and inertia are not determined."
         )
     elif strikes == 1:
         found.append(
-            "One strike alone was found. Its six velocities do not tell friction, restitution, mass centre "
-            "and inertia apart, and nothing shows how well the law holds. Record twenty tosses or more."
+            "The recordings contain only one impact of a single corner. Its six velocities do not determine "
+            "friction, restitution, centre of mass and inertia. Record at least twenty tosses."
         )
     elif tosses < FEWEST_TOSSES:
         found.append(
-            f"The {strikes} strikes of single corners are in {tosses} toss{'' if tosses == 1 else 'es'}, too "
-            "few to see how strikes scatter. The errors may be larger than stated. Record twenty tosses or "
-            "more."
+            f"The {strikes} impacts of single corners are in {tosses} "
+            f"toss{'' if tosses == 1 else 'es'}, too few "
+            "to measure the scatter of impacts. The errors may be larger than stated. Record at least twenty "
+            "tosses."
         )
     found += _axes(gravity, observed)
     if strikes >= FEWEST_COMPARED:
@@ -138,21 +139,24 @@ def problems_of(
 def unlikely(estimates: Sequence[Estimate], spread: Spread, strikes: int, half_size: float) -> list[str]:
     """Return which estimates ended at a bound, and which residuals no noise explains."""
     found = [
-        f"{each.name} ended at the end of its range, {each.value:.4g}, which is no estimate. Too few or poor "
-        "data do that, a body of another shape, or configured values that are far off."
+        f"{each.name} is at the end of its range, {each.value:.4g}, and is not an estimate. Possible "
+        "causes are "
+        "too few or poor data, another shape of the body, or inaccurate configured values."
         for each in estimates
         if each.at_bound and abs(each.value - each.configured) > SMALLEST
     ]
     height = max(spread.strike_height, spread.rest_height)
     if strikes >= FEWEST_COMPARED and height > UNEVEN * half_size:
         found.append(
-            f"The corners that touch are {1e3 * height:.1f} mm above or below their surface, beyond noise of "
-            "measurement. Shape, rounding or surface height are not as configured: free them."
+            f"Touching corners are {1e3 * height:.1f} mm above or below their surface, which exceeds the "
+            "measurement noise. Shape, rounding or surface height differ from the configuration: add them to "
+            "--free."
         )
     if spread.flight > NOISIER:
         found.append(
-            f"In first flights, positions scatter {spread.flight:.0f} times as much as their noise. The body "
-            "does not fly freely, or its noise is not as stated."
+            f"In first flights, the scatter of positions is {spread.flight:.0f} times the given "
+            "noise. The body "
+            "does not fly freely, or the given noise is wrong."
         )
     return found
 
@@ -165,14 +169,15 @@ def recordings_apart(
     names = sorted({each.recording for each in outliers})
     if len(names) > APART * len(observed):
         found.append(
-            f"{len(names)} of {len(observed)} tosses disagree with the others, and were left out in part: "
-            f"{_listed(names)}. Another body, other axes, or a hand that still touched do that."
+            f"{len(names)} of {len(observed)} tosses contain outliers, which are excluded: {_listed(names)}. "
+            "Possible causes are another body, other axes, or a hand that still touched the body."
         )
     if renamed:
         names = [observed[number].name for number in renamed]
         found.append(
-            f"Other axes of the body than in the other tosses fit {_listed(names)} better. Their axes were "
-            "probably renamed, and so were those of tosses in which it does not show."
+            f"These tosses fit better with the axes of the body renamed: {_listed(names)}. The "
+            "tracker probably "
+            "exchanged the axes, possibly also in tosses that do not show it."
         )
     return found
 
@@ -191,13 +196,14 @@ def _axes(gravity: MeasuredGravity | None, observed: Sequence[Observed]) -> list
         turn = math.acos(min(1.0, max(-1.0, cosine)))
         if turn > WRONG_TURN:
             found.append(
-                f"In flight the body falls {math.degrees(turn):.0f} degrees off the configured gravity. "
-                "The world's axes are probably mislabelled."
+                f"The acceleration in flight is {math.degrees(turn):.0f} degrees from the configured "
+                "gravity. "
+                "The world axes are probably mislabelled."
             )
         if abs(gravity.size / size - 1.0) > WRONG_SIZE:
             found.append(
-                f"In flight the body falls at {gravity.size:.2f} m/s^2, configured are {size:.2f} m/s^2. The "
-                "unit of lengths or stamps is probably another one."
+                f"The acceleration in flight is {gravity.size:.2f} m/s^2, but gravity is configured as "
+                f"{size:.2f} m/s^2. The unit of lengths or stamps is probably wrong."
             )
     return found
 
@@ -209,8 +215,9 @@ def _corners(data: Data, observed: Sequence[Observed], left: FloatArray, half_si
     if abs(middle) > OFF * half_size or scatter > SCATTERED * half_size:
         return [
             (
-                f"At the strikes, the corner that should touch is {1e3 * middle:.0f} mm above its surface in "
-                f"the median, and half of them are more than {1e3 * scatter:.0f} mm from that. {_MISLABELLED}"
+                f"At impacts, the lowest corner is {1e3 * middle:.0f} mm above its surface (median, "
+                "with a median "
+                f"deviation of {1e3 * scatter:.0f} mm). {_MISLABELLED}"
             )
         ]
     changes = data.strikes.after.spins_W - data.strikes.before.spins_W
@@ -219,9 +226,11 @@ def _corners(data: Data, observed: Sequence[Observed], left: FloatArray, half_si
     if missed > UNEXPLAINED * change:
         return [
             (
-                f"Strikes change the spin by {change:.1f} rad/s in the median, and impulses at the corners "
-                f"that touch leave {missed:.1f} rad/s of it unexplained. {_MISLABELLED} Or there are too few "
-                "frames a second to see strikes apart."
+                f"Impacts change the angular velocity by {change:.1f} rad/s (median), of which "
+                "impulses at the "
+                f"touching corners do not explain {missed:.1f} rad/s. {_MISLABELLED} Otherwise, the "
+                "frame rate "
+                "is too low to separate impacts."
             )
         ]
     return []
@@ -244,10 +253,10 @@ def bent_surfaces(data: Data, described: Described, names: Sequence[str], half_s
                     ]
                 ).reshape(-1, 4)
             )
-        for places, what in zip(rows, ("rest", "strikes"), strict=True):
+        for places, what in zip(rows, ("rests", "impacts"), strict=True):
             text = _bent(places, described.normals[surface], half_size)
             if text:
-                found.append(f"Surface {name!r} is not flat: {text}, as bodies at {what} show.")
+                found.append(f"Surface {name!r} is not flat: {text}, measured at {what}.")
                 break
     return found
 
@@ -268,7 +277,7 @@ def _bent(places: FloatArray, normal: FloatArray, half_size: float) -> str:
     ratio = (squares[0] - squares[1]) / 3.0 / max(squares[1] / (len(places) - 6), SMALLEST)
     swing = float(np.ptp(left[0] - left[1]))
     if ratio > BENT and swing > LEAST_STEP_OF_SURFACE * half_size:
-        return f"heights bend by {1e3 * swing:.1f} mm over {1e3 * max(np.ptp(u), np.ptp(v)):.0f} mm"
+        return f"heights deviate by {1e3 * swing:.1f} mm over {1e3 * max(np.ptp(u), np.ptp(v)):.0f} mm"
     return ""
 
 
@@ -291,8 +300,8 @@ def warnings_of(estimates: Sequence[Estimate], *, clusters: int, by_cluster: boo
         if each.contradiction > CONTRADICTED:
             unit = f" {each.unit}" if each.unit else ""
             found.append(
-                f"{each.name}: configured is {each.configured:.5g}{unit}, the data say {each.value:.5g} +- "
-                f"{each.std:.2g}{unit}, which is {each.contradiction:.0f} standard deviations away."
+                f"{each.name}: configured as {each.configured:.5g}{unit}, estimated as {each.value:.5g} +- "
+                f"{each.std:.2g}{unit}, a difference of {each.contradiction:.0f} standard deviations."
             )
     limit = disagreement_limit(sum(each.difference_std > 0.0 for each in estimates), clusters)
     apart = [each for each in estimates if each.disagreement > limit]
@@ -302,16 +311,15 @@ def warnings_of(estimates: Sequence[Estimate], *, clusters: int, by_cluster: boo
             for each in apart
         )
         found.append(
-            f"The two ways disagree in {listed}. By chance alone, one of them would be beyond {limit:.1f} "
-            "sigma once in 22 calibrations. Velocities at strikes and trajectories through them weigh the "
-            "flights differently, so the model fails there: free more parameters, such as rounding or "
-            "inertia_ratios, or look at the outliers."
+            f"The two estimates disagree: {listed}. With an adequate model, a difference beyond {limit:.1f} "
+            "sigma occurs in 1 of 22 calibrations. Add parameters to --free, such as rounding or "
+            "inertia_ratios, or check the outliers."
         )
     if clusters and not by_cluster:
         found.append(
-            f"{'One toss is' if clusters == 1 else f'{clusters} tosses are'} too few to see the scatter "
-            f"between tosses with {free} free parameters. The errors given are those of independent strikes, "
-            "enlarged because few of them say how far they scatter."
+            f"{'One toss is' if clusters == 1 else f'{clusters} tosses are'} too few to measure the scatter "
+            f"between tosses with {free} free parameters. The standard deviations are those of independent "
+            "impacts, enlarged for the small number of tosses."
         )
     return found
 

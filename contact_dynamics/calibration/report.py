@@ -43,7 +43,7 @@ def _used(found: Calibration) -> Iterator[str]:
     yield (
         f"{_tosses(len(found.observed))}: {sum(len(each.flights) for each in found.observed)} flights, "
         f"{sum(each.first is not None for each in found.observed)} first flights long enough, {strikes} "
-        f"strikes of a single corner, "
+        f"impacts of a single corner, "
         f"{sum(each.several for each in found.observed)} of several corners (not used), "
         f"{sum(each.rest is not None for each in found.observed)} rests"
     )
@@ -54,14 +54,17 @@ def _tosses(count: int) -> str:
 
 
 def _parameters(found: Calibration) -> Iterator[str]:
-    yield f"{'':28} {'configured':>11} {'estimate':>11} {'std':>9}   {'by trajectories':>22}"
+    yield f"{'':28} {'configured':>11} {'estimate':>11} {'std':>9}   {'from trajectories':>22}"
     for each in found.estimates:
         yield _row(each)
     correlations = found.correlations
     for i, first in enumerate(found.estimates):
         for j in range(i):
             if abs(correlations[i, j]) > CORRELATED:
-                yield f"  {first.name} and {found.estimates[j].name} correlate by {correlations[i, j]:+.2f}"
+                yield (
+                    f"  {first.name} and {found.estimates[j].name} have a correlation of "
+                    f"{correlations[i, j]:+.2f}"
+                )
 
 
 def _row(each: Estimate) -> str:
@@ -72,7 +75,7 @@ def _row(each: Estimate) -> str:
     if not math.isnan(each.by_paths):
         text += f"   {each.by_paths:11.5g} {each.by_paths_std:9.2g}"
         if each.difference_std > 0.0:
-            text += f"   ({each.disagreement:.1f} sigma apart)"
+            text += f"   (difference {each.disagreement:.1f} sigma)"
     return f"{text} {each.unit}".rstrip()
 
 
@@ -84,24 +87,24 @@ def _gravity(found: Calibration) -> Iterator[str]:
     components = ", ".join(f"{x:.3f}" for x in gravity.mean_W)
     if gravity.count == 1:
         yield (
-            f"Gravity: ({components}) m/s^2, of size {gravity.size:.4g}. "
-            "One toss does not tell how sure that is."
+            f"Gravity: ({components}) m/s^2, magnitude {gravity.size:.4g}, without a standard deviation "
+            "(one toss)"
         )
         return
     yield (
         f"Gravity: ({components}) +- {gravity.mean_std:.2g} m/s^2, "
-        f"of size {gravity.size:.4g} +- {gravity.size_std:.2g}"
+        f"magnitude {gravity.size:.4g} +- {gravity.size_std:.2g}"
     )
     yield (
-        f"  It differs from toss to toss by {math.degrees(gravity.tilt):.2f} degrees; noise would make it "
-        f"{math.degrees(gravity.expected_tilt):.2f}. Without noise, it "
-        f"scatters by {gravity.turning:.2g} m/s^2 in each component sideways, and by "
-        f"{gravity.changing:.2g} m/s^2 in size."
+        f"  The direction varies from toss to toss by {math.degrees(gravity.tilt):.2f} degrees "
+        f"({math.degrees(gravity.expected_tilt):.2f} expected from noise). Standard deviations "
+        "without noise: "
+        f"{gravity.turning:.2g} m/s^2 in each horizontal component, {gravity.changing:.2g} m/s^2 in magnitude"
     )
     product = gravity.size / float(np.linalg.norm(STANDARD_GRAVITY_W))
     yield (
-        f"  If gravity is the standard one, length scale x clock rate squared is {product:.4f} +- "
-        f"{gravity.size_std / gravity.size * product:.2g}. Motion does not tell the two apart."
+        f"  Assuming standard gravity, length scale x (clock rate)^2 is {product:.4f} +- "
+        f"{gravity.size_std / gravity.size * product:.2g}; only this product can be identified"
     )
 
 
@@ -114,22 +117,22 @@ def _fit(found: Calibration) -> Iterator[str]:
         noise = float(np.median(np.linalg.norm(found.residual_stds[:, part], axis=1)))
         own = getattr(found.spread, kind)
         yield (
-            f"Residual {kind} after strikes: median {np.median(left):.3g} {unit}, mean {left.mean():.3g}; "
-            f"noise of measurement {noise:.2g}, the law's own spread {own:.2g} for each component"
+            f"Residual {kind} after impacts: median {np.median(left):.3g} {unit}, mean {left.mean():.3g}; "
+            f"measurement noise {noise:.2g}, model error of the impact law {own:.2g} per component"
         )
 
 
 def _slides(found: Calibration) -> Iterator[str]:
     for each in found.lasting_frictions:
         yield (
-            f"Friction of {each.surface} where contact lasts: {each.friction:.3g} +- {each.std:.2g}, "
-            f"from {each.slides} slides before rest, which scatter by {each.scatter:.2g}"
+            f"Friction of {each.surface} in sustained contact: {each.friction:.3g} +- {each.std:.2g}, "
+            f"from {each.slides} slides before rest with a scatter of {each.scatter:.2g}"
         )
 
 
 def _doubts(found: Calibration) -> Iterator[str]:
     groups = (
-        ("The data do not determine", found.undetermined),
+        ("Not determined by the data", found.undetermined),
         ("Warning", found.warnings),
         ("Problem", found.problems),
     )
@@ -138,9 +141,9 @@ def _doubts(found: Calibration) -> Iterator[str]:
             yield f"{title}: {text}"
     for each in found.outliers[:MAX_OUTLIERS]:
         when = "" if math.isnan(each.time) else f" at {each.time:.3f} s"
-        yield f"Left out: {each.recording}{when}, {each.kind}, {each.size:.1f} standard deviations off"
+        yield f"Excluded: {each.recording}{when}, {each.kind}, {each.size:.1f} standard deviations off"
     if len(found.outliers) > MAX_OUTLIERS:
-        yield f"Left out: {len(found.outliers) - MAX_OUTLIERS} more"
+        yield f"Excluded: {len(found.outliers) - MAX_OUTLIERS} more"
 
 
 def content_of(found: Calibration) -> dict[str, Any]:
@@ -188,7 +191,7 @@ def server_parameters(found: Calibration) -> str:
         "  ros__parameters:",
         f"    gravity: {_list(found.gravity_W)}",
         f"    bodies: [{name}]",
-        "    # No motion tells the mass: this is what was configured, and the inertia is relative to it.",
+        "    # Motion does not determine the mass: it is the configured one, which the inertia refers to.",
         f"    body.{name}.mass: {float(body.mass_properties.mass)!r}",
         f"    body.{name}.center_of_mass: {_list(body.p_FB_F)}",
         f"    body.{name}.inertia: {_list([*I_B.diagonal(), I_B[0, 1], I_B[0, 2], I_B[1, 2]])}",

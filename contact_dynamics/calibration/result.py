@@ -81,7 +81,7 @@ class Outlier(Record):
 
     Attributes:
         recording: Name of the toss.
-        kind: What was observed, such as "velocities after strikes".
+        kind: What was observed, such as "velocities after impacts".
         time: s, when it happened, on the recording's clock; NaN for what has no one time.
         size: How large its residuals are, in standard deviations.
     """

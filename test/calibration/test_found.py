@@ -90,8 +90,8 @@ def test_gravity_is_found_toss_by_toss_with_its_tilt(found: Calibration) -> None
 
 def test_configured_values_that_are_contradicted_are_said(found: Calibration) -> None:
     text = "\n".join(found.warnings)
-    assert "friction.floor: configured is 0.3, the data say 0.2" in text
-    assert "restitution.floor: configured is 0.4" in text
+    assert "friction.floor: configured as 0.3, estimated as 0.2" in text
+    assert "restitution.floor: configured as 0.4" in text
 
 
 def test_the_calibrated_body_and_surface_have_the_estimates(found: Calibration) -> None:
@@ -130,9 +130,9 @@ def test_the_server_takes_the_parameters_as_they_are(found: Calibration, tmp_pat
 
 def test_the_report_says_what_was_used_found_and_contradicted(found: Calibration) -> None:
     text = report(found)
-    assert f"first flights long enough, {len(found.residuals)} strikes of a single corner" in text
-    assert "length scale x clock rate squared is 0.9" in text
-    assert "Warning: restitution.floor: configured is 0.4" in text
+    assert f"first flights long enough, {len(found.residuals)} impacts of a single corner" in text
+    assert "length scale x (clock rate)^2 is 0.9" in text
+    assert "Warning: restitution.floor: configured as 0.4" in text
 
 
 def test_the_content_is_plain_json_without_nan(found: Calibration) -> None:
@@ -160,7 +160,7 @@ def with_one_left_out(picture: Any, found: Calibration) -> Calibration:
     """The calibration as if its best strike had been left out."""
     best = picture.drawn_strikes(found)[-1]
     outlier = Outlier(
-        recording=best.toss.name, kind="velocities after strikes", time=best.strike.time, size=9.0
+        recording=best.toss.name, kind="velocities after impacts", time=best.strike.time, size=9.0
     )
     return replace(found, outliers=(outlier,))
 
@@ -195,4 +195,4 @@ def test_the_file_has_each_strike_with_both_velocities_and_marks_what_was_left_o
     for kind in ("velocity_after", "spin_after"):
         for name in ("measured", "predicted"):
             assert sum(each.endswith(f"/{kind}/{name}") for each in entities) == len(found.residuals)
-    assert picture.table_of(picture.drawn_strikes(marked)).count("left out") == 1
+    assert picture.table_of(picture.drawn_strikes(marked)).count("excluded") == 1

@@ -38,7 +38,7 @@ def squares(strikes: tuple[Fitting, Paths]) -> np.ndarray:
     """The squared distance of each strike at the truth."""
     fitting, paths = strikes
     (name, group), *rest = paths.groups_at(at_truth(fitting), SPREAD)
-    assert name == "trajectories through strikes"
+    assert name == "trajectories through impacts"
     assert not rest
     found: np.ndarray = np.square(group.residuals).sum(axis=1)
     return found

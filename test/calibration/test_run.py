@@ -50,11 +50,11 @@ def test_one_toss_does_not_tell_by_how_much_its_estimates_may_differ(
     """It has no scatter between tosses. A deviation of zero would make any difference a contradiction."""
     assert main([str(DEFAULT_RECORDING)]) == SOMETHING_OPEN
     printed = capsys.readouterr().out
-    assert "Problem: The 3 strikes of single corners are in 1 toss, too few" in printed
-    assert "by trajectories" in printed
-    assert "One toss does not tell how sure that is." in printed
-    assert "apart" not in printed
-    assert "The two ways disagree" not in printed
+    assert "Problem: The 3 impacts of single corners are in 1 toss, too few" in printed
+    assert "from trajectories" in printed
+    assert "without a standard deviation (one toss)" in printed
+    assert "difference" not in printed
+    assert "The two estimates disagree" not in printed
 
 
 def test_a_configuration_that_does_not_count_is_told(
@@ -81,7 +81,7 @@ def test_a_recording_in_which_the_body_never_flies_is_refused_with_what_may_be_w
 ) -> None:
     assert main([some_rows(tmp_path, slice(400, 480))]) == NOTHING
     said = capsys.readouterr().err
-    assert "the body never flies" in said
+    assert "without a flight" in said
     assert "the unit of the stamps" in said
 
 
@@ -90,8 +90,8 @@ def test_a_recording_without_strikes_says_what_is_not_determined(
 ) -> None:
     assert main([some_rows(tmp_path, slice(0, 90))]) == SOMETHING_OPEN
     said = capsys.readouterr().out
-    assert "Problem: No strike of a single corner was found in 1 tosses with 1 flights" in said
-    assert "The data do not determine: friction.floor" in said
+    assert "no impact of a single corner in 1 tosses with 1 flights" in said
+    assert "Not determined by the data: friction.floor" in said
 
 
 def test_a_path_that_is_none_is_told_and_ends_with_2(

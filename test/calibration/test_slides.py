@@ -88,7 +88,7 @@ def test_tosses_are_sampled_with_it(found: Calibration) -> None:
 
 def test_the_report_tells_it(found: Calibration) -> None:
     (lasting,) = found.lasting_frictions
-    assert f"Friction of floor where contact lasts: {lasting.friction:.3g} +- {lasting.std:.2g}" in report(
+    assert f"Friction of floor in sustained contact: {lasting.friction:.3g} +- {lasting.std:.2g}" in report(
         found
     )
     assert content_of(found)["lasting_frictions"] == [lasting.to_dict()]
