@@ -111,12 +111,12 @@ NOT_MEASURED: dict[
         "default 0.05 s",
     ],
     "docs/tumbling.md": [
-        "turns by 190° from one state to the next appears to turn by 170°",
+        "rotates by 190° from one state to the next appears to rotate by 170°",
         "a tenth of a second ahead",
         "1e8 rad/s",  # questions/test_bounds
         "5e-15 rad",  # tumbling/test_accuracy
         "1e16 rad",
-        "1 % is a tenth of a radian",
+        "error of 1 % in the",
         "0.1 rad",
         "last 0.1 s",
     ],
