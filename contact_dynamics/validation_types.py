@@ -132,6 +132,7 @@ def checks_types(function: Callable[P, R]) -> Callable[P, R]:
     names: dict[str, inspect.Parameter] = {}
     by_place: list[tuple[str, Expected | None]] = []
     places: dict[str, int] = {}
+    by_order: list[str] = []
 
     @functools.wraps(function)
     def checked(*args: P.args, **kwargs: P.kwargs) -> R:
@@ -140,9 +141,11 @@ def checks_types(function: Callable[P, R]) -> Callable[P, R]:
             names.update(inspect.signature(function).parameters)
             by_place.extend((name, by_name.get(name)) for name in names)
             places.update(_places(names.values()))
+            by_order.extend(places)
+        count = len(args)
         if not kwargs.keys() <= names.keys():
             refuse_unknown(function, next(name for name in kwargs if name not in names), names)
-        if len(args) > len(places) or any(places.get(name, len(args)) < len(args) for name in kwargs):
+        if count > len(places) or (count and not kwargs.keys().isdisjoint(by_order[:count])):
             _refuse_places(function, names.values(), args, kwargs)
         for value, (name, expected) in zip(args, by_place, strict=False):
             if expected is not None and not isinstance(value, expected.types):

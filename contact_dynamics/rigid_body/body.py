@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from contact_dynamics.errors import InvalidFieldError
-from contact_dynamics.records import Record
+from contact_dynamics.records import Record, made
 from contact_dynamics.rotations.one import cross_matrix, rotation_matrix
 from contact_dynamics.tolerances import LARGEST_NUMBER, SYMMETRY_TOLERANCE, TRIANGLE_TOLERANCE
 from contact_dynamics.validation import (
@@ -159,7 +159,7 @@ class BodyState(Record):
     def with_velocities(self, v_WB_W: ArrayLike, w_WB_W: ArrayLike) -> BodyState:
         """Return the state with the same pose and time and other velocities. Only these are checked."""
         v, w = check_array("v_WB_W", v_WB_W, (3,)), check_array("w_WB_W", w_WB_W, (3,))
-        return _checked_state(self.p_WB_W, self.q_WB, v, w, self.stamp_ns)
+        return made(BodyState, self.p_WB_W, self.q_WB, v, w, self.stamp_ns)
 
     @property
     def R_WB(self) -> FloatArray:
@@ -170,19 +170,6 @@ class BodyState(Record):
         """Return the velocities, (..., 3), m/s, world axes, of body points at ``p_WP_W``: v + w x r."""
         velocity: FloatArray = self.v_WB_W + (p_WP_W - self.p_WB_W) @ cross_matrix(self.w_WB_W).T
         return velocity
-
-
-def _checked_state(
-    p_WB_W: FloatArray, q_WB: FloatArray, v_WB_W: FloatArray, w_WB_W: FloatArray, stamp_ns: int
-) -> BodyState:
-    """Return a state of what has been checked."""
-    state = object.__new__(BodyState)
-    object.__setattr__(state, "p_WB_W", p_WB_W)
-    object.__setattr__(state, "q_WB", q_WB)
-    object.__setattr__(state, "v_WB_W", v_WB_W)
-    object.__setattr__(state, "w_WB_W", w_WB_W)
-    object.__setattr__(state, "stamp_ns", stamp_ns)
-    return state
 
 
 def states_of_rows(rows: ArrayLike, stamps_ns: Sequence[int]) -> list[BodyState]:
@@ -197,7 +184,7 @@ def states_of_rows(rows: ArrayLike, stamps_ns: Sequence[int]) -> list[BodyState]
     numbers[:, 3:7] = unit_rows(numbers[:, 3:7])[0]
     numbers = check_array("states", numbers, (None, 13))
     return [
-        _checked_state(row[:3], row[3:7], row[7:10], row[10:], stamp_ns)
+        made(BodyState, row[:3], row[3:7], row[7:10], row[10:], stamp_ns)
         for row, stamp_ns in zip(numbers, stamps_ns, strict=True)
     ]
 

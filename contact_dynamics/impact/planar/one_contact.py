@@ -23,7 +23,8 @@ from contact_dynamics.impact.law import RestitutionLaw
 from contact_dynamics.impact.planar.result import PlanarImpact
 from contact_dynamics.impact.planar.routh import PlanarStrike, impulse_path, pair_inverse_inertia
 from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, Vector2, check_vector2
-from contact_dynamics.tolerances import VELOCITY_TOLERANCE
+from contact_dynamics.records import made
+from contact_dynamics.tolerances import LARGEST_NUMBER, VELOCITY_TOLERANCE
 from contact_dynamics.validation import check_at_rest, check_not_negative
 
 
@@ -75,13 +76,17 @@ def planar_impact(
     after = strike.v_x, strike.v_y
     if s_x != 0.0 or s_y != 0.0:
         after = v_x + (strike.v_x - (v_x - s_x)), v_y + (strike.v_y - (v_y - s_y))
-    return PlanarImpact(
-        restitution_law=restitution_law,
-        velocity=PlanarVelocity(v=after, w=strike.w),
-        velocity_before_C=(strike.v_t_before, strike.v_n_before),
-        inverse_inertia=strike.response,
-        contact_path=strike.path,
-        impulse=(strike.i_x, strike.i_y),
+    if not max(abs(after[0]), abs(after[1]), abs(strike.w)) <= LARGEST_NUMBER:
+        PlanarVelocity(v=after, w=strike.w)  # which raises the error
+    return made(
+        PlanarImpact,
+        restitution_law,
+        made(PlanarVelocity, after, strike.w),
+        (strike.v_t_before, strike.v_n_before),
+        strike.response,
+        strike.path,
+        (strike.i_x, strike.i_y),
+        None,
     )
 
 
