@@ -767,7 +767,7 @@ hundred times `LETTERS_SETTLED`."""
 LETTERS_NO_FORCE: Final = 1e-9
 """Relative to the largest force. Where contacts share loads, one with less force has none."""
 
-LETTERS_ON_CONE: Final = 1e-9
+LETTERS_ON_CONE: Final = 1e-10
 """Relative. A force that sticks may lie so far outside of its cone."""
 
 ONE_CONTACT_ON_CONE: Final = 1e-9

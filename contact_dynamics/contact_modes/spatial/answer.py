@@ -182,7 +182,7 @@ def considered(
         return rough
     tried: list[Considered] = []
     for case, within, hurried in _cases(case_within, rough):
-        search = search_of(case, facets)
+        search = search_of(case, facets, from_rest=case.motion.of_body)
         found = evidence_of(case, search, sharpen=sharpen, hurried=hurried)
         tried.append(Considered(case, search, found, within))
         if not found.undecided:

@@ -33,6 +33,7 @@ from contact_dynamics.records import Record
 from contact_dynamics.rigid_body.body import inverse_mass_matrix
 from contact_dynamics.tolerances import (
     DISTANCE_TOLERANCE,
+    FEASIBLE,
     FLUSH_ROUNDING,
     OUT_OF_PLANE_RATIO,
     SAME_DIRECTION,
@@ -245,19 +246,18 @@ def _body_map(
     r_W: FloatArray,
     w_W: FloatArray,
     wrench_W: FloatArray,
-    rolling_W: FloatArray,
+    turning_W: FloatArray,
     at_rest: bool,
 ) -> AccelerationMap:
     """Return the map of one body.
 
-    Its ``rolling_W``, (n, 3), m/s^2, are accelerations of contacts that wander over curved sides, less the
-    motion of surfaces.
+    Its ``turning_W``, (n, 3), m/s^2, are the centripetal accelerations of the contact points, and those of
+    contacts that wander over curved sides, less the motion of surfaces.
     """
     J = point_jacobians(r_W).reshape(-1, 6)
     inverse = inverse_mass_matrix(mass, inertia_W)
-    turning, wrench = rolling_W, wrench_W
+    wrench = wrench_W
     if np.any(w_W):
-        turning = np.cross(w_W, np.cross(w_W, r_W)) + rolling_W
         wrench = wrench_W - np.concatenate([np.zeros(3), np.cross(w_W, inertia_W @ w_W)])
     inertia = np.zeros((6, 6))
     inertia[:3, :3] = mass * np.eye(3)
@@ -267,7 +267,7 @@ def _body_map(
         J,
         of_forces=inverse @ J.T,
         free=inverse @ wrench,
-        turning=turning,
+        turning=turning_W,
         inertia=inertia,
         wrench=wrench,
         mass=mass,
@@ -350,13 +350,15 @@ def _case_of(
         relative = velocities.copy()
         relative[touching] = sliding[touching]
     rolling = velocity_accelerations(contacts, relative, w)
+    # Contacts that were made flush have the velocities of the given points, and so their accelerations.
+    arms = problem.contacts.p_WC_W - state.p_WB_W
     motion = _body_map(
         body.mass,
         body.inertia_in_world(state.R_WB),
         r_W=r_W,
         w_W=w,
         wrench_W=problem.wrench_W,
-        rolling_W=rolling,
+        turning_W=np.cross(w, np.cross(w, arms)) + rolling if np.any(w) else rolling,
         at_rest=not (np.any(w) or (contacts.surfaces_move and np.any(rolling[touching]))),
     )
     return SpatialCase(motion, contacts, sliding, touching)
@@ -375,14 +377,26 @@ def search_of_few_edges(case: SpatialCase, facets: int) -> Search:
     return search
 
 
-def search_of(case: SpatialCase, facets: int) -> Search:
-    """Return the search for the modes of a case, in the motion's units."""
+def search_of(case: SpatialCase, facets: int, *, from_rest: bool = False) -> Search:
+    """Return the search for the modes of a case, in the motion's units.
+
+    Args:
+        case: The case.
+        facets: The number of edges of friction pyramids.
+        from_rest: Whether one body that turns about contacts at rest is seen as one at rest. Its points there
+            all have the same centripetal acceleration. With that taken from the acceleration of the mass
+            centre, it moves from rest under another load, and the motion of the search is not the case's.
+    """
     motion, contacts, sliding, touching, _ = case
+    turning, free = motion.turning[touching], motion.free
+    at_rest = motion.at_rest and not np.any(sliding[touching])
+    if from_rest and np.any(turning) and not np.any(sliding[touching]):
+        mean = turning.mean(axis=0)
+        if np.abs(turning - mean).max() <= FEASIBLE * motion.scale:
+            turning, free, at_rest = np.zeros_like(turning), free + np.append(mean, np.zeros(3)), True
     stated = []
-    for i in touching.tolist():
-        point = np.column_stack(
-            [motion.points[3 * i : 3 * i + 3] / motion.lengths, motion.turning[i] / motion.scale]
-        )
+    for i, constant in zip(touching.tolist(), turning, strict=True):
+        point = np.column_stack([motion.points[3 * i : 3 * i + 3] / motion.lengths, constant / motion.scale])
         stated.append(
             Touching(
                 contacts.normals_W[i],
@@ -396,9 +410,9 @@ def search_of(case: SpatialCase, facets: int) -> Search:
     return Search(
         stated,
         of_forces=motion.lengths[:, None] * motion.of_forces[:, forces],
-        free=motion.free * motion.lengths / motion.scale,
+        free=free * motion.lengths / motion.scale,
         mass=motion.inertia / np.outer(motion.lengths, motion.lengths),
-        at_rest=motion.at_rest and not np.any(sliding[touching]),
+        at_rest=at_rest,
         facets=facets,
     )
 

@@ -271,3 +271,34 @@ def test_a_pushed_and_turned_block_is_one_mode_of_several_motions() -> None:
 def test_too_many_contacts_are_refused() -> None:
     with pytest.raises(TooLargeError, match="contacts"):
         contact_modes(spatial_problem(BODY, state(), on_floor(FEET * 9, 0.5), (0, 0, -1)))
+
+
+def test_a_body_that_turns_about_its_contacts_has_the_modes_of_one_at_rest_under_another_load() -> None:
+    """A corner in a groove and another one on a third flat: all points on the line between them rest.
+
+    With their common centripetal acceleration c, the load of a body at rest with the same modes has m c more
+    force, and the torque that the turning body needs less. The question had 4,539 programs and no end.
+    """
+    body = MassProperties(mass=0.08, I_B=np.diag([1.1e-4, 1.2e-4, 2.0e-4]))
+    corner, other = np.array([0.0038, 0.0447, -0.1423]), np.array([-0.0469, -0.0655, 0.0236])
+    normals = np.array([[0.964, -0.049, 0.2616], [-0.965, -0.03, 0.2616], [-0.043, 0.964, 0.2616]])
+    contacts = ContactSet(
+        p_WC_W=[corner, corner, other],
+        normals_W=normals / np.linalg.norm(normals, axis=1)[:, None],
+        frictions=[1.5, 0.05, 0.2],
+    )
+    w = 33.1 * (other - corner)
+    load = np.array([0.0, 0.0, -0.776])
+    turns = contact_modes(spatial_problem(body, state(-np.cross(w, corner), w), contacts, load))
+    centripetal = np.cross(w, np.cross(w, corner))
+    rests = contact_modes(
+        spatial_problem(body, state(), contacts, load + body.mass * centripetal, -np.cross(w, body.I_B @ w))
+    )
+    assert turns.verdict == rests.verdict == ModeVerdict.UNIQUE
+    assert turns.modes[0].mode == rests.modes[0].mode
+    np.testing.assert_allclose(
+        turns.modes[0].acceleration_W + centripetal, rests.modes[0].acceleration_W, atol=SOLVED
+    )
+    np.testing.assert_allclose(
+        turns.modes[0].angular_acceleration_W, rests.modes[0].angular_acceleration_W, rtol=SOLVED
+    )
