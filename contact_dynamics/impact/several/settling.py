@@ -81,6 +81,8 @@ def settling_impact(
         if total.verdict != SeveralVerdict.RESOLVED or is_settled(total.state):
             return total
         again = jam(total.state)
+        if not again.impulses_W.any():  # every further impact would leave the same state
+            return replace(total, verdict=SeveralVerdict.NOT_CONVERGED)
         total = replace(
             again,
             impulses_W=total.impulses_W + again.impulses_W,

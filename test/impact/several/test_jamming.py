@@ -206,9 +206,9 @@ def test_what_never_settles_says_so() -> None:
     asked = []
     impact = settling_impact(body, state, touching, is_settled=lambda now: bool(asked.append(now)), **how)
     assert impact.verdict == SeveralVerdict.NOT_CONVERGED
-    assert len(asked) == MAX_JAMS
+    assert len(asked) == 1  # since the second impact has no impulse, further ones would not have any
     once = jamming_impact(body, state, touching, **how)
-    np.testing.assert_allclose(impact.state.v_WB_W, once.state.v_WB_W, atol=1e-6)  # it stopped at once
+    np.testing.assert_allclose(impact.state.v_WB_W, once.state.v_WB_W, atol=1e-6)
 
 
 def test_restitution_throws_a_jammed_rod_off() -> None:
