@@ -39,6 +39,7 @@ cdef class HeldContacts:
     cdef readonly Pose pose
     cdef readonly double[13] rates
     cdef readonly int count
+    cdef int others
     cdef bint is_flush, begins
     cdef Equations equations
     cdef double[::1] numbers
@@ -47,7 +48,9 @@ cdef class HeldContacts:
     cpdef (double, double, double) force(self, int i) noexcept
     cdef void set_force(self, int i, double x, double y, double z) noexcept
     @cython.locals(one=Held, flat=Flat, k=cython.int, i=cython.int)
+    cdef void accelerate(self, double* y)
     cdef void push(self, double* y)
+    cdef void choose_forces(self)
     cdef void _set_rates(self, double* y, (double, double, double) a, (double, double, double) alpha) noexcept
     cpdef (double, double, double) accelerated(self, int flat, int corner) noexcept
     @cython.locals(one=Held, flat=Flat, least=cython.double)

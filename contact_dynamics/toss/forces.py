@@ -169,6 +169,7 @@ class HeldContacts:
         self.equations = Equations(size)
         # The force at each contact, N, its target, and five numbers that a flush one needs.
         self.numbers = array("d", bytes(8 * 9 * self.count))
+        self.others = 0  # the number of ways in which other forces with the same rates differ
         self.y = [0.0] * 13
 
     @property
@@ -186,7 +187,13 @@ class HeldContacts:
 
     def push(self, y: Numbers) -> None:
         """Find the rates of the state, and the forces at the contacts."""
+        self.accelerate(y)
+        self.choose_forces()
+
+    def accelerate(self, y: Numbers) -> None:
+        """Find the rates of the state, which all forces with the mode cause alike."""
         pose = self.pose
+        self.others = 0
         pose.take(y)
         if self.is_flush and self._slide_flush(y):
             return
@@ -211,7 +218,7 @@ class HeldContacts:
                 equations.add(pose, arm, t2, t2, -vec.dot(t2, moves))
                 equations.add(pose, arm, n, n, -vec.dot(n, moves))
         per_mass = 1.0 / solid.mass
-        others = equations.solve(per_mass)
+        self.others = equations.solve(per_mass)
         k = 0
         for i in range(self.count):
             one = self.mode[i]
@@ -223,9 +230,15 @@ class HeldContacts:
             self.set_force(i, f_x, f_y, f_z)
         a = equations.summed(solid.gravity, _FORCE, per_mass)
         self._set_rates(y, a, equations.summed(pose.alpha, _TURNING, 1.0))
-        if self.count == 2 and self._share_between_two() and others == 1:
+
+    def choose_forces(self) -> None:
+        """Choose forces that press and that friction allows, if there are any with the rates of `accelerate`.
+
+        That takes up to a hundred times as long as the rates, which are all that most stages of a step need.
+        """
+        if self.count == 2 and self._share_between_two() and self.others <= 1:
             return
-        if others > 0 and self.least_left() < 0.0 and not self._tips():
+        if self.others > 0 and self.least_left() < 0.0 and not self._tips():
             self._bring_within_cones()
 
     def _set_rates(self, y: Numbers, a: Vector3, alpha: Vector3) -> None:
@@ -401,17 +414,17 @@ class HeldContacts:
     def _share_between_two(self) -> bool:
         """Share forces between two contacts that stick, without a change of the motion.
 
-        Return whether they are on one flat. Then no other forces do better, unless they differ by more than
-        what acts along the edge.
+        Return whether they do. Then no other forces do better, unless they differ by more than what acts
+        along the line between the contacts.
         """
         one, other = self.mode[0], self.mode[1]
         if one.slides or other.slides:
             return False
         if one.flat == other.flat:
             self._share_along_edge()
-            return True
-        self._squeeze()
-        return False
+        else:
+            self._squeeze()
+        return True
 
     def _share_along_edge(self) -> None:
         """Have two contacts that stick share what acts along their edge.
@@ -456,7 +469,8 @@ class HeldContacts:
             g, (-line[0], -line[1], -line[2]), flat_other.normal, flat_other.friction
         )
         least, most = max(low, low_other), min(high, high_other)
-        if least > most:
+        gap = least - most
+        if gap == _INFINITE or gap > FORCE_ROUNDING * (abs(least) + abs(most)):
             return
         more = min(max(0.0, least), most)
         self.set_force(0, f[0] + more * line[0], f[1] + more * line[1], f[2] + more * line[2])
@@ -540,7 +554,7 @@ def _within_cone(force: Vector3, u: Vector3, n: Vector3, friction: float) -> tup
         if q > 0.0:
             return ((root - b) / a, _INFINITE)
         return (-_INFINITE, (-root - b) / a)
-    if a == 0.0 or b * b < a * c or p - q * b / a < 0.0:
+    if a == 0.0 or b * b < a * c * (1.0 - FORCE_ROUNDING) or p - q * b / a < 0.0:
         return (_INFINITE, -_INFINITE)
     return ((root - b) / a, (-root - b) / a)
 

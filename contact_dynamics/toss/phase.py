@@ -285,6 +285,7 @@ class _Run:
                 step *= max(0.2, 0.9 * size**-0.2)
                 continue
             self.count, self.span = self.count + 1, step
+            self.held.choose_forces()
             end, x = self._first_end()
             if has_steps:
                 done = self._interpolated()
@@ -355,7 +356,7 @@ class _Run:
                     rate += _STAGES[row + j] * stages[13 * j + i]
                 trial[i] = y[i] + step * rate
             row += k
-            self.held.push(trial)
+            self.held.accelerate(trial)
             for i in range(13):
                 stages[13 * k + i] = rates[i]
         largest = 0.0
@@ -514,7 +515,10 @@ class _Run:
         a, f_a = bad, self._left_at(kind, bad) + half
         if f_a > -half:  # it is there already, or the interpolant is off by rounding
             return bad
-        b, f_b = 0.0, max(self._left_at(kind, 0.0), 0.0) + half
+        begun = self._left_at(kind, 0.0)
+        if begun < -enough:
+            return min(bad, PHASE_LEAST_STEP / self.span)
+        b, f_b = 0.0, max(begun, 0.0) + half
         share = 0.5
         for _ in range(_MAX_ROOT_STEPS):
             x = a + share * (b - a)

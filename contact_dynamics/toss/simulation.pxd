@@ -12,7 +12,7 @@ from contact_dynamics.toss.laid_flat cimport laid_flat
 from contact_dynamics.toss.law_spread cimport KickOfOne
 from contact_dynamics.toss.mode_choice cimport choose_mode
 from contact_dynamics.toss.solid cimport Flat, Held, Solid, approaches, energy_of, kinetic_energy_of
-from contact_dynamics.toss.strike cimport low_rebounds_ended
+from contact_dynamics.toss.strike cimport Unsettled, low_rebounds_ended
 
 cdef extern from *:
     # A checksum of simulation.py and this file, which setup.py defines (see numerics/compiled.py).
@@ -31,6 +31,7 @@ cdef class Simulation(History):
     cdef double slow, mark, busy_mark, linger
     cdef int struck, laid, steps, rounds, busy_rounds
     cdef object settled
+    cdef Unsettled unsettled
     cdef list looked_at
     cdef dict faces
     cdef tuple way_on

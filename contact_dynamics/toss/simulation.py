@@ -42,7 +42,7 @@ from contact_dynamics.toss.solid import (
     properties_of,
     state_of,
 )
-from contact_dynamics.toss.strike import low_rebounds_ended, strike
+from contact_dynamics.toss.strike import Unsettled, low_rebounds_ended, strike
 
 if TYPE_CHECKING:
     from contact_dynamics.toss.forces import HeldContacts
@@ -128,6 +128,7 @@ class Simulation(History):
         self.busy_mark, self.busy_rounds = 0.0, 0  # the same over a longer time
         self.linger = SHORTEST_LINGER  # s, as long as rounds have to take, and short steps go on
         self.settled: Strikes | None = None  # the last strikes
+        self.unsettled = Unsettled()
         self.looked_at: list[Touch] = []  # contacts whose modes were all looked for last
         self.faces: Faces = {}  # that it could be laid on
         self.way_on: Mode | None = None  # how it goes on where it could rest as well
@@ -206,7 +207,14 @@ class Simulation(History):
             first = striking[way] if way > 0 else None
         y, before = self.y, energy_of(self.solid, self.y)
         strikes = strike(
-            self.solid, self.y, touching, self.settings.law, rates=rates, together=together, first=first
+            self.solid,
+            self.y,
+            touching,
+            self.settings.law,
+            rates=rates,
+            unsettled=self.unsettled,
+            together=together,
+            first=first,
         )
         self.settled = strikes
         self.y, staying = strikes.y, strikes.staying
@@ -229,7 +237,7 @@ class Simulation(History):
         The friction that came with rebounds is given back. If that took more energy than there was before the
         strikes, J, the rebounds are followed after all.
         """
-        ended = low_rebounds_ended(self.solid, self.y, touching)
+        ended = low_rebounds_ended(self.solid, self.y, touching, self.unsettled)
         if ended is None or energy_of(self.solid, ended.y) > energy:
             return staying
         change = [

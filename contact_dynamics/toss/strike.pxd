@@ -18,11 +18,20 @@ cdef extern from *:
 cdef double STILL_TOUCHING, STRIKES
 
 
+@cython.final
+cdef class Unsettled:
+    cdef list touching, y
+
+    @cython.locals(k=cython.int)
+    cdef bint are(self, Solid solid, list y, list touching) except -1
+    cdef void note(self, list y, list touching) noexcept
+
+
 @cython.locals(fast=cython.double, rate=cython.double, is_slow=cython.bint)
-cpdef low_rebounds_ended(Solid solid, list y, list touching)
+cpdef low_rebounds_ended(Solid solid, list y, list touching, Unsettled unsettled)
 cdef double _slow(Solid solid) noexcept
 @cython.locals(fast=cython.double, rate=cython.double, motion=(double, double, double), flat=Flat)
-cdef _settled(Solid solid, list y, list touching, list rates)
+cdef _settled(Solid solid, list y, list touching, list rates, Unsettled unsettled)
 cdef list _held(Solid solid, list y, list slow, list touching)
 @cython.locals(pose=Pose, flat=Flat, surface=cython.int, corner=cython.int, rate=cython.double,
                rebound=cython.double, pull=cython.double, motion=(double, double, double),

@@ -47,6 +47,34 @@ _JAMS_AFTER: Final = 40
 """The same where they approach so slowly that they would not rise by `settling`."""
 
 
+class Unsettled:
+    """The contacts, and their state, that were last found to have no mode in which they could settle.
+
+    Strikes that follow each other, at one instant or at two that are nanoseconds apart, mostly lead to the
+    same state without rebounds, and the proof that it has no mode takes some 30 ms.
+    """
+
+    def __init__(self) -> None:
+        self.touching: list[Touch] = []
+        self.y: Numbers = []
+
+    def are(self, solid: Solid, y: Numbers, touching: list[Touch]) -> bool:
+        """Return whether these contacts in this state are known to have no mode.
+
+        The body is where it was, and its velocities are the same, to within what counts as no approach.
+        """
+        if touching != self.touching or y[:7] != self.y[:7]:
+            return False
+        for k in range(7, 13):
+            if abs(y[k] - self.y[k]) * (1.0 if k < 10 else solid.reach) > STRIKES:
+                return False
+        return True
+
+    def note(self, y: Numbers, touching: list[Touch]) -> None:
+        """Remember that contacts have no mode in a state."""
+        self.y, self.touching = y, touching
+
+
 class Strikes(NamedTuple):
     """The strikes of one instant.
 
@@ -72,6 +100,7 @@ def strike(
     law: RestitutionLaw,
     *,
     rates: list[float],
+    unsettled: Unsettled,
     together: SeveralContactsLaw = SeveralContactsLaw.SEQUENTIAL,
     first: Touch | None = None,
 ) -> Strikes:
@@ -83,6 +112,7 @@ def strike(
         touching: All contacts that touch, approaching or not.
         law: What the coefficients of restitution mean.
         rates: m/s, the normal velocities of these contacts (`approaches`).
+        unsettled: What earlier strikes have found about contacts without a mode.
         together: The law for several contacts.
         first: The contact that is struck first under SEQUENTIAL, or None if it is the one that approaches
             fastest, with those that tie with it.
@@ -91,7 +121,7 @@ def strike(
     for k in range(MAX_STRIKES_AT_ONCE):
         if min(rates) >= -(_slow(solid) if k >= _JAMS_AFTER else STRIKES):
             break
-        settled = _settled(solid, y, touching, rates)
+        settled = _settled(solid, y, touching, rates, unsettled)
         if settled is not None:
             return settled._replace(struck=struck + settled.struck)
         group = next_in_turn(solid, y, touching, rates) if first is None else [first]
@@ -116,7 +146,9 @@ def strike(
     return Strikes(y, struck, staying, settled=False)
 
 
-def low_rebounds_ended(solid: Solid, y: Numbers, touching: list[Touch]) -> Strikes | None:
+def low_rebounds_ended(
+    solid: Solid, y: Numbers, touching: list[Touch], unsettled: Unsettled
+) -> Strikes | None:
     """Return the state in which contacts that rebound too low to be followed stay, or None if there are none.
 
     No contact approaches. One stays if what presses it in brings it back before it has risen by the solid's
@@ -130,7 +162,7 @@ def low_rebounds_ended(solid: Solid, y: Numbers, touching: list[Touch]) -> Strik
         is_slow = is_slow or STILL_TOUCHING < rate <= fast
     if not is_slow:
         return None
-    found = _settled(solid, y, touching, rates)
+    found = _settled(solid, y, touching, rates, unsettled)
     if found is None:
         return None
     low = [
@@ -146,7 +178,9 @@ def _slow(solid: Solid) -> float:
     return math.sqrt(2.0 * solid.settling * vec.norm(solid.gravity))
 
 
-def _settled(solid: Solid, y: Numbers, touching: list[Touch], rates: list[float]) -> Strikes | None:
+def _settled(
+    solid: Solid, y: Numbers, touching: list[Touch], rates: list[float], unsettled: Unsettled
+) -> Strikes | None:
     """Return the state in which all slow rebounds have ended, or None if a contact still rebounds."""
     fast = 2.0 * solid.settling * vec.norm(solid.gravity)
     for rate in rates:
@@ -164,12 +198,18 @@ def _settled(solid: Solid, y: Numbers, touching: list[Touch], rates: list[float]
     stopped = _held(solid, impact.y, slow, touching)
     if stopped is None:
         return _all_together(impact, touching)
-    choice = choose_mode(solid, stopped, [one.touch for one in slow])
+    touches = [one.touch for one in slow]
+    if unsettled.are(solid, stopped, touches):
+        return None
+    choice = choose_mode(solid, stopped, touches)
+    if not choice.modes:
+        unsettled.note(stopped, touches)
+        return None
     staying = _pressed(solid, stopped, choice, touching, rates, motions)
     if staying is None:
         return None
     known: Choice | None = choice
-    if staying != [one.touch for one in slow]:
+    if staying != touches:
         stopped = _held(solid, impact.y, [one for one in slow if one.touch in staying], touching)
         known = None
     if stopped is None:
@@ -214,12 +254,10 @@ def _pressed(  # noqa: PLR0917
 ) -> list[Touch] | None:
     """Return which slow contacts stay, or None if a contact that was struck presses too little to settle.
 
-    ``choice`` has the modes of all slow contacts. A contact that stays gives up what is left of its normal
+    ``choice`` has the modes of all slow contacts, one at least. A contact that stays gives up what is left of its normal
     velocity. It may, if it is pressed in so much that it would not rise by the solid's `settling` before it
     comes back.
     """
-    if not choice.modes:
-        return None
     pushed = choice.pushed_in(0, solid, y)
     forces = {one.touch: pushed.force(i) for i, one in enumerate(choice.modes[0])}
     pose = pose_of(solid, y)
