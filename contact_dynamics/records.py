@@ -13,10 +13,10 @@ import inspect
 import itertools
 import math
 import textwrap
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from decimal import Decimal
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any, Final, TypeVar
+from typing import TYPE_CHECKING, Any, Final, TypeVar, cast
 
 import numpy as np
 
@@ -161,22 +161,14 @@ class Record:
 
 
 def made(cls: type[Made], *values: object) -> Made:
-    """Return a record of values, in the order of its fields, that need no checks.
+    """Return a record of values, one for each field of its own class, that need no checks.
 
-    It takes a fifth of the time of a call of the class.
+    It takes half of the time of a call of the class.
     """
-    setters = _SETTERS.get(cls)
-    if setters is None:
-        fields = dataclasses.fields(cls)  # type: ignore[arg-type]  # a record is a dataclass
-        setters = _SETTERS[cls] = [getattr(cls, field.name).__set__ for field in fields]
-    record = object.__new__(cls)
-    for put, value in zip(setters, values, strict=True):
-        put(record, value)
+    record, names = object.__new__(cls), cast("tuple[str, ...]", cls.__slots__)
+    for name, value in zip(names, values, strict=True):
+        object.__setattr__(record, name, value)
     return record
-
-
-_SETTERS: Final[dict[type, list[Callable[[object, object], None]]]] = {}
-"""What sets the fields of records, although nobody else can."""
 
 
 class Rows(Record):

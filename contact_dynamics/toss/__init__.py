@@ -41,6 +41,7 @@ import_core(
     "contact_dynamics.toss.strike",
     "contact_dynamics.toss.laid_flat",
     "contact_dynamics.toss.law_spread",
+    "contact_dynamics.toss.next_strikes",
     "contact_dynamics.toss.history",
     "contact_dynamics.toss.simulation",
 )

@@ -12,7 +12,7 @@ cdef extern from *:
     cpdef enum:
         SOURCE_CRC
 
-cdef double GRAZING_DEPTH, NEGLIGIBLE_TERM, SAMPLED_ARRIVAL, _GYROSCOPIC, _INFINITE, _MANY
+cdef double GRAZING_DEPTH, NEGLIGIBLE_TERM, _GYROSCOPIC, _INFINITE, _MANY
 cdef int MAX_SEARCH_STEPS, SEARCH_BEGUN, _MAX_ROOT_STEPS, _ORDER
 
 
@@ -28,7 +28,9 @@ cdef class Descent:
     cdef double[::1] pulls, before
 
     @cython.locals(pose=Pose, corner=cython.int)
-    cdef void _set_out(self, list y) except *
+    cpdef void set_out(self, Solid solid, (double, double, double) gravity, list y) except *
+    @cython.locals(seconds=cython.double)
+    cpdef double fly(self, list y, double pause, double longest) except -1.0
     @cython.locals(x=cython.double, y=cython.double, z=cython.double, s=cython.double, u=cython.double,
                    v=cython.double, t=cython.double, g=cython.int, h=cython.int, j=cython.int, k=cython.int)
     cdef void _expand(self, double seconds, (double, double, double, double) q, (double, double, double) w) noexcept
@@ -61,12 +63,6 @@ cdef class Descent:
     cdef double _root(self, int part, double low, double high) except -2.0
 
 
-@cython.locals(gravity=(double, double, double), descent=Descent, i=cython.int, k=cython.int,
-               arrival=cython.double)
-cpdef arrivals(
-    list solids, const double[:, ::1] gravities, const double[:, ::1] starts, const double[::1] longest,
-    double[:, ::1] after, double[::1] seconds, long[::1] parts,
-)
 cdef double free_for(double height, double rate, double pull) noexcept
 cdef double ulp(double x) noexcept
 cdef double _row_sum((double, double, double, double, double, double, double, double, double) matrix) noexcept

@@ -13,24 +13,21 @@ from __future__ import annotations
 
 import math
 from array import array
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from contact_dynamics.landing.search_work import MAX_SEARCH_STEPS, SEARCH_BEGUN, SearchWork
-from contact_dynamics.tolerances import GRAZING_DEPTH, NEGLIGIBLE_TERM, SAMPLED_ARRIVAL
+from contact_dynamics.tolerances import GRAZING_DEPTH, NEGLIGIBLE_TERM
 from contact_dynamics.toss import vectors as vec
 from contact_dynamics.toss.solid import Above, pose_of, properties_of, rows_of, state_of
 from contact_dynamics.tumbling import Precision, free_motion
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
     from contact_dynamics.numerics.vectors import Vector3
     from contact_dynamics.rotations.one import Quaternion
     from contact_dynamics.toss.solid import Numbers, Solid
     from contact_dynamics.toss.vectors import Matrix3
-    from contact_dynamics.validation import FloatArray
 
 _ORDER: Final = 20
 """Order of the series. A body turns by one or two radians while they hold."""
@@ -41,62 +38,6 @@ _MANY: Final = 30.0
 _MAX_ROOT_STEPS: Final = 100
 _GYROSCOPIC: Final = 1.0 / math.sqrt(3.0)
 _INFINITE: Final = math.inf
-
-
-class Flight(NamedTuple):
-    """A flight: how long it lasts, s, and the state at its end."""
-
-    seconds: float
-    after: Numbers
-
-
-def flight(solid: Solid, y: Numbers, *, longest: float, pause: float) -> Flight:
-    """Return the flight from a state to the first contact with a flat.
-
-    Args:
-        solid: The body and the flats.
-        y: The state at the beginning.
-        longest: s, after which the flight ends anyway.
-        pause: s, after which arrivals are looked for.
-
-    Raises:
-        TooLargeError: the search for the end takes too many steps.
-    """
-    descent = Descent(solid, solid.gravity, y)
-    seconds = descent.run(min(pause, longest), longest)
-    descent.look(seconds)
-    return Flight(seconds, descent.state())
-
-
-def arrivals(  # noqa: PLR0917  C has no keywords
-    solids: list[Solid],
-    gravities: FloatArray,
-    starts: FloatArray,
-    longest: FloatArray,
-    after: FloatArray,
-    seconds: FloatArray,
-    parts: NDArray[np.int64],
-) -> None:
-    """Find where flights of n samples end.
-
-    Args:
-        solids: The body and the flats of each.
-        gravities: (n, 3), m/s^2.
-        starts: (n, 13), the states at the beginning.
-        longest: (n,), s, after which flights end anyway.
-        after: (n, 13), gets the states at the end.
-        seconds: (n,), gets how long flights last, s.
-        parts: (n,), gets the flat times the number of corners plus the corner that strikes, or -1.
-    """
-    for i in range(len(solids)):
-        gravity = (float(gravities[i, 0]), float(gravities[i, 1]), float(gravities[i, 2]))
-        descent = Descent(solids[i], gravity, [float(starts[i, k]) for k in range(13)])
-        arrival = descent.run(0.0, float(longest[i]))
-        descent.look(arrival)
-        seconds[i] = arrival
-        parts[i] = descent.striking(SAMPLED_ARRIVAL)
-        for k in range(13):
-            after[i, k] = descent.above.y[k]
 
 
 def _closed_form(solid: Solid, gravity: Vector3, y: Numbers, seconds: float) -> Numbers:
@@ -110,20 +51,22 @@ def _closed_form(solid: Solid, gravity: Vector3, y: Numbers, seconds: float) -> 
 class Descent:
     """The heights of corners above flats over time, and the search for the first contact."""
 
-    def __init__(self, solid: Solid, gravity: Vector3, y: Numbers) -> None:
-        self.solid, self.gravity = solid, gravity
+    def __init__(self, solid: Solid) -> None:
+        self.solid, self.gravity = solid, solid.gravity
         self.start = [0.0] * 13
-        self.above = Above(solid)  # at the time that was looked at last
+        self.above = Above(solid.count * len(solid.flats))  # at the time that was looked at last
         # Heights of corners at another time, m; then a share of each one's acceleration, m/s^2.
         self.before = array("d", bytes(8 * (self.above.count + solid.count)))
         self.pulls = self.before[self.above.count :]
         self.q, self.w, self.momentum = [0.0] * 84, [0.0] * 63, [0.0] * 63  # series, in body axes
         self.begin = self.end = 0.0  # s, between which they hold
-        self._set_out(y)
 
-    def _set_out(self, y: Numbers) -> None:
-        """Begin with a state, and bound the accelerations of corners by their turning."""
-        solid = self.solid
+    def set_out(self, solid: Solid, gravity: Vector3, y: Numbers) -> None:
+        """Begin with a state, and bound the accelerations of corners by their turning.
+
+        The body may be another one with as many corners, among as many flats. Gravity is in m/s^2.
+        """
+        self.solid, self.gravity = solid, gravity
         for k in range(13):
             self.start[k] = y[k]
         pose = pose_of(solid, y)
@@ -135,6 +78,19 @@ class Descent:
         for corner in range(solid.count):
             self.pulls[corner] = vec.norm(solid.corner(corner)) * turning
         self._expand(0.0, (y[3], y[4], y[5], y[6]), w)
+
+    def fly(self, y: Numbers, pause: float, longest: float) -> float:
+        """Fly from a state to the first contact with a flat, and return how long that takes, s.
+
+        Arrivals are looked for after a ``pause``, s. The flight ends after the ``longest`` time, s, anyway.
+
+        Raises:
+            TooLargeError: the search for the end takes too many steps.
+        """
+        self.set_out(self.solid, self.solid.gravity, y)
+        seconds = self.run(min(pause, longest), longest)
+        self.look(seconds)
+        return seconds
 
     def _expand(self, seconds: float, q: Quaternion, w: Vector3) -> None:
         """Begin the series at a time, s, with a quaternion and an angular velocity, body axes."""
@@ -197,7 +153,7 @@ class Descent:
             t = self.end - self.begin
             self._expand(self.end, self._turned(t), self._turning(t))
         self._set_state(seconds)
-        self.above.take(self.above.y)
+        self.above.take(self.solid, self.above.y)
 
     def _turned(self, t: float) -> Quaternion:
         """Return the quaternion of the series at a time after its beginning, s."""

@@ -17,7 +17,10 @@ cdef double SLIDING_STOPPED, SUNK, _DIRECTION_SURE, _INFINITE
 cdef int _ROW, _MOMENT, _FORCE, _TURNING, _WANTED, _SIZE, _WIDTH, _MAX_SWEEPS
 
 
+# Without cycles, the garbage collector need not look at what is made for each state.
 @cython.final
+@cython.no_gc
+@cython.freelist(8)
 cdef class Equations:
     cdef int count
     cdef double[::1] table, matrix
@@ -33,6 +36,8 @@ cdef class Equations:
 
 
 @cython.final
+@cython.no_gc
+@cython.freelist(8)
 cdef class HeldContacts:
     cdef readonly Solid solid
     cdef readonly tuple mode
@@ -81,12 +86,11 @@ cpdef double force_rounding(Solid solid) noexcept
 cdef void normalise(double* y) noexcept
 cdef void slow_down(double* y, Equations equations, double per_mass) noexcept
 cdef void move_back(double* y, Equations equations, double per_mass) noexcept
-cdef void take_out_of_flats(Above above, double* y)
 @cython.locals(pose=Pose, equations=Equations, flat=cython.int, corner=cython.int, now=cython.double, least=cython.double)
-cdef void _lift(Above above, double* y)
+cdef void _lift(Solid solid, Above above, double* y)
 cpdef HeldContacts pushed_by_contacts(Solid solid, list y, tuple mode)
 cpdef list held_in_place(Solid solid, list y, tuple mode)
 cpdef list held_as_they_are(Solid solid, list y, tuple mode)
-cpdef list out_of_flats(Solid solid, list y)
+cpdef list out_of_flats(Solid solid, list y, Above above=*)
 @cython.locals(flat=Flat, pose=Pose, equations=Equations)
 cpdef list without_rebounds(Solid solid, list y, list touching)

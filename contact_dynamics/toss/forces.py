@@ -34,11 +34,11 @@ from contact_dynamics.tolerances import (
     SUNK,
 )
 from contact_dynamics.toss import vectors as vec
-from contact_dynamics.toss.solid import Above, Pose
+from contact_dynamics.toss.solid import Pose
 
 if TYPE_CHECKING:
     from contact_dynamics.numerics.vectors import Vector3
-    from contact_dynamics.toss.solid import Held, Numbers, Solid, Touch
+    from contact_dynamics.toss.solid import Above, Held, Numbers, Solid, Touch
 
 _DIRECTION_SURE: Final = 1e6 * SLIDING_DIRECTION_SPEED
 """m/s. A flush contact that slides faster has a direction of its own, to 1e-6."""
@@ -593,15 +593,8 @@ def move_back(y: Numbers, equations: Equations, per_mass: float) -> None:
     y[6] = scale * q_w - p_x * q_x - p_y * q_y - p_z * q_z
 
 
-def take_out_of_flats(above: Above, y: Numbers) -> None:
-    """Change place and attitude of a state by the least after which no corner is below a flat."""
-    above.take(y)
-    if above.least < -SUNK:
-        _lift(above, y)
-
-
-def _lift(above: Above, y: Numbers) -> None:
-    solid, per_mass = above.solid, 1.0 / above.solid.mass
+def _lift(solid: Solid, above: Above, y: Numbers) -> None:
+    per_mass = 1.0 / solid.mass
     normalise(y)
     pose = Pose(solid)
     pose.take(y)
@@ -660,12 +653,18 @@ def held_as_they_are(solid: Solid, y: Numbers, mode: tuple[Held, ...]) -> Number
     return [held.y[k] for k in range(13)]
 
 
-def out_of_flats(solid: Solid, y: Numbers) -> Numbers:
-    """Return a state with the least change of place and attitude after which no corner is below a flat."""
-    above = Above(solid)
+def out_of_flats(solid: Solid, y: Numbers, above: Above | None = None) -> Numbers:
+    """Return a state with the least change of place and attitude after which no corner is below a flat.
+
+    Heights are computed ``above``, or where the solid has them.
+    """
+    if above is None:
+        above = solid.above
     for k in range(13):
         above.y[k] = y[k]
-    take_out_of_flats(above, above.y)
+    above.take(solid, above.y)
+    if above.least < -SUNK:
+        _lift(solid, above, above.y)
     return [above.y[k] for k in range(13)]
 
 

@@ -18,11 +18,14 @@ cdef class History:
     cdef readonly double now
     cdef readonly list y, pieces, events, resting
     cdef double lost_in_strikes, lost_in_contact, _first
-    cdef list _undecided
+    cdef readonly list undecided
     cdef tuple _ways
+    cdef int count
+    cdef bint is_sample
     cdef object _began_ns
 
     cpdef list touching_now(self, double leaving)
     @cython.locals(height=cython.double, apart=cython.double, flat=cython.int, corner=cython.int, s=cython.int, k=cython.int)
     cdef list _touching_together(self, list listed)
+    cdef void note(self, kind, list touching, tuple mode=*, (double, double, double) impulse=*, outcome=*) except *
     cdef int way(self, reason, int options) except -1

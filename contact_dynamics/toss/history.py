@@ -5,21 +5,20 @@ from __future__ import annotations
 
 import math
 from math import dist
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from contact_dynamics.constants import ns_after
-from contact_dynamics.rigid_body.body import states_of_rows
 from contact_dynamics.tolerances import DISTANCE_TOLERANCE
 from contact_dynamics.toss import vectors as vec
 from contact_dynamics.toss.forces import out_of_flats
 from contact_dynamics.toss.result import (
+    Noted,
     Piece,
     Toss,
     TossEnd,
     TossEnergy,
-    TossEvent,
     TossEventKind,
     Undecided,
     UndecidedReason,
@@ -28,18 +27,15 @@ from contact_dynamics.toss.solid import (
     energy_of,
     kinetic_energy_of,
     low_corners,
-    points_of,
     pose_of,
     state_of,
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from contact_dynamics.impact.law import ImpactOutcome, RestitutionLaw
     from contact_dynamics.numerics.vectors import Vector3
+    from contact_dynamics.toss.mode_choice import Mode
     from contact_dynamics.toss.solid import Numbers, Solid, Touch
-    from contact_dynamics.validation import FloatArray
 
 
 NEAR_CORNERS: Final = 0.1
@@ -51,18 +47,6 @@ _MOST_LIFTS: Final = 20
 """Lifts of a body that begins inside flats. Each leaves an error of second order, so two or three do."""
 
 
-class Noted(NamedTuple):
-    """An event, as `TossEvent` has it, with the contacts and the 13 numbers of the state after it."""
-
-    seconds: float
-    kind: TossEventKind
-    touching: list[Touch]
-    impulse: Vector3
-    outcome: ImpactOutcome | None
-    mode: str
-    y: Numbers
-
-
 class History:
     """A toss as far as it has come.
 
@@ -71,10 +55,13 @@ class History:
         now: s after the first state's stamp.
         y: The state now.
         pieces: The flights and steps up to now.
-        events: What happened up to now.
+        events: What happened up to now; of a sample, strikes alone.
+        count: How much happened up to now.
+        is_sample: Whether this is one of many samples.
         lost_in_strikes: J, what strikes have taken.
         lost_in_contact: J, what sliding has taken.
         resting: The contacts that the body rests on, if it does.
+        undecided: The points up to now that mechanics does not decide.
     """
 
     def __init__(self, solid: Solid, y: Numbers, ways: tuple[int, ...], began_ns: int) -> None:
@@ -82,14 +69,21 @@ class History:
         self.now, self.y = 0.0, _just_above(solid, y)
         self.pieces: list[Piece] = []
         self.events: list[Noted] = []
+        self.count, self.is_sample = 0, False
         self.lost_in_strikes = self.lost_in_contact = 0.0
         self.resting: list[Touch] = []
-        self._undecided: list[Undecided] = []
+        self.undecided: list[Undecided] = []
         self._ways = ways
         self._began_ns = began_ns
         self._first = energy_of(self.solid, self.y)
 
-    def as_toss(self, end: TossEnd, law: RestitutionLaw) -> Toss:
+    def as_toss(
+        self,
+        end: TossEnd,
+        law: RestitutionLaw,
+        alternatives: tuple[Toss, ...] = (),
+        all_followed: bool = True,  # noqa: FBT001, FBT002  C has no keywords
+    ) -> Toss:
         """Return the toss, which ends so."""
         energy = TossEnergy(
             first=self._first - energy_of(self.solid, self.y) + kinetic_energy_of(self.solid, self.y),
@@ -97,20 +91,25 @@ class History:
             lost_in_contact=self.lost_in_contact,
             left=kinetic_energy_of(self.solid, self.y),
         )
-        return Toss(
+        toss = Toss(
             restitution_law=law,
             end=end,
             seconds=self.now,
             state=state_of(self.y, ns_after(self._began_ns, self.now)),
-            events=tuple(self._toss_events()),
+            events=(),
             resting_corners=tuple(sorted({self.solid.indices[corner] for _, corner in self.resting})),
             resting_normal_B=np.array(self.resting_normal_B()),
             energy=energy,
-            undecided=tuple(self._undecided),
+            undecided=tuple(self.undecided),
+            alternatives=alternatives,
+            all_followed=all_followed,
             pieces=tuple(self.pieces),
             starts=np.array([piece.start for piece in self.pieces]),
             began_ns=self._began_ns,
+            noted=(self.solid, tuple(self.events)),
         )
+        object.__delattr__(toss, "events")  # they are made when they are asked for
+        return toss
 
     def resting_normal_B(self) -> Vector3:
         """Return the normal of the flat on which the body rests, body axes, or zero if it moves."""
@@ -143,46 +142,23 @@ class History:
 
     def way(self, reason: UndecidedReason, options: int) -> int:
         """Return which way is taken at a point that mechanics does not decide, and note it."""
-        k = len(self._undecided)
+        k = len(self.undecided)
         taken = self._ways[k] if k < len(self._ways) else 0
-        self._undecided.append(Undecided(seconds=self.now, reason=reason, options=options, taken=taken))
+        self.undecided.append(Undecided(seconds=self.now, reason=reason, options=options, taken=taken))
         return taken
 
     def note(
         self,
         kind: TossEventKind,
         touching: list[Touch],
-        *,
+        mode: Mode = (),
         impulse: Vector3 = (0.0, 0.0, 0.0),
         outcome: ImpactOutcome | None = None,
-        mode: str = "",
     ) -> None:
         """Tell of an event at contacts that touch now."""
-        self.events.append(Noted(self.now, kind, touching, impulse, outcome, mode, self.y))
-
-    def _toss_events(self) -> Iterator[TossEvent]:
-        """Return the events for users. Their arrays are made together, as NumPy's calls cost most of it."""
-        solid, events = self.solid, self.events
-        states = states_of_rows(
-            [noted.y for noted in events], [ns_after(self._began_ns, noted.seconds) for noted in events]
-        )
-        points = _rows([point for noted in events for point in points_of(solid, noted.y, noted.touching)])
-        impulses = _rows([noted.impulse for noted in events])
-        begin = 0
-        for noted, state, impulse in zip(events, states, impulses, strict=True):
-            end = begin + len(noted.touching)
-            yield TossEvent(
-                seconds=noted.seconds,
-                kind=noted.kind,
-                surfaces=tuple([solid.flats[surface].name for surface, _ in noted.touching]),
-                corners=tuple([solid.indices[corner] for _, corner in noted.touching]),
-                p_WC_W=points[begin:end],
-                impulse_W=impulse,
-                outcome=noted.outcome,
-                mode=noted.mode,
-                state=state,
-            )
-            begin = end
+        self.count += 1
+        if not self.is_sample or kind == TossEventKind.STRIKES:
+            self.events.append(Noted(self.now, kind, touching, impulse, outcome, mode, self.y))
 
 
 def _just_above(solid: Solid, y: Numbers) -> Numbers:
@@ -195,10 +171,3 @@ def _just_above(solid: Solid, y: Numbers) -> Numbers:
             break
         y = out_of_flats(solid, y)
     return y
-
-
-def _rows(vectors: list[Vector3]) -> FloatArray:
-    """Return vectors as rows, (n, 3), that nobody can change, since others may see the same array."""
-    rows = np.array(vectors).reshape(-1, 3)
-    rows.flags.writeable = False
-    return rows

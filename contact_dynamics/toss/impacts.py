@@ -12,6 +12,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -21,23 +22,17 @@ from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.impact.law import RestitutionLaw
 from contact_dynamics.impact.several.orders import several_impact
 from contact_dynamics.impact.several.result import SeveralContactsLaw, SeveralVerdict
-from contact_dynamics.impact.several.tied import (
-    impulses_of,
-    next_to_strike,
-    response_of,
-    shared_path,
-    twist_after,
-)
-from contact_dynamics.impact.spatial.path import OUTCOMES
-from contact_dynamics.impact.spatial.response import Strike, refuse
-from contact_dynamics.tolerances import CONE_CREEPS, STRIKES, TIED_APPROACH
+from contact_dynamics.impact.several.tied import mean_path, next_to_strike
+from contact_dynamics.impact.spatial.response import refuse
+from contact_dynamics.tolerances import CONE_CREEPS, NO_SHARED_RESPONSE, STRIKES, TIED_APPROACH
 from contact_dynamics.toss import vectors as vec
 from contact_dynamics.toss.cone_forces import ConeForces
-from contact_dynamics.toss.solid import contacts_of, points_of, pose_of, properties_of, state_of
+from contact_dynamics.toss.solid import contacts_of, pose_of, properties_of, state_of
 
 if TYPE_CHECKING:
     from contact_dynamics.contact.contact import ContactSet
     from contact_dynamics.impact.law import ImpactOutcome
+    from contact_dynamics.impact.spatial.response import Strike
     from contact_dynamics.numerics.vectors import Vector3
     from contact_dynamics.toss.solid import Numbers, Pose, Solid, Touch
 
@@ -58,21 +53,28 @@ class Struck(NamedTuple):
     settles: bool = False
 
 
-def routh(
-    solid: Solid, y: Numbers, touch: Touch, law: RestitutionLaw, friction: float
-) -> tuple[Numbers, Struck]:
-    """Return the state after the impact at one contact, which approaches or jams (lecture 27)."""
+def routh(  # noqa: PLR0917
+    impact: Strike,
+    solid: Solid,
+    y: Numbers,
+    touch: Touch,
+    friction: float,
+    skips: bool = False,  # noqa: FBT001, FBT002  C has no keywords
+) -> tuple[Numbers, int]:
+    """Return the state after the impact at one contact, which approaches or jams, and the outcome.
+
+    ``impact`` makes it (lecture 27), and has the impulse afterwards. If it ``skips``, nothing happens to a
+    contact that separates.
+    """
     surface, corner = touch
     pose, flat = pose_of(solid, y), solid.flats[surface]
     arm = pose.arm(surface, corner)
-    one = Strike(law)
-    one.body.take(solid.mass, solid.inertia, (y[3], y[4], y[5], y[6]), arm, pose.v, pose.w)
-    outcome = one.strike(flat.normal, friction, flat.restitution, False, STRIKES)  # noqa: FBT003  as compiled
+    impact.body.take(solid.mass, solid.inertia, (y[3], y[4], y[5], y[6]), arm, pose.v, pose.w)
+    outcome = impact.strike(flat.normal, friction, flat.restitution, False, STRIKES, skips)  # noqa: FBT003  as compiled
     if outcome < 0:
-        refuse(one, outcome, STRIKES)
-    v, w = one.body.v, one.body.w
-    after = [*y[:7], v[0], v[1], v[2], w[0], w[1], w[2]]
-    return after, Struck(touch, one.impulse, OUTCOMES[outcome])
+        refuse(impact, outcome, STRIKES)
+    v, w = impact.body.v, impact.body.w
+    return [*y[:7], v[0], v[1], v[2], w[0], w[1], w[2]], outcome
 
 
 def check_laws(restitution_law: RestitutionLaw, several_contacts_law: SeveralContactsLaw) -> None:
@@ -89,7 +91,10 @@ def next_in_turn(solid: Solid, y: Numbers, touching: list[Touch], rates: list[fl
     """
     fastest = min(rates)
     tie = TIED_APPROACH * (vec.norm((y[7], y[8], y[9])) + solid.reach * vec.norm((y[10], y[11], y[12])))
-    if sum(rate <= fastest + tie for rate in rates) < 2:
+    tied = 0
+    for rate in rates:
+        tied += rate <= fastest + tie
+    if tied < 2:
         return [touching[rates.index(fastest)]]
     flats = [solid.flats[flat] for flat, _ in touching]
     materials = [(flat.restitution, flat.strike_friction) for flat in flats]
@@ -99,20 +104,105 @@ def next_in_turn(solid: Solid, y: Numbers, touching: list[Touch], rates: list[fl
 def tied_strike(
     solid: Solid, y: Numbers, group: list[Touch], law: RestitutionLaw
 ) -> tuple[Numbers, list[Struck]]:
-    """Return the state after the impact of contacts that strike as one, and the share of each."""
-    state, body = state_of(y), properties_of(solid)
-    response = response_of([body], [state], np.array(points_of(solid, y, group)), [(0, None)] * len(group))
-    flats = [solid.flats[flat] for flat, _ in group]
-    normals = np.array([flat.normal for flat in flats])
-    path, axes = shared_path(
-        response, normals, flats[0].restitution, flats[0].strike_friction, law=law, tolerance=STRIKES
+    """Return the state after the impact of contacts that strike as one, and the share of each.
+
+    This is `impact.several.tied` for one body, in plain floats. Each contact has three axes: the direction in
+    which it slides, or would begin to, the one across, and the normal. The mean velocity in these axes
+    responds to the impulse that all contacts share.
+    """
+    pose, per_mass = pose_of(solid, y), 1.0 / solid.mass
+    arms = [pose.arm(surface, corner) for surface, corner in group]
+    normals = [solid.flats[surface].normal for surface, _ in group]
+    a, turning = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)  # how the body begins to move if all normals push alike
+    for arm, n in zip(arms, normals, strict=True):
+        a, turning = vec.plus(a, per_mass, n), vec.plus(turning, 1.0, vec.cross(arm, n))
+    turning = vec.times(pose.inverse, turning)
+    firsts, seconds, none_slides = [], [], True
+    for arm, n in zip(arms, normals, strict=True):
+        across, size = vec.without(pose.velocity(arm), n), STRIKES
+        if not vec.norm(across) > size:
+            tendency = vec.plus(a, 1.0, vec.cross(turning, arm))
+            across, size = vec.without(tendency, n), NO_SHARED_RESPONSE * vec.norm(tendency)
+        first = (0.0, 0.0, 0.0)
+        if vec.norm(across) > size:
+            first, none_slides = vec.normalised(across), False
+        firsts.append(first)
+        seconds.append(vec.cross(n, first))
+    if none_slides:
+        firsts = [solid.flats[surface].tangents[0] for surface, _ in group]
+        seconds = [solid.flats[surface].tangents[1] for surface, _ in group]
+    one, other = _shared(pose, arms, firsts), _shared(pose, arms, seconds)
+    # The path needs tangents along which the response is diagonal.
+    xx, xy, yy = (
+        _coupled(one, one, per_mass),
+        _coupled(one, other, per_mass),
+        _coupled(other, other, per_mass),
     )
-    impulses = impulses_of(path, axes)
-    struck = [
-        Struck(touch, _vector(impulse), path.outcome)
-        for touch, impulse in zip(group, impulses.tolist(), strict=True)
+    angle = 0.5 * math.atan2(2.0 * xy, xx - yy)
+    c, s = math.cos(angle), math.sin(angle)
+    turned = [
+        (vec.combined(c, x, s, z), vec.combined(-s, x, c, z)) for x, z in zip(firsts, seconds, strict=True)
     ]
-    return [*y[:7], *twist_after(response, impulses).tolist()], struck
+    firsts, seconds = [x for x, _ in turned], [z for _, z in turned]
+    one, other, along = (
+        _shared(pose, arms, firsts),
+        _shared(pose, arms, seconds),
+        _shared(pose, arms, normals),
+    )
+    flat = solid.flats[group[0][0]]
+    path = mean_path(
+        (
+            _coupled(one, one, per_mass),
+            _coupled(other, other, per_mass),
+            _coupled(one, along, per_mass),
+            _coupled(other, along, per_mass),
+            _coupled(along, along, per_mass),
+        ),
+        (_moving(pose, one), _moving(pose, other), _moving(pose, along)),
+        restitution=flat.restitution,
+        friction=flat.strike_friction,
+        law=law,
+        tolerance=STRIKES,
+    )
+    i1, i2, p = path.impulse
+    v, w, share = pose.v, pose.w, 1.0 / len(group)
+    struck = []
+    for touch, arm, x, z, n in zip(group, arms, firsts, seconds, normals, strict=True):
+        impulse = vec.plus(vec.combined(share * i1, x, share * i2, z), share * p, n)
+        v = vec.plus(v, per_mass, impulse)
+        w = vec.plus(w, 1.0, vec.times(pose.inverse, vec.cross(arm, impulse)))
+        struck.append(Struck(touch, impulse, path.outcome))
+    return [*y[:7], v[0], v[1], v[2], w[0], w[1], w[2]], struck
+
+
+class Shared:
+    """The mean velocity of contacts, each along an axis of its own, as a function of the body's velocities.
+
+    Attributes:
+        force: By the velocity of the mass centre.
+        moment: m, by the angular velocity.
+        turning: 1/(kg m), the angular velocity of a unit impulse that contacts share along these axes.
+    """
+
+    def __init__(self, force: Vector3, moment: Vector3, turning: Vector3) -> None:
+        self.force, self.moment, self.turning = force, moment, turning
+
+
+def _shared(pose: Pose, arms: list[Vector3], axes: list[Vector3]) -> Shared:
+    force, moment, share = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), 1.0 / len(arms)
+    for arm, axis in zip(arms, axes, strict=True):
+        force, moment = vec.plus(force, share, axis), vec.plus(moment, share, vec.cross(arm, axis))
+    return Shared(force, moment, vec.times(pose.inverse, moment))
+
+
+def _coupled(one: Shared, other: Shared, per_mass: float) -> float:
+    """Return the mean velocity along some axes by a unit impulse that is shared along others, 1/kg."""
+    return per_mass * vec.dot(one.force, other.force) + vec.dot(one.moment, other.turning)
+
+
+def _moving(pose: Pose, shared: Shared) -> float:
+    """Return the mean velocity, m/s."""
+    return vec.dot(shared.force, pose.v) + vec.dot(shared.moment, pose.w)
 
 
 def simultaneous_strike(

@@ -15,12 +15,22 @@ cdef extern from *:
 cdef double FACE_ROUNDING
 
 
+@cython.final
+cdef class Face:
+    cdef (double, double, double) up
+    cdef double high, tipping
+
+
 @cython.locals(
-    flat=Flat, low=cython.double, rise=cython.double, rattles=cython.double, pressing=cython.double,
+    flat=Flat, face=Face, pose=Pose, near=list, low=cython.double, rise=cython.double, rattles=cython.double, pressing=cython.double,
     speed=cython.double, share=cython.double, ahead=cython.double, v_n=cython.double, w_n=cython.double,
 )
 cpdef laid_flat(Solid solid, list y, dict faces)
-@cython.locals(i=cython.int, j=cython.int, k=cython.int, high=cython.double)
-cdef _face_below(Solid solid, (double, double, double) n_B, (double, double, double) lean, list near, dict faces)
+@cython.locals(i=cython.int, j=cython.int, k=cython.int, high=cython.double, face=Face)
+cdef Face _face_below(Solid solid, (double, double, double) n_B, (double, double, double) lean, list near, dict faces)
+@cython.locals(i=cython.int, j=cython.int, k=cython.int, each=cython.int, size=cython.double,
+               high=cython.double, along=cython.double, p=(double, double, double), q=(double, double, double),
+               r=(double, double, double), up=(double, double, double), corner=(double, double, double))
+cdef Face _face_of(Solid solid, tuple three)
 cdef (double, double, double) _less((double, double, double) a, (double, double, double) b) noexcept
 cdef bint _stands((double, double, double) up, (double, double, double) p, (double, double, double) q, (double, double, double) r) noexcept

@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import math
 from itertools import combinations
-from typing import TYPE_CHECKING, Final, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, Final, TypeAlias
 
 from contact_dynamics.numerics.vectors import tangents
 from contact_dynamics.rotations.one import normalised, product
@@ -40,7 +40,7 @@ SAME_FACE: Final = 0.03
 """Share of the reach within which corners belong to one face. Corners of samples are not quite in a plane."""
 
 
-class _Face(NamedTuple):
+class Face:
     """A face on which a body can stand: three corners and what follows.
 
     Attributes:
@@ -49,12 +49,11 @@ class _Face(NamedTuple):
         tipping: m, by how much the mass centre rises when the body tips over the nearest edge.
     """
 
-    up: Vector3
-    high: float
-    tipping: float
+    def __init__(self, up: Vector3, high: float, tipping: float) -> None:
+        self.up, self.high, self.tipping = up, high, tipping
 
 
-Faces: TypeAlias = "dict[tuple[int, ...], _Face | None]"
+Faces: TypeAlias = "dict[tuple[int, ...], Face | None]"
 """The faces that have been looked for, by three corners each; None where these are not on one."""
 
 
@@ -66,7 +65,7 @@ def laid_flat(solid: Solid, y: Numbers, faces: Faces) -> Numbers | None:
     """
     low = NEARLY_FLUSH * solid.reach
     near = [touch for _, touch in low_corners(solid, y, low, math.inf)]
-    if not 3 <= len(near) <= MAX_CORNERS or len({surface for surface, _ in near}) > 1:
+    if not 3 <= len(near) <= MAX_CORNERS or near[0][0] != near[len(near) - 1][0]:  # they come flat after flat
         return None
     flat = solid.flats[near[0][0]]
     n, pressing = flat.normal, -vec.dot(solid.gravity, flat.normal)
@@ -76,10 +75,11 @@ def laid_flat(solid: Solid, y: Numbers, faces: Faces) -> Numbers | None:
     along = (y[7] - v_n * n[0], y[8] - v_n * n[1], y[9] - v_n * n[2])
     turning = (w_n * n[0], w_n * n[1], w_n * n[2])
     flush = [*y[:7], along[0], along[1], along[2], turning[0], turning[1], turning[2]]
-    rattles = (kinetic_energy_of(solid, y) - kinetic_energy_of(solid, flush)) / (solid.mass * pressing)
+    pose = pose_of(solid, y)
+    rattles = (pose.kinetic_energy() - kinetic_energy_of(solid, flush)) / (solid.mass * pressing)
     if rattles > RATTLING * solid.reach:  # no face takes more than the reach to tip over
         return None
-    rows, speed = pose_of(solid, y).rows, vec.norm(along)
+    rows, speed = pose.rows, vec.norm(along)
     share = max(1.0 + flat.friction * v_n / speed, 0.0) if speed > 0.0 else 0.0
     # Friction at the ground moves the place where the weight is borne ahead of the mass centre.
     rests = (share * speed) ** 2 <= 2.0 * pressing * flat.friction * solid.settling
@@ -107,7 +107,7 @@ def laid_flat(solid: Solid, y: Numbers, faces: Faces) -> Numbers | None:
     ]
 
 
-def _face_below(solid: Solid, n_B: Vector3, lean: Vector3, near: list[int], faces: Faces) -> _Face | None:
+def _face_below(solid: Solid, n_B: Vector3, lean: Vector3, near: list[int], faces: Faces) -> Face | None:
     """Return the face of some of the corners on which the body can stand, or None if there is none.
 
     ``lean`` says how far ahead the weight is borne, body axes, relative to the height of the mass centre.
@@ -135,21 +135,27 @@ def _less(a: Vector3, b: Vector3) -> Vector3:
     return (a[0] - b[0], a[1] - b[1], a[2] - b[2])
 
 
-def _face_of(solid: Solid, three: tuple[int, ...]) -> _Face | None:
+def _face_of(solid: Solid, three: tuple[int, ...]) -> Face | None:
     """Return the face of the body on which three corners are, or None if they are not on one."""
-    p, q, r = (solid.corners[corner] for corner in three)
+    i, j, k = three
+    p, q, r = solid.corner(i), solid.corner(j), solid.corner(k)
     up = vec.cross(_less(q, p), _less(r, p))
     size = math.copysign(vec.norm(up), -vec.dot(up, p))
     if size == 0.0:
         return None
     up = (up[0] / size, up[1] / size, up[2] / size)
     high = -vec.dot(up, p)
-    if high <= 0.0 or any(
-        vec.dot(up, corner) < -high - FACE_ROUNDING * solid.reach for corner in solid.corners
-    ):
+    if high <= 0.0:
         return None
-    face = [corner for corner in solid.corners if vec.dot(up, corner) < SAME_FACE * solid.reach - high]
-    return _Face(up, high, _tipping(up, high, face))
+    face = []
+    for each in range(solid.count):
+        corner = solid.corner(each)
+        along = vec.dot(up, corner)
+        if along < -high - FACE_ROUNDING * solid.reach:
+            return None
+        if along < SAME_FACE * solid.reach - high:
+            face.append(corner)
+    return Face(up, high, _tipping(up, high, face))
 
 
 def _stands(up: Vector3, p: Vector3, q: Vector3, r: Vector3) -> bool:

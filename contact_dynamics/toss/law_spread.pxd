@@ -16,16 +16,17 @@ cdef double BY_IMPULSE, FREEDOM, FULL, _SAME_MEDIAN
 
 
 @cython.final
-cdef class KickOfOne:
+cdef class Kick:
     cdef double velocity, spin, first
-    cdef object chance
+    cdef public object chance
 
     @cython.locals(
         jump=cython.double, size=cython.double, surface=cython.int, corner=cython.int, pose=Pose, flat=Flat,
         axis=(double, double, double), pushed=cython.double, velocity=cython.double, spin=cython.double,
         a=cython.double, b=cython.double, c=cython.double, d=cython.double, e=cython.double, f=cython.double,
-        g=cython.double, h=cython.double, i=cython.double,
+        g=cython.double, h=cython.double, i=cython.double, by_t=cython.double,
     )
+    cpdef list changed(self, Solid solid, list before, list after, tuple touch, list drawn)
     cpdef list kicked(self, Solid solid, list before, list after, tuple touch)
 
 

@@ -15,7 +15,6 @@ would be shaken by it.
 from __future__ import annotations
 
 import math
-from math import dist
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -26,7 +25,6 @@ from contact_dynamics.toss.solid import pose_of
 
 if TYPE_CHECKING:
     from numpy.random import Generator
-    from numpy.typing import NDArray
 
     from contact_dynamics.toss.solid import Numbers, Solid, Touch
     from contact_dynamics.toss.uncertainty import TossUncertainty
@@ -52,60 +50,65 @@ stronger ones. Weaker ones have it in proportion."""
 
 
 class LawSpread:
-    """Draws changes of velocities after strikes, for n samples."""
+    """What changes the velocities of n samples after strikes: one `Kick` each."""
 
     def __init__(self, uncertainty: TossUncertainty, count: int, chance: Generator) -> None:
-        self._velocity, self._spin, self._chance = uncertainty.velocity, uncertainty.spin, chance
-        self._first = np.zeros(count)  # m/s, by how much the first strike changed the velocity
+        velocity, spin = uncertainty.velocity, uncertainty.spin
+        self.is_none = velocity == spin == 0.0
+        self.kicks = [Kick(velocity, spin) for _ in range(count)]
+        self._chance = chance
         self._own: list[Generator] = []
-        self.is_none = self._velocity == self._spin == 0.0
 
-    def changes(self, which: NDArray[np.intp], jumps: FloatArray, turning: FloatArray) -> FloatArray:
-        """Return changes of velocities, (m, 6), m/s and rad/s, of some samples after one more strike.
+    def draw(self) -> FloatArray:
+        """Return numbers for one more strike of all samples, (n, 10), as `Kick.changed` takes them.
 
-        Args:
-            which: (m,), the samples.
-            jumps: (m,), m/s, by how much the strike changed their velocities.
-            turning: (m, 3, 3), 1/m, by how much an impulse at the contact changes the spin, for each m/s by
-                which it changes the velocity.
+        They are drawn for all, so that a sample's do not depend on what others do.
         """
-        first = self._first[which]
-        self._first[which] = first = np.where(first > 0.0, first, jumps)
-        shares = np.minimum(np.divide(jumps, FULL * first, out=np.ones(len(jumps)), where=first > 0.0), 1.0)
-        # Numbers are drawn for all samples, so that a sample's do not depend on what others do.
-        count = len(self._first)
-        drawn = self._chance.standard_normal((count, 9))[which]
-        sizes = shares * (_SAME_MEDIAN * np.sqrt(FREEDOM / self._chance.chisquare(FREEDOM, count)))[which]
-        squares = np.einsum("nij,nij->n", turning, turning) / 3.0
-        parts = np.array([_parts(self._velocity, self._spin, square) for square in squares.tolist()])
-        drawn *= np.repeat(parts.reshape(-1, 3) * sizes[:, None], 3, axis=1)
-        drawn[:, 3:6] += drawn[:, :3]
-        drawn[:, 6:] += np.einsum("nij,nj->ni", turning, drawn[:, :3])
-        changes: FloatArray = drawn[:, 3:]
-        return changes
+        count = len(self.kicks)
+        normal = self._chance.standard_normal((count, 9))
+        return np.column_stack([normal, self._chance.chisquare(FREEDOM, count)])
 
-    def of_one(self, i: int) -> KickOfOne:
-        """Return what changes the velocities of one sample after a strike of a single contact.
+    def of_one(self, i: int) -> Kick:
+        """Return what changes the velocities of one sample from now on.
 
-        Each sample has numbers of its own, so that it does not matter which one goes on first.
+        Each sample has numbers of its own then, so that it does not matter which one goes on first.
         """
-        self._own = self._own or self._chance.spawn(len(self._first))
-        return KickOfOne(self._velocity, self._spin, float(self._first[i]), self._own[i])
+        self._own = self._own or self._chance.spawn(len(self.kicks))
+        self.kicks[i].chance = self._own[i]
+        return self.kicks[i]
 
 
-class KickOfOne:
-    """Changes the velocities of one sample after its strikes. It can be handed to another process."""
+class Kick:
+    """Changes the velocities of one sample after its strikes. It can be handed to another process.
 
-    def __init__(self, velocity: float, spin: float, first: float, chance: Generator) -> None:
-        self.velocity, self.spin, self.chance = velocity, spin, chance
-        self.first = first  # m/s, by how much the first strike changed the velocity
+    Attributes:
+        chance: Where its numbers are drawn from, if they are its own.
+    """
+
+    def __init__(self, velocity: float, spin: float) -> None:
+        self.velocity, self.spin = velocity, spin
+        self.first = 0.0  # m/s, by how much the first strike changed the velocity
+        self.chance: Generator | None = None
 
     def kicked(self, solid: Solid, before: Numbers, after: Numbers, touch: Touch) -> Numbers:
-        """Return the changed state after a strike, for those before and after it and the contact."""
-        jump = dist(after[7:10], before[7:10])
+        """Return the changed state after a strike, with numbers of the sample's own (`changed`)."""
+        if self.chance is None:
+            raise AssertionError
+        by_t = self.chance.chisquare(FREEDOM)
+        return self.changed(solid, before, after, touch, [*self.chance.standard_normal(9).tolist(), by_t])
+
+    def changed(
+        self, solid: Solid, before: Numbers, after: Numbers, touch: Touch, drawn: list[float]
+    ) -> Numbers:
+        """Return the changed state after a strike, for those before and after it and the contact.
+
+        Of the numbers that are drawn, nine are normal, and the last one is chi squared's with `FREEDOM`.
+        """
+        jump = vec.norm((after[7] - before[7], after[8] - before[8], after[9] - before[9]))
         self.first = self.first or jump
         size = min(jump / (FULL * self.first), 1.0) if self.first > 0.0 else 1.0
-        size *= _SAME_MEDIAN * math.sqrt(FREEDOM / self.chance.chisquare(FREEDOM))
+        a, b, c, d, e, f, g, h, i, by_t = drawn
+        size *= _SAME_MEDIAN * math.sqrt(FREEDOM / by_t)
         surface, corner = touch
         pose, flat, mass = pose_of(solid, after), solid.flats[surface], solid.mass
         arm, n = pose.arm(surface, corner), flat.normal
@@ -115,7 +118,6 @@ class KickOfOne:
             square += vec.dot(turn, turn)
         pushed, velocity, spin = _parts(self.velocity, self.spin, mass * mass * square / 3.0)
         pushed, velocity, spin = size * pushed, size * velocity, size * spin
-        a, b, c, d, e, f, g, h, i = self.chance.standard_normal(9).tolist()
         a, b, c = pushed * a, pushed * b, pushed * c
         turn = vec.times(pose.inverse, vec.cross(arm, (mass * a, mass * b, mass * c)))
         v = (after[7] + (a + velocity * d), after[8] + (b + velocity * e), after[9] + (c + velocity * f))

@@ -13,7 +13,6 @@ point is listed. The other ways are followed as tosses of their own, as many as 
 from __future__ import annotations
 
 from collections import deque
-from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
 from contact_dynamics.constants import HORIZON
@@ -102,18 +101,19 @@ def toss(
     )
     most = check_whole("max_alternatives", max_alternatives, 0)
     y, began_ns = numbers_of(state), state.stamp_ns
-    main = Simulation(settings, y, (), began_ns).toss()
+    main = Simulation(settings, y, (), began_ns)
+    end = main.to_end()
     waiting = deque(_other_ways(main, 0))
     others: list[Toss] = []
     while waiting and len(others) < most:
         ways = waiting.popleft()
-        other = Simulation(settings, y, ways, began_ns).toss()
-        others.append(other)
+        other = Simulation(settings, y, ways, began_ns)
+        others.append(other.as_toss(other.to_end(), restitution_law))
         waiting.extend(_other_ways(other, len(ways)))
-    return carried_by(replace(main, alternatives=tuple(others), all_followed=not waiting), frame)
+    return carried_by(main.as_toss(end, restitution_law, tuple(others), not waiting), frame)
 
 
-def _other_ways(one: Toss, decided: int) -> list[tuple[int, ...]]:
+def _other_ways(one: Simulation, decided: int) -> list[tuple[int, ...]]:
     """Return the ways that leave a toss at one of its undecided points, after those that were set."""
     taken = tuple(point.taken for point in one.undecided)
     return [

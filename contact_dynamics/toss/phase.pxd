@@ -5,7 +5,7 @@ cimport cython
 cimport libc.math as math
 
 from contact_dynamics.toss cimport vectors as vec
-from contact_dynamics.toss.forces cimport HeldContacts
+from contact_dynamics.toss.forces cimport HeldContacts, force_rounding, out_of_flats
 from contact_dynamics.toss.solid cimport Above, Flat, Held, Solid
 
 cdef extern from *:
@@ -22,6 +22,7 @@ cdef double[::1] _STAGES, _ERRORS, _INTERPOLANT
 
 
 @cython.final
+@cython.no_gc
 cdef class PhaseStep:
     cdef readonly Solid solid
     cdef readonly double start, span, whole

@@ -159,9 +159,10 @@ class PhaseStep:
 
     def at(self, seconds: float) -> Numbers:
         """Return the 13 numbers at a time of this step, s, counted as its start is."""
-        above = Above(self.solid)
+        # A new one, since several threads may ask at once.
+        above = Above(self.solid.count * len(self.solid.flats))
         self.within((seconds - self.start) / self.whole, above.y)
-        return out_of_flats(self.solid, [above.y[k] for k in range(13)])
+        return out_of_flats(self.solid, [above.y[k] for k in range(13)], above)
 
 
 def _step_of(  # noqa: PLR0917
@@ -234,7 +235,8 @@ class _Run:
     def __init__(self, solid: Solid, y: Numbers, mode: tuple[Held, ...], error: float) -> None:
         self.solid, self.error = solid, error
         self.held = HeldContacts(solid, mode)
-        self.here, self.there = Above(solid), Above(solid)  # at the beginning of a step and at its end
+        heights = solid.count * len(solid.flats)
+        self.here, self.there = Above(heights), Above(heights)  # at the beginning of a step and at its end
         self.y, self.trial, self.scales, self.probe = [0.0] * 13, [0.0] * 13, [0.0] * 13, [0.0] * 13
         self.stages = [0.0] * 91
         for k in range(13):
@@ -242,7 +244,7 @@ class _Run:
         self._set_scales()
         # Corners on a flat or below have the depths that they may have, and held corners any.
         self.depths = array("d", bytes(8 * self.here.count))
-        self.here.take(self.y)
+        self.here.take(self.solid, self.y)
         for k in range(self.here.count):
             height = self.here.heights[k]
             self.depths[k] = 0.5 * GRAZING_DEPTH - min(height, 0.0) if height <= 0.5 * GRAZING_DEPTH else 0.0
@@ -275,7 +277,7 @@ class _Run:
         self._look_at_sliding()
         self.fast = held.pose.kinetic_energy() > slow
         for _ in range(MAX_PHASE_STEPS):
-            self.here.take(y)
+            self.here.take(self.solid, y)
             step = min(step, self._before_arrival(), until - self.now, self.before_stop)
             size = self._try(step)
             short += step < CREEPING_STEP
@@ -447,7 +449,7 @@ class _Run:
 
     def _forget_risen(self) -> None:
         """Corners that have risen from a flat may not be below it again."""
-        self.there.take(self.y)
+        self.there.take(self.solid, self.y)
         for k in range(self.there.count):
             if self.there.heights[k] > 0.5 * GRAZING_DEPTH and self.depths[k] < _INFINITE:
                 self.depths[k] = 0.0
@@ -460,7 +462,7 @@ class _Run:
         """
         end, x = _NONE, 1.0
         no_force = self.held.least_left() < 0.0
-        self.there.take(self.trial)
+        self.there.take(self.solid, self.trial)
         dip = self._first_dip()
         if dip < 1.0 or self._least_height() < 0.0:
             end, x = _COMES_DOWN, self._crossing(_HEIGHT, dip, COMES_DOWN_FOUND)
@@ -479,7 +481,7 @@ class _Run:
         """Return what is left at a share of the step: the least height, m, or the least force, N."""
         self._interpolated().within(x, self.probe)
         if kind == _HEIGHT:
-            self.there.take(self.probe)
+            self.there.take(self.solid, self.probe)
             return self._least_height()
         self.held.push(self.probe)
         return self.held.least_left()
@@ -501,7 +503,7 @@ class _Run:
                 x = 2.0 * -rate / (b + math.sqrt(max(b * b - 4.0 * a * rate, 0.0)))
                 if x < first and self._left_at(_HEIGHT, x) < 0.0:
                     first = x
-                self.there.take(self.trial)
+                self.there.take(self.solid, self.trial)
         return first
 
     def _crossing(self, kind: int, bad: float, enough: float) -> float:

@@ -4,26 +4,30 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 import numpy as np
 
 from contact_dynamics.constants import ns_after
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.impact.law import ImpactOutcome, RestitutionLaw
-from contact_dynamics.records import NamedInt, Record
-from contact_dynamics.rigid_body.body import BodyState
+from contact_dynamics.records import NamedInt, Record, made
+from contact_dynamics.rigid_body.body import BodyState, states_of_rows
 from contact_dynamics.rotations.many import make_continuous
 from contact_dynamics.toss.phase import PhaseStep
-from contact_dynamics.toss.solid import properties_of, state_of
+from contact_dynamics.toss.solid import points_of, properties_of, state_of
 from contact_dynamics.tumbling import FreeMotion, Precision, Trajectory, free_motion
 from contact_dynamics.validation import FloatArray, check_array
 from contact_dynamics.world import SurfaceFrame
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import ArrayLike
 
-    from contact_dynamics.toss.solid import Numbers, Solid
+    from contact_dynamics.numerics.vectors import Vector3
+    from contact_dynamics.toss.mode_choice import Mode
+    from contact_dynamics.toss.solid import Numbers, Solid, Touch
 
 
 _TIMES = 3
@@ -135,6 +139,18 @@ class Undecided(Record):
     taken: int
 
 
+class Noted(NamedTuple):
+    """An event, as `TossEvent` has it, with the contacts, the mode and the 13 numbers after it."""
+
+    seconds: float
+    kind: TossEventKind
+    touching: list[Touch]
+    impulse: Vector3
+    outcome: ImpactOutcome | None
+    mode: Mode
+    y: Numbers
+
+
 class FlightPiece(NamedTuple):
     """A free flight.
 
@@ -197,6 +213,7 @@ class Toss(TossOutcome):
         starts: (n,), s, times at which the pieces begin.
         began_ns: ns, stamp of the initial state.
         frame: Frame of surfaces that move, to which the pieces refer, or None.
+        noted: The body and the events from which ``events`` are made when they are first asked for, or None.
     """
 
     restitution_law: RestitutionLaw
@@ -207,6 +224,18 @@ class Toss(TossOutcome):
     starts: FloatArray = field(repr=False)
     began_ns: int = field(repr=False)
     frame: SurfaceFrame | None = field(repr=False, default=None)
+    noted: tuple[Solid, tuple[Noted, ...]] | None = field(repr=False, default=None)
+
+    if not TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> Any:
+            """Return the events, which are made here, or raise the error that there is no such attribute."""
+            noted = self.noted if name == "events" else None
+            if noted is None:
+                return Record.__getattr__(self, name)
+            object.__setattr__(self, "events", events_of(*noted, self.began_ns))
+            object.__setattr__(self, "noted", None)
+            return self.events
 
     def in_short(self) -> str:
         """Return the reason and the time of the end, and the times of the branch points."""
@@ -279,6 +308,40 @@ class Toss(TossOutcome):
             w_WB_W=row.w_WB_W[0],
             stamp_ns=ns_after(self.began_ns, seconds),
         )
+
+
+def events_of(solid: Solid, events: Sequence[Noted], began_ns: int) -> tuple[TossEvent, ...]:
+    """Return the events for users. Their arrays are made together, as NumPy's calls cost most of it."""
+    states = states_of_rows(
+        [noted.y for noted in events], [ns_after(began_ns, noted.seconds) for noted in events]
+    )
+    points = _rows([point for noted in events for point in points_of(solid, noted.y, noted.touching)])
+    impulses = _rows([noted.impulse for noted in events])
+    begin, found = 0, []
+    for noted, state, impulse in zip(events, states, impulses, strict=True):
+        end = begin + len(noted.touching)
+        event = made(
+            TossEvent,
+            noted.seconds,
+            noted.kind,
+            tuple([solid.flats[surface].name for surface, _ in noted.touching]),
+            tuple([solid.indices[corner] for _, corner in noted.touching]),
+            points[begin:end],
+            impulse,
+            noted.outcome,
+            "".join(["c" if one.slides else "f" for one in noted.mode]),
+            state,
+        )
+        found.append(event)
+        begin = end
+    return tuple(found)
+
+
+def _rows(vectors: list[Vector3]) -> FloatArray:
+    """Return vectors as rows, (n, 3), that nobody can change, since others may see the same array."""
+    rows = np.array(vectors).reshape(-1, 3)
+    rows.flags.writeable = False
+    return rows
 
 
 def carried_by(toss: Toss, frame: SurfaceFrame | None) -> Toss:

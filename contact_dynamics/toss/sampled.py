@@ -205,16 +205,15 @@ def _add_strikes(many: ManyStrikes, i: int, followed: Followed) -> None:
     for seconds, touch, y in followed.strikes:
         many.seconds[k, i] = seconds
         many.surfaces[k, i], many.corners[k, i] = touch
-        many.p_WB_W[k, i], many.q_WB[k, i] = y[:3], y[3:7]
-        many.v_WB_W[k, i], many.w_WB_W[k, i] = y[7:10], y[10:]
+        many.states[k, i] = y
         k += 1
     many.ends[i] = SampleEnd.FOLLOWED if k == len(many.seconds) else SampleEnd.ENDS
 
 
 def _carry(many: ManyStrikes, rests: dict[int, Followed], frame: SurfaceFrame) -> None:
     """Transform strikes and states of rest from the frame of moving surfaces to the world."""
-    many.p_WB_W[:] += frame.displacement(many.seconds)
-    many.v_WB_W[:] += frame.velocity(many.seconds)
+    many.states[:, :, :3] += frame.displacement(many.seconds)
+    many.states[:, :, 7:10] += frame.velocity(many.seconds)
     for one in rests.values():
         one.y[:3] = (one.y[:3] + frame.displacement(one.seconds)).tolist()
         one.y[7:10] = (one.y[7:10] + frame.velocity(one.seconds)).tolist()
@@ -231,13 +230,9 @@ def _marginals(many: ManyStrikes, count: int) -> list[EventRegions]:
 
 
 def _regions(many: ManyStrikes, k: int, which: NDArray[np.intp], count: int) -> EventRegions:
+    y = many.states[k, which]
     return regions_of(
-        len(which) / count,
-        many.seconds[k, which],
-        p=many.p_WB_W[k, which],
-        q=many.q_WB[k, which],
-        v=many.v_WB_W[k, which],
-        w=many.w_WB_W[k, which],
+        len(which) / count, many.seconds[k, which], p=y[:, :3], q=y[:, 3:7], v=y[:, 7:10], w=y[:, 10:]
     )
 
 
@@ -296,9 +291,7 @@ def _faces(rests: list[Vector3]) -> list[tuple[Vector3, list[int]]]:
 def _ghosts(many: ManyStrikes, rests: dict[int, Followed], count: int) -> Ghosts:
     rows = []
     for i in range(min(count, MAX_GHOSTS)):
-        for k in np.flatnonzero(many.corners[:, i] >= 0).tolist():
-            at = (many.p_WB_W[k, i], many.q_WB[k, i], many.v_WB_W[k, i], many.w_WB_W[k, i])
-            rows.append((i, k + 1, np.concatenate(at)))
+        rows += [(i, k + 1, many.states[k, i]) for k in np.flatnonzero(many.corners[:, i] >= 0).tolist()]
         if i in rests:
             rows.append((i, 0, np.array(rests[i].y)))
     numbers = np.array([row for _, _, row in rows]).reshape(-1, 13)

@@ -12,6 +12,8 @@ import numpy as np
 from contact_dynamics.impact.law import ImpactOutcome, RestitutionLaw
 from contact_dynamics.impact.several.result import SeveralContactsLaw, SeveralVerdict
 from contact_dynamics.impact.several.settling import settling_impact
+from contact_dynamics.impact.spatial.path import OUTCOMES
+from contact_dynamics.impact.spatial.response import Strike
 from contact_dynamics.tolerances import (
     BUSY,
     LIFT_OFF_PAUSE,
@@ -24,14 +26,14 @@ from contact_dynamics.tolerances import (
     STRIKES,
 )
 from contact_dynamics.toss import vectors as vec
-from contact_dynamics.toss.flight import flight
+from contact_dynamics.toss.flight import Descent
 from contact_dynamics.toss.forces import held_in_place, out_of_flats, pushed_by_contacts
 from contact_dynamics.toss.history import History
 from contact_dynamics.toss.impacts import routh
 from contact_dynamics.toss.laid_flat import laid_flat
 from contact_dynamics.toss.mode_choice import choose_mode, may_be_wedged
 from contact_dynamics.toss.phase import PhaseEnd, phase
-from contact_dynamics.toss.result import FlightPiece, Toss, TossEnd, TossEventKind, UndecidedReason
+from contact_dynamics.toss.result import FlightPiece, TossEnd, TossEventKind, UndecidedReason
 from contact_dynamics.toss.short_step import short_step
 from contact_dynamics.toss.solid import (
     approaches,
@@ -47,7 +49,7 @@ from contact_dynamics.toss.strike import Unsettled, low_rebounds_ended, strike
 if TYPE_CHECKING:
     from contact_dynamics.toss.forces import HeldContacts
     from contact_dynamics.toss.laid_flat import Faces
-    from contact_dynamics.toss.law_spread import KickOfOne
+    from contact_dynamics.toss.law_spread import Kick
     from contact_dynamics.toss.mode_choice import Choice, Mode
     from contact_dynamics.toss.solid import Held, Numbers, Solid, Touch
     from contact_dynamics.toss.strike import Strikes
@@ -73,6 +75,9 @@ _LONGER: Final = 4.0
 
 _SHARE: Final = 0.25
 """Length of a short step, relative to the time that is passed over."""
+
+_NEVER: Final = 2**31 - 1
+"""Strikes that no toss has."""
 
 _MAX_LAID: Final = 3
 """How often a sample is laid flat. One that rattles on goes on as a toss does."""
@@ -105,7 +110,7 @@ class TossSettings(NamedTuple):
     horizon: float
     max_events: int
     error: float
-    kick: KickOfOne | None = None
+    kick: Kick | None = None
     flat_after: int | None = None
     thorough: bool = True
     has_pieces: bool = True
@@ -121,7 +126,12 @@ class Simulation(History):
         self, settings: TossSettings, y: Numbers, ways: tuple[int, ...] = (), began_ns: int = 0
     ) -> None:
         super().__init__(settings.solid, y, ways, began_ns)
-        self.settings, self.kick = settings, settings.kick
+        self.is_sample = settings.flat_after is not None
+        self.settings, self.kick, self.impact = settings, settings.kick, Strike(settings.law)
+        self.horizon, self.error, self.max_events = settings.horizon, settings.error, settings.max_events
+        self.thorough, self.has_pieces = settings.thorough, settings.has_pieces
+        self.flat_after = _NEVER if settings.flat_after is None else settings.flat_after
+        self.descent = Descent(settings.solid)
         self.slow = math.inf  # J, rest is tried where the kinetic energy is below this
         self.struck = self.laid = self.steps = 0  # strikes, how often it was laid flat, steps in contact
         self.mark, self.rounds = 0.0, 0  # a time, s, and the rounds since then
@@ -133,17 +143,13 @@ class Simulation(History):
         self.faces: Faces = {}  # that it could be laid on
         self.way_on: Mode | None = None  # how it goes on where it could rest as well
 
-    def toss(self) -> Toss:
-        """Follow the motion to its end, and return it."""
-        return self.as_toss(self.to_end(), self.settings.law)
-
     def to_end(self) -> TossEnd:
         """Follow the motion to its end, and return why it ends."""
         touching = self.touching_now(STRIKES)
-        for _ in range(_ROUNDS * self.settings.max_events):
-            if len(self.events) >= self.settings.max_events or self.steps >= MAX_STEPS:
+        for _ in range(_ROUNDS * self.max_events):
+            if self.count >= self.max_events or self.steps >= MAX_STEPS:
                 return TossEnd.MAX_EVENTS
-            if self.now >= self.settings.horizon:
+            if self.now >= self.horizon:
                 return TossEnd.HORIZON
             touching = self._laid_flat(touching)
             if self._lingers():
@@ -180,15 +186,15 @@ class Simulation(History):
 
         A body whose contacts have just left without speed flies for a pause before arrivals are looked for.
         """
-        left = self.settings.horizon - self.now
+        left = self.horizon - self.now
         self.y = out_of_flats(self.solid, self.y)
-        flown = flight(self.solid, self.y, longest=left, pause=pause)
-        if self.settings.has_pieces:
+        seconds = self.descent.fly(self.y, pause, left)
+        if self.has_pieces:
             self.pieces.append(FlightPiece(self.now, self.solid, self.y))
             self._forget_instant()
-        self.y = flown.after
-        self.now += flown.seconds
-        return self.touching_now(self._fast()) if flown.seconds < left else []
+        self.y = self.descent.state()
+        self.now += seconds
+        return self.touching_now(self._fast()) if seconds < left else []
 
     def _forget_instant(self) -> None:
         """Drop pieces of no length, so that a time belongs to one piece."""
@@ -210,11 +216,12 @@ class Simulation(History):
             self.solid,
             self.y,
             touching,
+            self.impact,
             self.settings.law,
-            rates=rates,
-            unsettled=self.unsettled,
-            together=together,
-            first=first,
+            rates,
+            self.unsettled,
+            together,
+            first,
         )
         self.settled = strikes
         self.y, staying = strikes.y, strikes.staying
@@ -224,7 +231,7 @@ class Simulation(History):
         for one in strikes.struck:
             kind = TossEventKind.SETTLES if one.settles else TossEventKind.STRIKES
             self.struck += kind == TossEventKind.STRIKES
-            self.note(kind, [one.touch], impulse=one.impulse, outcome=one.outcome)
+            self.note(kind, [one.touch], (), one.impulse, one.outcome)
         if not strikes.settled:
             staying = self._end_low_rebounds(touching, staying, before)
         self.lost_in_strikes += before - energy_of(self.solid, self.y)
@@ -244,7 +251,7 @@ class Simulation(History):
             self.solid.mass * (after - now) for after, now in zip(ended.y[7:10], self.y[7:10], strict=True)
         ]
         self.y = ended.y
-        self.note(TossEventKind.SETTLES, ended.staying, impulse=(change[0], change[1], change[2]))
+        self.note(TossEventKind.SETTLES, ended.staying, (), (change[0], change[1], change[2]))
         return ended.staying
 
     def _fast(self) -> float:
@@ -260,11 +267,11 @@ class Simulation(History):
         before = energy_of(solid, self.y)
         if len(touching) == 1:
             friction = solid.flats[touching[0][0]].friction
-            self.y, one = routh(solid, self.y, touching[0], self.settings.law, friction=friction)
-            if one.outcome == ImpactOutcome.NO_IMPULSE:
+            self.y, outcome = routh(self.impact, solid, self.y, touching[0], friction)
+            if outcome == ImpactOutcome.NO_IMPULSE:
                 return self._pass_over()
             self.lost_in_strikes += before - energy_of(solid, self.y)
-            self.note(TossEventKind.JAMS, touching, impulse=one.impulse, outcome=one.outcome)
+            self.note(TossEventKind.JAMS, touching, (), self.impact.impulse, OUTCOMES[outcome])
             return self.touching_now(STILL_TOUCHING)
         contacts = contacts_of(solid, self.y, touching)
         impact = settling_impact(
@@ -279,7 +286,7 @@ class Simulation(History):
         self.y = [*self.y[:7], *impact.state.v_WB_W.tolist(), *impact.state.w_WB_W.tolist()]
         self.lost_in_strikes += before - energy_of(solid, self.y)
         x, y, z = impact.impulses_W.sum(axis=0).tolist()
-        self.note(TossEventKind.JAMS, touching, impulse=(x, y, z))
+        self.note(TossEventKind.JAMS, touching, (), (x, y, z))
         return self.touching_now(STILL_TOUCHING)
 
     # Contact
@@ -289,7 +296,7 @@ class Simulation(History):
         if self.way_on is not None:
             mode, self.way_on = self.way_on, None
             return mode, pushed_by_contacts(self.solid, self.y, mode)
-        thorough = self.settings.thorough and touching != self.looked_at
+        thorough = self.thorough and touching != self.looked_at
         self.looked_at = touching
         known = self._known_since_strikes(touching, thorough)
         choice = known or choose_mode(self.solid, self.y, touching, thorough)
@@ -308,27 +315,23 @@ class Simulation(History):
 
     def _follow(self, mode: Mode) -> list[Touch]:
         """Go on in a mode to its end, and return what touches then."""
-        self.note(
-            TossEventKind.NEW_MODE,
-            [one.touch for one in mode],
-            mode=_letters(mode),
-        )
+        held = [one.touch for one in mode]
+        self.note(TossEventKind.NEW_MODE, held, mode)
         before = energy_of(self.solid, self.y)
         went = phase(
             self.solid,
             self.y,
             mode,
             start=self.now,
-            until=self.settings.horizon,
-            slow=min(self.slow, self._slow([one.touch for one in mode])),
-            error=self.settings.error,
-            has_steps=self.settings.has_pieces,
+            until=self.horizon,
+            slow=min(self.slow, self._slow(held)),
+            error=self.error,
+            has_steps=self.has_pieces,
         )
         self.pieces += went.steps
         self.steps += went.step_count
         self.now, self.y = went.seconds, went.y
         self.lost_in_contact += before - energy_of(self.solid, self.y)
-        held = [one.touch for one in mode]
         if went.end == PhaseEnd.CREEPS:
             return self._pass_over()
         if went.end == PhaseEnd.COMES_DOWN:
@@ -356,18 +359,18 @@ class Simulation(History):
 
         If they do so again, it goes on so for longer.
         """
-        until = min(self.now + self.linger, self.settings.horizon)
+        until = min(self.now + self.linger, self.horizon)
         mode: tuple[Held, ...] = ()
         before = energy_of(self.solid, self.y)
         while self.now < until:
             span = min(until - self.now, max(_SHARE * self.linger, SHORTEST_SHORT_STEP), LONGEST_SHORT_STEP)
             went = short_step(self.solid, self.y, start=self.now, span=span)
-            if self.settings.has_pieces:
+            if self.has_pieces:
                 self.pieces.append(went.step)
             mode = mode or went.mode
             self.y, self.now = went.y, self.now + went.step.span
             self.steps += 1
-        self.note(TossEventKind.NEW_MODE, [one.touch for one in mode], mode=_letters(mode))
+        self.note(TossEventKind.NEW_MODE, [one.touch for one in mode], mode)
         self.lost_in_contact += before - energy_of(self.solid, self.y)
         self.linger = min(_LONGER * self.linger, _LONGEST_LINGER)
         self.mark, self.rounds = self.now, 0
@@ -388,8 +391,7 @@ class Simulation(History):
 
     def _laid_flat(self, touching: list[Touch]) -> list[Touch]:
         """Lay a body that only rattles on a face flat on it, if it may be, and return what touches then."""
-        after = self.settings.flat_after
-        if after is None or self.struck < after or self.laid >= _MAX_LAID:
+        if self.struck < self.flat_after or self.laid >= _MAX_LAID:
             return touching
         flat = laid_flat(self.solid, self.y, self.faces)
         if flat is None:
@@ -405,7 +407,7 @@ class Simulation(History):
             return False
         touching = self.touching_now(math.inf)
         still = [*self.y[:7], *[0.0] * 6]
-        choice = choose_mode(self.solid, still, touching, self.settings.thorough)
+        choice = choose_mode(self.solid, still, touching, self.thorough)
         modes = choice.modes
         if not modes:
             return False
@@ -428,7 +430,3 @@ class Simulation(History):
         self.y, self.resting = placed, [one.touch for one in modes[0]]
         self.note(TossEventKind.RESTS, self.resting)
         return True
-
-
-def _letters(mode: Mode) -> str:
-    return "".join(["c" if one.slides else "f" for one in mode])

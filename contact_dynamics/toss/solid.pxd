@@ -22,7 +22,11 @@ cdef class Flat:
     cdef readonly double level, friction, restitution, strike_friction
 
 
+cdef class Above
+
+
 @cython.final
+@cython.no_gc
 cdef class Solid:
     cdef readonly double mass, rounding, reach, settling
     cdef readonly (double, double, double, double, double, double, double, double, double) inertia, inverse
@@ -30,11 +34,15 @@ cdef class Solid:
     cdef readonly (double, double, double) gravity
     cdef readonly int count
     cdef double[::1] points
+    cdef Above above
+    cdef object properties
 
     cpdef (double, double, double) corner(self, int k) noexcept
 
 
 @cython.final
+@cython.no_gc
+@cython.freelist(16)
 cdef class Held:
     cdef readonly tuple touch
     cdef readonly bint slides, begins
@@ -43,6 +51,8 @@ cdef class Held:
 
 
 @cython.final
+@cython.no_gc
+@cython.freelist(8)
 cdef class Pose:
     cdef readonly Solid solid
     cdef double[13] y
@@ -62,23 +72,25 @@ cdef class Pose:
 
 
 @cython.final
+@cython.no_gc
 cdef class Above:
-    cdef Solid solid
     cdef readonly int count
     cdef double[::1] heights, rates
     cdef readonly double least
     cdef double[13] y
 
     @cython.locals(flat=Flat, least=cython.double)
-    cdef void take(self, double* y) noexcept
+    cdef void take(self, Solid solid, double* y) noexcept
 
 
 cpdef (double, double, double, double, double, double, double, double, double) rows_of(double x, double yy, double z, double w) noexcept nogil
 cpdef Pose pose_of(Solid solid, list y)
+cpdef properties_of(Solid solid)
 cpdef double energy_of(Solid solid, list y)
 cpdef double kinetic_energy_of(Solid solid, list y)
+@cython.locals(above=Above)
 cpdef list heights_and_rates(Solid solid, list y)
-@cython.locals(flat=cython.int, corner=cython.int)
+@cython.locals(above=Above, flat=cython.int, corner=cython.int)
 cpdef list low_corners(Solid solid, list y, double high, double leaving)
 @cython.locals(flat=cython.int, corner=cython.int, touched=Flat, pose=Pose)
 cpdef list approaches(Solid solid, list y, list touching)

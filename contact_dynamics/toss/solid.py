@@ -95,6 +95,8 @@ class Solid:
         gravity: m/s^2, world axes.
         flats: The world's surfaces.
         settling: m, the height of rebounds that are not followed.
+        above: Where the heights of its corners are computed.
+        properties: What `properties_of` has made.
     """
 
     def __init__(  # noqa: PLR0917
@@ -116,6 +118,8 @@ class Solid:
         for k in range(self.count):
             self.reach = max(self.reach, vec.norm(self.corner(k)))
         self.reach += rounding
+        self.above = Above(self.count * len(flats))
+        self.properties: MassProperties | None = None
 
     def __reduce__(self) -> tuple[object, ...]:
         return Solid, self._parts(self.flats)
@@ -396,10 +400,10 @@ def pose_of(solid: Solid, y: Numbers) -> Pose:
 
 def heights_and_rates(solid: Solid, y: Numbers) -> list[tuple[float, float, Touch]]:
     """Return the height, m, and its rate, m/s, of every corner above every flat."""
-    above = Above(solid)
+    above = solid.above
     for k in range(13):
         above.y[k] = y[k]
-    above.take(above.y)
+    above.take(solid, above.y)
     n = solid.count
     touches = [(flat, corner) for flat in range(len(solid.flats)) for corner in range(n)]
     return [(above.heights[k], above.rates[k], touches[k]) for k in range(len(touches))]
@@ -407,10 +411,10 @@ def heights_and_rates(solid: Solid, y: Numbers) -> list[tuple[float, float, Touc
 
 def low_corners(solid: Solid, y: Numbers, high: float, leaving: float) -> list[tuple[float, Touch]]:
     """Return corners that are at most so high above flats, m, and do not leave faster, m/s, with heights."""
-    above = Above(solid)
+    above = solid.above
     for k in range(13):
         above.y[k] = y[k]
-    above.take(above.y)
+    above.take(solid, above.y)
     n = solid.count
     return [
         (above.heights[n * flat + corner], (flat, corner))
@@ -434,22 +438,21 @@ class Above:
     """The heights of all corners above all flats, flat after flat, and their rates.
 
     Attributes:
+        count: How many there are.
         heights: m.
         rates: m/s.
         least: m, the least height.
     """
 
-    def __init__(self, solid: Solid) -> None:
-        self.solid = solid
-        self.count = solid.count * len(solid.flats)
+    def __init__(self, count: int) -> None:
+        self.count = count
         self.heights = array("d", bytes(16 * self.count))
         self.rates = self.heights[self.count :]
         self.least = math.inf
         self.y = [0.0] * 13
 
-    def take(self, y: Numbers) -> None:
+    def take(self, solid: Solid, y: Numbers) -> None:
         """Take 13 numbers, whose quaternion need not be unit."""
-        solid = self.solid
         a, b, c, d, e, f, g, h, i = rows_of(y[3], y[4], y[5], y[6])
         w_x, w_y, w_z = y[10], y[11], y[12]
         k, least = 0, math.inf
@@ -483,7 +486,9 @@ def kinetic_energy_of(solid: Solid, y: Numbers) -> float:
 
 def properties_of(solid: Solid) -> MassProperties:
     """Return mass and inertia as questions take them."""
-    return MassProperties(mass=solid.mass, I_B=np.array(solid.inertia).reshape(3, 3))
+    if solid.properties is None:
+        solid.properties = MassProperties(mass=solid.mass, I_B=np.array(solid.inertia).reshape(3, 3))
+    return solid.properties
 
 
 def state_of(y: Numbers, stamp_ns: int = 0) -> BodyState:

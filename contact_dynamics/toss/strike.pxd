@@ -4,9 +4,10 @@
 cimport cython
 cimport libc.math as math
 
+from contact_dynamics.impact.spatial.response cimport Strike
 from contact_dynamics.toss cimport vectors as vec
 from contact_dynamics.toss.forces cimport held_as_they_are, without_rebounds
-from contact_dynamics.toss.impacts cimport inelastic_impact
+from contact_dynamics.toss.impacts cimport inelastic_impact, next_in_turn, routh
 from contact_dynamics.toss.mode_choice cimport choose_mode
 from contact_dynamics.toss.solid cimport Flat, Held, Pose, Solid, approaches, pose_of
 
@@ -27,6 +28,8 @@ cdef class Unsettled:
     cdef void note(self, list y, list touching) noexcept
 
 
+@cython.locals(k=cython.int, outcome=cython.int, flat=Flat, group=list)
+cpdef strike(Solid solid, list y, list touching, Strike impact, law, list rates, Unsettled unsettled, together, tuple first)
 @cython.locals(fast=cython.double, rate=cython.double, is_slow=cython.bint)
 cpdef low_rebounds_ended(Solid solid, list y, list touching, Unsettled unsettled)
 cdef double _slow(Solid solid) noexcept

@@ -17,6 +17,7 @@ import math
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 from contact_dynamics.impact.several.result import SeveralContactsLaw
+from contact_dynamics.impact.spatial.path import OUTCOMES
 from contact_dynamics.tolerances import STILL_TOUCHING, STRIKES
 from contact_dynamics.toss import vectors as vec
 from contact_dynamics.toss.forces import held_as_they_are, without_rebounds
@@ -34,6 +35,7 @@ from contact_dynamics.toss.solid import Held, approaches, pose_of
 
 if TYPE_CHECKING:
     from contact_dynamics.impact.law import RestitutionLaw
+    from contact_dynamics.impact.spatial.response import Strike
     from contact_dynamics.numerics.vectors import Vector3
     from contact_dynamics.toss.impacts import Inelastic
     from contact_dynamics.toss.mode_choice import Choice
@@ -93,16 +95,16 @@ class Strikes(NamedTuple):
     choice: Choice | None = None
 
 
-def strike(
+def strike(  # noqa: PLR0917
     solid: Solid,
     y: Numbers,
     touching: list[Touch],
+    impact: Strike,
     law: RestitutionLaw,
-    *,
     rates: list[float],
     unsettled: Unsettled,
-    together: SeveralContactsLaw = SeveralContactsLaw.SEQUENTIAL,
-    first: Touch | None = None,
+    together: SeveralContactsLaw,
+    first: Touch | None,
 ) -> Strikes:
     """Return the state after all strikes of contacts that touch at one instant.
 
@@ -110,6 +112,7 @@ def strike(
         solid: The body and the flats.
         y: The state before.
         touching: All contacts that touch, approaching or not.
+        impact: Makes impacts at one contact, by the law.
         law: What the coefficients of restitution mean.
         rates: m/s, the normal velocities of these contacts (`approaches`).
         unsettled: What earlier strikes have found about contacts without a mode.
@@ -133,8 +136,9 @@ def strike(
         elif len(group) > 1:
             at_once = tied_strike(solid, y, group, law)
         if at_once is None:
-            y, one = routh(solid, y, group[0], law, friction=solid.flats[group[0][0]].strike_friction)
-            new = [one]
+            flat = solid.flats[group[0][0]]
+            y, outcome = routh(impact, solid, y, group[0], flat.strike_friction)
+            new = [Struck(group[0], impact.impulse, OUTCOMES[outcome])]
         else:
             y, new = at_once
         struck += new

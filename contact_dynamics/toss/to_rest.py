@@ -96,7 +96,7 @@ def followed_to_rest(
         processes: How many processes share the work, or an executor.
     """
     going = np.flatnonzero(many.now < horizon).tolist()
-    began, states = many.now.tolist(), np.hstack(many.last).tolist()
+    began, states = many.now.tolist(), many.last.tolist()
     lacking = (many.corners < 0).sum(axis=0).tolist()
     tosses = []
     for i in going:

@@ -54,6 +54,16 @@ def without(a: Vector3, unit: Vector3) -> Vector3:
     return (a[0] - along * unit[0], a[1] - along * unit[1], a[2] - along * unit[2])
 
 
+def plus(a: Vector3, factor: float, b: Vector3) -> Vector3:
+    """Return a plus a multiple of b."""
+    return (a[0] + factor * b[0], a[1] + factor * b[1], a[2] + factor * b[2])
+
+
+def combined(p: float, a: Vector3, q: float, b: Vector3) -> Vector3:
+    """Return p a + q b."""
+    return (p * a[0] + q * b[0], p * a[1] + q * b[1], p * a[2] + q * b[2])
+
+
 def times(matrix: Matrix3, vector: Vector3) -> Vector3:
     """Return the product of a matrix and a vector."""
     a, b, c, d, e, f, g, h, i = matrix

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from array import array
+
 import numpy as np
 import pytest
 
@@ -12,7 +14,7 @@ from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.shapes import box
 from contact_dynamics.toss import TossUncertainty, sampled_toss, toss
 from contact_dynamics.toss.law_spread import LawSpread
-from contact_dynamics.toss.solid import numbers_of, solid_of
+from contact_dynamics.toss.solid import Solid, numbers_of, solid_of
 from contact_dynamics.world import Body, Surface, World
 
 SIZE = (0.1, 0.12, 0.07)
@@ -77,8 +79,14 @@ def test_changes_of_spin_are_those_of_an_impulse_that_changes_the_velocity(chang
 
 def test_both_spreads_are_kept_where_a_body_cannot_be_turned_at_its_contact() -> None:
     """No impulse at a contact that is the mass centre changes a spin."""
-    spread = LawSpread(UNCERTAINTY, 4000, np.random.default_rng(1))
-    changes = spread.changes(np.arange(4000), np.ones(4000), np.zeros((4000, 3, 3)))
+    spread, solid = LawSpread(UNCERTAINTY, 4000, np.random.default_rng(1)), solid_of(BRICK, WORLD)
+    corner = array("d", bytes(24))
+    center = Solid(
+        solid.mass, solid.inertia, solid.inverse, corner, (0,), 0.0, solid.gravity, solid.flats, 0.0
+    )
+    before, after = [*[0.0] * 6, 1.0, *[0.0] * 6], [*[0.0] * 6, 1.0, 0.0, 0.0, 1.0, *[0.0] * 3]
+    kicked = [spread.of_one(i).kicked(center, before, after, (0, 0)) for i in range(4000)]
+    changes = np.array(kicked)[:, 7:] - after[7:]
     medians = [np.median(np.linalg.norm(part, axis=1)) for part in (changes[:, :3], changes[:, 3:])]
     np.testing.assert_allclose(medians, 1.538 * np.array([0.0068, 0.3]), rtol=0.06)  # as of normal numbers
 

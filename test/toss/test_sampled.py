@@ -71,9 +71,9 @@ def test_exact_samples_strike_as_the_toss_does(seed: int) -> None:
     for k in range(followed):
         assert many.corners[k, 0] == strikes[k].corners[0]
         assert many.seconds[k, 0] == pytest.approx(strikes[k].seconds, abs=1e-5)
-        np.testing.assert_allclose(many.v_WB_W[k, 0], strikes[k].state.v_WB_W, atol=1e-4)
-        np.testing.assert_allclose(many.w_WB_W[k, 0], strikes[k].state.w_WB_W, atol=2e-3)
-    np.testing.assert_array_equal(many.v_WB_W[:followed, 0], many.v_WB_W[:followed, 1])
+        np.testing.assert_allclose(many.states[k, 0, 7:10], strikes[k].state.v_WB_W, atol=1e-4)
+        np.testing.assert_allclose(many.states[k, 0, 10:], strikes[k].state.w_WB_W, atol=2e-3)
+    np.testing.assert_array_equal(many.states[:followed, 0], many.states[:followed, 1])
 
 
 def test_samples_that_go_on_together_are_where_the_strikes_would_have_them() -> None:
@@ -102,8 +102,7 @@ def test_samples_that_go_on_together_are_where_the_strikes_would_have_them() -> 
     assert rounds >= 2
     for i in np.flatnonzero((all_told.corners >= 0).sum(axis=0) < rounds):
         assert one.now[i] == all_told.now[i]
-        for last, same in zip(one.last, all_told.last, strict=True):
-            np.testing.assert_array_equal(last[i], same[i])
+        np.testing.assert_array_equal(one.last[i], all_told.last[i])
     assert (one.now > one.seconds[0]).sum() >= FEWEST_AT_ONCE
 
 
@@ -153,9 +152,11 @@ def test_no_sample_goes_on_into_the_floor() -> None:
         solid, samples, law=RestitutionLaw.POISSON, spread=LawSpread(many, 200, chance), depth=1, horizon=5.0
     )
     arms = np.einsum(
-        "nij,nj->ni", matrices_of(found.q_WB[0]), samples.corners_B[np.arange(200), found.corners[0]]
+        "nij,nj->ni",
+        matrices_of(found.states[0, :, 3:7]),
+        samples.corners_B[np.arange(200), found.corners[0]],
     )
-    rebounds = (found.v_WB_W[0] + np.cross(found.w_WB_W[0], arms))[:, 2]
+    rebounds = (found.states[0, :, 7:10] + np.cross(found.states[0, :, 10:], arms))[:, 2]
     assert rebounds.min() >= -1e-12
     assert np.median(rebounds) > 0.1
 

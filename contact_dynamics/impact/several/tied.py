@@ -199,9 +199,40 @@ def shared_path(
     axes[:, :2] = np.einsum("ba,kbj->kaj", turn, axes[:, :2])
     shared[:2] = turn.T @ shared[:2]
     whole = shared @ response.inverse_mass @ shared.T
-    l1, l2, kn = float(whole[0, 0]), float(whole[1, 1]), float(whole[2, 2])
-    k1, k2 = float(whole[0, 2]), float(whole[1, 2])
+    (l1, _, k1), (_, l2, k2), (_, _, kn) = whole.tolist()
     u1, u2, v_n = (shared @ response.twist).tolist()
+    path = mean_path(
+        (l1, l2, k1, k2, kn),
+        (u1, u2, v_n),
+        restitution=restitution,
+        friction=friction,
+        law=law,
+        tolerance=tolerance,
+    )
+    return path, axes
+
+
+def mean_path(
+    response: tuple[float, float, float, float, float],
+    velocity: tuple[float, float, float],
+    *,
+    restitution: float,
+    friction: float,
+    law: RestitutionLaw,
+    tolerance: float,
+) -> SpatialPath:
+    """Return the path of the impulse of contacts that strike as one.
+
+    Args:
+        response: 1/kg, that of their mean velocity, as `SlidingLaw` has it: l_1, l_2, k_1, k_2 and k_n.
+        velocity: m/s, the mean one, by the two tangents and the normal.
+        restitution: The coefficient of restitution.
+        friction: Coulomb's coefficient.
+        law: What the coefficient of restitution means.
+        tolerance: m/s. Contacts that slide less fast do not slide.
+    """
+    l1, l2, k1, k2, kn = response
+    u1, u2, v_n = velocity
     if l1 <= NO_SHARED_RESPONSE * kn:
         l1, k1, u1 = kn, 0.0, 0.0  # equal impulses along this tangent move nothing
     if l2 <= NO_SHARED_RESPONSE * kn:
@@ -215,7 +246,7 @@ def shared_path(
         if float(np.hypot(k1 / l1, k2 / l2)) <= friction * (1.0 + NO_SHARED_RESPONSE):
             ends_by = RestitutionLaw.POISSON  # no impulse ends restitution by a velocity or by work
     sliding = SlidingLaw(l1, l2, k1, k2, kn, friction)
-    return trace(sliding, (u1, u2), v_n, restitution=restitution, law=ends_by), axes
+    return trace(sliding, (u1, u2), v_n, restitution=restitution, law=ends_by)
 
 
 def _axes(response: Response, velocities: FloatArray, normals: FloatArray, tolerance: float) -> FloatArray:

@@ -19,7 +19,7 @@ from contact_dynamics.contact_modes import (
 from contact_dynamics.errors import InvalidFieldError, TooLargeError
 from contact_dynamics.impact import SeveralImpact, SeveralVerdict, planar_impact
 from contact_dynamics.impact.several.jamming import jamming_impact
-from contact_dynamics.impact.several.settling import MAX_JAMS, settling_impact
+from contact_dynamics.impact.several.settling import settling_impact
 from contact_dynamics.numerics.lemke import solve_complementarity
 from contact_dynamics.plane.lifting import planar_in_space
 from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
