@@ -60,6 +60,10 @@ _UNITS: Final = {
 class LargestLoad(Record):
     """Largest load on a body at rest, as factors of a given load, or largest motion of its support.
 
+    A circular rim that lies flush is represented by eight contacts. The tipping moment that a cup bears, and
+    the tangent of the tilt at which it tips, are therefore those of an octagon: 92 % to 100 % of the true
+    ones, depending on the direction.
+
     Attributes:
         factor: Factor up to which rest is consistent, >= 0. It is infinite if rest is consistent under any
             factor.
@@ -99,8 +103,7 @@ def largest_load(
     """Return the largest factor of a load, in addition to the problem's own wrench, before the body moves.
 
     With a load of 1 N, the factors are in newtons. Friction cones are round, and ``factor`` is exact to about
-    1e-10. A circular rim that lies flush is represented by eight contacts, so a cup may be predicted to tip
-    at 92 % of the true load.
+    1e-10. Where a circular rim lies flush, it is less by up to 8 % (`LargestLoad`).
 
     Args:
         problem: The contact problem with the wrench without the load, such as the weight alone, under which

@@ -288,3 +288,17 @@ def test_closure_in_words() -> None:
     )
     assert closure(three).in_short() == "Closure: force closure"
     assert not closure(three.subset([])).force
+
+
+@pytest.mark.parametrize("heading", [0.0, 0.2, math.pi / 8.0, 0.6])
+def test_a_cup_tips_over_the_sides_of_an_octagon(heading: float) -> None:
+    """As documented, a flush rim counts as eight points: 92 % to 100 % of the tangent of the tilt."""
+    radius, height = 0.05, 0.1
+    cup = Body.cylinder(radius, 2.0 * height, 1.0)
+    floor = Surface(name="tray", p_WS_W=[0, 0, 0], normal_W=[0, 0, 1], friction=2.0, restitution=0.0)
+    state = BodyState(p_WB_W=[0, 0, height], q_WB=[0, 0, 0, 1])
+    problem = SpatialContactProblem.of(cup, state, World(surfaces=(floor,), gravity_W=[0, 0, -G]))
+    tilt = largest_tilt(problem, [math.cos(heading), math.sin(heading), 0.0]).factor
+    from_middle = math.remainder(heading - math.pi / 8.0, math.pi / 4.0)  # of a side
+    reach = radius * math.cos(math.pi / 8.0) / math.cos(from_middle)
+    assert math.tan(tilt) == pytest.approx(reach / height, rel=1e-9)
