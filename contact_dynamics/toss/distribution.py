@@ -197,7 +197,7 @@ class TossDistribution(Record):
     branches: tuple[Branch, ...]
     face_normals_B: FloatArray
     face_probabilities: FloatArray
-    face_positions: tuple[Region, ...] = field(repr=False)
+    face_positions: tuple[Region, ...]
     rest: RestSpread | None
     ghosts: Ghosts
     to_rest: bool = field(repr=False)
