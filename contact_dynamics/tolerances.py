@@ -354,6 +354,10 @@ ROUGH_ROWS: Final = 10.0 * SAME_ROWS
 """Dimensionless, in the plane. Where decimals decide, floats still tell on which side of a row a ray is that
 is this far from it. Their rounding is some 1e-15."""
 
+LEAST_ROUGH_ROOT: Final = 1e-150
+"""Dimensionless. Square roots of decimals begin with those of floats, unless they are smaller. Their squares
+would lose digits below 2e-308."""
+
 SAME_SHARP_ROWS: Final = 1e-14
 """Sine. Rows that are known to more digits than floats have are one if they meet at a smaller sine. If
 friction never slips, a contact's normal is no more than 1e-10 of its tangent, and less if arms are short."""

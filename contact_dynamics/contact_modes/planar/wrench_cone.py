@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
-from contact_dynamics.contact_modes.planar.cone import MANY, PolyhedralCone, bits, decimal_vector
+from contact_dynamics.contact_modes.planar.cone import MANY, PolyhedralCone, bits, decimal_vector, root
 from contact_dynamics.contact_modes.planar.enumeration import FIXED, RIGHT, Cell, Letters
 from contact_dynamics.contact_modes.planar.problem import Lift, PlanarCase, lifted
 from contact_dynamics.numerics.arithmetic import DECIMALS, within
@@ -115,7 +115,7 @@ class ModeWrenches:
         rays = [decimal_vector(ray) for ray in self._rays]
         case = self._case
         sharp = sharp_reactions(case.lift, case.rows, self.edges, self._reactions.edges)
-        self._sharp_lengths = [Decimal(dot(row, row)).sqrt() for row in sharp]
+        self._sharp_lengths = [Decimal(root(dot(row, row))) for row in sharp]
         return [*rays, *sharp]
 
     def generated_by(self) -> tuple[list[Vector3], list[Vector3]]:
