@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Samples of a toss that is not known exactly, followed through the next strikes or to rest.
 
-The next strikes of all samples are found first (`next_strikes`), in a tenth of a millisecond each. If
+The next strikes of all samples are found first (`next_strikes`), in some hundredths of a millisecond each. If
 rest is asked for, each sample goes on from there as a toss does (`to_rest`). That takes far longer, and
 several processes can share it. It is done less exactly than a single toss: rebounds below
 `SAMPLED_SETTLING_HEIGHT` are not followed, and neither is a body that only rattles on a face until it rests

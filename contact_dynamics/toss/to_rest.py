@@ -85,10 +85,10 @@ def followed_to_rest(
     horizon: float,
     processes: int | Executor,
 ) -> dict[int, Followed]:
-    """Return how samples go on after their strikes in arrays, by their numbers, if they are not over.
+    """Return how samples go on after their strikes so far, by their numbers, if they are not over.
 
     Args:
-        many: The strikes up to where they go on, and the samples.
+        many: The strikes so far, and the samples.
         spread: The law's own spread.
         law: What the coefficients of restitution mean.
         several_contacts_law: The law for several contacts that strike at one instant.

@@ -3,7 +3,10 @@
 
 from __future__ import annotations
 
+import copy
 import math
+import pickle
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -44,6 +47,20 @@ def energies(body: Body, went: Toss, times: np.ndarray) -> np.ndarray:
     mass = body.mass_properties
     states = [went.state_at(time) for time in times.tolist()]
     return np.array([kinetic_energy(mass, one) + mass.mass * G * float(one.p_WB_W[2]) for one in states])
+
+
+def test_a_toss_that_is_copied_or_pickled_has_its_events() -> None:
+    """They are made when they are first asked for, and copies may be made before that."""
+    body, state, world = drawn(0)
+    went = toss(body, state, world)
+    pickled = pickle.loads(pickle.dumps(went))  # noqa: S301  our own
+    copied = copy.copy(toss(body, state, world))
+    expected = went.to_dict()
+    assert len(went.events) == len(expected["events"]) > 0
+    assert went.events is went.events
+    for other in (pickled, copied, copy.deepcopy(went), replace(went, alternatives=(went,))):
+        assert {**other.to_dict(), "alternatives": []} == expected
+        assert other.events[-1].kind == TossEventKind.RESTS
 
 
 @seeds(range(5), slow=range(5, 12))
