@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from contact_dynamics.contact_modes.letters import SLIDES_LEFT, SLIDES_RIGHT
 from contact_dynamics.contact_modes.result import applied_wrench
 from contact_dynamics.diagrams import palette, paper
 from contact_dynamics.diagrams.marks import Arrows, Axis, Diagram, Faces, Labels, Lines, Points
@@ -22,7 +23,6 @@ from contact_dynamics.diagrams.palette import Paint
 from contact_dynamics.diagrams.shape import outline
 from contact_dynamics.diagrams.words import contacts_in_words
 from contact_dynamics.numerics.vectors import tangents_near_x
-from contact_dynamics.questions.plane_of_motion import beyond, sliding_directions
 
 if TYPE_CHECKING:
     from contact_dynamics.contact.contact import ContactSet
@@ -129,7 +129,7 @@ def _mode_marks(name: str, mode: SpatialMode, answer: ContactModeAnswer, *, size
     magnitudes = np.linalg.norm(forces_W, axis=1)
     pressed = np.flatnonzero(magnitudes > 0.0)
     scale = FORCE_LENGTH * size / float(magnitudes.max()) if len(pressed) > 0 else 0.0
-    sliding_W = sliding_directions(answer, mode)
+    sliding_W = _sliding_directions(answer, mode)
     slides = sliding_W.any(axis=1)
     (acceleration_W,) = beyond(mode.acceleration_W[None], answer.acceleration_tolerance)
     return [
@@ -253,3 +253,22 @@ def contact_forces(contacts: ContactSet, mode: SpatialMode, *, title: str = "") 
         )
     axes = tuple(Axis(f"{name} force, N", -0.05 * top, top) for name in ("friction", "normal"))
     return Diagram(marks=marks, axes=axes, title=title or mode.mode)
+
+
+def _sliding_directions(answer: ContactModeAnswer, mode: SpatialMode) -> FloatArray:
+    """Return the unit direction in which each contact slides in a mode, (n, 3), world axes, or zero.
+
+    In space the mode has the directions. In a plane its letters give them: l is against the tangent, r along
+    it.
+    """
+    if answer.plane is None:
+        return mode.tangential_directions_W
+    ways = np.array([{SLIDES_LEFT: -1.0, SLIDES_RIGHT: 1.0}.get(letter, 0.0) for letter in mode.mode])
+    tangents = np.cross(answer.contacts.normals_W, answer.plane.normal_W)
+    directions: FloatArray = ways[:, None] * tangents / np.linalg.norm(tangents, axis=1, keepdims=True)
+    return directions
+
+
+def beyond(vectors: FloatArray, tolerance: float) -> FloatArray:
+    """Return vectors, (n, k), in which those no longer than a tolerance are set to zero."""
+    return np.where(np.linalg.norm(vectors, axis=1, keepdims=True) > tolerance, vectors, 0.0)

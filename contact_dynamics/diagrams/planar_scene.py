@@ -14,26 +14,27 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from contact_dynamics.contact_modes.letters import mode_in_words
-from contact_dynamics.contact_modes.planar.wrench_sets import length_of
-from contact_dynamics.contact_modes.result import applied_wrench
+from contact_dynamics.contact_modes.planar.wrench_sets import PlanarWrenchSet, WrenchHalfSpace, length_of
+from contact_dynamics.contact_modes.result import PlanarMode, applied_wrench
 from contact_dynamics.diagrams import palette, paper
+from contact_dynamics.diagrams.contact_scene import beyond
 from contact_dynamics.diagrams.marks import Arrows, Axis, Diagram, Labels, Lines, Points
 from contact_dynamics.diagrams.mode_map import LIVE_RESOLUTION, chart_for
 from contact_dynamics.diagrams.palette import Paint
 from contact_dynamics.diagrams.shape import FLAT
 from contact_dynamics.diagrams.words import margin_in_words
 from contact_dynamics.diagrams.wrench_chart import DirectionChart, ForceDualChart
-from contact_dynamics.questions.plane_of_motion import seen_contacts, seen_modes, seen_wrench, seen_wrench_set
+from contact_dynamics.plane.types import PlanarContact, PlanarWrench
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from contact_dynamics.contact_modes import PlanarMode, PlanarWrenchSet
+    from contact_dynamics.contact_modes import SpatialMode, SpatialWrenchSet
     from contact_dynamics.diagrams.marks import Mark
     from contact_dynamics.diagrams.shape import Shape
     from contact_dynamics.diagrams.wrench_chart import WrenchChart
     from contact_dynamics.plane.projection import PlaneOfMotion
-    from contact_dynamics.plane.types import PlanarContact, PlanarWrench
+    from contact_dynamics.plane.types import Vector2
     from contact_dynamics.questions.contact_modes import ContactModeAnswer
     from contact_dynamics.rigid_body.body import MassProperties
     from contact_dynamics.validation import FloatArray
@@ -273,14 +274,14 @@ def modes_side_by_side(
 
     The ``outline`` of the body is a closed strip, (k, 2), m from the centre of mass. It may be empty.
     """
-    modes = seen_modes(answer, plane)
+    modes = _seen_modes(answer, plane)
     margins = [margin_in_words(margin) for margin in answer.margins or ()] or [""] * len(modes)
     titles = [
         f"{mode.mode}: {mode_in_words(mode.mode)}\n{margin}".rstrip()
         for mode, margin in zip(modes, margins, strict=True)
     ]
     return side_by_side(
-        seen_contacts(answer, plane),
+        _seen_contacts(answer, plane),
         modes,
         titles or ["approaches" if answer.approaching else "no consistent mode"],
         outline=outline,
@@ -325,7 +326,7 @@ def map_of_answer(
     """
     if not answer.wrench_sets or len(answer.wrench_sets) > MAX_SETS:
         return None
-    sets = tuple(seen_wrench_set(wrenches, plane) for wrenches in answer.wrench_sets)
+    sets = tuple(_seen_wrench_set(wrenches, plane) for wrenches in answer.wrench_sets)
     applied = applied_of(answer, plane, body)
     return AnswersMap(
         sets=sets,
@@ -358,17 +359,77 @@ def applied_of(
     """Return the wrench in question, or None if it is not known: without modes or mass properties."""
     if body is None or not answer.modes:
         return None
-    return seen_wrench(applied_wrench(body, answer.state, answer.contacts, answer.modes[0]), plane)
+    return _seen_wrench(applied_wrench(body, answer.state, answer.contacts, answer.modes[0]), plane)
 
 
 def _change(answer: ContactModeAnswer, plane: PlaneOfMotion) -> PlanarWrench | None:
     """Return the least change that takes the wrench out of the first mode, or None if it is not known."""
     if not answer.margins or not math.isfinite(answer.margins[0].margin):
         return None
-    return seen_wrench(answer.margins[0].change_W, plane)
+    return _seen_wrench(answer.margins[0].change_W, plane)
 
 
 def _flat_of(contact: PlanarContact, size: float) -> FloatArray:
     along = _FLAT * size * np.array(contact.tangent)
     flat: FloatArray = np.array(contact.r) + np.array([-along, along])
     return flat
+
+
+def _seen_contacts(answer: ContactModeAnswer, plane: PlaneOfMotion) -> tuple[PlanarContact, ...]:
+    """Return the contacts in the plane, all as points on flats."""
+    contacts = answer.contacts
+    arms = (contacts.p_WC_W - answer.state.p_WB_W) @ plane.axes_W.T
+    normals = contacts.normals_W @ plane.axes_W.T
+    return tuple(
+        PlanarContact(r=_pair(arm), normal=_pair(normal / np.linalg.norm(normal)), friction=friction)
+        for arm, normal, friction in zip(arms, normals, contacts.frictions.tolist(), strict=True)
+    )
+
+
+def _seen_modes(answer: ContactModeAnswer, plane: PlaneOfMotion) -> tuple[PlanarMode, ...]:
+    """Return the consistent modes in the plane. Accelerations within the answer's tolerance are zero."""
+    bases = np.array([(contact.tangent, contact.normal) for contact in _seen_contacts(answer, plane)])
+    bases_W = bases.reshape(-1, 2, 2) @ plane.axes_W
+    return tuple(_seen_mode(mode, plane, bases_W, answer.acceleration_tolerance) for mode in answer.modes)
+
+
+def _seen_wrench_set(wrenches: SpatialWrenchSet, plane: PlaneOfMotion) -> PlanarWrenchSet:
+    """Return the applied wrenches of a mode within the plane."""
+    return PlanarWrenchSet(
+        mode=wrenches.mode,
+        vertices=tuple(_seen_wrench(row, plane) for row in wrenches.vertices),
+        generators=tuple(_seen_wrench(row, plane) for row in wrenches.generators),
+        half_spaces=tuple(
+            WrenchHalfSpace(
+                a=(*_pair(plane.axes_W @ row[:3]), float(plane.normal_W @ row[3:6])), b=float(row[6])
+            )
+            for row in wrenches.half_spaces
+        ),
+    )
+
+
+def _seen_wrench(wrench_W: FloatArray, plane: PlaneOfMotion) -> PlanarWrench:
+    """Return a wrench in the plane from force and torque, (6,), N and N m, world axes."""
+    return PlanarWrench(f=_pair(plane.axes_W @ wrench_W[:3]), moment=float(plane.normal_W @ wrench_W[3:]))
+
+
+def _seen_mode(mode: SpatialMode, plane: PlaneOfMotion, bases_W: FloatArray, tolerance: float) -> PlanarMode:
+    """Return a mode in the plane. ``bases_W``, (n, 2, 3), has the tangent and the normal of each contact."""
+    forces, accelerations = (
+        tuple(_pair(pair) for pair in np.einsum("nij,nj->ni", bases_W, vectors_W))
+        for vectors_W in (mode.contact_forces_W, beyond(mode.contact_accelerations_W, tolerance))
+    )
+    return PlanarMode(
+        mode=mode.mode,
+        acceleration=_pair(plane.axes_W @ mode.acceleration_W),
+        angular_acceleration=float(plane.normal_W @ mode.angular_acceleration_W),
+        contact_forces=forces,
+        contact_accelerations=accelerations,
+        forces_unique=mode.forces_unique,
+        motion_unique=mode.motion_unique,
+    )
+
+
+def _pair(vector: FloatArray) -> Vector2:
+    x, y = vector.tolist()
+    return (x, y)
