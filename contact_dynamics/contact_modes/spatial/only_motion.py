@@ -220,9 +220,12 @@ def _excludes_others(
         return False
     # The virtual motions that have these accelerations and turn friction least are taken.
     tangents = contacts.turns[:, None, None] * contacts.across
-    others = seen_and_unseen(E)[1].T
-    tangential = tangents.reshape(-1, search.freedoms)
-    z -= others @ (np.linalg.pinv(tangential @ others, rcond=ROW_TOLERANCE) @ (tangential @ z))
+    # Where contacts stick, they may turn it not at all, so that these come first.
+    others, rests = seen_and_unseen(E)[1].T, speeds == 0.0
+    for chosen in (rests, ~rests) if rests.any() and not rests.all() else (slice(None),):
+        tangential = tangents[chosen].reshape(-1, search.freedoms)
+        z -= others @ (np.linalg.pinv(tangential @ others, rcond=ROW_TOLERANCE) @ (tangential @ z))
+        others = others @ seen_and_unseen(tangential @ others)[1].T if others.size else others
     turned = tangents @ z  # (n, 3, p)
     mass = basis.T @ search.mass @ basis
     scale = np.linalg.inv(np.linalg.cholesky(mass))
