@@ -367,9 +367,9 @@ class _Work(PyramidPrograms):
             return True
         gains = None if self._power is None else gains_in(flat.image, self._power, self.mass)
         may_hold = False
-        for region in whole(len(flat.image.coordinates)):
+        for region in whole(flat.image):
             may_hold |= self._decide(_Set(own, turning, flat, region, gains, {}))
-        return may_hold
+        return may_hold or bool(flat.image.groups.any())  # a whole group may stick
 
     def _is_decided(self, letters: str) -> bool:
         """Return whether all modes with some letters are known.
@@ -475,7 +475,7 @@ class _Work(PyramidPrograms):
         self._tries[modes.letters] += 1
         rays = modes.region.rays
         middle = (rays / np.linalg.norm(rays, axis=1)[:, None]).sum(axis=0)
-        return self._slides_together(modes.letters, [middle @ modes.flat.image.coordinates])
+        return self._slides_together(modes.letters, [middle @ modes.flat.image.motions])
 
     def _inside(self, letters: str, ranges: Ranges) -> _Alone | None:
         """Return a solution whose directions are in all ranges."""
@@ -570,7 +570,7 @@ def _implied(modes: _Set) -> Ranges | None:
             return None
         found = directions_where_all_slide(maps, rays)
     else:
-        found = directions(maps, region.rays)
+        found = directions(region.along(flat.image))
     return {i: one for i, one in zip(modes.turning, found, strict=True) if one is not None}
 
 

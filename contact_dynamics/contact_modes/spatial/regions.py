@@ -40,18 +40,27 @@ _MOST_RAYS: Final = 24
 """The largest number of rays of a part of a region."""
 
 
+_ONE_BODY: Final = 6
+"""The number of components of the motion of one body, whose contacts are taken as one group."""
+
+
 class Image(NamedTuple):
     """The tangential accelerations of some contacts under the motions in which others stay as well.
 
     Attributes:
         coordinates: (p, d), rows that give the coordinates of a motion.
+        motions: (p, d), the motions of unit coordinates.
         unseen: (q, d), motions without tangential acceleration.
         maps: (m, 2, p), from coordinates to the contacts' accelerations in their pyramids' frames.
+        groups: (p,), the group of each coordinate. Contacts that move by coordinates of one group do not move
+            by those of others, as the interfaces of a stack.
     """
 
     coordinates: FloatArray
+    motions: FloatArray
     unseen: FloatArray
     maps: FloatArray
+    groups: NDArray[np.intp]
 
 
 class Region(NamedTuple):
@@ -61,10 +70,13 @@ class Region(NamedTuple):
         rays: (p, p), one a row.
         inside: (p + 1, p), combinations of coordinates that are positive in the region: the share of each
             ray, and a height, which is also positive on all rays.
+        groups: (p,), the group of each ray, as an image has it. Between rays of different groups nothing but
+            the share of each differs, so that regions are not split there.
     """
 
     rays: FloatArray
     inside: FloatArray
+    groups: NDArray[np.intp]
 
     def rows(self, image: Image) -> FloatArray:
         """Return the conditions on the motion, (p + 1, d + 1), that it slides, within the region."""
@@ -97,13 +109,14 @@ class Region(NamedTuple):
         of_near[other], of_far[one] = 2.0 * shares[other], 2.0 * shares[one]
         of_near[one] -= shares[other]
         of_far[other] -= shares[one]
-        return Region(near, of_near), Region(far, of_far)
+        return Region(near, of_near, self.groups), Region(far, of_far, self.groups)
 
     @property
     def _widest(self) -> tuple[int, int, float]:
-        """The two rays that are farthest apart, and the angle between them, rad."""
+        """The two rays of one group that are farthest apart, and the angle between them, rad."""
         unit = self.rays / np.sqrt((self.rays * self.rays).sum(axis=1))[:, None]
-        one, other = divmod(int((unit @ unit.T).argmin()), len(unit))
+        cosines = np.where(self.groups[:, None] == self.groups, unit @ unit.T, 1.0)
+        one, other = divmod(int(cosines.argmin()), len(unit))
         apart, between = unit[one] - unit[other], unit[one] + unit[other]
         return one, other, 2.0 * math.atan2(math.sqrt(apart @ apart), math.sqrt(between @ between))
 
@@ -126,7 +139,18 @@ class Region(NamedTuple):
 
     def acting_edges(self, image: Image, count: int) -> NDArray[np.bool_]:
         """Return which of ``count`` edges, (m, count), of each contact's pyramid oppose some sliding here."""
-        return acting_edges(image.maps @ self.rays.T, count)
+        return acting_edges(self.along(image), count)
+
+    def along(self, image: Image) -> FloatArray:
+        """Return how each contact slides on each ray, (m, 2, p).
+
+        On rays of other groups it does not move, and a middle way stands for none.
+        """
+        found: FloatArray = image.maps @ self.rays.T
+        if self.groups.any():
+            moves = image.maps.any(axis=1) @ (self.groups[:, None] == self.groups)  # with the ray's group
+            found = np.where(moves[:, None], found, found.sum(axis=2)[:, :, None])
+        return found
 
     def friction(self, image: Image, tangential: FloatArray) -> FloatArray:
         """Return the power of friction on each ray, for unit normal force at each contact, (m, p).
@@ -194,19 +218,45 @@ def image_of(normals: FloatArray, frames: FloatArray) -> Image:
     free = seen_and_unseen(normals)[1]
     along = frames.reshape(-1, normals.shape[1]) @ free.T
     basis, rest = seen_and_unseen(along)
-    return Image(basis @ free, rest @ free, (along @ basis.T).reshape(len(frames), 2, -1))
+    groups = _groups(along) if normals.shape[1] > _ONE_BODY else np.zeros(len(frames), dtype=np.intp)
+    if not groups.any():
+        coordinates, maps = basis @ free, (along @ basis.T).reshape(len(frames), 2, -1)
+        return Image(coordinates, coordinates, rest @ free, maps, np.zeros(len(basis), dtype=np.intp))
+    bases = [seen_and_unseen(along[np.repeat(groups == one, 2)])[0] for one in range(groups.max() + 1)]
+    owners = np.repeat(np.arange(len(bases)), [len(one) for one in bases])
+    stacked = np.vstack(bases)
+    own = np.repeat(groups, 2)[:, None] == owners
+    maps = np.where(own, along @ stacked.T, 0.0).reshape(len(frames), 2, -1)
+    return Image(stacked @ free, np.linalg.pinv(stacked).T @ free, rest @ free, maps, owners)
 
 
-def directions(maps: FloatArray, rays: FloatArray) -> list[tuple[float, float] | None]:
+def _groups(along: FloatArray) -> NDArray[np.intp]:
+    """Return the group of each contact, (m,), from its rows, (2 m, q), so that groups move independently.
+
+    Those that do not are joined by the projector on what all rows can be together.
+    """
+    count = len(along) // 2
+    projector = np.abs(along @ np.linalg.pinv(along, rcond=ROW_TOLERANCE))
+    joined = projector.reshape(count, 2, count, 2).max(axis=(1, 3)) > ROW_TOLERANCE
+    found = np.full(count, -1, dtype=np.intp)
+    for i in range(count):
+        if found[i] < 0:
+            reached = joined[i]
+            while (further := joined[reached].any(axis=0) | reached).sum() > reached.sum():
+                reached = further
+            found[reached] = found[i] = found.max() + 1
+    return found
+
+
+def directions(along: FloatArray) -> list[tuple[float, float] | None]:
     """Return the first and the last direction, rad, in which each contact slides in a region.
 
     It is None where a contact may slide in opposite directions, or stick.
 
     Args:
-        maps: (m, 2, p), as an image has them.
-        rays: (k, p), whose positive sums are the region.
+        along: (m, 2, k), how each contact slides on the rays whose positive sums are the region.
     """
-    starts, ranges, clear = ranges_of(maps @ rays.T)
+    starts, ranges, clear = ranges_of(along)
     return [
         (start, start + size) if own else None
         for start, size, own in zip(starts.tolist(), ranges.tolist(), clear.tolist(), strict=True)
@@ -214,11 +264,16 @@ def directions(maps: FloatArray, rays: FloatArray) -> list[tuple[float, float] |
 
 
 def directions_where_all_slide(maps: FloatArray, rays: FloatArray) -> list[tuple[float, float] | None]:
-    """Return what `directions` does, without the motions in which a contact sticks."""
+    """Return what `directions` does, without the motions in which a contact sticks.
+
+    Args:
+        maps: (m, 2, p), as an image has them.
+        rays: (k, p), whose positive sums are the region.
+    """
     along = maps @ rays.T
     slides = np.sqrt((along * along).sum(axis=1)) > ROW_TOLERANCE * np.linalg.norm(rays, axis=1)
     middle = (along * slides[:, None]).sum(axis=2)
-    return directions(np.where(slides[:, None], along, middle[:, :, None]), np.eye(len(rays)))
+    return directions(np.where(slides[:, None], along, middle[:, :, None]))
 
 
 def gains_in(image: Image, power: FloatArray, mass: FloatArray) -> FloatArray:
@@ -234,12 +289,13 @@ def gains_in(image: Image, power: FloatArray, mass: FloatArray) -> FloatArray:
     """
     unseen = image.unseen @ mass
     rest = np.linalg.solve(unseen @ image.unseen.T, image.unseen @ power)
-    gains: FloatArray = image.coordinates @ (power - rest @ unseen)
+    gains: FloatArray = image.motions @ (power - rest @ unseen)
     return gains
 
 
-def whole(dimensions: int) -> Iterator[Region]:
+def whole(image: Image) -> Iterator[Region]:
     """Yield regions that together cover every direction. There are none in a space of no dimensions."""
+    dimensions = len(image.coordinates)
     for signs in itertools.product((1.0, -1.0), repeat=dimensions) if dimensions else ():
         rays = np.diag(signs)  # its own inverse
-        yield Region(rays, np.concatenate([rays, [signs]]))
+        yield Region(rays, np.concatenate([rays, [signs]]), image.groups)

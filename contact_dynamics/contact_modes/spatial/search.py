@@ -155,10 +155,10 @@ class Search(PyramidPrograms):
         self._goal = "".join(letters.letter for letters in trials)
         common = self._common(image, open_ones)
         may_hold = False
-        for region in whole(len(image.coordinates)):
+        for region in whole(image):
             may_hold |= self._decide_within(region, program, trials, common)
         self._goal = ""
-        return may_hold
+        return may_hold or bool(image.groups.any())  # a whole group may stick
 
     def _common(self, image: Image, open_ones: list[int]) -> Common:
         """Return what the regions of a flat have in common."""
