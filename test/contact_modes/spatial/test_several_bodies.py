@@ -21,6 +21,8 @@ from contact_dynamics.contact_modes import (
 )
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
+from oracles.modes_of_stacks import Stack
+from oracles.modes_of_stacks import made as made_stack
 from oracles.modes_of_two_bodies import Bodies, accelerations, all_modes, drawn
 from oracles.modes_on_planes import INERTIA, MASS, made
 from sweeps import seeds
@@ -198,6 +200,37 @@ def test_modes_of_two_drawn_bodies_are_those_of_an_enumeration(seed: int) -> Non
         assert np.abs(near[0].accelerations_W - linear).max() <= 1e-9 * size
         assert np.abs(near[0].angular_accelerations_W - angular).max() <= 1e-9 * size
         assert np.abs(near[0].contact_accelerations_W - points).max() <= 1e-9 * size
+
+
+@seeds(range(12), slow=range(12, 2000))
+def test_no_mode_of_a_stack_that_was_made_is_missed(seed: int) -> None:
+    """There are two bodies with up to eight contacts, or three with up to twelve."""
+    case = made_stack(seed, bodies=3 if seed % 6 == 5 else 2)
+    answer = contact_modes(of_stack(case))
+    assert answer.verdict == ModeVerdict.UNDECIDED or any(
+        mode.mode == case.letters
+        and (
+            not mode.motion_unique
+            or mode.accelerations_W == pytest.approx(case.accelerations, rel=1e-6, abs=1e-6)
+        )
+        for mode in answer.modes
+    )
+
+
+def test_few_stacks_are_undecided() -> None:
+    verdicts = [contact_modes(of_stack(made_stack(seed))).verdict for seed in range(12, 32)]
+    assert verdicts.count(ModeVerdict.UNDECIDED) <= 4
+
+
+def of_stack(case: Stack) -> BodiesContactProblem:
+    return BodiesContactProblem(
+        bodies=[MassProperties(mass=m, I_B=one) for m, one in zip(case.masses, case.inertias, strict=True)],
+        states=[BodyState(p_WB_W=centre, q_WB=[0, 0, 0, 1]) for centre in case.centres],
+        contacts=ContactSet(p_WC_W=case.points, normals_W=[0.0, 0.0, 1.0], frictions=case.frictions),
+        pairs=case.pairs,
+        forces_W=case.forces,
+        torques_W=case.torques,
+    )
 
 
 @seeds(range(0, 60, 3), slow=range(1, 600))
