@@ -132,7 +132,7 @@ def test_every_result_of_a_toss_fits() -> None:
     assert head.startswith("Toss: RESTS at ")
     assert f"{len(went.undecided)} branch points not followed (at {went.undecided[0].seconds:.3g}, " in head
     followed = toss(cube, state, world, max_alternatives=2)
-    assert "followed to 2 other ways" in str(followed).splitlines()[0]
+    assert "2 alternatives followed" in str(followed).splitlines()[0]
     assert any(line.split() == ["alternatives", "2", "Toss"] for line in str(followed).splitlines())
     for shown in (went, followed, *went.events, went.state, went.energy, cube, world):
         lines = str(shown).splitlines()

@@ -52,7 +52,7 @@ SEQUENCE_ENDS: Final = {
     SequenceEnd.NOTHING_STRIKES: "it flies",
     SequenceEnd.STAYS: "a contact stays",
     SequenceEnd.CHATTERS: "it chatters to rest at a contact",
-    SequenceEnd.MAX_STRIKES: "the maximum number of strikes was reached",
+    SequenceEnd.MAX_STRIKES: "the maximum number of impacts was reached",
     SequenceEnd.WINDOW_ENDED: "the window ended",
 }
 """The words for what follows the last of several strikes in time."""
@@ -93,7 +93,7 @@ EVENTS: Final = {
 """The words for what happens at an event."""
 
 UNDECIDED: Final = {
-    UndecidedReason.STRIKE_TOGETHER: "contacts strike together",
+    UndecidedReason.STRIKE_TOGETHER: "simultaneous impacts",
     UndecidedReason.SEVERAL_MODES: "several modes are consistent",
 }
 """The words for why mechanics does not decide."""
@@ -139,7 +139,7 @@ def impact_in_words(answer: ImpactAnswer) -> list[str]:
     words += _probabilities_in_words(impact)
     if impact.strikes and impact.end is not None:
         count, last = len(impact.strikes), 1e3 * impact.strikes[-1].seconds
-        words.append(f"{count} strikes within {last:.3g} ms; then {SEQUENCE_ENDS[impact.end]}")
+        words.append(f"{count} impacts within {last:.3g} ms; then {SEQUENCE_ENDS[impact.end]}")
     if impact.creates_energy:
         words.append("the law creates energy: do not trust this answer")
     return words

@@ -143,7 +143,7 @@ def default_index(data: FloatArray, offsets: Sequence[int]) -> int:
             found.append((first, next_one - first, index))
     if not found:
         raise InvalidFieldError(
-            "TOSS", "no toss with a clean strike of a single corner", "an index, as in tosses.npz#17"
+            "TOSS", "no toss with a clean impact of a single corner", "an index, as in tosses.npz#17"
         )
     return max(found)[2]
 

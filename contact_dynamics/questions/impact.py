@@ -72,8 +72,8 @@ SAMPLES: Final = 2000
 ms, during which a server answers nobody else."""
 
 _OPEN_AT_AN_INSTANT: Final = (
-    "contacts approach at one instant, and their order is open: the fastest strikes first, and those that "
-    "tie strike as one"
+    "several contacts approach at the same instant, and rigid-body mechanics does not determine their order: "
+    "the fastest approach is resolved first, and equal ones together"
 )
 
 _NO_WRENCH: Final = np.zeros(3)
@@ -202,8 +202,8 @@ def _in_time(question: ImpactQuestion, law: InTime, strike: _Strike, context: Co
     )
     if not sequence.strikes and sequence.end == SequenceEnd.STAYS:
         message = (
-            "contacts: at least one must strike, got one that stays (a contact mode question says what "
-            "follows; a hold_step continues beyond it)"
+            "contacts: at least one must approach, got one that stays closed (request its contact mode, or "
+            "set hold_step to continue)"
         )
         raise NoContactError(message)
     if not sequence.strikes:
@@ -421,16 +421,16 @@ def _check_supported(question: ImpactQuestion, *, contact_count: int) -> None:
         )
         raise NotSupportedError(message)
     if in_time and is_planar:
-        message = "problem must be SPATIAL for strikes in time, got PLANAR: space contains the plane"
+        message = "problem must be SPATIAL or AUTOMATIC for impacts over time, got PLANAR"
         raise NotSupportedError(message)
     if in_time and question.include_orders:
-        message = "include_orders must be false for strikes in time, got true: time is the order"
+        message = "include_orders must be false for impacts over time, got true (their order is that of time)"
         raise NotSupportedError(message)
     one_contact = contact_count == 1 and not is_planar and not in_time
     if question.include_covariance and (has_other or not one_contact):
         message = (
-            "include_covariance must be false except at one contact with the world in space, and without "
-            f"strikes in time, got true for {contact_count} contacts"
+            "include_covariance must be false unless a spatial problem has one contact with the world, and "
+            f"for impacts over time, got true for {contact_count} contacts"
         )
         raise NotSupportedError(message)
 

@@ -379,7 +379,7 @@ class StateStore:
         age_ns = asked_ns - state.stamp_ns
         if age_ns > self._timeout_ns:
             message = (
-                f"the newest state of {body_name!r} must be at most {to_seconds(self._timeout_ns):g} s old "
+                f"the latest state of {body_name!r} must be at most {to_seconds(self._timeout_ns):g} s old "
                 f"(state_timeout), got {to_seconds(age_ns):.3f} s"
             )
             raise StaleStateError(message + self.arrivals(body_name).why_old(asked_ns))

@@ -278,7 +278,7 @@ def _moved(subject: Subject, later: KnownState | None, stamp_ns: int | None, con
         )
     ahead, horizon = seconds_between(state.stamp_ns, stamp_ns), context.defaults.horizon
     if ahead > horizon:
-        found = f"{ahead:.9g} s after the newest state"
+        found = f"{ahead:.9g} s after the latest state"
         raise InvalidFieldError("stamp", found, f"at most {horizon:g} s, the default horizon")
     motion = free_motion(subject.body.mass_properties, state, gravity_W=context.world.gravity_W)
     covariance = subject.covariance

@@ -246,7 +246,7 @@ class Toss(TossOutcome):
             shown = [*times[:_TIMES], *["..."] * (len(times) > _TIMES)]
             followed = "all followed" if self.all_followed else "not followed"
             if self.alternatives and not self.all_followed:
-                followed = f"followed to {len(self.alternatives)} other ways"
+                followed = f"{len(self.alternatives)} alternatives followed"
             words.append(f"{count} {followed} (at {', '.join(shown)} s)")
         return ", ".join(words)
 

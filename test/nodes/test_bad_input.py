@@ -265,7 +265,7 @@ def long_covariance(request: Any) -> None:
 
 BEYOND_REASON = [
     (PredictImpact, lying, "NO_CONTACT", "touches 'floor' and does not approach it"),
-    (PredictImpact, on_an_edge_in_time, "NO_CONTACT", "hold_step continues beyond it"),
+    (PredictImpact, on_an_edge_in_time, "NO_CONTACT", "set hold_step to continue"),
     (PredictImpact, thrown_up_in_time, "SEPARATING", "comes back within the strike_window of 0.01 s"),
     (
         PredictImpact,

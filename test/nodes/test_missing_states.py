@@ -70,7 +70,7 @@ def test_no_state_says_what_became_of_those_that_came(tmp_path: Path) -> None:
             client.spin_until(lambda: newest(client).status == 0)
             states.publish(odometry(2 * HOUR_NS, frame="map"))
             clock.publish(Clock(clock=stamp_to_msg(2 * HOUR_NS + 1_000_000_000)))
-            wait_for("the newest state of 'brick' must be at most 0.5 s old (state_timeout), got 1.000 s")
+            wait_for("the latest state of 'brick' must be at most 0.5 s old (state_timeout), got 1.000 s")
             wait_for("later messages were rejected, the last ... s ago because header.frame_id must be")
             clock.publish(Clock(clock=stamp_to_msg(HOUR_NS)))
             wait_for("5 messages received; the stored states were discarded when the clock was set back")

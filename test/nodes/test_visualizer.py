@@ -160,7 +160,7 @@ def test_a_struck_body_and_strikes_in_sequence_are_told() -> None:
     answer.impact.sequence_end = Impact.STAYS
     text = in_words("predict_impact", answer)
     assert "that of bat becomes (1, 0, -2) m/s" in text
-    assert "2 strikes within 4 ms; then a contact stays" in text
+    assert "2 impacts within 4 ms; then a contact stays" in text
     assert "J lost" not in text
 
 

@@ -76,7 +76,7 @@ def test_a_stamp_in_the_future_follows_the_free_motion() -> None:
     known = watching(0, 10 * MS, now_ns=20 * MS)
     check_rising(subject_of("cube", PublishedState(stamp_ns=300 * MS), known).state, 300 * MS)
     with pytest.raises(
-        InvalidFieldError, match=r"stamp must be at most 2.*, got 2\.5 s after the newest state"
+        InvalidFieldError, match=r"stamp must be at most 2.*, got 2\.5 s after the latest state"
     ):
         subject_of("cube", PublishedState(stamp_ns=2510 * MS), known)
     with pytest.raises(StaleStateError, match=r"got 0\.600 s"):

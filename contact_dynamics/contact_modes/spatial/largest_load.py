@@ -88,8 +88,8 @@ class LargestLoad(Record):
         then = " or ".join(map(mode_in_words, self.modes_beyond)) or "no mode is consistent"
         fixed = f"it stays fixed up to {self.factor:.3g} {self.unit}"
         if self.only_rest < self.factor:  # beyond it another mode is consistent too
-            surely = f"it surely stays fixed up to {self.only_rest:.3g}"
-            fixed = f"{surely} and may up to {self.factor:.3g} {self.unit}"
+            surely = f"it stays fixed up to {self.only_rest:.3g}"
+            fixed = f"{surely}, and may stay fixed up to {self.factor:.3g} {self.unit}"
         return f"LargestLoad: {fixed}, then {then}"
 
 

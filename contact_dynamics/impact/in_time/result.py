@@ -91,13 +91,13 @@ class ImpactSequence(Record):
         """Return a text with the reason for the end of the sequence, and a hint for the next call."""
         stay = ", ".join(map(str, self.staying))
         return {
-            SequenceEnd.NOTHING_STRIKES: f"no further strike within the window of {self.window:g} s after "
-            "the last one; a longer window follows the flight on",
-            SequenceEnd.STAYS: f"flight is over: the contacts {stay} stay; contact modes say what follows",
-            SequenceEnd.CHATTERS: f"infinitely many rebounds end: the contacts {stay} stay from then on",
-            SequenceEnd.MAX_STRIKES: f"the bound of {len(self.strikes)} strikes was reached; the body may "
-            "strike again at once",
-            SequenceEnd.WINDOW_ENDED: f"no strike within the window of {self.window:g} s after the state; a "
+            SequenceEnd.NOTHING_STRIKES: f"no further impact within the window of {self.window:g} s after "
+            "the last one; a longer window may contain one",
+            SequenceEnd.STAYS: f"the contacts {stay} stay closed; compute their contact modes",
+            SequenceEnd.CHATTERS: f"the rebounds vanish, and then the contacts {stay} stay closed",
+            SequenceEnd.MAX_STRIKES: f"the limit of {len(self.strikes)} impacts was reached; another "
+            "impact may follow immediately",
+            SequenceEnd.WINDOW_ENDED: f"no impact within the window of {self.window:g} s after the state; a "
             "longer window, or `next_landing`, may find one",
         }[self.end]
 

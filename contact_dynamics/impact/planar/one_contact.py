@@ -169,5 +169,5 @@ def refuse_separating(v_n: float, tolerance: float, case: str = "") -> NoReturn:
     raise SeparatingContactError(
         f"contact normal velocity{case}",
         f"v_n = {v_n:.9g} m/s",
-        f"at most {tolerance:g} m/s, since above it nothing strikes ({NORMAL_HINT})",
+        f"at most {tolerance:g} m/s, since a contact that separates faster has no impact ({NORMAL_HINT})",
     )

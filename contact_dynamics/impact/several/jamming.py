@@ -118,7 +118,7 @@ def jamming_impact(
         raise InvalidFieldError("contacts", "none", "at least one contact")
     if len(contacts) > MAX_JAMMED_CONTACTS:
         raise TooLargeError(
-            "contacts", f"{len(contacts)} contacts", f"at most {MAX_JAMMED_CONTACTS} that jam"
+            "contacts", f"{len(contacts)} contacts", f"at most {MAX_JAMMED_CONTACTS} for dynamic jamming"
         )
     facets = check_facets(friction_facets)
     if len(contacts) * facets > MAX_DIRECTIONS:

@@ -223,7 +223,7 @@ def order_warning(
     first = np.flatnonzero(approach < -velocity_tolerance).tolist()
     named = f"{', '.join(map(str, first[:FIRST_TRIED]))}{', ...' if len(first) > FIRST_TRIED else ''}"
     if len(first) == 1:
-        return "after the first strike several contacts approach, and their order is open (include_orders)"
+        return "several contacts approach after the first impact, and their order can matter (include_orders)"
     outcomes = [
         np.concatenate([_velocities(state) for state in turn.states]).reshape(-1, 6)
         for turn in (own, *(strike_in_turn(touching, states, first=i) for i in first[:FIRST_TRIED]))
@@ -232,9 +232,9 @@ def order_warning(
     scale = float(np.abs(outcomes).max())
     if max(linear, angular) <= SAME_IMPULSES * scale:
         return ""
-    how = "as one" if own.ties else "in turn, the fastest first"
+    how = "together" if own.ties else "one at a time, the fastest approach first"
     return (
-        f"contacts {named} strike {how}, and their order is open: "
+        f"contacts {named} are resolved {how}: "
         f"other orders differ by up to {linear:.3g} m/s and {angular:.3g} rad/s (include_orders)"
     )
 

@@ -96,14 +96,14 @@ def test_a_drop_that_takes_longer_than_the_window_says_so() -> None:
     state, world = dropped_pin(0.5), world_of(PIN, floor(e=0.5))
     found = impact_sequence(PIN, state, world)
     assert found.end == SequenceEnd.WINDOW_ENDED
-    assert found.message.startswith("no strike within the window of 0.05 s after the state; a longer window")
+    assert found.message.startswith("no impact within the window of 0.05 s after the state; a longer window")
     assert len(impact_sequence(PIN, state, world, window=1.0).strikes) > 0
     elastic = impact_sequence(PIN, state, world_of(PIN, floor(e=1.0)), window=0.4)
-    assert elastic.message.startswith("no further strike within the window of 0.4 s after the last one")
+    assert elastic.message.startswith("no further impact within the window of 0.4 s after the last one")
     bounded = impact_sequence(PIN, state, world_of(PIN, floor(e=1.0)), window=1.0, max_strikes=2)
-    assert bounded.message.startswith("the bound of 2 strikes was reached")
+    assert bounded.message.startswith("the limit of 2 impacts was reached")
     rests = impact_sequence(PIN, dropped_pin(0.002), world)
-    assert rests.message.startswith("infinitely many rebounds end: the contacts 0 stay")
+    assert rests.message.startswith("the rebounds vanish, and then the contacts 0 stay")
 
 
 def test_the_number_of_strikes_is_bounded() -> None:
