@@ -202,7 +202,7 @@ def _in_time(question: ImpactQuestion, law: InTime, strike: _Strike, context: Co
     )
     if not sequence.strikes and sequence.end == SequenceEnd.STAYS:
         message = (
-            "contacts: at least one must approach, got one that stays closed (request its contact mode, or "
+            "contacts: at least one must approach, got one that stays closed (compute its contact mode, or "
             "set hold_step to continue)"
         )
         raise NoContactError(message)
