@@ -219,7 +219,7 @@ CASES: Final = {
         formula="m g d / (I + m d²)",
         exact=lambda arm: _G * arm / (0.01 + arm * arm),
         tolerance=1e-11,
-        why_tolerance="rounding error of numbers near 100, and of the search in space",
+        why_tolerance="rounding error of numbers near 100, and of the spatial search",
         answer="predict_contact_mode.modes[0].angular_acceleration[1]",
         request="""{inertia: {m: 1.0, ixx: 0.01, iyy: 0.01, izz: 0.01}, state_source: 1, state: {pose: {position: {x: %(x)s}}},
   contact_source: 1, contacts: {positions: [0.0, 0.0, 0.0], normals: [0.0, 1.0, 0.0], frictions: [1.0],
@@ -249,8 +249,8 @@ CASES: Final = {
     ),
     "jamming_drawer": Case(
         title="A peg or drawer that jams",
-        story="An off-centre push presses a peg, or a drawer, against both walls. Above a friction of L / (2"
-        " d) it jams, however hard it is pushed. Users saw pegs pass through walls, or not move at all.",
+        story="An off-centre push presses a peg, or a drawer, against both walls. Above a friction coefficient of"
+        " L / (2 d) it jams, regardless of the push force. Users saw pegs pass through walls, or not move at all.",
         discussed="bulletphysics/bullet3/issues/2148 google-deepmind/mujoco/issues/1544",
         setting="μ (the limit is 1)",
         settings=(0.9, 1.1),
@@ -446,8 +446,8 @@ CASES: Final = {
     "cradle_in_turn": Case(
         title="Newton's cradle, sequential law",
         story="Rigid-body mechanics does not determine the motion of three balls in contact. If the pairs "
-        "strike one after another, at e = 1 the last ball takes all the momentum, as steel balls nearly do. "
-        "This case uses that law.",
+        "collide one after another with e = 1, the last ball receives all the momentum, as approximately "
+        "observed with steel balls. This case uses the sequential law.",
         discussed="liabru/matter-js/issues/361 ekiefl/pooltool/pull/257",
         setting="e",
         settings=(1.0, 0.8),
@@ -455,7 +455,7 @@ CASES: Final = {
         formula="((1 + e) / 2)²",
         exact=lambda restitution: (0.5 * (1.0 + restitution)) ** 2,
         tolerance=1e-12,
-        why_tolerance="rounding error over a few strikes",
+        why_tolerance="rounding error over a few impacts",
         answer="predict_impact.impact.other_state_after[0].linear_velocity.x",
         request=_FIRST_PAIR,
         answer_exact=lambda restitution: 0.5 * (1.0 + restitution),
@@ -463,8 +463,8 @@ CASES: Final = {
     ),
     "cradle_at_once": Case(
         title="Newton's cradle, simultaneous law",
-        story="If all contacts strike at once and each obeys Newton's law of restitution, the balls at rest "
-        "leave together. Neither law is wrong; an engine that returns one number has chosen one.",
+        story="If all contacts collide simultaneously, each under Newton's law of restitution, the balls at rest "
+        "leave together. Neither law is wrong; an engine that returns one result has chosen one of them.",
         discussed="liabru/matter-js/issues/361",
         setting="e",
         settings=(1.0, 0.8),
@@ -481,12 +481,12 @@ CASES: Final = {
     "painleve_rod": Case(
         title="A sliding rod in Painlevé's paradox",
         story="Sliding drives the rod's tip into the floor, and no finite force is consistent. A rigid rod "
-        "jams: an impact without approach stops the tip and throws the rod up, by the same amount for any "
-        "such μ. Soft contacts hide or delay the jam.",
+        "jams dynamically: an impact without approach stops the tip and throws the rod up, with a velocity "
+        "that is the same for every such μ. Soft contacts hide or delay this impact.",
         discussed="RobotLocomotion/drake/pull/4539 RobotLocomotion/drake/pull/5175",
         setting="μ",
         settings=(0.6, 1.0),
-        quantity="upward velocity after the jam, m/s",
+        quantity="upward velocity after the impact, m/s",
         formula="1.5 P, where P is the normal impulse at which Routh's path, along the cone's edge and then "
         "the sticking line, ends compression",
         exact=_painleve_rod,
@@ -514,7 +514,7 @@ CASES: Final = {
     ),
     "flip_period": Case(
         title="The flip period of a tennis racket",
-        story="A body that spins about its middle axis flips periodically. Engines without the gyroscopic "
+        story="A body that spins about its intermediate axis flips periodically. Engines without the gyroscopic "
         "term never flip it, and others drift away from the period.",
         discussed="google/brax/issues/156 bepu/bepuphysics2/issues/79 bulletphysics/bullet3/pull/346",
         setting="spin about the minor axis, rad/s",
@@ -523,7 +523,7 @@ CASES: Final = {
         formula="4 K(m) / rate, from Jacobi's solution of Euler's equations",
         exact=_flip_period,
         tolerance=1e-12,
-        why_tolerance="rounding error of the distance from the middle axis, on whose logarithm the period depends",
+        why_tolerance="rounding error of the distance from the intermediate axis, on whose logarithm the period depends",
         answer="predict_tumbling.poinsot.polhode_period",
         request="""{state_source: 1, inertia: {m: 1.0, ixx: 0.001, iyy: 0.002, izz: 0.0028}, gravity: 1,
   state: {angular_velocity: {x: %(x).9f, y: 10.0}}, times: [1.0]}""",

@@ -194,12 +194,12 @@ def two_balls(mass: float) -> float:
 
 
 def cradle_in_turn(restitution: float) -> float:
-    """Return the speed of the last ball, m/s, where the pairs strike one after the other."""
+    """Return the speed of the last ball, m/s, where the pairs collide one after the other."""
     return last_ball(restitution, SeveralContactsLaw.SEQUENTIAL)
 
 
 def cradle_at_once(restitution: float) -> float:
-    """Return the speed of the last ball, m/s, where all contacts strike at once by Newton's law."""
+    """Return the speed of the last ball, m/s, where all contacts collide together under Newton's law."""
     return last_ball(restitution, SeveralContactsLaw.SIMULTANEOUS)
 
 
@@ -219,7 +219,7 @@ def last_ball(restitution: float, law: SeveralContactsLaw) -> float:
 
 
 def painleve_rod(friction: float) -> float:
-    """Return the upward velocity of the centre of mass after the jam, m/s."""
+    """Return the upward velocity of the centre of mass after the impact, m/s."""
     lean = math.radians(75.0)
     rod, sliding = PlanarBody(mass=1.0, inertia=1.0), PlanarVelocity(v=(-1.0, 0.0), w=0.0)
     reach = (-4.0 * math.cos(lean), -4.0 * math.sin(lean))  # from the centre of mass to the tip, m
