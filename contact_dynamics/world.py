@@ -294,8 +294,8 @@ class Surface(Record):
     """Infinite plane of the world. Its normal points to the free side.
 
     A belt, a cart, a turntable or a tray moves as a rigid body. Contact modes and impacts accept such
-    surfaces. Landings accept them unless they tilt, and tosses and sequences of impacts if all surfaces move
-    alike without turning. Other functions raise an error.
+    surfaces. Landings accept them unless they tilt, and tosses and sequences of impacts if all surfaces have
+    the same motion without rotation. Other functions raise an error.
 
     Attributes:
         name: Name by which contacts refer to the surface.

@@ -77,22 +77,22 @@ def next_landing(
     motion: Motion | None = None,
     work: SearchWork | None = None,
 ) -> Landing | None:
-    """Return the end of a body's flight within ``horizon`` (s), or None if it flies at least until then.
+    """Return the first contact of a flying body within ``horizon`` (s), or None without a contact.
 
-    A point within ``distance_tolerance`` (m) of a surface touches it. A touching body counts as flying only
-    if all of its contacts separate faster than ``velocity_tolerance`` (m/s); then its next landing is
-    returned. ``motion`` is the flight, in closed form or under forces; the default is the free flight from
-    the state under the world's gravity. ``work`` counts the steps of this search together with those of other
+    A point within ``distance_tolerance`` (m) of a surface touches it. A touching body is in flight
+    only if all of its contacts separate faster than ``velocity_tolerance`` (m/s); then its next contact is
+    returned. ``motion`` is the flight, in closed form or under forces; the default is free flight from the
+    state under the world's gravity. ``work`` counts the steps of this search together with those of other
     searches; by default, this search has its own count.
 
-    Surfaces may move with constant accelerations, and turn about their normals: a body may land on a paddle
-    or a turntable. The contacts then have the velocities of the surfaces at the landing.
+    Surfaces may have constant accelerations and rotate about their normals, such as a paddle or a turntable.
+    The contacts then contain the velocities of the surfaces at the time of contact.
 
     Raises:
         NoContactError: the body has no shape that could touch anything.
         InvalidFieldError: the body penetrates a surface by more than ``distance_tolerance``, or the horizon
             or a tolerance is negative or not finite.
-        NotSupportedError: a surface tilts, or turns about an axis that moves sideways, or moves along its
+        NotSupportedError: a surface tilts, or rotates about an axis that moves sideways, or moves along its
             normal while the body moves under forces; or as in `first_touch`.
         TooLargeError: the search takes too many steps, because the body spins too fast for the horizon.
     """

@@ -100,11 +100,11 @@ def next_meeting(
         restitution: Coefficient of restitution between them, in [0, 1].
         gravity_W: (3,), m/s^2, world axes.
         other_gravity_W: (3,), m/s^2, acceleration of the second body's centre of mass, if it is not
-            ``gravity_W``. With zeros it moves at a constant velocity, as if it were carried.
+            ``gravity_W``. With zeros, its velocity is constant, such as that of a gripper.
         horizon: s, >= 0.
         distance_tolerance: m, >= 0. Points within this distance touch.
-        velocity_tolerance: m/s, >= 0. Touching bodies count as apart if all contacts separate faster; then
-            the next meeting is returned.
+        velocity_tolerance: m/s, >= 0. Touching bodies are in flight if all contacts separate faster; then
+            their next contact is returned.
 
     Raises:
         NoShapeError: a body has no shape.

@@ -267,7 +267,7 @@ def free_motion(
 
     ``free_motion(body, state).at(seconds)`` is the `Trajectory` at many times, and ``.state_at(seconds)`` the
     state at one time. Gravity is (3,), m/s^2, world axes. The precision is that of the motion's constants:
-    double precision takes a third of the time, and its errors grow with the angle turned. The constants of
+    double precision takes a third of the time, and its errors grow with the rotation angle. The constants of
     the last `constants.REMEMBERED` rotations are cached.
 
     Raises:

@@ -81,7 +81,7 @@ def several_impact(
 ) -> SeveralImpact:
     """Return the outcome of an impact of ``body`` at all ``contacts``, under the chosen laws.
 
-    It applies to a landing on an edge or a face: pass the body, ``landing.state`` and ``landing.contacts``.
+    For a landing on an edge or face, pass the body, ``landing.state`` and ``landing.contacts``.
 
     Args:
         body: A `Body`, or its `MassProperties`.

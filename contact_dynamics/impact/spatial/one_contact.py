@@ -55,14 +55,14 @@ def spatial_impact(
     restitution_law: RestitutionLaw = RestitutionLaw.POISSON,
     velocity_tolerance: float = VELOCITY_TOLERANCE,
 ) -> SpatialImpact:
-    """Return the outcome of an impact of ``body`` on the fixed world, or on a moving surface, in space.
+    """Return the outcome of a spatial (3-D) impact of ``body`` on the fixed world, or on a moving surface.
 
-    A surface of the world that moves keeps its velocity. The state afterwards is absolute, and the contact's
-    velocities and the change of energy are relative to the surface.
+    The impact does not change the motion of a surface. The state after the impact is absolute; the velocities
+    of the contact and the change of energy are relative to the surface.
 
-    If several contacts strike at once, as when a box lands on an edge or a face, use `several_impact` with
-    all of them. `spatial_impacts` computes many impacts at once. A `FarContactWarning` reports a contact
-    beyond the body's shape.
+    If several contacts touch at the same instant, as when a box lands on an edge or face, pass all of them to
+    `several_impact`. `spatial_impacts` computes a batch of impacts in one call. A `FarContactWarning` is
+    issued if the contact is outside the shape of the body.
 
     Args:
         body: A `Body`, or its `MassProperties`.
@@ -96,7 +96,7 @@ def spatial_pair_impact(
     restitution_law: RestitutionLaw = RestitutionLaw.POISSON,
     velocity_tolerance: float = VELOCITY_TOLERANCE,
 ) -> SpatialImpact:
-    """Return the outcome of an impact of two bodies at one contact, in space.
+    """Return the outcome of a spatial (3-D) impact of two bodies at one contact.
 
     The contact transmits no moment.
 
