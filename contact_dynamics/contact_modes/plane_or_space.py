@@ -68,9 +68,9 @@ def contact_modes(
             may also be that of several bodies, or of a mechanism.
 
     Raises:
-        TooLargeError: in space, more contacts touch than are supported, or the search takes too many trials.
-        NotSupportedError: in the plane, surfaces move in different ways (`surface_frame`), or in space they
-            do so and contacts are uncertain.
+        TooLargeError: a spatial problem has too many touching contacts, or the search takes too many trials.
+        NotSupportedError: surfaces move differently in a planar problem (`surface_frame`), or in a spatial
+            problem with uncertain contacts.
 
     Source: lecture 26.
     """
@@ -119,18 +119,18 @@ def mode_margins(
     """Return the margin of each consistent mode, in the order of the modes.
 
     The margin is the size of the smallest change of the wrench that leaves the mode, N: the root of |f|^2 +
-    |torque / length|^2. The list is empty if a contact approaches. In space, margins are those of round
+    |torque / length|^2. The list is empty if a contact approaches. Spatial margins are those of round
     friction cones, and NaN for some modes in which contacts begin to slide (`spatial_mode_margins`).
 
     Args:
         problem: The contact problem.
         answer: Answer to that problem, if available. It saves a search.
         margin_length: m, > 0. Length that makes torque comparable with force. If it is None, it is the radius
-            of gyration, in space the root mean square of the radii about the axes.
+            of gyration; for spatial problems, the root mean square of the radii about the axes.
 
     Raises:
         InvalidFieldError: ``answer`` belongs to another kind of problem, or the length is not > 0.
-        UndecidedError: contacts in space are so nearly equal that rounding error prevents a decision.
+        UndecidedError: spatial contacts are so nearly equal that rounding error prevents a decision.
         TooLargeError, NotSupportedError: as for `contact_modes`.
     """
     if isinstance(problem, PlanarContactProblem) and not isinstance(answer, SpatialModeAnswer):
@@ -154,18 +154,18 @@ def refused_modes(
 ) -> tuple[RefusedMode, ...]:
     """Return the kinematically possible modes that are not consistent, each with the first reason found.
 
-    In the plane, the answer already contains them. In space there are too many sliding directions to list;
-    the modes are then strings of `c` (stays closed) and `s` (separates), each of which takes a millisecond.
+    The answer to a planar problem already contains them. For spatial problems, there are too many sliding
+    directions to list; the modes are then strings of `c` (stays closed) and `s` (separates), each of which takes a millisecond.
 
     Args:
         problem: The contact problem.
         answer: Answer to that problem.
-        margin_length: m, > 0, only in space. Length that makes torque comparable with force if the reason is
+        margin_length: m, > 0, spatial problems only. Length that makes torque comparable with force if the reason is
             a distance. If it is None, it is the root mean square of the radii of gyration about the axes.
 
     Raises:
         InvalidFieldError: ``answer`` belongs to another kind of problem, the length is not > 0, or a length
-            is given in the plane.
+            is given for a planar problem.
         TooLargeError: as for `contact_modes`.
     """
     if isinstance(problem, PlanarContactProblem) and isinstance(answer, PlanarModeAnswer):
@@ -190,8 +190,8 @@ def wrench_sets(
 ) -> tuple[PlanarWrenchSet, ...] | tuple[SpatialWrenchSet, ...]:
     """Return the applied wrenches that can cause each mode, in alphabetical order of the modes.
 
-    Together, the sets form the map of modes. In the plane, the problem's own wrench has no effect. In space,
-    it determines the orientation of the friction pyramids; a mode has one set for each combination of sliding
+    Together, the sets form the map of modes. The wrench of a planar problem has no effect. That of a spatial one
+    determines the orientation of the friction pyramids; a mode has one set for each combination of sliding
     directions, and the number of sets grows with the square or cube of `friction_facets`. A box on four feet
     has 200 to 350 sets with 4 facets and about 1300 with 8, and each set takes a millisecond or two. To save
     time, request few modes, or use `dataclasses.replace(problem, friction_facets=4)`.
@@ -202,8 +202,8 @@ def wrench_sets(
 
     Raises:
         InvalidFieldError: a mode is not a string of valid letters.
-        UndecidedError: contacts in space are so nearly equal that rounding error prevents a decision.
-        TooLargeError: a problem in space has too many contacts, edges of friction pyramids, combinations of
+        UndecidedError: spatial contacts are so nearly equal that rounding error prevents a decision.
+        TooLargeError: a spatial problem has too many contacts, edges of friction pyramids, combinations of
             sliding directions, or sets.
 
     Source: lecture 26, "Force dual for dynamic contact problem" and "Contact modes for wrench in tray".
@@ -231,11 +231,11 @@ def geometry_margins(
     problem: PlanarContactProblem | SpatialContactProblem,
     answer: PlanarModeAnswer | SpatialModeAnswer | None = None,
 ) -> tuple[GeometryMargin, ...]:
-    """Return the errors of points, normals and friction that change the verdict or the UNIQUE mode.
+    """Return the smallest errors of points, normals and friction that change the verdict or UNIQUE mode.
 
     Each margin has two bounds: the answer is proven for errors up to one size, and contacts with a different
-    answer were found at another size. Proofs require bodies at rest and, in space, at most four contacts. All
-    margins take about a second for two contacts in the plane or three in space, and several seconds for four.
+    answer were found at another size. Proofs require bodies at rest and, in spatial problems, at most four contacts.
+    All margins take about a second for two planar or three spatial contacts, and several seconds for four.
     The list is empty if a contact approaches.
 
     Args:
@@ -272,7 +272,7 @@ def statics(
     Raises:
         InvalidFieldError: the length is not > 0.
         UndecidedError: contacts are so nearly equal that rounding error prevents a decision.
-        TooLargeError: as for `contact_modes`, or the friction pyramids in space have more than 128 edges.
+        TooLargeError: as for `contact_modes`, or the friction pyramids of a spatial problem have more than 128 edges.
         NotSupportedError: surfaces do not move as one rigid body.
     """
     if isinstance(problem, PlanarContactProblem):
