@@ -155,13 +155,14 @@ def refused_modes(
     """Return the kinematically possible modes that are not consistent, each with the first reason found.
 
     The answer to a planar problem already contains them. For spatial problems, there are too many sliding
-    directions to list; the modes are then strings of `c` (stays closed) and `s` (separates), each of which takes a millisecond.
+    directions to list; the modes are then strings of `c` (stays closed) and `s` (separates), each of which
+    takes a millisecond.
 
     Args:
         problem: The contact problem.
         answer: Answer to that problem.
-        margin_length: m, > 0, spatial problems only. Length that makes torque comparable with force if the reason is
-            a distance. If it is None, it is the root mean square of the radii of gyration about the axes.
+        margin_length: m, > 0, spatial problems only. Length that makes torque comparable with force if the
+            reason is a distance. If it is None, it is the root mean square of the radii of gyration about the axes.
 
     Raises:
         InvalidFieldError: ``answer`` belongs to another kind of problem, the length is not > 0, or a length
@@ -190,8 +191,8 @@ def wrench_sets(
 ) -> tuple[PlanarWrenchSet, ...] | tuple[SpatialWrenchSet, ...]:
     """Return the applied wrenches that can cause each mode, in alphabetical order of the modes.
 
-    Together, the sets form the map of modes. The wrench of a planar problem has no effect. That of a spatial one
-    determines the orientation of the friction pyramids; a mode has one set for each combination of sliding
+    Together, the sets form the map of modes. The wrench of a planar problem has no effect. That of a spatial
+    one determines the orientation of the friction pyramids; a mode has one set for each combination of sliding
     directions, and the number of sets grows with the square or cube of `friction_facets`. A box on four feet
     has 200 to 350 sets with 4 facets and about 1300 with 8, and each set takes a millisecond or two. To save
     time, request few modes, or use `dataclasses.replace(problem, friction_facets=4)`.
@@ -234,9 +235,9 @@ def geometry_margins(
     """Return the smallest errors of points, normals and friction that change the verdict or UNIQUE mode.
 
     Each margin has two bounds: the answer is proven for errors up to one size, and contacts with a different
-    answer were found at another size. Proofs require bodies at rest and, in spatial problems, at most four contacts.
-    All margins take about a second for two planar or three spatial contacts, and several seconds for four.
-    The list is empty if a contact approaches.
+    answer were found at another size. Proofs require bodies at rest and, in spatial problems, at most four
+    contacts. All margins take about a second for two planar or three spatial contacts, and several seconds for
+    four. The list is empty if a contact approaches.
 
     Args:
         problem: The contact problem. Its own uncertainty has no effect.
@@ -272,7 +273,7 @@ def statics(
     Raises:
         InvalidFieldError: the length is not > 0.
         UndecidedError: contacts are so nearly equal that rounding error prevents a decision.
-        TooLargeError: as for `contact_modes`, or the friction pyramids of a spatial problem have more than 128 edges.
+        TooLargeError: as for `contact_modes`, or spatial friction pyramids have more than 128 edges in total.
         NotSupportedError: surfaces do not move as one rigid body.
     """
     if isinstance(problem, PlanarContactProblem):
