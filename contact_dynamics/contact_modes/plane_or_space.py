@@ -162,7 +162,8 @@ def refused_modes(
         problem: The contact problem.
         answer: Answer to that problem.
         margin_length: m, > 0, spatial problems only. Length that makes torque comparable with force if the
-            reason is a distance. If it is None, it is the root mean square of the radii of gyration about the axes.
+            reason is a distance. If it is None, it is the root mean square of the radii of gyration about the
+            axes.
 
     Raises:
         InvalidFieldError: ``answer`` belongs to another kind of problem, the length is not > 0, or a length
@@ -192,8 +193,8 @@ def wrench_sets(
     """Return the applied wrenches that can cause each mode, in alphabetical order of the modes.
 
     Together, the sets form the map of modes. The wrench of a planar problem has no effect. That of a spatial
-    one determines the orientation of the friction pyramids; a mode has one set for each combination of sliding
-    directions, and the number of sets grows with the square or cube of `friction_facets`. A box on four feet
+    one determines the orientation of the friction pyramids; a mode has one set for each combination of
+    sliding directions, and the number of sets grows with the square or cube of `friction_facets`. A box on four feet
     has 200 to 350 sets with 4 facets and about 1300 with 8, and each set takes a millisecond or two. To save
     time, request few modes, or use `dataclasses.replace(problem, friction_facets=4)`.
 
@@ -236,8 +237,8 @@ def geometry_margins(
 
     Each margin has two bounds: the answer is proven for errors up to one size, and contacts with a different
     answer were found at another size. Proofs require bodies at rest and, in spatial problems, at most four
-    contacts. All margins take about a second for two planar or three spatial contacts, and several seconds for
-    four. The list is empty if a contact approaches.
+    contacts. All margins take about a second for two planar or three spatial contacts, and several seconds
+    for four. The list is empty if a contact approaches.
 
     Args:
         problem: The contact problem. Its own uncertainty has no effect.
