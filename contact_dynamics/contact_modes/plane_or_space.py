@@ -194,9 +194,9 @@ def wrench_sets(
 
     Together, the sets form the map of modes. The wrench of a planar problem has no effect. That of a spatial
     one determines the orientation of the friction pyramids; a mode has one set for each combination of
-    sliding directions, and the number of sets grows with the square or cube of `friction_facets`. A box on four feet
-    has 200 to 350 sets with 4 facets and about 1300 with 8, and each set takes a millisecond or two. To save
-    time, request few modes, or use `dataclasses.replace(problem, friction_facets=4)`.
+    sliding directions, and the number of sets grows with the square or cube of `friction_facets`. A box on
+    four feet has 200 to 350 sets with 4 facets and about 1300 with 8, and each set takes a millisecond or
+    two. To save time, request few modes, or use `dataclasses.replace(problem, friction_facets=4)`.
 
     Args:
         problem: The contact problem.
