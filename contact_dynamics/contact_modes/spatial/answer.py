@@ -39,6 +39,7 @@ from contact_dynamics.contact_modes.result import (
 )
 from contact_dynamics.contact_modes.spatial.completeness import (
     ENOUGH_PROGRAMS,
+    ENOUGH_PROGRAMS_OF_SEVERAL,
     FEW_PROGRAMS,
     MAX_PROGRAMS,
     Known,
@@ -58,6 +59,7 @@ from contact_dynamics.contact_modes.spatial.problem import (
     spatial_case,
 )
 from contact_dynamics.contact_modes.spatial.realised import as_given, realised
+from contact_dynamics.contact_modes.spatial.regions import ONE_BODY
 from contact_dynamics.contact_modes.spatial.round_cones import (
     held_by_round_cones,
     hold_alone,
@@ -398,7 +400,8 @@ def _sought(case: SpatialCase, search: Search, *, beside_rest: bool, hurried: bo
         return Evidence(_of_one_contact(case, search), "")
     likely = likely_mode(search)
     modes = [] if likely is None else [_mode_of(case, likely)]
-    most = FEW_PROGRAMS if hurried else ENOUGH_PROGRAMS
+    enough = ENOUGH_PROGRAMS if search.freedoms <= ONE_BODY else ENOUGH_PROGRAMS_OF_SEVERAL
+    most = FEW_PROGRAMS if hurried else enough
     found = _with_others(case, search, modes, beside_rest=beside_rest, most=most)
     if hurried or (found.modes and not found.undecided and not _nearly_alike(case)):
         return found

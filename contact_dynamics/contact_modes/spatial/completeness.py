@@ -64,6 +64,10 @@ MAX_PROGRAMS: Final = 3000
 ENOUGH_PROGRAMS: Final = 1500
 """Maximum number of programs before the pyramids are searched. Few cases take more."""
 
+ENOUGH_PROGRAMS_OF_SEVERAL: Final = 6000
+"""The same for motions with more components than those of one body, where the search of the pyramids rarely
+ends."""
+
 FEW_PROGRAMS: Final = 400
 """Maximum number of programs where another way to a verdict is left. The search is then also given up as soon
 as it leaves letters undecided."""

@@ -13,6 +13,7 @@ from contact_dynamics.contact_modes.spatial.careful_program import CarefulProgra
 from contact_dynamics.contact_modes.spatial.dual_simplex import Narrowing, Program
 from contact_dynamics.contact_modes.spatial.kinematic import faces_in_space
 from contact_dynamics.contact_modes.spatial.options import any_letter, pyramid_of, way_of_sliding
+from contact_dynamics.contact_modes.spatial.regions import ONE_BODY
 from contact_dynamics.errors import TooLargeError
 from contact_dynamics.numerics.linear_spaces import seen_and_unseen
 from contact_dynamics.tolerances import STRICT
@@ -31,9 +32,6 @@ them."""
 MAX_EXAMINED_OF_SEVERAL: Final = 3_000
 """The same for motions with more components than those of one body. A trial takes some 0.5 ms then, and
 searches that need more trials rarely end."""
-
-_ONE_BODY: Final = 6
-"""The number of components of the motion of one body."""
 
 AnyProgram = Program | CarefulProgram
 
@@ -121,7 +119,7 @@ class PyramidPrograms(ABC):
         self._sizes = sizes
         self.motion = np.column_stack([motion / sizes, free])
         self.examined = 0  # the number of programs solved so far
-        self.most_examined = MAX_EXAMINED if self.freedoms <= _ONE_BODY else MAX_EXAMINED_OF_SEVERAL
+        self.most_examined = MAX_EXAMINED if self.freedoms <= ONE_BODY else MAX_EXAMINED_OF_SEVERAL
         self._first_normal = first  # the name of contact 0's normal acceleration
         self._normals = np.array([c.normal @ c.point for c in touching]).reshape(-1, self.freedoms + 1)
         named = self._normals

@@ -40,8 +40,8 @@ _MOST_RAYS: Final = 24
 """The largest number of rays of a part of a region."""
 
 
-_ONE_BODY: Final = 6
-"""The number of components of the motion of one body, whose contacts are taken as one group."""
+ONE_BODY: Final = 6
+"""The number of components of the motion of one body. Its contacts are taken as one group."""
 
 
 class Image(NamedTuple):
@@ -218,7 +218,7 @@ def image_of(normals: FloatArray, frames: FloatArray) -> Image:
     free = seen_and_unseen(normals)[1]
     along = frames.reshape(-1, normals.shape[1]) @ free.T
     basis, rest = seen_and_unseen(along)
-    groups = _groups(along) if normals.shape[1] > _ONE_BODY else np.zeros(len(frames), dtype=np.intp)
+    groups = _groups(along) if normals.shape[1] > ONE_BODY else np.zeros(len(frames), dtype=np.intp)
     if not groups.any():
         coordinates, maps = basis @ free, (along @ basis.T).reshape(len(frames), 2, -1)
         return Image(coordinates, coordinates, rest @ free, maps, np.zeros(len(basis), dtype=np.intp))

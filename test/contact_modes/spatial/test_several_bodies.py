@@ -218,8 +218,8 @@ def test_no_mode_of_a_stack_that_was_made_is_missed(seed: int) -> None:
 
 
 def test_few_stacks_are_undecided() -> None:
-    verdicts = [contact_modes(of_stack(made_stack(seed))).verdict for seed in range(12, 32)]
-    assert verdicts.count(ModeVerdict.UNDECIDED) <= 4
+    verdicts = [contact_modes(of_stack(made_stack(seed))).verdict for seed in range(12, 27)]
+    assert verdicts.count(ModeVerdict.UNDECIDED) <= 1
 
 
 def of_stack(case: Stack) -> BodiesContactProblem:
