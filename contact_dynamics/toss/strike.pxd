@@ -23,7 +23,7 @@ cdef double STILL_TOUCHING, STRIKES
 cdef class Unsettled:
     cdef list touching, y
 
-    @cython.locals(k=cython.int)
+    @cython.locals(last=list, moved=cython.double, turned=cython.double)
     cdef bint are(self, Solid solid, list y, list touching) except -1
     cdef void note(self, list y, list touching) noexcept
 
@@ -33,8 +33,11 @@ cpdef strike(Solid solid, list y, list touching, Strike impact, law, list rates,
 @cython.locals(fast=cython.double, rate=cython.double, is_slow=cython.bint)
 cpdef low_rebounds_ended(Solid solid, list y, list touching, Unsettled unsettled)
 cdef double _slow(Solid solid) noexcept
-@cython.locals(fast=cython.double, rate=cython.double, motion=(double, double, double), flat=Flat)
+@cython.locals(fast=cython.double, rate=cython.double)
 cdef _settled(Solid solid, list y, list touching, list rates, Unsettled unsettled)
+@cython.locals(motion=(double, double, double), flat=Flat, speed=cython.double)
+cdef list _slow_ones(Solid solid, list touching, list motions, double fast)
+cdef _modes_of(Solid solid, list y, list touching, Unsettled unsettled)
 cdef list _held(Solid solid, list y, list slow, list touching)
 @cython.locals(pose=Pose, flat=Flat, surface=cython.int, corner=cython.int, rate=cython.double,
                rebound=cython.double, pull=cython.double, motion=(double, double, double),

@@ -65,12 +65,12 @@ class Unsettled:
 
         The body is where it was, and its velocities are the same, to within what counts as no approach.
         """
-        if touching != self.touching or y[:7] != self.y[:7]:
+        last = self.y
+        if touching != self.touching or y[:7] != last[:7]:
             return False
-        for k in range(7, 13):
-            if abs(y[k] - self.y[k]) * (1.0 if k < 10 else solid.reach) > STRIKES:
-                return False
-        return True
+        moved = max(abs(y[7] - last[7]), abs(y[8] - last[8]), abs(y[9] - last[9]))
+        turned = max(abs(y[10] - last[10]), abs(y[11] - last[11]), abs(y[12] - last[12]))
+        return max(moved, solid.reach * turned) <= STRIKES
 
     def note(self, y: Numbers, touching: list[Touch]) -> None:
         """Remember that contacts have no mode in a state."""
@@ -194,31 +194,43 @@ def _settled(
     if impact is None:
         return None
     motions = impact.motions
-    slow = []
-    for touch, motion in zip(touching, motions, strict=True):
-        if motion[2] * motion[2] <= fast:
-            flat, speed = solid.flats[touch[0]], motion[0] * motion[0] + motion[1] * motion[1]
-            slow.append(Held(touch, speed > fast * flat.friction))
+    slow = _slow_ones(solid, touching, motions, fast)
     stopped = _held(solid, impact.y, slow, touching)
     if stopped is None:
         return _all_together(impact, touching)
     touches = [one.touch for one in slow]
-    if unsettled.are(solid, stopped, touches):
-        return None
-    choice = choose_mode(solid, stopped, touches)
-    if not choice.modes:
-        unsettled.note(stopped, touches)
-        return None
-    staying = _pressed(solid, stopped, choice, touching, rates, motions)
+    choice = _modes_of(solid, stopped, touches, unsettled)
+    staying = None if choice is None else _pressed(solid, stopped, choice, touching, rates, motions)
     if staying is None:
         return None
-    known: Choice | None = choice
+    known = choice
     if staying != touches:
         stopped = _held(solid, impact.y, [one for one in slow if one.touch in staying], touching)
         known = None
     if stopped is None:
         return _all_together(impact, touching)
     return Strikes(stopped, _struck(impact, touching), staying, settled=True, choice=known)
+
+
+def _slow_ones(solid: Solid, touching: list[Touch], motions: list[Vector3], fast: float) -> list[Held]:
+    """Return the contacts that rise slowly after an impact. ``fast`` is a square, m^2/s^2."""
+    slow = []
+    for touch, motion in zip(touching, motions, strict=True):
+        if motion[2] * motion[2] <= fast:
+            flat, speed = solid.flats[touch[0]], motion[0] * motion[0] + motion[1] * motion[1]
+            slow.append(Held(touch, speed > fast * flat.friction))
+    return slow
+
+
+def _modes_of(solid: Solid, y: Numbers, touching: list[Touch], unsettled: Unsettled) -> Choice | None:
+    """Return the modes of contacts that settle, or None if there are none."""
+    if unsettled.are(solid, y, touching):
+        return None
+    choice = choose_mode(solid, y, touching)
+    if choice.modes:
+        return choice
+    unsettled.note(y, touching)
+    return None
 
 
 def _held(solid: Solid, y: Numbers, slow: list[Held], touching: list[Touch]) -> Numbers | None:
@@ -258,9 +270,9 @@ def _pressed(  # noqa: PLR0917
 ) -> list[Touch] | None:
     """Return which slow contacts stay, or None if a contact that was struck presses too little to settle.
 
-    ``choice`` has the modes of all slow contacts, one at least. A contact that stays gives up what is left of its normal
-    velocity. It may, if it is pressed in so much that it would not rise by the solid's `settling` before it
-    comes back.
+    ``choice`` has the modes of all slow contacts, one at least. A contact that stays gives up what is left of
+    its normal velocity. It may, if it is pressed in so much that it would not rise by the solid's `settling`
+    before it comes back.
     """
     pushed = choice.pushed_in(0, solid, y)
     forces = {one.touch: pushed.force(i) for i, one in enumerate(choice.modes[0])}
