@@ -20,7 +20,7 @@ from contact_dynamics.records import NamedInt
 from contact_dynamics.tolerances import SAMPLED_ARRIVAL
 from contact_dynamics.toss.flight import Descent
 from contact_dynamics.toss.impacts import routh
-from contact_dynamics.toss.solid import Solid, approaches
+from contact_dynamics.toss.solid import Flat, Solid, approaches
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -197,17 +197,33 @@ def solids_of(solid: Solid, samples: Samples) -> list[Solid]:
     materials = np.stack(
         [samples.lasting_frictions, samples.restitutions, samples.frictions], axis=2
     ).tolist()
+    # What all samples share is read once, since each reading makes it anew.
+    shared = [(flat.name, flat.normal, flat.level, flat.tangents) for flat in solid.flats]
+    mass, indices, rounding, gravity, settling = (
+        solid.mass,
+        solid.indices,
+        solid.rounding,
+        solid.gravity,
+        solid.settling,
+    )
     return [
         Solid(
-            solid.mass,
+            mass,
             inertias[i],
             inverses[i],
             array("d", corners.tobytes()),
-            solid.indices,
-            solid.rounding,
-            solid.gravity,
-            tuple([flat.with_frictions(*own) for flat, own in zip(solid.flats, materials[i], strict=True)]),
-            solid.settling,
+            indices,
+            rounding,
+            gravity,
+            tuple(
+                [
+                    Flat(name, normal, level, lasting, e, mu, tangents)
+                    for (name, normal, level, tangents), (lasting, e, mu) in zip(
+                        shared, materials[i], strict=True
+                    )
+                ]
+            ),
+            settling,
         )
         for i, corners in enumerate(samples.corners_B)
     ]

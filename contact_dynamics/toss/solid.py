@@ -71,14 +71,15 @@ class Flat:
         self.friction, self.restitution, self.strike_friction = friction, restitution, strike_friction
 
     def __reduce__(self) -> tuple[object, ...]:
-        return Flat, self._parts(self.friction, self.restitution, self.strike_friction)
-
-    def with_frictions(self, friction: float, restitution: float, strike_friction: float) -> Flat:
-        """Return the same flat with other coefficients."""
-        return Flat(*self._parts(friction, restitution, strike_friction))
-
-    def _parts(self, friction: float, restitution: float, strike_friction: float) -> Any:
-        return self.name, self.normal, self.level, friction, restitution, strike_friction, self.tangents
+        return Flat, (
+            self.name,
+            self.normal,
+            self.level,
+            self.friction,
+            self.restitution,
+            self.strike_friction,
+            self.tangents,
+        )
 
 
 class Solid:
