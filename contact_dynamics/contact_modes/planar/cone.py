@@ -45,7 +45,7 @@ if TYPE_CHECKING:
 
 _WIDE: Final = 0.1
 """Sine. The search for rows to start with ends at the first pair that makes this angle or more."""
-_MANY_RAYS: Final = 300
+_MANY_RAYS: Final = 500
 """Number of rows above which heights of rays are computed in arrays too."""
 
 _HALF: Final = Decimal("0.5")
