@@ -44,7 +44,10 @@ _ENOUGH: Final = 0.1
 
 def likely_mode(search: Search) -> Known | None:
     """Return the most likely mode of touching contacts, or None if there is none with its letters."""
-    body, now = _settled(search)
+    try:
+        body, now = _settled(search)
+    except np.linalg.LinAlgError:  # a stiffness at which friction and pressing cancel
+        return None
     others: list[tuple[str, Solution]] = []
     for gives_way in (GIVES_WAY, 0.0):
         letters = body.letters(now, gives_way)

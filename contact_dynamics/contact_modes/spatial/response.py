@@ -182,7 +182,7 @@ def response_case(
     # Forces act at contacts that touch alone. The motion has the components that these can move.
     sizes, axes = np.linalg.svd(factor[rows], full_matrices=False)[1:]
     axes = axes[sizes > ROW_TOLERANCE * sizes.max(initial=0.0)]
-    points = factor @ axes.T
+    points = factor @ axes.T if len(axes) > 0 else np.zeros((len(factor), 1))
     given = accelerations_W.ravel()
     free = np.linalg.lstsq(points[rows], given[rows], rcond=None)[0]
     turning = given - points @ free
@@ -195,10 +195,10 @@ def response_case(
         of_forces=points.T,
         free=free,
         turning=turning.reshape(-1, 3),
-        inertia=np.eye(len(axes)),
+        inertia=np.eye(len(free)),
         wrench=free,
         mass=1.0 / length**2,
-        lengths=np.full(len(axes), length),
+        lengths=np.full(len(free), length),
         at_rest=not np.any(turning[rows]),
         of_body=False,
     )

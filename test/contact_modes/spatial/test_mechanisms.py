@@ -156,6 +156,28 @@ def test_a_link_on_a_hinge_presses_or_leaves() -> None:
     assert leaves.contact_accelerations_W[0] == pytest.approx([4.0, 0.0, 4.0], abs=1e-12)
 
 
+@pytest.mark.parametrize(
+    ("friction", "expected"), [(0.99, ["c"]), (1.0, []), (1.01, [])], ids=["slides", "border", "jams"]
+)
+def test_a_link_that_is_pressed_while_its_tip_slides_jams_beyond_a_friction_of_one(
+    friction: float, expected: list[str]
+) -> None:
+    """Friction presses the tip with (-mu, 0, 1), which turns the link the other way for mu > 1 (Painleve)."""
+    answer = contact_modes(replace(arm(-1.0, friction), velocities_W=[[1.0, 0.0, 0.0]]))
+    assert [mode.mode for mode in answer.modes] == expected
+    assert answer.verdict == (ModeVerdict.UNIQUE if expected else ModeVerdict.INCONSISTENT)
+
+
+def test_without_contacts_that_touch_nothing_acts() -> None:
+    (leaves,) = contact_modes(replace(arm(-1.0), velocities_W=[[0.0, 0.0, 1.0]])).modes
+    assert leaves.mode == "s"
+    assert leaves.contact_accelerations_W[0] == pytest.approx([-2.0, 0.0, -2.0], abs=1e-12)
+    nothing = ResponseContactProblem(
+        inverse_inertia_W=np.zeros((0, 0)), accelerations_W=np.zeros((0, 3)), contacts=upright([])
+    )
+    assert [mode.mode for mode in contact_modes(nothing).modes] == [""]
+
+
 def test_velocities_are_relative_to_surfaces_that_move() -> None:
     """A block on a belt slides, and is pulled along, as one that slides the other way on a floor."""
     floor = ResponseContactProblem(

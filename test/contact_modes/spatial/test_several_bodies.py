@@ -409,6 +409,13 @@ def test_a_ball_rolls_on_a_body_as_on_the_world() -> None:
     assert mode.accelerations_W[0] == pytest.approx([1.0 / 1.4, 0, 0], abs=ROUNDING)
 
 
+def test_bodies_without_contacts_fall() -> None:
+    flat = stack([2.0, 1.0], [0.5, 0.3], [[0, 0, 0], [3.0, 0, 0]])
+    nothing = ContactSet(p_WC_W=np.zeros((0, 3)), normals_W=np.zeros((0, 3)), frictions=[])
+    mode = only(contact_modes(replace(flat, contacts=nothing, pairs=[])))
+    assert mode.accelerations_W == pytest.approx(np.array([[0, 0, -G], [3.0, 0, -G]]), abs=ROUNDING)
+
+
 def test_bodies_that_approach_are_an_impact() -> None:
     problem = stack([2.0, 1.0], [0.5, 0.3], [[0, 0, 0]] * 2)
     falling = [problem.states[0], problem.states[1].with_velocities([0, 0, -0.1], [0, 0, 0])]
