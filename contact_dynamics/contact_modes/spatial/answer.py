@@ -341,12 +341,15 @@ def _rounding(case: SpatialCase, mode: ResponseMode) -> float:
 def _penetrates(case: SpatialCase, mode: ResponseMode) -> bool:
     """Return whether contacts penetrate by more than rounding, as rounding may let modes seem consistent.
 
-    So do those of which nobody can tell, since rounding hides the motion.
+    So do those of which nobody can tell, since rounding hides the motion. Where a mechanism nearly wedges,
+    forces may be so large that this hides all accelerations.
     """
+    rounding = _rounding(case, mode)
+    if rounding > case.motion.scale:
+        return True
     rising = np.sum(mode.contact_accelerations_W * case.contacts.normals_W, axis=1)[case.touching]
     if rising.min(initial=0.0) >= -STRICT * case.motion.scale:
         return False
-    rounding = _rounding(case, mode)
     return bool(
         rounding > HIDDEN_BY_FORCES * case.motion.scale
         or rising.min() < -STRICT * case.motion.scale - rounding
@@ -357,9 +360,8 @@ def _narrow(case: SpatialCase, search: Search, found: Evidence, *, hurried: bool
     """Return the modes that hold so narrowly that the search found none, or what is known of them."""
     if hurried:  # noise of contacts that are nearly flush may leave no mode
         return found._replace(undecided=found.undecided or _NOT_REFUTED)
-    if not (found.undecided or search.at_rest) and has_none(search):
-        return found
-    if search.examined > search.most_examined:  # searches for modes nearby would not end either
+    ended = search.examined <= search.most_examined  # otherwise searches for modes nearby do not end either
+    if not ended or (not (found.undecided or search.at_rest) and has_none(search)):
         return found
     near = narrowly(search)
     if near.modes:
@@ -369,6 +371,8 @@ def _narrow(case: SpatialCase, search: Search, found: Evidence, *, hurried: bool
             )
             for one in near.modes
         ]
+        if any(_penetrates(case, mode) for mode in modes):
+            return found._replace(undecided=found.undecided or _NOT_REFUTED)
         alone = len(near.modes) == 1 and is_only_motion(search, near.modes[0].forces)
         return Evidence(modes, "") if alone or not found.undecided_modes else found._replace(modes=modes)
     if not near.nearby:

@@ -168,6 +168,24 @@ def test_a_link_that_is_pressed_while_its_tip_slides_jams_beyond_a_friction_of_o
     assert answer.verdict == (ModeVerdict.UNIQUE if expected else ModeVerdict.INCONSISTENT)
 
 
+@pytest.mark.parametrize("steepness", [0.1, 0.3, 0.65, 1.0, 1.3])
+def test_no_mode_has_forces_that_rounding_alone_decides(steepness: float) -> None:
+    """The friction is that at which a link jams, but for rounding: forces of 1e16 times the load."""
+    way = np.array([np.cos(steepness), 0.0, np.sin(steepness)])
+    for velocity in ([0.0, 0.0, 0.0], [1.0, 0.0, 0.0]):
+        for sense in (-1.0, 1.0):
+            answer = contact_modes(
+                ResponseContactProblem(
+                    inverse_inertia_W=np.outer(way, way),
+                    accelerations_W=[sense * way],
+                    contacts=upright([np.tan(steepness)]),
+                    velocities_W=velocity,
+                )
+            )
+            assert all(np.abs(mode.contact_forces_W).max() < 100.0 for mode in answer.modes)
+            assert answer.modes or answer.verdict in {ModeVerdict.UNDECIDED, ModeVerdict.INCONSISTENT}
+
+
 def test_without_contacts_that_touch_nothing_acts() -> None:
     (leaves,) = contact_modes(replace(arm(-1.0), velocities_W=[[0.0, 0.0, 1.0]])).modes
     assert leaves.mode == "s"
