@@ -14,13 +14,15 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import numpy as np
 
+from contact_dynamics.impact.several.result import SeveralContactsLaw
 from contact_dynamics.impact.spatial.response import Strike
 from contact_dynamics.numerics.vectors import dot
 from contact_dynamics.records import NamedInt
 from contact_dynamics.tolerances import SAMPLED_ARRIVAL
 from contact_dynamics.toss.flight import Descent
 from contact_dynamics.toss.impacts import routh
-from contact_dynamics.toss.solid import Flat, Solid, approaches
+from contact_dynamics.toss.solid import Flat, Solid, approaches, low_corners
+from contact_dynamics.toss.strike import Unsettled, strike
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -84,6 +86,7 @@ def next_strikes(
     depth: int,
     horizon: float,
     further: bool = False,
+    together: SeveralContactsLaw = SeveralContactsLaw.SEQUENTIAL,
 ) -> ManyStrikes:
     """Return the next ``depth`` strikes of samples, within ``horizon`` s.
 
@@ -96,6 +99,8 @@ def next_strikes(
         horizon: s, how far.
         further: Whether the last states are those after later strikes. Samples go on as long as
             `FEWEST_AT_ONCE` fly on after each.
+        together: The law for several contacts that strike at one instant. The spread is that of impacts of
+            one contact, and is left out there, as in a single toss.
     """
     n = len(samples.p_WB_W)
     state = np.hstack([samples.p_WB_W, samples.q_WB, samples.v_WB_W, samples.w_WB_W])
@@ -111,7 +116,7 @@ def next_strikes(
         last=state,
         solids=solids_of(solid, samples),
     )
-    flights = Flights(many.solids, spread, law)
+    flights = Flights(many.solids, spread, law, together)
     going = np.arange(n)
     for k in range(depth + (MAX_FURTHER if further else 0)):
         if len(going) < (FEWEST_AT_ONCE if k >= depth else 1):
@@ -121,7 +126,7 @@ def next_strikes(
         views: list[Any] = [
             each.data for each in (going, samples.gravities_W, drawn, state, now, parts, rebounds)
         ]
-        flights.strike(horizon, *views)
+        flights.fly(horizon, *views)
         arrived = parts >= 0
         over, going, parts = going[~arrived], going[arrived], parts[arrived]
         slow = rebounds[arrived] ** 2 <= 2.0 * solid.settling * math.sqrt(dot(solid.gravity, solid.gravity))
@@ -137,12 +142,14 @@ def next_strikes(
 class Flights:
     """Samples that fly to their next strikes."""
 
-    def __init__(self, solids: list[Solid], spread: LawSpread, law: RestitutionLaw) -> None:
-        self.solids = solids
+    def __init__(
+        self, solids: list[Solid], spread: LawSpread, law: RestitutionLaw, together: SeveralContactsLaw
+    ) -> None:
+        self.solids, self.law, self.together = solids, law, together
         self.kicks = [] if spread.is_none else spread.kicks
         self.descent, self.impact = Descent(solids[0]), Strike(law)
 
-    def strike(  # noqa: PLR0917
+    def fly(  # noqa: PLR0917
         self,
         horizon: float,
         which: Any,
@@ -180,13 +187,29 @@ class Flights:
             if part >= 0:
                 flat = solid.flats[part // solid.count]
                 touch = (part // solid.count, part % solid.count)
-                after, _ = routh(self.impact, solid, y, touch, flat.strike_friction, True)  # noqa: FBT003
-                if self.kicks:
-                    numbers = [drawn[i, k] for k in range(10)]
-                    kick = self.kicks[i]
-                    after = kick.changed(solid, y, after, touch, numbers)
-                y = after
-                rebounds[j] = approaches(solid, y, [touch])[0]
+                touching = [each for _, each in low_corners(solid, y, SAMPLED_ARRIVAL, 0.0)]
+                if len(touching) > 1:
+                    strikes = strike(
+                        solid,
+                        y,
+                        touching,
+                        self.impact,
+                        self.law,
+                        approaches(solid, y, touching),
+                        Unsettled(),
+                        self.together,
+                        None,
+                    )
+                    y = strikes.y
+                    rebounds[j] = 0.0 if strikes.staying else min(approaches(solid, y, touching))
+                else:
+                    after, _ = routh(self.impact, solid, y, touch, flat.strike_friction, True)  # noqa: FBT003
+                    if self.kicks:
+                        numbers = [drawn[i, k] for k in range(10)]
+                        kick = self.kicks[i]
+                        after = kick.changed(solid, y, after, touch, numbers)
+                    y = after
+                    rebounds[j] = approaches(solid, y, [touch])[0]
             for k in range(13):
                 states[i, k] = y[k]
 

@@ -111,8 +111,8 @@ def sampled_toss(
             position.
         seed: Seed of the samples, >= 0. The same seed yields the same samples.
         restitution_law: Law of restitution. ENERGETIC requires SEQUENTIAL.
-        several_contacts_law: Law for several simultaneous impacts in samples that are followed to rest.
-            Impacts in the tree are those of one corner each, even if a face lands flat.
+        several_contacts_law: Law for several simultaneous impacts, as of a face that lands flat. In
+            the tree, they are one impact of the corner that approaches fastest.
         horizon: s, > 0. Duration of the longest motion that is followed.
         processes: Number of processes that share the samples followed to rest, or an executor of
             `concurrent.futures`, which keeps its processes from toss to toss. The answer is the same bit for
@@ -163,7 +163,14 @@ def sampled_toss(
     )
     spread = LawSpread(uncertainty, count, chance)
     many = next_strikes(
-        solid, samples, law=restitution_law, spread=spread, depth=strikes, horizon=horizon, further=to_rest
+        solid,
+        samples,
+        law=restitution_law,
+        together=several_contacts_law,
+        spread=spread,
+        depth=strikes,
+        horizon=horizon,
+        further=to_rest,
     )
     rests: dict[int, Followed] = {}
     if to_rest:
