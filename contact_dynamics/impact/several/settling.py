@@ -14,6 +14,8 @@ from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Final
 
+import numpy as np
+
 from contact_dynamics.impact.several.jamming import jamming_impact
 from contact_dynamics.impact.several.result import SeveralVerdict
 from contact_dynamics.tolerances import VELOCITY_TOLERANCE
@@ -81,7 +83,8 @@ def settling_impact(
         if total.verdict != SeveralVerdict.RESOLVED or is_settled(total.state):
             return total
         again = jam(total.state)
-        if not again.impulses_W.any():  # every further impact would leave the same state
+        changes = np.abs(again.velocities_after_W - again.velocities_before_W)
+        if changes.max() <= velocity_tolerance:  # every further impact would leave the same state
             return replace(total, verdict=SeveralVerdict.NOT_CONVERGED)
         total = replace(
             again,

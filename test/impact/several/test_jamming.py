@@ -206,7 +206,7 @@ def test_what_never_settles_says_so() -> None:
     asked = []
     impact = settling_impact(body, state, touching, is_settled=lambda now: bool(asked.append(now)), **how)
     assert impact.verdict == SeveralVerdict.NOT_CONVERGED
-    assert len(asked) == 1  # since the second impact has no impulse, further ones would not have any
+    assert len(asked) == 1  # since the second impact changes nothing, further ones would not either
     once = jamming_impact(body, state, touching, **how)
     np.testing.assert_allclose(impact.state.v_WB_W, once.state.v_WB_W, atol=1e-6)
 
