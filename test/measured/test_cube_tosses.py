@@ -68,8 +68,8 @@ def test_impacts_of_one_corner_and_of_several_have_tables_of_their_own(
     assert [event.several for event in found.events if event.kind is EventKind.IMPACT] == [several]
     printed = report(Evaluation(versions={}, configuration="", results=(found,)))
     assert ("impacts of several corners, or longer ones" in printed) == several
-    assert ("impacts of one corner" in printed.replace("by impacts of one corner", "")) != several
-    assert ("judge laws and coefficients by impacts of one corner" in printed) == several
+    assert ("impacts of a single corner: " in printed) != several
+    assert ("compare laws and coefficients on impacts of a single corner" in printed) == several
 
 
 def test_an_index_selects_a_toss(tmp_path: Path) -> None:
@@ -104,7 +104,7 @@ def test_among_equal_flights_the_longer_second_flight_is_the_default(tmp_path: P
 def test_a_longer_flight_with_an_unclean_strike_is_not(tmp_path: Path, unclean: np.ndarray) -> None:
     clean = toss_table(tilt=1.0, flight=10, between=14)
     assert read_toss(save(tmp_path / "t.npz", unclean, clean)).source.startswith("measured toss 1 ")
-    with pytest.raises(InvalidFieldError, match="no toss with a clean strike"):
+    with pytest.raises(InvalidFieldError, match="no toss with a clean impact"):
         read_toss(save(tmp_path / "u.npz", unclean))
 
 
