@@ -68,10 +68,3 @@ def _mass_properties(
     (ixx, iyy, izz), (ixy, ixz, iyz) = moments, products
     inertia = np.array(((ixx, ixy, ixz), (ixy, iyy, iyz), (ixz, iyz, izz)))
     return MassProperties(mass=mass, I_B=inertia), check_array("inertia.com", com, (3,))
-
-
-def mass_properties_to_msg(mass_properties: MassProperties, p_FB_F: FloatArray) -> Inertia:
-    """Return mass properties and the centre of mass in the body's frame as a message."""
-    (ixx, ixy, ixz), (_, iyy, iyz), (_, _, izz) = mass_properties.I_B.tolist()
-    com = vector_to_msg(p_FB_F)
-    return Inertia(m=mass_properties.mass, com=com, ixx=ixx, ixy=ixy, ixz=ixz, iyy=iyy, iyz=iyz, izz=izz)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Bodies that are links of a URDF or an SDF file: their parameters become the numbers of the link.
 
-So everything behind a configuration has numbers, as if they had been written there: `ros2 param`, changes
-while the server runs, and the log, which stands for itself when the file is gone.
+The numbers count as if the configuration contained them: `ros2 param` shows them, they can change while the
+server runs, and the log contains them, so it can be replayed without the file.
 """
 
 from __future__ import annotations

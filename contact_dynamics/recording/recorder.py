@@ -9,7 +9,7 @@ The queue has a limit in bytes. If the disk stalls, messages wait until there ar
 ones are then dropped and counted, to spare the server's memory.
 
 If the disk refuses a write (it is full), the file ends where it was last whole. Messages from then on are
-counted as lost until there is room again, which the thread looks for every second. The log then goes on in
+counted as lost until there is room again, which the thread looks for every second. The log then continues in
 another file, whose record says what is missing.
 
 ``on_problem`` is called when a problem of some kind begins, and again every minute while it goes on.
@@ -299,7 +299,7 @@ class Recorder(AbstractContextManager["Recorder"]):
             return False
         del self._told[LogProblem.INTERRUPTED]
         with contextlib.suppress(Exception):
-            self._on_resumed(f"the log goes on in {self._writer.path}: {gap}")
+            self._on_resumed(f"the log continues in {self._writer.path}: {gap}")
         return False
 
     def _tell_settled(self, given: int) -> None:

@@ -360,7 +360,7 @@ class RrdFiles:
             size: Bytes. A file that is larger is followed by the next one. 0 means that there is one file.
             most: The newest files that stay. 0 means all.
             on_problem: A function that is told, in words, when a file cannot be written any more, and when
-                the picture goes on.
+                the picture continues.
 
         Raises:
             OSError: the file cannot be written.
@@ -392,7 +392,7 @@ class RrdFiles:
         self._told = False
         if self._place is None:
             self._place = self._picture.open(sink)
-            self._on_problem(f"the picture goes on in {self._written[-1]}")
+            self._on_problem(f"the picture continues in {self._written[-1]}")
         else:
             self._picture.reopen(self._place, sink)
         while self._most and len(self._written) > self._most:

@@ -69,7 +69,7 @@ def test_the_log_goes_on_once_there_is_room_and_says_what_is_missing(tmp_path: P
         assert server.stdout is not None
         goodbye, _ = server.stdout.read(), server.wait(PATIENCE_S)
     (folder,) = (each for each in tmp_path.iterdir() if each.is_dir())
-    assert goodbye.count("the log goes on in") == 2
+    assert goodbye.count("the log continues in") == 2
     written, lost = map(int, re.findall(r"\((\d+) messages, (\d+) lost", goodbye)[0])
     reader = BagReader(folder)
     with pytest.warns(

@@ -129,7 +129,7 @@ def test_after_the_disk_was_full_the_picture_goes_on_in_the_next_file(tmp_path: 
     first, second, third, last = done.stdout.splitlines()
     assert first == f"{path} cannot be written any more"
     assert second.startswith("the picture has no next file: ")
-    assert third == f"the picture goes on in {tmp_path / 'drive_1.rrd'}"
+    assert third == f"the picture continues in {tmp_path / 'drive_1.rrd'}"
     assert last == "False"
     numbers = read_drawn(tmp_path / "drive_1.rrd").series("/number", "Scalars:scalars")
     assert numbers.tolist() == [6.0, 7.0]

@@ -217,7 +217,7 @@ gives it. A body that begins to fall over is faster, unless it is balanced to wi
 
 
 class _StrikeByStrike:
-    """Goes from strike to strike: it resolves each, and decides where a sequence waits, goes on or ends."""
+    """Resolves one strike after the other, and decides where the sequence waits, continues or ends."""
 
     def __init__(
         self,
@@ -297,7 +297,7 @@ class _StrikeByStrike:
             state = motion.state_at(wait)
 
     def _wait(self, landing: Landing, now: float, *, may_leave: bool) -> tuple[SequenceEnd, float | None]:
-        """Return why the sequence may end where nothing strikes, and how long to wait before it goes on, s.
+        """Return why the sequence may end where nothing strikes, and how long to wait before it continues, s.
 
         If the second is None, the sequence ends here.
         """
