@@ -28,8 +28,8 @@ help: ## print this
 	    printf '  make %-11s  %s\n' "$$name" "$$text"; done
 	@echo "  PYTHON=python3.12 chooses the Python (3.10 to 3.14) that $(VENV) is made with."
 
-demo: $(MADE)/package $(MADE)/interfaces ## play a toss and compare predictions with it; VIEW=1 opens the viewer, TOSS=path plays another
-	@$(BIN)/contact-dynamics demo $(if $(VIEW),--view) $(if $(TOSS),--toss "$(TOSS)")
+demo: $(MADE)/package $(MADE)/interfaces ## play a toss and compare predictions with it; VIEW=1 opens the viewer, TOSS=path plays another; SCENE=belt|paddle|stack|grasp opens a scene
+	@$(BIN)/$(if $(SCENE),python examples/scenes.py $(SCENE),contact-dynamics demo $(if $(VIEW),--view) $(if $(TOSS),--toss "$(TOSS)"))
 
 # One process more than there are processors, because a quarter of the time goes by in waiting for processes and DDS. More
 # than four gain little: the longest files of the nodes' tests wait most.

@@ -40,8 +40,7 @@ from contact_dynamics.questions import (
 )
 from contact_dynamics.shapes import box
 from contact_dynamics.toss import TossUncertainty
-from contact_dynamics.viewing.picture import Picture
-from contact_dynamics.viewing.sinks import OpenRecording, Sinks
+from contact_dynamics.viewing import view
 from contact_dynamics.viewing.viewer_process import LOCAL, local_url, viewer_executable
 
 DOCS = Path(__file__).parents[1] / "docs"
@@ -177,7 +176,7 @@ def contact_modes(folder: Path) -> None:
     tilt = np.radians(25.0)
     question = ContactModeQuestion(
         body=block,
-        state=leans,
+        state=at(leans, 0.0),
         contacts=touching,
         gravity_W=9.81 * np.array([np.sin(tilt), 0.0, -np.cos(tilt)]),
         problem=Problem.PLANAR,
@@ -186,12 +185,9 @@ def contact_modes(folder: Path) -> None:
         include_wrenches=True,
     )
     world = World(bodies=(block,), surfaces=(base, rim))
-
-    def draw(picture: Picture) -> None:
-        picture.add_states("block", [at(leans, k / 100.0) for k in range(10)])
-        picture.show(ask(question, Context(world=world)), now_ns=START_NS)
-
-    with viewer(_recorded(folder, world, draw)) as shown:
+    path, motion = folder / "picture.rrd", [at(leans, k / 100.0) for k in range(10)]
+    view(world, [ask(question, Context(world=world))], motions={"block": motion}, path=path)
+    with viewer(path) as shown:
         shown.show_page("Contact modes")
         save(shown.picture(0.09), "viewer_contact_modes.png")
 
@@ -212,13 +208,10 @@ def toss(folder: Path) -> None:
         sampling=TossSampling(count=80, to_rest=True, uncertainty=uncertainty),
     )
 
-    def draw(picture: Picture) -> None:
-        states = [at(recorded.state(k), (k - ASKED) / recorded.rate) for k in range(ASKED + 70)]
-        picture.add_states(recorded.body.name, states[: ASKED + 1])
-        picture.show(ask(question, Context(world=world)), now_ns=START_NS)
-        picture.add_states(recorded.body.name, states[ASKED + 1 :])
-
-    with viewer(_recorded(folder, world, draw)) as shown:
+    states = [at(recorded.state(k), (k - ASKED) / recorded.rate) for k in range(ASKED + 70)]
+    path, answer = folder / "picture.rrd", ask(question, Context(world=world))
+    view(world, [answer], motions={recorded.body.name: states}, path=path)
+    with viewer(path) as shown:
         shown.show_page("Toss")
         save(shown.picture((ASKED + 69) / recorded.rate), "viewer_toss.png")
 
@@ -233,32 +226,21 @@ def twenty(folder: Path) -> None:
     floor = Surface(name="floor", p_WS_W=[0, 0, 0], normal_W=[0, 0, 1], friction=0.3, restitution=0.45)
     world = World(bodies=tuple(bricks), surfaces=(floor,))
 
-    def draw(picture: Picture) -> None:
-        noise = np.random.default_rng(0)
-        for i, brick in enumerate(bricks):
-            place = [0.5 * (i % 5), 0.5 * (i // 5), 0.9]
-            thrown = BodyState(p_WB_W=place, q_WB=[0, 0, 0, 1], v_WB_W=[0.2, 0.1, 0], w_WB_W=[3, 8, 0.1 * i])
-            motion = free_motion(mass_properties, thrown)
-            seen = [at(motion.state_at(k / 250.0), k / 250.0) for k in range(60)]
-            seen = [replace(one, p_WB_W=one.p_WB_W + noise.normal(0.0, 3e-4, 3)) for one in seen]
-            picture.add_states(brick.name, seen[:1])
-            question = TumblingQuestion(body=brick, state=seen[0], sampling=UntilContact())
-            picture.show(ask(question, Context(world=world)))
-            picture.add_states(brick.name, seen[1:])
-
-    with viewer(_recorded(folder, world, draw, surface_side=4.0)) as shown:
-        save(shown.picture(0.236), "viewer_twenty.png")
-
-
-def _recorded(
-    folder: Path, world: World, draw: Callable[[Picture], None], *, surface_side: float = 2.0
-) -> Path:
-    """Return a recording of what is drawn."""
+    noise = np.random.default_rng(0)
+    answers, motions = [], {}
+    for i, brick in enumerate(bricks):
+        place = [0.5 * (i % 5), 0.5 * (i // 5), 0.9]
+        thrown = BodyState(p_WB_W=place, q_WB=[0, 0, 0, 1], v_WB_W=[0.2, 0.1, 0], w_WB_W=[3, 8, 0.1 * i])
+        motion = free_motion(mass_properties, thrown)
+        seen = [at(motion.state_at(k / 250.0), k / 250.0) for k in range(60)]
+        seen = [replace(one, p_WB_W=one.p_WB_W + noise.normal(0.0, 3e-4, 3)) for one in seen]
+        motions[brick.name] = seen
+        question = TumblingQuestion(body=brick, state=seen[0], sampling=UntilContact())
+        answers.append(ask(question, Context(world=world)))
     path = folder / "picture.rrd"
-    recording = OpenRecording(Sinks(rrd_path=str(path)), on_problem=print)
-    draw(Picture(recording.stream, world, surface_side=surface_side))
-    recording.close()
-    return path
+    view(world, answers, motions=motions, path=path, surface_side=4.0)
+    with viewer(path) as shown:
+        save(shown.picture(0.236), "viewer_twenty.png")
 
 
 def at(state: BodyState, seconds: float) -> BodyState:

@@ -17,6 +17,7 @@ from running_server import ROOT, environment, process
 
 EXAMPLES = {
     "tumbling_t_handle.py": "about_minor_axis",
+    "scenes.py": "grip of 6.0 N: ffffffff\ngrip of 4.0 N: cccccccc",
     "sliding_rod.py": "sliding left under gravity: inconsistent",
     "next_landing.py": "impulse",
     "poinsot.py": "about_major_axis",

@@ -23,7 +23,7 @@ SECTIONS = dict(
     re.findall(r"^## `contact_dynamics\.([\w.]+)`\n(.*?)(?=^## |\Z)", PAGE, re.DOTALL | re.MULTILINE)
 )
 ROW = re.compile(r"^\| `(\w+)(\([^`]*\))?` \| (.*) \|$", re.MULTILINE)
-OFFERED = ("world", *CHAPTERS, "plots")
+OFFERED = ("world", *CHAPTERS, "plots", "viewing")
 
 
 def offered(chapter: str) -> dict[str, object]:

@@ -25,8 +25,11 @@ from contact_dynamics.diagrams.words import contacts_in_words
 from contact_dynamics.numerics.vectors import tangents_near_x
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from contact_dynamics.contact.contact import ContactSet
     from contact_dynamics.contact_modes import SpatialMode
+    from contact_dynamics.contact_modes.result import AnyMode, ResponseMode
     from contact_dynamics.diagrams.marks import Mark
     from contact_dynamics.diagrams.shape import Shape
     from contact_dynamics.questions.contact_modes import ContactModeAnswer
@@ -65,21 +68,43 @@ def contact_marks(
     ``shape`` is that of the body. Its applied force is drawn if its mass properties, ``body``, are known.
     """
     size, contacts = shape.size, answer.contacts
-    letters = letters_of_contacts(tuple(mode.mode for mode in answer.modes), len(contacts))
-    paints = [paint_of_letters(text) for text in letters]
     edges = list(outline(shape, answer.state.p_WB_W, answer.state.q_WB))
     return [
-        Points("points", _UNDECIDED, contacts.p_WC_W, paints=paints, radius=_POINT_SIZE * size),
-        _labels(letters, answer, size=size),
-        friction_cones(
-            "cones", contacts.p_WC_W, contacts.normals_W, contacts.frictions, height=_CONE_HEIGHT * size
-        ),
+        *_at_contacts(contacts, answer.modes, size=size),
         Lines("body", _BODY, edges, opacity=0.6, width=1.0),
         _applied(answer, body, size=size),
         *(
             mark
             for name, mode in zip(mode_names(), answer.modes, strict=False)
             for mark in _mode_marks(name, mode, answer, size=size)
+        ),
+    ]
+
+
+def bodies_contact_marks(contacts: ContactSet, modes: Sequence[ResponseMode], *, size: float) -> list[Mark]:
+    """Return the marks of the modes of several bodies, the largest of which has this size, m.
+
+    The contact forces are those on the first body of each pair.
+    """
+    return [
+        *_at_contacts(contacts, modes, size=size),
+        *(
+            mark
+            for name, mode in zip(mode_names(), modes, strict=False)
+            for mark in _force_marks(name, mode, contacts, mode.tangential_directions_W, size=size)
+        ),
+    ]
+
+
+def _at_contacts(contacts: ContactSet, modes: Sequence[AnyMode], *, size: float) -> list[Mark]:
+    """Return the contacts with their letters in all modes, and their friction cones."""
+    letters = letters_of_contacts(tuple(mode.mode for mode in modes), len(contacts))
+    paints = [paint_of_letters(text) for text in letters]
+    return [
+        Points("points", _UNDECIDED, contacts.p_WC_W, paints=paints, radius=_POINT_SIZE * size),
+        _labels(letters, contacts, size=size),
+        friction_cones(
+            "cones", contacts.p_WC_W, contacts.normals_W, contacts.frictions, height=_CONE_HEIGHT * size
         ),
     ]
 
@@ -125,13 +150,23 @@ def mode_names() -> list[str]:
 
 
 def _mode_marks(name: str, mode: SpatialMode, answer: ContactModeAnswer, *, size: float) -> list[Mark]:
-    points, forces_W = answer.contacts.p_WC_W, mode.contact_forces_W
+    (acceleration_W,) = beyond(mode.acceleration_W[None], answer.acceleration_tolerance)
+    label = f"{mode.mode}: {{:.3g}} m/s²"
+    return [
+        *_force_marks(name, mode, answer.contacts, _sliding_directions(answer, mode), size=size),
+        _at_centre(f"{name}/acceleration", _ACCELERATION, answer, acceleration_W, label, size=size),
+    ]
+
+
+def _force_marks(
+    name: str, mode: ResponseMode, contacts: ContactSet, sliding_W: FloatArray, *, size: float
+) -> list[Mark]:
+    """Return the contact forces of a mode, and the directions in which contacts slide, (n, 3) or zero."""
+    points, forces_W = contacts.p_WC_W, mode.contact_forces_W
     magnitudes = np.linalg.norm(forces_W, axis=1)
     pressed = np.flatnonzero(magnitudes > 0.0)
     scale = FORCE_LENGTH * size / float(magnitudes.max()) if len(pressed) > 0 else 0.0
-    sliding_W = _sliding_directions(answer, mode)
     slides = sliding_W.any(axis=1)
-    (acceleration_W,) = beyond(mode.acceleration_W[None], answer.acceleration_tolerance)
     return [
         Arrows(
             f"{name}/forces",
@@ -149,14 +184,6 @@ def _mode_marks(name: str, mode: SpatialMode, answer: ContactModeAnswer, *, size
             sliding_W[slides] * (_SLIDING_LENGTH * size),
             radius=0.5 * _ARROW_WIDTH * size,
         ),
-        _at_centre(
-            f"{name}/acceleration",
-            _ACCELERATION,
-            answer,
-            acceleration_W,
-            f"{mode.mode}: {{:.3g}} m/s²",
-            size=size,
-        ),
     ]
 
 
@@ -165,14 +192,14 @@ def letters_of_contacts(modes: tuple[str, ...], count: int) -> list[str]:
     return ["|".join(dict.fromkeys(mode[i] for mode in modes)) or "?" for i in range(count)]
 
 
-def _labels(letters: list[str], answer: ContactModeAnswer, *, size: float) -> Labels:
+def _labels(letters: list[str], contacts: ContactSet, *, size: float) -> Labels:
     """Return one label for the contacts with the same letters and the same normal, below them."""
-    normals_W = answer.contacts.normals_W
+    normals_W = contacts.normals_W
     groups: dict[tuple[str, tuple[float, ...]], list[int]] = {}
     for i, text in enumerate(letters):
         groups.setdefault((text, tuple(normals_W[i].round(2).tolist())), []).append(i)
     places = [
-        answer.contacts.p_WC_W[group].mean(axis=0) - LABEL_DEPTH * size * normals_W[group[0]]
+        contacts.p_WC_W[group].mean(axis=0) - LABEL_DEPTH * size * normals_W[group[0]]
         for group in groups.values()
     ]
     texts = [contacts_in_words(text, len(group)) for (text, _), group in groups.items()]

@@ -11,7 +11,7 @@ import rerun as rr
 
 from contact_dynamics.constants import ns_after, to_ns
 from contact_dynamics.diagrams.after_impact import AwaitedImpacts
-from contact_dynamics.diagrams.contact_scene import contact_marks
+from contact_dynamics.diagrams.contact_scene import bodies_contact_marks, contact_marks
 from contact_dynamics.diagrams.flight import DEFAULT_PREDICTIONS, EARLIER, flight_marks, outside, path_mark
 from contact_dynamics.diagrams.impact_scene import impact_marks
 from contact_dynamics.diagrams.many_states import many_states_marks
@@ -48,6 +48,8 @@ from contact_dynamics.viewing.words import LEGEND_TEXT, AnswersInWords, sentence
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from contact_dynamics.contact.contact import ContactSet
+    from contact_dynamics.contact_modes import BodiesModeAnswer
     from contact_dynamics.diagrams.after_impact import AfterImpact
     from contact_dynamics.diagrams.marks import Mark
     from contact_dynamics.questions.contact_modes import ContactModeAnswer
@@ -159,6 +161,16 @@ class Picture:
         for found in self._awaited.see(answer.body_name, ()):  # an impact may have been seen already
             self._show_after_impact(found)
 
+    def show_bodies(self, answer: BodiesModeAnswer, contacts: ContactSet, *, now_ns: int) -> None:
+        """Draw contact modes of several bodies at a time, ns, and put them into words."""
+        set_time(self.recording, now_ns)
+        name = next(iter(self._bodies.names), "")  # which switches modes on and off
+        self._letters.come(name, now_ns)
+        marks = bodies_contact_marks(contacts, answer.modes, size=self._bodies.largest_size)
+        self._draw_anew(CONTACTS, name, marks)
+        self._bring_up(CONTACTS)
+        self.tell("contact modes", answer.in_short().partition(": ")[2], stamp_ns=now_ns)
+
     def draw_tumbling(self, answer: TumblingAnswer, stamp_ns: int) -> tuple[list[str], list[str]]:
         """Draw where a body will be, with what certainty, and Poinsot's picture if the answer has curves.
 
@@ -205,7 +217,7 @@ class Picture:
         name, plane = answer.body_name, answer.plane
         shape, body = self._bodies.shape(name), self._bodies.mass_properties(name)
         self._letters.come(name, stamp_ns)
-        self._draw_anew(CONTACTS, answer, contact_marks(shape, answer, body=body))
+        self._draw_anew(CONTACTS, answer.body_name, contact_marks(shape, answer, body=body))
         if self._eye is None:
             self._look_at(self._across_from(answer))
         if plane is None:
@@ -216,7 +228,7 @@ class Picture:
     def draw_toss(self, answer: TossAnswer, stamp_ns: int) -> tuple[list[str], list[str]]:
         """Draw a whole toss with its other ways, and the fan of samples with the tree of their strikes."""
         shape = self._bodies.shape(answer.body_name)
-        self._draw_anew(TOSSES, answer, toss_marks(shape, answer, up_W=self._world.up_W))
+        self._draw_anew(TOSSES, answer.body_name, toss_marks(shape, answer, up_W=self._world.up_W))
         curves = self._predict(answer.body_name, answer.toss.trajectory, begin_ns=stamp_ns)
         self._look_along(answer.toss.trajectory)
         return [TOSSES, *curves], []
@@ -227,12 +239,13 @@ class Picture:
         stamp_ns: int,  # noqa: ARG002  as all
     ) -> tuple[list[str], list[str]]:
         """Draw many states."""
-        self._draw_anew(MANY, answer, many_states_marks(self._bodies.shape(answer.body_name), answer))
+        name = answer.body_name
+        self._draw_anew(MANY, name, many_states_marks(self._bodies.shape(name), answer))
         return [MANY], []
 
-    def _draw_anew(self, kind: str, answer: Answer, marks: list[Mark]) -> None:
+    def _draw_anew(self, kind: str, body_name: str, marks: list[Mark]) -> None:
         """Draw an answer in the scene in place of the one before about its body."""
-        path = entity(kind, answer.body_name)
+        path = entity(kind, body_name)
         self.recording.log(path, rr.Clear(recursive=True))
         draw_marks(self.recording, marks, path)
 
