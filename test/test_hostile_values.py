@@ -35,6 +35,7 @@ from contact_dynamics import (
     PlanarVelocity,
     PlanarWrench,
     SpatialContactProblem,
+    contact_modes,
 )
 from contact_dynamics.errors import ContactDynamicsError
 from contact_dynamics.motion import ConstantWrench, Drag
@@ -50,6 +51,7 @@ from hostile_values.shared import (
     FALLING,
     FLAT,
     LEAN,
+    RESTING,
     ROD,
     STATE,
     TIP,
@@ -295,3 +297,59 @@ def test_extreme_objects_are_answered_or_refused(names: list[str]) -> None:
                 if found and not found.startswith(":"):
                     wrong.append((name, argument, value, found))
     assert wrong == []
+
+
+EXTREMES = [
+    *(("body", {"mass": x}) for x in (1e-300, 1e-60, 1e60, 1e300)),
+    *(("body", {"I_B": x * BALL.I_B}) for x in (1e-300, 1e-59, 1e20, 1e59, 1e300)),
+    *(
+        ("state", {field: [x, -x, x]})
+        for field in ("p_WB_W", "v_WB_W", "w_WB_W")
+        for x in (1e-300, -1e15, 1e60, 1e100, 1e160, 1e300)
+    ),
+    *(("contacts", {"frictions": [x, 0.1]}) for x in (1e-300, 1e12, 1e60, 1e160, 1e300)),
+    *(
+        ("contacts", {field: [[x, -x, x], [0.0, 0.0, 0.0]]})
+        for field in ContactSet.SURFACE_MOTION
+        for x in (1e-300, 1e30, 1e60)
+    ),
+]
+
+
+@pytest.mark.parametrize("argument", ["body", "state", "contacts"])
+def test_contact_modes_of_extreme_problems_are_found_or_refused(argument: str) -> None:
+    """Of one body, of two, of which it is the upper one, and of a mechanism."""
+    wrong = []
+    good = {"body": BALL, "state": RESTING, "contacts": CONTACTS}
+    for change in (each for name, each in EXTREMES if name == argument):
+        for kind in ("one", "two", "mechanism"):
+
+            def found(change: dict[str, Any] = change, kind: str = kind) -> object:
+                given: dict[str, Any] = {**good, argument: dataclasses.replace(good[argument], **change)}
+                return contact_modes.contact_modes(extreme_problem(kind, **given))
+
+            text = answered_or_refused(found)
+            if text and not text.startswith(":"):
+                wrong.append((kind, change, text))
+    assert wrong == []
+
+
+def extreme_problem(
+    kind: str, body: MassProperties, state: BodyState, contacts: ContactSet
+) -> SpatialContactProblem | contact_modes.BodiesContactProblem | contact_modes.ResponseContactProblem:
+    if kind == "one":
+        return dataclasses.replace(DEEP, body=body, state=state, contacts=contacts)
+    if kind == "two":
+        return contact_modes.BodiesContactProblem(
+            bodies=[BALL, body],
+            states=[RESTING, state],
+            contacts=contacts,
+            pairs=[(0, None if contacts.surfaces_move else 1), (1, None)],
+            forces_W=[0.0, 0.0, -9.8],
+        )
+    return contact_modes.ResponseContactProblem(
+        inverse_inertia_W=np.eye(6) / body.mass,
+        accelerations_W=[[0.0, 1.0, -9.8], state.v_WB_W],
+        contacts=contacts,
+        velocities_W=state.v_WB_W,
+    )

@@ -38,7 +38,7 @@ def spatial_contact_velocities(
             centre of mass exceeds `LARGEST_NUMBER`.
     """
     tolerance = check_not_negative("velocity_tolerance", velocity_tolerance)
-    check_speeds(state, contacts)
+    check_speeds(state, contacts.p_WC_W)
     velocities = relative_velocities(state, contacts)
     along = np.einsum("ij,ij->i", velocities, contacts.normals_W)
     across = velocities - along[:, None] * contacts.normals_W
@@ -96,11 +96,11 @@ def velocity_accelerations(contacts: ContactSet, velocities_W: FloatArray, w_W: 
     return added
 
 
-def check_speeds(state: BodyState, contacts: ContactSet) -> None:
+def check_speeds(state: BodyState, points_W: FloatArray) -> None:
     """Refuse velocities, and distances of contacts from the centre of mass, beyond `LARGEST_NUMBER`."""
     check_magnitude("v_WB_W", state.v_WB_W)
     check_magnitude("w_WB_W", state.w_WB_W)
-    check_magnitude("p_WC_W", contacts.p_WC_W - state.p_WB_W)
+    check_magnitude("p_WC_W", points_W - state.p_WB_W)
 
 
 def warn_if_far(body: HasMassProperties, state: BodyState, points_W: FloatArray) -> None:

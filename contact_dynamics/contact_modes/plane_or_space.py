@@ -69,6 +69,7 @@ def contact_modes(
 
     Raises:
         TooLargeError: a spatial problem has too many touching contacts, or the search takes too many trials.
+        UndecidedError: lengths, masses or moments differ so much that rounding error prevents a decision.
         NotSupportedError: surfaces move differently in a planar problem (`surface_frame`), or in a spatial
             problem with uncertain contacts.
 

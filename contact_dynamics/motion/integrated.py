@@ -238,7 +238,7 @@ def forced_motion(
     body = body.mass_properties
     gravity = check_array("gravity_W", gravity_W, (3,))
     max_steps = check_whole("max_steps", max_steps, 1)
-    check_extent(body, state, gravity)
+    check_extent(state, gravity)
     law = MotionLaw(body, state, gravity, wrench=wrench, drag=drag, wrench_of=wrench_of)
     law.rates(0.0, law.start)  # a function that returns nonsense is refused at once
     return ForcedMotion(

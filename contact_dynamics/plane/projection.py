@@ -254,7 +254,7 @@ def _curvatures_in(plane: PlaneOfMotion, contacts: ContactSet) -> list[tuple[flo
 def out_of_plane_speed(plane: PlaneOfMotion, state: BodyState, contacts: ContactSet) -> float:
     """Return the largest speed out of the plane, m/s, at contacts and centre of mass."""
     check_at_rest("contacts", contacts, "out_of_plane_speed")
-    check_speeds(state, contacts)
+    check_speeds(state, contacts.p_WC_W)
     arms = rows_of(contacts.p_WC_W - state.p_WB_W)
     return _speed_out_of(three_of(plane.normal_W), three_of(state.v_WB_W), three_of(state.w_WB_W), arms)
 

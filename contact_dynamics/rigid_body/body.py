@@ -22,6 +22,7 @@ from contact_dynamics.validation import (
     check_array,
     check_magnitude,
     check_positive,
+    check_size,
     check_stamp,
     check_unit,
     check_within,
@@ -57,7 +58,8 @@ class MassProperties(HasMassProperties):
 
     Raises:
         InvalidFieldError: the mass is not > 0, or the inertia is not symmetric, not positive definite, or has
-            principal moments that no distribution of mass has (I1 + I2 >= I3 is required).
+            principal moments that no distribution of mass has (I1 + I2 >= I3 is required). Or the mass or a
+            moment is above `LARGEST_NUMBER` or below its inverse.
     """
 
     mass: float
@@ -70,7 +72,7 @@ class MassProperties(HasMassProperties):
 
     def __post_init__(self) -> None:
         """Check both fields."""
-        object.__setattr__(self, "mass", check_positive("mass", self.mass))
+        object.__setattr__(self, "mass", check_size("mass", check_positive("mass", self.mass)))
         object.__setattr__(self, "I_B", _check_inertia("I_B", self.I_B))
 
     @property
@@ -277,6 +279,8 @@ def _check_inertia(field: str, value: FloatArray) -> FloatArray:
         raise InvalidFieldError(
             field, f"principal moments {moments.tolist()}", "moments that a body can have (I1 + I2 >= I3)"
         )
+    for moment in (moments[0], moments[2]):
+        check_size(field, moment)
     return inertia
 
 

@@ -85,7 +85,7 @@ def toss(
     """
     check_laws(restitution_law, several_contacts_law)
     factors = check_factors("lasting_factors", lasting_factors)
-    check_extent(body.mass_properties, state, world.gravity_W)
+    check_extent(state, world.gravity_W)
     world, frame = world.seen_from_surfaces("toss")
     state = state if frame is None else frame.seen(state)
     check_not_inside(body, state, world.surfaces, distance_tolerance=distance_tolerance)

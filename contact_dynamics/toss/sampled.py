@@ -143,7 +143,7 @@ def sampled_toss(
     horizon = check_positive("horizon", horizon)
     if covariance is not None:
         covariance = check_covariance("covariance", covariance)
-    check_extent(body.mass_properties, state, world.gravity_W)
+    check_extent(state, world.gravity_W)
     world, frame = world.seen_from_surfaces("sampled_toss")
     state = state if frame is None else frame.seen(state)
     check_not_inside(body, state, world.surfaces, distance_tolerance=distance_tolerance)

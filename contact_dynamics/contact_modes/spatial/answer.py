@@ -66,7 +66,7 @@ from contact_dynamics.contact_modes.spatial.round_cones import (
     polished,
     sticking,
 )
-from contact_dynamics.errors import TooLargeError
+from contact_dynamics.errors import TooLargeError, UndecidedError
 from contact_dynamics.tolerances import (
     FEASIBLE,
     FLUSH,
@@ -178,17 +178,26 @@ def considered(
             far to be flush (`problem.spatial_case`).
         facets: The number of edges of a friction pyramid.
         sharpen: Whether the modes are those of round cones.
+
+    Raises:
+        UndecidedError: lengths, masses or moments differ by so many orders of magnitude that a matrix is
+            singular but for rounding.
     """
     rough = case_within(FLUSH_ROUGHLY)
     if not isinstance(rough, SpatialCase):
         return rough
     tried: list[Considered] = []
-    for case, within, hurried in _cases(case_within, rough):
-        search = search_of(case, facets, from_rest=case.motion.of_body)
-        found = evidence_of(case, search, sharpen=sharpen, hurried=hurried)
-        tried.append(Considered(case, search, found, within))
-        if not found.undecided:
-            return tried[-1]
+    try:
+        for case, within, hurried in _cases(case_within, rough):
+            search = search_of(case, facets, from_rest=case.motion.of_body)
+            found = evidence_of(case, search, sharpen=sharpen, hurried=hurried)
+            tried.append(Considered(case, search, found, within))
+            if not found.undecided:
+                return tried[-1]
+    except np.linalg.LinAlgError:
+        raise UndecidedError(
+            "the problem's lengths, masses or moments differ so much that rounding error prevents a decision"
+        ) from None
     return tried[-1]
 
 

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from contact_dynamics.contact.pairs import check_pairs, pair_jacobians
-from contact_dynamics.contact.velocities import velocity_accelerations, warn_if_far
+from contact_dynamics.contact.velocities import check_speeds, velocity_accelerations, warn_if_far
 from contact_dynamics.contact_modes.result import BodiesMode, BodiesModeAnswer, ResponseMode
 from contact_dynamics.contact_modes.spatial.answer import Considered, answer_fields, considered, shown_modes
 from contact_dynamics.contact_modes.spatial.problem import SpatialCase, made_flush, reach_of, sliding_of
@@ -55,8 +55,8 @@ class BodiesContactProblem(Record):
             so does an angular velocity that moves no contact relative to the centre of mass by more.
 
     Raises:
-        InvalidFieldError: lists differ in length, an index is out of range, a force is not finite, the
-            tolerance is negative, or the surface of a body is given a motion.
+        InvalidFieldError: lists differ in length, an index is out of range, a number is not finite or
+            beyond `LARGEST_NUMBER`, the tolerance is negative, or the surface of a body is given a motion.
     """
 
     bodies: tuple[MassProperties, ...] = field(metadata={"accepts": "Sequence[HasMassProperties]"})
@@ -89,6 +89,7 @@ class BodiesContactProblem(Record):
         check_pairs(count, self.states, self.contacts, self.pairs)
         for index, (body, state) in enumerate(zip(self.bodies, self.states, strict=True)):
             own = [i for i, pair in enumerate(self.pairs) if index in pair]
+            check_speeds(state, self.contacts.p_WC_W[own])
             warn_if_far(body, state, self.contacts.p_WC_W[own])
         object.__setattr__(self, "bodies", tuple(body.mass_properties for body in self.bodies))
         object.__setattr__(self, "states", tuple(self.states))

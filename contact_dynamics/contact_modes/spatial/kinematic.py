@@ -83,7 +83,7 @@ def spatial_kinematic_modes(
     n = len(contacts)
     if n > MAX_SPATIAL_CONTACTS:
         raise TooLargeError("contacts", f"{n} contacts", f"at most {MAX_SPATIAL_CONTACTS}")
-    check_speeds(state, contacts)
+    check_speeds(state, contacts.p_WC_W)
     velocities = relative_velocities(state, contacts)
     v_n = np.sum(contacts.normals_W * velocities, axis=1)
     if np.any(v_n < -tolerance):

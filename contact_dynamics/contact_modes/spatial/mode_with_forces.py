@@ -21,6 +21,7 @@ from contact_dynamics.contact_modes.letters import SEPARATES, STAYS, STICKS
 from contact_dynamics.contact_modes.result import ResponseMode, SpatialMode
 from contact_dynamics.numerics.vectors import cross_of_two
 from contact_dynamics.tolerances import (
+    LARGEST_NUMBER,
     LEAST_FORCE_FLAT,
     LEAST_FORCE_MET,
     LEAST_FORCE_SEEN,
@@ -98,7 +99,8 @@ def with_least_forces(case: SpatialCase, mode: ResponseMode) -> ResponseMode:
     ):  # friction on the edges of pyramids stays there
         return mode
     acting = [i for i, letter in enumerate(mode.mode) if letter != SEPARATES]
-    normals, frictions = case.contacts.normals_W[acting], case.contacts.frictions[acting]
+    normals = case.contacts.normals_W[acting]
+    frictions = np.minimum(case.contacts.frictions[acting], LARGEST_NUMBER)
     slides = mode.tangential_directions_W[acting]
     rays = slides.any(axis=1)
     axes = normals - frictions[:, None] * slides

@@ -24,7 +24,12 @@ import numpy as np
 from contact_dynamics.contact.found import find_contacts
 from contact_dynamics.contact.friction import check_facets
 from contact_dynamics.contact.uncertainty import EXACT_CONTACTS, ContactUncertainty
-from contact_dynamics.contact.velocities import relative_velocities, velocity_accelerations, warn_if_far
+from contact_dynamics.contact.velocities import (
+    check_speeds,
+    relative_velocities,
+    velocity_accelerations,
+    warn_if_far,
+)
 from contact_dynamics.contact_modes.spatial.pyramid_programs import Touching
 from contact_dynamics.contact_modes.spatial.search import Search
 from contact_dynamics.errors import NoContactError, TooLargeError
@@ -35,6 +40,7 @@ from contact_dynamics.tolerances import (
     DISTANCE_TOLERANCE,
     FEASIBLE,
     FLUSH_ROUNDING,
+    LARGEST_NUMBER,
     OUT_OF_PLANE_RATIO,
     SAME_DIRECTION,
     VELOCITY_TOLERANCE,
@@ -100,8 +106,8 @@ class SpatialContactProblem(Record):
             occur within these errors.
 
     Raises:
-        InvalidFieldError: the wrench is not finite, the tolerance is negative, the number of facets is not
-            from 3 to 1000, or the uncertainty has another number of contacts.
+        InvalidFieldError: a number is not finite or beyond `LARGEST_NUMBER`, the tolerance is negative, the
+            number of facets is not from 3 to 1000, or the uncertainty has another number of contacts.
     """
 
     body: MassProperties = field(metadata={"accepts": "HasMassProperties"})
@@ -132,6 +138,7 @@ class SpatialContactProblem(Record):
 
     def __post_init__(self) -> None:
         """Take the mass properties of a body. Check the wrench, the facets and the tolerance."""
+        check_speeds(self.state, self.contacts.p_WC_W)
         warn_if_far(self.body, self.state, self.contacts.p_WC_W)
         object.__setattr__(self, "body", self.body.mass_properties)
         object.__setattr__(self, "force_W", check_vector3("force_W", self.force_W))
@@ -400,7 +407,7 @@ def search_of(case: SpatialCase, facets: int, *, from_rest: bool = False) -> Sea
         stated.append(
             Touching(
                 contacts.normals_W[i],
-                float(contacts.frictions[i]),
+                min(float(contacts.frictions[i]), LARGEST_NUMBER),
                 sliding=sliding[i],
                 point=point,
                 free=motion.points_free[i],

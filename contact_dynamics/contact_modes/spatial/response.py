@@ -29,6 +29,7 @@ from contact_dynamics.contact_modes.spatial.problem import (
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.records import Record
 from contact_dynamics.tolerances import (
+    LARGEST_NUMBER,
     ROW_TOLERANCE,
     SINGULAR_RESPONSE,
     SYMMETRY_TOLERANCE,
@@ -117,6 +118,9 @@ def _checked_response(given: ArrayLike, normals: FloatArray) -> FloatArray:
         )
     response = check_magnitude(name, check_array(name, given, (3 * n, 3 * n)))
     largest = float(np.abs(response).max(initial=0.0))
+    if 0.0 < largest < 1.0 / LARGEST_NUMBER:
+        allowed = f"at least {1.0 / LARGEST_NUMBER:g} 1/kg in its largest element"
+        raise InvalidFieldError(name, f"{largest:g}", allowed)
     if np.abs(response - response.T).max(initial=0.0) > SYMMETRY_TOLERANCE * largest:
         raise InvalidFieldError(name, "an asymmetric matrix", "symmetric, as J M^-1 J^T is")
     response = 0.5 * (response + response.T)
