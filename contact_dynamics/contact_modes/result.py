@@ -19,7 +19,7 @@ from contact_dynamics.records import NamedInt, Record
 from contact_dynamics.validation import check_not_negative, check_size
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence, Sized
+    from collections.abc import Iterable, Sequence, Sized
 
     from contact_dynamics.contact.contact import ContactSet
     from contact_dynamics.rigid_body.body import BodyState, MassProperties
@@ -207,6 +207,7 @@ class AnyMode(Record):
 
     __slots__ = ()
     mode: str
+    forces_unique: bool
 
     @property
     def words(self) -> tuple[str, ...]:
@@ -217,8 +218,9 @@ class AnyMode(Record):
         return tuple(LETTERS[letter][0] for letter in self.mode)
 
     def in_short(self) -> str:
-        """Return the letters, and a text label of the motion."""
-        return f"{type(self).__name__} {self.mode}: {mode_in_words(self.mode)}"
+        """Return the letters, a text label of the motion, and whether other forces cause it too."""
+        words = f"{type(self).__name__} {self.mode}: {mode_in_words(self.mode)}"
+        return "; ".join([words, *shared_forces([self])])
 
 
 class AnyModeAnswer(Record):
@@ -229,10 +231,17 @@ class AnyModeAnswer(Record):
     modes: Sequence[AnyMode]
 
     def in_short(self) -> str:
-        """Return the verdict, and text labels of the first modes."""
+        """Return the verdict, text labels of the first modes, and which modes have no unique forces."""
         shown = [f"{mode.mode}: {mode_in_words(mode.mode)}" for mode in self.modes[:_SHOWN]]
         more = [f"{len(self.modes) - _SHOWN} more"] if len(self.modes) > _SHOWN else []
-        return f"{type(self).__name__}: {self.verdict}{', ' if shown else ''}{'; '.join([*shown, *more])}"
+        words = [*shown, *more, *shared_forces(self.modes)]
+        return f"{type(self).__name__}: {self.verdict}{', ' if words else ''}{'; '.join(words)}"
+
+
+def shared_forces(modes: Iterable[AnyMode]) -> list[str]:
+    """Return the sentence about modes whose forces are not unique, if there are any."""
+    shared = [mode.mode for mode in modes if not mode.forces_unique]
+    return [f"the contact forces of {', '.join(shared)} are not unique"] if shared else []
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)

@@ -11,6 +11,7 @@ import numpy as np
 
 from contact_dynamics.contact_modes import Certainty, ModeVerdict
 from contact_dynamics.contact_modes.letters import LETTERS
+from contact_dynamics.contact_modes.result import shared_forces
 from contact_dynamics.impact import ImpactOutcome, SequenceEnd
 from contact_dynamics.toss import TossEnd, TossEventKind, UndecidedReason
 from contact_dynamics.toss.distribution import BranchKind, axis_in_words
@@ -163,9 +164,7 @@ def contact_modes_in_words(answer: ContactModeAnswer) -> list[str]:
     modes = [f"{mode.mode} {margin}".strip() for mode, margin in zip(answer.modes, margins, strict=True)]
     words = [_verdict_in_words(answer.verdict, modes)]
     words += _within_in_words(answer.within) + _geometry_in_words(answer.geometry_margins)
-    shared = [mode.mode for mode in answer.modes if not mode.forces_unique]
-    if shared:
-        words.append(f"the contact forces of {', '.join(shared)} are not unique")
+    words += shared_forces(answer.modes)
     speeds = np.linalg.norm(answer.contact_velocities_W, axis=1)
     words += [f"contact {i + 1} approaches with {speeds[i]:.3g} m/s" for i in answer.approaching]
     refused = [refused.mode for refused in answer.refused]
@@ -191,7 +190,7 @@ def toss_in_words(answer: TossAnswer) -> list[str]:
     strikes = sum(event.kind == TossEventKind.STRIKES for event in path.events)
     corners = ""
     if path.resting_corners:
-        corners = f" on corners {' '.join(map(str, path.resting_corners))}"
+        corners = f" with {path.face_on_top} on top, on corners {' '.join(map(str, path.resting_corners))}"
     words = [f"{TOSS_ENDS[path.end]} after {path.seconds:.3g} s{corners} at ({where}) m, {strikes} strikes"]
     if path.undecided:
         reasons = dict.fromkeys(UNDECIDED[point.reason] for point in path.undecided)

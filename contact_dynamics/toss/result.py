@@ -14,6 +14,7 @@ from contact_dynamics.impact.law import ImpactOutcome, RestitutionLaw
 from contact_dynamics.records import NamedInt, Record, made
 from contact_dynamics.rigid_body.body import BodyState, states_of_rows
 from contact_dynamics.rotations.many import make_continuous
+from contact_dynamics.toss.distribution import axis_in_words
 from contact_dynamics.toss.phase import PhaseStep
 from contact_dynamics.toss.solid import points_of, properties_of, state_of
 from contact_dynamics.tumbling import FreeMotion, Precision, Trajectory, free_motion
@@ -182,10 +183,11 @@ class TossOutcome(Record):
         end: Reason for the end of the toss.
         seconds: Time of rest, or time up to which the motion is predicted, s after the initial state's stamp.
         events: Events in the order of time. Strikes of one instant are in the order of resolution.
-        resting_corners: Indices of the corners on which the body rests, sorted. It is empty if the body
-            moves.
+        resting_corners: Indices of the corners on which the body rests, rows of ``body.vertices_B``, sorted.
+            It is empty if the body moves.
         resting_normal_B: (3,), unit normal of the surface on which the body rests, body axes, or zero. A box
-            rests on the face whose outward normal is opposite.
+            rests on the face whose outward normal is opposite. If it rests on several surfaces, it is that of
+            one of them.
         energy: Energy balance. If the surfaces move, it is the energy relative to them.
         undecided: Branch points of this toss, at which mechanics does not determine the motion. All of them
             are listed, whether or not the other branches were followed.
@@ -198,6 +200,14 @@ class TossOutcome(Record):
     resting_normal_B: FloatArray
     energy: TossEnergy
     undecided: tuple[Undecided, ...]
+
+    @property
+    def face_on_top(self) -> str:
+        """Return the body axis along ``resting_normal_B``, such as "+z", or its components; "" if it moves.
+
+        For a die, it is the face on top, as in ``faces_on_top`` of `TossDistribution`.
+        """
+        return axis_in_words(self.resting_normal_B) if self.resting_normal_B.any() else ""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -240,6 +250,8 @@ class Toss(TossOutcome):
     def in_short(self) -> str:
         """Return the reason and the time of the end, and the times of the branch points."""
         words = [f"Toss: {self.end} at {self.seconds:.4g} s", f"{len(self.events)} events"]
+        if face := self.face_on_top:
+            words.insert(1, f"{face} on top")
         if self.undecided:
             times = [f"{point.seconds:.3g}" for point in self.undecided]
             count = f"{len(times)} branch point{'' if len(times) == 1 else 's'}"

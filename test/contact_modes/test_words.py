@@ -48,7 +48,10 @@ def test_a_spatial_mode_says_what_each_contact_does(
     found = answer(push, height, friction)
     assert {*found.modes[0].words} == words
     assert len(found.modes[0].words) == 4
-    assert str(found).splitlines()[0] == f"SpatialModeAnswer: {short}"
+    (mode,) = found.modes
+    shared = f"; the contact forces of {mode.mode} are not unique"
+    assert found.in_short() == f"SpatialModeAnswer: {short}{shared}"
+    assert mode.in_short().endswith(short.split(": ")[1] + shared)
 
 
 def test_a_planar_mode_says_to_which_side_it_slides() -> None:
@@ -61,6 +64,7 @@ def test_a_planar_mode_says_to_which_side_it_slides() -> None:
         found = cd.contact_modes(cd.PlanarContactProblem(body=block, contacts=(foot,), wrench=push_at_foot))
         assert found.modes[0].words == (words,)
         assert words in str(found.modes[0]).splitlines()[0]
+        assert "not unique" not in found.in_short()
 
 
 @pytest.mark.parametrize("kind", [cd.ModeVerdict, cd.RestitutionLaw, Certainty])

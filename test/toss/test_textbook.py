@@ -8,6 +8,7 @@ import math
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
+from scipy.spatial.transform import Rotation
 
 from contact_dynamics import Body, BodyState, MassProperties, Surface, World
 from contact_dynamics.rigid_body import inertia
@@ -237,3 +238,20 @@ def test_jammed_rods_leave_with_an_impulse() -> None:
     )
     assert went.events[0].kind == TossEventKind.JAMS
     assert went.events[0].impulse_W == pytest.approx([0.1372549, 0.0, 0.3333333], abs=1e-6)
+
+
+@pytest.mark.parametrize("axis", "xyz")
+@pytest.mark.parametrize("sign", "+-")
+def test_the_face_on_top_of_a_brick_at_rest_is_named(axis: str, sign: str) -> None:
+    up = (1.0 if sign == "+" else -1.0) * np.eye(3)["xyz".index(axis)]
+    turned, _ = Rotation.align_vectors([[0.0, 0.0, 1.0]], [up])
+    state = at([0, 0, 0.15], [0, 0, 0], [0, 0, 0], turned.as_quat().tolist())
+    cube = brick((0.2, 0.2, 0.2))
+    went = toss(cube, state, world(floor(friction=0.5, restitution=0.0)))
+    assert went.end == TossEnd.RESTS
+    assert went.face_on_top == f"{sign}{axis}"
+    assert f"{sign}{axis} on top" in went.in_short()
+    lowest = cube.vertices_B[[*went.resting_corners]]
+    assert lowest @ up == pytest.approx(-0.1 * np.ones(len(lowest)), abs=1e-15)
+    moving = toss(cube, state, world(floor(friction=0.5, restitution=0.0)), horizon=0.05)
+    assert moving.face_on_top == ""

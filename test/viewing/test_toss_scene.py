@@ -88,5 +88,7 @@ def test_a_later_toss_without_samples_has_no_fan(
 def test_the_words_say_where_it_rests_and_what_strikes_first(world: World) -> None:
     answer = thrown(world)
     words = "; ".join(toss_in_words(answer))
-    assert f"rests after {answer.toss.seconds:.3g} s on corners" in words
+    assert (
+        f"rests after {answer.toss.seconds:.3g} s with {answer.toss.face_on_top} on top, on corners" in words
+    )
     assert "first event of 40 samples: corner" in words
