@@ -451,13 +451,6 @@ COMPLIANT_SETTLED: Final = 1e-18
 """The square of what the equations of motion may miss on compliant contacts, relative to the load. It is far
 less than those contacts give way."""
 
-TRIAL_TURN: Final = 1e-6
-"""rad. A direction of friction is turned by this to see how the sliding turns. It is somewhat above the root
-of rounding."""
-
-SETTLED_DIRECTION: Final = 1e-11
-"""rad. Directions of friction and of sliding that are this close differ only by the rounding of forces."""
-
 ON_PYRAMIDS_SIDE: Final = 1e-9
 """Relative to the largest force. A force this far outside of a pyramid still counts as on its side. A force
 as small as this has no direction."""

@@ -36,7 +36,7 @@ is consistent in the whole box and that no other mode is (in space `excluded`).
   (`only_solution`) and modes in which contacts share loads (`shared_loads`). The remaining cases require a
   `search` of all combinations of `options`, in `regions` of common motions (`pyramid_programs`). The programs
   are solved by a `dual_simplex` (`simplex_steps`), and as a `careful_program` if rounding error may matter.
-  The modes found are made exact (`realised`, `exact_modes`, `exact_letters`), modes that are consistent only
+  The modes found are made exact (`exact_modes`, `exact_letters`), modes that are consistent only
   `narrowly` are found near others, and `round_cones` decides whether forces hold contacts. `mode_with_forces`
   computes the accelerations. The wrenches of a mode (`wrenches`, on a `cone`) are divided by sliding
   directions. The same search serves a mechanism whose contact points respond to forces in a known way

@@ -12,7 +12,7 @@ The letters are s (separates), f (sticks) and c (stays and slides); the sector o
 First the most likely mode is found (`likely_mode`). Often it is proven at once that it is alone
 (`only_motion`). Otherwise all other modes are found or refuted (`completeness`). Only what this leaves
 undecided takes a search for all modes of the pyramids (`search`), whose friction is then turned exactly
-against the sliding (`realised`, `exact_modes`). So the answer does not depend on the pyramids. One
+against the sliding (`exact_modes`). So the answer does not depend on the pyramids. One
 contact at rest is solved exactly (`one_contact`), and round cones decide whether all contacts can stick
 (`round_cones`).
 A contact without friction has the letter c, whether it slides or not.
@@ -46,7 +46,14 @@ from contact_dynamics.contact_modes.spatial.completeness import (
     completed,
     has_none,
 )
-from contact_dynamics.contact_modes.spatial.exact_modes import by_letters, each_once, is_exact, letters_of
+from contact_dynamics.contact_modes.spatial.exact_modes import (
+    as_given,
+    by_letters,
+    each_once,
+    is_exact,
+    letters_of,
+    realised,
+)
 from contact_dynamics.contact_modes.spatial.likely_mode import likely_mode
 from contact_dynamics.contact_modes.spatial.mode_with_forces import mode_with_forces, with_least_forces
 from contact_dynamics.contact_modes.spatial.narrowly import narrowly
@@ -58,7 +65,6 @@ from contact_dynamics.contact_modes.spatial.problem import (
     search_of,
     spatial_case,
 )
-from contact_dynamics.contact_modes.spatial.realised import as_given, realised
 from contact_dynamics.contact_modes.spatial.regions import ONE_BODY
 from contact_dynamics.contact_modes.spatial.round_cones import (
     held_by_round_cones,
@@ -505,7 +511,7 @@ def found_by(case: SpatialCase, search: Search, *, sharpen: bool) -> list[Respon
     and the one represents them whose slowest contact that begins to slide is fastest: rounding limits the
     direction of very slow sliding.
     """
-    found = [realised(case, search, one, sharpen=sharpen) for one in search.run(grouped=sharpen)]
+    found = [realised(case, search, one) for one in search.run(grouped=sharpen)]
     if not sharpen:
         return found
     return each_once(case, sorted(found, key=lambda mode: _unique_and_slow(case, mode)))

@@ -141,11 +141,6 @@ def ways_of_sliding(
     return tuple(_slides(arc.tolist(), pyramid.first, along) for arc in arcs)
 
 
-def way_of_sliding(pyramid: Pyramid, point: FloatArray, item: int) -> Option:
-    """Return the letter of a contact that slides with an item, from 0 to twice the number of its edges."""
-    return _slides([item], pyramid.first, _along_edges(pyramid, point))
-
-
 def _along_edges(pyramid: Pyramid, point: FloatArray) -> FloatArray:
     """Return the acceleration along each edge's tangential part, (K, d + 1), as functions of the motion."""
     count = len(pyramid.edges)

@@ -8,11 +8,10 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
-from contact_dynamics.contact_modes.letters import SEPARATES, STICKS
 from contact_dynamics.contact_modes.spatial.careful_program import CarefulProgram
 from contact_dynamics.contact_modes.spatial.dual_simplex import Narrowing, Program
 from contact_dynamics.contact_modes.spatial.kinematic import faces_in_space
-from contact_dynamics.contact_modes.spatial.options import any_letter, pyramid_of, way_of_sliding
+from contact_dynamics.contact_modes.spatial.options import any_letter, pyramid_of
 from contact_dynamics.contact_modes.spatial.regions import ONE_BODY
 from contact_dynamics.errors import TooLargeError
 from contact_dynamics.numerics.linear_spaces import seen_and_unseen
@@ -178,24 +177,6 @@ class PyramidPrograms(ABC):
     @abstractmethod
     def _decide_staying(self, program: AnyProgram, trials: list[Option], /) -> None:
         """Decide all modes in which the same contacts stay."""
-
-    def allows(self, letters: str, items: Sequence[int]) -> bool:
-        """Return whether some forces bring a mode about, given its letters and items of sliding.
-
-        A contact has the item -1 if it has none.
-        """
-        options = []
-        for i, (letter, item) in enumerate(zip(letters, items, strict=True)):
-            separates, stays = self._trials[i].parts
-            option = stays
-            if letter == SEPARATES:
-                option = separates
-            elif item >= 0:
-                option = way_of_sliding(self.pyramids[i], self.touching[i].point, item)
-            elif letter == STICKS:
-                (option,) = stays.parts
-            options.append(option)
-        return self._solved(self._with_all(self._root, options)) is not None
 
     def _solved(self, program: AnyProgram) -> AnyProgram | None:
         """Return a program that holds some edge forces, or None if none satisfy its conditions.
