@@ -41,7 +41,11 @@ if TYPE_CHECKING:
     from contact_dynamics.recording.file_messages import StoredMessage
 
 _MAX_TOLD: Final = 5  # number of damaged places that are listed one by one
-_NAME: Final = re.compile(r"(_(?P<number>\d+))?(?P<kind>\.mcap|\.db3)(\.zstd|\.zst|\.lz4)?$")
+_NAME: Final = re.compile(
+    # Since ROS 2 Lyrical a file is named <number>_<bag>_<time>, and before it <bag>_<number>.
+    r"(^(?P<first>\d+)_.*_\d{4}(_\d\d){2}-\d\d(_\d\d){2}|(_(?P<number>\d+))?)"
+    r"(?P<kind>\.mcap|\.db3)(\.zstd|\.zst|\.lz4)?$"
+)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -243,7 +247,9 @@ def _files_of(folder: Path) -> list[Path]:
     """Return the files of a bag. If a packed file has been unpacked beside it, the plain one is taken."""
     matches = {path: match for path in folder.iterdir() if (match := _NAME.search(path.name)) is not None}
     files = [path for path in matches if path.suffix not in SUFFIXES or path.with_suffix("") not in matches]
-    return sorted(files, key=lambda path: (int(matches[path]["number"] or 0), path.name))
+    return sorted(
+        files, key=lambda path: (int(matches[path]["first"] or matches[path]["number"] or 0), path.name)
+    )
 
 
 def kind_of(losses: list[Loss]) -> type[DamagedLogWarning]:
