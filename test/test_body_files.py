@@ -82,6 +82,23 @@ def test_sdf_has_the_same_elements_with_texts() -> None:
     assert Body.from_sdf(sdf, name="renamed").name == "renamed"
 
 
+def test_rotations_may_be_quaternions_or_degrees() -> None:
+    """URDF 1.2 has quaternions, and SDF 1.9 quaternions and degrees: here a quarter turn about z."""
+    half, quarter = np.sqrt(0.5), 0.5 * np.pi
+    for turn in (
+        f'<origin rpy="0 0 {quarter}"/>',
+        f'<origin quat_xyzw="0 0 {half} {half}"/>',
+        f"<pose>0 0 0 0 0 {quarter}</pose>",
+        '<pose degrees="true">0 0 0 0 0 90</pose>',
+        f'<pose rotation_format="quat_xyzw">0 0 0 0 0 {half} {half}</pose>',
+    ):
+        text = urdf(collision('<box size="0.15 0.09 0.05"/>', turn), origin=turn)
+        body = Body.from_urdf(text)
+        moments = np.diag(body.mass_properties.I_B)[[1, 0, 2]]
+        assert moments == pytest.approx(list(MOMENTS.values()), rel=1e-12)
+        assert body.vertices_B.max(axis=0) == pytest.approx([0.045, 0.075, 0.025], rel=1e-12)
+
+
 @pytest.mark.parametrize(
     ("geometry", "shape"),
     [
@@ -153,6 +170,14 @@ def test_the_hull_of_several_shapes_is_a_warning_and_balls_beside_boxes_are_an_e
         (urdf(collision('<torus size="1"/>')), "geometry must be a box, .*, got <torus>"),
         (urdf(collision('<mesh filename="no.stl"/>')), "file must be a mesh: STL, .*no.stl"),
         (urdf(collision('<mesh filename="package://no/a.stl"/>')), "mesh must be a file beside"),
+        (
+            urdf(collision('<box size="1 1 1"/>', '<origin quat_xyzw="0 0 0 2"/>')),
+            "quat_xyzw must be a unit vector",
+        ),
+        (
+            urdf(collision('<box size="1 1 1"/>', '<origin rpy="0 0 0" quat_xyzw="0 0 0 1"/>')),
+            "origin must be one of them, got rpy and quat_xyzw",
+        ),
         ("<robot/>", "link must be one of those with a mass: none"),
         (
             urdf(BOX).replace("brick", "a") + "x",

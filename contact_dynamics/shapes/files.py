@@ -29,6 +29,7 @@ from contact_dynamics.shapes import convex
 from contact_dynamics.shapes.concavity import warn_if_concave
 from contact_dynamics.shapes.convex import MAX_VERTICES, NO_SHAPE, ConvexShape
 from contact_dynamics.tolerances import DENSEST, THINNEST
+from contact_dynamics.validation import check_unit
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -223,17 +224,24 @@ def _file(name: str, folder: Path) -> Path:
 def _pose(element: Element) -> tuple[FloatArray, FloatArray]:
     """Return the position, (3,), m, and the unit quaternion x, y, z, w of an element in its link."""
     pose, origin = element.find("pose"), element.find("origin")
-    numbers = [0.0] * 6
+    position, turn, quaternion, degrees = "0 0 0", "0 0 0", None, False
     if pose is not None:
         if pose.get("relative_to"):
             raise InvalidFieldError("pose", f"relative_to={pose.get('relative_to')!r}", "none")
-        numbers = _parsed(pose.text, "pose", 6)
+        parts = (pose.text or "").split()
+        position, turn = " ".join(parts[:3]), " ".join(parts[3:])
+        quaternion = turn if pose.get("rotation_format") == "quat_xyzw" else None
+        degrees = pose.get("degrees") in {"true", "1"}
     elif origin is not None:
-        numbers = [
-            *_parsed(origin.get("xyz", "0 0 0"), "origin xyz", 3),
-            *_parsed(origin.get("rpy", "0 0 0"), "origin rpy", 3),
-        ]
-    return np.array(numbers[:3]), Rotation.from_euler("xyz", numbers[3:]).as_quat()
+        position, turn = origin.get("xyz", position), origin.get("rpy", turn)
+        quaternion = origin.get("quat_xyzw")
+        if quaternion is not None and origin.get("rpy") is not None:
+            raise InvalidFieldError("origin", "rpy and quat_xyzw", "one of them")
+    p = np.array(_parsed(position, "position of a pose", 3))
+    if quaternion is None:
+        angles = _parsed(turn, "roll, pitch and yaw of a pose", 3)
+        return p, Rotation.from_euler("xyz", angles, degrees=degrees).as_quat()
+    return p, check_unit("quat_xyzw", _parsed(quaternion, "quat_xyzw", 4), 4)
 
 
 def _text(element: Element, key: str) -> str | None:
