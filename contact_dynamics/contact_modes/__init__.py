@@ -20,9 +20,9 @@ surfaces (`surface_frame`).
 The modules of this package are internal. In `planar` and `spatial`, files for the same purpose have the same
 name. `problem` contains the problem, and its case: the problem in the coordinates in which it is solved.
 `answer` computes the verdict and all modes. `statics` and `wrench_sets` contain further results. If contacts
-are uncertain, `uncertain` searches boxes of contacts for other verdicts. The files of the same name in
-`planar` and `spatial` determine the possible errors of each contact, and prove with `everywhere` that a mode
-is consistent in the whole box and that no other mode is (in space `excluded`).
+are uncertain, `uncertain` searches boxes of contacts for other verdicts, and proves that a mode is consistent
+in a whole box. The files of the same name in `planar` and `spatial` determine the possible errors of each
+contact, and prove that no other mode is consistent (in space `excluded`).
 
 - In the plane, `answer` solves a single contact in closed form. For several contacts, `coincident` first
   merges those that coincide. `enumeration` then lists the kinematically possible modes, which are faces of a
@@ -32,15 +32,14 @@ is consistent in the whole box and that no other mode is (in space `excluded`).
 - In space, `kinematic` lists the strings of closed and separating contacts, and the sectors of sliding
   directions. With mechanics, the `likely_mode` is tried first; a single contact at rest has its own file
   (`one_contact`). `only_motion` may prove that no other mode exists. Otherwise `completeness` finds or
-  refutes all others, with linear programs (`holding_programs`), ranges of directions with one solution
-  (`only_solution`) and modes in which contacts share loads (`shared_loads`). The remaining cases require a
-  `search` of all combinations of `options`, in `regions` of common motions (`pyramid_programs`). The programs
-  are solved by a `dual_simplex` (`simplex_steps`), and as a `careful_program` if rounding error may matter.
-  The modes found are made exact (`exact_modes`, `exact_letters`), modes that are consistent only
-  `narrowly` are found near others, and `round_cones` decides whether forces hold contacts. `mode_with_forces`
+  refutes all others, with linear programs (`holding_programs`), exact solutions and ranges of directions
+  without others (`exact_letters`), and modes in which contacts share loads (`shared_loads`). The remaining
+  cases require a `search` of all combinations of `options`, in `regions` of common motions
+  (`pyramid_programs`). The programs are solved by a `dual_simplex` (`simplex_steps`). The modes found are
+  made exact (`exact_modes`), and `round_cones` decides whether forces hold contacts. `mode_with_forces`
   computes the accelerations. The wrenches of a mode (`wrenches`, on a `cone`) are divided by sliding
-  directions. The same search serves a mechanism whose contact points respond to forces in a known way
-  (`response`), and several `bodies`. `margins` are distances to sums of round cones, also for modes in which
+  directions. The same search serves several bodies, and a mechanism whose contact points respond to forces
+  in a known way (`response`). `margins` are distances to sums of round cones, also for modes in which
   contacts begin to slide (`margins_of_sliding`), and so are the amounts of refused modes.
 """
 
@@ -77,7 +76,6 @@ from contact_dynamics.contact_modes.result import (
     SpatialModeAnswer,
     VerdictsWithin,
 )
-from contact_dynamics.contact_modes.spatial.bodies import BodiesContactProblem
 from contact_dynamics.contact_modes.spatial.kinematic import spatial_kinematic_modes, spatial_sliding_modes
 from contact_dynamics.contact_modes.spatial.largest_load import (
     Closure,
@@ -92,7 +90,7 @@ from contact_dynamics.contact_modes.spatial.largest_load import (
 )
 from contact_dynamics.contact_modes.spatial.margins import SpatialModeMargin
 from contact_dynamics.contact_modes.spatial.problem import SpatialContactProblem
-from contact_dynamics.contact_modes.spatial.response import ResponseContactProblem
+from contact_dynamics.contact_modes.spatial.response import BodiesContactProblem, ResponseContactProblem
 from contact_dynamics.contact_modes.spatial.wrench_sets import SpatialWrenchSet
 from contact_dynamics.validation_types import check_types_of
 

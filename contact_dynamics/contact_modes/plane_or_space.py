@@ -23,10 +23,14 @@ from contact_dynamics.contact_modes.result import (
     SpatialModeAnswer,
 )
 from contact_dynamics.contact_modes.spatial.answer import spatial_contact_modes
-from contact_dynamics.contact_modes.spatial.bodies import BodiesContactProblem, bodies_contact_modes
 from contact_dynamics.contact_modes.spatial.margins import spatial_mode_margins, spatial_refused_modes
 from contact_dynamics.contact_modes.spatial.problem import SpatialContactProblem
-from contact_dynamics.contact_modes.spatial.response import ResponseContactProblem, response_contact_modes
+from contact_dynamics.contact_modes.spatial.response import (
+    BodiesContactProblem,
+    ResponseContactProblem,
+    bodies_contact_modes,
+    response_contact_modes,
+)
 from contact_dynamics.contact_modes.spatial.statics import spatial_statics
 from contact_dynamics.contact_modes.spatial.uncertain import spatial_boxes
 from contact_dynamics.contact_modes.spatial.wrench_sets import spatial_wrench_sets

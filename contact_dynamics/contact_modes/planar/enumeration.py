@@ -35,16 +35,10 @@ Letters: TypeAlias = tuple[tuple[int, int], ...]
 
 
 class Cell(NamedTuple):
-    """The accelerations of one mode, which are the positive combinations of rays.
+    """The accelerations of one mode, which are the positive combinations of rays."""
 
-    Attributes:
-        letters: The letters of the contacts that stay.
-        rays: Unit vectors in the coordinates of the problem's cone, some of which may be the same. There is
-            none if the only acceleration is zero.
-    """
-
-    letters: Letters
-    rays: list[Vector3]
+    letters: Letters  # the letters of the contacts that stay
+    rays: list[Vector3]  # unit vectors in the cone's coordinates, some twice; none if only zero is left
 
 
 class _Tangent(NamedTuple):

@@ -240,13 +240,9 @@ class _Unknown(NamedTuple):
 
 
 class _Refused(NamedTuple):
-    """A motion is not that of a mode.
+    """A motion is not that of a mode."""
 
-    Attributes:
-        by_more_than_rounding: The reason. It is None if only rounding is against the motion.
-    """
-
-    by_more_than_rounding: RefusedMode | None
+    by_more_than_rounding: RefusedMode | None  # the reason; None if only rounding is against the motion
 
 
 class IndependentModes:

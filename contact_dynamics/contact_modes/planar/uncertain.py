@@ -2,7 +2,7 @@
 """The verdicts that occur if planar contacts are known only to some uncertainty.
 
 The true contacts are somewhere in the box of a `ContactUncertainty`. There are proofs only for bodies at
-rest: that a mode is consistent everywhere in the box (`everywhere`), and that no other is anywhere. Each
+rest: that a mode is consistent everywhere in the box (`holds_for_all`), and that no other is anywhere. Each
 contact's errors are independent of the others', and the body's mass and the applied wrench are known.
 
 With an angle of at most theta between a normal and the true one, the true normal is n cos(phi) + n' sin(phi)
@@ -34,7 +34,6 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from contact_dynamics.contact.uncertainty import EXACT_CONTACTS
-from contact_dynamics.contact_modes.everywhere import BoundedBody, BoundedContact, holds_for_all
 from contact_dynamics.contact_modes.letters import (
     PLANAR_LETTERS,
     SEPARATES,
@@ -46,7 +45,7 @@ from contact_dynamics.contact_modes.planar.answer import planar_contact_modes
 from contact_dynamics.contact_modes.planar.problem import contact_rows
 from contact_dynamics.contact_modes.planar.statics import planar_statics
 from contact_dynamics.contact_modes.result import BodyStatics, ModeVerdict
-from contact_dynamics.contact_modes.uncertain import Boxes
+from contact_dynamics.contact_modes.uncertain import BoundedBody, BoundedContact, Boxes, holds_for_all
 from contact_dynamics.tolerances import NO_MOTION, SUM_ROUNDING
 
 if TYPE_CHECKING:

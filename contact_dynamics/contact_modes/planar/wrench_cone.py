@@ -64,20 +64,15 @@ class HalfSpace(NamedTuple):
 class Evidence(NamedTuple):
     """Forces that bring a mode about, and its motion.
 
-    Attributes:
-        forces: N, the force (f_t, f_n) at each position in the rows of the case.
-        motion: N, mass times the acceleration across the line of symmetry, or None if Newton's law gives it
-            accurately enough. It is a combination of the mode's rays, so that it satisfies strict
-            inequalities that the rounding of the forces would hide. Its third coordinate is a height if there
-            is such a line.
-        forces_unique: Whether these are the only forces.
-        motion_unique: Whether this is the only motion.
+    There is no motion if Newton's law gives it accurately enough. Otherwise it is a combination of the mode's
+    rays, so that it satisfies strict inequalities that the rounding of the forces would hide. Its third
+    coordinate is a height if there is a line of symmetry.
     """
 
-    forces: dict[int, Vector2]
-    motion: Vector3 | None
-    forces_unique: bool
-    motion_unique: bool
+    forces: dict[int, Vector2]  # N, the force (f_t, f_n) at each position in the rows of the case
+    motion: Vector3 | None  # N, mass times the acceleration across the line of symmetry
+    forces_unique: bool  # whether these are the only forces
+    motion_unique: bool  # whether this is the only motion
 
 
 class ModeWrenches:

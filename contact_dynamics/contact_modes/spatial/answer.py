@@ -52,11 +52,11 @@ from contact_dynamics.contact_modes.spatial.exact_modes import (
     each_once,
     is_exact,
     letters_of,
+    narrowly,
     realised,
 )
 from contact_dynamics.contact_modes.spatial.likely_mode import likely_mode
 from contact_dynamics.contact_modes.spatial.mode_with_forces import mode_with_forces, with_least_forces
-from contact_dynamics.contact_modes.spatial.narrowly import narrowly
 from contact_dynamics.contact_modes.spatial.one_contact import modes_of_one
 from contact_dynamics.contact_modes.spatial.only_motion import is_only_motion, rests_alone
 from contact_dynamics.contact_modes.spatial.problem import (
@@ -119,17 +119,11 @@ _FREE: Final = 3
 
 
 class Evidence(NamedTuple):
-    """The modes of a case, and what could not be decided about them.
+    """The modes of a case, and what could not be decided about them."""
 
-    Attributes:
-        modes: The modes.
-        undecided: What could not be decided, and why. It is empty where everything was decided.
-        undecided_modes: The letters of modes that hold with friction pyramids, and may not with round cones.
-    """
-
-    modes: list[ResponseMode]
-    undecided: str
-    undecided_modes: tuple[str, ...] = ()
+    modes: list[ResponseMode]  # the modes
+    undecided: str  # what could not be decided, and why. It is empty where everything was decided.
+    undecided_modes: tuple[str, ...] = ()  # letters that hold with pyramids, and may not with round cones
 
 
 def spatial_contact_modes(problem: SpatialContactProblem) -> SpatialModeAnswer:
@@ -153,19 +147,12 @@ def _case_within(problem: SpatialContactProblem, within: float) -> SpatialCase |
 
 
 class Considered(NamedTuple):
-    """What is known of a problem none of whose contacts approaches.
+    """What is known of a problem none of whose contacts approaches."""
 
-    Attributes:
-        case: The case whose modes are sought.
-        search: Its search.
-        found: Its modes.
-        within: How far its contacts may differ from the given ones, as `SpatialModeAnswer` has it.
-    """
-
-    case: SpatialCase
-    search: Search
-    found: Evidence
-    within: float
+    case: SpatialCase  # the case whose modes are sought
+    search: Search  # its search
+    found: Evidence  # its modes
+    within: float  # how far its contacts may differ from the given ones, as `SpatialModeAnswer` has it
 
 
 def considered(

@@ -13,7 +13,7 @@ is no mode in the set. Otherwise the set is parted:
 
 This ends at solutions. One motion may exclude all others with the same contacts staying (`only_motion`).
 Otherwise Newton's method finds a solution in the set, and bounds on the derivatives around it say in which
-range of directions there is no other one (`only_solution`). Where bodies can move in one direction only,
+range of directions there is no other one (`alone_within`). Where bodies can move in one direction only,
 round cones decide (`shared_loads`). What is left over when ranges are narrow is undecided.
 """
 
@@ -26,9 +26,13 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import numpy as np
 
 from contact_dynamics.contact_modes.letters import SEPARATES, STAYS, STICKS
-from contact_dynamics.contact_modes.spatial.careful_program import CarefulProgram
-from contact_dynamics.contact_modes.spatial.dual_simplex import Program
-from contact_dynamics.contact_modes.spatial.exact_letters import forces_with_letters, solution_near
+from contact_dynamics.contact_modes.spatial.dual_simplex import CarefulProgram, Program
+from contact_dynamics.contact_modes.spatial.exact_letters import (
+    Equations,
+    alone_within,
+    forces_with_letters,
+    solution_near,
+)
 from contact_dynamics.contact_modes.spatial.holding_programs import (
     COARSE,
     FINE,
@@ -37,7 +41,6 @@ from contact_dynamics.contact_modes.spatial.holding_programs import (
     Within,
 )
 from contact_dynamics.contact_modes.spatial.only_motion import is_only_motion
-from contact_dynamics.contact_modes.spatial.only_solution import Equations, alone_within
 from contact_dynamics.contact_modes.spatial.pyramid_programs import PyramidPrograms
 from contact_dynamics.contact_modes.spatial.regions import (
     directions,
@@ -94,35 +97,20 @@ _REGION: Final = 0.3
 
 
 class Known(NamedTuple):
-    """A mode.
+    """A mode."""
 
-    Attributes:
-        letters: s, c or f for each touching contact.
-        forces: (n, 3), in the units of the motion.
-        alone: Whether its motion is the only one with these letters nearby. If it is not, one mode stands for
-            all with these letters.
-        forces_unique: Whether its forces are the only ones with its motion.
-    """
-
-    letters: str
-    forces: FloatArray
-    alone: bool
-    forces_unique: bool = True
+    letters: str  # s, c or f for each touching contact
+    forces: FloatArray  # (n, 3), in the units of the motion
+    alone: bool  # whether its motion is the only one nearby; if not, it stands for all with its letters
+    forces_unique: bool = True  # whether its forces are the only ones with its motion
 
 
 class Completed(NamedTuple):
-    """What was missed.
+    """What was missed."""
 
-    Attributes:
-        further: Modes that were not known.
-        undecided: The letters that may have further modes.
-        unended: The letters at which the search was given up, or empty if it came to its end. Letters that
-            follow may have modes too.
-    """
-
-    further: tuple[Known, ...]
-    undecided: tuple[str, ...]
-    unended: str
+    further: tuple[Known, ...]  # modes that were not known
+    undecided: tuple[str, ...]  # the letters that may have further modes
+    unended: str  # the letters at which the search was given up; those that follow may have modes too
 
 
 class _TooManyError(Exception):
@@ -134,19 +122,12 @@ class _NotRefutedError(Exception):
 
 
 class _Alone(NamedTuple):
-    """A solution of the equations of some letters.
+    """A solution of the equations of some letters."""
 
-    Attributes:
-        angles: The directions of sliding, rad.
-        equations: The equations there; None where contacts share loads, so that they are too few.
-        has_letters: Whether it is a mode.
-        within: rad. No other solution has all directions within this of these. It is negative if unknown.
-    """
-
-    angles: dict[int, float]
-    equations: Equations | None
-    has_letters: bool
-    within: float = -1.0
+    angles: dict[int, float]  # the directions of sliding, rad
+    equations: Equations | None  # the equations there; None where contacts share loads: they are too few
+    has_letters: bool  # whether it is a mode
+    within: float = -1.0  # rad: no other solution has all directions within it; negative if unknown
 
     def is_in(self, ranges: Ranges, slack: float) -> bool:
         """Return whether all directions are in ranges, or no further outside than some slack, rad."""
@@ -161,23 +142,14 @@ class _Alone(NamedTuple):
 
 
 class _Set(NamedTuple):
-    """Modes with some letters, in a region of common motions, with some directions of sliding.
+    """Modes with some letters, in a region of common motions, with some directions of sliding."""
 
-    Attributes:
-        letters: s, c or f for each touching contact.
-        turning: The contacts that begin to slide.
-        flat: The flat of the region; None if the motions are not parted.
-        region: The region.
-        gains: The power of the applied wrench, as `Within` has it.
-        ranges: Directions of sliding that are demanded.
-    """
-
-    letters: str
-    turning: list[int]
-    flat: Flat | None
-    region: Region | None
-    gains: FloatArray | None
-    ranges: Ranges
+    letters: str  # s, c or f for each touching contact
+    turning: list[int]  # the contacts that begin to slide
+    flat: Flat | None  # the flat of the region; None if the motions are not parted
+    region: Region | None  # the region
+    gains: FloatArray | None  # the power of the applied wrench, as `Within` has it
+    ranges: Ranges  # directions of sliding that are demanded
 
 
 def completed(search: Search, known: Sequence[Known], *, most: int) -> Completed:

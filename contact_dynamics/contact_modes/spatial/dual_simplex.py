@@ -6,17 +6,25 @@ of the motion is zero or is not negative. A `Program` holds its basic variables 
 other variables, which are zero. A narrower program copies that table and adds its conditions. So a few pivots
 decide it, where a linear program would start from nothing. The simplex keeps an unequally weighted sum of the
 edge forces as small as it can. That bounds every step, and makes ties rare.
+
+Where two contacts or normals are nearly the same, a table that goes on divides by their difference again and
+again, which amplifies rounding. A `CarefulProgram` first gathers all conditions that are equations. An
+orthonormal basis of the space that their rows span replaces them, so that rows that agree within
+`ROW_TOLERANCE` are one condition, and rows that differ by more are as well conditioned as any others. It
+makes its table anew, in NumPy's longest floating-point numbers.
 """
 
 from __future__ import annotations
 
 from functools import cache
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import TYPE_CHECKING, Final, NamedTuple, cast
 
 import numpy as np
 
 from contact_dynamics.contact_modes.spatial import simplex_steps
 from contact_dynamics.tolerances import (
+    CAREFUL_LEAST_PIVOT,
+    CAREFUL_UNMET,
     FEASIBLE,
     ROW_TOLERANCE,
     SAME_MOTION,
@@ -54,38 +62,22 @@ only with edge forces larger than this."""
 
 
 class Ends(NamedTuple):
-    """The range of a weighted sum of edge forces.
+    """The range of a weighted sum of edge forces."""
 
-    Attributes:
-        unique: Whether the sum has one value only.
-        low: (K,), edge forces at which it is least; None if it has no bound.
-        high: (K,), edge forces at which it is largest; None if it has no bound.
-    """
-
-    unique: bool
-    low: FloatArray | None
-    high: FloatArray | None
+    unique: bool  # whether the sum has one value only
+    low: FloatArray | None  # (K,), edge forces at which it is least; None if it has no bound
+    high: FloatArray | None  # (K,), edge forces at which it is largest; None if it has no bound
 
 
 class Narrowing(NamedTuple):
-    """Further conditions.
+    """Further conditions."""
 
-    Attributes:
-        zeroed: The names of variables that are zero.
-        raised: The names of variables that are at least ``least``.
-        least: The least value of the ``raised`` variables.
-        rows: (k, d + 1), combinations of the motion and a constant. The first ``equalities`` of them are
-            zero, and the others are not negative.
-        equalities: The number of ``rows`` that are zero.
-        tag: The name of the ``rows``, < -1. They replace earlier rows with that tag, and must imply these.
-    """
-
-    zeroed: frozenset[int] = frozenset()
-    raised: Collection[int] = ()
-    least: float = 0.0
-    rows: FloatArray | None = None
-    equalities: int = 0
-    tag: int = _DEAD
+    zeroed: frozenset[int] = frozenset()  # the names of variables that are zero
+    raised: Collection[int] = ()  # the names of variables that are at least ``least``
+    least: float = 0.0  # the least value of the ``raised`` variables
+    rows: FloatArray | None = None  # (k, d + 1), combinations of the motion and a constant
+    equalities: int = 0  # how many of the rows, from the first, are zero; the others are not negative
+    tag: int = _DEAD  # the name of the rows, < -1; they replace those of that tag, which they must imply
 
 
 class Program:
@@ -352,3 +344,104 @@ def _rows_of(rows: FloatArray, motion: FloatArray) -> FloatArray:
     found: FloatArray = rows[:, :-1] @ motion
     found[:, -1] += rows[:, -1]
     return found
+
+
+class CarefulProgram:
+    """A set of edge forces that satisfy some conditions. It has the methods of `Program`."""
+
+    __slots__ = ("_asked", "_motion", "_named", "_names", "_solved", "doubtful")
+
+    def __init__(
+        self, motion: FloatArray, named: FloatArray, names: Sequence[int], asked: tuple[Narrowing, ...] = ()
+    ) -> None:
+        """Take the arguments of `Program.stated`, and conditions that were added."""
+        self._motion, self._named, self._names = motion, named, tuple(names)
+        self._asked = asked
+        self._solved: Program | None = None
+        self.doubtful = False  # whether rounding may have decided, as in `Program`
+
+    def narrowed(self, *further: Narrowing) -> CarefulProgram:
+        """Return a program with further conditions."""
+        return CarefulProgram(self._motion, self._named, self._names, (*self._asked, *further))
+
+    def solve(self) -> bool:
+        """Return whether some edge forces satisfy all conditions."""
+        program = self._stated()
+        if program is None:
+            return False
+        self._solved = program
+        holds = program.solve(CAREFUL_LEAST_PIVOT)
+        self.doubtful = program.doubtful
+        return holds
+
+    def allows_any(self, weights: FloatArray, constants: FloatArray, least: float) -> bool:
+        """Return whether they allow one of some further conditions, as `Program.allows_any` does."""
+        program = self._table
+        holds = program.allows_any(weights, constants, least)
+        self.doubtful = program.doubtful
+        return holds
+
+    def shares(self, count: int) -> FloatArray:
+        """Return the edge forces, (count,), that were found."""
+        return self._table.shares(count)
+
+    def ends(self, weights: FloatArray) -> Ends:
+        """Return whether a weighted sum of edge forces has one value only, as `Program.ends` does."""
+        return self._table.ends(weights)
+
+    @property
+    def _table(self) -> Program:
+        if self._solved is None:
+            raise AssertionError("a program is solved before it is asked for its forces")
+        return self._solved
+
+    def _stated(self) -> Program | None:
+        """Return the table with merged equations, or None if the equations contradict each other."""
+        zeroed: set[int] = set()
+        raised: dict[int, float] = {}
+        tagged: dict[int, tuple[FloatArray, int]] = {}
+        for further in self._asked:
+            zeroed.update(further.zeroed)
+            raised.update(dict.fromkeys(further.raised, further.least))
+            if further.rows is not None:
+                tagged[further.tag] = further.rows, further.equalities
+        nothing = np.zeros((0, len(self._motion) + 1))
+        zero, positive = [nothing], [nothing]
+        for name, row in zip(self._names, self._named, strict=True):
+            if name in zeroed:
+                zero.append(row[None, :])
+            else:
+                lowered = row.copy()
+                lowered[-1] -= raised.get(name, 0.0)
+                positive.append(lowered[None, :])
+        for rows, equalities in tagged.values():
+            zero.append(rows[:equalities])
+            positive.append(rows[equalities:])
+        equations = merged(np.vstack(zero))
+        if equations is None:
+            return None
+        count = self._motion.shape[1] - 1
+        keep = [j for j in range(count) if j not in zeroed]
+        motion = cast("FloatArray", self._motion[:, [*keep, count]].astype(np.longdouble))
+        rows = np.vstack([equations, *positive])
+        program = Program.stated(motion, rows, range(count, count + len(rows)))
+        return program.renamed(keep, len(equations))
+
+
+def merged(rows: FloatArray, tolerance: float = ROW_TOLERANCE) -> FloatArray | None:
+    """Return equivalent equations, (k, d + 1), with orthonormal rows, or None if no motion satisfies them.
+
+    Args:
+        rows: (m, d + 1), of about unit length. Each demands that its product with the motion, followed by 1,
+            is zero.
+        tolerance: Rows that differ by no more count as one.
+    """
+    if len(rows) == 0:
+        return rows
+    left, sizes, basis = np.linalg.svd(rows[:, :-1], full_matrices=False)
+    seen = int((sizes > tolerance * max(1.0, float(sizes.max(initial=0.0)))).sum())
+    left = left[:, :seen]
+    constants = left.T @ rows[:, -1]
+    if np.abs(rows[:, -1] - left @ constants).max() > CAREFUL_UNMET:
+        return None
+    return np.column_stack([basis[:seen], constants / sizes[:seen]])

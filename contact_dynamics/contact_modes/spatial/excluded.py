@@ -35,8 +35,8 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
-from contact_dynamics.contact_modes.everywhere import BoundedBody, BoundedContact
 from contact_dynamics.contact_modes.letters import SEPARATES, STAYS, STICKS
+from contact_dynamics.contact_modes.uncertain import BoundedBody, BoundedContact
 from contact_dynamics.numerics.infeasible import contradiction
 from contact_dynamics.numerics.vectors import point_jacobians, tangents_towards
 from contact_dynamics.tolerances import (

@@ -19,8 +19,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple, TypeAlias
 import numpy as np
 
 from contact_dynamics.contact_modes.letters import SEPARATES, STICKS
-from contact_dynamics.contact_modes.spatial.careful_program import CarefulProgram
-from contact_dynamics.contact_modes.spatial.dual_simplex import Narrowing, Program
+from contact_dynamics.contact_modes.spatial.dual_simplex import CarefulProgram, Narrowing, Program
 from contact_dynamics.contact_modes.spatial.options import MILDER
 from contact_dynamics.numerics.linear_spaces import seen_and_unseen
 from contact_dynamics.tolerances import FEASIBLE, STRICT
@@ -48,37 +47,22 @@ Ranges: TypeAlias = dict[int, tuple[float, float]]
 
 
 class Within(NamedTuple):
-    """A region of common motions.
+    """A region of common motions."""
 
-    Attributes:
-        region: The region.
-        image: The space in which it lies.
-        turning: The contacts that slide, in the order of the image's maps.
-        gains: (p,), the power of the applied wrench on unit coordinates; None if something moves already.
-        implied: The contacts whose ranges of directions follow from the region.
-    """
-
-    region: Region
-    image: Image
-    turning: list[int]
-    gains: FloatArray | None
-    implied: frozenset[int] = frozenset()
+    region: Region  # the region
+    image: Image  # the space in which it lies
+    turning: list[int]  # the contacts that slide, in the order of the image's maps
+    gains: FloatArray | None  # (p,), the power of the applied wrench on coordinates; None if it moves
+    implied: frozenset[int] = frozenset()  # the contacts whose ranges of directions follow from the region
 
 
 class _Edges(NamedTuple):
-    """Edges of contact forces, in units in which each moves the body by one.
+    """Edges of contact forces, in units in which each moves the body by one."""
 
-    Attributes:
-        edges: (k, 3).
-        moved: (k, d), the motion that each causes.
-        sizes: (k,), the motion that a unit normal part of each causes.
-        owners: (k,), the contact of each.
-    """
-
-    edges: FloatArray
-    moved: FloatArray
-    sizes: FloatArray
-    owners: NDArray[np.intp]
+    edges: FloatArray  # (k, 3)
+    moved: FloatArray  # (k, d), the motion that each causes
+    sizes: FloatArray  # (k,), the motion that a unit normal part of each causes
+    owners: NDArray[np.intp]  # (k,), the contact of each
 
 
 class HoldingPrograms:

@@ -105,23 +105,14 @@ def _in_round_cones(search: Search, letters: str, solution: Solution) -> Solutio
 
 
 class _Response(NamedTuple):
-    """What compliant contacts do under a motion.
+    """What compliant contacts do under a motion."""
 
-    Attributes:
-        missed: (d,), the force and torque that the equations of motion miss.
-        forces: (n, 3), on the body.
-        rising: (n,), the normal accelerations.
-        speeds: (n,), the tangential ones.
-        ways: (n, 3), unit, the directions against which friction acts.
-        grips: (n,), whether friction is below its limit.
-    """
-
-    missed: FloatArray
-    forces: FloatArray
-    rising: FloatArray
-    speeds: FloatArray
-    ways: FloatArray
-    grips: NDArray[np.bool_]
+    missed: FloatArray  # (d,), the force and torque that the equations of motion miss
+    forces: FloatArray  # (n, 3), on the body
+    rising: FloatArray  # (n,), the normal accelerations
+    speeds: FloatArray  # (n,), the tangential ones
+    ways: FloatArray  # (n, 3), unit, the directions against which friction acts
+    grips: NDArray[np.bool_]  # (n,), whether friction is below its limit
 
 
 class _Compliant:

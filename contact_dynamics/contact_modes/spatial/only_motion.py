@@ -45,23 +45,14 @@ _SHARED: Final = 2
 
 
 class _Contacts(NamedTuple):
-    """Touching contacts.
+    """Touching contacts."""
 
-    Attributes:
-        normals: (n, 3), unit.
-        frictions: (n,), Coulomb's mu.
-        points: (n, 3, d), their accelerations on unit motions.
-        rising: (n, d), the normal ones.
-        across: (n, 3, d), the tangential ones.
-        turns: (n,), whether their friction may turn, which is that of contacts at rest.
-    """
-
-    normals: FloatArray
-    frictions: FloatArray
-    points: FloatArray
-    rising: FloatArray
-    across: FloatArray
-    turns: FloatArray
+    normals: FloatArray  # (n, 3), unit
+    frictions: FloatArray  # (n,), Coulomb's mu
+    points: FloatArray  # (n, 3, d), their accelerations on unit motions
+    rising: FloatArray  # (n, d), the normal ones
+    across: FloatArray  # (n, 3, d), the tangential ones
+    turns: FloatArray  # (n,), whether their friction may turn, which is that of contacts at rest
 
 
 def is_only_motion(search: Search, forces: FloatArray, staying: Sequence[int] | None = None) -> bool:

@@ -30,40 +30,23 @@ MILDER: Final = 0.1
 
 
 class Option(NamedTuple):
-    """One letter of a contact, or a group of letters.
+    """One letter of a contact, or a group of letters."""
 
-    Attributes:
-        letter: s, f or c, where c may stand for an arc of sliding directions; empty for a group of different
-            letters.
-        item: The item of sliding, or -1 where there is none or several.
-        zeroed: The names of edge forces, and of a normal acceleration, that are zero.
-        raised: The name of the normal acceleration where that is positive, or None.
-        rows: (k, d + 1), whose products with the motion, followed by 1, are zero or not negative.
-        equalities: The number of rows, from the first, whose products are zero.
-        parts: The smaller groups that it consists of; empty if it is a single letter.
-    """
-
-    letter: str
-    item: int
-    zeroed: frozenset[int]
-    raised: int | None
-    rows: FloatArray
-    equalities: int
-    parts: tuple[Option, ...]
+    letter: str  # s, f or c, also for an arc of directions; empty for a group of different letters
+    item: int  # the item of sliding, or -1 where there is none or several
+    zeroed: frozenset[int]  # the names of edge forces, and of a normal acceleration, that are zero
+    raised: int | None  # the name of the normal acceleration where that is positive, or None
+    rows: FloatArray  # (k, d + 1), whose products with the motion, followed by 1, are zero or not negative
+    equalities: int  # the number of rows, from the first, whose products are zero
+    parts: tuple[Option, ...]  # the smaller groups that it consists of; empty if it is a single letter
 
 
 class Pyramid(NamedTuple):
-    """The edges of a contact's force: a friction pyramid, or one edge where friction or sliding is known.
+    """The edges of a contact's force: a friction pyramid, or one edge where friction or sliding is known."""
 
-    Attributes:
-        edges: (K, 3), forces with a unit normal part.
-        frame: Unit tangents, the first of which edge 0 leans along; None where there is one edge only.
-        first: The name of the first edge force. The names of the others follow it.
-    """
-
-    edges: FloatArray
-    frame: tuple[FloatArray, FloatArray] | None
-    first: int
+    edges: FloatArray  # (K, 3), forces with a unit normal part
+    frame: tuple[FloatArray, FloatArray] | None  # unit tangents, edge 0 leans along the first; None: one edge
+    first: int  # the name of the first edge force. The names of the others follow it.
 
     def tangential(self) -> FloatArray:
         """Return the components of the edges along the frame, (K, 2)."""

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
-from contact_dynamics.contact_modes.spatial.careful_program import CarefulProgram
-from contact_dynamics.contact_modes.spatial.dual_simplex import Narrowing, Program
+from contact_dynamics.contact_modes.spatial.dual_simplex import CarefulProgram, Narrowing, Program
 from contact_dynamics.contact_modes.spatial.kinematic import faces_in_space
 from contact_dynamics.contact_modes.spatial.options import any_letter, pyramid_of
 from contact_dynamics.contact_modes.spatial.regions import ONE_BODY
@@ -42,21 +41,13 @@ CONTACT_TAG: Final = -3
 
 
 class Touching(NamedTuple):
-    """A contact that neither approaches nor leaves.
+    """A contact that neither approaches nor leaves."""
 
-    Attributes:
-        normal: (3,), unit.
-        friction: Coulomb's mu.
-        sliding: (3,), m/s, its tangential velocity; zero where it is at rest.
-        point: (3, d + 1), its acceleration as a function of the motion, which has d components.
-        free: (3,), its acceleration without contact forces.
-    """
-
-    normal: FloatArray
-    friction: float
-    sliding: FloatArray
-    point: FloatArray
-    free: FloatArray
+    normal: FloatArray  # (3,), unit
+    friction: float  # Coulomb's mu
+    sliding: FloatArray  # (3,), m/s, its tangential velocity; zero where it is at rest
+    point: FloatArray  # (3, d + 1), its acceleration as a function of the motion, which has d components
+    free: FloatArray  # (3,), its acceleration without contact forces
 
 
 class PyramidPrograms(ABC):

@@ -47,36 +47,25 @@ ONE_BODY: Final = 6
 class Image(NamedTuple):
     """The tangential accelerations of some contacts under the motions in which others stay as well.
 
-    Attributes:
-        coordinates: (p, d), rows that give the coordinates of a motion.
-        motions: (p, d), the motions of unit coordinates.
-        unseen: (q, d), motions without tangential acceleration.
-        maps: (m, 2, p), from coordinates to the contacts' accelerations in their pyramids' frames.
-        groups: (p,), the group of each coordinate. Contacts that move by coordinates of one group do not move
-            by those of others, as the interfaces of a stack.
+    Contacts that move by coordinates of one group do not move by those of others, as interfaces of a stack.
     """
 
-    coordinates: FloatArray
-    motions: FloatArray
-    unseen: FloatArray
-    maps: FloatArray
-    groups: NDArray[np.intp]
+    coordinates: FloatArray  # (p, d), rows that give the coordinates of a motion
+    motions: FloatArray  # (p, d), the motions of unit coordinates
+    unseen: FloatArray  # (q, d), motions without tangential acceleration
+    maps: FloatArray  # (m, 2, p), from coordinates to the contacts' accelerations in their pyramids' frames
+    groups: NDArray[np.intp]  # (p,), the group of each coordinate
 
 
 class Region(NamedTuple):
     """The positive sums of some rays.
 
-    Attributes:
-        rays: (p, p), one a row.
-        inside: (p + 1, p), combinations of coordinates that are positive in the region: the share of each
-            ray, and a height, which is also positive on all rays.
-        groups: (p,), the group of each ray, as an image has it. Between rays of different groups nothing but
-            the share of each differs, so that regions are not split there.
+    Between rays of different groups nothing but the share of each differs, so that it is not split there.
     """
 
-    rays: FloatArray
-    inside: FloatArray
-    groups: NDArray[np.intp]
+    rays: FloatArray  # (p, p), one a row
+    inside: FloatArray  # (p + 1, p), what is positive in it: the share of each ray, and a height
+    groups: NDArray[np.intp]  # (p,), the group of each ray, as an image has it
 
     def rows(self, image: Image) -> FloatArray:
         """Return the conditions on the motion, (p + 1, d + 1), that it slides, within the region."""
@@ -168,19 +157,12 @@ class Region(NamedTuple):
 
 
 class Flat(NamedTuple):
-    """The motions in which some contacts stick.
+    """The motions in which some contacts stick."""
 
-    Attributes:
-        chosen: The contacts that were asked to stick.
-        stuck: These contacts, and all that stick with them.
-        rows: (k, d), combinations of the motion that are zero.
-        image: The tangential motions of the contacts that need not stick.
-    """
-
-    chosen: tuple[int, ...]
-    stuck: frozenset[int]
-    rows: FloatArray
-    image: Image
+    chosen: tuple[int, ...]  # the contacts that were asked to stick
+    stuck: frozenset[int]  # these contacts, and all that stick with them
+    rows: FloatArray  # (k, d), combinations of the motion that are zero
+    image: Image  # the tangential motions of the contacts that need not stick
 
     def parts(self, normals: FloatArray, frames: FloatArray) -> Iterator[Flat]:
         """Yield the flats in which one contact more sticks, with all contacts that must then stick too.

@@ -4,7 +4,7 @@
 The answer yes comes with such forces, and the answer no with a virtual motion.
 
 Contacts that stick demand that some rows of the motion vanish. When rows that nearly agree are merged
-(`careful_program.merged`), this is one equation in at most six dimensions: a sum of linear images of round
+(`dual_simplex.merged`), this is one equation in at most six dimensions: a sum of linear images of round
 cones is to be equal to a given vector. Wolfe's method finds the point of that sum nearest to the vector. A
 few edges replace the cones at first. While the remainder, which is the vector less the nearest point, has a
 positive product with some force of a cone, the force with the largest product becomes a further edge. In the
@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
-from contact_dynamics.contact_modes.spatial.careful_program import merged
+from contact_dynamics.contact_modes.spatial.dual_simplex import merged
 from contact_dynamics.numerics.linear_spaces import row_space
 from contact_dynamics.tolerances import (
     LETTERS_NO_FORCE,
@@ -58,15 +58,10 @@ _WIDE: Final = 10.0
 
 
 class Held(NamedTuple):
-    """Whether forces hold the contacts.
+    """Whether forces hold the contacts."""
 
-    Attributes:
-        forces: (n, 3), forces that hold the contacts, in the units of the motion; None if none were found.
-        certain: Whether this is certain. It is not where rounding decides, or where the search was given up.
-    """
-
-    forces: FloatArray | None
-    certain: bool
+    forces: FloatArray | None  # (n, 3), such forces, in the units of the motion; None if none were found
+    certain: bool  # not where rounding decides, or where the search was given up
 
 
 def sticking(search: Search) -> FloatArray:
@@ -201,17 +196,11 @@ def hold_alone(search: Search, forces: FloatArray) -> bool:
 
 
 class _Demand(NamedTuple):
-    """What forces must sum to, in units in which all contacts together do as much in every direction.
+    """What forces must sum to, in units in which all contacts together do as much in every direction."""
 
-    Attributes:
-        images: (n, k, 3), the effects of unit forces.
-        target: (k,), what the effects must sum to.
-        sizes: (k,), the sizes of the units, in parts of the load.
-    """
-
-    images: FloatArray
-    target: FloatArray
-    sizes: FloatArray
+    images: FloatArray  # (n, k, 3), the effects of unit forces
+    target: FloatArray  # (k,), what the effects must sum to
+    sizes: FloatArray  # (k,), the sizes of the units, in parts of the load
 
 
 def _demand(search: Search, rows: FloatArray, tolerance: float) -> _Demand | None:

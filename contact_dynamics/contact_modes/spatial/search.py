@@ -45,36 +45,21 @@ _REGION_TAG: Final = -2
 
 
 class Found(NamedTuple):
-    """A mode that some forces bring about.
+    """A mode that some forces bring about."""
 
-    Attributes:
-        letters: The letter of each touching contact.
-        program: The solved program.
-        motion: The range of a weighted sum of the motion's components, which shows whether it is unique.
-    """
-
-    letters: list[Option]
-    program: AnyProgram
-    motion: Ends
+    letters: list[Option]  # the letter of each touching contact
+    program: AnyProgram  # the solved program
+    motion: Ends  # the range of a weighted sum of the motion's components, which shows whether it is unique
 
 
 class Common(NamedTuple):
-    """What the regions of one flat have in common.
+    """What the regions of one flat have in common."""
 
-    Attributes:
-        image: The space in which the regions lie.
-        open_ones: The contacts that slide.
-        names: (m, K), the names of the edge forces of these contacts.
-        tangential: (m, K, 2), the components of their edges along their frames.
-        gains: (p,), the power of the applied wrench on unit coordinates; None if something moves already,
-            because then the power may be negative.
-    """
-
-    image: Image
-    open_ones: list[int]
-    names: NDArray[np.intp]
-    tangential: FloatArray
-    gains: FloatArray | None
+    image: Image  # the space in which the regions lie
+    open_ones: list[int]  # the contacts that slide
+    names: NDArray[np.intp]  # (m, K), the names of the edge forces of these contacts
+    tangential: FloatArray  # (m, K, 2), the components of their edges along their frames
+    gains: FloatArray | None  # (p,), the power of the applied wrench on coordinates; None if something moves
 
 
 class Search(PyramidPrograms):

@@ -103,25 +103,15 @@ def _one_way(search: Search, letters: str, problem: _Problem, sign: float) -> He
 
 
 class _Problem(NamedTuple):
-    """What forces and motions with some letters consist of.
+    """What forces and motions with some letters consist of."""
 
-    Attributes:
-        normals: (m, 3 n), the normal forces of the contacts that begin to slide.
-        tangents: (m, 2, 3 n), their unit frictions, times the coefficient.
-        others: (k, 3 n), the edges of the other contacts' forces.
-        motions: (p, d), the motions with the letters, but for the sliding.
-        slides: (m, 2, p), the tangential accelerations that these cause.
-        of_forces: (d, 3 n), the motion that unit forces cause.
-        free: (d,), the motion without forces.
-    """
-
-    normals: FloatArray
-    tangents: FloatArray
-    others: FloatArray
-    motions: FloatArray
-    slides: FloatArray
-    of_forces: FloatArray
-    free: FloatArray
+    normals: FloatArray  # (m, 3 n), the normal forces of the contacts that begin to slide
+    tangents: FloatArray  # (m, 2, 3 n), their unit frictions, times the coefficient
+    others: FloatArray  # (k, 3 n), the edges of the other contacts' forces
+    motions: FloatArray  # (p, d), the motions with the letters, but for the sliding
+    slides: FloatArray  # (m, 2, p), the tangential accelerations that these cause
+    of_forces: FloatArray  # (d, 3 n), the motion that unit forces cause
+    free: FloatArray  # (d,), the motion without forces
 
     def directions(self, motions: Sequence[FloatArray]) -> Iterator[FloatArray]:
         """Yield unit directions near those of some motions."""

@@ -6,7 +6,7 @@ every contact set in the box:
 
 - UNIQUE is certain if linear programs that allow for the whole box exclude every other mode (`excluded`). A
   body at rest always has a consistent mode, so this one is left.
-- INDETERMINATE is certain if two modes hold everywhere (`everywhere`).
+- INDETERMINATE is certain if two modes hold everywhere (`holds_for_all`).
 
 There are proofs only for bodies at rest with at most `MAX_PROVEN_CONTACTS`. Each contact's errors are
 independent of the others', and the body's mass and the applied wrench are known. Four feet that slide
@@ -25,13 +25,12 @@ import numpy as np
 
 from contact_dynamics.contact.friction import linearised_cone
 from contact_dynamics.contact.uncertainty import EXACT_CONTACTS, ContactUncertainty
-from contact_dynamics.contact_modes.everywhere import holds_for_all
 from contact_dynamics.contact_modes.result import BodyStatics, ModeVerdict
 from contact_dynamics.contact_modes.spatial.answer import spatial_contact_modes
 from contact_dynamics.contact_modes.spatial.excluded import bounded_body, no_other_mode
 from contact_dynamics.contact_modes.spatial.problem import SpatialCase, spatial_case
 from contact_dynamics.contact_modes.spatial.statics import spatial_statics
-from contact_dynamics.contact_modes.uncertain import Boxes
+from contact_dynamics.contact_modes.uncertain import Boxes, holds_for_all
 from contact_dynamics.errors import TooLargeError
 from contact_dynamics.numerics.vectors import tangents_towards
 
