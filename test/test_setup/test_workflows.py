@@ -23,7 +23,8 @@ def commands(workflow: dict[str, Any]) -> list[str]:
     found = []
     for job in workflow["jobs"].values():
         rows = job.get("strategy", {}).get("matrix", {}).get("include", ())
-        texts = [row["command"] for row in rows] + [step.get("run", "") for step in job["steps"]]
+        texts = [row.get("command", "") for row in rows]
+        texts += [step.get("run", "") for step in job["steps"]]
         found += [line.strip() for text in texts for line in text.splitlines()]
     return found
 
