@@ -288,10 +288,7 @@ def seen_in_plane(problem: PlanarContactProblem, *, resting: bool = False) -> Pl
 
 
 def _rigid(contacts: Sequence[PlanarContact], W: float) -> tuple[Vector2, float]:
-    """Return the acceleration at the centre of mass, m/s^2, and the angular one, rad/s^2, of a rigid body.
-
-    They are those by which it has the accelerations of two contacts: the first and the one farthest from it.
-    """
+    """Return accelerations of the centre of mass, m/s^2, and rad/s^2, that two far contacts determine."""
     first = contacts[0]
     far = max(contacts, key=lambda contact: math.dist(contact.r, first.r))
     (x, y), (a_x, a_y) = _minus(far.r, first.r), _minus(far.surface_acceleration, first.surface_acceleration)

@@ -97,10 +97,7 @@ class Boxes(Generic[AnyAnswer]):
         self._step, self._steps, self._samples = step, steps, samples
 
     def verdicts_within(self, box: ContactUncertainty) -> VerdictsWithin:
-        """Return the verdicts that occur in a box.
-
-        It is sampled if there is no proof that there is only one.
-        """
+        """Return the verdicts that occur in a box. It is sampled if they are not proven."""
         certain = box.is_exact or self._is_certain(box)
         samples = [] if certain else list(self._sampled(box))
         verdicts = dict.fromkeys(one.verdict for one in (self._answer, *samples))
@@ -177,10 +174,7 @@ def _says_otherwise(one: AnyModeAnswer, other: AnyModeAnswer) -> bool:
 
 
 def _first(low: int, high: int, happens: Callable[[int], bool]) -> int:
-    """Return the first step from ``low`` on at which a condition holds that then keeps holding, by bisection.
-
-    It is ``high`` if the condition does not hold before.
-    """
+    """Return the first step from ``low`` on from which something keeps happening, or ``high``."""
     while low < high:
         middle = (low + high) // 2
         if happens(middle):
@@ -226,11 +220,8 @@ def holds_for_all(
 ) -> bool:
     """Return whether it is proven that a consistent mode is consistent everywhere in a box.
 
-    Args:
-        body: The body, which all contacts touch.
-        mode: One letter for each contact.
-        statics: What holds the body, with the least friction of the box.
-        edges: The wrenches, (k, d), of edge forces with that friction, and by how much each may be off, (k,).
+    All contacts touch the body. With the least friction of the box, ``statics`` says what holds it, and
+    ``edges`` are the wrenches, (k, d), of edge forces, and by how much each may be off, (k,).
     """
     equations = sum(
         {SEPARATES: 0, STICKS: len(one.rows)}.get(letter, 1)
@@ -282,10 +273,7 @@ def _solves_for_all(body: BoundedBody, mode: str) -> bool:
 
 
 def _equations(body: BoundedBody, mode: str) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    """Return rows that vanish on the motion, (k, d), wrenches of as many unknown forces, and their errors.
-
-    The errors of either stand behind it.
-    """
+    """Return rows that vanish on the motion, wrenches of as many forces, and behind each its errors."""
     found: list[tuple[FloatArray, ...]] = []
     for letter, one in zip(mode, body.contacts, strict=True):
         if letter == STICKS:

@@ -31,9 +31,9 @@ class Coincident(NamedTuple):
         return "".join([mode[group] for group in self.group])
 
     def consistent(self, mode: PlanarMode, negligible: float) -> PlanarMode:
-        """Return a mode of all contacts for a mode of the groups.
+        """Return a mode of all contacts for one of the groups.
 
-        A normal force up to ``negligible``, N, counts as no force, so that its shares are unique.
+        Normal forces up to ``negligible``, N, count as none.
         """
         counts = self.counts
         shares: list[Vector2] = [

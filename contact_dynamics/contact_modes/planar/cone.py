@@ -142,9 +142,9 @@ class PolyhedralCone:
         return common == 0
 
     def edges(self) -> list[tuple[Vector3, int]]:
-        """Return rays that contain every one-dimensional face, each with the rows that vanish on it.
+        """Return rays that contain every one-dimensional face, with the rows that vanish on each.
 
-        A line is given by two opposite rays, and a plane by two such lines in it.
+        Lines are two rays.
         """
         lines = [(sign, self.all_rows) for line in self.lineality for sign in (line, opposite(line))]
         if len(self.lineality) == 3:
@@ -176,10 +176,7 @@ class PolyhedralCone:
         return []
 
     def _parts(self, sector: Sector) -> list[Sector]:
-        """Return two halves of a sector of almost 180 degrees, or else the sector.
-
-        A sum of its two rays would be little more than rounding.
-        """
+        """Return two halves of a sector of almost 180 degrees, whose rays nearly cancel, or the sector."""
         start, end, tight, _ = sector
         if dot(start, end) > _ALMOST_OPPOSITE or not tight:
             return [sector]
@@ -206,10 +203,7 @@ class PolyhedralCone:
                 self._cut(row, index)
 
     def _check_clear(self, *sizes: float) -> None:
-        """Raise `_NotClearError` if one of ``sizes``, sines, is neither zero to rounding nor clearly more.
-
-        Decimals are always clear.
-        """
+        """Raise `_NotClearError` if floats cannot decide whether one of ``sizes``, sines, is zero."""
         if self.exact:
             return
         same, clear = self._same, self._clear
@@ -350,10 +344,7 @@ class PolyhedralCone:
         return heights
 
     def _cut_lineality(self, row: Vector3, index: int) -> bool:
-        """Cut with a row that does not vanish on all lines: one line becomes a ray.
-
-        Returns whether the row did this.
-        """
+        """Cut with a row. Return whether one of the lines became a ray by that."""
         parts = [dot(row, line) for line in self.lineality]
         length = root(sum(part * part for part in parts))
         if length <= self._same:
@@ -376,10 +367,7 @@ class PolyhedralCone:
         return True
 
     def _cut_rays(self, heights: list[float], index: int, *, touches: bool) -> None:
-        """Drop the rays on the wrong side of the row, and add one where an edge of the cone crosses it.
-
-        ``touches`` is false if the row vanishes on no ray.
-        """
+        """Drop the rays on the wrong side of the row, and add one where an edge of the cone crosses it."""
         tolerance = self._same
         bit = 1 << index
         top = heights.index(max(heights))

@@ -49,10 +49,7 @@ class _Tangent(NamedTuple):
 
 
 def kinematic_cells(case: PlanarCase) -> dict[str, Cell]:
-    """Return the modes that are possible, each with its accelerations.
-
-    At least one contact of the case must touch.
-    """
+    """Return the modes that are possible for a case with a touching contact, each with its accelerations."""
     lift = case.lift
     below = 0
     if lift is None:

@@ -374,10 +374,7 @@ class IndependentModes:
         return None
 
     def _tolerance(self, row: Vector4, unknowns: list[_Unknown]) -> tuple[float, float]:
-        """Return up to which force, N, mass times the acceleration along a unit row counts as zero.
-
-        The second number is the rounding of that acceleration.
-        """
+        """Return the force, N, up to which mass times an acceleration counts as zero, and its rounding."""
         gradient = row
         terms = 1.0
         for unknown in unknowns:

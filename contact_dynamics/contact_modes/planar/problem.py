@@ -161,9 +161,9 @@ class PlanarCase(NamedTuple):
 
 
 def touching_case(problem: PlanarContactProblem) -> PlanarCase | None:
-    """Return the case of the contacts that touch. Those that coincide get the same place and normal.
+    """Return the case of the contacts that touch, or None if none does or one approaches.
 
-    Returns None if no contact touches, or if one approaches.
+    Those that coincide get the same place and normal.
     """
     velocities = problem.contact_velocities()
     if any(v_n < 0.0 for _, v_n in velocities) or all(v_n > 0.0 for _, v_n in velocities):
@@ -178,10 +178,7 @@ def touching_case(problem: PlanarContactProblem) -> PlanarCase | None:
 def planar_case(
     problem: PlanarContactProblem, contacts: Sequence[PlanarContact], contact_velocities: Sequence[Vector2]
 ) -> PlanarCase:
-    """Return the case of those ``contacts`` whose normal velocity in ``contact_velocities`` is an exact 0.
-
-    The contacts are those of the problem, or one for each group of its contacts that coincide.
-    """
+    """Return the case of the contacts, one of each group if some coincide, that have no normal velocity."""
     body, velocity, wrench = problem.body, problem.velocity, problem.wrench
     velocity_tolerance = problem.velocity_tolerance
     rho = body.radius_of_gyration

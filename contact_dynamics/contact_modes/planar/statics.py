@@ -119,8 +119,5 @@ def _room(balance: PolyhedralCone, target: Vector3) -> float:
 
 
 def _press_on_each_other(balance: PolyhedralCone) -> bool:
-    """Return whether some contact forces cancel that are not all zero.
-
-    Some do if no half-space has all of them strictly inside.
-    """
+    """Return whether contact forces can cancel: no half-space has all of them strictly inside."""
     return bool(balance.rows) and not balance.has_interior

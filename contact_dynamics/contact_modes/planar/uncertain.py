@@ -185,10 +185,7 @@ def no_other_mode(problem: PlanarContactProblem, mode: str, box: ContactUncertai
 
 
 class _Proof:
-    """A search for letters that the relaxed inequalities allow.
-
-    Motions and forces are in units of the applied wrench, so that no coordinate of a motion is above 1.
-    """
+    """A search for letters that the relaxed inequalities allow. Its unit is the applied wrench."""
 
     __slots__ = ("_allowed", "_contacts", "_left", "_w")
 
@@ -207,10 +204,7 @@ class _Proof:
         return all(self.excludes(signs, letters + letter) for letter in PLANAR_LETTERS)
 
     def _possible(self, signs: FloatArray, letters: str) -> bool:
-        """Return whether the relaxed inequalities have a solution that moves, or one at rest that is another.
-
-        Rest is the allowed mode if all its contacts stick.
-        """
+        """Return whether the relaxed inequalities have a solution that moves, or rests in another mode."""
         from scipy.optimize import linprog
 
         if self._left == 0:
@@ -254,10 +248,7 @@ _INFEASIBLE: Final = 2
 
 
 def _lines(contact: BoundedContact, letter: str, signs: FloatArray) -> list[FloatArray]:
-    """Return rows whose products with |q| are not positive for the motions q that a letter allows.
-
-    Each is that of a row which is not positive at q, within its bounds. No letter stands for any.
-    """
+    """Return rows, relaxed by their bounds, whose products with |q| are <= 0 for a letter's motions q."""
     (normal, tangent), (off_normal, off_tangent) = contact.rows, contact.errors
     found = [-normal * signs - off_normal]
     if letter not in {SEPARATES, ""}:

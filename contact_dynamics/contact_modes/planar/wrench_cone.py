@@ -91,9 +91,9 @@ class ModeWrenches:
     )
 
     def __init__(self, case: PlanarCase, cell: Cell, *, exact: bool = False) -> None:
-        """Build the cone. The rows of ``dual`` are the rays of the accelerations, and then the reactions.
+        """Build the cone, in decimals if ``exact``.
 
-        ``exact`` says whether to build it in decimals even if floats tell all directions apart.
+        The rows of ``dual`` are the mode's rays, and then the reactions.
         """
         lift = case.lift
         self._case = case
@@ -131,10 +131,7 @@ class ModeWrenches:
         return vertices, rays
 
     def half_spaces(self) -> list[HalfSpace]:
-        """Return half-spaces whose intersection is the closure of the wrenches that can bring the mode about.
-
-        There are none if every wrench can.
-        """
+        """Return half-spaces whose intersection is the closure of the mode's wrenches; none if it is all."""
         facets = [*self.dual.rays]
         for line in self.dual.lineality:
             facets += [line, opposite(line)]
@@ -221,7 +218,7 @@ class ModeWrenches:
     def _exact_combination(self, target: Vector3) -> tuple[list[Decimal], float]:
         """Return the combination of the cone's rows that is nearest to a target, and its distance.
 
-        A mode without a motion asks for that of the same target twice.
+        Both are kept.
         """
         if self._combined is None or self._combined[0] != target:
             self._combined = target, exact_combination(self.dual.rows, target)
@@ -243,7 +240,7 @@ class ModeWrenches:
     def _exact_forces(self, shares: list[Decimal]) -> dict[int, Vector2]:
         """Return (f_t, f_n) at each position from the shares of all rows.
 
-        The sums are in decimals, because the edges of contacts that never slip nearly cancel in them.
+        In their sums, edges may nearly cancel.
         """
         tangential = dict.fromkeys(self.edges.positions, Decimal(0))
         normal = dict.fromkeys(self.edges.positions, Decimal(0))
@@ -399,10 +396,7 @@ def sharp_reactions(
 
 
 def sharp_reaction(N: Vector3, T: Vector3, force: Vector2) -> Vector3:
-    """Return the reaction to a force (f_t, f_n) in decimals.
-
-    If friction is large, floats would lose the normal part in the sum.
-    """
+    """Return the reaction to a force (f_t, f_n) in decimals, where large friction hides no normal part."""
     (n_x, n_y, n_z), (t_x, t_y, t_z) = decimal_vector(N), decimal_vector(T)
     f_t, f_n, _ = decimal_vector((*force, 0.0))
     return (-f_n * n_x - f_t * t_x, -f_n * n_y - f_t * t_y, -f_n * n_z - f_t * t_z)

@@ -168,10 +168,7 @@ def planar_mode_margins(
     *,
     margin_length: float | None = None,
 ) -> tuple[PlanarModeMargin, ...]:
-    """Return the margin of the wrench in each of its consistent modes (`plane_or_space.mode_margins`).
-
-    If all contacts separate already, no wrench changes the mode, and its margin is infinite.
-    """
+    """Return the margin of the wrench in each of its consistent modes (`plane_or_space.mode_margins`)."""
     length = check_length(margin_length, problem.body.radius_of_gyration)
     if answer is None:
         answer = planar_contact_modes(problem)

@@ -164,13 +164,8 @@ def considered(
     """Return the modes of a problem, or the contacts that approach.
 
     Contacts that are flush but for noise are taken as flush: to within `FLUSH` always, and to within
-    `FLUSH_ROUGHLY` if it is undecided otherwise.
-
-    Args:
-        case_within: The case of the problem, or the contacts that approach, whose contacts may be moved so
-            far to be flush (`problem.spatial_case`).
-        facets: The number of edges of a friction pyramid.
-        sharpen: Whether the modes are those of round cones.
+    `FLUSH_ROUGHLY` if it is undecided otherwise. ``case_within`` gives the case whose contacts may be moved
+    so far to be flush, or the contacts that approach (`problem.spatial_case`).
 
     Raises:
         UndecidedError: lengths, masses or moments differ by so many orders of magnitude that a matrix is
@@ -293,11 +288,8 @@ def evidenced(
 ) -> Evidence:
     """Return all modes of a case, with Coulomb's round cones.
 
-    Args:
-        case: The body with its contacts.
-        search: The search of that case.
-        beside_rest: As `modes_of_case` has it.
-        hurried: Whether to give up soon.
+    It gives up soon if ``hurried``. If ``beside_rest``, it is enough to know if a body at rest has another
+    mode than rest.
     """
     found = _sought(case, search, beside_rest=beside_rest, hurried=hurried)
     found = found._replace(modes=[_with_clear_motion(case, mode) for mode in found.modes])
@@ -317,10 +309,7 @@ def evidenced(
 
 
 def _with_clear_motion(case: SpatialCase, mode: ResponseMode) -> ResponseMode:
-    """Return a mode with the motion of its least forces, if others are so large that rounding hides it.
-
-    Forces that wedge a body between contacts may be as large as one likes, and cancel.
-    """
+    """Return a mode with the motion of its least forces, if others are so large that rounding hides it."""
     if _rounding(case, mode) <= HIDDEN_BY_FORCES * case.motion.scale:
         return mode
     least = with_least_forces(case, mode)
@@ -341,11 +330,7 @@ def _rounding(case: SpatialCase, mode: ResponseMode) -> float:
 
 
 def _penetrates(case: SpatialCase, mode: ResponseMode) -> bool:
-    """Return whether contacts penetrate by more than rounding, as rounding may let modes seem consistent.
-
-    So do those of which nobody can tell, since rounding hides the motion. Where a mechanism nearly wedges,
-    forces may be so large that this hides all accelerations.
-    """
+    """Return whether contacts penetrate by more than rounding, or rounding hides whether they do."""
     rounding = _rounding(case, mode)
     if rounding > case.motion.scale:
         return True
@@ -491,12 +476,11 @@ def _completed(case: SpatialCase, search: Search, found: list[ResponseMode], *, 
 
 
 def found_by(case: SpatialCase, search: Search, *, sharpen: bool) -> list[ResponseMode]:
-    """Return the modes of a case with friction pyramids.
+    """Return the modes of a case with friction pyramids, each once if friction is sharpened.
 
-    If friction is sharpened, each mode is returned once. Two modes are the same if their letters and their
-    motions are. Where the motion with some letters is not unique, all modes with these letters are the same,
-    and the one represents them whose slowest contact that begins to slide is fastest: rounding limits the
-    direction of very slow sliding.
+    Two modes are the same if their letters and their motions are. Where the motion with some letters is not
+    unique, the mode represents them whose slowest contact that begins to slide is fastest: rounding limits
+    the direction of very slow sliding.
     """
     found = [realised(case, search, one) for one in search.run(grouped=sharpen)]
     if not sharpen:

@@ -155,12 +155,8 @@ class _Set(NamedTuple):
 def completed(search: Search, known: Sequence[Known], *, most: int) -> Completed:
     """Return the modes that are not known yet, and the letters that may have more.
 
-    Whether a body at rest can stick at all contacts is not asked here.
-
-    Args:
-        search: The case.
-        known: The modes that were found, all exact.
-        most: The number of programs after which the search gives up.
+    All known modes are exact. The search gives up after ``most`` programs. Whether a body at rest can stick
+    at all contacts is not asked here.
     """
     work = _Work(search, known, most=most)
     unended = ""
@@ -283,9 +279,9 @@ class _Work(PyramidPrograms):
                         flats.append(further)
 
     def _part_letters(self, letters: str, open_ones: list[int]) -> None:
-        """Decide which of some contacts stick, and then in which directions the others slide.
+        """Decide which contacts stick, and then in which directions the others slide.
 
-        A contact that is not decided yet has the letter c, whose programs hold its sticking too.
+        Undecided ones have the c.
         """
         if not open_ones:
             turning = [i for i in self._open if letters[i] == STAYS]
@@ -350,7 +346,7 @@ class _Work(PyramidPrograms):
     def _is_decided(self, letters: str) -> bool:
         """Return whether all modes with some letters are known.
 
-        A mode of a body that can move in one direction only is found or refuted.
+        Where bodies can move in one way only, they become so.
         """
         if letters in self._decided:
             return True
@@ -381,10 +377,7 @@ class _Work(PyramidPrograms):
         return True
 
     def _decide(self, modes: _Set) -> bool:
-        """Find or refute all modes in a set.
-
-        Return whether contacts that slide in it may stick instead.
-        """
+        """Find or refute all modes in a set. Return whether contacts that slide in it may stick instead."""
         letters, turning = modes.letters, modes.turning
         if letters in self._decided:
             return True
@@ -412,11 +405,8 @@ class _Work(PyramidPrograms):
     def _ends(self, modes: _Set, ranges: Ranges, width: float, forces: FloatArray) -> bool:
         """Return whether a set need not be parted further, because its solutions are known, or it is narrow.
 
-        Args:
-            modes: The set.
-            ranges: The directions in which each contact slides.
-            width: The width of the widest of them.
-            forces: Forces that its programs allow.
+        Each contact slides in its range of directions, of which the widest has this width, and programs allow
+        the forces.
         """
         letters = modes.letters
         if self._slides_in_the_middle(modes):
@@ -526,10 +516,7 @@ def _widest(turning: list[int], ranges: Ranges) -> tuple[int, float]:
 
 
 def _implied(modes: _Set) -> Ranges | None:
-    """Return the ranges of directions that follow from the region of a set, and from those that it demands.
-
-    It is None if the region has no such motions.
-    """
+    """Return the ranges of directions that follow from a set, or None if its region has no such motions."""
     region, flat = modes.region, modes.flat
     if region is None or flat is None:
         return {}

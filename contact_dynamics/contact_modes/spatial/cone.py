@@ -151,11 +151,7 @@ def _rays_by_choice(rows: FloatArray) -> FloatArray:
 
 
 def nearest_sum(spans: FloatArray, target: FloatArray) -> tuple[FloatArray, float]:
-    """Return shares >= 0, (k,), of spans, (k, d), whose sum is nearest to a target, (d,), and its distance.
-
-    Raises:
-        UndecidedError: the spans are so nearly dependent that the search does not end.
-    """
+    """Return shares >= 0, (k,), of spans, (k, d), whose sum is nearest to a target, and its distance."""
     found = nearest_combination(spans.T, target)
     if found is None:
         raise _undecided("non-negative least squares did not end")

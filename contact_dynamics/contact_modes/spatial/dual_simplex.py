@@ -112,10 +112,8 @@ class Program:
     def stated(motion: FloatArray, named: FloatArray, names: Sequence[int]) -> Program:
         """Return the program whose motion, (d, K + 1), is given for K edge forces and a constant.
 
-        Args:
-            motion: The motion, in the units in which conditions are stated.
-            named: (k, d + 1), combinations of the motion and a constant that are not negative.
-            names: The names of these rows for `narrowed`, each >= K. Edge forces have the names 0 to K - 1.
+        Rows ``named``, (k, d + 1), are combinations of the motion and a constant that are not negative. Edge
+        forces have the names 0 to K - 1, and the rows larger ones.
         """
         count = motion.shape[1] - 1
         rows = _rows_of(named, motion)
@@ -164,12 +162,10 @@ class Program:
         return found
 
     def allows_any(self, weights: FloatArray, constants: FloatArray, least: float) -> bool:
-        """Return whether some edge forces satisfy all conditions and at least one of some further conditions.
+        """Return whether some edge forces satisfy all conditions and at least one of some further ones.
 
-        Args:
-            weights: (k, K), the weights of the edge forces in each further condition.
-            constants: (k,), which are added to the weighted sums.
-            least: The value that a sum must reach.
+        The sum of the edge forces with weights, (k, K), and of constants, (k,), must reach ``least`` in one
+        of them.
         """
         count = weights.shape[1]
         rows, columns = np.array(self._rows, dtype=int), np.array(self._columns, dtype=int)
@@ -197,10 +193,9 @@ class Program:
         return found
 
     def solve(self, least_pivot: float = ROW_TOLERANCE) -> bool:
-        """Return whether some edge forces satisfy all conditions. If so, the table then holds such forces.
+        """Return whether some edge forces satisfy all conditions; the table then holds them.
 
-        Args:
-            least_pivot: Entries of the table that are no larger count as zero.
+        Smaller entries are zero.
         """
         if len(self._fixed) == 0:
             return True
@@ -241,10 +236,7 @@ class Program:
         return -1.0, 0.0
 
     def _pivot(self, leaves: int, enters: int) -> None:
-        """Exchange a condition's variable and a column's.
-
-        A column whose variable is fixed stays zero from then on.
-        """
+        """Exchange a condition's variable and a column's, which stays zero from then on if it is fixed."""
         table = self._table
         column = table[:, enters].copy()
         pivot = column[self._head + leaves]
@@ -431,10 +423,8 @@ class CarefulProgram:
 def merged(rows: FloatArray, tolerance: float = ROW_TOLERANCE) -> FloatArray | None:
     """Return equivalent equations, (k, d + 1), with orthonormal rows, or None if no motion satisfies them.
 
-    Args:
-        rows: (m, d + 1), of about unit length. Each demands that its product with the motion, followed by 1,
-            is zero.
-        tolerance: Rows that differ by no more count as one.
+    Each of the rows, (m, d + 1), of about unit length, demands that its product with the motion, followed by
+    1, is zero. Rows that differ by no more than the tolerance count as one.
     """
     if len(rows) == 0:
         return rows

@@ -84,12 +84,7 @@ def _is_regular(
 ) -> bool:
     """Return whether the derivatives are regular where directions turn by at most an angle, rad.
 
-    Args:
-        equations: The equations.
-        shares: The numbers of the unknowns that are shares of force.
-        inverse: The absolute values of the inverse of the derivatives with respect to the shares.
-        of_all: The absolute values of the inverse of all derivatives.
-        turn: The angle.
+    The inverses are the absolute values of those of the derivatives by the shares, and of all derivatives.
     """
     unknowns, angles, rows, rows_turn, changes, changes_turn, motion, _ = equations
     of_rows = np.abs(rows[:, :-1])
@@ -142,12 +137,9 @@ def forces_with_letters(
 ) -> FloatArray | None:
     """Return forces, (n, 3), of touching contacts that have the letters, or None if none were found.
 
-    Args:
-        search: The case.
-        letters: s, c or f for each touching contact.
-        forces: (n, 3), close to those that are sought, in the units of the motion.
-        shared: Whether contacts may share loads in many ways. Then contacts without force stay without it.
-        least: By how much strict inequalities must hold, relative to the largest acceleration.
+    They are sought close to the given ones, in the units of the motion. If contacts may share loads in many
+    ways (``shared``), contacts without force stay without it. Strict inequalities must hold by ``least``,
+    relative to the largest acceleration.
     """
     system = _System(search, letters, forces if shared else None)
     unknowns = _solved(system, forces, shared=shared)
@@ -170,10 +162,9 @@ class Solution(NamedTuple):
 def solution_near(
     search: Search, letters: str, forces: FloatArray, *, shared: bool = False
 ) -> Solution | None:
-    """Return the solution that Newton's method finds from some forces, (n, 3).
+    """Return the solution that Newton's method finds from some forces, (n, 3), or None if it does not settle.
 
-    It is None if the method does not settle, or if the equations leave something open and contacts may not
-    share loads.
+    It is None too if the equations leave something open and contacts may not share loads.
     """
     system = _System(search, letters, forces if shared else None)
     unknowns = _solved(system, forces, shared=shared)
@@ -223,12 +214,9 @@ class _System:
     """The equations of some letters."""
 
     def __init__(self, search: Search, letters: str, acting: FloatArray | None) -> None:
-        """State the equations.
+        """State the equations of letters.
 
-        Args:
-            search: The case.
-            letters: s, c or f for each touching contact.
-            acting: (n, 3), forces whose absence leaves a contact without force; None if all may act.
+        Contacts without force in ``acting``, (n, 3), have none. If it is None, all may act.
         """
         self._search, self._letters = search, letters
         self._frames = [None if one.frame is None else np.array(one.frame) for one in search.pyramids]

@@ -65,10 +65,7 @@ def realised(case: SpatialCase, search: Search, found: Found) -> ResponseMode:
 
 
 def as_given(case: SpatialCase, mode: ResponseMode) -> ResponseMode:
-    """Return a mode of flush contacts, with forces under which the given ones rest if all of them stick.
-
-    Any other mode stays that of the flush contacts.
-    """
+    """Return a mode of flush contacts, with forces under which the given ones rest if all of them stick."""
     given = case.given
     letters = "".join(mode.mode[i] for i in case.touching.tolist())
     if given is None or set(letters) != {STICKS}:
@@ -84,10 +81,7 @@ def as_given(case: SpatialCase, mode: ResponseMode) -> ResponseMode:
 
 
 def _rested(search: Search, forces: FloatArray) -> FloatArray:
-    """Return forces under which a body rests to rounding.
-
-    The given forces do so to the tolerance within which conditions on nearly the same contacts are merged.
-    """
+    """Return forces under which a body rests to rounding, near others under which it nearly does."""
     rows = sticking(search)
     motion = np.append(search.motion[:, -1] + search.of_forces @ forces.ravel(), 1.0)
     if float(np.abs(rows @ motion).max()) > STRICT:  # what tells merged contacts apart was lost
@@ -128,10 +122,7 @@ def each_once(case: SpatialCase, found: list[ResponseMode]) -> list[ResponseMode
 
 
 def by_letters(case: SpatialCase, search: Search, found: list[ResponseMode]) -> list[ResponseMode]:
-    """Return the modes, where exact solutions replace those whose friction could not be turned.
-
-    Those that are certain to have none are left out.
-    """
+    """Return the modes, with exact ones in place of others, or without these if certainly none exists."""
     kept: list[ResponseMode] = []
     for mode in found:
         if is_exact(mode):
@@ -166,11 +157,7 @@ def by_letters(case: SpatialCase, search: Search, found: list[ResponseMode]) -> 
 def _shared(case: SpatialCase, search: Search, letters: str, modes: Sequence[ResponseMode]) -> Held:
     """Return forces of contacts that share a load, or whether it is certain that there are none.
 
-    Args:
-        case: The body with its contacts.
-        search: The search of that case.
-        letters: s, c or f for each touching contact.
-        modes: The mode with these letters whose friction could not be turned, and others.
+    The first mode has these letters, and friction that could not be turned.
     """
     own = modes[0].contact_forces_W[case.touching] / case.motion.scale
     forces = forces_with_letters(search, letters, own, shared=True)
@@ -250,10 +237,7 @@ def _near(search: Search, letters: str, start: FloatArray) -> list[Narrow]:
 
 
 def _each_motion_once(search: Search, modes: list[Narrow]) -> list[Narrow]:
-    """Return one mode for each motion, the one in which most contacts stick if there are several.
-
-    A contact may stick to within rounding, and slide by hardly more than that.
-    """
+    """Return one mode for each motion: the one in which most contacts stick, if rounding lets some slide."""
     kept: list[tuple[Narrow, FloatArray]] = []
     for mode in sorted(modes, key=lambda one: -one.letters.count("f")):
         motion = search.motion[:, -1] + search.of_forces @ mode.forces.ravel()

@@ -74,10 +74,7 @@ class _GivenUpError(Exception):
 
 
 def no_other_mode(problem: SpatialContactProblem, mode: str, box: ContactUncertainty) -> bool:
-    """Return whether it is proven that no mode but ``mode`` occurs anywhere in a box.
-
-    The body is at rest, and all contacts touch it.
-    """
+    """Return whether it is proven that no mode of a body at rest but ``mode`` occurs anywhere in a box."""
     body = bounded_body(problem, box)
     if not np.any(body.wrench):
         return set(mode) == {STICKS}
@@ -91,10 +88,7 @@ def no_other_mode(problem: SpatialContactProblem, mode: str, box: ContactUncerta
 
 
 class _Proof:
-    """A search for letters that the relaxed inequalities allow.
-
-    Motions and forces are in units of the applied wrench.
-    """
+    """A search for letters that the relaxed inequalities allow. Its unit is the applied wrench."""
 
     __slots__ = ("_allowed", "_body", "_inverse", "_left", "_reasons", "_rests", "_ways")
 
@@ -243,10 +237,7 @@ class UncertainWays:
 
 
 def _lines(contact: BoundedContact, way: UncertainWay) -> FloatArray:
-    """Return rows, (k, 6), that are not positive on the motions that a way allows.
-
-    Each is a combination of the contact's nominal rows with coefficients of length 1.
-    """
+    """Return rows, (k, 6), that are <= 0 on a way's motions: nominal rows with coefficients of length 1."""
     normal, one, two = contact.rows
     lines = [-normal]
     if way.letter == STICKS:
@@ -301,10 +292,7 @@ class Reasons:
     __slots__ = ("_allowing", "_found", "_holding", "_inertia", "_largest", "_rests", "_sizes", "_w", "_ways")
 
     def __init__(self, body: BoundedBody, ways: UncertainWays, *, rests: bool) -> None:
-        """Take a body whose wrench has the size 1.
-
-        If it ``rests``, accelerations of at most `NO_MOTION` need not be excluded.
-        """
+        """Take a body whose wrench has the size 1. If it ``rests``, `NO_MOTION` need not be excluded."""
         self._inertia = body.inertia
         self._w = body.wrench
         self._ways = ways
@@ -317,10 +305,7 @@ class Reasons:
         self._allowing: dict[tuple[int, UncertainWay], tuple[int, int]] = {}
 
     def exclude(self, at: int, sign: float, ways: tuple[UncertainWay, ...]) -> bool:
-        """Return whether a known reason excludes ``ways`` of all contacts.
-
-        The coordinate ``at`` of the motion is the largest, and has this sign.
-        """
+        """Return whether a known reason excludes ways whose motions have this largest coordinate."""
         left = self._holding[_number(at, sign)]
         for i, way in enumerate(ways):
             if not left:

@@ -103,12 +103,7 @@ class HoldingPrograms:
         """Return forces, (n, 3), that satisfy what modes in a set must, or None if there are none.
 
         Where rounding hides that there are none, they are zero. The second value is whether that took care.
-
-        Args:
-            letters: s, c or f for each touching contact.
-            ranges: Directions in which contacts slide.
-            facets: The number of edges of the pyramids around round cones.
-            within: A region in which the common motion lies.
+        Contacts slide in ranges of directions, and the common motion lies ``within`` a region.
         """
         turning = list(ranges)
         zero, leaving, whole = self._fixed(letters, tuple(turning), facets)
@@ -166,11 +161,7 @@ class HoldingPrograms:
     def _fixed(
         self, letters: str, turning: tuple[int, ...], facets: int
     ) -> tuple[FloatArray, FloatArray, _Edges]:
-        """Return what does not depend on ranges of directions.
-
-        These are the rows that vanish with some letters, those of the contacts that separate, and the edges
-        of the contacts whose directions are not restricted.
-        """
+        """Return rows that vanish with letters, rows of contacts that separate, and edges of whole cones."""
         key = letters, turning, facets
         if key not in self._parts:
             leaving = [i for i, letter in enumerate(letters) if letter == SEPARATES]

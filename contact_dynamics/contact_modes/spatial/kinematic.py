@@ -238,13 +238,9 @@ def sliding_faces(
 ) -> Iterator[dict[int, list[int]]]:
     """Yield, for all that contacts can do together, the sides of its cuts on which each that stays slides.
 
-    Args:
-        rows: (m, d), unit, the normal accelerations of n contacts, and what must be positive besides.
-        cuts: (k, d) of each contact, what parts the ways in which it slides.
-        most: The largest number of sets of planes whose common lines are computed for one choice of contacts.
-
-    Raises:
-        TooLargeError: more sets of planes meet in lines.
+    The rows, (m, d), unit, are the normal accelerations of n contacts, and what must be positive besides. The
+    cuts, (k, d) of each contact, part the ways in which it slides. `TooLargeError` is raised if more than
+    ``most`` sets of planes meet in lines.
     """
     for face in cone_faces(rows):
         if face >> len(cuts):

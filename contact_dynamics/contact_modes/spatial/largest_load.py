@@ -366,10 +366,7 @@ def closure(contacts: ContactSet) -> Closure:
 
 
 class _Held:
-    """The wrenches that forces at contacts can balance.
-
-    Wrenches are forces, N, and torques, N m.
-    """
+    """The wrenches, force, N, and torque, N m, that forces at contacts can balance."""
 
     def __init__(self, contacts: ContactSet, arms: FloatArray, length: float, share: float = 1.0) -> None:
         """Take contacts, arms (n, 3), m, a length, m, that compares both, and a factor of friction."""
@@ -390,10 +387,7 @@ class _Held:
         return cls(problem.contacts, arms, problem.body.mean_radius_of_gyration)
 
     def against(self, wrench_W: FloatArray) -> FloatArray:
-        """Return a plane, (6,), that separates a wrench from all that can be balanced, or zeros if it can be.
-
-        The plane's product with the wrench is negative, and with those that can be balanced it is not.
-        """
+        """Return a plane, (6,), that separates a wrench from what can be balanced, or zeros if it can be."""
         target = -wrench_W / self._scale
         rest = self._sum.rest(target)
         apart = NEAREST_REACHED * np.linalg.norm(target) * np.linalg.norm(rest)
@@ -408,11 +402,7 @@ def _last_held(
 ) -> float:
     """Return the largest factor up to ``start`` at which a wrench is held; below it, others may not be.
 
-    Args:
-        held: What is held.
-        wrench: The wrench at a factor.
-        nearer: The largest smaller factor at which the wrench is in a plane.
-        start: The factor to begin with.
+    The largest smaller factor at which the wrench is in a plane is ``nearer``.
     """
     factor = start
     plane = held.against(wrench(factor))

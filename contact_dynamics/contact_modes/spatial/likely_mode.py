@@ -77,8 +77,7 @@ def _known(letters: str, solution: Solution) -> Known:
 def _in_round_cones(search: Search, letters: str, solution: Solution) -> Solution | None:
     """Return a solution with the motion of another one, whose forces are in the round cones, or None.
 
-    Compliant contacts share friction by their motion, so that a foot with little load may exceed its limit
-    where others could take its share.
+    By their motion, compliant contacts may give a foot too much friction that others could take.
     """
     acting = [i for i, letter in enumerate(letters) if letter != SEPARATES]
     caused = search.of_forces @ solution.forces.ravel()
@@ -162,10 +161,7 @@ class _Compliant:
         return found
 
     def letters(self, now: _Response, gives_way: float) -> str:
-        """Return what contacts do, where those that move by no more than ``gives_way`` stay or stick.
-
-        Where that is zero, contacts without force separate, and those whose friction is at its limit slide.
-        """
+        """Return what contacts do, where those that move by no more than ``gives_way`` stay or stick."""
         sticks = self._rests & (now.grips if gives_way == 0.0 else now.speeds <= gives_way)
         return "".join(np.where(now.rising > gives_way, SEPARATES, np.where(sticks, STICKS, STAYS)).tolist())
 

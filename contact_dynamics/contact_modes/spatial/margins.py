@@ -194,14 +194,8 @@ def _nearest(
 ) -> tuple[float, FloatArray]:
     """Return the distance, N, to the mode's nearest boundary and the direction to it, (6,), in the metric.
 
-    The distance is NaN if the wrench is outside.
-
-    Args:
-        case: The body with its contacts.
-        search: The search of that case.
-        letters: Those of its touching contacts.
-        metric: (6,), m, by which a wrench is divided: ones, then the length that torques are divided by.
-        known: The directions, (3,), in which contacts begin to slide.
+    The distance is NaN if the wrench is outside. Contacts begin to slide in the ``known`` directions, (3,),
+    and the metric, (6,), m, is ones, then the length that torques are divided by.
     """
     search = copy.copy(search)
     search.pyramids = [
@@ -232,13 +226,10 @@ def _nearest(
 
 
 def _of_round_cones(every: RoundSum, rays: FloatArray, sides: FloatArray, target: FloatArray) -> FloatArray:
-    """Return the nearest boundary of round cones, (1, 7), that is found from boundaries of their pyramids.
+    """Return the nearest boundary of round cones, (1, 7), that is found from sides of their pyramids, (k, 7).
 
-    Args:
-        every: The wrenches of the mode, with weighted heights.
-        rays: (m, 7), the rays of these, with their own.
-        sides: (k, 7), of the pyramids, the nearest first.
-        target: (7,), the applied wrench.
+    The wrenches ``every`` have weighted heights, and their rays, (m, 7), their own. The nearest side comes
+    first.
     """
     high = rays[rays[:, 6] > ROW_TOLERANCE]
     height = HEIGHT_WEIGHT if every.rays[:, 6].any() else 0.0

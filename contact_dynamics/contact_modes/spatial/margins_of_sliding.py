@@ -58,10 +58,7 @@ def begin_to_slide(search: Search, letters: str) -> list[int]:
 def directions_of(
     case: SpatialCase, search: Search, letters: str, directions: FloatArray
 ) -> dict[int, FloatArray] | None:
-    """Return in which directions contacts begin to slide, or None if that depends on the wrench.
-
-    The touching contacts have these letters, and slide in these directions, (n, 3), unit, in the mode.
-    """
+    """Return in which directions contacts begin to slide, or None if that depends on the wrench."""
     turning = begin_to_slide(search, letters)
     if turning:
         if not _rests(case):
@@ -84,15 +81,8 @@ def least_change(
 ) -> tuple[float, FloatArray]:
     """Return the least change of the wrench that may leave a mode, N, and its direction, (6,), in the metric.
 
-    The change is NaN if it is unknown.
-
-    Args:
-        case: The body with its contacts.
-        search: The search of that case.
-        letters: Those of its touching contacts in the mode.
-        metric: (6,), m, by which a wrench is divided: ones, then the length that torques are divided by.
-        alone: Whether it is the only mode.
-        regular: Whether its motion and its forces are unique.
+    The change is NaN if it is unknown. The mode is ``alone`` if there are no others, and ``regular`` if its
+    motion and its forces are unique. The metric is that of `margins`.
     """
     found, least = np.zeros(6), 0.0
     if _rests(case) and STICKS not in letters:
@@ -234,13 +224,11 @@ class _WaysOut:
         carriers: Sequence[int],
         known: dict[int, FloatArray],
     ) -> FloatArray:
-        """Return the wrench less the nearest one of some motions and of forces at some contacts, (6,).
+        """Return the wrench less the nearest one of some motions and of forces at carriers, (6,).
 
-        Args:
-            zero: Rows, (k, 7) each, that vanish on the motions, besides those of the normals that stay.
-            positive: (k, 7), rows that are not negative on them.
-            carriers: The contacts.
-            known: The directions, (2,), in which contacts slide. Others have any force in their cones.
+        Rows ``zero``, (k, 7) each, and the normals that stay vanish on the motions, and rows ``positive``,
+        (k, 7), are not negative. Carriers have any force in their cones, or slide in ``known`` directions,
+        (2,).
         """
         rows = np.vstack([self._normals[self._staying], *zero])
         key = (rows.tobytes(), positive.tobytes())

@@ -45,16 +45,10 @@ def mode_with_forces(
     motion_unique: bool,
     slowest: float = STRICT,
 ) -> ResponseMode:
-    """Return the mode that forces bring about.
+    """Return the mode that forces, (n, 3), of the touching contacts bring about, in the units of the motion.
 
-    Args:
-        case: The body, or the mechanism, with its contacts.
-        touching_letters: s, c or f for each touching contact.
-        own: (n, 3), the forces of the touching contacts, in the units of the motion.
-        forces_unique: Whether the forces are the only ones with this mode.
-        motion_unique: Whether the accelerations are the only ones with this mode.
-        slowest: What begins to slide more slowly without friction sticks, relative to the largest
-            acceleration.
+    A contact without friction that begins to slide more slowly than ``slowest``, relative to the largest
+    acceleration, sticks.
     """
     motion, contacts, sliding, touching, _ = case
     forces = np.zeros((len(contacts), 3))
@@ -137,11 +131,8 @@ def least_forces(
 ) -> FloatArray:
     """Return the forces, (n, 3), of least sum of squares in the same cones and with the same effects.
 
-    Args:
-        effects: (k, 3 n), the effects of unit forces.
-        forces: (n, 3), forces in their cones.
-        axes: (n, 3), the axes of the cones, of unit length.
-        frictions: (n,), how far a force may lean from its axis. A cone with 0 is a ray.
+    The effects of unit forces are (k, 3 n). The axes of the cones, (n, 3), are unit vectors, from which
+    forces may lean by ``frictions``, (n,). A cone with 0 is a ray.
     """
     _, sizes, V = np.linalg.svd(effects, full_matrices=False)
     V = V[sizes > LEAST_FORCE_SEEN * sizes.max(initial=0.0)]
@@ -153,13 +144,7 @@ def least_forces(
 
 
 def misdirection(forces: FloatArray, directions: FloatArray, normals: FloatArray) -> float:
-    """Return the largest angle, rad, between friction and the way against sliding.
-
-    Args:
-        forces: (n, 3), N.
-        directions: (n, 3), unit, the directions in which contacts slide; zero where they do not slide.
-        normals: (n, 3), unit.
-    """
+    """Return the largest angle, rad, between friction and the way against sliding, if there is any."""
     largest = 0.0
     slack = ON_PYRAMIDS_SIDE * float(np.abs(forces).max(initial=0.0))
     for force, way, normal in zip(forces, directions, normals, strict=True):

@@ -44,13 +44,10 @@ class Lettered(NamedTuple):
 
 
 def modes_of_one(G: FloatArray, b: FloatArray, normal: FloatArray, friction: float) -> list[Lettered]:
-    """Return every mode of one contact at rest.
+    """Return every mode of one contact at rest with friction > 0.
 
-    Args:
-        G: (3, 3), the acceleration that a unit force causes.
-        b: (3,), its acceleration without force, in units in which the largest component is about 1.
-        normal: (3,), unit.
-        friction: Coulomb's mu, > 0.
+    A unit force causes the acceleration G, (3, 3). Without force it is b, (3,), whose largest component is
+    about 1.
     """
     found = []
     if float(normal @ b) > STRICT:

@@ -58,13 +58,9 @@ class _Contacts(NamedTuple):
 def is_only_motion(search: Search, forces: FloatArray, staying: Sequence[int] | None = None) -> bool:
     """Return whether it is proven that no mode has another motion than the one that forces bring about.
 
-    Where contacts stick, other forces may bring about the same motion. If the given ones prove nothing, those
-    are tried with which friction is that of a common virtual motion.
-
-    Args:
-        search: The case.
-        forces: (n, 3), of a mode, in the units of the motion.
-        staying: If given, only modes are meant in which just these contacts stay, as in the first.
+    Where contacts stick, other forces may bring about the same motion. If the given ones, (n, 3), prove
+    nothing, those are tried with which friction is that of a common virtual motion. If ``staying`` is given,
+    only modes are meant in which just these contacts stay, as in the first.
     """
     if not search.touching:
         return True
@@ -133,15 +129,9 @@ def _evened(
 ) -> FloatArray | None:
     """Return friction, (n, 3), with which forces bring a motion about, or None if none was found.
 
-    Where contacts stick, it is that of a common virtual motion, in parts of what slides would have.
-
-    Args:
-        search: The case.
-        contacts: The contacts.
-        motion: (d,), the motion.
-        ways: (n, 3), the friction of contacts that slide, reversed, in parts of the largest.
-        sticks: (n,), which contacts stick.
-        rising: (n,), their normal accelerations in the motion. Those that leave do not press.
+    Where contacts stick, it is that of a common virtual motion, in parts of what slides would have. That of
+    contacts that slide is given as ``ways``, (n, 3), reversed, in parts of the largest. Those that leave do
+    not press.
     """
     left = search.mass @ (search.motion[:, -1] - motion)
     normal = contacts.rising.T * (rising <= SAME_MOTION)  # (d, n)
@@ -191,12 +181,9 @@ def _excludes_others(
 ) -> bool:
     """Return whether it is proven that no mode has another motion.
 
-    Args:
-        search: The case.
-        contacts: The contacts that may stay.
-        ways: (n, 3), friction in the first mode as parts of the largest, reversed.
-        speeds: (n,), how fast they begin to slide; zero where they stick, or slide already.
-        within: Whether all these contacts stay.
+    Only modes are meant in which all contacts stay, if ``within``. In the first mode, friction is ``ways``,
+    (n, 3), as parts of the largest, reversed. Contacts begin to slide at ``speeds``, (n,), which are zero
+    where they stick, or slide already.
     """
     basis = seen_and_unseen(contacts.rising)[1].T if within else np.eye(search.freedoms)
     if basis.size == 0:

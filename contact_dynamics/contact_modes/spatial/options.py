@@ -63,15 +63,10 @@ def pyramid_of(
     facets: int,
     first: int,
 ) -> Pyramid:
-    """Return the force edges of a touching contact.
+    """Return the force edges of a touching contact, which slides with this velocity, or is at rest.
 
-    Args:
-        normal: (3,), unit.
-        friction: Coulomb's mu.
-        sliding: (3,), its tangential velocity; zero where it is at rest.
-        free: (3,), its acceleration without contact forces, which edge 0 opposes.
-        facets: The number of edges of the pyramid.
-        first: The name of the first edge force.
+    Edge 0 opposes its acceleration without contact forces, ``free``. The name of the first edge force is
+    ``first``.
     """
     speed = float(np.linalg.norm(sliding))
     if friction == 0.0:
@@ -83,12 +78,9 @@ def pyramid_of(
 
 
 def any_letter(pyramid: Pyramid, point: FloatArray, normal_name: int) -> Option:
-    """Return the letters s and f of one touching contact, as a group. `ways_of_sliding` returns the others.
+    """Return the letters s and f of one touching contact, as a group.
 
-    Args:
-        pyramid: Its force edges.
-        point: (3, d + 1), its acceleration as a function of the motion.
-        normal_name: The name of its normal acceleration.
+    `ways_of_sliding` returns the others.
     """
     own = range(pyramid.first, pyramid.first + len(pyramid.edges))
     nothing = np.zeros((0, point.shape[1]))
@@ -105,13 +97,9 @@ def any_letter(pyramid: Pyramid, point: FloatArray, normal_name: int) -> Option:
 def ways_of_sliding(
     pyramid: Pyramid, point: FloatArray, acting: tuple[int, int] | None = None
 ) -> tuple[Option, ...]:
-    """Return the letters of a contact that slides, in arcs of directions.
+    """Return the letters of a contact that slides, in arcs of directions that together go around the circle.
 
-    Args:
-        pyramid: Its force edges, more than one.
-        point: (3, d + 1), its acceleration as a function of the motion.
-        acting: The first of some neighbouring edges and their number, where only these can oppose the
-            sliding; None where any edge can. Then the arcs together go around the circle.
+    If only some neighbouring edges can oppose the sliding, ``acting`` is the first of them and their number.
     """
     count = len(pyramid.edges)
     along = _along_edges(pyramid, point)
@@ -133,10 +121,7 @@ def _along_edges(pyramid: Pyramid, point: FloatArray) -> FloatArray:
 
 
 def _slides(arc: list[int], first_name: int, along: FloatArray) -> Option:
-    """Return the letters of sliding within an arc of items.
-
-    The edge that opposes the sliding most has the least product with it, alone or with its neighbour.
-    """
+    """Return the letters of sliding within an arc: the edge against it has the least product with it."""
     count = len(along)
     first, last = arc[0], arc[-1]
     acting = {(item + side) // 2 % count for item in arc for side in (0, 1)}
@@ -163,12 +148,10 @@ def _slides(arc: list[int], first_name: int, along: FloatArray) -> Option:
 
 
 def acting_edges(directions: FloatArray, count: int) -> NDArray[np.bool_]:
-    """Return which edges, (m, count), of each contact's pyramid can oppose some sliding.
+    """Return which of ``count`` edges of each contact's pyramid can oppose some sliding, (m, count).
 
-    Args:
-        directions: (m, 2, p), in each pyramid's frame. Each contact slides along positive sums of these;
-            where such a sum can vanish, any edge may act.
-        count: The number of edges of a pyramid.
+    Each contact slides along positive sums of directions, (m, 2, p), in its frame; if they can vanish, any
+    may act.
     """
     starts, ranges, clear = ranges_of(directions)
     sector = 2.0 * math.pi / count
@@ -184,9 +167,6 @@ def ranges_of(directions: FloatArray) -> tuple[FloatArray, FloatArray, NDArray[n
     """Return in which range of directions each contact slides: where it begins, its width, both rad.
 
     The third value is false where the contact may slide in opposite directions, or stick.
-
-    Args:
-        directions: (m, 2, p), as for `acting_edges`.
     """
     x, y = directions[:, 0], directions[:, 1]
     angles = np.arctan2(y, x)

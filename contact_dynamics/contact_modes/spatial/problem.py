@@ -295,13 +295,7 @@ class SpatialCase(NamedTuple):
 
 
 def spatial_case(problem: SpatialContactProblem, *, within: float = 0.0) -> SpatialCase | tuple[int, ...]:
-    """Return the case, or the contacts that approach.
-
-    Contacts may be moved ``within`` so far to be flush (`made_flush`), and stay as they are if that is 0.
-
-    Raises:
-        TooLargeError: more contacts touch than `MAX_DYNAMIC_CONTACTS`.
-    """
+    """Return the case, with contacts moved ``within`` so far to be flush, or the contacts that approach."""
     state, contacts, tolerance = problem.state, problem.contacts, problem.velocity_tolerance
     velocities = relative_velocities(state, contacts)
     touching = touching_of(contacts, velocities, tolerance)
@@ -372,11 +366,7 @@ def _case_of(
 
 
 def search_of_few_edges(case: SpatialCase, facets: int) -> Search:
-    """Return the search for the modes of a case whose friction pyramids have few edges.
-
-    Raises:
-        TooLargeError: the pyramids have more than `MAX_EDGES` edges together.
-    """
+    """Return the search for the modes of a case, or raise `TooLargeError` if pyramids have too many edges."""
     search = search_of(case, facets)
     edges = sum(len(pyramid.edges) for pyramid in search.pyramids)
     if edges > MAX_EDGES:
@@ -387,12 +377,9 @@ def search_of_few_edges(case: SpatialCase, facets: int) -> Search:
 def search_of(case: SpatialCase, facets: int, *, from_rest: bool = False) -> Search:
     """Return the search for the modes of a case, in the motion's units.
 
-    Args:
-        case: The case.
-        facets: The number of edges of friction pyramids.
-        from_rest: Whether one body that turns about contacts at rest is seen as one at rest. Its points there
-            all have the same centripetal acceleration. With that taken from the acceleration of the mass
-            centre, it moves from rest under another load, and the motion of the search is not the case's.
+    If ``from_rest``, one body that turns about contacts at rest is seen as one at rest. Its points there all
+    have the same centripetal acceleration. With that taken from the acceleration of the mass centre, it moves
+    from rest under another load, and the motion of the search is not the case's.
     """
     motion, contacts, sliding, touching, _ = case
     turning, free = motion.turning[touching], motion.free
@@ -443,12 +430,8 @@ def made_flush(contacts: ContactSet, centre: FloatArray, within: float) -> Conta
     """Return contacts within a tolerance of the given ones that are flush; the given ones if those are.
 
     Noise moves them all. Where fewer are not flush, chance made their coordinates nearly the same, and they
-    stay as they are.
-
-    Args:
-        contacts: The contacts.
-        centre: (3,), m, the centre of mass.
-        within: rad for normals, and for places a share of the reach, by which coordinates may move.
+    stay as they are. Coordinates may move ``within`` so many rad for normals, and for places such a share of
+    the reach.
     """
     if len(contacts) < 2:
         return contacts

@@ -53,8 +53,8 @@ class Touching(NamedTuple):
 class PyramidPrograms(ABC):
     """Touching contacts, and programs about their forces.
 
-    Motions have d components, such as (a, alpha), in units that the caller chooses so that the accelerations
-    of contact points are about 1. They are affine functions of the edge forces.
+    Motions have d components, such as (a, alpha), in units in which contact points have accelerations of
+    about 1.
     """
 
     def __init__(
@@ -144,10 +144,7 @@ class PyramidPrograms(ABC):
                 self._decide_staying(program, parts)
 
     def _choices(self) -> list[int] | None:
-        """Return all choices of contacts that can stay, each as the bits of an integer, or None if unknown.
-
-        They are known where all contacts are on one plane, and then they are few.
-        """
+        """Return all choices of contacts on one plane that can stay, each as bits, or None if unknown."""
         rows = self._normals[:, :-1]
         basis = seen_and_unseen(rows)[0]
         if len(basis) != _FLUSH or self._normals[:, -1].any():
@@ -170,9 +167,9 @@ class PyramidPrograms(ABC):
         """Decide all modes in which the same contacts stay."""
 
     def _solved(self, program: AnyProgram) -> AnyProgram | None:
-        """Return a program that holds some edge forces, or None if none satisfy its conditions.
+        """Return a program that holds edge forces, or None.
 
-        Where rounding may hide them, the program is solved with care. What narrows it is solved so too.
+        Where rounding may hide them, care is taken from then on.
         """
         self._count()
         if program.solve():

@@ -76,10 +76,7 @@ class Region(NamedTuple):
         return found
 
     def halves(self, count: int) -> tuple[Region, Region] | None:
-        """Return the halves of the region.
-
-        Return None if the region is narrow enough for pyramids of ``count`` edges.
-        """
+        """Return the halves of the region, or None if it is narrow enough for pyramids of ``count`` edges."""
         narrow = min(_NARROW, 0.8 * math.pi / count) if len(self.rays) <= 3 else _NARROW_OF_MORE
         return self.cut if self.width >= narrow else None
 
@@ -110,10 +107,7 @@ class Region(NamedTuple):
         return one, other, 2.0 * math.atan2(math.sqrt(apart @ apart), math.sqrt(between @ between))
 
     def part(self, rows: FloatArray) -> FloatArray:
-        """Return unit rays, (k, p), whose positive sums hold what of the region some rows, (m, p), allow.
-
-        The rows must not be negative there. Where that would take many rays, the rays hold more.
-        """
+        """Return unit rays, (k, p), whose sums hold what of the region some rows, (m, p), allow."""
         rays: FloatArray = self.rays / np.sqrt((self.rays * self.rays).sum(axis=1))[:, None]
         for row in rows:
             heights = rays @ row
@@ -131,10 +125,7 @@ class Region(NamedTuple):
         return acting_edges(self.along(image), count)
 
     def along(self, image: Image) -> FloatArray:
-        """Return how each contact slides on each ray, (m, 2, p).
-
-        On rays of other groups it does not move, and a middle way stands for none.
-        """
+        """Return how each contact slides on each ray, (m, 2, p), or on those of its group together."""
         found: FloatArray = image.maps @ self.rays.T
         if self.groups.any():
             moves = image.maps.any(axis=1) @ (self.groups[:, None] == self.groups)  # with the ray's group
@@ -144,11 +135,8 @@ class Region(NamedTuple):
     def friction(self, image: Image, tangential: FloatArray) -> FloatArray:
         """Return the power of friction on each ray, for unit normal force at each contact, (m, p).
 
-        Friction acts along the edge that opposes the sliding in the middle of the region most.
-
-        Args:
-            image: The space of the region.
-            tangential: (m, K, 2), the components of each pyramid's edges along its frame.
+        Friction acts along the edge, of ``tangential`` components (m, K, 2), that most opposes sliding in the
+        middle.
         """
         along = image.maps @ self.rays.T  # (m, 2, p)
         opposing = (tangential @ along.sum(axis=2)[:, :, None])[:, :, 0].argmin(axis=1)
@@ -165,10 +153,7 @@ class Flat(NamedTuple):
     image: Image  # the tangential motions of the contacts that need not stick
 
     def parts(self, normals: FloatArray, frames: FloatArray) -> Iterator[Flat]:
-        """Yield the flats in which one contact more sticks, with all contacts that must then stick too.
-
-        A flat whose motions differ only in size has no such parts.
-        """
+        """Yield the flats in which one contact more sticks, with all contacts that must then stick too."""
         if len(self.image.coordinates) > 1:
             for i in range(len(frames)):
                 if i not in self.stuck:
@@ -176,13 +161,7 @@ class Flat(NamedTuple):
 
 
 def flat_of(normals: FloatArray, frames: FloatArray, chosen: tuple[int, ...]) -> Flat:
-    """Return the motions in which some contacts stick.
-
-    Args:
-        normals: The normal accelerations, as for `image_of`.
-        frames: The tangential ones, as for `image_of`, of all contacts that may stick or slide.
-        chosen: The contacts.
-    """
+    """Return the motions in which chosen contacts stick, with the rows of `image_of`."""
     sticking = frames[list(chosen)].reshape(-1, normals.shape[1])
     image = image_of(np.vstack([normals, sticking]), frames)
     moves = np.abs(image.maps).max(axis=(1, 2), initial=0.0) > ROW_TOLERANCE
@@ -191,12 +170,7 @@ def flat_of(normals: FloatArray, frames: FloatArray, chosen: tuple[int, ...]) ->
 
 
 def image_of(normals: FloatArray, frames: FloatArray) -> Image:
-    """Return the space of common tangential accelerations.
-
-    Args:
-        normals: (k, d), normal accelerations of the contacts that stay, as functions of the motion.
-        frames: (m, 2, d), tangential accelerations of the contacts whose sliding is asked for.
-    """
+    """Return the space of common tangential accelerations, (m, 2, d), where normal ones, (k, d), vanish."""
     free = seen_and_unseen(normals)[1]
     along = frames.reshape(-1, normals.shape[1]) @ free.T
     basis, rest = seen_and_unseen(along)
@@ -213,10 +187,7 @@ def image_of(normals: FloatArray, frames: FloatArray) -> Image:
 
 
 def _groups(along: FloatArray) -> NDArray[np.intp]:
-    """Return the group of each contact, (m,), from its rows, (2 m, q), so that groups move independently.
-
-    Those that do not are joined by the projector on what all rows can be together.
-    """
+    """Return the groups, (m,), of contacts that do not move independently, by a projector on all rows."""
     count = len(along) // 2
     projector = np.abs(along @ np.linalg.pinv(along, rcond=ROW_TOLERANCE))
     joined = projector.reshape(count, 2, count, 2).max(axis=(1, 3)) > ROW_TOLERANCE
@@ -233,10 +204,8 @@ def _groups(along: FloatArray) -> NDArray[np.intp]:
 def directions(along: FloatArray) -> list[tuple[float, float] | None]:
     """Return the first and the last direction, rad, in which each contact slides in a region.
 
-    It is None where a contact may slide in opposite directions, or stick.
-
-    Args:
-        along: (m, 2, k), how each contact slides on the rays whose positive sums are the region.
+    It is None where a contact may slide in opposite directions, or stick. On its rays it slides ``along``,
+    (m, 2, k).
     """
     starts, ranges, clear = ranges_of(along)
     return [
@@ -246,12 +215,7 @@ def directions(along: FloatArray) -> list[tuple[float, float] | None]:
 
 
 def directions_where_all_slide(maps: FloatArray, rays: FloatArray) -> list[tuple[float, float] | None]:
-    """Return what `directions` does, without the motions in which a contact sticks.
-
-    Args:
-        maps: (m, 2, p), as an image has them.
-        rays: (k, p), whose positive sums are the region.
-    """
+    """Return what `directions` does on rays, (k, p), without the motions in which a contact sticks."""
     along = maps @ rays.T
     slides = np.sqrt((along * along).sum(axis=1)) > ROW_TOLERANCE * np.linalg.norm(rays, axis=1)
     middle = (along * slides[:, None]).sum(axis=2)
@@ -259,15 +223,10 @@ def directions_where_all_slide(maps: FloatArray, rays: FloatArray) -> list[tuple
 
 
 def gains_in(image: Image, power: FloatArray, mass: FloatArray) -> FloatArray:
-    """Return the power of the applied wrench on unit coordinates, (p,).
+    """Return the power of the applied wrench on unit coordinates, (p,), from that on unit motions, (d,).
 
     Unseen motions have no part in it, since each motion is taken with those of them that leave it no kinetic
     energy in common with the others.
-
-    Args:
-        image: The space of the coordinates.
-        power: (d,), the power of the applied wrench on unit motions.
-        mass: (d, d), the forces and torques that unit motions need.
     """
     unseen = image.unseen @ mass
     rest = np.linalg.solve(unseen @ image.unseen.T, image.unseen @ power)

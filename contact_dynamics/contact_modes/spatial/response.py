@@ -154,11 +154,7 @@ def _checked_response(given: ArrayLike, normals: FloatArray) -> FloatArray:
 
 
 def response_contact_modes(problem: ResponseContactProblem) -> ResponseModeAnswer:
-    """Return the verdict on the contacts of a mechanism and all consistent modes.
-
-    Raises:
-        TooLargeError: as for `answer.spatial_contact_modes`.
-    """
+    """Return the verdict on the contacts of a mechanism and all consistent modes."""
     sizes, axes = np.linalg.eigh(problem.inverse_inertia_W)
     seen = sizes > SINGULAR_RESPONSE * sizes.max(initial=0.0)
     contacts, velocities = _on_surfaces(problem)
@@ -309,11 +305,7 @@ class _Dynamics(NamedTuple):
 
 
 def bodies_contact_modes(problem: BodiesContactProblem) -> BodiesModeAnswer:
-    """Return the verdict on all contacts of several bodies, and all consistent modes.
-
-    Raises:
-        TooLargeError: as for `answer.spatial_contact_modes`.
-    """
+    """Return the verdict on all contacts of several bodies, and all consistent modes."""
     found = considered(partial(_case_within, problem))
     modes = shown_modes(found)
     seen = found.case.contacts if isinstance(found, Considered) else problem.contacts

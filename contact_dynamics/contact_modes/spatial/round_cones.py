@@ -78,11 +78,8 @@ def held_by_round_cones(
 ) -> Held:
     """Return forces at all touching contacts, within their round cones, that make rows of the motion vanish.
 
-    Args:
-        search: The case. What slides already counts as at rest.
-        rows: (k, d + 1), of about unit length.
-        smooth: Whether friction is left out.
-        tolerance: Rows that differ by less are one.
+    What slides already counts as at rest. The rows, (k, d + 1), are of about unit length, and those that
+    differ by less than the tolerance are one. If ``smooth``, friction is left out.
     """
     demand = _demand(search, rows, tolerance)
     if demand is None:
@@ -92,14 +89,10 @@ def held_by_round_cones(
 
 
 def moved_by_round_cones(search: Search, axes: FloatArray, frictions: FloatArray, way: FloatArray) -> Held:
-    """Return forces that move a body in a given direction.
+    """Return forces that move a body in a given direction, by at least ``way``, (d,).
 
-    Args:
-        search: The case.
-        axes: (n, 3), for each touching contact the axis of the cone of its forces, with a unit normal part.
-            It is zero for a contact without force.
-        frictions: (n,), how far forces in each cone may lean from its axis.
-        way: (d,), the least motion in that direction.
+    The axes, (n, 3), of the cones have a unit normal part, or are zero for a contact without force, and
+    forces may lean from them by ``frictions``, (n,).
     """
     acting = axes.any(axis=1)
     of_forces = search.of_forces.reshape(search.freedoms, -1, 3)[:, acting]
@@ -130,13 +123,9 @@ def wedged_by_round_cones(search: Search) -> Held:
 def summed_by_round_cones(
     effects: FloatArray, target: FloatArray, axes: FloatArray, frictions: FloatArray
 ) -> Held:
-    """Return forces within round cones whose effects sum to a target.
+    """Return forces within round cones whose effects, (k, 3 n), sum to a target, (k,).
 
-    Args:
-        effects: (k, 3 n), what unit forces do.
-        target: (k,), what they must sum to.
-        axes: (n, 3), the axes of the cones.
-        frictions: (n,), how far forces lean from them. A cone with 0 is a ray.
+    Forces lean from the axes, (n, 3), by at most ``frictions``, (n,). A cone with 0 is a ray.
     """
     return _nearest(_balanced(effects, target), axes, frictions)
 
@@ -144,11 +133,8 @@ def summed_by_round_cones(
 def polished(search: Search, rows: FloatArray, forces: FloatArray) -> FloatArray:
     """Return forces, (n, 3), that make rows of the motion vanish to rounding, where the cones allow that.
 
-    Args:
-        search: The search, as for `held_by_round_cones`.
-        rows: The rows, as for `held_by_round_cones`.
-        forces: (n, 3), in the units of the motion. They lie in the round cones, and make the rows vanish to
-            a tolerance. They are returned themselves where the better ones would leave the cones.
+    The given ones lie in the cones, and do so to a tolerance. They are returned if better ones would leave
+    the cones.
     """
     demand = _demand(search, rows, ROUND_CONE_APART)
     if demand is None or demand.images.size == 0:
@@ -169,8 +155,8 @@ def polished(search: Search, rows: FloatArray, forces: FloatArray) -> FloatArray
 def hold_alone(search: Search, forces: FloatArray) -> bool:
     """Return whether no other forces in the round cones do the same as forces, (n, 3), that hold a body.
 
-    Those of contacts that press must be independent, and contacts that do not press must not be able to press
-    against what these can balance.
+    Those of contacts that press must be independent, and the others must not press against what these
+    balance.
     """
     normals, frictions = _cones(search)
     wrenches = (
@@ -216,12 +202,7 @@ def _demand(search: Search, rows: FloatArray, tolerance: float) -> _Demand | Non
 
 
 def _balanced(effects: FloatArray, target: FloatArray) -> _Demand:
-    """Return a demand, in units in which all contacts together do as much in every direction.
-
-    Args:
-        effects: (k, 3 n), what unit forces do.
-        target: (k,), what they must sum to.
-    """
+    """Return a demand, in units in which all contacts together do as much in every direction."""
     n = effects.shape[1] // 3
     load = float(np.linalg.norm(target))
     # Contacts that are nearly the same have little effect in some directions, where little is demanded. The
@@ -285,13 +266,7 @@ def _nearest(demand: _Demand, normals: FloatArray, frictions: FloatArray) -> Hel
 
 
 def _extremes(power: FloatArray, axes: FloatArray, frictions: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return the forces of unit normal part in cones that have the most power, (n, 3), and that power, (n,).
-
-    Args:
-        power: (n, 3), the power of unit forces.
-        axes: (n, 3), the axes of the cones.
-        frictions: (n,), how far forces lean from them.
-    """
+    """Return forces of unit normal part in cones that have the most power, (n, 3), and that power, (n,)."""
     along = (power * axes).sum(axis=1)
     across = power - along[:, None] * axes
     slopes = np.sqrt((across * across).sum(axis=1))

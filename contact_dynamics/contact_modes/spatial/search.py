@@ -68,9 +68,7 @@ class Search(PyramidPrograms):
     def run(self, *, grouped: bool = False) -> list[Found]:
         """Return all modes.
 
-        Args:
-            grouped: Whether one mode represents all with the same letters, whatever their sectors, where the
-                motion of one of them is not unique. Otherwise each of them is found.
+        If ``grouped``, one represents those with its letters, if the motion is not unique.
         """
         self._ways: dict[tuple[int, tuple[int, int] | None], tuple[Option, ...]] = {}
         self._found: dict[tuple[tuple[str, int], ...], Found] = {}
@@ -180,9 +178,9 @@ class Search(PyramidPrograms):
     def _dissipates(self, region: Region, program: AnyProgram, common: Common) -> bool:
         """Return whether friction may take no more power than the applied wrench has.
 
-        Friction takes the most that it can, so at least what the same normal forces would with any fixed
-        share of friction. The remaining power is linear in the motion: if it is negative on each ray of the
-        region, it is negative in all of it.
+        Friction takes at least what the same normal forces would with any fixed share of friction. The
+        remaining power is linear in the motion: if it is negative on each ray of the region, it is negative
+        in all of it.
         """
         if common.gains is None:
             return True

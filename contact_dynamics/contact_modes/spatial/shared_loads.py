@@ -45,12 +45,8 @@ contacts may stick, and its friction has no direction."""
 def sliding_together(search: Search, letters: str, motions: Sequence[FloatArray]) -> Held:
     """Return forces with the letters, to `FEASIBLE`, or none.
 
-    It is certain that there are none, or that no others move the body differently, if it says so.
-
-    Args:
-        search: The case, of a body at rest.
-        letters: s, c or f for each touching contact.
-        motions: Motions, (d,), in directions near to which the body may slide.
+    It is certain that there are none, or that no others move the body differently, if it says so. The body is
+    at rest, and may slide in directions near those of the motions, (d,).
     """
     if any(contact.point[:, -1].any() or contact.sliding.any() for contact in search.touching):
         return Held(None, certain=False)
@@ -162,13 +158,7 @@ def _problem(search: Search, letters: str, free_motions: FloatArray) -> _Problem
 
 
 def _turned(problem: _Problem, direction: FloatArray, slowest: float) -> FloatArray | None:
-    """Return forces, (n, 3), with which the body slides in a direction near the given one, or None.
-
-    Args:
-        problem: The problem.
-        direction: (p,), of the common motion.
-        slowest: The least size of the motion.
-    """
+    """Return forces, (n, 3), with which the body slides, not too slowly, near a direction, (p,), or None."""
     for _ in range(_MAX_STEPS):
         direction = direction / np.linalg.norm(direction)
         ways = problem.slides @ direction

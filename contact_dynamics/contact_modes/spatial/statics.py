@@ -102,15 +102,10 @@ def _rows(arms: FloatArray, pyramids: list[FloatArray], length: float) -> FloatA
 
 
 def _room(rows: FloatArray, target: FloatArray, *, wedged: bool) -> float:
-    """Return how far inside the cone of positive combinations of rows a wrench surely lies, N.
+    """Return how far inside the cone of positive combinations of unit rows, (k, 6), a wrench surely lies, N.
 
     Rows that nearly agree are one row, which makes the cone smaller if anything. It is 0 where rounding hides
-    how far inside the wrench lies.
-
-    Args:
-        rows: (k, 6), unit.
-        target: (6,), the wrench.
-        wedged: Whether contact forces can balance each other, without which no cone holds every wrench.
+    how far inside the wrench lies. If the body is not ``wedged``, no cone holds every wrench.
     """
     if len(rows) == 0:
         return 0.0

@@ -196,11 +196,7 @@ def ways_of(search: Search) -> list[tuple[Way, ...]]:
 
 
 def sliding_range(pyramid: Pyramid, way: Way) -> tuple[FloatArray, FloatArray]:
-    """Return the unit tangents, (3,) each, between which a contact slides, anticlockwise about its normal.
-
-    Both are zero where it does not slide or may slide any way. They are equal where it slides in that one
-    direction.
-    """
+    """Return unit tangents, (3,), between which a contact slides, anticlockwise, or zeros if any way is."""
     if way.item < 0 or pyramid.frame is None:
         return np.zeros(3), np.zeros(3)
     count = len(pyramid.edges)
@@ -214,9 +210,8 @@ def sliding_range(pyramid: Pyramid, way: Way) -> tuple[FloatArray, FloatArray]:
 def _borders(contact: Touching, pyramid: Pyramid) -> FloatArray:
     """Return rows, (k, 7), that are positive where a contact slides anticlockwise of a border.
 
-    Each sector of sliding is opposite to an edge, and border j lies between sectors j and j + 1. If their
-    number is even, the second half would be the first half's rows, reversed, and is left out. A contact whose
-    direction of sliding does not matter has no rows.
+    Border j lies between the sectors opposite to edges j and j + 1. If their number is even, the second half
+    would be the first half's rows, reversed, and is left out.
     """
     if pyramid.frame is None:
         return np.zeros((0, 7))
@@ -227,10 +222,7 @@ def _borders(contact: Touching, pyramid: Pyramid) -> FloatArray:
 
 
 def _way(signs: list[int], count: int) -> Way:
-    """Return what a contact that stays does, from the side of each of its borders that it slides to.
-
-    Its pyramid has ``count`` edges.
-    """
+    """Return what a contact that stays does, from the side of each of its borders that it slides to."""
     if not signs:
         return Way(STAYS, -1)
     if not any(signs):

@@ -68,14 +68,10 @@ def wrench_generators(
     metric: FloatArray,
     further: FloatArray = np.zeros((0, 7)),  # noqa: B008 (it is not changed)
 ) -> Generators:
-    """Return the wrenches under which touching contacts can do as stated.
+    """Return the wrenches under which touching contacts can do as stated, each in its way.
 
-    Args:
-        case: The body with its contacts.
-        search: The search of that case.
-        ways: The way of each touching contact.
-        metric: (6,), m, by which a wrench is divided: ones, then the length that torques are divided by.
-        further: (k, 7), further rows that are not negative on the motion.
+    The metric, (6,), divides a wrench: ones, then a length, m. Rows ``further``, (k, 7), are not negative on
+    the motion.
     """
     asked = [_conditions(*of) for of in zip(search.touching, search.pyramids, ways, strict=True)]
     needed = needed_wrenches(
@@ -113,8 +109,7 @@ def with_round_cones(
 ) -> RoundSum:
     """Return generated wrenches with those of round friction cones at some of the touching contacts.
 
-    Heights are weighted, so that the nearest sum has the height of its target: by `HEIGHT_WEIGHT`, or by zero
-    if nothing has a height but the motion that vanishes.
+    A height has the weight `HEIGHT_WEIGHT`, or zero if nothing has a height but the motion that vanishes.
     """
     weights = np.append(np.ones(6), HEIGHT_WEIGHT if np.any(case.motion.turning) else 0.0)
     points = [case.motion.points[3 * case.touching[k] :][:3] / metric for k in contacts]
