@@ -168,6 +168,10 @@ def test_the_hull_of_several_shapes_is_a_warning_and_balls_beside_boxes_are_an_e
         (urdf(BOX).replace('value="0.4"', 'value="-1"'), "mass must be .*> 0"),
         (urdf(BOX, moments={**MOMENTS, "izz": 1.0}), "I1 \\+ I2 >= I3"),
         (urdf(collision('<torus size="1"/>')), "geometry must be a box, .*, got <torus>"),
+        (
+            urdf(collision("<mesh><uri>no.stl</uri><submesh><name>lid</name></submesh></mesh>")),
+            "mesh must be a file of its own for each part, got <submesh>",
+        ),
         (urdf(collision('<mesh filename="no.stl"/>')), "file must be a mesh: STL, .*no.stl"),
         (urdf(collision('<mesh filename="package://no/a.stl"/>')), "mesh must be a file beside"),
         (

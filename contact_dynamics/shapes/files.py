@@ -181,6 +181,8 @@ def _primitive(collision: Element, folder: Path) -> Primitive:
         lengths = ("radius",) if kind == "sphere" else ("radius", "length")
         numbers = np.array([_numbers(solid, length, 1)[0] for length in lengths])
     elif kind == "mesh":
+        if solid.find("submesh") is not None:
+            raise InvalidFieldError("mesh", "<submesh>", "a file of its own for each part")
         file = _file(_text(solid, "filename") or _text(solid, "uri") or "", folder)
         scale = _parsed(_text(solid, "scale") or "1 1 1", "scale", 3)
         kind, numbers = "vertices", _corners(f"mesh {file.name}", read_mesh(file, scale)[0])
