@@ -132,8 +132,9 @@ class Serving:
 
     def __str__(self) -> str:
         """Return in words what is served."""
-        bodies = ", ".join(body.name for body in self._core.world.bodies) or "none"
-        return f"bodies {bodies}; log {self._log.folder or 'off'}"
+        names = [body.name for body in self._core.world.bodies]
+        bodies = ", ".join(name if name in self._bodies else f"{name} (no state topic)" for name in names)
+        return f"bodies {bodies or 'none'}; log {self._log.folder or 'off'}"
 
     @property
     def is_active(self) -> bool:

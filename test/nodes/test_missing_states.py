@@ -43,7 +43,8 @@ def newest(client: Client) -> Any:
 
 
 def test_no_state_says_what_became_of_those_that_came(tmp_path: Path) -> None:
-    with process("server", *ARGUMENTS, "-p", f"log_directory:={tmp_path}", ready="ready"):
+    ready = "ready: bodies brick, parcel (no state topic); log"
+    with process("server", *ARGUMENTS, "-p", f"log_directory:={tmp_path}", ready=ready):
         client = Client()
         try:
             states = client.publisher(Odometry, "/brick/odometry")
