@@ -130,10 +130,11 @@ def _gaps(evaluation: Evaluation) -> Iterator[str]:
 def _table(kind: EventKind, summaries: Sequence[Summary]) -> Iterator[str]:
     columns = COLUMNS[kind]
     if not columns:
-        yield f"  {'horizon, ms':>11}  {'requests':>8}{'rejected':>10}{'correct, %':>12}"
+        yield f"  {'horizon, ms':>11}  {'requests':>8}{'rejected':>10}{'impact':>8}{'correct, %':>12}"
         for each in summaries:
             correct = "" if each.modes_right is None else f"{100.0 * each.modes_right:.0f}"
-            yield f"  {1e3 * each.horizon:>11.0f}  {each.asked:>8}{each.refused:>10}{correct:>12}"
+            counts = f"{each.asked:>8}{each.refused:>10}{each.impacts:>8}"
+            yield f"  {1e3 * each.horizon:>11.0f}  {counts}{correct:>12}"
         return
     heads = "".join(f"{UNITS[name][0]:>{_WIDE}}" for name in columns)
     inside = "/".join(f"{100.0 * level:.0f}" for level in LEVELS)
@@ -150,7 +151,14 @@ def _table(kind: EventKind, summaries: Sequence[Summary]) -> Iterator[str]:
 
 
 def _conclusion(summaries: Sequence[Summary]) -> Iterator[str]:
-    """Yield what the table of impacts says about the laws, in words."""
+    """Yield what a table says about laws or contact modes, in words."""
+    worst = max(summaries, key=lambda each: each.impacts / each.asked)
+    if worst.impacts:
+        yield (
+            f"  {worst.impacts} of {worst.asked} requests {1e3 * worst.horizon:.0f} ms in advance returned "
+            "an impact: the published velocity still approached the surface. They do not count as correct or "
+            "incorrect contact modes"
+        )
     nearest = [each for each in summaries if each.horizon == summaries[0].horizon and each.errors]
     without = [each for each in nearest if each.method is Method.NO_IMPACT]
     laws = [each for each in nearest if each.method is Method.FIT and each.law is not None]

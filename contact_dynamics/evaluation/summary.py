@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from contact_dynamics.contact_modes.result import ModeVerdict
 from contact_dynamics.evaluation.settings import Law, Method
 from contact_dynamics.measured.events import EventKind
 from contact_dynamics.records import Record
@@ -78,7 +79,9 @@ class Summary(Group):
         asked: How many questions there were.
         refused: How many of them had no answer.
         errors: The distribution of each error of `ERRORS` that there is.
-        modes_right: Share of the modes that were right. It is None where no modes were asked about.
+        impacts: How many questions about a mode were answered by an impact: by its published velocity the
+            body still approached its surface.
+        modes_right: Share of the other modes that were right. It is None without any.
         covered: Share of the measured values inside of the regions of `LEVELS`. It is empty
             without covariances.
         covariances: How many predictions had covariances.
@@ -87,6 +90,7 @@ class Summary(Group):
     asked: int
     refused: int
     errors: dict[str, Spread]
+    impacts: int
     modes_right: float | None
     covered: tuple[float, ...]
     covariances: int
@@ -131,13 +135,15 @@ def _summary(group: Group, rows: Sequence[Comparison]) -> Summary:
         found = [error for row in rows if (error := getattr(row, name)) is not None]
         if found:
             errors[name] = spread_of(found)
-    modes = [row.mode_is_right for row in rows if row.mode_is_right is not None]
+    answered = [row for row in rows if row.mode_is_right is not None]
+    modes = [bool(row.mode_is_right) for row in answered if row.predicted_mode != ModeVerdict.IMPACT.name]
     known = [row for row in rows if row.distance is not None]
     return Summary(
         **Group.shared(group),
         asked=len(rows),
         refused=sum(bool(row.refused) for row in rows),
         errors=errors,
+        impacts=len(answered) - len(modes),
         modes_right=sum(modes) / len(modes) if modes else None,
         covered=tuple(sum(bool(is_inside(row, level)) for row in known) / len(known) for level in LEVELS)
         if known

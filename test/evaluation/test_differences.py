@@ -7,6 +7,8 @@ import numpy as np
 import pytest
 
 from contact_dynamics.evaluation.comparison import Comparison, arrival_std, in_deviations, pose_difference
+from contact_dynamics.evaluation.report import report
+from contact_dynamics.evaluation.result import Evaluation, SourceResult
 from contact_dynamics.evaluation.settings import Method
 from contact_dynamics.evaluation.summary import is_inside, summarise
 from contact_dynamics.measured.events import EventKind
@@ -95,3 +97,17 @@ def test_a_summary_counts_what_was_refused_and_keeps_the_sign_of_a_bias() -> Non
     assert (spread.bias, spread.median, spread.count) == pytest.approx((-1.5e-3, 2.5e-3, 4))
     assert summary.modes_right is None
     assert summary.covered == ()
+
+
+def test_requests_before_the_impact_is_over_are_neither_correct_nor_incorrect_modes() -> None:
+    """Of five slides one is predicted as such, one as a rest, and three as an impact still to come."""
+    answers = [("ccff", True), ("ffff", False), *[("IMPACT", False)] * 3]
+    rows = [
+        row(kind=EventKind.SLIDING, method=Method.NEWEST, predicted_mode=mode, mode_is_right=right)
+        for mode, right in answers
+    ]
+    (summary,) = summarise(rows)
+    assert (summary.asked, summary.impacts, summary.modes_right) == (5, 3, 0.5)
+    result = SourceResult(source="log", digest="", states=9, seconds=1.0, comparisons=tuple(rows))
+    text = report(Evaluation(versions={}, configuration="as recorded", results=(result,)))
+    assert "3 of 5 requests 100 ms in advance returned an impact" in text
