@@ -18,7 +18,8 @@ from typing import TYPE_CHECKING, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from contact_dynamics.motion.free_fit import StateNoise, fit_free_motion
+from contact_dynamics.motion.free_fit import fit_free_motion
+from contact_dynamics.motion.state_noise import StateNoise
 from contact_dynamics.numerics.linear_spaces import triangle_of
 from contact_dynamics.questions.uncertain_state import state_of
 from contact_dynamics.records import Record

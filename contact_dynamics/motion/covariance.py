@@ -15,7 +15,7 @@ Sampled deviations are measured from the motion of the given state. A caller pre
 bias counts. The draws come in opposite pairs and are scaled to have exactly the given covariance. So where
 the motion is linear, both methods agree to rounding.
 
-Not covered: uncertain mass properties or gravity, noise on the way. `contact_dynamics.tumbling.flips` has the
+Not covered: uncertain mass properties, noise on the way. `contact_dynamics.tumbling.flips` has the
 uncertainty of the times of flips.
 """
 
@@ -23,7 +23,7 @@ from __future__ import annotations
 
 import enum
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -93,18 +93,39 @@ def propagate_covariance(
     times: ArrayLike,
     *,
     gravity_W: ArrayLike = STANDARD_GRAVITY_W,
+    gravity_covariance_W: ArrayLike | None = None,
+    by_gravity: tuple[float, float] = (0.0, 0.0),
     method: PropagationMethod = PropagationMethod.LINEARISED,
 ) -> CarriedCovariance:
     """Return the covariance at times (n,), s after the state's stamp and of either sign.
 
-    The given covariance, (12, 12), is that at the stamp.
+    Args:
+        body: The body.
+        state: Its state.
+        covariance: (12, 12), at the stamp.
+        times: (n,), s.
+        gravity_W: (3,), m/s^2.
+        gravity_covariance_W: (3, 3), m^2/s^4, of gravity in the world's axes, which may be tilted from
+            recording to recording. If None, gravity is exact.
+        by_gravity: s^2 and s, derivatives of the estimated position and velocity with respect to gravity, as
+            in `FitResult.by_gravity`.
+        method: Method of propagation.
 
     Raises:
-        InvalidFieldError: the matrix is not a covariance (see `check_covariance`), the times are not a flat
+        InvalidFieldError: a matrix is not a covariance (see `check_covariance`), the times are not a flat
             list of finite numbers, or gravity is not three finite numbers.
     """
     motion = free_motion(body, state, gravity_W=gravity_W)
-    return covariance_along(motion, covariance, times, method=method)
+    carried = covariance_along(motion, covariance, times, method=method)
+    if gravity_covariance_W is None:
+        return carried
+    pull = check_covariance("gravity_covariance_W", gravity_covariance_W, 3)
+    place, rate = check_magnitude("by_gravity", check_array("by_gravity", by_gravity, (2,)))
+    seconds = carried.seconds
+    fallen = np.zeros((len(seconds), 12, 3))
+    fallen[:, 0:3] = (place + seconds * (rate + 0.5 * seconds))[:, None, None] * np.eye(3)
+    fallen[:, 6:9] = (rate + seconds)[:, None, None] * np.eye(3)
+    return replace(carried, covariances=carried.covariances + fallen @ pull @ fallen.transpose(0, 2, 1))
 
 
 def covariance_along(

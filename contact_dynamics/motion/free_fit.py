@@ -1,17 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
 """A free motion is fitted to a short window of published states, so that one noisy velocity does no harm.
 
-Model: a torque-free body in uniform gravity (`contact_dynamics.tumbling`) is seen at n times. There is white
-noise in position and orientation, and in the velocities if they are used. The path of the centre of mass is a
-linear least-squares problem. The rotation has six unknowns, attitude and angular velocity at the newest
-stamp. Gauss's and Newton's method finds them with the exact derivative of the motion (`free_derivative`). It
-starts from the angular momentum averaged over all neighbouring pairs of states, since L is constant. If that
-is far off, it starts from the last turn or from the published velocities, whichever fits best. `whole_turns`
-finds out whether the body made whole turns more or less between the states. `velocity_jump` finds an impact
-within the window, which no free motion fits.
+Model: a torque-free body in uniform gravity (`contact_dynamics.tumbling`) is seen at n times, with the noise
+of `state_noise`. The path of the centre of mass is a linear least-squares problem. The rotation has six
+unknowns, attitude and angular velocity at the newest stamp. Gauss's and Newton's method finds them with the
+exact derivative of the motion (`free_derivative`). It starts from the angular momentum averaged over all
+neighbouring pairs of states, since L is constant. If that is far off, it starts from the last turn or from
+the published velocities, whichever fits best. `whole_turns` finds out whether the body made whole turns more
+or less between the states. `velocity_jump` finds an impact within the window, which no free motion fits.
 
-Not covered: contacts that change the velocity slowly, torque and drag (`integrated_fit`), outliers, noise
-that is correlated from state to state, unknown mass properties, and what `whole_turns` does not cover.
+Not covered: contacts that change the velocity slowly, torque and drag (`integrated_fit`), outliers, unknown
+mass properties, and what `whole_turns` does not cover.
 """
 
 from __future__ import annotations
@@ -27,6 +26,13 @@ from contact_dynamics.constants import STANDARD_GRAVITY_W, seconds_since
 from contact_dynamics.errors import InvalidFieldError, TooLargeError
 from contact_dynamics.motion.flight_check import is_held, velocity_jump
 from contact_dynamics.motion.free_derivative import derivatives_along
+from contact_dynamics.motion.state_noise import (
+    StateNoise,
+    average_covariance,
+    scaled,
+    variance_factor,
+    whitened,
+)
 from contact_dynamics.motion.whole_turns import (
     MAX_NOISE_RATIO,
     MAX_ORIENTATION_RESIDUAL,
@@ -41,7 +47,7 @@ from contact_dynamics.rigid_body.body import BodyState, HasMassProperties, MassP
 from contact_dynamics.rotations.many import matrices_of, rotation_vectors, turned
 from contact_dynamics.tolerances import SMALL_STEP
 from contact_dynamics.tumbling import FreeMotion, Precision, free_motion
-from contact_dynamics.validation import FloatArray, check_array, check_magnitude, check_positive
+from contact_dynamics.validation import FloatArray, check_array, check_magnitude
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -53,33 +59,6 @@ FEWEST_STATES: Final = 3
 
 MAX_STATES: Final = 2000
 """Largest number of states, which is a window of seconds. More would take too long."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
-class StateNoise(Record):
-    """Standard deviations of each component of published states, as white noise.
-
-    Attributes:
-        position: m, > 0.
-        orientation: rad, > 0, of the components of a rotation vector.
-        linear_velocity: m/s, > 0, or None if published linear velocities are not used.
-        angular_velocity: rad/s, > 0, or None if published angular velocities are not used.
-
-    Raises:
-        InvalidFieldError: a deviation is not > 0.
-    """
-
-    position: float
-    orientation: float
-    linear_velocity: float | None = None
-    angular_velocity: float | None = None
-
-    def __post_init__(self) -> None:
-        """Check those that are there."""
-        for name in self.__slots__:
-            value = getattr(self, name)
-            if value is not None:
-                object.__setattr__(self, name, check_positive(f"{name}_noise", value))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -114,6 +93,8 @@ class FitResult(Record):
             None if the positions show no jump.
         falls: Whether the positions accelerate as in flight, at least by half of gravity. It is false if the
             body rests, slides or is carried.
+        noise: The given noise, whose standard deviations of poses are those of this window: residuals update
+            them if the degrees of freedom are finite. None if no noise was given.
     """
 
     state: BodyState
@@ -130,6 +111,7 @@ class FitResult(Record):
     alternatives: tuple[BodyState, ...] = ()
     velocity_jump: float | None = None
     falls: bool = True
+    noise: StateNoise | None = None
 
 
 def fit_free_motion(
@@ -142,9 +124,10 @@ def fit_free_motion(
     """Return the free motion that fits ``states``, in the order of time, best.
 
     If ``noise`` is given, the covariance follows from it, and the fit uses those velocities for which the
-    noise contains a deviation. Otherwise, the fit uses poses alone, and the covariance follows from their
-    residuals. In both cases, published angular velocities determine the number of whole turns between states.
-    If neither they nor the poses determine it, `FitResult.turns_known` is false.
+    noise contains a deviation. Otherwise, the fit uses poses alone, and the covariance is an average over
+    correlation times of their noise, weighted by the residuals (`state_noise`). In both cases, published
+    angular velocities determine the number of whole turns between states. If neither they nor the poses
+    determine it, `FitResult.turns_known` is false.
 
     Raises:
         InvalidFieldError: there are fewer than `FEWEST_STATES` states, their stamps are not ascending, the
@@ -188,6 +171,7 @@ def fit_free_motion(
         converged=spin.converged and place.fits_noise and flies,
         velocity_jump=jump,
         falls=falls,
+        noise=None if noise is None else scaled(noise, place.factor, spin.factor),
         turns_known=spin.turns_known,
         alternatives=tuple(alternatives),
         position_misses_W=place.misses_W,
@@ -200,6 +184,7 @@ class _Place:
     p_W: FloatArray
     v_W: FloatArray
     covariance: FloatArray  # (2, 2), of a coordinate and its rate
+    factor: float  # of the given variances
     by_gravity: tuple[float, float]  # s^2, s
     residual: float
     misses_W: FloatArray  # (n, 3), m
@@ -214,11 +199,13 @@ def _fit_place(
     positions = np.array([state.p_WB_W for state in states]) - origin
     fallen = positions - 0.5 * np.square(seconds)[:, None] * gravity
     span = -float(seconds[0])
-    design = np.column_stack([np.ones_like(seconds), seconds / span])
-    weight = 1.0 if noise is None else 1.0 / noise.position
+    powers = np.column_stack([np.ones_like(seconds), seconds / span])
     # the last column is the change of all values with a component of gravity
-    values = weight * np.column_stack([fallen, -0.5 * np.square(seconds)])
-    design = weight * design
+    values = np.column_stack([fallen, -0.5 * np.square(seconds)])
+    design = powers
+    if noise is not None:
+        design = whitened(powers, seconds, noise.position_time) / noise.position
+        values = whitened(values, seconds, noise.position_time) / noise.position
     if noise is not None and noise.linear_velocity is not None:
         velocities = np.array([state.v_WB_W for state in states]) - seconds[:, None] * gravity
         velocities = np.column_stack([velocities, -seconds])
@@ -228,21 +215,26 @@ def _fit_place(
     orthogonal, triangle = np.linalg.qr(design)
     inverse = np.linalg.inv(triangle)
     solution = inverse @ (orthogonal.T @ values)
-    cost = float(np.square(values - design @ solution)[:, :3].sum())
+    cost, free = float(np.square(values - design @ solution)[:, :3].sum()), 3 * (len(values) - 2)
     by_gravity = (float(solution[0, 3]), float(solution[1, 3]) / span)
     solution = solution[:, :3]
-    misses = fallen - solution[0] - (seconds / span)[:, None] * solution[1]
-    total = float(np.square(misses).sum())
+    misses = fallen - powers @ solution
+    factor = 1.0
+    if noise is None:
+        covariance = average_covariance(powers[:, None], misses[:, None], seconds)
+    else:
+        factor = variance_factor(noise, cost, free)
+        covariance = factor * inverse @ inverse.T
     scale = np.diag([1.0, 1.0 / span])
-    variance = total / (3 * len(seconds) - 6) if noise is None else 1.0
     return _Place(
         p_W=origin + solution[0],
         v_W=solution[1] / span,
-        covariance=variance * scale @ inverse @ inverse.T @ scale,
+        covariance=scale @ covariance @ scale,
+        factor=factor,
         by_gravity=by_gravity,
-        residual=math.sqrt(total / len(seconds)),
+        residual=math.sqrt(float(np.square(misses).sum()) / len(seconds)),
         misses_W=misses,
-        fits_noise=noise is None or cost <= MAX_NOISE_RATIO**2 * 3 * (len(values) - 2),
+        fits_noise=noise is None or cost <= MAX_NOISE_RATIO**2 * free,
     )
 
 
@@ -250,6 +242,7 @@ def _fit_place(
 class _Rotation:
     motion: FreeMotion
     covariance: FloatArray  # (6, 6)
+    factor: float  # of the given variances
     residual: float
     misses_W: FloatArray  # (n, 3), rad
     rounds: int
@@ -274,14 +267,19 @@ def _fit_rotation(
         only = window.fitted(_start(window), len(seconds))
         chosen = Chosen(only, converged=False, turns_known=False, alternatives=())
     fit = chosen.fit
-    attitudes = 3 * len(seconds)
-    turns = fit.misses[:attitudes].reshape(-1, 3) / window.by_q
-    total = float(np.square(fit.misses[:attitudes]).sum()) / window.by_q**2
-    variance = total / (attitudes - 6) if noise is None else 1.0
+    turns = window.turns(fit.model, len(seconds))
+    factor = 1.0
+    if noise is None:
+        design = window.derivatives(fit.model, len(seconds)).reshape(-1, 3, 6)
+        covariance = average_covariance(design, turns[:, :, None], seconds)
+    else:
+        factor = variance_factor(noise, float(fit.misses @ fit.misses), len(fit.misses) - 6)
+        covariance = factor * fit.inverse @ fit.inverse.T
     return _Rotation(
         motion=fit.model,
-        covariance=variance * fit.inverse @ fit.inverse.T,
-        residual=math.sqrt(total / len(seconds)),
+        covariance=covariance,
+        factor=factor,
+        residual=math.sqrt(float(np.square(turns).sum()) / len(seconds)),
         misses_W=turns,
         rounds=fit.rounds,
         converged=chosen.converged,
@@ -297,8 +295,7 @@ def _start(window: _Turning) -> FreeMotion:
         misses = window.misses(motion, count)
         if best is None or float(misses @ misses) < least:
             best, least = motion, float(misses @ misses)
-        off = misses[: 3 * count] / window.by_q
-        if float(off @ off) <= MAX_ORIENTATION_RESIDUAL**2 * count:
+        if float(np.square(window.turns(motion, count)).sum()) <= MAX_ORIENTATION_RESIDUAL**2 * count:
             return motion
     assert best is not None  # noqa: S101  for the type checker: there is always a start
     return best
@@ -322,16 +319,24 @@ class _Turning(Stamps[FreeMotion]):
         self.w = np.array([state.w_WB_W for state in states])
         self.by_q = 1.0 if noise is None else 1.0 / noise.orientation
         self.by_w = 0.0 if noise is None or noise.angular_velocity is None else 1.0 / noise.angular_velocity
+        self.time = 0.0 if noise is None else noise.orientation_time
         self.noise_is_known = noise is not None
         self.rates_weigh = self.by_w > 0.0
 
+    def turns(self, motion: FreeMotion, count: int) -> FloatArray:
+        """Return the rotation vectors, (count, 3), from computed attitudes to the last ones seen."""
+        return rotation_vectors(self.q[-count:], self.at(motion, count).q_WB)
+
     def misses(self, motion: FreeMotion, count: int) -> FloatArray:
-        """Return the weighted residuals of the last ``count`` states: of all attitudes, and then of rates."""
-        then = self.at(motion, count)
-        weighted = (self.by_q * rotation_vectors(self.q[-count:], then.q_WB)).ravel()
+        """Return the whitened residuals of the last ``count`` states: of all attitudes, and then of rates."""
+        weighted = self._white(self.turns(motion, count)).ravel()
         if not self.by_w:
             return weighted
-        return np.concatenate([weighted, (self.by_w * (self.w[-count:] - then.w_WB_W)).ravel()])
+        off = self.w[-count:] - self.at(motion, count).w_WB_W
+        return np.concatenate([weighted, (self.by_w * off).ravel()])
+
+    def _white(self, rows: FloatArray) -> FloatArray:
+        return self.by_q * whitened(rows, self.seconds[-len(rows) :], self.time)
 
     def derivatives(self, motion: FreeMotion, count: int) -> FloatArray:
         """Return the derivatives of what the residuals compare, (m, 6)."""
@@ -340,7 +345,7 @@ class _Turning(Stamps[FreeMotion]):
             raise InvalidFieldError(
                 "states", f"{-self.seconds[-count]:g} s", "a window over which the motion is predictable"
             )
-        design = self.by_q * each[:, :3].reshape(-1, 6)
+        design = self._white(each[:, :3]).reshape(-1, 6)
         return np.vstack([design, self.by_w * each[:, 3:].reshape(-1, 6)]) if self.by_w else design
 
     def fitted(self, start: FreeMotion, count: int) -> Fit[FreeMotion]:

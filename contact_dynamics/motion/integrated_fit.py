@@ -2,13 +2,13 @@
 """This file fits a motion under torque and drag to a short window of published states.
 
 Model: a body moves under gravity, a constant wrench, drag and a user's function (`motion.integrated`), and is
-seen at n times with white noise. All twelve numbers of the newest state are found together, because a force
-that turns with the body ties its path to its attitude. Gauss's and Newton's method finds them with the
-derivative of the integrated motion (`contact_dynamics.motion.integrated_derivative`). It starts from the free
-motion that fits best. `whole_turns` finds out whether the body made whole turns more or less between the
-states.
+seen at n times with the noise of `state_noise`. All twelve numbers of the newest state are found together,
+because a force that turns with the body ties its path to its attitude. Gauss's and Newton's method finds them
+with the derivative of the integrated motion (`contact_dynamics.motion.integrated_derivative`). It starts from
+the free motion that fits best. `whole_turns` finds out whether the body made whole turns more or less between
+the states.
 
-Not covered: forces that are not known, outliers, correlated noise, contacts that change the velocity slowly,
+Not covered: forces that are not known, outliers, contacts that change the velocity slowly,
 unknown mass properties, and what `whole_turns` does not cover.
 """
 
@@ -23,9 +23,16 @@ import numpy as np
 from contact_dynamics.constants import STANDARD_GRAVITY_W, seconds_since
 from contact_dynamics.motion.flight_check import is_held, velocity_jump
 from contact_dynamics.motion.forces import NO_DRAG, NO_WRENCH, ConstantWrench, Drag
-from contact_dynamics.motion.free_fit import MAX_STATES, FitResult, StateNoise, fit_free_motion
+from contact_dynamics.motion.free_fit import MAX_STATES, FitResult, fit_free_motion
 from contact_dynamics.motion.integrated import MAX_STEPS, ForcedMotion, forced_motion, turns_or_drags
 from contact_dynamics.motion.integrated_derivative import forced_state_derivatives
+from contact_dynamics.motion.state_noise import (
+    StateNoise,
+    average_covariance,
+    scaled,
+    variance_factor,
+    whitened,
+)
 from contact_dynamics.motion.whole_turns import Stamps, chosen_motion
 from contact_dynamics.numerics.gauss_newton import Fit, gauss_newton
 from contact_dynamics.rigid_body.body import BodyState, HasMassProperties, MassProperties
@@ -62,7 +69,8 @@ def fit_motion(
     If `contact_dynamics.motion_of` uses the closed form, this is `fit_free_motion`. The seconds of
     ``wrench_of`` are relative to the newest state, and ``max_steps`` is as in `forced_motion`. If ``noise``
     is given, the covariance follows from it, and the fit uses those velocities for which the noise contains a
-    deviation. Otherwise, the fit uses poses alone, and the covariance follows from their residuals.
+    deviation. Otherwise, the fit uses poses alone, and the covariance is an average over correlation times,
+    which positions and orientations then share (`state_noise`).
 
     Raises:
         InvalidFieldError, TooLargeError: as for `fit_free_motion` and `forced_motion`, and if the motion
@@ -96,11 +104,19 @@ def fit_motion(
         converged = converged and fit.converged
     position, orientation = window.residuals(fit.model)
     misses = window.misses(fit.model)
+    factor = 1.0
+    if noise is None:
+        covariance = average_covariance(
+            window.derivatives(fit.model), fit.misses.reshape(len(states), -1, 1), window.seconds
+        )
+    else:
+        factor = variance_factor(noise, float(fit.misses @ fit.misses), len(fit.misses) - 12)
+        covariance = factor * fit.inverse @ fit.inverse.T
     jump = velocity_jump(window.seconds, misses[:, :3])
     falls = not is_held(window.seconds, misses[:, :3], gravity)
     return FitResult(
         state=fit.model.state,
-        covariance=fit.inverse @ fit.inverse.T,
+        covariance=covariance,
         position_residual=position,
         orientation_residual=orientation,
         count=len(states),
@@ -108,6 +124,7 @@ def fit_motion(
         converged=converged and jump is None and falls,
         velocity_jump=jump,
         falls=falls,
+        noise=None if noise is None else scaled(noise, factor, factor),
         turns_known=chosen.turns_known,
         alternatives=chosen.alternatives,
         position_misses_W=misses[:, :3],
@@ -143,6 +160,7 @@ class _Seen(Stamps[ForcedMotion]):
         deviations = (noise.position, noise.orientation, noise.linear_velocity, noise.angular_velocity)
         self._used = np.repeat([deviation is not None for deviation in deviations], 3)
         self._weights = 1.0 / np.repeat([deviation or 1.0 for deviation in deviations], 3)[self._used]
+        self._times = noise.position_time, noise.orientation_time
         self._negligible = np.where(np.arange(12) < 6, SMALL_STEP, math.inf)[self._used] * self._weights
         self.by_q = 1.0 / noise.orientation
         self.noise_is_known = noise_is_known
@@ -168,7 +186,6 @@ class _Seen(Stamps[ForcedMotion]):
 
     def fitted(self, start: ForcedMotion, count: int) -> Fit[ForcedMotion]:
         """Return the fit to the last ``count`` states, of the components whose noise has a deviation."""
-        used, weights = self._used, self._weights
 
         def moved(motion: ForcedMotion, step: FloatArray) -> ForcedMotion:
             state = motion.state
@@ -184,13 +201,26 @@ class _Seen(Stamps[ForcedMotion]):
 
         return gauss_newton(
             start,
-            misses_of=lambda motion: (weights * self.misses(motion, count)[:, used]).ravel(),
-            derivatives_of=lambda motion: (
-                weights[:, None] * forced_state_derivatives(motion, self.seconds[-count:])[:, used]
-            ).reshape(-1, 12),
+            misses_of=lambda motion: self._white(self.misses(motion, count)).ravel(),
+            derivatives_of=lambda motion: self.derivatives(motion, count).reshape(-1, 12),
             moved=moved,
             negligible=np.tile(self._negligible, count),
         )
+
+    def derivatives(self, motion: ForcedMotion, count: int = MAX_STATES) -> FloatArray:
+        """Return the derivatives of the whitened residuals' computed part, (n, used, 12)."""
+        return self._white(forced_state_derivatives(motion, self.seconds[-count:]))
+
+    def _white(self, rows: FloatArray) -> FloatArray:
+        """Return rows (n, 12, ...) of the components used, in deviations and without correlation in time."""
+        seconds = self.seconds[-len(rows) :]
+        parts = [
+            whitened(rows[:, :3], seconds, self._times[0]),
+            whitened(rows[:, 3:6], seconds, self._times[1]),
+        ]
+        white = np.concatenate([*parts, rows[:, 6:]], axis=1)[:, self._used]
+        weighted: FloatArray = self._weights.reshape((-1,) + (1,) * (rows.ndim - 2)) * white
+        return weighted
 
     def with_rate(self, model: ForcedMotion, rate: FloatArray) -> ForcedMotion:
         """Return the motion with another angular velocity at the newest state."""

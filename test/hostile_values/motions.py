@@ -13,6 +13,7 @@ FREE = free_motion(BALL, STATE)
 FORCED = motion.forced_motion(BALL, STATE, drag=Drag(linear=0.1), max_steps=500)
 FLIPPING = free_motion(BALL, replace(STATE, w_WB_W=[0.01, 5.0, 0.01]))
 SEEN = [FREE.state_at(seconds) for seconds in (0.0, 0.01, 0.02, 0.03)]
+SHAKING = [replace(state, p_WB_W=state.p_WB_W + 1e-4 * (k % 2)) for k, state in enumerate(SEEN)]
 MOMENTS = [0.1, 0.2, 0.25]
 VARIANCES = 1e-6 * np.eye(12)
 APPLIED = {
@@ -49,7 +50,19 @@ MOTIONS: Calls = {
     "ConstantWrench": (ConstantWrench, {"force": [1.0, 0.0, 0.0], "torque": [0.0, 0.1, 0.0]}),
     "StateNoise": (
         motion.StateNoise,
-        {"position": 1e-3, "orientation": 1e-2, "linear_velocity": 0.1, "angular_velocity": 0.1},
+        {
+            "position": 1e-3,
+            "orientation": 1e-2,
+            "linear_velocity": 0.1,
+            "angular_velocity": 0.1,
+            "position_time": 0.01,
+            "orientation_time": 0.02,
+            "degrees_of_freedom": 4.0,
+        },
+    ),
+    "measured_noise": (
+        motion.measured_noise,
+        {"body": BALL, "flights": [SHAKING] * 10, "gravity_W": [0.0, 0.0, -9.8]},
     ),
     "covariance_along": (
         motion.covariance_along,
@@ -57,7 +70,14 @@ MOTIONS: Calls = {
     ),
     "propagate_covariance": (
         motion.propagate_covariance,
-        {**WHERE, "covariance": VARIANCES, "times": [0.1], "gravity_W": [0.0, 0.0, -9.8]},
+        {
+            **WHERE,
+            "covariance": VARIANCES,
+            "times": [0.1],
+            "gravity_W": [0.0, 0.0, -9.8],
+            "gravity_covariance_W": np.eye(3),
+            "by_gravity": [0.1, 0.1],
+        },
     ),
     "fit_free_motion": (
         motion.fit_free_motion,

@@ -16,8 +16,10 @@ from contact_dynamics.motion.covariance import (
     propagate_covariance,
 )
 from contact_dynamics.motion.forces import ConstantWrench, Drag, WrenchAxes
+from contact_dynamics.motion.free_fit import fit_free_motion
 from contact_dynamics.motion.integrated import forced_motion
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
+from contact_dynamics.tumbling import free_motion
 from tumbling.known_motions import MOTIONS, motion_of
 
 TIMES = np.array([0.0, 0.1, 1.0, 5.0, -3.0])
@@ -50,6 +52,40 @@ def test_small_clouds_move_as_the_derivative_says(name: str) -> None:
     assert sampled.method is PropagationMethod.SAMPLED
     assert apart(linearised, sampled).max() < 3e-6
     assert linearised.trusted.all()
+
+
+def test_uncertain_gravity_counts_in_the_fit_and_in_the_flight() -> None:
+    """As the difference of two fits to the same poses, each under its own gravity, flown on under that."""
+    motion, pull, ahead = motion_of("flat"), np.array([0.3, -0.2, 0.1]), 0.4
+    states = [motion.state_at(seconds) for seconds in np.linspace(0.0, 0.2, 9)]
+    fits = [
+        fit_free_motion(motion.body, states, gravity_W=motion.gravity_W + each) for each in (0.0 * pull, pull)
+    ]
+    one, other = (
+        free_motion(motion.body, fit.state, gravity_W=motion.gravity_W + each).state_at(ahead)
+        for fit, each in zip(fits, (0.0 * pull, pull), strict=True)
+    )
+    assert fits[0].by_gravity is not None
+    exact, uncertain = (
+        propagate_covariance(
+            motion.body,
+            fits[0].state,
+            np.zeros((12, 12)),
+            [ahead],
+            gravity_W=motion.gravity_W,
+            gravity_covariance_W=covariance,
+            by_gravity=fits[0].by_gravity,
+        ).covariances[0]
+        for covariance in (None, np.outer(pull, pull))
+    )
+    assert not exact.any()
+    off = np.zeros(12)
+    off[0:3], off[6:9] = other.p_WB_W - one.p_WB_W, other.v_WB_W - one.v_WB_W
+    np.testing.assert_allclose(uncertain, np.outer(off, off), rtol=1e-6, atol=1e-12)
+    with pytest.raises(InvalidFieldError, match="gravity_covariance_W"):
+        propagate_covariance(
+            motion.body, fits[0].state, np.zeros((12, 12)), [ahead], gravity_covariance_W=-np.eye(3)
+        )
 
 
 @pytest.mark.parametrize("name", sorted(MOTIONS))

@@ -11,9 +11,10 @@ from scipy.spatial.transform import Rotation
 
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.motion.forces import ConstantWrench, Drag, WrenchAxes
-from contact_dynamics.motion.free_fit import FitResult, StateNoise, fit_free_motion
+from contact_dynamics.motion.free_fit import FitResult, fit_free_motion
 from contact_dynamics.motion.integrated import forced_motion
 from contact_dynamics.motion.integrated_fit import fit_motion
+from contact_dynamics.motion.state_noise import StateNoise
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.rotations.many import rotation_vectors
 

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from contact_dynamics.impact import RestitutionLaw
-from contact_dynamics.motion.free_fit import StateNoise, fit_free_motion
+from contact_dynamics.motion.free_fit import fit_free_motion
+from contact_dynamics.motion.state_noise import StateNoise
 from contact_dynamics.rigid_body import inertia
 from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.rotations.many import turned
