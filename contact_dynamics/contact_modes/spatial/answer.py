@@ -139,7 +139,12 @@ def spatial_contact_modes(problem: SpatialContactProblem) -> SpatialModeAnswer:
         facets=FRICTION_FACETS if problem.sharpen else problem.friction_facets,
         sharpen=problem.sharpen,
     )
-    return _answer(problem, found)
+    return SpatialModeAnswer(
+        modes=tuple(cast("list[SpatialMode]", shown_modes(found))),
+        friction_facets=problem.friction_facets,
+        problem=problem,
+        **answer_fields(found, problem.velocity_tolerance),
+    )
 
 
 def _case_within(problem: SpatialContactProblem, within: float) -> SpatialCase | tuple[int, ...]:
@@ -206,26 +211,6 @@ def _cases(
     yield rough.given, 0.0, False
 
 
-def modes_of_case(
-    problem: SpatialContactProblem, case: SpatialCase, search: Search, *, beside_rest: bool = False
-) -> SpatialModeAnswer:
-    """Return the answer about a problem none of whose contacts approaches.
-
-    Args:
-        problem: The problem.
-        case: Its case (`spatial_case`).
-        search: The search of that case (`search_of`), which nobody has run yet. If friction is sharpened, the
-            number of its facets does not matter to the answer.
-        beside_rest: Whether it is enough to know if a body at rest has another mode than rest. The answer
-            then need not have all modes where it has several.
-
-    Raises:
-        TooLargeError: the search takes more trials than `pyramid_programs.MAX_EXAMINED`.
-    """
-    found = evidence_of(case, search, sharpen=problem.sharpen, beside_rest=beside_rest)
-    return _answer(problem, Considered(case, search, found, 0.0))
-
-
 def evidence_of(
     case: SpatialCase,
     search: Search,
@@ -244,15 +229,6 @@ def evidence_of(
     if not found.modes and not found.undecided and search.at_rest:
         found = found._replace(undecided=SOME_MODE)
     return found
-
-
-def _answer(problem: SpatialContactProblem, found: Considered | tuple[int, ...]) -> SpatialModeAnswer:
-    return SpatialModeAnswer(
-        modes=tuple(cast("list[SpatialMode]", shown_modes(found))),
-        friction_facets=problem.friction_facets,
-        problem=problem,
-        **answer_fields(found, problem.velocity_tolerance),
-    )
 
 
 def shown_modes(found: Considered | tuple[int, ...]) -> list[ResponseMode]:
@@ -507,8 +483,8 @@ def _of_one_contact(case: SpatialCase, search: Search) -> list[ResponseMode]:
     )
     b = case.motion.points_free[case.touching[0]] / case.motion.scale
     return [
-        mode_with_forces(case, one.letter, one.force[None, :], forces_unique=True, motion_unique=True)
-        for one in modes_of_one(G, b, contact.normal, contact.friction)
+        mode_with_forces(case, letter, force[None, :], forces_unique=True, motion_unique=True)
+        for letter, force in modes_of_one(G, b, contact.normal, contact.friction)
     ]
 
 

@@ -263,34 +263,19 @@ class Program:
                 found[name] = max(0.0, value)
         return found
 
-    def spread(self, weights: FloatArray) -> tuple[FloatArray, FloatArray] | None:
-        """Return edge forces at which their weighted sum is least and largest, or None if it has no bound.
-
-        Args:
-            weights: (K,).
-        """
+    def ends(self, weights: FloatArray) -> Ends:
+        """Return whether a sum of edge forces, with weights, (K,), has one value only, and where it ends."""
+        largest = float(np.abs(weights).max(initial=0.0))
+        weights = weights / largest if largest > 0.0 else weights  # so that the units of force do not matter
         work = Program(
             self._table.copy(), list(self._rows), list(self._columns), self._fixed.copy(), self._noise
         )
         work._settle_fixed()
-        ends = []
+        found = []
         for sign in (1.0, -1.0):
             if not work._minimise(sign * weights):
-                return None
-            ends.append(work.shares(len(weights)))
-        return ends[0], ends[1]
-
-    def ends(self, weights: FloatArray) -> Ends:
-        """Return whether a weighted sum of edge forces has one value only, and where it is extreme.
-
-        Args:
-            weights: (K,).
-        """
-        largest = float(np.abs(weights).max(initial=0.0))
-        weights = weights / largest if largest > 0.0 else weights  # so that the units of force do not matter
-        found = self.spread(weights)
-        if found is None:
-            return Ends(unique=False, low=None, high=None)
+                return Ends(unique=False, low=None, high=None)
+            found.append(work.shares(len(weights)))
         low, high = float(weights @ found[0]), float(weights @ found[1])
         return Ends(high - low <= SAME_MOTION * (1.0 + abs(low)), *found)
 

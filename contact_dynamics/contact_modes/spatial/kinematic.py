@@ -92,7 +92,8 @@ def spatial_kinematic_modes(
     if touching.size == 0:
         return (SEPARATES * n,)
     r_W = contacts.p_WC_W - state.p_WB_W
-    rows = _contact_rows(r_W[touching], contacts.normals_W[touching])
+    reach = float(np.linalg.norm(r_W[touching], axis=1).max())
+    rows = _rows(contacts.normals_W[touching], r_W[touching] / (reach if reach > 0.0 else 1.0))
     w_W = state.w_WB_W
     if float(np.linalg.norm(w_W)) * float(np.linalg.norm(r_W, axis=1).max()) <= tolerance:
         w_W = np.zeros(3)
@@ -144,12 +145,6 @@ def faces_in_space(rows: FloatArray) -> set[int] | None:
         ray = _mask(vanishing)
         faces |= {face & ray for face in faces}
     return faces
-
-
-def _contact_rows(r_W: FloatArray, normals_W: FloatArray) -> FloatArray:
-    """Return the row (n, r x n / reach) of each contact, (m, 6)."""
-    reach = float(np.linalg.norm(r_W, axis=1).max())
-    return np.hstack([normals_W, np.cross(r_W, normals_W) / (reach if reach > 0.0 else 1.0)])
 
 
 def _mask(chosen: NDArray[np.bool_]) -> int:

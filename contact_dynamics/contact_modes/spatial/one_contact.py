@@ -11,7 +11,7 @@ So there are at most four directions.
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
@@ -36,14 +36,9 @@ _POLISHING: Final = 8
 """The number of Newton's steps from a root of the polynomial. Two are enough for a single root."""
 
 
-class Lettered(NamedTuple):
-    """A mode of one contact."""
-
-    letter: str  # s, f or c
-    force: FloatArray  # (3,)
-
-
-def modes_of_one(G: FloatArray, b: FloatArray, normal: FloatArray, friction: float) -> list[Lettered]:
+def modes_of_one(
+    G: FloatArray, b: FloatArray, normal: FloatArray, friction: float
+) -> list[tuple[str, FloatArray]]:
     """Return every mode of one contact at rest with friction > 0.
 
     A unit force causes the acceleration G, (3, 3). Without force it is b, (3,), whose largest component is
@@ -51,20 +46,20 @@ def modes_of_one(G: FloatArray, b: FloatArray, normal: FloatArray, friction: flo
     """
     found = []
     if float(normal @ b) > STRICT:
-        found.append(Lettered(SEPARATES, np.zeros(3)))
+        found.append((SEPARATES, np.zeros(3)))
     held: FloatArray = np.asarray(np.linalg.solve(G, -b), dtype=float)
     pressing = float(held @ normal)
     across = float(np.linalg.norm(held - pressing * normal))
     if across <= friction * pressing * (1.0 + ONE_CONTACT_ON_CONE) + ONE_CONTACT_ZERO * float(
         np.linalg.norm(held)
     ):
-        found.append(Lettered(STICKS, held))
-    return found + _sliding(G, b, normal, friction, sticks=bool(found) and found[-1].letter == STICKS)
+        found.append((STICKS, held))
+    return found + _sliding(G, b, normal, friction, sticks=bool(found) and found[-1][0] == STICKS)
 
 
 def _sliding(
     G: FloatArray, b: FloatArray, normal: FloatArray, friction: float, *, sticks: bool
-) -> list[Lettered]:
+) -> list[tuple[str, FloatArray]]:
     frame = np.array(tangents_towards(normal, b))
     b_n, (b_x, b_y) = float(normal @ b), (frame @ b).tolist()
     if abs(b_n) <= ONE_CONTACT_ZERO:
@@ -102,7 +97,7 @@ def _sliding(
         if press < 0.0 or speed <= 0.0 or (speed <= STRICT and sticks):
             continue
         force = press / size * (normal - friction * (x * frame[0] + y * frame[1]))
-        found.append(Lettered(STAYS if speed > STRICT else STICKS, force))
+        found.append((STAYS if speed > STRICT else STICKS, force))
         sticks |= speed <= STRICT
     return found
 

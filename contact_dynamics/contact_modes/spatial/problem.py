@@ -193,45 +193,31 @@ class SpatialContactProblem(Record):
         return np.concatenate([self.force_W, self.torque_W])
 
 
+@dataclass(slots=True, kw_only=True)
 class AccelerationMap:
-    """Motions of a body, or of a mechanism, and of its contact points, as affine functions of contact forces.
+    """Motions of a body or mechanism, and of its contact points, as affine functions of contact forces."""
 
-    Attributes:
-        points: (3 n, d), the accelerations of the contact points on unit motions.
-        turning: (n, 3), m/s^2, the part of these that no motion causes.
-        of_forces: (d, 3 n), the motions on unit forces.
-        free: (d,), the motion without contact forces.
-        points_free: (n, 3), m/s^2, the accelerations of the contact points without contact forces.
-        inertia: (d, d), the wrenches that unit motions need.
-        wrench: (d,), that of the motion without contact forces.
-        mass: kg, which makes forces of accelerations.
-        lengths: (d,), by which a motion is multiplied, so that points of the body have about as much.
-        scale: The largest acceleration, the unit of motions.
-        at_rest: Whether nothing moves.
-        of_body: Whether motions are those of one body, linear and angular accelerations.
-    """
+    points: FloatArray  # (3 n, d), the accelerations of the contact points on unit motions
+    turning: FloatArray  # (n, 3), m/s^2, the part of these that no motion causes
+    of_forces: FloatArray  # (d, 3 n), the motions on unit forces
+    free: FloatArray  # (d,), the motion without contact forces
+    inertia: FloatArray  # (d, d), the wrenches that unit motions need
+    wrench: FloatArray  # (d,), that of the motion without contact forces
+    mass: float  # kg, which makes forces of accelerations
+    lengths: (
+        FloatArray  # (d,), by which a motion is multiplied, so that points of the body have about as much
+    )
+    at_rest: bool  # whether nothing moves
+    of_body: bool  # whether motions are those of one body, linear and angular accelerations
+    points_free: FloatArray = field(init=False)  # (n, 3), m/s^2, of the contact points without contact forces
+    scale: float = field(init=False)  # the largest acceleration, the unit of motions
 
-    def __init__(
-        self,
-        points: FloatArray,
-        *,
-        of_forces: FloatArray,
-        free: FloatArray,
-        turning: FloatArray,
-        inertia: FloatArray,
-        wrench: FloatArray,
-        mass: float,
-        lengths: FloatArray,
-        at_rest: bool,
-        of_body: bool,
-    ) -> None:
-        self.points, self.turning, self.of_forces, self.free = points, turning, of_forces, free
-        self.inertia, self.wrench, self.mass, self.lengths = inertia, wrench, mass, lengths
-        self.at_rest, self.of_body = at_rest, of_body
-        self.points_free = (points @ free).reshape(-1, 3) + turning
+    def __post_init__(self) -> None:
+        """Find the accelerations without contact forces."""
+        self.points_free = (self.points @ self.free).reshape(-1, 3) + self.turning
         largest = max(
             float(np.abs(self.points_free).max(initial=0.0)),
-            float(np.abs(free * lengths).max(initial=0.0)),
+            float(np.abs(self.free * self.lengths).max(initial=0.0)),
         )
         self.scale = largest if largest > 0.0 else 1.0
 
@@ -244,44 +230,6 @@ class AccelerationMap:
         """Return the accelerations, (n, 3), m/s^2, of the contact points in a motion, (d,)."""
         found: FloatArray = (self.points @ motion).reshape(-1, 3) + self.turning
         return found
-
-
-def _body_map(
-    mass: float,
-    inertia_W: FloatArray,
-    *,
-    r_W: FloatArray,
-    w_W: FloatArray,
-    wrench_W: FloatArray,
-    turning_W: FloatArray,
-    at_rest: bool,
-) -> AccelerationMap:
-    """Return the map of one body.
-
-    Its ``turning_W``, (n, 3), m/s^2, are the centripetal accelerations of the contact points, and those of
-    contacts that wander over curved sides, less the motion of surfaces.
-    """
-    J = point_jacobians(r_W).reshape(-1, 6)
-    inverse = inverse_mass_matrix(mass, inertia_W)
-    wrench = wrench_W
-    if np.any(w_W):
-        wrench = wrench_W - np.concatenate([np.zeros(3), np.cross(w_W, inertia_W @ w_W)])
-    inertia = np.zeros((6, 6))
-    inertia[:3, :3] = mass * np.eye(3)
-    inertia[3:, 3:] = inertia_W
-    reach = float(np.linalg.norm(r_W, axis=1).max(initial=0.0))
-    return AccelerationMap(
-        J,
-        of_forces=inverse @ J.T,
-        free=inverse @ wrench,
-        turning=turning_W,
-        inertia=inertia,
-        wrench=wrench,
-        mass=mass,
-        lengths=np.array([1.0, 1.0, 1.0, *[reach if reach > 0.0 else 1.0] * 3]),
-        at_rest=at_rest,
-        of_body=True,
-    )
 
 
 class SpatialCase(NamedTuple):
@@ -353,25 +301,28 @@ def _case_of(
     rolling = velocity_accelerations(contacts, relative, w)
     # Contacts that were made flush have the velocities of the given points, and so their accelerations.
     arms = problem.contacts.p_WC_W - state.p_WB_W
-    motion = _body_map(
-        body.mass,
-        body.inertia_in_world(state.R_WB),
-        r_W=r_W,
-        w_W=w,
-        wrench_W=problem.wrench_W,
-        turning_W=np.cross(w, np.cross(w, arms)) + rolling if np.any(w) else rolling,
+    inertia_W, J = body.inertia_in_world(state.R_WB), point_jacobians(r_W).reshape(-1, 6)
+    inverse = inverse_mass_matrix(body.mass, inertia_W)
+    wrench = problem.wrench_W
+    if np.any(w):
+        wrench = wrench - np.concatenate([np.zeros(3), np.cross(w, inertia_W @ w)])
+    inertia = np.zeros((6, 6))
+    inertia[:3, :3] = body.mass * np.eye(3)
+    inertia[3:, 3:] = inertia_W
+    reach = float(np.linalg.norm(r_W, axis=1).max(initial=0.0))
+    motion = AccelerationMap(
+        points=J,
+        of_forces=inverse @ J.T,
+        free=inverse @ wrench,
+        turning=np.cross(w, np.cross(w, arms)) + rolling if np.any(w) else rolling,
+        inertia=inertia,
+        wrench=wrench,
+        mass=body.mass,
+        lengths=np.array([1.0, 1.0, 1.0, *[reach if reach > 0.0 else 1.0] * 3]),
         at_rest=not (np.any(w) or (contacts.surfaces_move and np.any(rolling[touching]))),
+        of_body=True,
     )
     return SpatialCase(motion, contacts, sliding, touching)
-
-
-def search_of_few_edges(case: SpatialCase, facets: int) -> Search:
-    """Return the search for the modes of a case, or raise `TooLargeError` if pyramids have too many edges."""
-    search = search_of(case, facets)
-    edges = sum(len(pyramid.edges) for pyramid in search.pyramids)
-    if edges > MAX_EDGES:
-        raise TooLargeError("contacts", f"{edges} edges of friction pyramids", f"at most {MAX_EDGES}")
-    return search
 
 
 def search_of(case: SpatialCase, facets: int, *, from_rest: bool = False) -> Search:

@@ -208,7 +208,7 @@ def response_case(
     length = float(np.linalg.norm(points[rows], axis=1).max(initial=0.0))
     length = length if length > 0.0 else 1.0
     motion = AccelerationMap(
-        points,
+        points=points,
         of_forces=points.T,
         free=free,
         turning=turning.reshape(-1, 3),

@@ -22,7 +22,7 @@ import numpy as np
 
 from contact_dynamics.contact.friction import linearised_cone
 from contact_dynamics.contact_modes.result import BodyStatics, Certainty, ModeVerdict, check_length
-from contact_dynamics.contact_modes.spatial.answer import modes_of_case
+from contact_dynamics.contact_modes.spatial.answer import evidence_of, verdict_of
 from contact_dynamics.contact_modes.spatial.cone import cone_of
 from contact_dynamics.contact_modes.spatial.problem import (
     FRICTION_FACETS,
@@ -73,8 +73,8 @@ def spatial_statics(problem: SpatialContactProblem, *, margin_length: float | No
             "hangs on rounding"
         )
     if held:
-        answer = modes_of_case(at_rest, case, search, beside_rest=True)
-        alone = answer.verdict == ModeVerdict.UNIQUE and answer.modes[0].motion_unique
+        modes = evidence_of(case, search, sharpen=True, beside_rest=True)
+        alone = verdict_of(modes) == ModeVerdict.UNIQUE and modes.modes[0].motion_unique
         equilibrium = Certainty.CERTAIN if alone else Certainty.POSSIBLE
         smooth = _known(held_by_round_cones(search, np.eye(6, 7), smooth=True))
         jammed = {True: Certainty.NO, False: equilibrium, None: Certainty.UNKNOWN}[smooth]

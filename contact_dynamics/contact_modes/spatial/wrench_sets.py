@@ -28,7 +28,7 @@ import numpy as np
 
 from contact_dynamics.contact_modes.letters import SEPARATES, SPATIAL_LETTERS, STAYS, STICKS, check_modes
 from contact_dynamics.contact_modes.spatial.kinematic import sliding_faces
-from contact_dynamics.contact_modes.spatial.problem import SpatialCase, search_of_few_edges, spatial_case
+from contact_dynamics.contact_modes.spatial.problem import MAX_EDGES, SpatialCase, search_of, spatial_case
 from contact_dynamics.contact_modes.spatial.wrenches import Way, distinct, supports, wrench_generators
 from contact_dynamics.errors import TooLargeError, UndecidedError
 from contact_dynamics.records import Record
@@ -115,7 +115,10 @@ def spatial_wrench_sets(
     case = spatial_case(problem)
     if not isinstance(case, SpatialCase):
         return ()
-    search = search_of_few_edges(case, friction_facets)
+    search = search_of(case, friction_facets)
+    edges = search.edges.shape[1]
+    if edges > MAX_EDGES:
+        raise TooLargeError("contacts", f"{edges} edges of friction pyramids", f"at most {MAX_EDGES}")
     every = [(_letters(case, ways), ways) for ways in ways_of(search)]
     wanted = sorted(one for one in every if modes is None or one[0] in modes)
     if len(wanted) > MAX_WRENCH_SETS:
