@@ -27,7 +27,7 @@ NOT_REFUSED = {
     # They bound work after which a result says that it is not complete or not converged, or choose a way.
     "contact_modes.planar.uncertain.MAX_PROGRAMS",
     "contact_modes.spatial.completeness.MAX_PROGRAMS",
-    "contact_modes.spatial.excluded.MAX_PROGRAMS",
+    "contact_modes.spatial.uncertain.MAX_PROGRAMS",
     "contact_modes.spatial.margins_of_sliding.MAX_CORNERS",
     "impact.in_time.sequence.MAX_STRIKES",
     "impact.in_time.sequence.MAX_HELD",

@@ -22,10 +22,10 @@ name. `problem` contains the problem, and its case: the problem in the coordinat
 `answer` computes the verdict and all modes. `statics` and `wrench_sets` contain further results. If contacts
 are uncertain, `uncertain` searches boxes of contacts for other verdicts, and proves that a mode is consistent
 in a whole box. The files of the same name in `planar` and `spatial` determine the possible errors of each
-contact, and prove that no other mode is consistent (in space `excluded`).
+contact, and prove that no other mode is consistent.
 
-- In the plane, `answer` solves a single contact in closed form. For several contacts, `coincident` first
-  merges those that coincide. `enumeration` then lists the kinematically possible modes, which are faces of a
+- In the plane, `answer` solves a single contact in closed form. For several contacts, those that coincide are
+  first merged (`problem`). `enumeration` then lists the kinematically possible modes, which are faces of a
   `cone`, and `judgement` determines which of them are consistent with mechanics. If the equations of a mode
   are independent, it solves them; otherwise `wrench_cone` decides by the cone of wrenches that can
   cause the mode.
@@ -34,8 +34,8 @@ contact, and prove that no other mode is consistent (in space `excluded`).
   (`one_contact`). `only_motion` may prove that no other mode exists. Otherwise `completeness` finds or
   refutes all others, with linear programs (`holding_programs`), exact solutions and ranges of directions
   without others (`exact_letters`), and modes in which contacts share loads (`shared_loads`). The remaining
-  cases require a `search` of all combinations of `options`, in `regions` of common motions
-  (`pyramid_programs`). The programs are solved by a `dual_simplex` (`simplex_steps`). The modes found are
+  cases require a `search` of all combinations of `options`, in `regions` of common motions. The programs
+  are solved by a `dual_simplex` (`simplex_steps`). The modes found are
   made exact (`exact_modes`), and `round_cones` decides whether forces hold contacts. `mode_with_forces`
   computes the accelerations. The wrenches of a mode (`wrenches`, on a `cone`) are divided by sliding
   directions. The same search serves several bodies, and a mechanism whose contact points respond to forces

@@ -20,7 +20,7 @@ convex set that comes as near as this to every point of a ball contains the ball
 thickness.
 
 There are no proofs about contacts in space that slide. They hold everywhere if all other modes are excluded
-(`spatial.excluded`).
+(`spatial.uncertain`).
 """
 
 from __future__ import annotations

@@ -27,12 +27,12 @@ import math
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 from contact_dynamics.contact_modes.letters import SEPARATES, SLIDES_LEFT, SLIDES_RIGHT, STICKS
-from contact_dynamics.contact_modes.planar.coincident import coincident
 from contact_dynamics.contact_modes.planar.enumeration import kinematic_cells
 from contact_dynamics.contact_modes.planar.judgement import Judged, judge_all
 from contact_dynamics.contact_modes.planar.problem import (
     accuracy_of,
     beyond_grip,
+    coincident,
     contact_accelerations,
     never_slipping,
     planar_case,

@@ -131,7 +131,7 @@ def spatial_contact_modes(problem: SpatialContactProblem) -> SpatialModeAnswer:
 
     Raises:
         TooLargeError: more contacts touch than `spatial.problem.MAX_DYNAMIC_CONTACTS`. Or the search takes
-            more trials than `pyramid_programs.MAX_EXAMINED`, which happens where hundreds of sectors are
+            more trials than `search.MAX_EXAMINED`, which happens where hundreds of sectors are
             consistent and ``sharpen`` is false.
     """
     found = considered(

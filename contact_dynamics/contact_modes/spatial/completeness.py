@@ -41,7 +41,6 @@ from contact_dynamics.contact_modes.spatial.holding_programs import (
     Within,
 )
 from contact_dynamics.contact_modes.spatial.only_motion import is_only_motion
-from contact_dynamics.contact_modes.spatial.pyramid_programs import PyramidPrograms
 from contact_dynamics.contact_modes.spatial.regions import (
     directions,
     directions_where_all_slide,
@@ -49,6 +48,7 @@ from contact_dynamics.contact_modes.spatial.regions import (
     gains_in,
     whole,
 )
+from contact_dynamics.contact_modes.spatial.search import PyramidPrograms
 from contact_dynamics.contact_modes.spatial.shared_loads import sliding_together
 from contact_dynamics.tolerances import NARROWEST_RANGE, SAME_MOTION, SAME_SLIDING, STRICT
 
@@ -56,9 +56,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from contact_dynamics.contact_modes.spatial.options import Option
-    from contact_dynamics.contact_modes.spatial.pyramid_programs import AnyProgram
     from contact_dynamics.contact_modes.spatial.regions import Flat, Region
-    from contact_dynamics.contact_modes.spatial.search import Search
+    from contact_dynamics.contact_modes.spatial.search import AnyProgram, Search
     from contact_dynamics.validation import FloatArray
 
 MAX_PROGRAMS: Final = 3000

@@ -27,8 +27,8 @@ from contact_dynamics.tolerances import FEASIBLE, STRICT
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from contact_dynamics.contact_modes.spatial.pyramid_programs import PyramidPrograms
     from contact_dynamics.contact_modes.spatial.regions import Image, Region
+    from contact_dynamics.contact_modes.spatial.search import PyramidPrograms
     from contact_dynamics.validation import FloatArray
 
 COARSE: Final = 16

@@ -30,8 +30,7 @@ from contact_dynamics.contact.velocities import (
     velocity_accelerations,
     warn_if_far,
 )
-from contact_dynamics.contact_modes.spatial.pyramid_programs import Touching
-from contact_dynamics.contact_modes.spatial.search import Search
+from contact_dynamics.contact_modes.spatial.search import Search, Touching
 from contact_dynamics.errors import NoContactError, TooLargeError
 from contact_dynamics.numerics.vectors import point_jacobians, tangents_towards
 from contact_dynamics.records import Record

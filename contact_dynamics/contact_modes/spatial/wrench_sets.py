@@ -41,8 +41,7 @@ if TYPE_CHECKING:
 
     from contact_dynamics.contact_modes.spatial.options import Pyramid
     from contact_dynamics.contact_modes.spatial.problem import SpatialContactProblem
-    from contact_dynamics.contact_modes.spatial.pyramid_programs import Touching
-    from contact_dynamics.contact_modes.spatial.search import Search
+    from contact_dynamics.contact_modes.spatial.search import Search, Touching
     from contact_dynamics.contact_modes.spatial.wrenches import Way
     from contact_dynamics.validation import FloatArray
 

@@ -27,8 +27,7 @@ if TYPE_CHECKING:
 
     from contact_dynamics.contact_modes.spatial.options import Pyramid
     from contact_dynamics.contact_modes.spatial.problem import SpatialCase
-    from contact_dynamics.contact_modes.spatial.pyramid_programs import Touching
-    from contact_dynamics.contact_modes.spatial.search import Search
+    from contact_dynamics.contact_modes.spatial.search import Search, Touching
     from contact_dynamics.validation import FloatArray
 
 _ALIKE: Final = 7

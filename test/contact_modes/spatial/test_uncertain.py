@@ -11,8 +11,7 @@ import pytest
 
 from contact_dynamics.contact import ContactSet, ContactUncertainty
 from contact_dynamics.contact_modes import ModeVerdict, SpatialContactProblem, contact_modes, geometry_margins
-from contact_dynamics.contact_modes.spatial.excluded import no_other_mode
-from contact_dynamics.contact_modes.spatial.uncertain import holds_everywhere
+from contact_dynamics.contact_modes.spatial.uncertain import holds_everywhere, no_other_mode
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_modes.evidence import spatial_problem
