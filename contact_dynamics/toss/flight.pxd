@@ -5,7 +5,7 @@ cimport cython
 cimport libc.math as math
 
 from contact_dynamics.toss cimport vectors as vec
-from contact_dynamics.toss.solid cimport Above, Flat, Pose, Solid, rows_of
+from contact_dynamics.toss.solid cimport Above, Flat, Solid, rows_of
 
 cdef extern from *:
     # A checksum of flight.py and this file, which setup.py defines (see numerics/compiled.py).
@@ -27,14 +27,13 @@ cdef class Descent:
     cdef double[63] w, momentum
     cdef double[::1] pulls, before
 
-    @cython.locals(pose=Pose, corner=cython.int)
+    @cython.locals(corner=cython.int)
     cpdef void set_out(self, Solid solid, (double, double, double) gravity, list y) except *
     @cython.locals(seconds=cython.double)
     cpdef double fly(self, list y, double pause, double longest) except -1.0
     @cython.locals(x=cython.double, y=cython.double, z=cython.double, s=cython.double, u=cython.double,
                    v=cython.double, t=cython.double, g=cython.int, h=cython.int, j=cython.int, k=cython.int)
     cdef void _expand(self, double seconds, (double, double, double, double) q, (double, double, double) w) noexcept
-    @cython.locals(pose=Pose)
     cdef void _expand_from(self, double seconds, list y) except *
     cdef void _put_q(self, int k, double x, double y, double z, double s) noexcept
     cdef void _put_w(self, int k, (double, double, double) w, (double, double, double) momentum) noexcept

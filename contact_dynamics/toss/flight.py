@@ -20,7 +20,7 @@ import numpy as np
 from contact_dynamics.landing.search_work import MAX_SEARCH_STEPS, SEARCH_BEGUN, SearchWork
 from contact_dynamics.tolerances import GRAZING_DEPTH, NEGLIGIBLE_TERM
 from contact_dynamics.toss import vectors as vec
-from contact_dynamics.toss.solid import Above, pose_of, properties_of, rows_of, state_of
+from contact_dynamics.toss.solid import Above, properties_of, rows_of, state_of
 from contact_dynamics.tumbling import Precision, free_motion
 
 if TYPE_CHECKING:
@@ -69,8 +69,7 @@ class Descent:
         self.solid, self.gravity = solid, gravity
         for k in range(13):
             self.start[k] = y[k]
-        pose = pose_of(solid, y)
-        w = vec.transposed_times(pose.rows, pose.w)
+        w = vec.transposed_times(rows_of(y[3], y[4], y[5], y[6]), (y[10], y[11], y[12]))
         # Energy bounds the angular velocity, and the angular acceleration is at most a share of its square.
         stiffest = _row_sum(solid.inverse)
         apart = min(_row_sum(solid.inertia) * stiffest - 1.0, 1.0)
@@ -121,8 +120,8 @@ class Descent:
 
     def _expand_from(self, seconds: float, y: Numbers) -> None:
         """Begin the series at a time, s, with the state then."""
-        pose = pose_of(self.solid, y)
-        self._expand(seconds, (y[3], y[4], y[5], y[6]), vec.transposed_times(pose.rows, pose.w))
+        rows = rows_of(y[3], y[4], y[5], y[6])
+        self._expand(seconds, (y[3], y[4], y[5], y[6]), vec.transposed_times(rows, (y[10], y[11], y[12])))
 
     def _put_q(self, k: int, x: float, y: float, z: float, s: float) -> None:
         k *= 4

@@ -21,7 +21,9 @@ cdef double SAMPLED_ARRIVAL
 
 @cython.final
 cdef class Flights:
-    cdef list solids, kicks
+    cdef Solid solid
+    cdef const double[:, ::1] rows
+    cdef list kicks
     cdef object law, together
     cdef Descent descent
     cdef Strike impact

@@ -9,7 +9,6 @@ as a single toss (`to_rest`), since several corners may strike or stay.
 from __future__ import annotations
 
 import math
-from array import array
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import numpy as np
@@ -21,7 +20,7 @@ from contact_dynamics.records import NamedInt
 from contact_dynamics.tolerances import SAMPLED_ARRIVAL
 from contact_dynamics.toss.flight import Descent
 from contact_dynamics.toss.impacts import routh
-from contact_dynamics.toss.solid import Flat, Solid, approaches, low_corners
+from contact_dynamics.toss.solid import approaches, low_corners
 from contact_dynamics.toss.strike import Unsettled, strike
 
 if TYPE_CHECKING:
@@ -30,8 +29,8 @@ if TYPE_CHECKING:
     from contact_dynamics.impact.law import RestitutionLaw
     from contact_dynamics.numerics.arithmetic import FloatArray
     from contact_dynamics.toss.law_spread import LawSpread
+    from contact_dynamics.toss.solid import Solid
     from contact_dynamics.toss.uncertainty import Samples
-    from contact_dynamics.toss.vectors import Matrix3
 
 FEWEST_AT_ONCE: Final = 32
 """Samples that go on together to later strikes. Fewer go on by themselves."""
@@ -64,7 +63,8 @@ class ManyStrikes(NamedTuple):
         ends: (n,), values of `SampleEnd`.
         now: (n,), s, the time of the last state.
         last: (n, 13), the numbers of the last states.
-        solids: The body and the flats of each sample.
+        solid: The body and the flats of a sample.
+        rows: (n, m), in what they differ (`Solid.take`).
     """
 
     seconds: FloatArray
@@ -74,7 +74,12 @@ class ManyStrikes(NamedTuple):
     ends: NDArray[np.int64]
     now: FloatArray
     last: FloatArray
-    solids: list[Solid]
+    solid: Solid
+    rows: FloatArray
+
+    def solid_of(self, i: int) -> Solid:
+        """Return the body and the flats of sample ``i``."""
+        return self.solid.sample(self.rows.data, i)
 
 
 def next_strikes(
@@ -114,9 +119,10 @@ def next_strikes(
         ends=ends,
         now=now,
         last=state,
-        solids=solids_of(solid, samples),
+        solid=solid,
+        rows=_rows_of(samples),
     )
-    flights = Flights(many.solids, spread, law, together)
+    flights = Flights(many, spread, law, together)
     going = np.arange(n)
     for k in range(depth + (MAX_FURTHER if further else 0)):
         if len(going) < (FEWEST_AT_ONCE if k >= depth else 1):
@@ -143,11 +149,12 @@ class Flights:
     """Samples that fly to their next strikes."""
 
     def __init__(
-        self, solids: list[Solid], spread: LawSpread, law: RestitutionLaw, together: SeveralContactsLaw
+        self, many: ManyStrikes, spread: LawSpread, law: RestitutionLaw, together: SeveralContactsLaw
     ) -> None:
-        self.solids, self.law, self.together = solids, law, together
+        self.solid, self.rows = many.solid_of(0), many.rows.data
+        self.law, self.together = law, together
         self.kicks = [] if spread.is_none else spread.kicks
-        self.descent, self.impact = Descent(solids[0]), Strike(law)
+        self.descent, self.impact = Descent(self.solid), Strike(law)
 
     def fly(  # noqa: PLR0917
         self,
@@ -172,10 +179,10 @@ class Flights:
             parts: (m,), get the flat times the number of corners plus the corner that strikes, or -1.
             rebounds: (m,), get the speeds, m/s, with which these corners leave.
         """
-        descent = self.descent
+        solid, descent = self.solid, self.descent
         for j in range(len(which)):
             i = which[j]
-            solid = self.solids[i]
+            solid.take(self.rows, i)
             gravity = (gravities[i, 0], gravities[i, 1], gravities[i, 2])
             descent.set_out(solid, gravity, [states[i, k] for k in range(13)])
             seconds = descent.run(0.0, horizon - now[i])
@@ -214,44 +221,8 @@ class Flights:
                 states[i, k] = y[k]
 
 
-def solids_of(solid: Solid, samples: Samples) -> list[Solid]:
-    """Return the body and the flats of each sample."""
-    inertias, inverses = _matrices(samples.inertias_B), _matrices(np.linalg.inv(samples.inertias_B))
-    materials = np.stack(
-        [samples.lasting_frictions, samples.restitutions, samples.frictions], axis=2
-    ).tolist()
-    # What all samples share is read once, since each reading makes it anew.
-    shared = [(flat.name, flat.normal, flat.level, flat.tangents) for flat in solid.flats]
-    mass, indices, rounding, gravity, settling = (
-        solid.mass,
-        solid.indices,
-        solid.rounding,
-        solid.gravity,
-        solid.settling,
-    )
-    return [
-        Solid(
-            mass,
-            inertias[i],
-            inverses[i],
-            array("d", corners.tobytes()),
-            indices,
-            rounding,
-            gravity,
-            tuple(
-                [
-                    Flat(name, normal, level, lasting, e, mu, tangents)
-                    for (name, normal, level, tangents), (lasting, e, mu) in zip(
-                        shared, materials[i], strict=True
-                    )
-                ]
-            ),
-            settling,
-        )
-        for i, corners in enumerate(samples.corners_B)
-    ]
-
-
-def _matrices(arrays: NDArray[np.floating[Any]]) -> list[Matrix3]:
-    """Return arrays (n, 3, 3) row by row."""
-    return [(a, b, c, d, e, f, g, h, i) for a, b, c, d, e, f, g, h, i in arrays.reshape(-1, 9).tolist()]
+def _rows_of(samples: Samples) -> FloatArray:
+    """Return the bodies and flats of samples as `Solid.take` has them."""
+    materials = [samples.lasting_frictions, samples.restitutions, samples.frictions]
+    parts = [samples.inertias_B, np.linalg.inv(samples.inertias_B), samples.corners_B, np.stack(materials, 2)]
+    return np.hstack([part.reshape(len(part), -1) for part in parts])

@@ -38,6 +38,8 @@ cdef class Solid:
     cdef object properties
 
     cpdef (double, double, double) corner(self, int k) noexcept
+    @cython.locals(j=cython.int, k=cython.int, flat=Flat)
+    cpdef void take(self, const double[:, ::1] rows, Py_ssize_t i) except *
 
 
 @cython.final
@@ -84,6 +86,7 @@ cdef class Above:
 
 
 cpdef (double, double, double, double, double, double, double, double, double) rows_of(double x, double yy, double z, double w) noexcept nogil
+cdef (double, double, double, double, double, double, double, double, double) matrix_in(const double[:, ::1] rows, Py_ssize_t i, int k) noexcept
 cpdef Pose pose_of(Solid solid, list y)
 cpdef properties_of(Solid solid)
 cpdef double energy_of(Solid solid, list y)

@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import math
 from array import array
+from copy import copy
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
@@ -128,6 +129,29 @@ class Solid:
     def among(self, flats: tuple[Flat, ...]) -> Solid:
         """Return the same body among other flats."""
         return Solid(*self._parts(flats))
+
+    def sample(self, rows: Any, i: int) -> Solid:
+        """Return the body of row ``i`` and its flats (`take`)."""
+        own = self.among(tuple([copy(flat) for flat in self.flats]))
+        own.take(rows, i)
+        return own
+
+    def take(self, rows: Any, i: int) -> None:
+        """Become the body of row ``i``, whose flats have the row's materials.
+
+        Rows, (n, 18 + 3 c + 3 s), have the inertia and its inverse, c corners, and of each of s flats the
+        friction where contact lasts, the restitution and the friction of strikes.
+        """
+        self.inertia, self.inverse = matrix_in(rows, i, 0), matrix_in(rows, i, 9)
+        self.properties, self.reach, k = None, 0.0, 18 + 3 * self.count
+        for j in range(3 * self.count):
+            self.points[j] = rows[i, 18 + j]
+        for j in range(self.count):
+            self.reach = max(self.reach, vec.norm(self.corner(j)))
+        self.reach += self.rounding
+        for flat in self.flats:
+            flat.friction, flat.restitution, flat.strike_friction = rows[i, k], rows[i, k + 1], rows[i, k + 2]
+            k += 3
 
     def _parts(self, flats: tuple[Flat, ...]) -> Any:
         points = array("d", self.points)
@@ -363,6 +387,15 @@ def matrix_of(array: NDArray[np.floating[Any]]) -> Matrix3:
     """Return an array (3, 3) row by row."""
     a, b, c, d, e, f, g, h, i = array.ravel().tolist()
     return (a, b, c, d, e, f, g, h, i)
+
+
+def matrix_in(rows: Any, i: int, k: int) -> Matrix3:
+    """Return the matrix in row ``i`` from column ``k`` on."""
+    return (
+        rows[i, k], rows[i, k + 1], rows[i, k + 2],
+        rows[i, k + 3], rows[i, k + 4], rows[i, k + 5],
+        rows[i, k + 6], rows[i, k + 7], rows[i, k + 8],
+    )  # fmt: skip
 
 
 def numbers_of(state: BodyState) -> Numbers:

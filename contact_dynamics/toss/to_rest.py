@@ -101,7 +101,7 @@ def followed_to_rest(
     tosses = []
     for i in going:
         settings = TossSettings(
-            many.solids[i],
+            many.solid_of(i),
             law,
             several_contacts_law=several_contacts_law,
             horizon=horizon - began[i],
