@@ -321,6 +321,10 @@ ACCELERATION_TOLERANCE: Final = 1e-9
 change of the wrench by this share can change its sign. It is far more than rounding of the input, and far
 less than the accuracy to which wrenches are known."""
 
+TURNS: Final = 1e-6
+"""rad/s^2. A body whose contacts all stick turns if its angular acceleration is more. Rounding leaves 1e-12
+in bodies of 1 cm and larger, and with this one a body takes twenty minutes to turn by 1 rad."""
+
 FLUSH: Final = 1e-8
 """rad, or a share of the reach, in space. Normals and coordinates of contacts that agree within it are taken
 as the same where modes are sought. It is `STRICT`: what this changes counts as no motion."""

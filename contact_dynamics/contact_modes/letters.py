@@ -47,8 +47,11 @@ _ALTOGETHER: Final = {SEPARATES: "leaves"}
 """The words for a body that is not said to do what its contacts do."""
 
 
-def mode_in_words(mode: str) -> str:
+def mode_in_words(mode: str, *, turns: bool | None = None) -> str:
     """Return words for a mode with forces, one letter for each contact: what the body does, or each kind.
+
+    A body of which every contact sticks may turn, about one finger or about the line through two. The letters
+    do not determine that: ``turns`` is whether it does, or None if it is unknown.
 
     Raises:
         InvalidFieldError: a letter is none of a contact mode.
@@ -56,6 +59,9 @@ def mode_in_words(mode: str) -> str:
     if set(mode) - set(LETTERS):
         raise InvalidFieldError("mode", mode, f"letters of {', '.join(LETTERS)}")
     kinds = {letter: mode.count(letter) for letter in LETTERS if letter in mode}
+    if set(kinds) == {STICKS} and turns is not False:
+        words = f"{len(mode)} contact{'s' * (len(mode) > 1)} {LETTERS[STICKS][len(mode) > 1]}"
+        return f"it turns ({words})" if turns else "every contact stays fixed"
     if len(kinds) <= 1:
         return next((f"it {_ALTOGETHER.get(kind, LETTERS[kind][0])}" for kind in kinds), "nothing touches it")
     (first, most), *others = kinds.items()

@@ -16,10 +16,13 @@ from contact_dynamics.contact.uncertainty import ContactUncertainty
 from contact_dynamics.contact_modes.letters import LETTERS, mode_in_words
 from contact_dynamics.plane.types import Vector2
 from contact_dynamics.records import NamedInt, Record
+from contact_dynamics.tolerances import TURNS
 from contact_dynamics.validation import check_not_negative, check_size
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence, Sized
+
+    from numpy.typing import ArrayLike
 
     from contact_dynamics.contact.contact import ContactSet
     from contact_dynamics.rigid_body.body import BodyState, MassProperties
@@ -202,6 +205,23 @@ class BodyStatics(Record):
         return self.stable_disturbance >= check_not_negative("disturbance", disturbance)  # false for NaN
 
 
+def does_turn(angular_acceleration: ArrayLike) -> bool:
+    """Return whether an angular acceleration, rad/s^2, of any shape is more than rounding."""
+    return bool(np.abs(angular_acceleration).max() > TURNS)
+
+
+def motion_in_words(mode: AnyMode) -> str:
+    """Return what the body does in a mode (`letters.mode_in_words`)."""
+    turns = None  # the motion of a mechanism has no angular accelerations
+    if isinstance(mode, PlanarMode):
+        turns = does_turn(mode.angular_acceleration)
+    elif isinstance(mode, SpatialMode):
+        turns = does_turn(mode.angular_acceleration_W)
+    elif isinstance(mode, BodiesMode):
+        turns = does_turn(mode.angular_accelerations_W)
+    return mode_in_words(mode.mode, turns=turns)
+
+
 class AnyMode(Record):
     """Consistent mode in the plane or in space, with text summaries."""
 
@@ -219,7 +239,7 @@ class AnyMode(Record):
 
     def in_short(self) -> str:
         """Return the letters, a text label of the motion, and whether other forces cause it too."""
-        words = f"{type(self).__name__} {self.mode}: {mode_in_words(self.mode)}"
+        words = f"{type(self).__name__} {self.mode}: {motion_in_words(self)}"
         return "; ".join([words, *shared_forces([self])])
 
 
@@ -232,7 +252,7 @@ class AnyModeAnswer(Record):
 
     def in_short(self) -> str:
         """Return the verdict, text labels of the first modes, and which modes have no unique forces."""
-        shown = [f"{mode.mode}: {mode_in_words(mode.mode)}" for mode in self.modes[:_SHOWN]]
+        shown = [f"{mode.mode}: {motion_in_words(mode)}" for mode in self.modes[:_SHOWN]]
         more = [f"{len(self.modes) - _SHOWN} more"] if len(self.modes) > _SHOWN else []
         words = [*shown, *more, *shared_forces(self.modes)]
         return f"{type(self).__name__}: {self.verdict}{', ' if words else ''}{'; '.join(words)}"

@@ -20,6 +20,7 @@ from rclpy.utilities import remove_ros_args
 
 from contact_dynamics.contact_modes import ModeVerdict
 from contact_dynamics.contact_modes.letters import mode_in_words
+from contact_dynamics.contact_modes.result import does_turn
 from contact_dynamics.demo.arguments import PUSHED_BLOCK, THROWN_BOX, TRAY, commentator_parser
 from contact_dynamics.demo.patience import Patience
 from contact_dynamics.diagrams.words import OUTCOMES, VERDICTS
@@ -169,7 +170,7 @@ class Commentator(Node):
         if answer.verdict != answer.UNIQUE:
             return f"{where}: {self._body.name} {VERDICTS[ModeVerdict(answer.verdict)]}"
         (mode,) = answer.modes
-        words = f"{where}: {mode_in_words(mode.mode)}"
+        words = f"{where}: {mode_in_words(mode.mode, turns=does_turn(mode.angular_acceleration))}"
         if np.isfinite(mode.margin):
             beyond = " or ".join(mode_in_words(other) for other in mode.margin_modes)
             words += f" (margin {mode.margin:.2f} N, then {beyond or 'no mode is consistent'})"

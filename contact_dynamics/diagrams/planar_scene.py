@@ -13,9 +13,8 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from contact_dynamics.contact_modes.letters import mode_in_words
 from contact_dynamics.contact_modes.planar.wrench_sets import PlanarWrenchSet, WrenchHalfSpace, length_of
-from contact_dynamics.contact_modes.result import PlanarMode, applied_wrench
+from contact_dynamics.contact_modes.result import PlanarMode, applied_wrench, motion_in_words
 from contact_dynamics.diagrams import palette, paper
 from contact_dynamics.diagrams.contact_scene import beyond
 from contact_dynamics.diagrams.marks import Arrows, Axis, Diagram, Labels, Lines, Points
@@ -277,7 +276,7 @@ def modes_side_by_side(
     modes = _seen_modes(answer, plane)
     margins = [margin_in_words(margin) for margin in answer.margins or ()] or [""] * len(modes)
     titles = [
-        f"{mode.mode}: {mode_in_words(mode.mode)}\n{margin}".rstrip()
+        f"{mode.mode}: {motion_in_words(mode)}\n{margin}".rstrip()
         for mode, margin in zip(modes, margins, strict=True)
     ]
     return side_by_side(

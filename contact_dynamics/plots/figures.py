@@ -19,7 +19,7 @@ from contact_dynamics.contact_modes import (
     SpatialContactProblem,
     SpatialModeAnswer,
 )
-from contact_dynamics.contact_modes.letters import mode_in_words
+from contact_dynamics.contact_modes.result import motion_in_words
 from contact_dynamics.diagrams import trajectory_curves
 from contact_dynamics.diagrams.contact_scene import contact_forces
 from contact_dynamics.diagrams.force_dual import force_dual
@@ -251,7 +251,7 @@ def modes(answer: PlanarModeAnswer | SpatialModeAnswer) -> Figure:
         answer: What `contact_dynamics.contact_modes.contact_modes` returns.
     """
     found = answer.modes[:MAX_MODES]
-    titles = [f"{mode.mode}: {mode_in_words(mode.mode)}" for mode in found]
+    titles = [f"{mode.mode}: {motion_in_words(mode)}" for mode in found]
     rows = max(len(found), 1)
     figure = blank_figure(8.0, 4.6 * rows)
     each = figure.subplots(rows, 1, squeeze=False)[:, 0]

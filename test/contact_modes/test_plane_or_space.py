@@ -49,7 +49,7 @@ def test_one_problem_takes_every_question(problem: PlanarContactProblem | Spatia
     assert [mode.mode for mode in answer.modes] == [fixed]
     (margin,) = mode_margins(problem, answer)
     assert (margin.mode, margin.margin > 0.0) == (fixed, True)
-    words = f"it stays fixed up to a change of {margin.margin:.3g} N, then "
+    words = f"every contact stays fixed up to a change of {margin.margin:.3g} N, then "
     assert str(margin).startswith(f"{type(margin).__name__}: {words}")
     assert "s" * len(problem.contacts) in [one.mode for one in refused_modes(problem, answer)]
     assert [one.mode for one in wrench_sets(problem, modes=[fixed])] == [fixed]

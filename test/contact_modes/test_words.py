@@ -7,6 +7,7 @@ import inspect
 import math
 import pydoc
 
+import numpy as np
 import pytest
 
 import contact_dynamics as cd
@@ -54,6 +55,35 @@ def test_a_spatial_mode_says_what_each_contact_does(
     assert mode.in_short().endswith(short.split(": ")[1] + shared)
 
 
+@pytest.mark.parametrize(
+    ("off_centre", "words"), [(0.0, "it stays fixed"), (0.02, "it turns (2 contacts stay fixed)")]
+)
+def test_a_body_between_two_fingers_turns_about_them_unless_they_hold_its_centre(
+    off_centre: float, words: str
+) -> None:
+    """By hand, it falls about the line of the fingers with m g d / (I + m d^2). It does not rest."""
+    box = cd.Body.box((0.06, 0.1, 0.06), mass=0.5)
+    fingers = cd.ContactSet(
+        p_WC_W=[[-0.03, off_centre, 0], [0.03, off_centre, 0]],
+        normals_W=[[1, 0, 0], [-1, 0, 0]],
+        frictions=0.5,
+    )
+    state = cd.BodyState(p_WB_W=[0, 0, 0], q_WB=[0, 0, 0, 1])
+    problem = cd.SpatialContactProblem(body=box, state=state, contacts=fingers, force_W=[0, 0, -4.9])
+    found = cd.contact_modes(problem)
+    held = next(mode for mode in found.modes if mode.mode == "ff")
+    falls = 4.9 * off_centre / (box.mass_properties.I_B[0, 0] + 0.5 * off_centre**2)
+    np.testing.assert_allclose(held.angular_acceleration_W, [falls, 0, 0], atol=1e-9 * 127.8)  # rounding
+    assert f"ff: {words}" in found.in_short()
+    assert f"ff: {words}" in held.in_short()
+    if off_centre:
+        with pytest.raises(InvalidFieldError, match="one of a body that stays fixed without the additional"):
+            cd.largest_load(problem, force_W=[0, 0, -1])
+    else:
+        beyond = cd.largest_load(problem, force_W=[0, 0, -1], at_W=[0, 0.01, 0]).in_short()
+        assert "then it turns (2 contacts stay fixed)" in beyond
+
+
 def test_a_planar_mode_says_to_which_side_it_slides() -> None:
     block, foot = (
         cd.PlanarBody(mass=1.0, inertia=0.1),
@@ -82,6 +112,9 @@ def test_letters_that_there_are_not_are_an_error(mode: str) -> None:
 
 
 def test_a_margin_that_is_no_number_is_told_in_words() -> None:
-    assert margin_in_words("ff", math.inf, ()) == "it stays fixed, and no change of the wrench ends that"
-    assert margin_in_words("ff", math.nan, ()) == "it stays fixed, and its margin is unknown"
+    assert (
+        margin_in_words("ff", math.inf, ())
+        == "every contact stays fixed, and no change of the wrench ends that"
+    )
+    assert margin_in_words("ff", math.nan, ()) == "every contact stays fixed, and its margin is unknown"
     assert margin_in_words("ff", 1.0, ()).endswith(" up to a change of 1 N, then no mode is consistent")

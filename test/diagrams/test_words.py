@@ -62,7 +62,7 @@ def test_a_margin_says_how_far_it_is_to_what(margin: float, words: str) -> None:
 @pytest.mark.parametrize(
     ("mode", "words"),
     [
-        ("ffff", "it stays fixed"),
+        ("ffff", "every contact stays fixed"),
         ("rr", "it slides right"),
         ("l", "it slides left"),
         ("ccc", "it slides"),

@@ -118,7 +118,7 @@ def test_a_question_about_many_candidates_has_a_row_for_each(asked: Asked, tmp_p
         [9.0, 0.0, 0.0],
     ]
     assert len({row["summary"] for row in pushed}) > 1
-    assert pushed[0]["summary"] == "unique: ffff (it stays fixed)"
+    assert pushed[0]["summary"] == "unique: ffff (every contact stays fixed)"
     assert [row["surface"] for row in standing] == ["floor", "table", "ramp"]
     asked_contacts = [json.loads(row["question"])["contacts"] for row in standing]
     assert [each["frictions"] for each in asked_contacts] == [[0.1, 0.2], [0.3], [0.4]]

@@ -79,7 +79,7 @@ def test_the_modes_of_the_indeterminate_rod_stand_side_by_side(
         drawn.last(f"/planar_modes/mode_{i}/frame/title", "LineStrips2D:labels")[-1].splitlines()
         for i in (1, 2)
     ]
-    assert {first for first, _ in titles} == {"f: it stays fixed", "l: it slides left"}
+    assert {first for first, _ in titles} == {"f: it turns (1 contact stays fixed)", "l: it slides left"}
     assert all(" N to " in second for _, second in titles)
     places = [
         drawn.array(f"/planar_modes/mode_{i}/body", "LineStrips2D:strips").reshape(-1, 2) for i in (1, 2)

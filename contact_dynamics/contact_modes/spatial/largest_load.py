@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from contact_dynamics.contact_modes.letters import STICKS, mode_in_words
-from contact_dynamics.contact_modes.result import ModeVerdict
+from contact_dynamics.contact_modes.result import ModeVerdict, does_turn
 from contact_dynamics.contact_modes.spatial.answer import spatial_contact_modes
 from contact_dynamics.contact_modes.spatial.wrenches import RoundSum
 from contact_dynamics.contact_modes.surface_frame import seen_in_space
@@ -56,6 +56,11 @@ _UNITS: Final = {
 }
 
 
+def _moving(modes: tuple[str, ...]) -> str:
+    """Return words for modes of a body that does not stay at rest: if every contact sticks, it turns."""
+    return " or ".join(mode_in_words(mode, turns=True) for mode in modes) or "no mode is consistent"
+
+
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class LargestLoad(Record):
     """Largest load on a body at rest, as factors of a given load, or largest motion of its support.
@@ -85,7 +90,7 @@ class LargestLoad(Record):
         """Return the largest load, and the modes that follow."""
         if math.isinf(self.factor):
             return f"LargestLoad: it stays fixed {_UNITS[self.unit]}"
-        then = " or ".join(map(mode_in_words, self.modes_beyond)) or "no mode is consistent"
+        then = _moving(self.modes_beyond)
         fixed = f"it stays fixed up to {self.factor:.3g} {self.unit}"
         if self.only_rest < self.factor:  # beyond it another mode is consistent too
             surely = f"it stays fixed up to {self.only_rest:.3g}"
@@ -271,7 +276,7 @@ class LeastFriction(Record):
             return "LeastFriction: it stays fixed without friction"
         low, high = min(self.frictions), max(self.frictions)
         needed = f"{high:.3g}" if low == high else f"{low:.3g} to {high:.3g}"
-        then = " or ".join(map(mode_in_words, self.modes_below)) or "no mode is consistent"
+        then = _moving(self.modes_below)
         return f"LeastFriction: it may stay fixed with a friction of {needed}; with less, {then}"
 
 
@@ -471,7 +476,8 @@ def _followed(
 
 def _check_rests(problem: SpatialContactProblem) -> None:
     found = spatial_contact_modes(problem)
-    if STICKS * len(problem.contacts) not in {mode.mode for mode in found.modes}:
+    rest = STICKS * len(problem.contacts)
+    if not any(mode.mode == rest and not does_turn(mode.angular_acceleration_W) for mode in found.modes):
         raise InvalidFieldError(
             "problem",
             found.in_short(),
