@@ -7,6 +7,9 @@ the error that the fit's covariance predicts: its standard deviation, carried al
 the noise of the pose at the end. "Newest velocity" predicts from the newest state of that half as a tracker
 publishes it. "At rest" assumes that the body stays where it is.
 
+For the cube, `_flight_coverage` prints how often poses of held-out flights are in the regions predicted for
+them.
+
 The brick's flights come with the package (MuJoCo with the noise of motion capture). The measured tosses of a
 cube are read where CUBE_TOSSES names their `.npz`, or the folder that holds it, or from beside the checkout.
 That cube falls at less than 9.81 m/s^2 in its recordings, whose lengths or times are off by as much; "as it
@@ -24,6 +27,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from benchmarks._flight_coverage import flight_coverage
 from benchmarks._quotes import quote
 from contact_dynamics.constants import seconds_since
 from contact_dynamics.measured.cube_tosses import read_cube_toss
@@ -95,6 +99,7 @@ def run() -> None:
         return
     tosses = (read_cube_toss(path, index=index) for index in range(COUNT))
     _report("measured cube", end_errors(tosses, as_it_falls=True))
+    flight_coverage(path)
 
 
 def cube_tosses() -> Path:
