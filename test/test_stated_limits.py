@@ -28,7 +28,7 @@ NOT_REFUSED = {
     "contact_modes.planar.uncertain.MAX_PROGRAMS",
     "contact_modes.spatial.completeness.MAX_PROGRAMS",
     "contact_modes.spatial.uncertain.MAX_PROGRAMS",
-    "contact_modes.spatial.margins_of_sliding.MAX_CORNERS",
+    "contact_modes.spatial.margins.MAX_CORNERS",
     "impact.in_time.sequence.MAX_STRIKES",
     "impact.in_time.sequence.MAX_HELD",
     "impact.several.interleavings.MAX_INCREMENTS",

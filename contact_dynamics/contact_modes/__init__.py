@@ -34,13 +34,12 @@ contact, and prove that no other mode is consistent.
   (`one_contact`). `only_motion` may prove that no other mode exists. Otherwise `completeness` finds or
   refutes all others, with linear programs (`holding_programs`), exact solutions and ranges of directions
   without others (`exact_letters`), and modes in which contacts share loads (`shared_loads`). The remaining
-  cases require a `search` of all combinations of `options`, in `regions` of common motions. The programs
-  are solved by a `dual_simplex` (`simplex_steps`). The modes found are
-  made exact (`exact_modes`), and `round_cones` decides whether forces hold contacts. `mode_with_forces`
-  computes the accelerations. The wrenches of a mode (`wrenches`, on a `cone`) are divided by sliding
-  directions. The same search serves several bodies, and a mechanism whose contact points respond to forces
-  in a known way (`response`). `margins` are distances to sums of round cones, also for modes in which
-  contacts begin to slide (`margins_of_sliding`), and so are the amounts of refused modes.
+  cases require a `search` of all combinations of `options`, in `regions` of common motions. The programs are
+  solved by a `dual_simplex` (`simplex_steps`). The modes found are made exact (`exact_modes`), and
+  `round_cones` decides whether forces hold contacts. `mode_with_forces` computes the accelerations. The
+  wrenches of a mode (`wrenches`, on a `cone`) are divided by sliding directions. The same search serves
+  several bodies, and a mechanism whose contact points respond to forces in a known way (`response`).
+  `margins` are distances to sums of round cones, and so are the amounts of refused modes.
 """
 
 from contact_dynamics.contact_modes.letters import Letter

@@ -32,7 +32,6 @@ kinematics alone has it for contacts that slide or stick."""
 PLANAR_LETTERS: Final = (SEPARATES, SLIDES_LEFT, SLIDES_RIGHT, STICKS)
 SPATIAL_LETTERS: Final = (SEPARATES, STICKS, STAYS)
 
-
 LETTERS: Final[dict[str, tuple[str, str]]] = {
     SEPARATES: ("separates", "separate"),
     SLIDES_LEFT: ("slides left", "slide left"),
@@ -41,7 +40,6 @@ LETTERS: Final[dict[str, tuple[str, str]]] = {
     STAYS: ("slides", "slide"),
 }
 """The words for what one contact does in a mode with forces, and for several."""
-
 
 _ALTOGETHER: Final = {SEPARATES: "leaves"}
 """The words for a body that is not said to do what its contacts do."""

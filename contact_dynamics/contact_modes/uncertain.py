@@ -51,10 +51,8 @@ if TYPE_CHECKING:
 _FAILED: Final = 4
 """After this many failed proofs the smallest box is tried. If its proof fails, all others would fail too."""
 
-
 _TRIED_FIRST: Final = 6
 """Proofs that are tried from the largest box on, before samples. Feet on a floor need no more."""
-
 
 AnyAnswer = TypeVar("AnyAnswer", bound=AnyModeAnswer)
 

@@ -45,8 +45,6 @@ if TYPE_CHECKING:
 
 _WIDE: Final = 0.1
 """Sine. The search for rows to start with ends at the first pair that makes this angle or more."""
-_MANY_RAYS: Final = 500
-"""Number of rows above which heights of rays are computed in arrays too."""
 
 _HALF: Final = Decimal("0.5")
 
@@ -63,7 +61,6 @@ class _NotClearError(Exception):
 
 _MANY: Final = 150
 """Number of rows above which `CLEAR_ROWS_OF_MANY` is used instead of `CLEAR_ROWS`."""
-
 
 _ALMOST_OPPOSITE: Final = -0.9
 """Cosine. Sectors whose rays make a smaller one are given in two halves."""
@@ -256,7 +253,7 @@ class PolyhedralCone:
         decimals decide, floats tell which rows do that, and those that they cannot tell come last.
         """
         matrix = array_of(self.rows)
-        if self.exact or len(matrix) > _MANY_RAYS:
+        if self.exact:
             self._rough = array_of(self.rays)
         extreme = {*matrix.argmin(axis=0).tolist(), *matrix.argmax(axis=0).tolist()}.difference(first)
         for index in extreme:
@@ -311,11 +308,7 @@ class PolyhedralCone:
         if lowest >= self._clear:
             return
         tolerance, clear = self._same, self._clear
-        if self._rough is None or self.exact:
-            near = [height for height in heights if -clear < height < clear]
-        else:
-            sizes = np.array(heights)
-            near = sizes[abs(sizes) < clear].tolist()
+        near = [height for height in heights if -clear < height < clear]
         if near:
             self._check_clear(*near)
         if lowest > tolerance:
@@ -333,10 +326,6 @@ class PolyhedralCone:
         x, y, z = row
         if self._rough is None:
             return [x * ray[0] + y * ray[1] + z * ray[2] for ray in self.rays]
-        if not self.exact:
-            columns = self._rough.T
-            found: list[float] = (x * columns[0] + y * columns[1] + z * columns[2]).tolist()
-            return found
         rough = self._rough @ array_of([row])[0]
         heights: list[float] = rough.tolist()
         for i in (abs(rough) <= ROUGH_ROWS).nonzero()[0].tolist():
@@ -404,7 +393,7 @@ class PolyhedralCone:
         common = self.tight[i] & self.tight[j]
         a, b = self.rays[i], self.rays[j]
         one, two = abs(heights[j]), abs(heights[i])
-        if self.exact and self._rough is not None:
+        if self._rough is not None:
             one, two = abs(dot(self.rows[index], b)), abs(dot(self.rows[index], a))
         rough = unit((one * a[0] + two * b[0], one * a[1] + two * b[1], one * a[2] + two * b[2]))
         if self.exact:

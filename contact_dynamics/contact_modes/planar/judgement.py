@@ -32,7 +32,6 @@ if TYPE_CHECKING:
     from contact_dynamics.contact_modes.planar.problem import ContactRow, PlanarCase
     from contact_dynamics.plane.types import Vector2
 
-
 EVIDENCE: Final = 3.0
 """Forces are evidence if they miss what the letters say by no more than this number of tolerances."""
 

@@ -183,7 +183,6 @@ def _leader(leaders: list[int], index: int) -> int:
 MAX_PLANAR_CONTACTS: Final = 1000
 """Largest number of contacts that is accepted. The modes of n contacts have about 4 n^2 letters in all."""
 
-
 AT_REST: Final = PlanarVelocity(v=(0.0, 0.0), w=0.0)
 
 

@@ -89,7 +89,6 @@ if TYPE_CHECKING:
     from contact_dynamics.contact_modes.spatial.problem import SpatialContactProblem
     from contact_dynamics.contact_modes.spatial.search import Search
 
-
 _DOUBT: Final = "rounding decides whether some modes are consistent: contacts or normals are nearly the same"
 
 _AT_REST: Final = "whether all contacts can stick together hangs on rounding"
@@ -106,13 +105,11 @@ _UNENDED: Final = (
     "or sliding, and others"
 )
 
-
 _ENDLESS: Final = "the search for further modes did not end"
 
 _NARROW: Final = "rounding decides whether modes hold that hold under nearly the same load: {}"
 
 _NOT_REFUTED: Final = "no mode was found, and it could not be shown that there is none"
-
 
 _FREE: Final = 3
 """Components of the motion with which a contact can move in every direction."""

@@ -52,7 +52,6 @@ _MAX_STEPS: Final = 500
 """The largest number of steps of the primal simplex. After a fifth of them Bland's rule holds, which cannot
 cycle. The dual simplex is doubtful after so many. Tens are common, and rounding can make it go in circles."""
 
-
 _CLEAR: Final = 1e3
 """A refusal is beyond doubt only if a condition is missed by this many times its estimated rounding."""
 

@@ -63,7 +63,6 @@ MAX_DYNAMIC_CONTACTS: Final = 32
 """The largest number of touching contacts that is accepted. They take a tenth of a second, or two seconds
 where many modes are consistent."""
 
-
 FRICTION_FACETS: Final = 8
 """The number of edges of a friction pyramid, unless another number is asked for. The pyramid allows at least
 92 % of the round cone's friction."""

@@ -35,10 +35,8 @@ sectors."""
 _NARROW_OF_MORE: Final = 0.64
 """rad. The same angle where there are more dimensions, and thus many regions."""
 
-
 _MOST_RAYS: Final = 24
 """The largest number of rays of a part of a region."""
-
 
 ONE_BODY: Final = 6
 """The number of components of the motion of one body. Its contacts are taken as one group."""

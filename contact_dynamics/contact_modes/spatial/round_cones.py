@@ -52,7 +52,6 @@ sum."""
 
 _NOTHING: Final = np.zeros(1)
 
-
 _WIDE: Final = 10.0
 """Coefficient of friction. The edges of a wider cone lean by more than 84 degrees from its axis."""
 

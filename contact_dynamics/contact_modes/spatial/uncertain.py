@@ -424,7 +424,6 @@ these all contacts are off the same way."""
 MAX_PROVEN_CONTACTS: Final = 4
 """The largest number of contacts that proofs are tried for. The programs grow exponentially with them."""
 
-
 _STEP: Final = 2.0
 """Each size is at most this factor from the next. A finer step takes more proofs, of up to seconds each."""
 

@@ -33,7 +33,6 @@ if TYPE_CHECKING:
 _ALIKE: Final = 7
 """Unit rows that agree to so many digits count as the same. Rounding reaches the eleventh digit."""
 
-
 HEIGHT_WEIGHT: Final = 1e4
 """The weight of the height of a wrench, which must be met exactly, relative to its distance."""
 
