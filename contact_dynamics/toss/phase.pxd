@@ -6,7 +6,7 @@ cimport libc.math as math
 
 from contact_dynamics.toss cimport vectors as vec
 from contact_dynamics.toss.forces cimport HeldContacts, force_rounding, out_of_flats
-from contact_dynamics.toss.solid cimport Above, Flat, Held, Solid
+from contact_dynamics.toss.solid cimport Above, Flat, Held, Pose, Solid
 
 cdef extern from *:
     # A checksum of phase.py and this file, which setup.py defines (see numerics/compiled.py).
@@ -16,7 +16,7 @@ cdef extern from *:
 cdef double BEGUN_TO_SLIDE, COARSE_SLIDING_STOPPED, COMES_DOWN_FOUND, CREEPING_STEP, FORCE_END_FOUND
 cdef double GRAZING_DEPTH, PHASE_LEAST_STEP, RESOLVED_SLIDING, SAMPLED_PHASE_ERROR, SLIDING_STOPPED
 cdef double FIRST_STEP, LARGEST_STEP, SHORT_STEP, _INFINITE, _TOWARDS_STOP
-cdef int MAX_PHASE_STEPS, _HEIGHT, _FORCE, _MAX_ROOT_STEPS, _MAX_SHORT_STEPS, _NONE
+cdef int MAX_PHASE_STEPS, _HEIGHT, _FORCE, _BEGUN, _MAX_ROOT_STEPS, _MAX_SHORT_STEPS, _NONE
 cdef int _FORCES, _SLIDING_STOPS, _COMES_DOWN, _SLOW, _TIME, _STEPS, _CREEPS
 cdef double[::1] _STAGES, _ERRORS, _INTERPOLANT
 
@@ -73,8 +73,10 @@ cdef class _Run:
     @cython.locals(before=HeldContacts, one=Held, other=Held, slow=cython.bint)
     cdef void _turn_beginning(self)
     cdef void _forget_risen(self) noexcept
-    @cython.locals(no_force=cython.bint, end=cython.int, x=cython.double)
+    @cython.locals(no_force=cython.bint, goes_back=cython.bint, end=cython.int, x=cython.double)
     cdef (int, double) _first_end(self)
+    @cython.locals(least=cython.double, pose=Pose, one=Held)
+    cdef double _least_begun(self) except? -1.0
     @cython.locals(least=cython.double)
     cdef double _least_height(self) noexcept
     cdef double _left_at(self, int kind, double x) except? -1.0

@@ -94,7 +94,7 @@ _INTERPOLANT: Final = array(
 """The coefficients of the interpolant, four for each stage. C would divide whole numbers as such."""
 
 _INFINITE: Final = math.inf
-_HEIGHT, _FORCE = 0, 1  # what becomes negative where a mode ends
+_HEIGHT, _FORCE, _BEGUN = 0, 1, 2  # what becomes negative where a mode ends
 _NONE: Final = -1
 
 
@@ -104,7 +104,7 @@ class PhaseEnd(NamedInt):
     FORCES = 0
     """A held contact no longer presses, or friction no longer holds a contact that sticks."""
     SLIDING_STOPS = 1
-    """A contact stops sliding."""
+    """A contact stops sliding, or one that begins to slide would do so along its friction."""
     COMES_DOWN = 2
     """Another corner comes down."""
     SLOW = 3
@@ -462,13 +462,28 @@ class _Run:
         """
         end, x = _NONE, 1.0
         no_force = self.held.least_left() < 0.0
+        goes_back = self.held.begins and self._least_begun() < 0.0
         self.there.take(self.solid, self.trial)
         dip = self._first_dip()
         if dip < 1.0 or self._least_height() < 0.0:
             end, x = _COMES_DOWN, self._crossing(_HEIGHT, dip, COMES_DOWN_FOUND)
         if no_force and (end == _NONE or self._left_at(_FORCE, x) < 0.0):
             end, x = _FORCES, self._crossing(_FORCE, x, FORCE_END_FOUND * force_rounding(self.solid))
+        if goes_back and (end == _NONE or self._left_at(_BEGUN, x) < 0.0):
+            end, x = _SLIDING_STOPS, self._crossing(_BEGUN, x, 0.5 * SLIDING_STOPPED)
         return (end, x)
+
+    def _least_begun(self) -> float:
+        """Return the least speed, m/s, against its friction of a contact that begins to slide, plus rounding.
+
+        It is negative where friction would drive the contact, so that the mode is not consistent any more.
+        At the last force that friction can hold, a paradoxical contact may begin to slide in theory alone.
+        """
+        least, pose = _INFINITE, self.held.pose
+        for one in self.held.mode:
+            if one.begins:
+                least = min(least, vec.dot(pose.velocity(pose.arm(one.flat, one.corner)), one.towards))
+        return least + 0.5 * SLIDING_STOPPED
 
     def _least_height(self) -> float:
         """Return the least height, m, of a corner that is not held, plus the depth that it may have."""
@@ -478,11 +493,14 @@ class _Run:
         return least
 
     def _left_at(self, kind: int, x: float) -> float:
-        """Return what is left at a share of the step: the least height, m, or the least force, N."""
+        """Return what is left at a share of the step: the least height, m, force, N, or speed, m/s."""
         self._interpolated().within(x, self.probe)
         if kind == _HEIGHT:
             self.there.take(self.solid, self.probe)
             return self._least_height()
+        if kind == _BEGUN:
+            self.held.pose.take(self.probe)
+            return self._least_begun()
         self.held.push(self.probe)
         return self.held.least_left()
 

@@ -11,6 +11,8 @@ import pytest
 from contact_dynamics import Body, BodyState, MassProperties, Surface, World
 from contact_dynamics.contact_modes.spatial.answer import spatial_contact_modes
 from contact_dynamics.contact_modes.spatial.problem import SpatialContactProblem
+from contact_dynamics.rigid_body import kinetic_energy
+from contact_dynamics.shapes import polyhedron
 from contact_dynamics.tolerances import SLIDING_STOPPED
 from contact_dynamics.toss import TossEventKind, UndecidedReason, toss
 from contact_dynamics.toss.mode_choice import choose_mode
@@ -133,3 +135,42 @@ def test_feet_on_one_floor_are_not_undecided(friction: float) -> None:
     state = BodyState(p_WB_W=[0, 0, 0.05], q_WB=[0, 0, 0, 1], v_WB_W=[0.5, 0.2, 0.0], w_WB_W=[0, 0, 1.0])
     world = World(surfaces=(floor(friction),), gravity_W=[0, 0, -G])
     assert toss(block, state, world).undecided == ()
+
+
+def test_a_paradoxical_corner_that_friction_holds_no_longer_leaves() -> None:
+    """A paradoxical corner that sticks may also begin to slide, until friction is at its limit.
+
+    There both modes become one, and beyond there is none but separation. The body slid on for 3 ms, driven by
+    friction, and gained energy.
+    """
+    inertia = [[5284e-6, -285e-6, -2423e-6], [-285e-6, 5546e-6, -721e-6], [-2423e-6, -721e-6, 3754e-6]]
+    corners = np.array(
+        [
+            [0.0876, 0.0104, 0.0707],
+            [-0.0072, -0.04, 0.0704],
+            [-0.0859, -0.1258, -0.1753],
+            [0.1633, 0.0288, 0.1785],
+            [-0.0778, 0.133, -0.0737],
+        ]
+    )
+    body = Body(
+        name="hull", mass_properties=MassProperties(mass=0.9693, I_B=inertia), shape=polyhedron(corners)
+    )
+    q, w = np.array([0.4924, 0.1447, 0.527, 0.6774]), np.array([-9.022, 2.211, -14.158])
+    q /= np.linalg.norm(q)
+    arm = BodyState(p_WB_W=[0, 0, 0], q_WB=q).R_WB @ corners[2]
+    state = BodyState(p_WB_W=-arm, q_WB=q, v_WB_W=-np.cross(w, arm), w_WB_W=w)
+    gravity = np.array([-4.78, 4.407, -7.347])
+    went = toss(body, state, World(surfaces=(floor(0.864),), gravity_W=gravity), horizon=0.02)
+    assert [event.mode for event in went.events] == ["f", "f", "c", ""]
+    begins, leaves = went.events[2:]
+    assert (leaves.kind, begins.seconds < 0.003) == (TossEventKind.LIFTS_OFF, True)
+    # It slides up to 1e-6 m/s, which is zero (`SLIDING_STOPPED`), while its acceleration grows by 4e3 m/s^3.
+    assert leaves.seconds - begins.seconds < 1e-4
+    moved = went.at(np.linspace(0.0, 0.02, 200))
+    energies = [
+        kinetic_energy(body, BodyState(p_WB_W=p, q_WB=q, v_WB_W=v, w_WB_W=w)) - 0.9693 * gravity @ p
+        for p, q, v, w in zip(moved.p_WB_W, moved.q_WB, moved.v_WB_W, moved.w_WB_W, strict=True)
+    ]
+    # The error of a step is 1e-7 m/s at most, of velocities of 2 m/s (`test_among_flats`).
+    assert np.ptp(energies) < 1e-7 * energies[0]
