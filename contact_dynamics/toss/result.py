@@ -77,7 +77,8 @@ class TossEvent(Record):
         corners: Indices of the corners of the body's shape at these contacts, one for each entry of
             ``surfaces``.
         p_WC_W: (n, 3), m, positions of these contacts, world.
-        impulse_W: (3,), N s, impulse on the body, world axes. It is zero if no contact strikes.
+        impulse_W: (3,), N s, impulse on the body, world axes. It is zero if no contact strikes. At SETTLES it
+            may be that by which contacts lose their last rebound, and then it may pull.
         outcome: Outcome of the impact at a striking contact, or None. Contacts that strike at one instant
             under SIMULTANEOUS have no outcome.
         mode: One letter for each contact: f sticks or rolls, c slides. It is empty if no mode follows.
