@@ -44,6 +44,7 @@ if TYPE_CHECKING:
     from contact_dynamics.calibration.first_flights import Gravity
     from contact_dynamics.calibration.observed import Observed
     from contact_dynamics.calibration.slides import LastingFriction
+    from contact_dynamics.numerics.clustered_fit import ClusteredFit
     from contact_dynamics.validation import FloatArray
 
 MAX_RATIOS: Final = 4
@@ -200,7 +201,8 @@ def _estimates(
     model, fit = fitting.model, first.fit
     vague = np.abs(fit.undetermined).max(axis=0, initial=0.0) > DIRECTION_SHARE
     choice = np.where(vague, 0.0, choice)
-    covariance = _for_few(fitting, first) * fit.covariance + np.outer(choice, choice)
+    covariance = _covariance(fit) + np.outer(choice, choice)
+    covariance_there = None if second is None else _covariance(second.fit)
     scale, estimates = [], []
     for k, number in enumerate(fitting.at):
         parameter = model.parameters[number]
@@ -216,9 +218,9 @@ def _estimates(
         value = shown(float(first.values[number]))
         scale.append(float(fitting.steps[k]) * (value if parameter.is_factor else 1.0))
         value_there, spread_there, apart = math.nan, math.nan, math.nan
-        if second is not None:
+        if second is not None and covariance_there is not None:
             value_there = shown(float(second.values[number]))
-            spread_there = scale[k] * math.sqrt(_for_few(fitting, second) * second.fit.covariance[k, k])
+            spread_there = scale[k] * math.sqrt(covariance_there[k, k])
             moved = fit.influences[:, k] - second.fit.influences[:, k]
             if len(moved) > 1:  # one toss has no scatter that would tell by how much the ways may differ
                 apart = scale[k] * math.sqrt(float(moved @ moved))
@@ -238,22 +240,21 @@ def _estimates(
         )
     scales = np.array(scale) * ~vague
     units = np.outer(scales, scales)
-    there = None if second is None else _for_few(fitting, second) * second.fit.covariance * units
+    there = None if covariance_there is None else covariance_there * units
     return tuple(estimates), covariance * units, there
 
 
-def _for_few(fitting: Fitting, found: Estimation) -> float:
-    """Return by how much variances are larger that are not those of the scatter between tosses.
+def _covariance(fit: ClusteredFit) -> FloatArray:
+    """Return the covariance, (f, f), of few tosses.
 
-    The size of the residuals is then that of few strikes, so that Student's t takes the place of the normal
-    distribution: the 90 % interval of as many tosses as have strikes becomes that of the stated deviation.
+    Student's t takes the place of the normal distribution: the 90 % interval by each parameter's degrees of
+    freedom becomes that of the stated deviation.
     """
     from scipy.stats import norm, t
 
-    if found.fit.by_cluster:
-        return 1.0
-    tosses = len(np.unique(fitting.data.strikes.recordings)) or found.fit.clusters
-    return float(t.isf(0.05, max(tosses - 1, 1)) / norm.isf(0.05)) ** 2
+    factors = t.isf(0.05, fit.degrees) / norm.isf(0.05)
+    covariance: FloatArray = fit.covariance * np.outer(factors, factors)
+    return covariance
 
 
 def _undetermined(fitting: Fitting, found: Estimation) -> tuple[str, ...]:

@@ -194,17 +194,10 @@ class Calibration(Record):
         return correlations
 
     def region(self, probability: float) -> float:
-        """Return the squared distance, by the covariance, within which the truth lies with a probability.
+        """Return the squared distance, by the covariance, within which the truth lies with a probability."""
+        from scipy.stats import chi2
 
-        With G tosses and r determined parameters this is r F(r, G - 1), since the size of the covariance is
-        itself estimated from G tosses. Where it is not, it is chi squared's.
-        """
-        from scipy.stats import chi2, f
-
-        known = int(np.sum(self.covariance.diagonal() > 0.0))
-        if not self.by_cluster:
-            return float(chi2.ppf(probability, known))
-        return float(known * f.ppf(probability, known, self.clusters - 1))
+        return float(chi2.ppf(probability, int(np.sum(self.covariance.diagonal() > 0.0))))
 
     def distance(self, truth: FloatArray) -> float:
         """Return the squared distance of other values, (f,), from the estimates, by the covariance."""

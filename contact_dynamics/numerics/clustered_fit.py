@@ -93,6 +93,8 @@ class ClusteredFit(Record):
         sizes: For each group, (n,), the residuals' size in standard deviations of one.
         clusters: Number of clusters with any weight.
         by_cluster: Whether the covariance is the jackknife's.
+        degrees: (p,), Satterthwaite's degrees of freedom of a parameter's variance, at least 1: how many
+            clusters its information comes from, weighed by their shares, less one.
         cost: The robust sum of squares, each in standard deviations.
         rounds: Rounds that were taken.
         converged: Whether the last step gained next to nothing.
@@ -106,6 +108,7 @@ class ClusteredFit(Record):
     sizes: tuple[FloatArray, ...]
     clusters: int
     by_cluster: bool
+    degrees: FloatArray
     cost: float
     rounds: int
     converged: bool
@@ -196,10 +199,19 @@ def _judged(
         sizes=tuple(_sizes(group) for group in groups),
         clusters=len(counted),
         by_cluster=by_cluster,
+        degrees=_degrees(basis @ np.linalg.pinv(inner) @ basis.T, informations),
         cost=_cost(groups, rejected),
         rounds=rounds,
         converged=converged,
     )
+
+
+def _degrees(covariance: FloatArray, informations: FloatArray) -> FloatArray:
+    """Return the degrees of freedom of each parameter's variance, (p,), as expected by the model."""
+    shares = np.einsum("pq,iqr,rp->ip", covariance, informations, covariance)
+    effective = shares.sum(axis=0) ** 2 / np.maximum(np.square(shares).sum(axis=0), SMALLEST)
+    degrees: FloatArray = np.maximum(effective - 1.0, 1.0)
+    return degrees
 
 
 def _curvatures(group: Group, weight: FloatArray) -> FloatArray:

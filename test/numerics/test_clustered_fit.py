@@ -141,6 +141,18 @@ def test_parameters_that_replace_each_other_are_undetermined(apart: float, direc
         assert found.parameters[0] == pytest.approx(found.parameters[1], rel=0.05)
 
 
+def test_degrees_of_freedom_are_those_of_the_clusters_that_say_something() -> None:
+    """The slope is told by four of eight clusters alike, the height by all of them, or by one above all."""
+    clusters = np.repeat(np.arange(8), 2)
+    places = np.where(clusters < 4, np.tile([-1.0, 1.0], 8), 0.0)
+    values = np.random.default_rng(5).standard_normal(16)
+    height, slope = fitted(values, places, clusters).degrees
+    assert height == pytest.approx(7.0)
+    assert slope == pytest.approx(3.0)
+    many = np.where(np.arange(1000) < 7, np.arange(1000), 7)
+    assert fitted(np.zeros(1000), np.linspace(-1.0, 1.0, 1000), many).degrees[0] == 1.0
+
+
 def test_outliers_count_for_nothing() -> None:
     random = np.random.default_rng(2)
     values = 3.0 - 2.0 * PLACES + random.standard_normal(200)
