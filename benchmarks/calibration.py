@@ -43,27 +43,30 @@ if TYPE_CHECKING:
 
 STRIKE: Final = "calibration.strike"
 
+RECORDINGS: Final = Path(
+    os.environ.get("CUBE_TOSSES", Path(__file__).parents[2] / "shared/data/cube_tosses/tosses.npz")
+)
+"""The published tosses of a cube, if they are there."""
+
 
 def run() -> None:
     """Print errors and times, or how to get the recordings."""
-    path = Path(
-        os.environ.get("CUBE_TOSSES", Path(__file__).parents[2] / "shared/data/cube_tosses/tosses.npz")
-    )
+    path = RECORDINGS
     if not path.is_file():
         print("Calibration: set CUBE_TOSSES to the recordings' tosses.npz")
         return
     split = json.loads((Path(__file__).parent / "cube_split.json").read_text(encoding="utf-8"))
     begin = time.process_time()
-    tosses = {index: _observed(path, [index]) for index in split["fit"]}
+    tosses = {index: observed_in(path, [index]) for index in split["fit"]}
     finding = (time.process_time() - begin) / len(tosses)
     seen = [each for index in split["fit"] for each in tosses[index]]
     few = [each for index in split["few"] for each in tosses[index]]
-    unseen = _observed(path, split["test"])
-    strikes = _strikes(unseen)
+    unseen = observed_in(path, split["test"])
+    strikes = strikes_in(unseen)
     print(f"Errors on {len(strikes)} strikes of single corners in {len(split['test'])} unseen tosses\n")
     print_head()
     print_row("no impact", "", "", strikes, _velocity)
-    published = _predicts(CUBE, BOARD, np.zeros(3))
+    published = predicts(CUBE, BOARD, np.zeros(3))
     print_row(
         "published", BOARD.friction, BOARD.restitution, strikes, published, quoted=f"{STRIKE}.published"
     )
@@ -85,14 +88,14 @@ def run() -> None:
         quote(f"calibration.time.{count}", seconds + finding * len(given), "s", digits=3)
     _calibrated("calibrated on 20", found[20], strikes, quoted=f"{STRIKE}.few")
     _calibrated("calibrated on 180", found[180], strikes, quoted=f"{STRIKE}.ours")
-    _engines(found[180], _strikes(seen), strikes)
+    _engines(found[180], strikes_in(seen), strikes)
     compare(found[180], seen, unseen)
 
 
 def _calibrated(name: str, found: Calibration, unseen: Sequence[Strike], *, quoted: str) -> None:
     body, surface, centre = found.body, found.surfaces[0], found.body.p_FB_F
     moved = [about_centre(strike, centre) for strike in unseen]
-    predict = _predicts(body, surface, centre)
+    predict = predicts(body, surface, centre)
     print_row(name, surface.friction, surface.restitution, moved, predict, quoted=quoted)
 
 
@@ -123,7 +126,8 @@ def _by_drake(found: Calibration) -> Callable[[Strike, float, float], FloatArray
     return predict
 
 
-def _observed(path: Path, tosses: Sequence[int]) -> list[Observed]:
+def observed_in(path: Path, tosses: Sequence[int]) -> list[Observed]:
+    """Return what is found in some of the tosses of a file."""
     found = []
     for index in tosses:
         for motion in recording_of_toss(read_cube_toss(path, index=index)).motions:
@@ -131,7 +135,7 @@ def _observed(path: Path, tosses: Sequence[int]) -> list[Observed]:
     return found
 
 
-def _strikes(observed: Sequence[Observed]) -> list[Strike]:
+def strikes_in(observed: Sequence[Observed]) -> list[Strike]:
     """Return the strikes with the corners, as configured, at the tracked origin."""
     strikes = []
     for each in observed:
@@ -143,7 +147,7 @@ def _strikes(observed: Sequence[Observed]) -> list[Strike]:
     return strikes
 
 
-def _predicts(body: Body, surface: Surface, centre: FloatArray) -> Callable[[Strike], FloatArray]:
+def predicts(body: Body, surface: Surface, centre: FloatArray) -> Callable[[Strike], FloatArray]:
     """Return a prediction of velocities after, about a mass centre."""
     model = Model(body, [surface])
     described = model.describe(model.configured)

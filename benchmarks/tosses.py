@@ -36,7 +36,7 @@ import numpy as np
 from benchmarks._cube_engines import Given, Setting, engines
 from benchmarks._quotes import quote
 from benchmarks._toss_strikes import Early, strikes
-from benchmarks.calibration import _observed
+from benchmarks.calibration import observed_in
 from contact_dynamics.calibration import calibrate_observed
 from contact_dynamics.calibration.first_flights import gravity_and_center
 from contact_dynamics.calibration.free import STANDARD
@@ -87,12 +87,12 @@ def run() -> None:
         print("Tosses: set CUBE_TOSSES to the recordings' tosses.npz")
         return
     split = json.loads((Path(__file__).parent / "cube_split.json").read_text(encoding="utf-8"))
-    seen = _observed(path, split["fit"])
+    seen = observed_in(path, split["fit"])
     free = STANDARD
     model = Model(seen[0].motion.body, seen[0].motion.surfaces)
     found = calibrate_observed(model, seen, free=free, with_paths=False)
     world = World(bodies=(found.body,), surfaces=found.surfaces, gravity_W=found.gravity_W)
-    early = _known_early(_observed(path, split["test"]), found)
+    early = _known_early(observed_in(path, split["test"]), found)
     uncertainty = toss_uncertainty(found)
     strikes(early, world, partial(_predicted, world=world, uncertainty=uncertainty))
     (lasting,) = found.lasting_frictions
