@@ -246,9 +246,9 @@ def face_in_words(normal_B: FloatArray) -> str:
 
 
 def margin_in_words(margin: SpatialModeMargin) -> str:
-    """Return words for how far a mode's wrench is from another mode, or an empty string if not known."""
+    """Return words for how far a mode's wrench is from another mode."""
     if math.isnan(margin.margin):
-        return ""
+        return "(unknown margin)"
     if math.isinf(margin.margin):
         return "(infinite margin)"
     beyond = " or ".join(margin.modes_beyond) or "no mode"

@@ -45,7 +45,7 @@ def test_each_value_has_words_of_its_own(values: type[IntEnum], words: dict[IntE
 
 @pytest.mark.parametrize(
     ("margin", "words"),
-    [(0.25, "(margin 0.25 N to ff or s)"), (math.inf, "(infinite margin)"), (math.nan, "")],
+    [(0.25, "(margin 0.25 N to ff or s)"), (math.inf, "(infinite margin)"), (math.nan, "(unknown margin)")],
 )
 def test_a_margin_says_how_far_it_is_to_what(margin: float, words: str) -> None:
     told = SpatialModeMargin(
