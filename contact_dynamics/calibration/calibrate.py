@@ -110,7 +110,7 @@ def calibrate_observed(
         if tell is not None:
             tell("fitting trajectories through impacts", 1, 2)
         paths = Paths(fitting, observed)
-        second = fitting.estimate(paths.groups_at, spread=first.spread, start=first.fit.parameters)
+        second = fitting.estimate(paths.groups_at, spread=first.spread, start=first.fit.parameters, rounds=1)
     choice = fitting.choice(first, covariances)
     estimates, covariance, by_paths_covariance = _estimates(fitting, first, second, choice)
     outliers = _outliers(data, observed, first)

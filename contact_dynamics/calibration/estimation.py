@@ -147,6 +147,7 @@ class Fitting:
         *,
         spread: Spread | None = None,
         start: FloatArray | None = None,
+        rounds: int = SPREAD_ROUNDS,
     ) -> Estimation:
         """Return the estimate.
 
@@ -154,10 +155,10 @@ class Fitting:
             strikes_at: The residuals of the strikes at free parameters, and their names.
             spread: The spreads, if they are known. If it is None, they are estimated.
             start: (f,), where to start, in standard units; the default is what is configured.
+            rounds: Number of fits, each from where the one before ended. The last one rejects outliers.
         """
         x = self.start() if start is None else start
         kinds: list[str] = []
-        rounds = SPREAD_ROUNDS if spread is None else 1
         for number in range(rounds):
             weighed = self.spread_at(x) if spread is None else spread
 
@@ -183,23 +184,26 @@ class Fitting:
         return Estimation(fit=fit, values=self.values(x), spread=weighed, kinds=tuple(kinds))
 
     def choice(self, found: Estimation, covariances: FloatArray) -> FloatArray:
-        """Return by how much the estimate moves, (f,), if size and surface height change places.
+        """Return by how much the estimate moves, (f,), with another choice of what explains the heights.
 
-        A body that is a little smaller and a surface that is a little lower explain the same heights. Where
-        one of them is free beside the rounding, and the other fits nearly as well (`ALIKE`), nothing in the
-        data says which it is.
+        A body that is a little smaller, a surface that is a little lower and corners that are a little
+        rounder explain the same heights. If the rounding with the other one of size and surface height fits
+        nearly as well (`ALIKE`), or better, nothing in the data says that this choice is right.
         """
         moved: FloatArray = np.zeros(len(self.at))
-        swap = {Free.SIZE: Free.SURFACE_HEIGHT, Free.SURFACE_HEIGHT: Free.SIZE}
-        if (
-            Free.ROUNDING not in self.free
-            or len(set(swap) & set(self.free)) != 1
-            or not len(self.data.struck.stds)
-        ):
+        heights = {Free.ROUNDING, Free.SIZE, Free.SURFACE_HEIGHT} & set(self.free)
+        both = heights >= {Free.SIZE, Free.SURFACE_HEIGHT}
+        faces = Free.ROUNDING in self.model.standard
+        if not heights or both or not faces or not len(self.data.struck.stds):
             return moved
-        other = Fitting(self.model, self.data, [swap.get(each, each) for each in self.free])
+        instead = Free.SIZE if Free.SURFACE_HEIGHT in heights else Free.SURFACE_HEIGHT
+        free = [*(set(self.free) - heights), Free.ROUNDING, instead]
+        other = Fitting(self.model, self.data, free)
         there = other.estimate(
-            lambda x, spread: other.whitened_jumps(x, spread, covariances), spread=found.spread
+            lambda x, spread: other.whitened_jumps(x, spread, covariances),
+            spread=found.spread,
+            start=found.values[other.at] / other.steps,
+            rounds=2,
         )
         if there.fit.cost < ALIKE * found.fit.cost:
             moved = (there.values - found.values)[self.at] / self.steps * ~found.fit.at_bound
