@@ -6,8 +6,7 @@ names their `tosses.npz`. Parameters, their covariance and the law's own spread 
 ``fit`` of `cube_split.json`. All that is printed is of those under ``test``, to which nothing was fitted.
 
 Each toss is predicted from a fit to the first half of its first flight, before its first strike, under the
-gravity of all tosses. The fit's covariance takes noise as white. Noise of orientations is not, so their
-covariance is enlarged by `TURN_FACTOR` squared, which was found on the tosses under ``fit``.
+gravity of all tosses, with the noise of poses that the tosses under ``fit`` have (`measured_noise`).
 
 What is measured at a strike comes from fits to both flights beside it. These are made under the gravity that
 the toss itself shows. Under one gravity for all, they would share a quarter of the predictions' errors.
@@ -34,6 +33,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from benchmarks._cube_engines import Given, Setting, engines
+from benchmarks._flight_coverage import flown
 from benchmarks._quotes import quote
 from benchmarks._toss_strikes import Early, strikes
 from benchmarks.calibration import observed_in
@@ -43,7 +43,7 @@ from contact_dynamics.calibration.free import STANDARD
 from contact_dynamics.calibration.model import Model
 from contact_dynamics.calibration.toss_uncertainty import toss_uncertainty
 from contact_dynamics.impact import RestitutionLaw
-from contact_dynamics.motion.free_fit import fit_free_motion
+from contact_dynamics.motion import StateNoise, fit_free_motion, measured_noise
 from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.toss import sampled_toss, toss
 from contact_dynamics.world import World
@@ -56,12 +56,6 @@ if TYPE_CHECKING:
     from contact_dynamics.calibration.observed import Observed
     from contact_dynamics.toss import TossDistribution, TossUncertainty
     from contact_dynamics.validation import FloatArray
-
-TURN_FACTOR: Final = 3.5
-"""Factor on the standard deviations of fitted attitudes and spins. Positions and velocities need none where
-samples have the scatter of gravity."""
-
-ENLARGED: Final = np.repeat([1.0, TURN_FACTOR, 1.0, TURN_FACTOR], 3)
 
 FEWEST: Final = 6
 """Frames that a state is fitted to, at least."""
@@ -92,7 +86,9 @@ def run() -> None:
     model = Model(seen[0].motion.body, seen[0].motion.surfaces)
     found = calibrate_observed(model, seen, free=free, with_paths=False)
     world = World(bodies=(found.body,), surfaces=found.surfaces, gravity_W=found.gravity_W)
-    early = _known_early(observed_in(path, split["test"]), found)
+    flights = list(flown(seen, found))
+    noise = measured_noise(found.body.mass_properties, flights, gravity_W=found.gravity_W)
+    early = _known_early(observed_in(path, split["test"]), found, noise)
     uncertainty = toss_uncertainty(found)
     strikes(early, world, partial(_predicted, world=world, uncertainty=uncertainty))
     (lasting,) = found.lasting_frictions
@@ -115,14 +111,14 @@ def run() -> None:
     _costs(early[:10], world, uncertainty)
 
 
-def _known_early(observed: Sequence[Observed], found: Calibration) -> list[Early]:
+def _known_early(observed: Sequence[Observed], found: Calibration, noise: StateNoise) -> list[Early]:
     gravity, _ = gravity_and_center(observed, gravity_is_free=True)
     own = gravity.of(found.body.p_FB_F - observed[0].motion.body.p_FB_F)
-    each = [_early(one, g_W, found) for one, g_W in zip(observed, own, strict=True)]
+    each = [_early(one, g_W, found, noise) for one, g_W in zip(observed, own, strict=True)]
     return [one for one in each if one is not None]
 
 
-def _early(observed: Observed, gravity_W: FloatArray, found: Calibration) -> Early | None:
+def _early(observed: Observed, gravity_W: FloatArray, found: Calibration, noise: StateNoise) -> Early | None:
     """Return what the first half of the first flight tells, if the toss strikes right after that flight."""
     if observed.first is None or not observed.strikes:
         return None
@@ -144,12 +140,12 @@ def _early(observed: Observed, gravity_W: FloatArray, found: Calibration) -> Ear
         for k in range(flight.start, flight.start + count)
     ]
     states = [_about(state, found.body.p_FB_F) for state in states]
-    fit = fit_free_motion(found.body.mass_properties, states, gravity_W=found.gravity_W)
+    fit = fit_free_motion(found.body.mass_properties, states, gravity_W=found.gravity_W, noise=noise)
     return Early(
         observed,
         gravity_W,
         fit.state,
-        fit.covariance * np.outer(ENLARGED, ENLARGED),
+        fit.covariance,
         fit.by_gravity or (0.0, 0.0),
         states[-1].stamp_ns * 1e-9,
     )
