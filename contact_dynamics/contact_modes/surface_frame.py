@@ -82,9 +82,7 @@ class SpatialFrame(NamedTuple):
 def spatial_frame(problem: SpatialContactProblem, *, resting: bool = False) -> SpatialFrame | None:
     """Return a problem as it is seen from its surfaces, or None if these are at rest, or are not one frame.
 
-    Args:
-        problem: The problem.
-        resting: Whether the body is to be at rest on all surfaces, whatever its velocity.
+    If ``resting``, the body is taken to be at rest on all surfaces, whatever its velocity.
     """
     state, contacts = problem.state, problem.contacts
     if not contacts.surfaces_move:
@@ -145,11 +143,7 @@ def spatial_frame(problem: SpatialContactProblem, *, resting: bool = False) -> S
 
 def _motions(contacts: ContactSet) -> list[FloatArray]:
     """Return velocities, angular velocities and accelerations of surfaces, (n, 3) each."""
-    fields = (
-        contacts.surface_velocities_W,
-        contacts.surface_angular_velocities_W,
-        contacts.surface_accelerations_W,
-    )
+    fields = (getattr(contacts, name) for name in contacts.SURFACE_MOTION)
     return [np.zeros((len(contacts), 3)) if values is None else values for values in fields]
 
 
@@ -158,13 +152,7 @@ def seen_in_space(
 ) -> SpatialContactProblem:
     """Return a problem as it is seen from its surfaces, or as it is if they are not one frame.
 
-    Args:
-        problem: The problem.
-        as_one: The call that needs one frame, or nothing.
-        resting: As in `spatial_frame`.
-
-    Raises:
-        NotSupportedError: surfaces do not move as one rigid body, and the call needs that.
+    Raise `NotSupportedError` if they do not move as one rigid body, and the call ``as_one`` needs that.
     """
     frame = spatial_frame(problem, resting=resting)
     seen = problem if frame is None else frame.problem
@@ -222,13 +210,8 @@ class PlanarFrame(NamedTuple):
 def planar_frame(problem: PlanarContactProblem, *, resting: bool = False) -> PlanarFrame | None:
     """Return a problem as it is seen from the surfaces, or None if all are at rest.
 
-    Args:
-        problem: The problem.
-        resting: Whether the body is to be at rest on all surfaces, whatever its velocity.
-
-    Raises:
-        NotSupportedError: surfaces do not move as one rigid body, and not as belts with equal accelerations
-            under a body that does not turn.
+    Raise `NotSupportedError` if surfaces do not move as one rigid body, and not as belts with equal
+    accelerations under a body that does not turn.
     """
     for contact in problem.contacts:
         if contact.surfaces_move:

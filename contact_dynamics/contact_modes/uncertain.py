@@ -74,17 +74,11 @@ class Boxes(Generic[AnyAnswer]):
         steps: int,
         samples: int | None = None,
     ) -> None:
-        """Take what is known.
+        """Take the answer to the question itself, how to prove a box, and how to sample one.
 
-        Args:
-            answer: The answer to the question itself.
-            is_certain: Whether it is proven that the verdict of this answer holds everywhere in a box.
-            sampled: The answers at some contact sets in a box.
-            radius_of_gyration: m, of the body. Points are tried so far off at most for margins.
-            frictions: Those of the contacts. The largest, or 1, is the most that frictions are tried off.
-            step: Each size that is tried is this factor from the next.
-            steps: How many sizes below the largest are tried.
-            samples: How many contact sets are tried for each size, or None for all that are ``sampled``.
+        For margins, points are tried as far off as the radius of gyration, m, and frictions as far as the
+        largest, or 1. Each of the ``steps`` sizes below is smaller by the factor ``step``, and as many
+        ``samples`` of each are tried, or all.
         """
         self._answer, self._is_certain, self._sampled = answer, is_certain, sampled
         self._largest = {

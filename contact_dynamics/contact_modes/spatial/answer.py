@@ -28,7 +28,7 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple, cast
 
 import numpy as np
 
-from contact_dynamics.contact_modes.letters import SEPARATES, SPATIAL_LETTERS, STAYS, STICKS
+from contact_dynamics.contact_modes.letters import SPATIAL_LETTERS, STAYS, STICKS
 from contact_dynamics.contact_modes.result import (
     SOME_MODE,
     ModeVerdict,
@@ -288,8 +288,8 @@ def _with_clear_motion(case: SpatialCase, mode: ResponseMode) -> ResponseMode:
     least = with_least_forces(case, mode)
     return mode_with_forces(
         case,
-        "".join(mode.mode[i] for i in case.touching.tolist()),
-        least.contact_forces_W[case.touching] / case.motion.scale,
+        case.of_touching(mode.mode),
+        case.own_forces(least.contact_forces_W),
         forces_unique=mode.forces_unique,
         motion_unique=mode.motion_unique,
     )
@@ -337,16 +337,8 @@ def _narrow(case: SpatialCase, search: Search, found: Evidence, *, hurried: bool
         return Evidence(modes, "") if alone or not found.undecided_modes else found._replace(modes=modes)
     if not near.nearby:
         return found._replace(undecided=found.undecided or _NOT_REFUTED)
-    names = found.undecided_modes or tuple(_of_all(case, letters) for letters in near.nearby)
+    names = found.undecided_modes or tuple(case.of_all(letters) for letters in near.nearby)
     return Evidence([], found.undecided or _NARROW.format(", ".join(names)), names)
-
-
-def _of_all(case: SpatialCase, letters: str) -> str:
-    """Return one letter for each contact from those of the touching contacts."""
-    every = [SEPARATES] * len(case.contacts)
-    for i, letter in zip(case.touching.tolist(), letters, strict=True):
-        every[i] = letter
-    return "".join(every)
 
 
 def _sought(case: SpatialCase, search: Search, *, beside_rest: bool, hurried: bool) -> Evidence:
@@ -417,7 +409,7 @@ def _is_alone(case: SpatialCase, search: Search, modes: list[ResponseMode]) -> b
     exact = [mode for mode in modes if is_exact(mode)]
     if len(exact) != 1 or not exact[0].motion_unique:
         return False
-    return is_only_motion(search, exact[0].contact_forces_W[case.touching] / case.motion.scale)
+    return is_only_motion(search, case.own_forces(exact[0].contact_forces_W))
 
 
 def _mode_of(case: SpatialCase, known: Known) -> ResponseMode:
@@ -432,17 +424,17 @@ def _completed(case: SpatialCase, search: Search, found: list[ResponseMode], *, 
     known = [
         Known(
             letters_of(mode, case, search),
-            mode.contact_forces_W[case.touching] / case.motion.scale,
+            case.own_forces(mode.contact_forces_W),
             alone=mode.motion_unique,
         )
         for mode in exact
     ]
     missed = completed(search, known, most=most)
     exact += [_mode_of(case, one) for one in missed.further]
-    names = [_of_all(case, letters) for letters in missed.undecided]
+    names = [case.of_all(letters) for letters in missed.undecided]
     undecided = _MISSED.format(", ".join(names)) if names else ""
     if missed.unended:
-        open_ones = _of_all(case, missed.unended)
+        open_ones = case.of_all(missed.unended)
         undecided = _UNENDED.format(open_ones)
         names += [*(mode.mode for mode in found if not is_exact(mode)), open_ones]
     return Evidence(each_once(case, exact), undecided, tuple(dict.fromkeys(names)))

@@ -263,7 +263,7 @@ class _Work(PyramidPrograms):
             self._part_letters("".join(stays), open_ones)
             return
         frames = np.array([trials[i].parts[0].rows[:, :-1] for i in open_ones])
-        normals = self._normals[staying, :-1]
+        normals = self.rising[staying, :-1]
         self._decide_without_directions(letters)
         flats = [flat_of(normals, frames, ())]
         seen = {frozenset(range(len(open_ones))), flats[0].stuck}
@@ -353,7 +353,7 @@ class _Work(PyramidPrograms):
             return False
         staying = _staying(letters)
         near = [
-            self._search.motion[:, -1] + self._search.of_forces @ one.forces.ravel()
+            self._search.motion_of(one.forces)
             for one in (*self._known, *self.further)
             if not one.alone and _staying(one.letters) == staying
         ]

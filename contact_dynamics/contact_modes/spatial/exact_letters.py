@@ -373,7 +373,7 @@ class _System:
         )
 
     def _motion(self, forces: FloatArray) -> FloatArray:
-        return np.append(self._search.motion[:, -1] + self._search.of_forces @ forces.ravel(), 1.0)
+        return np.append(self._search.motion_of(forces), 1.0)
 
     def _forces_and_changes(self, unknowns: FloatArray) -> tuple[FloatArray, FloatArray]:
         forces = np.zeros((len(self._letters), 3))

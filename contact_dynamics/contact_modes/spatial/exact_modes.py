@@ -67,7 +67,7 @@ def realised(case: SpatialCase, search: Search, found: Found) -> ResponseMode:
 def as_given(case: SpatialCase, mode: ResponseMode) -> ResponseMode:
     """Return a mode of flush contacts, with forces under which the given ones rest if all of them stick."""
     given = case.given
-    letters = "".join(mode.mode[i] for i in case.touching.tolist())
+    letters = case.of_touching(mode.mode)
     if given is None or set(letters) != {STICKS}:
         return mode
     own = mode.contact_forces_W[case.touching] / given.motion.scale
@@ -83,14 +83,14 @@ def as_given(case: SpatialCase, mode: ResponseMode) -> ResponseMode:
 def _rested(search: Search, forces: FloatArray) -> FloatArray:
     """Return forces under which a body rests to rounding, near others under which it nearly does."""
     rows = sticking(search)
-    motion = np.append(search.motion[:, -1] + search.of_forces @ forces.ravel(), 1.0)
+    motion = np.append(search.motion_of(forces), 1.0)
     if float(np.abs(rows @ motion).max()) > STRICT:  # what tells merged contacts apart was lost
         held = held_by_round_cones(search, rows)
         forces = forces if held.forces is None else held.forces
 
     def left(forces: FloatArray) -> float:
         """Return the size of the wrench that forces leave unbalanced."""
-        return float(np.linalg.norm(search.mass @ (search.motion[:, -1] + search.of_forces @ forces.ravel())))
+        return float(np.linalg.norm(search.mass @ search.motion_of(forces)))
 
     enough = MODE_RESTS * left(np.zeros_like(forces))
     if left(forces) <= enough:
@@ -130,7 +130,7 @@ def by_letters(case: SpatialCase, search: Search, found: list[ResponseMode]) -> 
             continue
         letters = letters_of(mode, case, search)
         if mode.motion_unique:
-            own = mode.contact_forces_W[case.touching] / case.motion.scale
+            own = case.own_forces(mode.contact_forces_W)
             shared = not mode.forces_unique
             trials = [
                 (trial, forces_with_letters(search, trial, own, shared=shared))
@@ -159,7 +159,7 @@ def _shared(case: SpatialCase, search: Search, letters: str, modes: Sequence[Res
 
     The first mode has these letters, and friction that could not be turned.
     """
-    own = modes[0].contact_forces_W[case.touching] / case.motion.scale
+    own = case.own_forces(modes[0].contact_forces_W)
     forces = forces_with_letters(search, letters, own, shared=True)
     if forces is not None:
         return Held(forces, certain=True)
@@ -240,7 +240,7 @@ def _each_motion_once(search: Search, modes: list[Narrow]) -> list[Narrow]:
     """Return one mode for each motion: the one in which most contacts stick, if rounding lets some slide."""
     kept: list[tuple[Narrow, FloatArray]] = []
     for mode in sorted(modes, key=lambda one: -one.letters.count("f")):
-        motion = search.motion[:, -1] + search.of_forces @ mode.forces.ravel()
+        motion = search.motion_of(mode.forces)
         if all(float(np.abs(motion - other).max()) > STRICT for _, other in kept):
             kept.append((mode, motion))
     return [mode for mode, _ in kept]

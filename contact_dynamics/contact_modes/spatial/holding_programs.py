@@ -73,10 +73,7 @@ class HoldingPrograms:
         self._search = search
         self._least = least
         n = len(search.touching)
-        self._normals = np.array([one.normal for one in search.touching])
-        self._frictions = np.array([one.friction for one in search.touching])
-        self._points = np.array([one.point for one in search.touching])  # (n, 3, d + 1)
-        self._rising = np.einsum("ij,ijk->ik", self._normals, self._points)
+        self._frictions, self._points, self._rising = search.frictions, search.points, search.rising
         frames = np.array([np.zeros((2, 3)) if p.frame is None else p.frame for p in search.pyramids])
         self._across = frames @ self._points  # (n, 2, d + 1)
         # Each contact's only edge, or the middle of its edges, and its tangents, with what they cause.

@@ -118,14 +118,12 @@ class _Compliant:
     """The equations of motion of a body on compliant contacts."""
 
     def __init__(self, search: Search) -> None:
-        touching = search.touching
         self.mass, self._wrench = search.mass, search.mass @ search.motion[:, -1]
-        points = np.array([one.point for one in touching]).reshape(-1, search.freedoms + 1)
+        points = search.points.reshape(-1, search.freedoms + 1)
         self._points, self._constant = np.ascontiguousarray(points[:, :-1]), points[:, -1]
-        self._normals = np.array([one.normal for one in touching]).reshape(-1, 3)
-        self._frictions = np.array([one.friction for one in touching])
+        self._normals, self._frictions = search.normals, search.frictions
         self._rests = np.array([one.frame is not None for one in search.pyramids], dtype=bool)
-        sliding = np.array([one.sliding for one in touching]).reshape(-1, 3)
+        sliding = np.array([one.sliding for one in search.touching]).reshape(-1, 3)
         self._sliding = _directions(sliding, np.sqrt((sliding * sliding).sum(axis=1)))
         self._along = self._normals[:, :, None] * self._normals[:, None, :]
 

@@ -166,7 +166,6 @@ class _WaysOut:
         self._staying = [i for i, letter in enumerate(letters) if letter != SEPARATES]
         self._leaving = [i for i, letter in enumerate(letters) if letter == SEPARATES]
         self._turning = begin_to_slide(search, letters)
-        self._normals = np.array([one.normal @ one.point for one in search.touching]).reshape(-1, 7)
         points = [-case.motion.points[3 * i : 3 * i + 3] / metric for i in case.touching.tolist()]
         self._axes = np.array([of.normal @ p for of, p in zip(search.touching, points, strict=True)])
         self._edges = np.array([one.edges[0] @ p for one, p in zip(search.pyramids, points, strict=True)])
@@ -178,7 +177,7 @@ class _WaysOut:
             i: np.array(search.pyramids[i].frame) @ search.touching[i].point for i in self._turning
         }
         frames = np.array([self._frames[i][:, :6] for i in self._turning])
-        staying = self._normals[self._staying, :6]
+        staying = self._search.rising[self._staying, :6]
         self._flats = {i: flat_of(staying, frames, (k,)) for k, i in enumerate(self._turning)}
         rows = unit_rows(staying)
         self._rank = len(row_space(rows))
@@ -231,7 +230,7 @@ class _WaysOut:
     def sticking(self, carriers: tuple[int, ...]) -> FloatArray:
         """Return the wrench less the nearest one with which all contacts that carry the load stick, (6,)."""
         frames = [self._frames[i] for i in carriers if i in self._frames]
-        return self._rest(frames, self._normals[self._leaving], carriers, {})
+        return self._rest(frames, self._search.rising[self._leaving], carriers, {})
 
     def others(self, partings: Sequence[tuple[int, ...]]) -> Iterator[FloatArray]:
         """Yield the wrench less the nearest one of each other way out, (6,) each."""
@@ -239,15 +238,15 @@ class _WaysOut:
             yield from self._one_sticks(carriers)
         carrying = {i for carriers in partings for i in carriers}
         for side in self._sides:
-            yield self._rest([], self._normals[self._leaving], sorted(side & carrying), {})
+            yield self._rest([], self._search.rising[self._leaving], sorted(side & carrying), {})
         for k in self._leaving:
-            leaving = self._normals[[i for i in self._leaving if i != k]]
-            yield self._rest([self._normals[[k]]], leaving, sorted(carrying), {})
+            leaving = self._search.rising[[i for i in self._leaving if i != k]]
+            yield self._rest([self._search.rising[[k]]], leaving, sorted(carrying), {})
 
     def _one_sticks(self, carriers: tuple[int, ...]) -> Iterator[FloatArray]:
         """Yield the wrench less the nearest one with which one sticks and others slide, (6,) each."""
         slides = {i for i in carriers if i in self._frames}
-        leaving = self._normals[self._leaving]
+        leaving = self._search.rising[self._leaving]
         seen = {frozenset(slides)}
         for i in sorted(slides):
             flat = self._flats[i]
@@ -278,7 +277,7 @@ class _WaysOut:
         (k, 7), are not negative. Carriers have any force in their cones, or slide in ``known`` directions,
         (2,).
         """
-        rows = np.vstack([self._normals[self._staying], *zero])
+        rows = np.vstack([self._search.rising[self._staying], *zero])
         key = (rows.tobytes(), positive.tobytes())
         if key not in self._needed:
             self._needed[key] = needed_wrenches(self._case, rows, positive, self._metric)
@@ -513,7 +512,7 @@ def _known(case: SpatialCase, search: Search, string: str) -> RefusedMode | None
     staying = [k for k, i in enumerate(touching) if string[i] == STAYS]
     if any(len(search.pyramids[k].edges) > 1 for k in staying):
         return None
-    normals = np.array([one.normal @ one.point for one in search.touching]).reshape(-1, 7)
+    normals = search.rising
     edges = np.zeros((3 * len(touching), len(staying)))
     for column, k in enumerate(staying):
         edges[3 * k : 3 * k + 3, column] = search.pyramids[k].edges[0]

@@ -64,11 +64,11 @@ def is_only_motion(search: Search, forces: FloatArray, staying: Sequence[int] | 
     """
     if not search.touching:
         return True
-    motion = search.motion[:, -1] + search.of_forces @ forces.ravel()
+    motion = search.motion_of(forces)
     everyone = list(range(len(search.touching))) if staying is None else list(staying)
     contacts = _contacts(search, everyone)
     own = forces[everyone]
-    points = np.array([search.touching[i].point for i in everyone]) @ np.append(motion, 1.0)
+    points = search.points[everyone] @ np.append(motion, 1.0)
     rising = np.sum(points * contacts.normals, axis=1)
     across = points - rising[:, None] * contacts.normals
     speeds = np.linalg.norm(across, axis=1) * contacts.turns
@@ -162,13 +162,11 @@ def _evened(
 
 
 def _contacts(search: Search, everyone: list[int]) -> _Contacts:
-    touching = [search.touching[i] for i in everyone]
-    normals = np.array([one.normal for one in touching]).reshape(-1, 3)
-    points = np.array([one.point[:, :-1] for one in touching]).reshape(-1, 3, search.freedoms)
+    normals, points = search.normals[everyone], search.points[everyone, :, :-1]
     rising = np.einsum("ij,ijk->ik", normals, points)
     return _Contacts(
         normals=normals,
-        frictions=np.array([one.friction for one in touching]),
+        frictions=search.frictions[everyone],
         points=points,
         rising=rising,
         across=points - normals[:, :, None] * rising[:, None, :],

@@ -41,6 +41,16 @@ class Option(NamedTuple):
     parts: tuple[Option, ...]  # the smaller groups that it consists of; empty if it is a single letter
 
 
+class Touching(NamedTuple):
+    """A contact that neither approaches nor leaves."""
+
+    normal: FloatArray  # (3,), unit
+    friction: float  # Coulomb's mu
+    sliding: FloatArray  # (3,), m/s, its tangential velocity; zero where it is at rest
+    point: FloatArray  # (3, d + 1), its acceleration as a function of the motion, which has d components
+    free: FloatArray  # (3,), its acceleration without contact forces
+
+
 class Pyramid(NamedTuple):
     """The edges of a contact's force: a friction pyramid, or one edge where friction or sliding is known."""
 
@@ -54,20 +64,9 @@ class Pyramid(NamedTuple):
         return along
 
 
-def pyramid_of(
-    normal: FloatArray,
-    friction: float,
-    *,
-    sliding: FloatArray,
-    free: FloatArray,
-    facets: int,
-    first: int,
-) -> Pyramid:
-    """Return the force edges of a touching contact, which slides with this velocity, or is at rest.
-
-    Edge 0 opposes its acceleration without contact forces, ``free``. The name of the first edge force is
-    ``first``.
-    """
+def pyramid_of(contact: Touching, facets: int, first: int) -> Pyramid:
+    """Return the force edges of a touching contact. The first edge opposes its motion without forces."""
+    normal, friction, sliding, _, free = contact
     speed = float(np.linalg.norm(sliding))
     if friction == 0.0:
         return Pyramid(normal[None, :], None, first)

@@ -30,7 +30,9 @@ from contact_dynamics.contact.velocities import (
     velocity_accelerations,
     warn_if_far,
 )
-from contact_dynamics.contact_modes.spatial.search import Search, Touching
+from contact_dynamics.contact_modes.letters import SEPARATES
+from contact_dynamics.contact_modes.spatial.options import Touching
+from contact_dynamics.contact_modes.spatial.search import Search
 from contact_dynamics.errors import NoContactError, TooLargeError
 from contact_dynamics.numerics.vectors import point_jacobians, tangents_towards
 from contact_dynamics.records import Record
@@ -48,6 +50,8 @@ from contact_dynamics.validation import check_not_negative, check_vector3
 from contact_dynamics.validation_types import checks_types
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from numpy.typing import ArrayLike, NDArray
 
     from contact_dynamics.contact.contact import ContactSet
@@ -239,6 +243,22 @@ class SpatialCase(NamedTuple):
     touching: NDArray[np.intp]  # the numbers of the contacts that neither approach nor leave
     given: SpatialCase | None = None  # that of the contacts as they were given, or None if these are flush
 
+    def of_all(self, letters: Iterable[str]) -> str:
+        """Return one letter for each contact from those of the touching contacts. The others separate."""
+        every = [SEPARATES] * len(self.contacts)
+        for i, letter in zip(self.touching.tolist(), letters, strict=True):
+            every[i] = letter
+        return "".join(every)
+
+    def of_touching(self, letters: str) -> str:
+        """Return the letters of the touching contacts from those of all."""
+        return "".join(letters[i] for i in self.touching.tolist())
+
+    def own_forces(self, forces_W: FloatArray) -> FloatArray:
+        """Return the forces of the touching contacts in the units of the motion."""
+        own: FloatArray = forces_W[self.touching] / self.motion.scale
+        return own
+
 
 def spatial_case(problem: SpatialContactProblem, *, within: float = 0.0) -> SpatialCase | tuple[int, ...]:
     """Return the case, with contacts moved ``within`` so far to be flush, or the contacts that approach."""
@@ -257,13 +277,7 @@ def touching_of(
 ) -> NDArray[np.intp] | tuple[int, ...]:
     """Return the contacts that neither approach nor leave, or a tuple of those that approach.
 
-    Args:
-        contacts: n contacts.
-        velocities: (n, 3), m/s, relative to the surfaces.
-        tolerance: m/s, >= 0.
-
-    Raises:
-        TooLargeError: more contacts touch than `MAX_DYNAMIC_CONTACTS`.
+    Raise `TooLargeError` if more touch than `MAX_DYNAMIC_CONTACTS`. Velocities are relative to the surfaces.
     """
     v_n = np.sum(contacts.normals_W * velocities, axis=1)
     if np.any(v_n < -tolerance):

@@ -181,16 +181,8 @@ def response_case(
 ) -> SpatialCase | tuple[int, ...]:
     """Return the case of a mechanism, or the contacts that approach.
 
-    Args:
-        contacts: Its n contacts.
-        factor: (3 n, d), a factor L of W = L L^T.
-        accelerations_W: (n, 3), m/s^2, those of the contact points without contact forces, relative to the
-            surfaces.
-        velocities_W: (n, 3), m/s, those of the contact points, relative to the surfaces.
-        tolerance: m/s, >= 0. Velocities up to this size count as zero.
-
-    Raises:
-        TooLargeError: more contacts touch than `MAX_DYNAMIC_CONTACTS`.
+    The factor, (3 n, d), is an L of W = L L^T. Accelerations without contact forces and velocities of the
+    contact points, (n, 3), are relative to the surfaces.
     """
     touching = touching_of(contacts, velocities_W, tolerance)
     if isinstance(touching, tuple):

@@ -83,7 +83,7 @@ def held_by_round_cones(
     demand = _demand(search, rows, tolerance)
     if demand is None:
         return Held(None, certain=True)
-    normals, frictions = _cones(search)
+    normals, frictions = search.normals, search.frictions
     return _nearest(demand, normals, 0.0 * frictions if smooth else frictions)
 
 
@@ -111,7 +111,7 @@ def moved_by_round_cones(search: Search, axes: FloatArray, frictions: FloatArray
 
 def wedged_by_round_cones(search: Search) -> Held:
     """Return forces within the round cones of all touching contacts that balance each other, not all zero."""
-    normals, frictions = _cones(search)
+    normals, frictions = search.normals, search.frictions
     wrenches = search.mass @ search.of_forces
     effects = np.vstack([wrenches, normals.ravel()])  # the last row is the sum of normal forces, which is one
     images = effects.reshape(len(effects), len(normals), 3).transpose(1, 0, 2)
@@ -157,7 +157,7 @@ def hold_alone(search: Search, forces: FloatArray) -> bool:
     Those of contacts that press must be independent, and the others must not press against what these
     balance.
     """
-    normals, frictions = _cones(search)
+    normals, frictions = search.normals, search.frictions
     wrenches = (
         (search.mass @ search.of_forces).reshape(search.freedoms, -1, 3).transpose(1, 0, 2)
     )  # (n, d, 3)
@@ -212,12 +212,6 @@ def _balanced(effects: FloatArray, target: FloatArray) -> _Demand:
     return _Demand(
         np.ascontiguousarray(images), units.T @ target / sizes, sizes / load if load > 0.0 else sizes
     )
-
-
-def _cones(search: Search) -> tuple[FloatArray, FloatArray]:
-    """Return the axes, (n, 3), and the coefficients of friction, (n,), of the round cones."""
-    normals = np.array([one.normal for one in search.touching]).reshape(-1, 3)
-    return normals, np.array([one.friction for one in search.touching])
 
 
 def _nearest(demand: _Demand, normals: FloatArray, frictions: FloatArray) -> Held:

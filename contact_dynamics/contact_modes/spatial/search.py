@@ -45,7 +45,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from contact_dynamics.contact_modes.spatial.options import Option, Pyramid
+    from contact_dynamics.contact_modes.spatial.options import Option, Pyramid, Touching
     from contact_dynamics.contact_modes.spatial.regions import Flat
     from contact_dynamics.validation import FloatArray
 
@@ -67,16 +67,6 @@ CONTACT_TAG: Final = -3
 """The tag of contact 0. Each further contact's tag is one less."""
 
 
-class Touching(NamedTuple):
-    """A contact that neither approaches nor leaves."""
-
-    normal: FloatArray  # (3,), unit
-    friction: float  # Coulomb's mu
-    sliding: FloatArray  # (3,), m/s, its tangential velocity; zero where it is at rest
-    point: FloatArray  # (3, d + 1), its acceleration as a function of the motion, which has d components
-    free: FloatArray  # (3,), its acceleration without contact forces
-
-
 class PyramidPrograms(ABC):
     """Touching contacts, and programs about their forces.
 
@@ -95,16 +85,9 @@ class PyramidPrograms(ABC):
         facets: int,
         least: float = STRICT,
     ) -> None:
-        """State the problem.
+        """Take forces' motions, (d, 3 n), the motion without forces, and the mass matrix, (d, d).
 
-        Args:
-            touching: The contacts.
-            of_forces: (d, 3 n), the motion that unit contact forces cause.
-            free: (d,), the motion without contact forces.
-            mass: (d, d), the forces and torques that unit motion needs.
-            at_rest: Whether nothing moves, so that the applied wrench has power >= 0.
-            facets: The number of edges of a friction pyramid.
-            least: By how much contacts that separate must do so.
+        If nothing moves, the applied wrench has power >= 0. Contacts that separate do so by ``least``.
         """
         self._least = least
         self.touching = touching
@@ -112,16 +95,7 @@ class PyramidPrograms(ABC):
         self.pyramids: list[Pyramid] = []
         first = 0
         for contact in touching:
-            self.pyramids.append(
-                pyramid_of(
-                    contact.normal,
-                    contact.friction,
-                    sliding=contact.sliding,
-                    free=contact.free,
-                    facets=facets,
-                    first=first,
-                )
-            )
+            self.pyramids.append(pyramid_of(contact, facets, first))
             first += len(self.pyramids[-1].edges)
         self.edges = np.zeros((3 * len(touching), first))  # the contact forces that unit edge forces are
         for i, pyramid in enumerate(self.pyramids):
@@ -138,8 +112,12 @@ class PyramidPrograms(ABC):
         self.examined = 0  # the number of programs solved so far
         self.most_examined = MAX_EXAMINED if self.freedoms <= ONE_BODY else MAX_EXAMINED_OF_SEVERAL
         self._first_normal = first  # the name of contact 0's normal acceleration
-        self._normals = np.array([c.normal @ c.point for c in touching]).reshape(-1, self.freedoms + 1)
-        named = self._normals
+        self.normals = np.array([one.normal for one in touching]).reshape(-1, 3)
+        self.frictions = np.array([one.friction for one in touching])
+        self.points = np.array([one.point for one in touching]).reshape(-1, 3, self.freedoms + 1)
+        # (n, d + 1), the normal accelerations as functions of the motion.
+        self.rising = np.array([one.normal @ one.point for one in touching]).reshape(-1, self.freedoms + 1)
+        named = self.rising
         names = [first + i for i in range(len(touching))]
         self.mass = mass
         self.at_rest = at_rest
@@ -154,6 +132,11 @@ class PyramidPrograms(ABC):
             any_letter(pyramid, contact.point, first + i)
             for i, (contact, pyramid) in enumerate(zip(touching, self.pyramids, strict=True))
         ]
+
+    def motion_of(self, forces: FloatArray) -> FloatArray:
+        """Return the motion, (d,), that contact forces, (n, 3), cause."""
+        found: FloatArray = self.motion[:, -1] + self.of_forces @ forces.ravel()
+        return found
 
     def decide_who_stays(self) -> None:
         """Decide which contacts stay, and for each choice that may hold all else."""
@@ -172,9 +155,9 @@ class PyramidPrograms(ABC):
 
     def _choices(self) -> list[int] | None:
         """Return all choices of contacts on one plane that can stay, each as bits, or None if unknown."""
-        rows = self._normals[:, :-1]
+        rows = self.rising[:, :-1]
         basis = seen_and_unseen(rows)[0]
-        if len(basis) != _FLUSH or self._normals[:, -1].any():
+        if len(basis) != _FLUSH or self.rising[:, -1].any():
             return None
         faces = faces_in_space(rows @ basis.T)
         return None if faces is None else sorted(faces)
@@ -227,7 +210,7 @@ class PyramidPrograms(ABC):
                 zeroed=frozenset(staying).union(*(one.zeroed for one in letters)),
                 raised=[one.raised for one in letters if one.raised is not None],
                 least=self._least,
-                rows=np.concatenate([self._normals[:0], *equations, *others]),
+                rows=np.concatenate([self.rising[:0], *equations, *others]),
                 equalities=sum(one.equalities for one in letters),
                 tag=CONTACT_TAG - len(self.touching),
             )
@@ -309,7 +292,7 @@ class Search(PyramidPrograms):
             self._decide_letters(program, trials, [0] * len(trials))
             return
         staying = [i for i, letters in enumerate(trials) if letters.letter != SEPARATES]
-        normals, frames = self._normals[staying, :-1], frames[:, :, :-1]
+        normals, frames = self.rising[staying, :-1], frames[:, :, :-1]
         at_rest = flat_of(normals, frames, tuple(range(len(open_ones))))
         if self._solved(self._within(program, at_rest)) is not None:
             self._note([letters.parts[0] if letters.parts else letters for letters in trials])

@@ -39,9 +39,9 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
-    from contact_dynamics.contact_modes.spatial.options import Pyramid
+    from contact_dynamics.contact_modes.spatial.options import Pyramid, Touching
     from contact_dynamics.contact_modes.spatial.problem import SpatialContactProblem
-    from contact_dynamics.contact_modes.spatial.search import Search, Touching
+    from contact_dynamics.contact_modes.spatial.search import Search
     from contact_dynamics.contact_modes.spatial.wrenches import Way
     from contact_dynamics.validation import FloatArray
 
@@ -118,7 +118,7 @@ def spatial_wrench_sets(
     edges = search.edges.shape[1]
     if edges > MAX_EDGES:
         raise TooLargeError("contacts", f"{edges} edges of friction pyramids", f"at most {MAX_EDGES}")
-    every = [(_letters(case, ways), ways) for ways in ways_of(search)]
+    every = [(case.of_all(way.letter for way in ways), ways) for ways in ways_of(search)]
     wanted = sorted(one for one in every if modes is None or one[0] in modes)
     if len(wanted) > MAX_WRENCH_SETS:
         allowed = f"at most {MAX_WRENCH_SETS}: fewer contacts, or fewer friction_facets"
@@ -128,13 +128,6 @@ def spatial_wrench_sets(
     return tuple(
         _wrench_set(case, search, ways, mode=mode, metric=metric, turning=turning) for mode, ways in wanted
     )
-
-
-def _letters(case: SpatialCase, ways: Sequence[Way]) -> str:
-    letters = [SEPARATES] * len(case.contacts)
-    for i, way in zip(case.touching.tolist(), ways, strict=True):
-        letters[i] = way.letter
-    return "".join(letters)
 
 
 def _wrench_set(
@@ -181,8 +174,7 @@ def ways_of(search: Search) -> list[tuple[Way, ...]]:
     """
     touching = search.touching
     height = np.eye(1, 7, 6)
-    normals = [(contact.normal @ contact.point)[None, :] for contact in touching]
-    rows = np.vstack([*normals, height])
+    rows = np.vstack([search.rising, height])
     rows /= np.linalg.norm(rows, axis=1)[:, None]
     cuts = [_borders(of, pyramid) for of, pyramid in zip(touching, search.pyramids, strict=True)]
     found: dict[tuple[Way, ...], None] = {}

@@ -25,9 +25,9 @@ from contact_dynamics.tolerances import NEAREST_GAIN, NEAREST_REACHED, ROW_TOLER
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from contact_dynamics.contact_modes.spatial.options import Pyramid
+    from contact_dynamics.contact_modes.spatial.options import Pyramid, Touching
     from contact_dynamics.contact_modes.spatial.problem import SpatialCase
-    from contact_dynamics.contact_modes.spatial.search import Search, Touching
+    from contact_dynamics.contact_modes.spatial.search import Search
     from contact_dynamics.validation import FloatArray
 
 _ALIKE: Final = 7
