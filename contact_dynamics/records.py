@@ -13,7 +13,7 @@ import inspect
 import itertools
 import math
 import textwrap
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from decimal import Decimal
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any, Final, TypeVar, cast
@@ -32,6 +32,9 @@ _DIGITS: Final = 6
 _MAX_SHOWN: Final = 9
 """Largest number of elements of an array or a list that is shown. Longer ones are shown as their shape."""
 
+
+_PUT: Final[dict[type[Record], tuple[Callable[[Record, object], None], ...]]] = {}
+"""What `made` puts values into records with, once one of the class was made."""
 
 _NUMBERS: Final = (float, Decimal, Fraction, np.floating)
 
@@ -163,12 +166,21 @@ class Record:
 def made(cls: type[Made], *values: object) -> Made:
     """Return a record of values, one for each field of its own class, that need no checks.
 
-    It takes half of the time of a call of the class.
+    It takes a third of the time of a call of the class.
     """
-    record, names = object.__new__(cls), cast("tuple[str, ...]", cls.__slots__)
-    for name, value in zip(names, values, strict=True):
-        object.__setattr__(record, name, value)
+    record, puts = object.__new__(cls), _PUT.get(cls) or _puts_of(cls)
+    if len(values) != len(puts):
+        raise AssertionError
+    for put, value in zip(puts, values):  # noqa: B905  `strict` takes longer
+        put(record, value)
     return record
+
+
+def _puts_of(cls: type[Record]) -> tuple[Callable[[Record, object], None], ...]:
+    """Return what puts a value into each field, although records are frozen."""
+    return _PUT.setdefault(
+        cls, tuple([vars(cls)[name].__set__ for name in cast("tuple[str, ...]", cls.__slots__)])
+    )
 
 
 class Rows(Record):

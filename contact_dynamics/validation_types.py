@@ -61,6 +61,9 @@ _INTERNAL: Final = ("_", "HINT_IF", "ALLOWED")
 _NAMES: Final[dict[type, tuple[set[str], set[str]]]] = {}
 """What each class is made with, and what of it is required by name, once that was asked for."""
 
+_UNKNOWN: Final[tuple[int, tuple[type, ...]]] = (-1, ())
+"""Place and types of an argument that a function does not have."""
+
 _FUNCTION: Final[type] = Callable  # type: ignore[assignment]  # a class in all that it is used for here
 _SEQUENCES: Final = (collections.abc.Sequence, Collection, tuple, list)
 
@@ -127,35 +130,56 @@ def checks_types(function: Callable[P, R]) -> Callable[P, R]:
     The function raises `UnknownArgumentError` where it has no argument of a name, and `WrongTypeError` where
     an argument has another type than its annotation.
     """
-    annotations = {name: text for name, text in function.__annotations__.items() if name != "return"}
-    by_name: dict[str, Expected] = {}
-    names: dict[str, inspect.Parameter] = {}
-    by_place: list[tuple[str, Expected | None]] = []
-    places: dict[str, int] = {}
-    by_order: list[str] = []
+    arguments: _Arguments | None = None
 
     @functools.wraps(function)
     def checked(*args: P.args, **kwargs: P.kwargs) -> R:
-        if not by_place:
-            by_name.update(_expected(annotations, vars(sys.modules[function.__module__])))
-            names.update(inspect.signature(function).parameters)
-            by_place.extend((name, by_name.get(name)) for name in names)
-            places.update(_places(names.values()))
-            by_order.extend(places)
+        nonlocal arguments
+        arguments = arguments or _Arguments(function)
         count = len(args)
-        if not kwargs.keys() <= names.keys():
-            refuse_unknown(function, next(name for name in kwargs if name not in names), names)
-        if count > len(places) or (count and not kwargs.keys().isdisjoint(by_order[:count])):
-            _refuse_places(function, names.values(), args, kwargs)
-        for value, (name, expected) in zip(args, by_place, strict=False):
-            if expected is not None and not isinstance(value, expected.types):
-                check_type(name, value, expected)
+        fits = count <= len(arguments.by_place)
+        for value, kinds in zip(args, arguments.by_place):  # noqa: B905  `strict` takes time
+            fits = fits and isinstance(value, kinds)
         for name, value in kwargs.items():
-            if name in by_name and not isinstance(value, by_name[name].types):
-                check_type(name, value, by_name[name])
+            place, kinds = arguments.by_keyword.get(name, _UNKNOWN)
+            fits = fits and place >= count and isinstance(value, kinds)
+        if not fits:
+            arguments.check(args, kwargs)
         return function(*args, **kwargs)
 
     return checked
+
+
+class _Arguments:
+    """What a function may be given.
+
+    Attributes:
+        by_place: The types of each argument that may be given by place.
+        by_keyword: The place and the types of each argument that may be given by name.
+    """
+
+    def __init__(self, function: Callable[..., object]) -> None:
+        annotations = {name: text for name, text in function.__annotations__.items() if name != "return"}
+        self.function, self.parameters = function, inspect.signature(function).parameters
+        self.expected = _expected(annotations, vars(sys.modules[function.__module__]))
+        places = _places(self.parameters.values())
+        kinds = {name: self._types_of(name) for name in self.parameters}
+        self.by_place = [kinds[name] for name in places]
+        self.by_keyword = {name: (places.get(name, len(kinds)), kinds[name]) for name in kinds}
+
+    def _types_of(self, name: str) -> tuple[type, ...]:
+        return self.expected[name].types if name in self.expected else (object,)
+
+    def check(self, args: tuple[object, ...], kwargs: dict[str, Any]) -> None:
+        """Raise the error of arguments, unless `check_type` finds nothing wrong with them."""
+        for name in kwargs:
+            if name not in self.parameters:
+                refuse_unknown(self.function, name, self.parameters)
+        if len(args) > len(self.by_place) or any(self.by_keyword[name][0] < len(args) for name in kwargs):
+            _refuse_places(self.function, self.parameters.values(), args, kwargs)
+        for name, value in [*zip(self.parameters, args, strict=False), *kwargs.items()]:
+            if not isinstance(value, self._types_of(name)):
+                check_type(name, value, self.expected[name])
 
 
 def _places(parameters: Iterable[inspect.Parameter]) -> dict[str, int]:

@@ -191,12 +191,12 @@ class PlanarStrike:
     @property
     def response(self) -> InverseInertia:
         """Return the contact's response."""
-        return InverseInertia(self.a, self.b, self.c, self.det)
+        return tuple.__new__(InverseInertia, (self.a, self.b, self.c, self.det))  # in half of a call's time
 
     @property
     def path(self) -> ImpulsePath:
         """Return the impulse path."""
-        return ImpulsePath(
+        numbers = (
             _OUTCOMES[self.outcome],
             self.jams,
             self.p_stop,
@@ -208,6 +208,7 @@ class PlanarStrike:
             self.v_t,
             self.v_n,
         )
+        return tuple.__new__(ImpulsePath, numbers)
 
     def strike_all(  # the columns of `planar_strikes`
         self,
