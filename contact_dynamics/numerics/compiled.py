@@ -21,7 +21,7 @@ from typing import Final
 PLAIN: Final = "CONTACT_DYNAMICS_PLAIN"
 
 SLOWER: Final = (
-    "impacts in space take 7 to 9 times as long, tosses 6 to 9 times, and large batches 70 to 85 times"
+    "impacts in space take 5 to 20 times as long, tosses 10 to 17 times, and batches 20 to 60 times"
 )
 """The cost of running without the compiled core. `make bench` measures it with `CONTACT_DYNAMICS_PLAIN=1`."""
 
