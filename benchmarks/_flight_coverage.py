@@ -28,7 +28,7 @@ import numpy as np
 from scipy.stats import chi2
 
 from benchmarks._quotes import quote
-from benchmarks.calibration import _observed
+from benchmarks.calibration import observed_in
 from contact_dynamics.calibration import Calibration, Free, calibrate_observed
 from contact_dynamics.calibration.model import Model
 from contact_dynamics.calibration.observed import Observed
@@ -60,7 +60,7 @@ class Region:
 def flight_coverage(path: Path) -> None:
     """Print coverage and log score for white noise, for unknown noise and for measured noise."""
     split = json.loads((Path(__file__).parent / "cube_split.json").read_text(encoding="utf-8"))
-    seen = _observed(path, split["fit"])
+    seen = observed_in(path, split["fit"])
     free = (Free.CENTER_OF_MASS, Free.GRAVITY, Free.INERTIA_RATIOS)
     found = calibrate_observed(
         Model(seen[0].motion.body, seen[0].motion.surfaces), seen, free=free, with_paths=False
@@ -76,7 +76,7 @@ def flight_coverage(path: Path) -> None:
     quote("flights.noise.orientation_time", 1e3 * noise.orientation_time, "ms")
     quote("flights.noise.degrees", noise.degrees_of_freedom or math.inf)
     regions: dict[tuple[str, str], list[Region]] = {}
-    for states in flown(_observed(path, split["test"]), found):
+    for states in flown(observed_in(path, split["test"]), found):
         half = max((len(states) + 1) // 2, FEWEST_POSES)
         fits = {
             name: fit_free_motion(body, states[:half], gravity_W=found.gravity_W, noise=given)
