@@ -3,7 +3,8 @@
 
 A body is pushed at the contact alone, whatever the law says. So what the law is off by is an impulse through
 the contact, for the most part, and changes of velocity and spin belong together. A small rest does not: the
-contact is not quite where the shape has it.
+contact is not quite where the shape has it. If several contacts touch, as under a face that lands flush, the
+impulse is through their middle, and one spread is that of all strikes of the instant together.
 
 Recorded strikes of a cube have one spread, whether they change the velocity by 0.3 or by 1.8 m/s. A strike
 of a sample that is much weaker than its first one has a smaller spread. Otherwise a body that comes to rest
@@ -48,6 +49,10 @@ FULL: Final = 0.2
 """A strike that changes the velocity by this share of what the first one did has the full spread, and so have
 stronger ones. Weaker ones have it in proportion."""
 
+MAX_TURNED_BACK: Final = 100
+"""Approaches that are turned back, after which a strike keeps the velocities of the law. Four corners of a
+plate need some ten."""
+
 
 class LawSpread:
     """What changes the velocities of n samples after strikes: one `Kick` each."""
@@ -90,17 +95,17 @@ class Kick:
         self.first = 0.0  # m/s, by how much the first strike changed the velocity
         self.chance: Generator | None = None
 
-    def kicked(self, solid: Solid, before: Numbers, after: Numbers, touch: Touch) -> Numbers:
+    def kicked(self, solid: Solid, before: Numbers, after: Numbers, touching: list[Touch]) -> Numbers:
         """Return the changed state after a strike, with numbers of the sample's own (`changed`)."""
         if self.chance is None:
             raise AssertionError
         by_t = self.chance.chisquare(FREEDOM)
-        return self.changed(solid, before, after, touch, [*self.chance.standard_normal(9).tolist(), by_t])
+        return self.changed(solid, before, after, touching, [*self.chance.standard_normal(9).tolist(), by_t])
 
     def changed(
-        self, solid: Solid, before: Numbers, after: Numbers, touch: Touch, drawn: list[float]
+        self, solid: Solid, before: Numbers, after: Numbers, touching: list[Touch], drawn: list[float]
     ) -> Numbers:
-        """Return the changed state after a strike, for those before and after it and the contact.
+        """Return the changed state after a strike, for those before and after it and all that touches.
 
         Of the numbers that are drawn, nine are normal, and the last one is chi squared's with `FREEDOM`.
         """
@@ -109,9 +114,10 @@ class Kick:
         size = min(jump / (FULL * self.first), 1.0) if self.first > 0.0 else 1.0
         a, b, c, d, e, f, g, h, i, by_t = drawn
         size *= _SAME_MEDIAN * math.sqrt(FREEDOM / by_t)
-        surface, corner = touch
-        pose, flat, mass = pose_of(solid, after), solid.flats[surface], solid.mass
-        arm, n = pose.arm(surface, corner), flat.normal
+        pose, mass, share = pose_of(solid, after), solid.mass, 1.0 / len(touching)
+        arm = (0.0, 0.0, 0.0)
+        for surface, corner in touching:
+            arm = vec.plus(arm, share, pose.arm(surface, corner))
         square = 0.0
         for axis in AXES:
             turn = vec.times(pose.inverse, vec.cross(arm, axis))
@@ -126,20 +132,22 @@ class Kick:
             after[11] + (turn[1] + spin * h),
             after[12] + (turn[2] + spin * i),
         )
-        # The corner does not go on into the flat: an impulse along the normal turns it back.
-        rebound = vec.dot(v, n) + vec.dot(vec.cross(w, arm), n)
-        turn = vec.times(pose.inverse, vec.cross(arm, n))
-        back = max(-2.0 * rebound, 0.0) / (1.0 / mass + vec.dot(vec.cross(arm, n), turn))
-        x = back / mass
-        return [
-            *after[:7],
-            v[0] + x * n[0],
-            v[1] + x * n[1],
-            v[2] + x * n[2],
-            w[0] + back * turn[0],
-            w[1] + back * turn[1],
-            w[2] + back * turn[2],
-        ]
+        # No corner goes on into its flat: an impulse along the normal turns it back.
+        n = (0.0, 0.0, 0.0)
+        for _ in range(MAX_TURNED_BACK):
+            least = 0.0
+            for surface, corner in touching:
+                each, normal = pose.arm(surface, corner), solid.flats[surface].normal
+                rate = vec.dot(v, normal) + vec.dot(vec.cross(w, each), normal)
+                if rate < least:
+                    least, arm, n = rate, each, normal
+            if least == 0.0:
+                return [*after[:7], v[0], v[1], v[2], w[0], w[1], w[2]]
+            moment = vec.cross(arm, n)
+            turn = vec.times(pose.inverse, moment)
+            back = -2.0 * least / (1.0 / mass + vec.dot(moment, turn))
+            v, w = vec.plus(v, back / mass, n), vec.plus(w, back, turn)
+        return after
 
 
 def _parts(velocity: float, spin: float, square: float) -> tuple[float, float, float]:

@@ -104,8 +104,7 @@ def next_strikes(
         horizon: s, how far.
         further: Whether the last states are those after later strikes. Samples go on as long as
             `FEWEST_AT_ONCE` fly on after each.
-        together: The law for several contacts that strike at one instant. The spread is that of impacts of
-            one contact, and is left out there, as in a single toss.
+        together: The law for several contacts that strike at one instant.
     """
     n = len(samples.p_WB_W)
     state = np.hstack([samples.p_WB_W, samples.q_WB, samples.v_WB_W, samples.w_WB_W])
@@ -207,14 +206,19 @@ class Flights:
                         self.together,
                         None,
                     )
-                    y = strikes.y
-                    rebounds[j] = 0.0 if strikes.staying else min(approaches(solid, y, touching))
+                    after, staying = strikes.y, bool(strikes.staying)
+                    if self.kicks and not strikes.settled:
+                        numbers = [drawn[i, k] for k in range(10)]
+                        after = self.kicks[i].changed(solid, y, after, touching, numbers)
+                        staying = False
+                    y = after
+                    rebounds[j] = 0.0 if staying else min(approaches(solid, y, touching))
                 else:
                     after, _ = routh(self.impact, solid, y, touch, flat.strike_friction, True)  # noqa: FBT003
                     if self.kicks:
                         numbers = [drawn[i, k] for k in range(10)]
                         kick = self.kicks[i]
-                        after = kick.changed(solid, y, after, touch, numbers)
+                        after = kick.changed(solid, y, after, [touch], numbers)
                     y = after
                     rebounds[j] = approaches(solid, y, [touch])[0]
             for k in range(13):

@@ -225,8 +225,8 @@ class Simulation(History):
         )
         self.settled = strikes
         self.y, staying = strikes.y, strikes.staying
-        if self.kick is not None and len(touching) == 1 and not strikes.settled:
-            self.y = self.kick.kicked(self.solid, y, self.y, touching[0])
+        if self.kick is not None and not strikes.settled:
+            self.y = self.kick.kicked(self.solid, y, self.y, touching)
             staying = self.touching_now(STILL_TOUCHING)
         for one in strikes.struck:
             kind = TossEventKind.SETTLES if one.settles else TossEventKind.STRIKES
