@@ -380,14 +380,24 @@ class Simulation(History):
     def _slow(self, touching: list[Touch]) -> float:
         """Return the kinetic energy, J, with which a body rises or slides by `settling` at most.
 
-        Without friction it would slide on for ever. There its speed has to be rounding.
+        On one flat, what slows it down is the friction that is left beside the slope, or beside the
+        acceleration of the flat. Where none is left, it would slide on for ever, and its speed has to be
+        rounding.
         """
-        grip = 1.0 if touching else 0.0
-        for surface, _ in touching:
-            flat = self.solid.flats[surface]
-            grip = min(grip, flat.friction)
-        per_mass = vec.norm(self.solid.gravity) * self.solid.settling * grip
-        return self.solid.mass * max(per_mass, 0.5 * SLIDING_STOPPED**2)
+        gravity, slows = self.solid.gravity, 0.0
+        strength = vec.norm(gravity)
+        if touching:
+            grip, first, several = 1.0, touching[0][0], False
+            for surface, _ in touching:
+                flat = self.solid.flats[surface]
+                grip, several = min(grip, flat.friction), several or surface != first
+            slows = grip * strength
+            if not several:  # between walls, friction does not have to bear the slopes
+                flat = self.solid.flats[first]
+                pressing = -vec.dot(gravity, flat.normal)
+                along = vec.norm(vec.plus(gravity, pressing, flat.normal))
+                slows = min(flat.friction * pressing - along, strength)
+        return self.solid.mass * max(slows * self.solid.settling, 0.5 * SLIDING_STOPPED**2)
 
     def _laid_flat(self, touching: list[Touch]) -> list[Touch]:
         """Lay a body that only rattles on a face flat on it, if it may be, and return what touches then."""

@@ -51,6 +51,38 @@ def test_a_parcel_on_a_belt_slides_until_it_moves_with_it() -> None:
     assert toss.energy.lost_in_contact == pytest.approx(0.5 * U * U, rel=1e-12)
 
 
+@pytest.mark.parametrize("a", [0.0, 1.0, 2.5, 2.75])
+@pytest.mark.parametrize("leans", [False, True], ids=["accelerates", "slope"])
+def test_rest_is_a_micrometre_early_by_the_friction_that_is_left(a: float, *, leans: bool) -> None:
+    """By hand: a parcel on a belt slows down by mu g - a, one on a slope by mu g cos - g sin."""
+    mu, tilt = 0.3, np.arcsin(a / G) if leans else 0.0
+    slope = np.array([np.cos(tilt), 0, -np.sin(tilt)])
+    normal = np.array([np.sin(tilt), 0, np.cos(tilt)])
+    floor = cd.Surface(
+        name="floor",
+        p_WS_W=[0, 0, 0],
+        normal_W=normal,
+        friction=mu,
+        restitution=0.0,
+        v_WS_W=[0, 0, 0] if leans else [U, 0, 0],
+        a_WS_W=[0, 0, 0] if leans else [a, 0, 0],
+    )
+    state = cd.BodyState(
+        p_WB_W=0.05 * normal,
+        q_WB=[0, np.sin(tilt / 2), 0, np.cos(tilt / 2)],
+        v_WB_W=U * slope if leans else [0, 0, 0],
+    )
+    toss = cd.toss(BOX, state, cd.World(surfaces=(floor,)), horizon=20.0)
+    left = mu * G * np.cos(tilt) - a
+    stops, slides = U / left, U * U / (2.0 * left)
+    moved = toss.state.p_WB_W @ slope
+    found = moved if leans else U * toss.seconds + 0.5 * a * toss.seconds**2 - moved
+    assert toss.end == TossEnd.RESTS
+    # Both are to the tolerance of rest, a micrometre, and rounding.
+    assert slides - 1.001e-6 <= found <= slides + 1e-9
+    assert stops - 1.001 * np.sqrt(2e-6 / left) <= toss.seconds <= stops + 1e-9
+
+
 @pytest.mark.parametrize("a", [[0.0, 0.0, 0.0], [0.5, 0.0, 1.5]])
 def test_a_toss_is_the_same_from_a_frame_that_moves(a: list[float]) -> None:
     u, a_W = np.array([0.7, -0.4, 0.9]), np.array(a)
