@@ -89,7 +89,10 @@ class LargestLoad(Record):
     def in_short(self) -> str:
         """Return the largest load, and the modes that follow."""
         if math.isinf(self.factor):
-            return f"LargestLoad: it stays fixed {_UNITS[self.unit]}"
+            # Without the load another mode may be consistent already, as it is between two fingers.
+            surely = f"it stays fixed up to {self.only_rest:.3g}, and may" if self.only_rest else "it may"
+            surely = "it stays" if math.isinf(self.only_rest) else f"{surely} stay"
+            return f"LargestLoad: {surely} fixed {_UNITS[self.unit]}"
         then = _moving(self.modes_beyond)
         fixed = f"it stays fixed up to {self.factor:.3g} {self.unit}"
         if self.only_rest < self.factor:  # beyond it another mode is consistent too
