@@ -187,9 +187,9 @@ class TossDistribution(Record):
             followed to rest.
         ghosts: Poses of the first samples.
         to_rest: Whether samples were followed to rest.
-        exact: Names of those inputs among friction, restitution and impact law that are the same in all
-            samples, because ``uncertainty`` does not include them. None if that is not recorded, as in a
-            message, whose request contains it.
+        exact: Names of those inputs among state, friction, restitution and impact law that are the same in
+            all samples, because ``covariance`` and ``uncertainty`` do not include them. None if that is not
+            recorded, as in a message, whose request contains it.
     """
 
     samples: int

@@ -202,7 +202,7 @@ def sampled_toss(
         rest=rest,
         ghosts=_ghosts(many, rests, count),
         to_rest=to_rest,
-        exact=exact_inputs(uncertainty),
+        exact=exact_inputs(uncertainty, covariance),
     )
 
 

@@ -107,12 +107,13 @@ class TossUncertainty(Record):
             raise InvalidFieldError("lasting_factor_stds", found, f"{count}, one for each factor, or none")
 
 
-def exact_inputs(uncertainty: TossUncertainty) -> tuple[str, ...]:
-    """Return which of friction, restitution and the law of impact are not uncertain at all."""
+def exact_inputs(uncertainty: TossUncertainty, covariance: FloatArray | None) -> tuple[str, ...]:
+    """Return which of state, friction, restitution and the law of impact are not uncertain at all."""
     size = len(uncertainty.covariance)
     s = (size - (7 if size % 2 else 4)) // 2  # surfaces
     variances = uncertainty.covariance.diagonal()
     spread = {
+        "state": covariance is not None and covariance.any(),
         "friction": variances[:s].any() or uncertainty.lasting_factor_stds.any(),
         "restitution": variances[s : 2 * s].any(),
         "impact law": uncertainty.velocity > 0.0 or uncertainty.spin > 0.0,

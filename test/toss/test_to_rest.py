@@ -119,6 +119,8 @@ def test_printed_samples_that_do_not_rest_say_so() -> None:
     )
     unasked = f"TossDistribution of 20 samples{exact}"
     assert str(sampled_toss(*args, world, horizon=0.5, **few)).splitlines()[0] == unasked
+    alike = sampled_toss(*args, world, horizon=0.5, count=20)
+    assert alike.exact == ("state", "friction", "restitution", "impact law")
     times = sampled_toss(*args, world, to_rest=True, **few).rest
     assert times is not None
     some = sampled_toss(*args, world, to_rest=True, horizon=float(times.seconds[2]), **few)
@@ -144,7 +146,7 @@ def test_samples_name_the_inputs_that_were_taken_as_exact(
 ) -> None:
     state = BodyState(p_WB_W=[0, 0, 1], q_WB=[0, 0, 0, 1])
     found = sampled_toss(BRICK, state, World(surfaces=(FLOOR,)), uncertainty=uncertainty, count=2, strikes=1)
-    assert found.exact == exact
+    assert found.exact == ("state", *exact)
 
 
 def test_each_face_has_the_places_of_the_samples_that_rest_on_it() -> None:
