@@ -35,7 +35,7 @@ _NUMBERS: Final = {"int", "float", "complex", "ArrayLike", "FloatArray", "IntArr
 _UNCHECKED: Final = {*_NUMBERS, "Any", "object"}
 _MEANT: Final[dict[str, tuple[str, ...]]] = {
     **dict.fromkeys(("position", "point", "location", "pos", "p"), ("p_WB_W", "p_WC_W", "p_WS_W", "r")),
-    **dict.fromkeys(("velocity", "linear_velocity", "vel"), ("v_WB_W", "v")),
+    **dict.fromkeys(("velocity", "linear_velocity", "vel"), ("v_WB_W", "v", "velocity")),
     **dict.fromkeys(("angular_velocity", "omega", "spin"), ("w_WB_W", "w", "angular_velocity")),
     **dict.fromkeys(("orientation", "quaternion", "attitude", "rotation", "q"), ("q_WB", "rotation")),
     **dict.fromkeys(("mu", "friction_coefficient"), ("friction", "frictions")),

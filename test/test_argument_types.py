@@ -142,6 +142,11 @@ GUESSES: list[tuple[Any, dict[str, Any], str]] = [
     (Body.box, {"size": (1, 1, 1), "weight": 1}, "Body.box has no argument 'weight'. It has size, mass, "),
     (
         state_covariance,
+        {"linear_velocity": 0.1},
+        "state_covariance has no argument 'linear_velocity', did you mean velocity (m/s",
+    ),
+    (
+        state_covariance,
         {"attitude": 0.1},
         "state_covariance has no argument 'attitude', did you mean rotation (rad, >= 0, of a small rotation",
     ),
