@@ -63,7 +63,8 @@ def planar_statics(problem: PlanarContactProblem, *, margin_length: float | None
     return BodyStatics(
         equilibrium=equilibrium,
         jammed=Certainty.NO if held_without else equilibrium,
-        wedged=_press_on_each_other(balance),
+        # Contact forces can cancel if no half-space has all of them strictly inside.
+        wedged=bool(balance.rows) and not balance.has_interior,
         stable_disturbance=math.nan if equilibrium == Certainty.NO else _room(balance, target),
         margin_length=length,
     )
@@ -116,8 +117,3 @@ def _room(balance: PolyhedralCone, target: Vector3) -> float:
     if balance.lineality:
         return 0.0
     return max(0.0, min((dot(facet, target) for facet in balance.rays), default=math.inf))
-
-
-def _press_on_each_other(balance: PolyhedralCone) -> bool:
-    """Return whether contact forces can cancel: no half-space has all of them strictly inside."""
-    return bool(balance.rows) and not balance.has_interior

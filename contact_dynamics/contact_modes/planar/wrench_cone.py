@@ -203,7 +203,7 @@ class ModeWrenches:
             for ray, more in zip(self._rays, shares, strict=False):
                 motion = combined(1.0, motion, float(more), ray)
         else:
-            absent = [_three(unit) for unit in orthonormal(fixed)]
+            absent = [(x, y, z) for x, y, z in orthonormal(fixed)]
             used = bits(self._common)
             motion = None
             forces = self._forces(used, least_force([self.dual.rows[i] for i in used], rest, absent))
@@ -296,11 +296,6 @@ class ModeWrenches:
 
 def _total(rays: Sequence[Vector3]) -> Vector3:
     return (sum(ray[0] for ray in rays), sum(ray[1] for ray in rays), sum(ray[2] for ray in rays))
-
-
-def _three(vector: Sequence[float]) -> Vector3:
-    x, y, z = vector
-    return (x, y, z)
 
 
 _SMOOTH: Final = ((0.0, 1.0),)

@@ -101,7 +101,9 @@ def ways_of_sliding(
     If only some neighbouring edges can oppose the sliding, ``acting`` is the first of them and their number.
     """
     count = len(pyramid.edges)
-    along = _along_edges(pyramid, point)
+    angles = 2.0 * math.pi * np.arange(count) / count
+    # The acceleration along each edge's tangential part, (K, d + 1), as functions of the motion.
+    along = np.column_stack([np.cos(angles), np.sin(angles)]) @ np.array(pyramid.frame) @ point
     # Sectors and borders alternate around the circle; no arc may be wider than a third of it.
     if acting is None:
         arcs = np.array_split(np.arange(2 * count), count if count < 6 else 4)
@@ -109,14 +111,6 @@ def ways_of_sliding(
         items = 2 * acting[0] + np.arange(2 * acting[1] - 1)
         arcs = np.array_split(items, min(len(items), math.ceil(1.5 * len(items) / count)))
     return tuple(_slides(arc.tolist(), pyramid.first, along) for arc in arcs)
-
-
-def _along_edges(pyramid: Pyramid, point: FloatArray) -> FloatArray:
-    """Return the acceleration along each edge's tangential part, (K, d + 1), as functions of the motion."""
-    count = len(pyramid.edges)
-    angles = 2.0 * math.pi * np.arange(count) / count
-    along: FloatArray = np.column_stack([np.cos(angles), np.sin(angles)]) @ np.array(pyramid.frame) @ point
-    return along
 
 
 def _slides(arc: list[int], first_name: int, along: FloatArray) -> Option:

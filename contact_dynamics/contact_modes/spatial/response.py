@@ -157,7 +157,10 @@ def response_contact_modes(problem: ResponseContactProblem) -> ResponseModeAnswe
     """Return the verdict on the contacts of a mechanism and all consistent modes."""
     sizes, axes = np.linalg.eigh(problem.inverse_inertia_W)
     seen = sizes > SINGULAR_RESPONSE * sizes.max(initial=0.0)
-    contacts, velocities = _on_surfaces(problem)
+    contacts = replace(problem.contacts, body_curvatures=None, surface_curvatures=None)
+    velocities = problem.velocities_W
+    if contacts.surface_velocities_W is not None:
+        velocities = velocities - contacts.surface_velocities_W
     case = response_case(
         contacts,
         axes[:, seen] * np.sqrt(sizes[seen]),
@@ -212,14 +215,6 @@ def response_case(
         of_body=False,
     )
     return SpatialCase(motion, contacts, sliding_of(contacts, velocities_W, tolerance), touching)
-
-
-def _on_surfaces(problem: ResponseContactProblem) -> tuple[ContactSet, FloatArray]:
-    """Return the contacts without curvatures, and their velocities, (n, 3), relative to the surfaces."""
-    contacts, velocities = problem.contacts, problem.velocities_W
-    if contacts.surface_velocities_W is not None:
-        velocities = velocities - contacts.surface_velocities_W
-    return replace(contacts, body_curvatures=None, surface_curvatures=None), velocities
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
