@@ -95,6 +95,12 @@ VERBS: Final = {
         (),
         "estimate friction, restitution, centre of mass and more from recorded tosses",
     ),
+    "monitor": Verb(
+        "contact_dynamics.monitoring.run",
+        "contact_dynamics.monitoring.arguments:monitor_parser",
+        (),
+        "detect changed friction and restitution, and events outside of their prediction regions",
+    ),
     "recover": Verb(
         "contact_dynamics.replay.recover",
         "contact_dynamics.replay.arguments:recover_parser",

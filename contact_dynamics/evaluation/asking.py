@@ -181,7 +181,7 @@ def _landing(row: Comparison, event: FoundEvent, known: Context, settings: Setti
 
 
 @lru_cache(maxsize=1)
-def _first_answer(event: FoundEvent, known: Context, settings: Settings) -> ImpactAnswer:
+def first_answer(event: FoundEvent, known: Context, settings: Settings) -> ImpactAnswer:
     """Return the answer from the fit under the first law. The baseline flies on from its state before."""
     source = PublishedState(fit_window=settings.fit_window)
     return _asked_impact(event, known, settings.laws[0], source, include_covariance=True)
@@ -215,7 +215,7 @@ def _impact(row: Comparison, event: FoundEvent, known: Context, settings: Settin
     """Return the row with the state after the impact, flown on for as long as the measured one took."""
     law = row.law or settings.laws[0]
     if row.method is not Method.NEWEST and law is settings.laws[0]:
-        answer = _first_answer(event, known, settings)
+        answer = first_answer(event, known, settings)
     else:
         has_covariance = law is settings.laws[0] and _has_covariance(row, known)
         answer = _asked_impact(event, known, law, _source(row, settings), include_covariance=has_covariance)

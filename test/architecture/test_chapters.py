@@ -49,6 +49,7 @@ CHAPTERS = (
     "replay",
     "evaluation",
     "calibration",
+    "monitoring",
     "plots",
     "cases",
     "demo",

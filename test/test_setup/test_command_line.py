@@ -26,6 +26,7 @@ OPTIONS = {
     "demo": ["--toss", "--view", "--output", "--quiet"],
     "calibrate": ["--free", "--no-trajectories", "--yaml", "RECORDING"],
     "evaluate": ["--against", "--dask", "--results", "--rerun", "RECORDING"],
+    "monitor": ["--config", "--calibration", "--json", "RECORDING"],
     "plot": ["--output", "--format", "--max-questions", "LOG"],
     "recover": ["--output", "LOG"],
     "replay": ["verify", "info", "table", "view", "publish", "LOG"],
