@@ -150,6 +150,7 @@ NOT_MEASURED: dict[
         "predicts each event 20 ms before it",
         "0.5 mm and 5 mrad for errors",
         "the smallest of the 50, 90 and 99 % regions",
+        "over 0.26 to 3.8 times the configured",
         "outside of the 99 % region",
         "restitution to 12 % and friction to 11 %",  # of simulated impacts, as are the rows of the table
         "20 % off",
