@@ -127,7 +127,7 @@ NOT_MEASURED: dict[
     "docs/toss.md": [
         "contain 50 % or 90 % of the outcomes",
         "at most 0.2 ms",
-        "is less than 1 nm",
+        "by less than 1 nm",
         "scaled to contain 50 % or 90 % of them",
         "below 0.1 mm",  # SAMPLED_SETTLING_HEIGHT
         "coverage is 50 % or 90 %",
