@@ -98,7 +98,7 @@ class TossEvent(Record):
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class TossEnergy(Record):
-    """Energy balance of a toss, J. Energy is the sum of the kinetic energy and the energy in uniform gravity.
+    """Energy balance of a toss, J. Energy is kinetic energy plus potential energy in uniform gravity.
 
     Attributes:
         first: Energy at the beginning, relative to the potential energy of the last state.
@@ -115,7 +115,7 @@ class TossEnergy(Record):
 
 
 class UndecidedReason(NamedInt):
-    """Reason for which mechanics does not determine the motion at a point of a toss."""
+    """Reason why mechanics does not determine the motion at a branch point."""
 
     STRIKE_TOGETHER = 0
     """Several contacts approach at one instant, and their order is not determined."""
@@ -131,8 +131,8 @@ class Undecided(Record):
         seconds: Time of the point, s after the initial state's stamp.
         reason: Reason for the indeterminacy.
         options: Number of possible continuations, >= 2.
-        taken: Index of the continuation of this toss, from 0. Option 0 strikes the fastest approach first,
-            together with those of equal approach speed, or follows the first mode.
+        taken: Index of the continuation of this toss, from 0. Option 0 resolves the fastest approach
+            first, together with those of equal approach speed, or follows the first mode.
     """
 
     seconds: float
