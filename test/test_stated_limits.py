@@ -50,6 +50,7 @@ NOT_REFUSED = {
     "questions.state_store.MAX_STATES",
     "toss.cone_forces.MAX_SWEEPS",
     "toss.laid_flat.MAX_CORNERS",
+    "toss.law_spread.MAX_TURNED_BACK",
     "toss.phase.LARGEST_STEP",
     "toss.phase.MAX_PHASE_STEPS",
     "toss.sampled.MAX_GHOSTS",
