@@ -111,7 +111,7 @@ def two_modes() -> Figure:
     modes = sorted(contact_modes(problem).modes, key=lambda mode: mode.mode)
     for i, mode in enumerate(modes, start=1):
         scene = planar_scene_of(ROD_OUTLINE, [TOUCH], walls=[FLOOR], mode=mode)
-        word = {"f": "f: it stays fixed", "l": "l: it slides without force"}[mode.mode]
+        word = {"f": "f: it turns about its tip", "l": "l: it slides without force"}[mode.mode]
         draw_planar_scene(figure.add_subplot(1, 2, i), scene, title=word)
     return figure
 
