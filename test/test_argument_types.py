@@ -49,7 +49,11 @@ WRONG: list[tuple[Any, dict[str, Any], str]] = [
         {"body": "box", "state": STATE},
         "body must be a Body or its MassProperties, got 'box', a str",
     ),
-    (spatial_impact, {"body": BALL, "state": STATE, "contact": CONTACTS}, "contact must be a Contact, got a"),
+    (
+        spatial_impact,
+        {"body": BALL, "state": STATE, "contact": CONTACTS},
+        "contact must be a Contact, got a ContactSet, which several_impact takes",
+    ),
     (
         impact.several_impact,
         {"body": BALL, "state": STATE, "contacts": [CONTACT]},

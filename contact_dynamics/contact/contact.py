@@ -169,6 +169,8 @@ class ContactSet(Record):
     surface_angular_velocities_W: FloatArray | None = None
     surface_accelerations_W: FloatArray | None = None
 
+    HINT_IF_WRONG: ClassVar[str] = ", which several_impact takes"
+
     SURFACE_MOTION: ClassVar[tuple[str, ...]] = (
         "surface_velocities_W",
         "surface_angular_velocities_W",

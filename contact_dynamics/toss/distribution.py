@@ -13,10 +13,12 @@ from typing import TYPE_CHECKING, Final, overload
 
 import numpy as np
 
+from contact_dynamics.errors import InvalidFieldError, NotSupportedError
 from contact_dynamics.records import NamedInt, Record
 from contact_dynamics.rotations.many import rotation_vectors, turned
 from contact_dynamics.tolerances import EXACT_SHARE
 from contact_dynamics.validation import FloatArray, check_within
+from contact_dynamics.validation_batches import check_rows
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -41,6 +43,8 @@ _SHOWN_FACES: Final = 6
 class Region(Record):
     """Region of the samples of a quantity with k components: an ellipsoid about their mean.
 
+    Where samples have no spread in a direction, such as the height of a face at rest, the ellipsoid is flat.
+
     Attributes:
         mean: (k,), mean of the samples.
         covariance: (k, k), covariance of the samples.
@@ -52,14 +56,31 @@ class Region(Record):
     covariance: FloatArray
     radii: FloatArray
 
-    def distances(self, values: ArrayLike) -> FloatArray:
-        """Return the distances of values, (n, k), from the mean, in standard deviations, (n,)."""
-        off = np.atleast_2d(np.asarray(values, dtype=np.float64)) - self.mean
-        return _distances(off, self.covariance)
+    def distances(self, values: ArrayLike, *, noise: ArrayLike = 0.0) -> FloatArray:
+        """Return the distances of values, (n, k), from the mean, in standard deviations, (n,).
 
-    def holds(self, values: ArrayLike) -> NDArray[np.bool_]:
-        """Return whether values, (n, k), are inside the 50 and 90 % regions, (n, 2)."""
-        held: NDArray[np.bool_] = self.distances(values)[:, None] <= self.radii
+        Args:
+            values: (n, k) or (k,), the values.
+            noise: Standard deviation of the values themselves, as of measurements: one, or (k,). At rest on a
+                face, samples have no spread along its normal, so that measured positions are beyond any
+                distance unless their noise is given.
+
+        Raises:
+            InvalidFieldError: the values do not have k components, or the noise is negative.
+            NotSupportedError: there are too few samples for a region.
+        """
+        rows = check_rows("values", values, (len(self.mean),))
+        stds = check_rows("noise", np.broadcast_to(noise, self.mean.shape), self.mean.shape)[0]
+        if (stds < 0.0).any():
+            raise InvalidFieldError("noise", noise, "at least 0")
+        if not np.isfinite(self.covariance).all():
+            message = f"a region requires at least {FEWEST} samples: covariance and radii are NaN"
+            raise NotSupportedError(message)
+        return _distances(rows - self.mean, self.covariance + np.diag(stds**2))
+
+    def holds(self, values: ArrayLike, *, noise: ArrayLike = 0.0) -> NDArray[np.bool_]:
+        """Return whether values, (n, k), are inside the 50 and 90 % regions, (n, 2). See `distances`."""
+        held: NDArray[np.bool_] = self.distances(values, noise=noise)[:, None] <= self.radii
         return held
 
 

@@ -9,14 +9,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from contact_dynamics.errors import InvalidFieldError
+from contact_dynamics.errors import InvalidFieldError, NotSupportedError
 from contact_dynamics.impact import RestitutionLaw
 from contact_dynamics.rigid_body import inertia
 from contact_dynamics.rigid_body.body import BodyState, state_covariance
 from contact_dynamics.rotations.many import matrices_of
 from contact_dynamics.shapes import box
 from contact_dynamics.toss import TossDistribution, TossEventKind, TossUncertainty, sampled_toss, toss
-from contact_dynamics.toss.distribution import BranchKind, region_of
+from contact_dynamics.toss.distribution import BranchKind, region_of, region_of_face
 from contact_dynamics.toss.law_spread import LawSpread
 from contact_dynamics.toss.next_strikes import FEWEST_AT_ONCE, SampleEnd, next_strikes
 from contact_dynamics.toss.solid import solid_of
@@ -203,7 +203,20 @@ def test_a_region_has_the_share_of_samples_that_it_says() -> None:
     flat[:, 2] = 0.25  # exact: no distance is lost by it, and what is off it is outside
     region = region_of(flat)
     np.testing.assert_allclose(region.holds(flat).mean(axis=0), [0.5, 0.9], atol=1.0 / 400)
-    assert not region.holds(region.mean + np.array([0.0, 0.0, 1e-3])).any()
+    above = region.mean + np.array([0.0, 0.0, 1e-3])
+    assert not region.holds(above).any()
+    assert region.holds(above, noise=2e-3).all()
+    assert region.distances(above, noise=[0.0, 0.0, 2e-3])[0] == pytest.approx(0.5)
+    with pytest.raises(InvalidFieldError, match="values must be of shape"):
+        region.holds([0.1, 0.2])
+    with pytest.raises(InvalidFieldError, match="noise must be at least 0"):
+        region.holds(above, noise=-1.0)
+
+
+def test_a_region_of_too_few_samples_says_so() -> None:
+    region = region_of_face(np.random.default_rng(2).standard_normal((19, 3)))
+    with pytest.raises(NotSupportedError, match="at least 20 samples"):
+        region.holds(region.mean)
 
 
 def test_the_same_seed_draws_the_same_samples() -> None:
