@@ -33,9 +33,9 @@ from contact_dynamics.questions.impact_question import ImpactQuestion, InTime
 from contact_dynamics.questions.sample_times import AtStamps, UntilContact
 from contact_dynamics.questions.services import ask
 from contact_dynamics.questions.state_store import StateStore
-from contact_dynamics.questions.subject import PublishedState
+from contact_dynamics.questions.subject import PublishedState, carried_over
 from contact_dynamics.questions.tumbling import TumblingQuestion
-from contact_dynamics.questions.uncertain_state import UncertainState
+from contact_dynamics.questions.uncertain_state import UncertainState, state_of
 from contact_dynamics.records import Record
 from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.tolerances import HOLD_STEP
@@ -51,7 +51,7 @@ if TYPE_CHECKING:
     from contact_dynamics.questions.impact_question import ImpactAnswer
     from contact_dynamics.questions.tumbling import TumblingAnswer
     from contact_dynamics.tumbling import Trajectory
-    from contact_dynamics.world import World
+    from contact_dynamics.world import Body, World
 
 FEWEST_ASKED: Final = 5
 """Least number of states since a flight began, for a question about its end. A fit of three or four could
@@ -80,6 +80,7 @@ def asked_before(
 ) -> dict[float, Context]:
     """Return what is known at each horizon, s, before an event, where enough states were known by then."""
     found: dict[float, Context] = {}
+    body = _known_body(motion, informed)
     for horizon in settings.horizons:
         asked_ns = event.asked_ns(horizon)
         samples = motion.known_by(asked_ns, since=event.first_sample)
@@ -89,7 +90,7 @@ def asked_before(
         store = StateStore(history=settings.fit_window, timeout=informed.state_timeout)
         window = 0.0 if event.mode else settings.fit_window  # a question about a mode takes the newest state
         for state in motion.states(samples[stamps_ns >= stamps_ns[-1] - to_ns(window)].tolist()):
-            store.add(event.body, state)
+            store.add(event.body, carried_over(state, motion.body, body))
         found[horizon] = Context(
             world=informed.world,
             states=store,
@@ -97,6 +98,18 @@ def asked_before(
             now_ns=lambda asked_ns=asked_ns: asked_ns,  # type: ignore[misc]  # bound now, not when called
         )
     return found
+
+
+def _known_body(motion: MeasuredMotion, informed: Informed) -> Body:
+    """Return the body as whoever asks knows it. Its centre of mass may be another point of the body."""
+    same = (body for body in informed.world.bodies if body.name == motion.body.name)
+    return next(same, motion.body)
+
+
+def of_known_center(event: FoundEvent, motion: MeasuredMotion, informed: Informed) -> FoundEvent:
+    """Return an event with the state of the centre of mass that whoever asks knows."""
+    state = carried_over(event.state, motion.body, _known_body(motion, informed))
+    return replace(event, state=state_of(state))
 
 
 def compare_event(

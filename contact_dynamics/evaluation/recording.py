@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from itertools import groupby
 from typing import TYPE_CHECKING, Final
 
-from contact_dynamics.evaluation.asking import Informed, asked_before, compare_event
+from contact_dynamics.evaluation.asking import Informed, asked_before, compare_event, of_known_center
 from contact_dynamics.evaluation.result import SourceResult
 from contact_dynamics.measured.events import find_events
 from contact_dynamics.measured.motion import StateColumns, motions_of
@@ -66,9 +66,10 @@ def evaluate_recording(
         instants = [list(found) for _, found in by_instant]
         for number, found in enumerate(instants):
             if number * parts // len(instants) == part:
-                known = asked_before(found[0], motion, informed or recording.informed, settings)
+                asker = informed or recording.informed
+                known = asked_before(found[0], motion, asker, settings)
                 for place, event in enumerate(found, len(events)):
-                    rows += compare_event(place, event, known, settings)
+                    rows += compare_event(place, of_known_center(event, motion, asker), known, settings)
             events += found
     return SourceResult(
         events=tuple(events),

@@ -257,8 +257,8 @@ def _published(
     # States are published of the known body. The one asked about may share its name and have another mass.
     known = context.world.body(name)
     if body is not known:
-        states = [_carried_over(state, known, body) for state in states]
-        later = None if later is None else _carried_over(later, known, body)
+        states = [carried_over(state, known, body) for state in states]
+        later = None if later is None else carried_over(later, known, body)
     return states, later
 
 
@@ -297,8 +297,10 @@ def _covariance(known: KnownState) -> FloatArray | None:
     return None if isinstance(known, BodyState) else known.covariance
 
 
-def _carried_over(published: KnownState, known: Body, body: Body) -> KnownState:
+def carried_over(published: KnownState, known: Body, body: Body) -> KnownState:
     """Return the state of a body's centre of mass, from that of the known body with another centre."""
+    if np.array_equal(known.p_FB_F, body.p_FB_F):
+        return published
     state = state_of(published)
     moved = state_of_center_of_mass(
         p_WF_W=origin_of_published_frame(state, known.p_FB_F),

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from contact_dynamics.evaluation.asking import asked_before, compare_event
+from contact_dynamics.evaluation.asking import asked_before, compare_event, of_known_center
 from contact_dynamics.evaluation.comparison import Comparison
 from contact_dynamics.evaluation.recording import Recording, evaluate_recording, recording_of_toss
 from contact_dynamics.evaluation.settings import Law, Method, Settings
@@ -16,6 +16,8 @@ from contact_dynamics.evaluation.summary import is_inside
 from contact_dynamics.measured.events import EventKind, FoundEvent, find_events
 from contact_dynamics.measured.motion import MeasuredMotion
 from contact_dynamics.measured.read_toss import read_toss
+from contact_dynamics.questions.subject import carried_over
+from contact_dynamics.questions.uncertain_state import state_of
 from evaluation.made_motion import bounces, only_motion
 from oracles.bouncing_toss import RATE
 
@@ -107,6 +109,32 @@ def test_the_fit_beats_both_baselines_on_the_brick(brick: Recording) -> None:
     modes = [row for row in rows if row.kind is EventKind.REST]
     assert modes
     assert all(row.mode_is_right and row.predicted_mode == row.measured_mode == "ffff" for row in modes)
+
+
+def test_another_centre_of_mass_of_whoever_asks_is_one_of_the_same_body(
+    brick: Recording, events: list[FoundEvent]
+) -> None:
+    """The recording's states are of a wrong centre of mass, and questions are asked with the right one."""
+    motion = only_motion(brick)
+    wrong = replace(motion.body, p_FB_F=motion.body.p_FB_F + np.array([0.01, -0.02, 0.005]))
+    moved = [carried_over(state, motion.body, wrong) for state in motion.states(range(len(motion)))]
+    positions, velocities = (
+        np.array([getattr(state_of(one), name) for one in moved]) for name in ("p_WB_W", "v_WB_W")
+    )
+    other = replace(motion, body=wrong, p_WB_W=positions, v_WB_W=velocities)
+    for event in events:
+        seen = replace(event, state=state_of(carried_over(event.state, motion.body, wrong)))
+        found = compare_event(
+            0,
+            of_known_center(seen, other, brick.informed),
+            asked_before(seen, other, brick.informed, QUICK),
+            QUICK,
+        )
+        for row, expected in zip(found, rows_of(event, motion, brick, QUICK), strict=True):
+            assert row.refused == expected.refused
+            for name in ("position_error", "velocity_error", "spin_error", "time_error"):
+                # Rounding of positions, through a fit over 100 ms and a flight of as long.
+                assert getattr(row, name) == pytest.approx(getattr(expected, name), abs=1e-9), event.kind
 
 
 def test_what_is_refused_is_said_in_the_row(brick: Recording, events: list[FoundEvent]) -> None:
