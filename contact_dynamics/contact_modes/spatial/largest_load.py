@@ -259,7 +259,8 @@ class LeastFriction(Record):
 
     Attributes:
         factor: Smallest factor of the given coefficients with which rest is consistent. It is 0 if the body
-            rests without friction, and infinite if no friction holds it.
+            rests without friction, and infinite if no friction holds it. Below 1e-9, only rounding error
+            prevents an even smaller one.
         frictions: (n,), these smallest coefficients.
         verdict_below: Verdict with coefficients that are smaller by 1e-6 of them, or UNIQUE if the factor is
             0.
@@ -277,6 +278,8 @@ class LeastFriction(Record):
             return "LeastFriction: no friction holds it"
         if self.factor == 0.0:
             return "LeastFriction: it stays fixed without friction"
+        if self.factor < SAME_FACTOR:
+            return "LeastFriction: it may stay fixed with any friction above 0, with large contact forces"
         low, high = min(self.frictions), max(self.frictions)
         needed = f"{high:.3g}" if low == high else f"{low:.3g} to {high:.3g}"
         then = _moving(self.modes_below)

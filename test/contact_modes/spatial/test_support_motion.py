@@ -239,6 +239,18 @@ def test_friction_that_is_not_needed_and_friction_that_is_not_enough() -> None:
     assert "no friction holds it" in least_friction(lifted).in_short()
 
 
+def test_two_fingers_that_press_hard_enough_hold_with_any_friction() -> None:
+    fingers = ContactSet(
+        p_WC_W=[[x, y, 0] for x in (-0.05, 0.05) for y in (-0.02, 0.02)],
+        normals_W=[[1, 0, 0]] * 2 + [[-1, 0, 0]] * 2,
+        frictions=0.5,
+    )
+    state = BodyState(p_WB_W=[0, 0, 0], q_WB=[0, 0, 0, 1])
+    found = least_friction(spatial_problem(BOX.mass_properties, state, fingers, [0, 0, -MASS * G]))
+    assert 0.0 < found.factor < 1e-9
+    assert "any friction above 0, with large contact forces" in found.in_short()
+
+
 def positively_spans(wrenches: NDArray[np.float64]) -> bool:
     """Whether positive combinations of rows are all of R^6, by a linear program."""
     if np.linalg.matrix_rank(wrenches) < 6:
