@@ -147,16 +147,16 @@ NOT_MEASURED: dict[
         "0.1 rad",
     ],
     "docs/monitor.md": [
-        "predicts each event 20 ms before it",
+        "the states up to 20 ms before it",
         "0.5 mm and 5 mrad for errors",
         "the smallest of the 50, 90 and 99 % regions",
-        "over 0.26 to 3.8 times the configured",
-        "outside of the 99 % region",
+        "from 0.26 to 3.8 times the configured",
+        "is outside the 99 % region",
         "restitution to 12 % and friction to 11 %",  # of simulated impacts, as are the rows of the table
-        "20 % off",
-        "40 % off",
-        "too high by 40 %",
-        "0.25 s after they happened",
+        "20 % above or below",
+        "40 % above it",
+        "40 % below it",
+        "0.25 s after it occurred",
     ],
 }
 

@@ -462,7 +462,7 @@ class _Run:
         """
         end, x = _NONE, 1.0
         no_force = self.held.least_left() < 0.0
-        # Of contacts that jam, each pushes the others, and where friction drives one is a matter of rounding.
+        # Contacts that jam push each other, and whether friction drives one of them is a matter of rounding.
         goes_back = self.held.begins and len(self.held.mode) == 1 and self._least_begun() < 0.0
         self.there.take(self.solid, self.trial)
         dip = self._first_dip()
