@@ -65,7 +65,7 @@ class Evidence(NamedTuple):
     """Forces that bring a mode about, and its motion.
 
     There is no motion if Newton's law gives it accurately enough. Otherwise it is a combination of the mode's
-    rays, so that it satisfies strict inequalities that the rounding of the forces would hide. Its third
+    rays. It satisfies strict inequalities that the rounding of the forces would hide. Its third
     coordinate is a height if there is a line of symmetry.
     """
 

@@ -170,8 +170,8 @@ def considered(
     so far to be flush, or the contacts that approach (`problem.spatial_case`).
 
     Raises:
-        UndecidedError: lengths, masses or moments differ by so many orders of magnitude that a matrix is
-            singular but for rounding.
+        UndecidedError: a matrix is singular but for rounding, because lengths, masses or moments differ by
+            many orders of magnitude.
     """
     rough = case_within(FLUSH_ROUGHLY)
     if not isinstance(rough, SpatialCase):

@@ -7,8 +7,8 @@ other variables, which are zero. A narrower program copies that table and adds i
 decide it, where a linear program would start from nothing. The simplex keeps an unequally weighted sum of the
 edge forces as small as it can. That bounds every step, and makes ties rare.
 
-Where two contacts or normals are nearly the same, a table that goes on divides by their difference again and
-again, which amplifies rounding. A `CarefulProgram` first gathers all conditions that are equations. An
+Where two contacts or normals are nearly the same, each pivot of the table divides by their difference, which
+amplifies rounding. A `CarefulProgram` first gathers all conditions that are equations. An
 orthonormal basis of the space that their rows span replaces them, so that rows that agree within
 `ROW_TOLERANCE` are one condition, and rows that differ by more are as well conditioned as any others. It
 makes its table anew, in NumPy's longest floating-point numbers.

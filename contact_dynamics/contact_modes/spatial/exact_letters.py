@@ -154,7 +154,7 @@ class Solution(NamedTuple):
 
     forces: FloatArray  # (n, 3), in the units of the motion
     angles: dict[int, float]  # the direction, rad, in which each contact begins to slide, in its frame
-    has_letters: bool  # whether the inequalities hold, so that it is a mode
+    has_letters: bool  # whether the inequalities hold, and it is a mode
     equations: Equations | None  # the equations there; None if contacts may share loads
     motion_unique: bool = True  # whether forces nearby with these letters cause the same motion
 

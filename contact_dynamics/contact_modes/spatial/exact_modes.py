@@ -6,8 +6,8 @@ a sector away from the direction against their sliding. Such a mode is close to 
 there is one: with the same letters (`exact_letters`), with sticking and sliding exchanged, or with another
 sharing of the load (`shared_loads`).
 
-The search asks that strict inequalities hold by `STRICT`. If contacts begin to slide or to separate more
-slowly than this, and their friction is used up all the same, it finds no mode. Then the search goes on with
+The search asks that strict inequalities hold by `STRICT`. It finds no mode if contacts begin to slide or to
+separate more slowly than this, although their friction is at its limit. Then the search continues with
 loads that differ a little from that of the case. A mode of such a load has the letters and nearly the forces
 of one of the case, if there is one. Newton's method finds it, and the inequalities then hold by more than
 rounding (`NARROWLY`). That there is no mode at all is certain only if linear programs refute all letters
@@ -181,8 +181,8 @@ def letters_of(mode: ResponseMode, case: SpatialCase, search: Search) -> str:
 
 
 _LOADS: Final = 3
-"""Loads to both sides of the case's own are tried in so many directions. Boundaries between modes that lie in
-none of them are rare."""
+"""Number of directions in which loads on both sides of the case's own are tried. Boundaries between modes
+that lie in none of them are rare."""
 
 
 class Narrow(NamedTuple):

@@ -349,7 +349,7 @@ def spatial_mode_margins(
     depend on the wrench, the margin is proven from both sides: no smaller change leaves the mode, and behind
     the boundary it is not consistent. Otherwise it is NaN: if the body moves already, if other contacts
     stick, if several modes are consistent and contacts share loads, if contacts on a plane have more than
-    `MAX_CORNERS` corners, or if the mode goes on behind the boundary that was found.
+    `MAX_CORNERS` corners, or if the mode is also consistent beyond the boundary that was found.
     """
     length = check_length(margin_length, problem.body.mean_radius_of_gyration)
     if answer is None or answer.problem is not problem:

@@ -393,8 +393,7 @@ def made_flush(contacts: ContactSet, centre: FloatArray, within: float) -> Conta
     """Return contacts within a tolerance of the given ones that are flush; the given ones if those are.
 
     Noise moves them all. Where fewer are not flush, chance made their coordinates nearly the same, and they
-    stay as they are. Coordinates may move ``within`` so many rad for normals, and for places such a share of
-    the reach.
+    stay as they are. Normals may turn by ``within`` rad, and points move by this share of the reach.
     """
     if len(contacts) < 2:
         return contacts
