@@ -20,6 +20,7 @@ from contact_dynamics.constants import to_ns
 from contact_dynamics.contact_modes import BodiesContactProblem, contact_modes
 from contact_dynamics.questions import Context, ImpactQuestion, TossQuestion, ask
 from contact_dynamics.viewing import view
+from contact_dynamics.viewing.sinks import NowhereToDrawError
 
 G = 9.80665  # m/s^2
 UPRIGHT = (0.0, 0.0, 0.0, 1.0)
@@ -146,4 +147,7 @@ if __name__ == "__main__":
         for name, scene in SCENES.items():
             scene(f"{name}.rrd")
     else:
-        SCENES[sys.argv[1]](sys.argv[2] if len(sys.argv) == 3 else None)
+        try:
+            SCENES[sys.argv[1]](sys.argv[2] if len(sys.argv) == 3 else None)
+        except NowhereToDrawError as error:
+            raise SystemExit(f"{error}: `scenes.py {sys.argv[1]} FILE.rrd` writes a file") from None
