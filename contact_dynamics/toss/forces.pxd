@@ -60,6 +60,8 @@ cdef class HeldContacts:
     cpdef (double, double, double) accelerated(self, int flat, int corner) noexcept
     @cython.locals(one=Held, flat=Flat, least=cython.double)
     cpdef double least_left(self) noexcept
+    @cython.locals(flat=Flat, left=cython.double, pressing=cython.double, force=(double, double, double))
+    cdef double friction_left(self) noexcept
     @cython.locals(one=Held, flat=Flat, numbers=cython.double[::1], begin=cython.int)
     cdef bint _slide_flush(self, double* y) noexcept
     @cython.locals(

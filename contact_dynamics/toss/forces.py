@@ -275,6 +275,15 @@ class HeldContacts:
                 least = min(least, flat.friction * pressing - across)
         return least + force_rounding(self.solid)
 
+    def friction_left(self) -> float:
+        """Return the friction, N, that the contacts have left beside what they bear, if all stick."""
+        left = 0.0
+        for i in range(self.count):
+            force, flat = self.force(i), self.solid.flats[self.mode[i].flat]
+            pressing = vec.dot(force, flat.normal)
+            left += flat.friction * pressing - vec.norm(vec.without(force, flat.normal))
+        return left
+
     def _slide_flush(self, y: Numbers) -> bool:
         """Find the accelerations of a body that slides with three or more corners flush on one flat.
 

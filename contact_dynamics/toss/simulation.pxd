@@ -60,10 +60,9 @@ cdef class Simulation(History):
     cdef list _follow(self, tuple mode)
     cdef bint _lingers(self) except -1
     cdef list _pass_over(self)
-    @cython.locals(gravity=(double, double, double), slows=cython.double, strength=cython.double,
-                   grip=cython.double, first=cython.int, surface=cython.int, several=cython.bint, flat=Flat,
-                   pressing=cython.double, along=cython.double)
+    @cython.locals(grip=cython.double, flat=Flat)
     cdef double _slow(self, list touching) except -1.0
+    cdef double _stopped_within(self, double force) except -1.0
     cdef list _laid_flat(self, list touching)
     @cython.locals(energy=cython.double, still=list, pushed=HeldContacts, placed=list,
                    a=cython.double, b=cython.double, c=cython.double, d=cython.double, e=cython.double,

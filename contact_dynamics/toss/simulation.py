@@ -380,24 +380,17 @@ class Simulation(History):
     def _slow(self, touching: list[Touch]) -> float:
         """Return the kinetic energy, J, with which a body rises or slides by `settling` at most.
 
-        On one flat, what slows it down is the friction that is left beside the slope, or beside the
-        acceleration of the flat. Where none is left, it would slide on for ever, and its speed has to be
-        rounding.
+        Without friction it would slide on for ever. There its speed has to be rounding.
         """
-        gravity, slows = self.solid.gravity, 0.0
-        strength = vec.norm(gravity)
-        if touching:
-            grip, first, several = 1.0, touching[0][0], False
-            for surface, _ in touching:
-                flat = self.solid.flats[surface]
-                grip, several = min(grip, flat.friction), several or surface != first
-            slows = grip * strength
-            if not several:  # between walls, friction does not have to bear the slopes
-                flat = self.solid.flats[first]
-                pressing = -vec.dot(gravity, flat.normal)
-                along = vec.norm(vec.plus(gravity, pressing, flat.normal))
-                slows = min(flat.friction * pressing - along, strength)
-        return self.solid.mass * max(slows * self.solid.settling, 0.5 * SLIDING_STOPPED**2)
+        grip = 1.0 if touching else 0.0
+        for surface, _ in touching:
+            flat = self.solid.flats[surface]
+            grip = min(grip, flat.friction)
+        return self._stopped_within(self.solid.mass * vec.norm(self.solid.gravity) * grip)
+
+    def _stopped_within(self, force: float) -> float:
+        """Return the kinetic energy, J, that a force takes within `settling`, or that is rounding."""
+        return max(force * self.solid.settling, 0.5 * self.solid.mass * SLIDING_STOPPED**2)
 
     def _laid_flat(self, touching: list[Touch]) -> list[Touch]:
         """Lay a body that only rattles on a face flat on it, if it may be, and return what touches then."""
@@ -428,6 +421,10 @@ class Simulation(History):
         is_held = pushed.least_left() >= 0.0
         if not is_held or fastest > RESTING_ACCELERATION * vec.norm(self.solid.gravity):
             self.slow = _SLOWER * energy
+            return False
+        # Friction that bears a slope, or the acceleration of the flats, does not slow the body down.
+        self.slow = self._stopped_within(pushed.friction_left())
+        if energy > self.slow:
             return False
         if len(modes) > 1:
             way = self.way(UndecidedReason.SEVERAL_MODES, len(modes))

@@ -83,6 +83,33 @@ def test_rest_is_a_micrometre_early_by_the_friction_that_is_left(a: float, *, le
     assert stops - 1.001 * np.sqrt(2e-6 / left) <= toss.seconds <= stops + 1e-9
 
 
+@pytest.mark.parametrize("a", [0.0, 4.0, 4.15])
+def test_rest_in_a_groove_is_a_micrometre_early_by_the_friction_that_is_left(a: float) -> None:
+    """By hand: each side of a right angle presses with m g / sqrt(2), and friction of sqrt(2) mu g - a is left."""
+    mu, half = 0.3, np.sqrt(0.5)
+    sides = tuple(
+        cd.Surface(
+            name=name,
+            p_WS_W=[0, 0, 0],
+            normal_W=[x, 0, half],
+            friction=mu,
+            restitution=0.0,
+            v_WS_W=[0, U, 0],
+            a_WS_W=[0, a, 0],
+        )
+        for name, x in (("left", half), ("right", -half))
+    )
+    cube = cd.Body.box((0.1, 0.1, 0.1), 1.0)
+    turned = [0, np.sin(np.pi / 8), 0, np.cos(np.pi / 8)]
+    state = cd.BodyState(p_WB_W=[0, 0, 0.05 / half], q_WB=turned)
+    toss = cd.toss(cube, state, cd.World(surfaces=sides), horizon=200.0)
+    left = mu * G / half - a
+    found = U * toss.seconds + 0.5 * a * toss.seconds**2 - toss.state.p_WB_W[1]
+    assert toss.end == TossEnd.RESTS
+    # To the tolerance of rest, a micrometre, and the steps' error of 1e-7 m each.
+    assert U * U / (2.0 * left) - 1.2e-6 <= found <= U * U / (2.0 * left) + 2e-7
+
+
 @pytest.mark.parametrize("a", [[0.0, 0.0, 0.0], [0.5, 0.0, 1.5]])
 def test_a_toss_is_the_same_from_a_frame_that_moves(a: list[float]) -> None:
     u, a_W = np.array([0.7, -0.4, 0.9]), np.array(a)
