@@ -85,7 +85,7 @@ def test_rest_is_a_micrometre_early_by_the_friction_that_is_left(a: float, *, le
 
 @pytest.mark.parametrize("a", [0.0, 4.0, 4.15])
 def test_rest_in_a_groove_is_a_micrometre_early_by_the_friction_that_is_left(a: float) -> None:
-    """By hand: each side of a right angle presses with m g / sqrt(2), and friction of sqrt(2) mu g - a is left."""
+    """By hand: each side of a right angle presses with m g / sqrt(2), and sqrt(2) mu g - a is left."""
     mu, half = 0.3, np.sqrt(0.5)
     sides = tuple(
         cd.Surface(
