@@ -2,8 +2,9 @@
 """Contact modes, impacts, free tumbling and whole tosses of rigid bodies (Mason's lectures 24 to 27).
 
 This package contains the names that most users need: bodies and their states, contacts, contact problems, and
-one function for each kind of prediction. All other names are in the chapters listed below, in reading order;
-the docstring of each chapter describes its contents. The library requires NumPy and SciPy, but not ROS.
+the functions that answer the questions listed in docs/api.md. All other names are in the chapters below, in
+reading order; the docstring of each chapter describes its contents. The library requires NumPy and SciPy, but
+not ROS.
 
 - `rigid_body`: mass properties, states, momenta and energies (lectures 24 and 25); in it `inertia`, mass
   properties from particles, solids and meshes.
@@ -16,8 +17,8 @@ the docstring of each chapter describes its contents. The library requires NumPy
 - `landing`: the end of a flight (`next_landing`). A landing on an edge or a face has several contacts, all of
   which `several_impact` takes.
 - `contact_modes`: whether each contact separates, slides or sticks (lecture 26). Make a
-  `PlanarContactProblem` or a `SpatialContactProblem`, and pass it to ``contact_modes(problem)``,
-  `mode_margins`, `statics` or `largest_load`.
+  `PlanarContactProblem`, a `SpatialContactProblem` or a `BodiesContactProblem`, and pass it to
+  ``contact_modes(problem)``; `mode_margins`, `statics`, `largest_load` and others take some of them.
 - `impact`: velocities after an impact (lecture 27): at one contact (`planar_impact`, `spatial_impact`), of a
   mechanism such as a robot arm (`response_impact`), at several contacts at one instant (`several_impact`) or
   one after the other in time (`impact_sequence`).
@@ -49,22 +50,30 @@ if TYPE_CHECKING:  # the same as `_HOMES`
     )
     from contact_dynamics.contact import Contact, ContactSet, find_contacts
     from contact_dynamics.contact_modes import (
+        BodiesContactProblem,
         ModeVerdict,
         PlanarContactProblem,
         SpatialContactProblem,
+        closure,
         contact_modes,
+        largest_acceleration,
         largest_load,
+        largest_spin,
+        largest_tilt,
+        least_friction,
         mode_margins,
         statics,
     )
     from contact_dynamics.errors import ContactDynamicsError
     from contact_dynamics.impact import (
         RestitutionLaw,
+        bodies_impact,
         impact_sequence,
         planar_impact,
         response_impact,
         several_impact,
         spatial_impact,
+        spatial_pair_impact,
     )
     from contact_dynamics.landing import next_landing, next_meeting
     from contact_dynamics.motion import motion_of
@@ -78,21 +87,29 @@ if TYPE_CHECKING:  # the same as `_HOMES`
 _HOMES: Final = {
     "contact": ("Contact", "ContactSet", "find_contacts"),
     "contact_modes": (
+        "BodiesContactProblem",
         "ModeVerdict",
         "PlanarContactProblem",
         "SpatialContactProblem",
+        "closure",
+        "largest_acceleration",
         "largest_load",
+        "largest_spin",
+        "largest_tilt",
+        "least_friction",
         "mode_margins",
         "statics",
     ),
     "errors": ("ContactDynamicsError",),
     "impact": (
         "RestitutionLaw",
+        "bodies_impact",
         "impact_sequence",
         "planar_impact",
         "response_impact",
         "several_impact",
         "spatial_impact",
+        "spatial_pair_impact",
     ),
     "landing": ("next_landing", "next_meeting"),
     "motion": ("motion_of",),
@@ -134,6 +151,7 @@ def _meant(name: str) -> str:
 
 
 __all__ = [
+    "BodiesContactProblem",
     "Body",
     "BodyState",
     "Contact",
@@ -151,6 +169,8 @@ __all__ = [
     "SpatialContactProblem",
     "Surface",
     "World",
+    "bodies_impact",
+    "closure",
     "contact",
     "contact_modes",
     "find_contacts",
@@ -159,7 +179,11 @@ __all__ = [
     "impact_sequence",
     "inertia",
     "landing",
+    "largest_acceleration",
     "largest_load",
+    "largest_spin",
+    "largest_tilt",
+    "least_friction",
     "mode_margins",
     "motion",
     "motion_of",
@@ -174,6 +198,7 @@ __all__ = [
     "several_impact",
     "shapes",
     "spatial_impact",
+    "spatial_pair_impact",
     "state_covariance",
     "statics",
     "toss",

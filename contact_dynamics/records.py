@@ -116,10 +116,10 @@ class Record:
 
     __slots__ = ()
 
-    def __new__(cls: type[Made], *_: object, **fields: object) -> Made:  # noqa: PYI019  Python 3.10 has no Self
-        """Refuse fields of names that there are not. The error names the one that was probably meant."""
-        if fields:
-            check_names(cls, fields)
+    def __new__(cls: type[Made], *args: object, **fields: object) -> Made:  # noqa: PYI019  Python 3.10 has no Self
+        """Reject arguments without a name, and names that do not exist. The error lists the fields."""
+        if args or fields:
+            check_names(cls, fields, by_place=len(args))
         return object.__new__(cls)
 
     def __init_subclass__(cls) -> None:

@@ -58,8 +58,8 @@ _MEANT: Final[dict[str, tuple[str, ...]]] = {
 _INTERNAL: Final = ("_", "HINT_IF", "ALLOWED")
 """How names begin that no user asks for."""
 
-_NAMES: Final[dict[type, tuple[set[str], set[str]]]] = {}
-"""What each class is made with, and what of it is required by name, once that was asked for."""
+_NAMES: Final[dict[type, tuple[tuple[str, ...], set[str], bool]]] = {}
+"""The arguments of each class, those required by name, and whether none is given by place. A cache."""
 
 _UNKNOWN: Final[tuple[int, tuple[type, ...]]] = (-1, ())
 """Place and types of an argument that a function does not have."""
@@ -240,22 +240,28 @@ def checks_fields(post_init: Callable[[Any], None], annotations: Mapping[str, st
     return checked
 
 
-def check_names(made: type, arguments: Mapping[str, object]) -> None:
-    """Raise `UnknownArgumentError` if a class has no such argument, or requires another one."""
+def check_names(made: type, arguments: Mapping[str, object], by_place: int = 0) -> None:
+    """Raise `UnknownArgumentError` if a class has no such argument, or requires another one.
+
+    It is also raised for arguments ``by_place`` if the class takes arguments only by name.
+    """
     known = _NAMES.get(made)
     if known is None:
-        by_name = inspect.signature(made.__init__).parameters  # type: ignore[misc]  # not called
-        known = {*by_name}, {name for name, one in by_name.items() if _is_required(one)}
-        _NAMES[made] = known
-    names, required = known
-    if names.issuperset(arguments) and not required.difference(arguments):
-        return
-    in_order = inspect.signature(made.__init__).parameters  # type: ignore[misc]  # not called
+        (_, *others) = inspect.signature(made.__init__).parameters.values()  # type: ignore[misc]  # not called
+        required = {one.name for one in others if _is_required(one)}
+        names = tuple(one.name for one in others)
+        known = _NAMES[made] = names, required, all(one.kind is one.KEYWORD_ONLY for one in others)
+    names, required, only_by_name = known
+    if by_place and only_by_name:
+        words = f"{made.__qualname__} takes arguments only by name, such as {names[0]}=..."
+        raise UnknownArgumentError(f"{words}, got {by_place} by place. It has {', '.join(names)}")
     for name in arguments:
         if name not in names:
-            refuse_unknown(made, name, in_order)
-    missing = [f"{name}{_meaning(made, name)}" for name in in_order if name in required.difference(arguments)]
-    raise UnknownArgumentError(f"{made.__qualname__} requires {', '.join(missing)}")
+            refuse_unknown(made, name, names)
+    missing = required.difference(arguments)
+    if missing:
+        listed = [f"{name}{_meaning(made, name)}" for name in names if name in missing]
+        raise UnknownArgumentError(f"{made.__qualname__} requires {', '.join(listed)}")
 
 
 def _is_required(parameter: inspect.Parameter) -> bool:

@@ -36,7 +36,12 @@ from contact_dynamics import (
     toss,
 )
 from contact_dynamics.contact_modes import contact_modes
-from contact_dynamics.errors import ContactDynamicsError, InvalidFieldError, WrongTypeError
+from contact_dynamics.errors import (
+    ContactDynamicsError,
+    InvalidFieldError,
+    UnknownArgumentError,
+    WrongTypeError,
+)
 from contact_dynamics.toss import sampled_toss
 from hostile_values.shared import BALL, BOX, CONTACT, CONTACTS, FLOOR, ROD, STATE, TIP, WORLD
 
@@ -187,6 +192,12 @@ def test_too_many_arguments_by_place_are_an_error_that_names_those_allowed(
         Body.box(*arguments, **by_name)
     allowed = "It takes size, mass in this order, and by name only density, name"
     assert str(raised.value) == f"Body.box got {got}. {allowed}"
+
+
+def test_fields_by_place_are_an_error_that_names_the_fields() -> None:
+    words = r"only by name, such as p_WB_W=\.\.\., got 2 by place\. It has p_WB_W, q_WB, v"
+    with pytest.raises(UnknownArgumentError, match=words):
+        BodyState([0, 0, 0], [0, 0, 0, 1])  # type: ignore[call-arg,misc]
 
 
 @pytest.mark.parametrize(

@@ -16,6 +16,7 @@ import pytest
 
 import contact_dynamics
 from architecture.test_doors import CHAPTERS
+from contact_dynamics.records import Record
 from running_server import ROOT
 
 PAGE = (ROOT / "docs" / "api.md").read_text(encoding="utf-8")
@@ -59,10 +60,24 @@ def test_calls_fields_and_members_are_those_of_the_code(chapter: str) -> None:
             assert arguments == f"({needed(value)})", name
         elif isinstance(value, enum.EnumMeta):
             assert listed == [one.name for one in value], name  # type: ignore[attr-defined]
-        elif inspect.isclass(value) and is_dataclass(value):
-            assert listed == [one.name for one in fields(value) if one.repr and one.name[0] != "_"], name
-        elif inspect.isclass(value) and issubclass(value, tuple):
-            assert listed == list(value._fields), name  # type: ignore[attr-defined]
+        elif inspect.isclass(value) and (is_dataclass(value) or issubclass(value, tuple)):
+            shown = [one.name for one in fields(value) if one.repr] if is_dataclass(value) else value._fields  # type: ignore[attr-defined]
+            assert listed == [one for one in shown if one[0] != "_"], name
+            assert re.findall(r"`\.(\w+(?:\(\))?)`", text) == members(value), name
+
+
+def members(kind: type) -> list[str]:
+    """The properties and methods of a class besides those of `Record`, methods with brackets."""
+    found = [
+        one for each in kind.__mro__ if each not in {object, Record, tuple} for one in vars(each).items()
+    ]
+    own = {
+        name if isinstance(value, property) else f"{name}()"
+        for name, value in found
+        if isinstance(value, property | classmethod | staticmethod) or inspect.isfunction(value)
+        if name[0] != "_" and not hasattr(Record, name)
+    }
+    return sorted(own)
 
 
 def test_the_quick_start_has_the_table_of_questions() -> None:
@@ -71,8 +86,9 @@ def test_the_quick_start_has_the_table_of_questions() -> None:
     assert table[0] in (ROOT / "docs" / "quick-start-python.md").read_text(encoding="utf-8")
     for word in ("wall", "truck", "domino", "coin", "billiard", "die", "fingers", "tray"):
         assert word in table[0]
-    for name in re.findall(r"`(?:\w+ = )?(\w+)\(", table[0]):
+    for name in re.findall(r"(?:`|= )(\w+)\(", table[0]):
         assert re.search(rf"^\| `{name}\(", PAGE, re.MULTILINE), name
+        assert name in contact_dynamics.__all__
 
 
 @pytest.mark.parametrize(

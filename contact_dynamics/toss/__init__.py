@@ -46,7 +46,15 @@ import_core(
     "contact_dynamics.toss.simulation",
 )
 
-from contact_dynamics.toss.distribution import TossDistribution  # noqa: E402  after the core
+from contact_dynamics.toss.distribution import (  # noqa: E402  after the core
+    Branch,
+    BranchKind,
+    EventRegions,
+    Ghosts,
+    Region,
+    RestSpread,
+    TossDistribution,
+)
 from contact_dynamics.toss.one_toss import toss  # noqa: E402  after the core
 from contact_dynamics.toss.result import (  # noqa: E402  after the core
     Toss,
@@ -62,6 +70,12 @@ from contact_dynamics.toss.uncertainty import TossUncertainty  # noqa: E402  aft
 from contact_dynamics.validation_types import check_types_of  # noqa: E402  after the core
 
 __all__ = [
+    "Branch",
+    "BranchKind",
+    "EventRegions",
+    "Ghosts",
+    "Region",
+    "RestSpread",
     "Toss",
     "TossDistribution",
     "TossEnd",
