@@ -48,11 +48,11 @@ def body_state_from_msg(
     """
     check_frame(f"{field}.header.frame_id", msg.header.frame_id or world_frame, world_frame)
     p_WB_W, q_WB = vector_from_msg(msg.pose.position), quaternion_from_msg(msg.pose.orientation)
-    if not q_WB.any():  # left out by a client whose messages begin with zeros
+    if not any(q_WB.tolist()):  # left out by a client whose messages begin with zeros
         raise InvalidFieldError(
             f"{field}.pose.orientation", "zeros", "a unit quaternion (w: 1 is no rotation)"
         )
-    if p_FB_F.any():
+    if any(p_FB_F.tolist()):
         q_WB = check_unit(f"{field}.pose.orientation", q_WB, 4)
         p_WB_W = p_WB_W + turned(q_WB, p_FB_F)
     try:

@@ -265,7 +265,7 @@ def _mangled(message: object) -> Iterator[tuple[str, float]]:
 def _mangled_in_list(values: Sequence[object]) -> Iterator[tuple[str, float]]:
     if isinstance(values[0], float):
         numbers = np.asarray(values)
-        for index in np.flatnonzero((numbers > 0.0) & (numbers < MANGLED)).tolist():
+        for index in ((numbers > 0.0) & (numbers < MANGLED)).nonzero()[0].tolist():
             yield f"[{index}]", float(numbers[index])
     elif field_names(values[0]):
         for index, value in enumerate(values):

@@ -17,7 +17,7 @@ import numpy as np
 
 from contact_dynamics.contact.curvature import Curvatures, alike, check_pairs, checked_curvatures
 from contact_dynamics.errors import InvalidFieldError, TooLargeError
-from contact_dynamics.records import Record
+from contact_dynamics.records import Record, made
 from contact_dynamics.tolerances import UNIT_LENGTH_TOLERANCE
 from contact_dynamics.validation import (
     FloatArray,
@@ -261,23 +261,22 @@ class ContactSet(Record):
         """Return one contact, counted from the end if ``i`` is negative."""
         i = range(len(self))[i]
         body, surface = self.body_curvatures, self.surface_curvatures
-        contact = Contact(
-            p_WC_W=self.p_WC_W[i],
-            normal_W=self.normals_W[i],
-            friction=float(self.frictions[i]),
-            restitution=None if self.restitutions is None else float(self.restitutions[i]),
-            surface=self.surfaces[i] if self.surfaces else "",
-            body_curvatures=None if body is None else body.subset([i]),
-            surface_curvatures=None if surface is None else surface.subset([i]),
+        contact = made(  # of numbers that are checked
+            Contact,
+            self.p_WC_W[i],
+            self.normals_W[i],
+            float(self.frictions[i]),
+            None if self.restitutions is None else float(self.restitutions[i]),
+            self.surfaces[i] if self.surfaces else "",
+            None if body is None else body.subset([i]),
+            None if surface is None else surface.subset([i]),
+            _rows(self.surface_velocities_W, i),
+            _rows(self.surface_angular_velocities_W, i),
+            _rows(self.surface_accelerations_W, i),
         )
-        if not self.surfaces_move:
-            return contact
-        return replace(
-            contact,
-            surface_velocity_W=_rows(self.surface_velocities_W, i),
-            surface_angular_velocity_W=_rows(self.surface_angular_velocities_W, i),
-            surface_acceleration_W=_rows(self.surface_accelerations_W, i),
-        )
+        _check_curvatures(contact, contact.normal_W[None])
+        _check_motion(contact)  # that of a surface at rest becomes None
+        return contact
 
     def __iter__(self) -> Iterator[Contact]:
         """Go through the contacts in their order."""

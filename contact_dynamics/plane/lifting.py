@@ -13,7 +13,6 @@ plane as the planar body does.
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -95,10 +94,9 @@ def with_planar_velocity(problem: PlanarProblem, state: BodyState, velocity: Pla
     """Return the state with another velocity in the plane. The velocity out of the plane stays."""
     (v_x, v_y), (before_x, before_y) = velocity.v, problem.velocity.v
     plane = problem.plane
-    return replace(
-        state,
-        v_WB_W=state.v_WB_W + plane.lift((v_x - before_x, v_y - before_y)),
-        w_WB_W=state.w_WB_W + (velocity.w - problem.velocity.w) * plane.normal_W,
+    return state.with_velocities(
+        state.v_WB_W + plane.lift((v_x - before_x, v_y - before_y)),
+        state.w_WB_W + (velocity.w - problem.velocity.w) * plane.normal_W,
     )
 
 

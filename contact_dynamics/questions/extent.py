@@ -79,7 +79,7 @@ def check_mass(body: MassProperties) -> None:
 
 def check_place(name: str, points: FloatArray) -> None:
     """Refuse a point or points, in m, that are too far away, by that name."""
-    largest = float(np.abs(points).max(initial=0.0))
+    largest = max(map(abs, points.ravel().tolist()), default=0.0)
     if not largest <= MAX_IN_CONTACT:
         raise InvalidFieldError(name, f"{largest:g} m", f"at most {MAX_IN_CONTACT:g} m")
 
@@ -96,7 +96,7 @@ def check_contacts(contacts: ContactSet) -> None:
     for name in contacts.SURFACE_MOTION if contacts.surfaces_move else ():
         if (motion := getattr(contacts, name)) is not None:
             check_vector(f"contacts.{name}", motion.ravel())
-    check_friction("contacts.frictions", float(contacts.frictions.max(initial=0.0)))
+    check_friction("contacts.frictions", max(contacts.frictions.tolist(), default=0.0))
 
 
 def check_margin_length(length: float | None) -> None:

@@ -99,10 +99,10 @@ class ResolvedImpact(Record):
     """
 
     restitution_law: RestitutionLaw
-    several_contacts_law: SeveralContactsLaw
+    several_contacts_law: SeveralContactsLaw = SeveralContactsLaw.SEQUENTIAL
     outcome: ImpactOutcome | None = None
     jams: bool = False
-    converged: bool
+    converged: bool = True
     state: BodyState
     other_state: BodyState | None = None
     impulses_W: FloatArray

@@ -8,11 +8,11 @@ for two.
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
-from contact_dynamics.impact import BodiesImpact, SequenceEnd, SeveralContactsLaw, SeveralVerdict
+from contact_dynamics.impact import BodiesImpact, SequenceEnd, SeveralVerdict
 from contact_dynamics.impact.energy import created
 from contact_dynamics.plane.lifting import with_planar_velocity
 from contact_dynamics.questions.impact_question import ResolvedImpact, SequenceStrike
@@ -24,8 +24,8 @@ if TYPE_CHECKING:
     from contact_dynamics.impact import (
         ImpactSequence,
         OrderedOutcomes,
+        PathEvent,
         PlanarImpact,
-        RestitutionLaw,
         SeveralImpact,
         SpatialImpact,
     )
@@ -39,14 +39,16 @@ if TYPE_CHECKING:
 
 def spatial_resolved(impact: SpatialImpact, *before: Before) -> ResolvedImpact:
     """Return an impact at one contact in space, of a body with the world or with another body."""
-    return _resolved(
-        before,
-        (impact.state,) if impact.other_state is None else (impact.state, impact.other_state),
-        [(0, impact)],
+    return ResolvedImpact(
         restitution_law=impact.restitution_law,
+        state=impact.state,
+        other_state=impact.other_state,
         impulses_W=impact.impulse_W[None],
-        velocities_W=(impact.velocity_before_W[None], impact.velocity_after_W[None]),
+        velocities_before_W=impact.velocity_before_W[None],
+        velocities_after_W=impact.velocity_after_W[None],
         creates_energy=impact.creates_energy,
+        **_along_path([(0, impact)], 1),
+        **_energies(before, (impact.state, impact.other_state)),
     )
 
 
@@ -66,22 +68,21 @@ def planar_resolved(impact: PlanarImpact, problem: PlanarProblem, before: Before
         x, y = t * t_x + n * n_x, t * t_y + n * n_y
         in_world.append((x * x_1 + y * y_1, x * x_2 + y * y_2, x * x_3 + y * y_3))
     vectors_W = np.array(in_world)
-    resolved = _resolved(
-        [before],
-        [with_planar_velocity(problem, before[1], impact.velocity)],
+    after = with_planar_velocity(problem, before[1], impact.velocity)
+    return ResolvedImpact(
         restitution_law=impact.restitution_law,
-        impulses_W=vectors_W[:1],
-        velocities_W=(vectors_W[2:3], vectors_W[3:4]),
-        creates_energy=impact.creates_energy,
-    )
-    return replace(
-        resolved,
         outcome=impact.outcome,
         jams=impact.jams,
+        state=after,
+        impulses_W=vectors_W[:1],
         compression_impulses_W=vectors_W[1:2],
+        velocities_before_W=vectors_W[2:3],
+        velocities_after_W=vectors_W[3:4],
         path_W=vectors_W[4:],
-        path_events=tuple(event for event, _ in path),
+        path_events=tuple([event for event, _ in path]),
         path_contacts=(0,) * len(path),
+        creates_energy=impact.creates_energy,
+        **_energies((before,), (after,)),
     )
 
 
@@ -92,22 +93,22 @@ def several_resolved(
 
     ``surfaces_W``, (n, 3), m/s, are velocities of surfaces that move. Their work is not energy of the law.
     """
-    resolved = _resolved(
-        before,
-        impact.states if isinstance(impact, BodiesImpact) else [impact.state],
-        impact.strikes,
-        restitution_law=impact.restitution_law,
-        impulses_W=impact.impulses_W,
-        velocities_W=(impact.velocities_before_W, impact.velocities_after_W),
-        creates_energy=False,
-    )
+    after = impact.states if isinstance(impact, BodiesImpact) else (impact.state, None)
+    energies = _energies(before, after)
     work = 0.0 if surfaces_W is None else float(np.sum(impact.impulses_W * surfaces_W))
-    first, last = resolved.kinetic_energy_before, resolved.kinetic_energy_after
-    return replace(
-        resolved,
+    first, last = energies["kinetic_energy_before"], energies["kinetic_energy_after"]
+    return ResolvedImpact(
+        restitution_law=impact.restitution_law,
         several_contacts_law=impact.several_contacts_law,
         converged=impact.verdict == SeveralVerdict.RESOLVED,
+        state=after[0],
+        other_state=after[1],
+        impulses_W=impact.impulses_W,
+        velocities_before_W=impact.velocities_before_W,
+        velocities_after_W=impact.velocities_after_W,
         creates_energy=created(last - first - work, first + abs(work)),
+        **_along_path(impact.strikes, len(impact.impulses_W)),
+        **energies,
     )
 
 
@@ -121,18 +122,14 @@ def sequence_resolved(impact: ImpactSequence, before: Before) -> ResolvedImpact:
     for strike in impact.strikes:
         impulses[strike.contact] += strike.impact.impulse_W
         velocities_after[strike.contact] = strike.impact.velocity_after_W
-    resolved = _resolved(
-        [before],
-        [impact.state],
-        [(strike.contact, strike.impact) for strike in impact.strikes],
+    return ResolvedImpact(
         restitution_law=impact.restitution_law,
-        impulses_W=impulses,
-        velocities_W=(velocities_before, velocities_after),
-        creates_energy=impact.creates_energy,
-    )
-    return replace(
-        resolved,
         converged=impact.end != SequenceEnd.MAX_STRIKES,
+        state=impact.state,
+        impulses_W=impulses,
+        velocities_before_W=velocities_before,
+        velocities_after_W=velocities_after,
+        creates_energy=impact.creates_energy,
         strikes=tuple(
             SequenceStrike(
                 seconds=strike.seconds - first,
@@ -148,6 +145,8 @@ def sequence_resolved(impact: ImpactSequence, before: Before) -> ResolvedImpact:
         end=impact.end,
         staying=impact.staying,
         limit_seconds=None if impact.limit_seconds is None else impact.limit_seconds - first,
+        **_along_path([(strike.contact, strike.impact) for strike in impact.strikes], len(impulses)),
+        **_energies((before,), (impact.state,)),
     )
 
 
@@ -162,47 +161,35 @@ def with_orders(resolved: ResolvedImpact, outcomes: OrderedOutcomes) -> Resolved
     )
 
 
-def _resolved(
-    before: Sequence[Before],
-    after: Sequence[BodyState],
-    strikes: Sequence[tuple[int, SpatialImpact]] = (),
-    *,
-    restitution_law: RestitutionLaw,
-    impulses_W: FloatArray,
-    velocities_W: tuple[FloatArray, FloatArray],
-    creates_energy: bool,
-) -> ResolvedImpact:
-    """Return an impact of bodies, with the path of its strikes. Its outcome is that of the hardest."""
-    resolved = ResolvedImpact(
-        restitution_law=restitution_law,
-        several_contacts_law=SeveralContactsLaw.SEQUENTIAL,
-        converged=True,
-        state=after[0],
-        other_state=after[1] if len(after) > 1 else None,
-        impulses_W=impulses_W,
-        velocities_before_W=velocities_W[0],
-        velocities_after_W=velocities_W[1],
-        kinetic_energy_before=sum(kinetic_energy(body, state) for body, state in before),
-        kinetic_energy_after=sum(
-            kinetic_energy(body, state) for (body, _), state in zip(before, after, strict=True)
-        ),
-        creates_energy=creates_energy,
-    )
+def _energies(before: Sequence[Before], after: Sequence[BodyState | None]) -> dict[str, Any]:
+    """Return the kinetic energies of one or two bodies before and after an impact."""
+    moved = [(body, state) for (body, _), state in zip(before, after, strict=False) if state is not None]
+    return {
+        "kinetic_energy_before": sum(kinetic_energy(body, state) for body, state in before),
+        "kinetic_energy_after": sum(kinetic_energy(body, state) for body, state in moved),
+    }
+
+
+def _along_path(strikes: Sequence[tuple[int, SpatialImpact]], n: int) -> dict[str, Any]:
+    """Return the path of strikes at n contacts, and the outcome of the hardest of them, if there are any."""
     if not strikes:
-        return resolved
-    hardest = max((strike for _, strike in strikes), key=lambda each: float(each.impulse_W @ each.impulse_W))
-    so_far, compression = np.zeros((2, len(impulses_W), 3))
-    path = []
+        return {}
+    _, hardest = max(strikes, key=lambda each: float(each[1].impulse_W @ each[1].impulse_W))
+    so_far, compression = np.zeros((2, n, 3))
+    path: list[FloatArray] = []
+    events: list[PathEvent] = []
+    contacts: list[int] = []
     for contact, strike in strikes:
         path.append(so_far[contact] + strike.path_W)
         so_far[contact] += strike.impulse_W
         compression[contact] += strike.compression_W
-    return replace(
-        resolved,
-        outcome=hardest.outcome,
-        jams=hardest.jams,
-        compression_impulses_W=compression,
-        path_W=np.concatenate(path),
-        path_events=tuple(event for _, strike in strikes for event in strike.path_events),
-        path_contacts=tuple(contact for contact, strike in strikes for _ in strike.path_events),
-    )
+        events += strike.path_events
+        contacts += [contact] * len(strike.path_events)
+    return {
+        "outcome": hardest.outcome,
+        "jams": hardest.jams,
+        "compression_impulses_W": compression,
+        "path_W": np.concatenate(path),
+        "path_events": tuple(events),
+        "path_contacts": tuple(contacts),
+    }
