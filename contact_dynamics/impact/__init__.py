@@ -4,13 +4,13 @@
 - One contact with the fixed world: `planar_impact`, `spatial_impact`; many cases at once: `planar_impacts`,
   `spatial_impacts`.
 - One contact of a mechanism, such as a robot arm, given by J M^-1 J^T: `response_impact`, `response_impacts`.
-- One contact between two moving bodies: `planar_pair_impact`, `spatial_pair_impact`.
-- Several contacts at one instant, as in a landing on an edge or a face: `several_impact`,
-  `planar_several_impact`, `bodies_impact`. The result depends on the law, and its spread is returned by
-  `outcomes_over_orders`, `outcomes_at_once` and `outcomes_over_interleavings`.
+- One contact between two moving bodies: `spatial_pair_impact`.
+- Several contacts at one instant, as in a landing on an edge or a face: `several_impact`, `bodies_impact`.
+  The result depends on the law, and its spread is returned by `outcomes_over_orders` and
+  `outcomes_over_interleavings`.
 - Strikes at separate times, with flight between them: `impact_sequence`, `impact_sequence_of`.
 - Contacts that jam without approaching: `jamming_impact`, `settling_impact`.
-- Uncertain states: `planar_impact_distribution`, `spatial_impact_distribution`.
+- Uncertain states: `spatial_impact_distribution`.
 
 The modules of this package are internal. `law` contains the laws of restitution and the outcomes, and
 `energy` checks the energy balance of each law. `planar` and `spatial` treat one contact (`one_contact`) and
@@ -21,32 +21,23 @@ instant, `in_time` strikes one after the other, and `distribution` uncertain sta
 - In space, a contact responds in all directions (`response`), and its sliding direction changes continuously,
   so the impulse `path` is curved. A mechanism, such as a robot arm, is described by its response alone.
 - Several contacts strike one after the other (`sequential`, over all `orders`) or all at once
-  (`simultaneous`), also in the plane. Their impulses may also interleave in any way
+  (`simultaneous`). Their impulses may also interleave in any way
   (`interleavings`). Contacts that do not approach can jam (`jamming`) until a mode is consistent
   (`settling`).
 - In time, `meetings` finds the contact that strikes next, and `sequence` proceeds from strike to strike.
 """
 
-from contact_dynamics.impact.distribution import (
-    ImpactDistribution,
-    planar_impact_distribution,
-    spatial_impact_distribution,
-)
+from contact_dynamics.impact.distribution import ImpactDistribution, spatial_impact_distribution
 from contact_dynamics.impact.in_time.result import ImpactSequence, SequenceEnd, TimedStrike
 from contact_dynamics.impact.in_time.sequence import impact_sequence, impact_sequence_of
 from contact_dynamics.impact.law import ImpactOutcome, PathEvent, RestitutionLaw
 from contact_dynamics.impact.planar.batch import PlanarImpacts, planar_impacts
-from contact_dynamics.impact.planar.one_contact import planar_impact, planar_pair_impact
+from contact_dynamics.impact.planar.one_contact import planar_impact
 from contact_dynamics.impact.planar.result import PlanarImpact
 from contact_dynamics.impact.planar.routh import ImpulsePath, InverseInertia
 from contact_dynamics.impact.several.interleavings import outcomes_over_interleavings
 from contact_dynamics.impact.several.jamming import jamming_impact
-from contact_dynamics.impact.several.orders import (
-    outcomes_at_once,
-    outcomes_over_orders,
-    planar_several_impact,
-    several_impact,
-)
+from contact_dynamics.impact.several.orders import outcomes_over_orders, several_impact
 from contact_dynamics.impact.several.result import (
     BodiesImpact,
     InterleavedOutcomes,
@@ -95,14 +86,10 @@ __all__ = [
     "impact_sequence",
     "impact_sequence_of",
     "jamming_impact",
-    "outcomes_at_once",
     "outcomes_over_interleavings",
     "outcomes_over_orders",
     "planar_impact",
-    "planar_impact_distribution",
     "planar_impacts",
-    "planar_pair_impact",
-    "planar_several_impact",
     "response_impact",
     "response_impacts",
     "settling_impact",

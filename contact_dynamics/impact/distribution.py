@@ -19,7 +19,6 @@ import numpy as np
 
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.impact.law import ImpactOutcome, RestitutionLaw
-from contact_dynamics.impact.planar.batch import planar_impacts
 from contact_dynamics.impact.spatial.batch import StrikingBodies, spatial_impacts
 from contact_dynamics.impact.spatial.one_contact import check_striking
 from contact_dynamics.records import Record
@@ -38,7 +37,6 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from contact_dynamics.contact.contact import Contact
-    from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity
     from contact_dynamics.rigid_body.body import BodyState, HasMassProperties
 
 MAX_SAMPLES: Final = 1_000_000
@@ -52,10 +50,8 @@ class ImpactDistribution(Record):
     """Distribution of the velocities after an impact, for a state with a covariance.
 
     Attributes:
-        mean: m/s and rad/s, mean velocity after the impact: planar (3,), v_x, v_y, w; spatial (6,),
-            linear then angular velocity, world axes.
-        covariance: Planar (3, 3), covariance of the components of ``mean``. Spatial (12, 12),
-            covariance of position, rotation vector, linear and angular velocity.
+        mean: (6,), m/s and rad/s, mean linear then angular velocity after the impact, world axes.
+        covariance: (12, 12), covariance of position, rotation vector, linear and angular velocity.
         probabilities: (7,), probability of each ImpactOutcome, by its value. The sum of these and of
             ``missed`` is 1.
         missed: Probability that the contact separates, without an impact.
@@ -73,64 +69,6 @@ class ImpactDistribution(Record):
         """Return the standard errors of ``probabilities``, (7,), from the number of samples."""
         errors: FloatArray = np.sqrt(self.probabilities * (1.0 - self.probabilities) / self.samples)
         return errors
-
-
-def planar_impact_distribution(
-    body: PlanarBody,
-    velocity: PlanarVelocity,
-    contact: PlanarContact,
-    *,
-    covariance: ArrayLike,
-    restitution_law: RestitutionLaw = RestitutionLaw.POISSON,
-    velocity_tolerance: float = VELOCITY_TOLERANCE,
-    samples: int = 10_000,
-    seed: int = 0,
-) -> ImpactDistribution:
-    """Return the distribution of the velocity after a planar impact.
-
-    Args:
-        body: Mass and angular inertia.
-        velocity: Mean velocity just before the impact.
-        contact: Contact with its normal, friction and restitution.
-        covariance: (3, 3), covariance of v_x, v_y (m/s) and w (rad/s) before the impact.
-        restitution_law: Law of restitution, which defines the coefficient of restitution.
-        velocity_tolerance: m/s, >= 0. Normal and tangential components of the contact's velocity up to it
-            count as zero.
-        samples: Number of sampled states, even. Each takes about 0.2 us.
-        seed: Seed of the samples. The same seed yields the same result.
-
-    Raises:
-        InvalidFieldError: the covariance is not symmetric and positive semidefinite, the number of samples is
-            odd or outside [2, 1 000 000], a variance exceeds `MAX_VARIANCE`, or the seed is not an integer >=
-            0.
-    """
-    check_at_rest("contact", contact, "planar_impact_distribution")
-    tolerance = check_not_negative("velocity_tolerance", velocity_tolerance)
-    draws = np.array([*velocity.v, velocity.w]) + _draw(covariance, 3, samples, seed)
-    v, w = draws[:, :2], draws[:, 2]
-    arm, normal = np.array(contact.r), np.array(contact.normal)
-    v_n = (v + w[:, None] * np.array([-arm[1], arm[0]])) @ normal
-    # Half the tolerance counts here, because the impact judges the approach again by a sum that rounds
-    # differently.
-    strikes = v_n <= 0.5 * tolerance
-    after = draws.copy()
-    outcomes = np.zeros(0, dtype=np.int64)
-    if strikes.any():
-        impacts = planar_impacts(
-            masses=body.mass,
-            inertias=body.inertia,
-            v=v[strikes],
-            w=w[strikes],
-            r=arm,
-            normals=normal,
-            frictions=contact.friction,
-            restitutions=contact.impact_restitution,
-            restitution_law=restitution_law,
-            velocity_tolerance=tolerance,
-        )
-        after[strikes] = np.column_stack((impacts.v, impacts.w))
-        outcomes = impacts.outcomes
-    return _distribution(after, after, outcomes)
 
 
 def spatial_impact_distribution(
@@ -171,12 +109,13 @@ def spatial_impact_distribution(
     check_at_rest("contact", contact, "spatial_impact_distribution")
     tolerance = check_not_negative("velocity_tolerance", velocity_tolerance)
     check_striking(body, state, contact.p_WC_W)
-    draws = _draw(covariance, 12, samples, seed)
+    draws = _draw(covariance, samples, seed)
     turns = quaternions_of(draws[:, 3:6])
     arms, normal = rotated(turns, contact.p_WC_W - state.p_WB_W), contact.normal_W
     after = np.concatenate((state.v_WB_W, state.w_WB_W)) + draws[:, 6:]
     v_n = (after[:, :3] + np.cross(after[:, 3:], arms)) @ normal
-    # Half the tolerance counts here too, for the same reason as in the plane.
+    # Half the tolerance counts here, because the impact judges the approach again by a sum that rounds
+    # differently.
     strikes = v_n <= 0.5 * tolerance
     outcomes = np.zeros(0, dtype=np.int64)
     if strikes.any():
@@ -197,13 +136,18 @@ def spatial_impact_distribution(
         )
         after[strikes] = np.concatenate((impacts.v_WB_W, impacts.w_WB_W), axis=1)
         outcomes = impacts.outcomes
-    whole = np.concatenate([draws[:, :6], after], axis=1)
-    return _distribution(after, whole, outcomes)
+    return ImpactDistribution(
+        mean=after.mean(axis=0),
+        covariance=np.cov(np.concatenate([draws[:, :6], after], axis=1), rowvar=False),
+        probabilities=np.bincount(outcomes, minlength=len(ImpactOutcome)) / samples,
+        missed=1.0 - len(outcomes) / samples,
+        samples=samples,
+    )
 
 
-def _draw(covariance: ArrayLike, size: int, samples: int, seed: int) -> FloatArray:
-    """Return drawn deviations from the mean, (samples, size), in opposite pairs."""
-    matrix = check_magnitude("covariance", check_array("covariance", covariance, (size, size)), MAX_VARIANCE)
+def _draw(covariance: ArrayLike, samples: int, seed: int) -> FloatArray:
+    """Return drawn deviations from the mean, (samples, 12), in opposite pairs."""
+    matrix = check_magnitude("covariance", check_array("covariance", covariance, (12, 12)), MAX_VARIANCE)
     check_whole("seed", seed, 0)
     if check_whole("samples", samples, 2, MAX_SAMPLES) % 2:
         raise InvalidFieldError("samples", samples, f"an even number in [2, {MAX_SAMPLES}]")
@@ -212,19 +156,8 @@ def _draw(covariance: ArrayLike, size: int, samples: int, seed: int) -> FloatArr
     symmetric = float(abs(matrix - matrix.T).max()) <= SYMMETRY_TOLERANCE * largest
     if not symmetric or values[0] < -SYMMETRY_TOLERANCE * largest:
         raise InvalidFieldError("covariance", matrix.tolist(), "a symmetric positive semidefinite matrix")
-    half = np.random.default_rng(seed).standard_normal((samples // 2, size))
+    half = np.random.default_rng(seed).standard_normal((samples // 2, 12))
     # The symmetric root is the same for any axes of equal variances, which a rounding error would turn.
     root = (vectors * np.sqrt(np.maximum(values, 0.0))) @ vectors.T
     deviations: FloatArray = half @ root
     return np.concatenate([deviations, -deviations])
-
-
-def _distribution(after: FloatArray, whole: FloatArray, outcomes: np.ndarray) -> ImpactDistribution:
-    samples = len(after)
-    return ImpactDistribution(
-        mean=after.mean(axis=0),
-        covariance=np.cov(whole, rowvar=False),
-        probabilities=np.bincount(outcomes, minlength=len(ImpactOutcome)) / samples,
-        missed=1.0 - len(outcomes) / samples,
-        samples=samples,
-    )

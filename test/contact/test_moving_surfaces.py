@@ -20,8 +20,6 @@ from contact_dynamics.impact import (
     impact_sequence_of,
     jamming_impact,
     outcomes_over_interleavings,
-    planar_impact_distribution,
-    planar_pair_impact,
     spatial_impact_distribution,
     spatial_pair_impact,
 )
@@ -152,15 +150,9 @@ SPATIAL: dict[str, Callable[[], object]] = {
     ),
     "out_of_plane_speed": lambda: out_of_plane_speed(PlaneOfMotion(normal_W=[0, -1, 0]), AT_REST, FEET),
 }
-PLANAR_CALLS: dict[str, Callable[[], object]] = {
-    "planar_pair_impact": lambda: planar_pair_impact(PLANAR, DOWN, PLANAR, DOWN, FOOT, other_r=(0.0, 0.3)),
-    "planar_impact_distribution": lambda: planar_impact_distribution(
-        PLANAR, DOWN, FOOT, covariance=np.zeros((3, 3))
-    ),
-}
 
 
-@pytest.mark.parametrize("call", [*SPATIAL.values(), *PLANAR_CALLS.values()], ids=[*SPATIAL, *PLANAR_CALLS])
+@pytest.mark.parametrize("call", SPATIAL.values(), ids=SPATIAL)
 def test_calls_that_take_only_surfaces_at_rest_say_so(call: Callable[[], object]) -> None:
     with pytest.raises(NotSupportedError, match=r"(contacts?|world) must have surfaces at rest in"):
         call()

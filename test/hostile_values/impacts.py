@@ -59,7 +59,6 @@ IMPACTS: Calls = {
     ),
     "several_impact": (several_impact, SEVERAL),
     "outcomes_over_orders": (impact.outcomes_over_orders, {**SEVERAL, "max_orders": 2}),
-    "outcomes_at_once": (impact.outcomes_at_once, {**SEVERAL, "max_orders": 2}),
     "outcomes_over_interleavings": (impact.outcomes_over_interleavings, {**SEVERAL, "samples": 1, "seed": 0}),
     "jamming_impact": (
         impact.jamming_impact,
@@ -103,18 +102,6 @@ IMPACTS: Calls = {
             "frictions": 0.5,
             "restitutions": 0.5,
             "surface_velocities_W": [0.1, 0.0, 0.2],
-            "velocity_tolerance": 1e-9,
-        },
-    ),
-    "planar_impact_distribution": (
-        impact.planar_impact_distribution,
-        {
-            "body": ROD,
-            "velocity": PlanarVelocity(**LEAN),
-            "contact": PlanarContact(**TIP),
-            "covariance": 1e-4 * np.eye(3),
-            "samples": 10,
-            "seed": 0,
             "velocity_tolerance": 1e-9,
         },
     ),
@@ -165,25 +152,9 @@ IMPACTS: Calls = {
             "velocity_tolerance": 1e-9,
         },
     ),
-    "planar_pair_impact": (
-        impact.planar_pair_impact,
-        {
-            "body": ROD,
-            "velocity": PlanarVelocity(**LEAN),
-            "other": ROD,
-            "other_velocity": PlanarVelocity(v=(0.0, 1.0), w=0.0),
-            "contact": PlanarContact(**TIP),
-            "other_r": (0.1, 0.5),
-            "velocity_tolerance": 1e-9,
-        },
-    ),
     "bodies_impact": (
         impact.bodies_impact,
         {"bodies": [BALL], "states": [STATE], "contacts": CONTACTS, "pairs": [(0, None), (0, None)]},
-    ),
-    "planar_several_impact": (
-        impact.planar_several_impact,
-        {"body": ROD, "velocity": PlanarVelocity(**LEAN), "contacts": [PlanarContact(**TIP)]},
     ),
     "settling_impact": (
         impact.settling_impact,

@@ -14,14 +14,14 @@ from contact_dynamics.errors import InvalidFieldError, SeparatingContactError
 from contact_dynamics.impact import (
     RestitutionLaw,
     SeveralContactsLaw,
+    SeveralImpact,
     StrikingBodies,
     bodies_impact,
-    outcomes_at_once,
     outcomes_over_orders,
-    planar_several_impact,
     spatial_impacts,
     spatial_pair_impact,
 )
+from contact_dynamics.plane import planar_in_space
 from contact_dynamics.rigid_body import kinetic_energy
 from impact.spatial.drawn_problem import random_problem
 
@@ -92,9 +92,6 @@ SEVERAL: dict[str, Callable[[cd.BodyState, cd.ContactSet], np.ndarray]] = {
     "orders leaning": lambda state, contacts: (
         outcomes_over_orders(BRICK, state, contacts, max_orders=3).velocities_W
     ),
-    "at once leaning": lambda state, contacts: (
-        outcomes_at_once(BRICK, state, contacts, max_orders=3).velocities_W
-    ),
 }
 
 
@@ -127,24 +124,6 @@ def test_a_brick_between_two_belts_ends_without_approaching_either(law: SeveralC
     assert gained == pytest.approx(found.energy_change + float((found.impulses_W * belts).sum()), rel=1e-9)
     momentum = BRICK.mass * (found.state.v_WB_W - FLAT.v_WB_W)
     assert found.impulses_W.sum(axis=0) == pytest.approx(momentum, abs=1e-9)
-
-
-@pytest.mark.parametrize("law", SeveralContactsLaw)
-def test_a_planar_body_lands_on_a_belt(law: SeveralContactsLaw) -> None:
-    body = cd.PlanarBody(mass=0.4, inertia=9e-4)
-    feet = [
-        cd.PlanarContact(r=(x, -0.03), normal=(0.0, 1.0), friction=0.4, restitution=0.5) for x in (-0.1, 0.1)
-    ]
-    belt = [replace(foot, surface_velocity=(3.0, 0.5)) for foot in feet]
-    still = planar_several_impact(
-        body, cd.PlanarVelocity(v=(0.4, -1.0), w=0.3), feet, several_contacts_law=law
-    )
-    found = planar_several_impact(
-        body, cd.PlanarVelocity(v=(3.4, -0.5), w=0.3), belt, several_contacts_law=law
-    )
-    assert found.impulses_W == pytest.approx(still.impulses_W, abs=1e-12)
-    assert found.state.v_WB_W - [3.0, 0.5, 0.0] == pytest.approx(still.state.v_WB_W, abs=1e-12)
-    assert found.velocities_after_W == pytest.approx(still.velocities_after_W, abs=1e-12)
 
 
 def test_a_face_that_lands_flat_on_a_rising_tray_bounces_level() -> None:
@@ -275,19 +254,25 @@ def test_two_bodies_have_no_moving_surface_between_them() -> None:
     assert (after[:, 2] >= -1e-8).all()
 
 
+def planar_several(
+    body: cd.PlanarBody, velocity: cd.PlanarVelocity, feet: list[cd.PlanarContact]
+) -> SeveralImpact:
+    return cd.several_impact(*planar_in_space(body, velocity, feet, axes_W=np.eye(2, 3)))
+
+
 def test_several_contacts_in_the_plane_are_relative_to_their_surfaces() -> None:
     body = cd.PlanarBody(mass=2.0, inertia=0.1)
     feet = [
         cd.PlanarContact(r=(x, -0.3), normal=(0.0, 1.0), friction=0.5, restitution=0.3) for x in (-0.2, 0.3)
     ]
-    still = planar_several_impact(body, cd.PlanarVelocity(v=(0.5, -1.0), w=0.2), feet)
+    still = planar_several(body, cd.PlanarVelocity(v=(0.5, -1.0), w=0.2), feet)
     belt = [replace(foot, surface_velocity=(1.5, 0.4)) for foot in feet]
-    moving = planar_several_impact(body, cd.PlanarVelocity(v=(2.0, -0.6), w=0.2), belt)
+    moving = planar_several(body, cd.PlanarVelocity(v=(2.0, -0.6), w=0.2), belt)
     np.testing.assert_allclose(moving.impulses_W, still.impulses_W, atol=1e-12)
     np.testing.assert_allclose(
         moving.state.v_WB_W, still.state.v_WB_W + np.array([1.5, 0.4, 0.0]), atol=1e-12
     )
     np.testing.assert_allclose(moving.velocities_after_W, still.velocities_after_W, atol=1e-12)
     one = cd.planar_impact(body, cd.PlanarVelocity(v=(2.0, -0.6), w=0.2), belt[0])
-    alone = planar_several_impact(body, cd.PlanarVelocity(v=(2.0, -0.6), w=0.2), belt[:1])
+    alone = planar_several(body, cd.PlanarVelocity(v=(2.0, -0.6), w=0.2), belt[:1])
     np.testing.assert_allclose(alone.state.v_WB_W[:2], one.velocity.v, atol=1e-12)

@@ -22,16 +22,17 @@ from contact_dynamics.impact import (
     impact_sequence_of,
     outcomes_over_orders,
     planar_impact,
-    planar_pair_impact,
-    planar_several_impact,
     several_impact,
     spatial_impact,
+    spatial_pair_impact,
 )
+from contact_dynamics.plane import planar_in_space
 from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity
 from contact_dynamics.rigid_body.body import BodyState, MassProperties, kinetic_energy
 
 IDENTITY = np.array([0.0, 0.0, 0.0, 1.0])
 UP = (0.0, 1.0)
+X_AND_Y = np.eye(2, 3)
 SEQUENTIAL, SIMULTANEOUS = SeveralContactsLaw
 
 
@@ -136,21 +137,25 @@ def test_eccentric_rod_drop_on_rough_ground(theta: float, law: RestitutionLaw) -
 @pytest.mark.parametrize("offset", [0.0, 0.3])
 def test_a_ball_strikes_a_free_block(offset: float, law: RestitutionLaw) -> None:
     """Without friction J = (1 + e) v / (1/m + 1/M + d^2/I), by which the block moves and turns."""
-    ball, block, e, v = PlanarBody(mass=0.5, inertia=1e-3), PlanarBody(mass=4.0, inertia=0.8), 0.8, 6.0
-    impact = planar_pair_impact(
+    ball, block, e, v = (
+        MassProperties(mass=0.5, I_B=1e-3 * np.eye(3)),
+        MassProperties(mass=4.0, I_B=0.8 * np.eye(3)),
+        0.8,
+        6.0,
+    )
+    impact = spatial_pair_impact(
         ball,
-        PlanarVelocity(v=(v, 0.0), w=0.0),
+        moving([-0.05, 0.0, 0.0], [v, 0.0, 0.0]),
         block,
-        PlanarVelocity(v=(0.0, 0.0), w=0.0),
-        PlanarContact(r=(0.05, 0.0), normal=(-1.0, 0.0), friction=0.0, restitution=e),
-        other_r=(-0.4, offset),
+        moving([0.4, -offset, 0.0], [0.0, 0.0, 0.0]),
+        Contact(p_WC_W=[0.0, 0.0, 0.0], normal_W=[-1.0, 0.0, 0.0], friction=0.0, restitution=e),
         restitution_law=law,
     )
     impulse = (1.0 + e) * v / (1.0 / 0.5 + 1.0 / 4.0 + offset**2 / 0.8)
-    assert impact.velocity.v == pytest.approx((v - impulse / 0.5, 0.0), rel=1e-14)
-    assert impact.other_velocity is not None
-    assert impact.other_velocity.v == pytest.approx((impulse / 4.0, 0.0), rel=1e-14)
-    assert impact.other_velocity.w == pytest.approx(-offset * impulse / 0.8, abs=1e-14)
+    assert impact.state.v_WB_W == pytest.approx([v - impulse / 0.5, 0.0, 0.0], rel=1e-14)
+    assert impact.other_state is not None
+    assert impact.other_state.v_WB_W == pytest.approx([impulse / 4.0, 0.0, 0.0], rel=1e-14)
+    assert impact.other_state.w_WB_W == pytest.approx([0.0, 0.0, -offset * impulse / 0.8], abs=1e-14)
 
 
 # Newton's cradle: balls that touch in a row along x
@@ -329,7 +334,7 @@ def rocking_block(alpha: float) -> tuple[PlanarBody, PlanarVelocity, list[Planar
 def test_a_rocking_block_keeps_housners_share_of_its_spin(alpha: float, law: SeveralContactsLaw) -> None:
     """Angular momentum about the right corner stays: w'/w = 1 - 3/2 sin^2(alpha). The left corner lifts."""
     body, velocity, feet = rocking_block(alpha)
-    answer = planar_several_impact(body, velocity, feet, several_contacts_law=law)
+    answer = several_impact(*planar_in_space(body, velocity, feet, axes_W=X_AND_Y), several_contacts_law=law)
     kept = 1.0 - 1.5 * math.sin(alpha) ** 2
     assert answer.state.w_WB_W == pytest.approx([0.0, 0.0, -1.5 * kept], abs=1e-8)
     assert answer.velocities_after_W[0, 1] > 0.0
@@ -341,7 +346,7 @@ def test_a_rocking_block_keeps_housners_share_of_its_spin(alpha: float, law: Sev
 def test_a_flat_block_does_not_rock_over(law: SeveralContactsLaw) -> None:
     """Where sin^2(alpha) > 2/3 Housner's share is negative; the left corner stops it."""
     body, velocity, feet = rocking_block(1.2)
-    answer = planar_several_impact(body, velocity, feet, several_contacts_law=law)
+    answer = several_impact(*planar_in_space(body, velocity, feet, axes_W=X_AND_Y), several_contacts_law=law)
     assert answer.verdict is SeveralVerdict.RESOLVED
     assert answer.state.w_WB_W == pytest.approx([0.0, 0.0, 0.0], abs=1e-7)
     assert answer.state.v_WB_W == pytest.approx([0.0, 0.0, 0.0], abs=1e-7)
@@ -374,7 +379,7 @@ def test_one_contact_in_the_plane_is_the_planar_law(law: RestitutionLaw) -> None
     contact = PlanarContact(r=(-1.0, -2.0), normal=UP, friction=0.25, restitution=0.5)
     one = planar_impact(body, velocity, contact, restitution_law=law)
     axes = np.array([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])  # the plane seen from +x
-    several = planar_several_impact(body, velocity, [contact], restitution_law=law, axes_W=axes)
+    several = several_impact(*planar_in_space(body, velocity, [contact], axes_W=axes), restitution_law=law)
     assert several.state.v_WB_W == pytest.approx([0.0, *one.velocity.v], abs=1e-13)
     assert several.state.w_WB_W == pytest.approx([one.velocity.w, 0.0, 0.0], abs=1e-13)
     assert several.strikes[0][1].outcome is one.outcome

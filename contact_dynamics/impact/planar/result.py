@@ -26,7 +26,6 @@ class PlanarImpact(Record):
         inverse_inertia: Change of the contact's velocity per impulse, 1/kg.
         contact_path: Impulse path, and the contact's velocity after the impact, contact axes.
         impulse: Total impulse on the body, N s, axes of the plane.
-        other_velocity: Velocity of the second body after the impact, or None for the fixed world.
     """
 
     restitution_law: RestitutionLaw
@@ -35,7 +34,6 @@ class PlanarImpact(Record):
     inverse_inertia: InverseInertia
     contact_path: ImpulsePath
     impulse: Vector2
-    other_velocity: PlanarVelocity | None = None
 
     @property
     def outcome(self) -> ImpactOutcome:

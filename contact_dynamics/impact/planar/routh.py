@@ -110,24 +110,6 @@ def inverse_inertia(mass: float, inertia: float, r_t: float, r_n: float) -> Inve
     return strike.response
 
 
-def pair_inverse_inertia(
-    body: tuple[float, float, float, float], other: tuple[float, float, float, float]
-) -> InverseInertia:
-    """Return how the relative velocity of two bodies responds. Each body is its mass, inertia, r_t and r_n.
-
-    The impulses on the two are opposite, so their responses add. The determinant is expanded into terms that
-    cannot cancel.
-    """
-    (m_1, i_1, t_1, n_1), (m_2, i_2, t_2, n_2) = body, other
-    a_1, b_1, c_1, det_1 = inverse_inertia(m_1, i_1, t_1, n_1)
-    a_2, b_2, c_2, det_2 = inverse_inertia(m_2, i_2, t_2, n_2)
-    crossing = n_1 * t_2 - n_2 * t_1
-    mixed = 2.0 / (m_1 * m_2)
-    mixed += (t_2 * t_2 + n_2 * n_2) / (m_1 * i_2) + (t_1 * t_1 + n_1 * n_1) / (m_2 * i_1)
-    mixed += crossing * crossing / (i_1 * i_2)
-    return InverseInertia(a_1 + a_2, b_1 + b_2, c_1 + c_2, det_1 + det_2 + mixed)
-
-
 def impulse_path(
     v_t: float, v_n: float, response: InverseInertia, friction: float, restitution: float, law: RestitutionLaw
 ) -> ImpulsePath:

@@ -9,9 +9,7 @@
   here, because it needs the work at each contact along the path, and this law only knows the path's ends.
 
 `outcomes_over_orders` gives the outcomes that the sequential law reaches over its admissible orders. Their
-spread says how far the answer is undecided. `outcomes_at_once` does the same for the solutions of
-SIMULTANEOUS. In the plane (`planar_several_impact`) the laws are the same: the plane is put into space, where
-the body gets equal moments about all axes, and so moves in the plane as the planar one does.
+spread says how far the answer is undecided. A planar problem is put into space (`plane.planar_in_space`).
 
 Moments at the contacts are left out. So are resting contacts that their own sliding would jam, which
 `impact.spatial` answers for one contact.
@@ -21,7 +19,7 @@ from __future__ import annotations
 
 import math
 from itertools import islice, permutations
-from typing import TYPE_CHECKING, Final, TypeAlias
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
@@ -39,25 +37,17 @@ from contact_dynamics.impact.several.sequential import (
     Touching,
     bodies_impact,
     check_touching,
-    strike_at_once,
     strike_in_turn,
 )
-from contact_dynamics.plane.lifting import planar_in_space
 from contact_dynamics.tolerances import SAME_IMPULSES, VELOCITY_TOLERANCE
 from contact_dynamics.validation import check_positive, check_whole
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Sequence
-
-    from numpy.typing import ArrayLike
+    from collections.abc import Sequence
 
     from contact_dynamics.contact.contact import ContactSet
-    from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity
     from contact_dynamics.rigid_body.body import BodyState, HasMassProperties, MassProperties
     from contact_dynamics.validation import FloatArray
-
-    _Outcome: TypeAlias = tuple[tuple[int, ...], Sequence[BodyState], SeveralVerdict]
-    """An order, the states of all bodies after it, and whether it converged."""
 
 MAX_ORDERS: Final = 120
 """Number of orders that `outcomes_over_orders` tries. These are all orders of up to five contacts."""
@@ -110,44 +100,6 @@ def several_impact(
     )
 
 
-_X_AND_Y: Final = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0))
-
-
-def planar_several_impact(
-    body: PlanarBody,
-    velocity: PlanarVelocity,
-    contacts: Sequence[PlanarContact],
-    *,
-    several_contacts_law: SeveralContactsLaw = SeveralContactsLaw.SEQUENTIAL,
-    restitution_law: RestitutionLaw = RestitutionLaw.POISSON,
-    velocity_tolerance: float = VELOCITY_TOLERANCE,
-    axes_W: ArrayLike = _X_AND_Y,
-) -> SeveralImpact:
-    """Return the outcome of an impact of a planar body at all its contacts, under the chosen laws.
-
-    Args:
-        body: Mass and angular inertia.
-        velocity: Velocity of the body just before the impact.
-        contacts: All touching contacts, whether or not they approach; at least one.
-        several_contacts_law: Law for several contacts.
-        restitution_law: Law of restitution. ENERGETIC requires SEQUENTIAL.
-        velocity_tolerance: m/s, > 0. A contact that approaches more slowly does not strike.
-        axes_W: (2, 3), the x and y axes of the plane in world axes. The result is in world axes, with the
-            centre of mass at the origin of the world.
-
-    Raises:
-        SeparatingContactError: all contacts separate.
-        InvalidFieldError: `several_impact` rejects a field, or the axes are not orthogonal unit vectors.
-    """
-    spatial = planar_in_space(body, velocity, contacts, axes_W=axes_W)
-    return several_impact(
-        *spatial,
-        several_contacts_law=several_contacts_law,
-        restitution_law=restitution_law,
-        velocity_tolerance=velocity_tolerance,
-    )
-
-
 def outcomes_over_orders(
     body: HasMassProperties,
     state: BodyState,
@@ -180,25 +132,35 @@ def outcomes_over_orders(
             number >= 1.
         TooLargeError: the orders require more impacts in total than `MAX_STRIKES_OVER_ORDERS`.
     """
-    touching = _touching(body, state, contacts, restitution_law, velocity_tolerance)
+    tolerance = check_positive("velocity_tolerance", velocity_tolerance)
+    n = len(contacts)
+    touching = Touching([body.mass_properties], contacts, [(0, None)] * n, restitution_law, tolerance)
+    check_touching(touching, [state])
     max_orders = check_whole("max_orders", max_orders, 1)
-    return _outcomes(_in_turn(touching, state, max_orders), complete=_order_count(contacts) <= max_orders)
-
-
-def _in_turn(touching: Touching, state: BodyState, max_orders: int) -> Iterator[_Outcome]:
     own = strike_in_turn(touching, [state])
-    if own.ties and own.verdict == SeveralVerdict.RESOLVED:
-        yield (), own.states, own.verdict
-    struck = len(own.strikes)
-    for priority in islice(permutations(range(len(touching.contacts))), max_orders):
+    is_own_listed = own.verdict == SeveralVerdict.RESOLVED
+    found: dict[tuple[int, ...], FloatArray] = {}
+    if own.ties and is_own_listed:
+        found[()] = _velocities(own.states[0])
+    struck, lost = len(own.strikes), 0
+    for priority in islice(permutations(range(n)), max_orders):
         turn = strike_in_turn(touching, [state], priority=priority)
         struck += len(turn.strikes)
         if struck > MAX_STRIKES_OVER_ORDERS:
-            count = f"{len(touching.contacts)} contacts, over whose orders there are more strikes"
+            count = f"{n} contacts, over whose orders there are more strikes"
             raise TooLargeError("contacts", count, f"at most {MAX_STRIKES_OVER_ORDERS} over all orders")
-        yield turn.order, turn.states, turn.verdict
-    if not own.ties and own.verdict == SeveralVerdict.RESOLVED:
-        yield own.order, own.states, own.verdict
+        if turn.verdict == SeveralVerdict.RESOLVED:
+            found[turn.order] = _velocities(turn.states[0])
+        else:
+            lost += 1
+    if not own.ties and is_own_listed:
+        found[own.order] = _velocities(own.states[0])
+    return OrderedOutcomes(
+        orders=tuple(found),
+        velocities_W=np.array(list(found.values())).reshape(-1, 6),
+        complete=math.factorial(n) <= max_orders,
+        not_converged=lost,
+    )
 
 
 def order_warning(
@@ -236,76 +198,6 @@ def order_warning(
     return (
         f"contacts {named} are resolved {how}: "
         f"other orders differ by up to {linear:.3g} m/s and {angular:.3g} rad/s (include_orders)"
-    )
-
-
-def outcomes_at_once(
-    body: HasMassProperties,
-    state: BodyState,
-    contacts: ContactSet,
-    *,
-    restitution_law: RestitutionLaw = RestitutionLaw.POISSON,
-    velocity_tolerance: float = VELOCITY_TOLERANCE,
-    max_orders: int = MAX_ORDERS,
-) -> OrderedOutcomes:
-    """Return several solutions of the law SIMULTANEOUS. If they differ, the law has no unique solution.
-
-    Each order of the contacts leads to a solution. The solution of `several_impact` does not depend on an
-    order; it is the first one, with an empty order. Solutions that no order leads to are not found.
-
-    Args:
-        body: A `Body`, or its `MassProperties`.
-        state: Pose and velocities just before the impact.
-        contacts: All touching contacts; at least one.
-        restitution_law: Poisson's or Newton's law.
-        velocity_tolerance: m/s, > 0. A contact that approaches more slowly has no impact.
-        max_orders: Largest number of orders to try, >= 1. ``complete`` of the result is true if these were
-            all.
-
-    Raises:
-        SeparatingContactError: all contacts separate.
-        InvalidFieldError: there are no contacts, the tolerance is not > 0, ``max_orders`` is not a whole
-            number >= 1, or the law is ENERGETIC.
-    """
-    touching = _touching(body, state, contacts, restitution_law, velocity_tolerance)
-    max_orders = check_whole("max_orders", max_orders, 1)
-    orders = (None, *islice(permutations(range(len(contacts))), max_orders))
-    solutions = ((order or (), *strike_at_once(touching, [state], order=order)[1:]) for order in orders)
-    return _outcomes(solutions, complete=_order_count(contacts) <= max_orders)
-
-
-def _touching(
-    body: HasMassProperties,
-    state: BodyState,
-    contacts: ContactSet,
-    restitution_law: RestitutionLaw,
-    velocity_tolerance: float,
-) -> Touching:
-    """Return one body that touches the world. Refuse sets in which nothing strikes."""
-    tolerance = check_positive("velocity_tolerance", velocity_tolerance)
-    pairs = [(0, None)] * len(contacts)
-    touching = Touching([body.mass_properties], contacts, pairs, restitution_law, tolerance)
-    check_touching(touching, [state])
-    return touching
-
-
-def _order_count(contacts: ContactSet) -> int:
-    return math.factorial(len(contacts))
-
-
-def _outcomes(tried: Iterable[_Outcome], *, complete: bool) -> OrderedOutcomes:
-    found: dict[tuple[int, ...], FloatArray] = {}
-    lost = 0
-    for order, (after,), verdict in tried:
-        if verdict == SeveralVerdict.RESOLVED:
-            found[order] = _velocities(after)
-        else:
-            lost += 1
-    return OrderedOutcomes(
-        orders=tuple(found),
-        velocities_W=np.array(list(found.values())).reshape(-1, 6),
-        complete=complete,
-        not_converged=lost,
     )
 
 

@@ -88,7 +88,10 @@ def bodies_impact(
         for contact, impact in strikes:
             impulses[contact] += impact.impulse_W
     else:
-        impulses, after, verdict = strike_at_once(touching, states)
+        response = response_of(masses, states, contacts.p_WC_W, pairs, contacts.surface_velocities_W)
+        impulses, converged = simultaneous_impulses(contacts, restitution_law, response, tolerance=tolerance)
+        after = pushed(response, states, impulses)
+        verdict = SeveralVerdict.RESOLVED if converged else SeveralVerdict.NOT_CONVERGED
     return BodiesImpact(
         several_contacts_law=several_contacts_law,
         restitution_law=restitution_law,
@@ -235,31 +238,6 @@ def _strike(touching: Touching, states: list[BodyState], contact: int) -> Spatia
             states[second] = impact.other_state
     states[first] = impact.state
     return impact
-
-
-def strike_at_once(
-    touching: Touching, states: Sequence[BodyState], *, order: tuple[int, ...] | None = None
-) -> tuple[FloatArray, list[BodyState], SeveralVerdict]:
-    """Return impulses, (n, 3), N s, and states afterwards, by one complementarity problem.
-
-    The solution is the one that an ``order`` of the contacts leads to. If ``order`` is None, it depends on no
-    order.
-    """
-    contacts = touching.contacts
-    response = response_of(
-        touching.bodies, states, contacts.p_WC_W, touching.pairs, contacts.surface_velocities_W
-    )
-    impulses, converged = simultaneous_impulses(
-        contacts,
-        touching.restitution_law,
-        jacobian=response.jacobian,
-        inverse_mass=response.inverse_mass,
-        twist=response.twist,
-        tolerance=touching.tolerance,
-        order=order,
-    )
-    after = pushed(response, states, impulses)
-    return impulses, after, SeveralVerdict.RESOLVED if converged else SeveralVerdict.NOT_CONVERGED
 
 
 def _relative_velocities(touching: Touching, states: Sequence[BodyState]) -> FloatArray:

@@ -28,6 +28,7 @@ import numpy as np
 
 from contact_dynamics.errors import InvalidFieldError, TooLargeError
 from contact_dynamics.impact.law import RestitutionLaw
+from contact_dynamics.impact.several.tied import Response, twist_after
 from contact_dynamics.tolerances import SAME_IMPULSES, SWEEPS_CONVERGED
 from contact_dynamics.validation import FloatArray
 
@@ -50,52 +51,22 @@ _MAX_PRODUCTS: Final = 2_000_000_000
 problem before."""
 
 
-class _Problem(NamedTuple):
-    """One complementarity problem."""
-
-    jacobian: FloatArray  # (n, 3, 6 k)
-    inverse_mass: FloatArray  # (6 k, 6 k)
-    twist: FloatArray  # (6 k,)
-    normals: FloatArray  # (n, 3)
-    frictions: FloatArray  # (n,)
-    least: FloatArray  # (n,), N s, lower bounds of the normal impulses
-    bounce: FloatArray  # (n,), m/s, lower bounds of the normal velocities afterwards
-
-
 def simultaneous_impulses(
-    contacts: ContactSet,
-    law: RestitutionLaw,
-    *,
-    jacobian: FloatArray,
-    inverse_mass: FloatArray,
-    twist: FloatArray,
-    tolerance: float,
-    order: tuple[int, ...] | None = None,
+    contacts: ContactSet, law: RestitutionLaw, response: Response, *, tolerance: float
 ) -> tuple[FloatArray, bool]:
     """Return the impulses, (n, 3), N s, world axes, and whether the iteration converged.
 
     Contacts that separate faster than ``tolerance``, m/s, take part too. They strike if the others turn the
-    bodies into them.
-
-    Args:
-        contacts: Normals, frictions and restitutions.
-        law: Poisson's or Newton's. No other law has a form here.
-        jacobian: (n, 3, 6 k), a matrix for each contact. It takes the velocities of the k bodies (v then w
-            of each) into the contact's velocity.
-        inverse_mass: (6 k, 6 k), 1/kg and 1/(kg m^2), takes impulses and their moments into velocities.
-        twist: (6 k,), m/s and rad/s, the bodies' velocities just before.
-        tolerance: m/s. A contact that approaches less fast does not bounce.
-        order: The order of the contacts that leads to the solution. If it is None, the solution depends on no
-            order.
+    bodies into them. One that approaches less fast does not bounce.
 
     Raises:
         TooLargeError: the impulses have not converged after `MAX_PROJECTIONS` projections.
-        InvalidFieldError: the law is another one.
+        InvalidFieldError: the law is neither Poisson's nor Newton's.
     """
     if law not in {RestitutionLaw.POISSON, RestitutionLaw.NEWTON}:
         raise InvalidFieldError("restitution_law", law.name, "POISSON or NEWTON for SIMULTANEOUS")
-    normals, frictions = contacts.normals_W, contacts.frictions
-    approach = np.minimum(np.einsum("ij,ij->i", jacobian @ twist, normals), 0.0)
+    normals = contacts.normals_W
+    approach = np.minimum(np.einsum("ij,ij->i", response.jacobian @ response.twist, normals), 0.0)
     approach[approach >= -tolerance] = 0.0
 
     none = np.zeros(len(contacts))
@@ -103,45 +74,39 @@ def simultaneous_impulses(
     # problem, and Poisson's for impulses, in a second one.
     if law == RestitutionLaw.NEWTON:
         bounce = -contacts.impact_restitutions * approach
-        return _solve(
-            jacobian, inverse_mass, twist, normals, frictions, least=none, bounce=bounce, order=order
-        )
-    compression, converged = _solve(
-        jacobian, inverse_mass, twist, normals, frictions, least=none, bounce=none, order=order
-    )
-    twist = twist + inverse_mass @ np.einsum("ijk,ij->k", jacobian, compression)
+        return _solve(_Problem(*response, normals, contacts.frictions, none, bounce))
+    compression, converged = _solve(_Problem(*response, normals, contacts.frictions, none, none))
+    compressed = response._replace(twist=twist_after(response, compression))
     least = contacts.impact_restitutions * np.einsum("ij,ij->i", compression, normals)
     if not least.any():
         return compression, converged
-    restitution, also = _solve(
-        jacobian, inverse_mass, twist, normals, frictions, least=least, bounce=none, order=order
-    )
+    restitution, also = _solve(_Problem(*compressed, normals, contacts.frictions, least, none))
     return compression + restitution, converged and also
 
 
-def _solve(
-    jacobian: FloatArray,
-    inverse_mass: FloatArray,
-    twist: FloatArray,
-    normals: FloatArray,
-    frictions: FloatArray,
-    *,
-    least: FloatArray,
-    bounce: FloatArray,
-    order: tuple[int, ...] | None,
-) -> tuple[FloatArray, bool]:
+class _Problem(NamedTuple):
+    """One complementarity problem."""
+
+    jacobian: FloatArray  # as `Response` has these three
+    inverse_mass: FloatArray
+    twist: FloatArray
+    normals: FloatArray  # (n, 3)
+    frictions: FloatArray  # (n,)
+    least: FloatArray  # (n,), N s, lower bounds of the normal impulses
+    bounce: FloatArray  # (n,), m/s, lower bounds of the normal velocities afterwards
+
+
+def _solve(problem: _Problem) -> tuple[FloatArray, bool]:
     """Return impulses of at least ``least`` that leave velocities of at least ``bounce``, along normals."""
-    problem = _Problem(jacobian, inverse_mass, twist, normals, frictions, least, bounce)
-    if order is not None:
-        return _in_turn(problem, order)
-    listed = tuple(range(len(normals)))
+    listed = tuple(range(len(problem.normals)))
     impulses, converged = _in_turn(problem, listed)
-    if len(normals) == 1:
+    if len(listed) == 1:
         return impulses, converged
     together, also = _together(problem)
     if not also:
         # Then the contacts are taken in an order that depends on what they are, and not on the list.
-        values = np.column_stack([np.round(np.einsum("ijk,k->ij", jacobian, twist), 9), frictions, normals])
+        velocities = np.round(np.einsum("ijk,k->ij", problem.jacobian, problem.twist), 9)
+        values = np.column_stack([velocities, problem.frictions, problem.normals])
         canonical = tuple(sorted(listed, key=lambda i: values[i].tolist()))
         together, also = _in_turn(problem, canonical)
     size = float(np.abs(together).max())

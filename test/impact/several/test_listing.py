@@ -11,16 +11,14 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from contact_dynamics import BodyState, ContactSet, MassProperties, PlanarBody, PlanarContact, PlanarVelocity
+from contact_dynamics import BodyState, ContactSet, MassProperties
 from contact_dynamics.impact import (
     RestitutionLaw,
     SeveralContactsLaw,
     bodies_impact,
     impact_sequence_of,
     jamming_impact,
-    outcomes_at_once,
     outcomes_over_orders,
-    planar_several_impact,
     settling_impact,
     several_impact,
 )
@@ -58,23 +56,6 @@ def rows(outcomes: np.ndarray) -> np.ndarray:
     return outcomes[np.lexsort(np.round(outcomes, 6).T)]
 
 
-def planar(body: MassProperties, state: BodyState, contacts: ContactSet) -> np.ndarray:
-    answer = planar_several_impact(
-        PlanarBody(mass=body.mass, inertia=0.03),
-        PlanarVelocity(v=(float(state.v_WB_W[0]), float(state.v_WB_W[2])), w=float(state.w_WB_W[1])),
-        [
-            PlanarContact(
-                r=(float(one.p_WC_W[0]), float(one.p_WC_W[2])),
-                normal=(0.0, 1.0),
-                friction=one.friction,
-                restitution=one.restitution,
-            )
-            for one in contacts
-        ],
-    )
-    return velocity(answer.state)
-
-
 def slid(body: MassProperties, state: BodyState, contacts: ContactSet) -> dict[str, object]:
     """Return a sliding body whose contacts do not approach, under its weight."""
     return {
@@ -98,9 +79,7 @@ WAYS: dict[str, Callable[[MassProperties, BodyState, ContactSet], np.ndarray]] =
     "of bodies at once": lambda b, s, c: velocity(
         bodies_impact([b], [s], c, [(0, None)] * len(c), several_contacts_law=SIMULTANEOUS).states[0]
     ),
-    "planar": planar,
     "all orders": lambda b, s, c: rows(outcomes_over_orders(b, s, c).velocities_W),
-    "all solutions": lambda b, s, c: outcomes_at_once(b, s, c).velocities_W[0],
     "jamming": lambda b, s, c: velocity(jamming_impact(**slid(b, s, c)).state),  # type: ignore[arg-type]
     "settling": lambda b, s, c: velocity(
         settling_impact(**slid(b, s, c), is_settled=lambda _: True).state  # type: ignore[arg-type]

@@ -18,7 +18,6 @@ from contact_dynamics.impact import (
     SeveralContactsLaw,
     SeveralVerdict,
     bodies_impact,
-    outcomes_at_once,
     outcomes_over_orders,
     several_impact,
     spatial_impact,
@@ -241,8 +240,6 @@ def test_a_law_without_a_form_at_once_is_refused(law: RestitutionLaw) -> None:
     refused = f"^restitution_law must be POISSON or NEWTON for SIMULTANEOUS.*, got {law.name}"
     with pytest.raises(InvalidFieldError, match=refused):
         several_impact(*asked, several_contacts_law=SIMULTANEOUS, restitution_law=law)
-    with pytest.raises(InvalidFieldError, match=refused):
-        outcomes_at_once(*asked, restitution_law=law)
 
 
 def test_refusals() -> None:
@@ -327,20 +324,6 @@ def test_the_simultaneous_outcome_does_not_depend_on_the_list(seed: int) -> None
         assert answer.verdict == SeveralVerdict.RESOLVED
         outcomes.append(np.concatenate([answer.state.v_WB_W, answer.state.w_WB_W]))
     assert np.ptp(outcomes, axis=0).max() < 1e-6
-
-
-def test_solutions_at_once_are_told_with_their_spread() -> None:
-    body, state, contacts = corners(1, (0, 1, 2, 3))
-    solutions = outcomes_at_once(body, state, contacts)
-    answer = several_impact(body, state, contacts, several_contacts_law=SeveralContactsLaw.SIMULTANEOUS)
-    assert solutions.orders[0] == ()
-    np.testing.assert_array_equal(
-        solutions.velocities_W[0], np.concatenate([answer.state.v_WB_W, answer.state.w_WB_W])
-    )
-    assert solutions.complete
-    # Sweeps end at 1e-13 of the speed, so that two ways to one solution differ by some 1e-8 at most. A spread
-    # a million times as large means that the law has several solutions here.
-    assert solutions.spread.max() > 0.01
 
 
 @seeds(range(12))
