@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
     from pathlib import Path
 
-    from contact_dynamics.recording.definitions import TypeDefinition
+    from contact_dynamics.recording.bag_metadata import DeclaredTopic
     from contact_dynamics.recording.qos import OfferedQos
 
 CHUNK_BYTES: Final = 256 * 1024
@@ -91,10 +91,12 @@ class BagFile:
             start_ns=self._opened_ns if self.start_ns is None else self.start_ns,
             end_ns=self._end_ns,
             counts=dict(self._safe_counts),
+            size=self.size,
         )
 
-    def add_topic(self, name: str, definition: TypeDefinition, qos: tuple[OfferedQos, ...]) -> None:
+    def add_topic(self, topic: DeclaredTopic) -> None:
         """Write the definition of a topic, or another one, which holds for its messages from now on."""
+        name, definition, qos = topic.name, topic.definition, topic.qos
         with self._cut_back_on_failure():
             type_name = definition.type_name
             if type_name not in self._schemas:
@@ -144,12 +146,14 @@ class BagFile:
         with self._cut_back_on_failure():
             self._file.sync()
 
-    def finish(self, metadata: str) -> None:
+    def finish(self, metadata: Mapping[str, Any]) -> None:
         """Write rosbag2's own record, the index and the end."""
         with self._cut_back_on_failure():
             self._writer.flush()
             self._mark_safe()
-            self._writer.add_metadata("rosbag2", {"serialized_metadata": metadata})
+            self._writer.add_metadata(
+                "rosbag2", {"serialized_metadata": json.dumps(metadata, ensure_ascii=False)}
+            )
             self._writer.finish()
             self._safe_size = self._file.tell()
             self._file.sync()

@@ -14,8 +14,9 @@ from typing import TYPE_CHECKING, Any, Final
 from contact_dynamics.recording.qos import qos_maps
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
 
+    from contact_dynamics.recording.definitions import TypeDefinition
     from contact_dynamics.recording.qos import OfferedQos
 
 METADATA_FILE: Final = "metadata.yaml"
@@ -27,51 +28,23 @@ CHECKSUM_KEY: Final = "checksum"  # in that record, because MCAP gives metadata 
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class TopicSummary:
-    """The entry of ``metadata.yaml`` for one topic.
-
-    Attributes:
-        name: The topic's name with its leading slash.
-        type_name: "package/msg/Name" or "package/srv/Name_Event".
-        type_hash: "RIHS01_..." or empty.
-        qos: What its publishers offer.
-    """
+class DeclaredTopic:
+    """A topic of a bag: its absolute name, its type, and what its publishers offer."""
 
     name: str
-    type_name: str
-    type_hash: str
+    definition: TypeDefinition
     qos: tuple[OfferedQos, ...]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FileSummary:
-    """The entry of ``metadata.yaml`` for one file.
+    """One file of a bag."""
 
-    Attributes:
-        name: The file's path relative to the folder.
-        start_ns: Log time of the earliest message, ns since the epoch.
-        end_ns: Log time of the latest message, ns since the epoch.
-        counts: Number of messages by topic.
-    """
-
-    name: str
-    start_ns: int
-    end_ns: int
-    counts: Mapping[str, int]
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class BagSummary:
-    """The content of ``metadata.yaml`` for a bag.
-
-    Attributes:
-        files: The files, the oldest first.
-        custom_data: The writer's record of the run.
-    """
-
-    files: Sequence[FileSummary]
-    topics: Sequence[TopicSummary]
-    custom_data: Mapping[str, str]
+    name: str  # its path relative to the folder
+    start_ns: int  # log time of the earliest message, ns since the epoch
+    end_ns: int  # log time of the latest message
+    counts: Mapping[str, int]  # messages by topic
+    size: int  # bytes
 
 
 def sealed_run(run: Mapping[str, str]) -> dict[str, str]:
@@ -89,45 +62,46 @@ def _checksum(run: Mapping[str, str]) -> str:
     return f"{zlib.crc32(json.dumps(dict(run), sort_keys=True).encode()):08x}"
 
 
-def metadata_text(bag: BagSummary) -> str:
-    """Return the text of the MCAP record named ``rosbag2``."""
-    return json.dumps(_metadata(bag), ensure_ascii=False)
+def file_text_of(metadata: Mapping[str, Any]) -> str:
+    """Return the text of ``metadata.yaml``, which has the metadata under rosbag2's outermost key."""
+    return json.dumps({BAG_KEY: metadata}, indent=2, ensure_ascii=False) + "\n"
 
 
-def metadata_file_text(bag: BagSummary) -> str:
-    """Return the text of ``metadata.yaml``: the same under rosbag2's outermost key."""
-    content = {BAG_KEY: _metadata(bag)}
-    return json.dumps(content, indent=2, ensure_ascii=False) + "\n"
-
-
-def _metadata(bag: BagSummary) -> dict[str, Any]:
-    start_ns = min(file.start_ns for file in bag.files)
-    end_ns = max(file.end_ns for file in bag.files)
+def metadata_of(
+    files: Sequence[FileSummary], topics: Iterable[DeclaredTopic], run: Mapping[str, str]
+) -> dict[str, Any]:
+    """Return rosbag2's metadata of files, the oldest first, and topics, with the record of the run."""
+    start_ns = min(file.start_ns for file in files)
+    end_ns = max(file.end_ns for file in files)
     return {
         "version": 9,
         "storage_identifier": "mcap",
-        **_span(start_ns, end_ns, sum(sum(file.counts.values()) for file in bag.files)),
+        **_span(start_ns, end_ns, sum(sum(file.counts.values()) for file in files)),
         "topics_with_message_count": [
             {
                 "topic_metadata": {
                     "name": topic.name,
-                    "type": topic.type_name,
+                    "type": topic.definition.type_name,
                     "serialization_format": "cdr",
                     "offered_qos_profiles": qos_maps(topic.qos),
-                    "type_description_hash": topic.type_hash,
+                    # rosbags refuses the whole folder if this is not its own hash of the text. It cannot be
+                    # for an event, which is written out as a message. The channel has the true hash.
+                    "type_description_hash": ""
+                    if topic.definition.is_service_event
+                    else topic.definition.type_hash,
                 },
-                "message_count": sum(file.counts.get(topic.name, 0) for file in bag.files),
+                "message_count": sum(file.counts.get(topic.name, 0) for file in files),
             }
-            for topic in bag.topics
+            for topic in topics
         ],
         "compression_format": "",
         "compression_mode": "",
-        "relative_file_paths": [file.name for file in bag.files],
+        "relative_file_paths": [file.name for file in files],
         "files": [
             {"path": file.name, **_span(file.start_ns, file.end_ns, sum(file.counts.values()))}
-            for file in bag.files
+            for file in files
         ],
-        "custom_data": dict(bag.custom_data) or None,
+        "custom_data": dict(run) or None,
         "ros_distro": "jazzy",
     }
 

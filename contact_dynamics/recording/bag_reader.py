@@ -26,7 +26,6 @@ from contact_dynamics.recording.errors import DamagedLogWarning, NotALogError, U
 from contact_dynamics.recording.file_messages import (
     SUFFIXES,
     Loss,
-    MessageFile,
     Span,
     Topic,
     unpacked_file,
@@ -39,6 +38,7 @@ if TYPE_CHECKING:
     from collections.abc import Collection, Iterator
 
     from contact_dynamics.recording.file_messages import StoredMessage
+    from contact_dynamics.recording.mcap_messages import McapMessages
 
 _MAX_TOLD: Final = 5  # number of damaged places that are listed one by one
 _NAME: Final = re.compile(
@@ -146,12 +146,7 @@ class BagReader:
 
         Texts in another form than MCAP's ros2msg are left out.
         """
-        self.losses = []
-        found: dict[str, str] = {}
-        for path in self.paths:
-            with self._opened(path) as file:
-                found |= file.definitions()
-        return found
+        return {topic.type_name: topic.definition for topic in self.topics() if topic.definition}
 
     def extent(self) -> tuple[int, int]:
         """Return the first and the last log time, ns since the epoch; both are zero without messages.
@@ -220,7 +215,7 @@ class BagReader:
         )
 
     @contextmanager
-    def _opened(self, path: Path) -> Iterator[MessageFile]:
+    def _opened(self, path: Path) -> Iterator[McapMessages | SqliteMessages]:
         """Open a file, and say at the end what was lost."""
         from contact_dynamics.recording.mcap_messages import McapMessages  # a server can do without mcap
 

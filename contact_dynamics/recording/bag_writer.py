@@ -28,7 +28,7 @@ import os
 import shutil
 import time
 from contextlib import AbstractContextManager
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from datetime import datetime, timezone
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
@@ -39,13 +39,11 @@ from contact_dynamics.recording.bag_file import BagFile
 from contact_dynamics.recording.bag_metadata import (
     CHECKSUM_KEY,
     METADATA_FILE,
-    BagSummary,
-    FileSummary,
-    TopicSummary,
-    metadata_file_text,
-    metadata_text,
+    DeclaredTopic,
+    file_text_of,
+    metadata_of,
 )
-from contact_dynamics.recording.cdr_stamp import event_stamp_ns, leading_stamp_ns
+from contact_dynamics.recording.cdr_stamp import event_info, leading_stamp_ns
 from contact_dynamics.recording.definitions import find_definition
 from contact_dynamics.recording.errors import LogExistsError, LogFailedError
 from contact_dynamics.recording.limits import UNLIMITED, LogLimits
@@ -56,8 +54,8 @@ from contact_dynamics.version import version_of_this_package
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
+    from contact_dynamics.recording.bag_metadata import FileSummary
     from contact_dynamics.recording.definitions import TypeDefinition
-    from contact_dynamics.recording.qos import OfferedQos
 
 _LATEST_NS: Final = 2**63 - 1  # rosbag2 keeps times as int64
 _SHORTEST_MESSAGE: Final = 5  # bytes: encapsulation and one of content, which even an empty message has
@@ -94,47 +92,15 @@ def _record_of_gaps(gaps: Sequence[Gap]) -> dict[str, str]:
     return {_GAPS_KEY: json.dumps([gap._asdict() for gap in gaps])} if gaps else {}
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class _DeclaredTopic:
-    """A topic whose messages a log takes.
-
-    Attributes:
-        name: The topic's name with its leading slash.
-        definition: Its type.
-        qos: What its publishers offer.
-    """
-
-    name: str
-    definition: TypeDefinition
-    qos: tuple[OfferedQos, ...]
-
-    @property
-    def summary(self) -> TopicSummary:
-        """The topic's entry of ``metadata.yaml``."""
-        return TopicSummary(
-            name=self.name,
-            type_name=self.definition.type_name,
-            # rosbags refuses the whole folder if this is not its own hash of the text. It cannot be for an
-            # event, which is written out as a message. The channel has the true hash.
-            type_hash="" if self.definition.is_service_event else self.definition.type_hash,
-            qos=self.qos,
-        )
-
-    def stamp_ns(self, data: bytes, *, otherwise_ns: int) -> int:
-        """Return the stamp with which a serialised message begins, ns, or another time if it has none."""
-        if self.definition.is_service_event:
-            stamp_ns = event_stamp_ns(data)
-        elif self.definition.begins_with_stamp:
-            stamp_ns = leading_stamp_ns(data)
-        else:
-            return otherwise_ns
-        return max(0, stamp_ns)  # MCAP has no time before the epoch, but the message itself keeps its stamp
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class _Finished:
-    summary: FileSummary
-    size: int
+def _stamp_ns(definition: TypeDefinition, data: bytes, *, otherwise_ns: int) -> int:
+    """Return the stamp with which a serialised message begins, ns, or another time if it has none."""
+    if definition.is_service_event:
+        stamp_ns = event_info(data).stamp_ns
+    elif definition.begins_with_stamp:
+        stamp_ns = leading_stamp_ns(data)
+    else:
+        return otherwise_ns
+    return max(0, stamp_ns)  # MCAP has no time before the epoch, but the message itself keeps its stamp
 
 
 class BagWriter(AbstractContextManager["BagWriter"]):
@@ -166,8 +132,8 @@ class BagWriter(AbstractContextManager["BagWriter"]):
             raise LogExistsError(f"{self.folder} exists; a log is never overwritten") from error
         self._limits = limits
         self._on_deleted = on_deleted
-        self._topics: dict[str, _DeclaredTopic] = {}
-        self._finished: list[_Finished] = []
+        self._topics: dict[str, DeclaredTopic] = {}
+        self._finished: list[FileSummary] = []
         self._deleted = 0  # files
         self._gaps: list[Gap] = []
         self._earlier_count = 0  # messages of the files before this one
@@ -212,7 +178,7 @@ class BagWriter(AbstractContextManager["BagWriter"]):
         self._check_open()
         if not name.startswith("/") or name in self._topics:
             raise InvalidFieldError("topic", name, "an absolute name that is not declared yet")
-        self._declare(_DeclaredTopic(name=name, definition=find_definition(type_name), qos=offers_of(qos)))
+        self._declare(DeclaredTopic(name=name, definition=find_definition(type_name), qos=offers_of(qos)))
 
     def set_qos(self, topic: str, qos: Any) -> None:
         """Declare another quality of service of a topic, as `add_topic` takes it, for messages from now on.
@@ -244,7 +210,7 @@ class BagWriter(AbstractContextManager["BagWriter"]):
             )
         log_time = _checked_time("log_time_ns", log_time_ns)
         if publish_time_ns is None:
-            publish_time = declared.stamp_ns(data, otherwise_ns=log_time)
+            publish_time = _stamp_ns(declared.definition, data, otherwise_ns=log_time)
         else:
             publish_time = _checked_time("publish_time_ns", publish_time_ns)
         if self._is_full(log_time):
@@ -303,12 +269,12 @@ class BagWriter(AbstractContextManager["BagWriter"]):
         finally:
             self._file.close()
 
-    def _declare(self, topic: _DeclaredTopic) -> None:
-        self._file.add_topic(topic.name, topic.definition, topic.qos)
+    def _declare(self, topic: DeclaredTopic) -> None:
+        self._file.add_topic(topic)
         self._topics[topic.name] = topic
         self._metadata_due_s = 0.0
 
-    def _declared(self, topic: str) -> _DeclaredTopic:
+    def _declared(self, topic: str) -> DeclaredTopic:
         declared = self._topics.get(topic)
         if declared is None:
             raise InvalidFieldError("topic", topic, f"one of {sorted(self._topics)}")
@@ -324,7 +290,7 @@ class BagWriter(AbstractContextManager["BagWriter"]):
 
     def _finish_file(self) -> None:
         self._file.flush()
-        self._file.finish(metadata_text(self._summary([self._file.summary])))
+        self._file.finish(self._metadata([self._file.summary]))
 
     def _is_full(self, log_time_ns: int) -> bool:
         """Return whether the file has reached its limit before a message of some time."""
@@ -344,7 +310,7 @@ class BagWriter(AbstractContextManager["BagWriter"]):
 
     def _leave(self, file: BagFile, following: BagFile) -> None:
         """Go on in another file."""
-        self._finished.append(_Finished(summary=file.summary, size=file.size))
+        self._finished.append(file.summary)
         self._earlier_count += sum(file.summary.counts.values())
         file.close()
         self._file = following
@@ -356,7 +322,7 @@ class BagWriter(AbstractContextManager["BagWriter"]):
             file = self._new_file(number)
             try:
                 for topic in self._topics.values():
-                    file.add_topic(topic.name, topic.definition, topic.qos)
+                    file.add_topic(topic)
                 file.flush()
             except OSError:
                 file.close()
@@ -369,7 +335,8 @@ class BagWriter(AbstractContextManager["BagWriter"]):
 
     def _delete_oldest(self) -> None:
         """Delete the files that the limit has no room for beside the one that begins."""
-        limits, oldest = self._limits, list[_Finished]()
+        limits = self._limits
+        oldest: list[FileSummary] = []
         if limits.kept_bytes is not None and limits.file_bytes is not None:
             room = limits.kept_bytes - limits.file_bytes
             while self._finished and sum(file.size for file in self._finished) > room:
@@ -377,10 +344,10 @@ class BagWriter(AbstractContextManager["BagWriter"]):
         self._deleted += len(oldest)
         self._write_metadata_file()  # first, so that it never names a file that is gone
         for file in oldest:
-            (self.folder / file.summary.name).unlink(missing_ok=True)
+            (self.folder / file.name).unlink(missing_ok=True)
             if self._on_deleted is not None:
                 self._on_deleted(
-                    f"the log's oldest file {file.summary.name} is deleted: "
+                    f"the log's oldest file {file.name} is deleted: "
                     f"{limits.kept_bytes} bytes are kept, as configured"
                 )
 
@@ -389,19 +356,16 @@ class BagWriter(AbstractContextManager["BagWriter"]):
         if self._closed or failure is not None:
             raise LogFailedError(f"{self.path}: {failure or 'the log is closed'}")
 
-    def _summary(self, files: Sequence[FileSummary]) -> BagSummary:
+    def _metadata(self, files: Sequence[FileSummary]) -> dict[str, Any]:
         deleted = {_DELETED_KEY: str(self._deleted)} if self._deleted else {}
-        return BagSummary(
-            files=files,
-            topics=[topic.summary for topic in self._topics.values()],
-            custom_data={**self._run, **_record_of_gaps(self._gaps), **deleted},
-        )
+        run = {**self._run, **_record_of_gaps(self._gaps), **deleted}
+        return metadata_of(files, self._topics.values(), run)
 
     def _write_metadata_file(self) -> None:
         part = self.folder / f".{METADATA_FILE}.part"
         try:
-            files = [*(file.summary for file in self._finished), self._file.summary]
-            part.write_text(metadata_file_text(self._summary(files)), encoding="utf-8")
+            metadata = self._metadata([*self._finished, self._file.summary])
+            part.write_text(file_text_of(metadata), encoding="utf-8")
             part.replace(self.folder / METADATA_FILE)
         except OSError:
             part.unlink(missing_ok=True)

@@ -70,11 +70,6 @@ def event_type_of(data: bytes) -> int | None:
     return data[_EVENT_TYPE_AT] if len(data) > _EVENT_TYPE_AT else None
 
 
-def event_stamp_ns(data: bytes) -> int:
-    """Return the stamp, in ns, of a serialised service event."""
-    return event_info(data).stamp_ns
-
-
 def _unpack(layout: dict[bool, struct.Struct], data: bytes) -> tuple[Any, ...]:
     try:
         return layout[data[1] == _LITTLE_ENDIAN].unpack_from(data)

@@ -14,15 +14,13 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from io import BytesIO
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from contact_dynamics.errors import InvalidFieldError
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterator
+    from collections.abc import Iterator
     from typing import BinaryIO
-
-    from typing_extensions import Self
 
 
 class Topic(NamedTuple):
@@ -93,38 +91,6 @@ class Loss:
         """Say what is lost and why."""
         count = "an unknown number of" if self.messages is None else self.messages
         return f"bytes {self.begin} to {self.end}, {count} messages ({self.reason})"
-
-
-class MessageFile(Protocol):
-    """A file that is open for reading. It is a context manager."""
-
-    @property
-    def losses(self) -> list[Loss]:
-        """The stretches that could not be read so far."""
-
-    def __enter__(self) -> Self:
-        """Open the file."""
-
-    def __exit__(self, *_error: object) -> None:
-        """Close it."""
-
-    def messages(self, topics: Collection[str] | None, span: Span) -> Iterator[StoredMessage]:
-        """Yield the messages of some topics, or of all, in the order in which they were written."""
-
-    def topics(self) -> list[Topic]:
-        """Return the topics that the file describes before its first message or at its end."""
-
-    def definitions(self) -> dict[str, str]:
-        """Return the text of each type that the file describes, by the type's name."""
-
-    def extent(self) -> tuple[int, int] | None:
-        """Return the first and the last log time, ns, or None without messages.
-
-        Where a file has no index, the last one is not known, and it is the first.
-        """
-
-    def run(self) -> dict[str, str] | None:
-        """Return the record of the run that made it, or None if the record is missing or damaged."""
 
 
 MAGICS: Final = {b"\x28\xb5\x2f\xfd": b"zstd", b"\x04\x22\x4d\x18": b"lz4"}

@@ -50,7 +50,7 @@ _ENCODINGS: Final = frozenset({"cdr", ""})
 
 
 class McapMessages:
-    """An MCAP file that is read as a `MessageFile`."""
+    """An MCAP file to read from. `SqliteMessages` has the same methods."""
 
     def __init__(self, path: Path) -> None:
         """Name the file, which is opened later."""
@@ -110,19 +110,11 @@ class McapMessages:
                 numbers.add(record.id)
         return [topic for number in sorted(numbers) if (topic := definitions.topic(number)) is not None]
 
-    def definitions(self) -> dict[str, str]:
-        """Return the text of each type that is described before the first message or at the end."""
-        schemas: list[Schema] = []
-        for record in self._walk.records():
-            if isinstance(record, Message):
-                break
-            if isinstance(record, Schema):
-                schemas.append(record)
-        schemas += (self._walk.summary or Summary()).schemas.values()
-        return {schema.name: text for schema in schemas if (text := _ros2msg(schema))}
-
     def extent(self) -> tuple[int, int] | None:
-        """Return the first and the last log time, ns, or None without messages; see `MessageFile`."""
+        """Return the first and the last log time, ns, or None without messages.
+
+        Without an index the last one is not known, and it is the first.
+        """
         chunks = (self._walk.summary or Summary()).chunks
         filled = [chunk for chunk in chunks if chunk.message_end_time > 0]
         if filled:

@@ -8,20 +8,19 @@ and a ``metadata.yaml`` that fits. The damaged log stays as it is.
 from __future__ import annotations
 
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
 from contact_dynamics.errors import NotSupportedError
 from contact_dynamics.recording.bag_file import BagFile
 from contact_dynamics.recording.bag_metadata import (
     METADATA_FILE,
-    BagSummary,
-    TopicSummary,
-    metadata_file_text,
-    metadata_text,
+    DeclaredTopic,
+    file_text_of,
+    metadata_of,
 )
 from contact_dynamics.recording.bag_reader import BagReader
-from contact_dynamics.recording.definitions import EVENT_SUFFIX, TypeDefinition
+from contact_dynamics.recording.definitions import TypeDefinition
 from contact_dynamics.recording.errors import LogExistsError
 from contact_dynamics.recording.file_messages import Span, unpacked_file
 from contact_dynamics.recording.limits import Compression
@@ -38,23 +37,10 @@ if TYPE_CHECKING:
 _TOLD_EVERY: Final = 1000  # messages
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Recovered:
-    """What came of a recovery.
-
-    Attributes:
-        folder: The new log.
-        messages: Number of messages in it.
-        losses: What of the damaged log could not be read.
-    """
-
-    folder: Path
-    messages: int
-    losses: tuple[Loss, ...]
-
-
-def recover(path: Path, folder: Path, *, on_progress: Callable[[int], object] = lambda _: None) -> Recovered:
-    """Write what can be read of a log into a new folder.
+def recover(
+    path: Path, folder: Path, *, on_progress: Callable[[int], object] = lambda _: None
+) -> tuple[int, list[Loss]]:
+    """Write what can be read of a log into a new folder; return how many messages, and what is lost.
 
     Args:
         path: the log: its folder, or one of its files.
@@ -85,11 +71,13 @@ def recover(path: Path, folder: Path, *, on_progress: Callable[[int], object] = 
         raise
 
 
-def _rewritten(paths: Sequence[Path], folder: Path, on_progress: Callable[[int], object]) -> Recovered:
+def _rewritten(
+    paths: Sequence[Path], folder: Path, on_progress: Callable[[int], object]
+) -> tuple[int, list[Loss]]:
     run: dict[str, str] = {}  # what the files before have told, until one tells another
     losses: list[Loss] = []
     summaries: list[FileSummary] = []
-    topics: dict[str, TopicSummary] = {}
+    topics: dict[str, DeclaredTopic] = {}
     written = 0
 
     def told(count: int) -> None:
@@ -107,16 +95,16 @@ def _rewritten(paths: Sequence[Path], folder: Path, on_progress: Callable[[int],
         losses += [replace(loss, path=each) for loss in lost]
         written += sum(summary.counts.values())
         summaries.append(summary)
-    bag = BagSummary(files=summaries, topics=list(topics.values()), custom_data=run)
-    (folder / METADATA_FILE).write_text(metadata_file_text(bag), encoding="utf-8")
-    return Recovered(folder=folder, messages=written, losses=tuple(losses))
+    metadata = metadata_of(summaries, topics.values(), run)
+    (folder / METADATA_FILE).write_text(file_text_of(metadata), encoding="utf-8")
+    return written, losses
 
 
 def _rewrite(
     damaged: McapMessages,
     target: Path,
     run: dict[str, str],
-    topics: dict[str, TopicSummary],
+    topics: dict[str, DeclaredTopic],
     *,
     on_written: Callable[[int], object],
 ) -> FileSummary:
@@ -128,7 +116,8 @@ def _rewrite(
             topic = message.topic
             if defined.get(topic.name) != topic:
                 defined[topic.name] = topic
-                topics[topic.name] = _defined(file, topic)
+                topics[topic.name] = _declared(topic)
+                file.add_topic(topics[topic.name])
             file.write(
                 topic.name,
                 message.data,
@@ -138,26 +127,17 @@ def _rewrite(
             if count % _TOLD_EVERY == 0:
                 on_written(count)
         file.flush()
-        of_file = [topics[name] for name in defined]
-        file.finish(metadata_text(BagSummary(files=[file.summary], topics=of_file, custom_data=run)))
+        file.finish(metadata_of([file.summary], [topics[name] for name in defined], run))
     finally:
         file.close()
     return file.summary
 
 
-def _defined(file: BagFile, topic: Topic) -> TopicSummary:
-    """Define a topic in a new file as it was in the old one."""
-    qos = tuple(offered_qos(topic.qos))
+def _declared(topic: Topic) -> DeclaredTopic:
     definition = TypeDefinition(
         type_name=topic.type_name,
         text=topic.definition,
         type_hash=topic.type_hash,
         begins_with_stamp=False,  # the times of the messages are known
     )
-    file.add_topic(topic.name, definition, qos)
-    return TopicSummary(
-        name=topic.name,
-        type_name=topic.type_name,
-        type_hash="" if topic.type_name.endswith(EVENT_SUFFIX) else topic.type_hash,
-        qos=qos,
-    )
+    return DeclaredTopic(name=topic.name, definition=definition, qos=tuple(offered_qos(topic.qos)))

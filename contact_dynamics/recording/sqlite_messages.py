@@ -35,7 +35,7 @@ _MAX_ID: Final = 2**63 - 1
 
 
 class SqliteMessages:
-    """A database that is read as a `MessageFile`."""
+    """A database to read from, with the methods of `McapMessages`."""
 
     def __init__(self, path: Path) -> None:
         """Name the file, which is opened later."""
@@ -83,15 +83,6 @@ class SqliteMessages:
         """Return the topics of the file."""
         return list(self._topics().values())
 
-    def definitions(self) -> dict[str, str]:
-        """Return the text of each type. Bags from before ROS 2 Iron have none."""
-        with suppress(sqlite3.Error):
-            rows = self._database.execute(
-                "SELECT topic_type, encoding, encoded_message_definition FROM message_definitions"
-            )
-            return {str(name): str(text) for name, encoding, text in rows if encoding == "ros2msg" and text}
-        return {}
-
     def extent(self) -> tuple[int, int] | None:
         """Return the first and the last log time, ns, or None without messages that can be reached."""
         with suppress(sqlite3.Error):
@@ -127,8 +118,17 @@ class SqliteMessages:
         message = f"{self._path}: {error}"
         raise NotALogError(message) from None
 
+    def _definitions(self) -> dict[str, str]:
+        """Return the text of each type. Bags from before ROS 2 Iron have none."""
+        with suppress(sqlite3.Error):
+            rows = self._database.execute(
+                "SELECT topic_type, encoding, encoded_message_definition FROM message_definitions"
+            )
+            return {str(name): str(text) for name, encoding, text in rows if encoding == "ros2msg" and text}
+        return {}
+
     def _topics(self) -> dict[int, Topic]:
-        texts = self.definitions()
+        texts = self._definitions()
         try:
             columns = {row[1] for row in self._database.execute("PRAGMA table_info(topics)")}
             rows = self._database.execute(_TOPICS if _QOS in columns else _TOPICS_OF_DASHING).fetchall()

@@ -29,13 +29,15 @@ def main(arguments: list[str]) -> int:
     )
     progress = Progress(str(path))
     try:
-        recovered = recover(path, folder, on_progress=lambda count: progress.tell(count, f"{count} messages"))
+        messages, losses = recover(
+            path, folder, on_progress=lambda count: progress.tell(count, f"{count} messages")
+        )
     except (ContactDynamicsError, OSError) as error:
         print(f"contact-dynamics recover: {error}", file=sys.stderr)
         return REFUSED
     finally:
         progress.end()
-    print(f"{recovered.folder}: {recovered.messages} messages")
-    for loss in recovered.losses:
+    print(f"{folder}: {messages} messages")
+    for loss in losses:
         print(f"  lost of {loss.path}: {loss}")
     return 0
