@@ -31,11 +31,10 @@ from contact_dynamics.recording.service_calls import ServiceCall
 from contact_dynamics.replay.of_log import server_of_log, stand_in
 from contact_dynamics.replay.timeline import CLOCK, EVERYTHING, in_order, part_of
 from contact_dynamics.replay.verify import differences
-from contact_dynamics.validation import check_not_negative
 from msg_adapters.status import code_name
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping
+    from collections.abc import Callable, Iterator, Mapping, Sequence
     from pathlib import Path
 
     from contact_dynamics.nodes.parameter_reader import ParameterSource
@@ -265,44 +264,29 @@ QUESTIONS: Final[Mapping[str, Callable[..., Question[Answer]]]] = {
 """What can be asked about a body and a state."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Asking:
-    """What is asked of a recording, and when.
-
-    Attributes:
-        names: Which questions, of `QUESTIONS`. Without any, the states alone are read.
-        bodies: The bodies that are asked about. Without any, all that are configured are.
-        every: s, by the stamps, from one question about a body to the next. With zero each state has one.
-        fit_window: s. The motion is fitted to the states of this last time, with zero to none but the newest.
-
-    Raises:
-        InvalidFieldError: a question is not known, or a time is negative or not finite.
-    """
-
-    names: tuple[str, ...] = ()
-    bodies: tuple[str, ...] = ()
-    every: float = 0.1
-    fit_window: float = 0.0
-
-    def __post_init__(self) -> None:
-        """Check all of it."""
-        for name in self.names:
-            if name not in QUESTIONS:
-                raise InvalidFieldError("ask", name, f"one of {', '.join(QUESTIONS)}")
-        check_not_negative("every", self.every)
-        check_not_negative("fit_window", self.fit_window)
-
-
 class AskedEvents(Events):
     """A recording as a source of events: its states, and answers to questions that are asked now."""
 
-    def __init__(self, path: Path, source: ParameterSource, *, asking: Asking, span: Span) -> None:
+    def __init__(
+        self,
+        path: Path,
+        source: ParameterSource,
+        *,
+        names: Sequence[str],
+        bodies: Sequence[str],
+        every: float,
+        fit_window: float,
+        span: Span,
+    ) -> None:
         """Configure what would have been a server.
 
         Args:
             path: the recording: its folder, or one of its files.
             source: how the server would have been configured.
-            asking: what is asked.
+            names: which questions are asked, of `QUESTIONS`. Without any, the states alone are read.
+            bodies: the bodies that are asked about. Without any, all that are configured are.
+            every: s, by the stamps, from one question about a body to the next. With zero each state has one.
+            fit_window: s. The motion is fitted to the states of this last time, with zero to the newest one.
             span: which part of it is read.
 
         Raises:
@@ -315,10 +299,11 @@ class AskedEvents(Events):
         from contact_dynamics.replay.again import ServerAgain  # here, for it imports what stands in for ROS
 
         super().__init__(reader, ServerAgain(source))
-        self._asking = asking
+        self._names, self._bodies = names, bodies
+        self._every, self._fit_window = every, fit_window
         self._span = span
         known = [body.name for body in self.world.bodies]
-        for name in asking.bodies:
+        for name in bodies:
             if name not in known:
                 raise InvalidFieldError("body", name, f"one of {known}")
         self._numbers = dict.fromkeys(QUESTIONS, 0)
@@ -327,9 +312,9 @@ class AskedEvents(Events):
     @property
     def why_empty(self) -> str:
         """Why there is no question, in words, where there is none."""
-        if not self._asking.names:
+        if not self._names:
             return f"no prediction was requested; --ask must be one of {', '.join(QUESTIONS)}"
-        bodies = ", ".join(self._asking.bodies or [body.name for body in self.world.bodies]) or "no body"
+        bodies = ", ".join(self._bodies or [body.name for body in self.world.bodies]) or "no body"
         topics = ", ".join(sorted(self._server.topics - {CLOCK})) or "none"
         return f"the configured topics ({topics}) contain no state of {bodies}; --topics selects others"
 
@@ -344,29 +329,29 @@ class AskedEvents(Events):
                 for body_name, state in self._server.receive(message, is_live=False):
                     yield StateCame(body_name=body_name, state=state)
                     if self._is_due(body_name, state.stamp_ns):
-                        for name in self._asking.names:
+                        for name in self._names:
                             yield self._asked(name, body_name, state.stamp_ns, message.log_time_ns)
 
     def _is_due(self, body_name: str, stamp_ns: int) -> bool:
-        if self._asking.bodies and body_name not in self._asking.bodies:
+        if self._bodies and body_name not in self._bodies:
             return False
         due_ns = self._next_ns.get(body_name)
         if due_ns is not None and stamp_ns < due_ns:
             return False
-        self._next_ns[body_name] = ns_after(stamp_ns, self._asking.every)
+        self._next_ns[body_name] = ns_after(stamp_ns, self._every)
         return True
 
     def _asked(self, name: str, body_name: str, stamp_ns: int, log_time_ns: int) -> Answered:
         self._numbers[name] += 1
         answer, status, message = None, OK, ""
-        question = QUESTIONS[name](body=body_name, state=PublishedState(fit_window=self._asking.fit_window))
+        question = QUESTIONS[name](body=body_name, state=PublishedState(fit_window=self._fit_window))
         self._server.asked_ns = stamp_ns
         try:
             answer = ask(question, self._server.context)
         except ContactDynamicsError as error:
             status, message = code_name(error), str(error)
         service = service_of(question)
-        window = {"fit_window": self._asking.fit_window} if self._asking.fit_window > 0.0 else {}
+        window = {"fit_window": self._fit_window} if self._fit_window > 0.0 else {}
         return Answered(
             service_name=service.name,
             service=service,

@@ -30,7 +30,7 @@ from contact_dynamics.replay.arguments import (
     replay_parser,
     stamps_as_logged,
 )
-from contact_dynamics.replay.events import AskedEvents, Asking, LoggedEvents, status_of
+from contact_dynamics.replay.events import AskedEvents, LoggedEvents, status_of
 from contact_dynamics.replay.progress import Progress
 from contact_dynamics.replay.rows import Rows
 from contact_dynamics.replay.table_file import open_table
@@ -41,6 +41,7 @@ if TYPE_CHECKING:
     import argparse
     from collections.abc import Iterator, Sequence
 
+    from contact_dynamics.nodes.parameter_reader import ParameterSource
     from contact_dynamics.recording.bag_reader import LoggedMessage
     from contact_dynamics.recording.service_calls import ServiceCall
     from contact_dynamics.replay.events import Events
@@ -169,19 +170,7 @@ def _view(given: argparse.Namespace) -> int:
     progress = _progress(path)
     if given.serve:  # stopped in either way, it closes what it drew to
         signal.signal(signal.SIGTERM, signal.default_int_handler)
-
-    def told(where: str) -> None:
-        if given.serve:
-            print(f"{path}: {where}; press Ctrl-C to stop", file=sys.stderr, flush=True)
-
-    drawn = draw(
-        events,
-        sinks,
-        surface_side=given.surface_side,
-        on_open=told,
-        on_problem=lambda problem: print(f"contact-dynamics replay: {problem}", file=sys.stderr),
-        on_progress=lambda stamp_ns: progress.tell(stamp_ns, "drawing"),
-    )
+    drawn = draw(str(path), events, sinks, surface_side=given.surface_side, progress=progress)
     progress.end()
     _tell(str(path), f"drew {drawn.states} states and {drawn.answers} answers", events)
     if not drawn.took_all:
@@ -211,19 +200,25 @@ def _is_bag(folder: Path) -> bool:
 
 def _events(path: Path, given: argparse.Namespace) -> Events:
     span = _span(path, given)
-    asking = Asking(
-        names=tuple(given.ask), bodies=tuple(given.body), every=given.every, fit_window=given.fit_window
-    )
+    if given.config is None and not given.ask:
+        return LoggedEvents(path, span=span)
+    source: ParameterSource
     if given.config is not None:
-        return AskedEvents(path, ParameterFile(Path(given.config), given.topics), asking=asking, span=span)
-    if asking.names:
-        run = BagReader(path).run()
-        if not run:
-            message = f"{path}: the log does not contain a configuration; specify one with --config"
-            raise NotALogError(message)
-        logged = LoggedParameters(run)
-        return AskedEvents(path, logged, asking=asking, span=span)
-    return LoggedEvents(path, span=span)
+        source = ParameterFile(Path(given.config), given.topics)
+    elif run := BagReader(path).run():
+        source = LoggedParameters(run)
+    else:
+        message = f"{path}: the log does not contain a configuration; specify one with --config"
+        raise NotALogError(message)
+    return AskedEvents(
+        path,
+        source,
+        names=given.ask,
+        bodies=given.body,
+        every=given.every,
+        fit_window=given.fit_window,
+        span=span,
+    )
 
 
 def _span(path: Path, given: argparse.Namespace) -> Span:

@@ -3,11 +3,11 @@
 
 from __future__ import annotations
 
+import sys
 import time
 from contextlib import suppress
-from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 from contact_dynamics.replay.events import StateCame, WorldChanged
 from contact_dynamics.viewing.picture import Picture
@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from contact_dynamics.replay.events import Answered, Event, Events
+    from contact_dynamics.replay.progress import Progress
 
 _LOOK_S: Final = 0.2  # how long what is served waits between two looks at its sinks
 
@@ -25,70 +26,51 @@ _AT_ONCE: Final = 1000
 """States that are drawn together, because a batch costs what a single state does."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Drawn:
-    """What came of a drawing.
-
-    Attributes:
-        states: Number of states.
-        answers: Number of answers, with the refused ones.
-        took_all: Whether the sinks took all of it.
-        viewer_failed: Whether a viewer was asked for that could not be reached, or failed later.
-    """
+class Drawn(NamedTuple):
+    """What came of a drawing."""
 
     states: int
-    answers: int
-    took_all: bool
-    viewer_failed: bool
+    answers: int  # with the refused ones
+    took_all: bool  # whether the sinks took all of it
+    viewer_failed: bool  # whether a viewer could not be reached, or failed later
 
 
-def draw(
-    events: Events,
-    sinks: Sinks,
-    *,
-    surface_side: float,
-    on_open: Callable[[str], object],
-    on_problem: Callable[[str], object],
-    on_progress: Callable[[int], object],
-) -> Drawn:
-    """Draw a recording, and return what came of it. What is served stays so until `KeyboardInterrupt`.
+def draw(name: str, events: Events, sinks: Sinks, *, surface_side: float, progress: Progress) -> Drawn:
+    """Draw the recording of that name. What is served stays so until `KeyboardInterrupt`.
 
-    Args:
-        events: the recording.
-        sinks: where to draw to.
-        surface_side: m, the side of the squares that stand for surfaces.
-        on_open: a function that is called with the address of the picture, and again when it is complete.
-        on_problem: a function that is told, in words, what cannot be drawn, each kind once.
-        on_progress: a function that is told the stamp of what is drawn, ns.
+    What cannot be drawn is told on the terminal, each kind once. Surfaces are squares of ``surface_side``, m.
 
     Raises:
         NowhereToDrawError: a viewer was asked for alone, and there is none.
         OSError: the file cannot be written.
     """
     raise_errors()
-    recording = OpenRecording(sinks, on_problem=on_problem)
-    on_open(recording.description)
-    drawing = _Drawing(
-        Picture(recording.stream, events.world, surface_side=surface_side), on_problem=on_problem
-    )
+    recording = OpenRecording(sinks, on_problem=_tell_problem)
+    drawing = _Drawing(Picture(recording.stream, events.world, surface_side=surface_side))
+    is_served = sinks.viewer is ViewerMode.SERVE
+    if is_served:
+        _tell_server(name, recording.description)
     try:
         for event in events:
             drawing.show(event)
             recording.tend()
             if isinstance(event, StateCame):
-                on_progress(event.state.stamp_ns)
+                progress.tell(event.state.stamp_ns, "drawing")
         drawing.finish(look_at_all=sinks.viewer is ViewerMode.NONE)
-        if sinks.viewer is ViewerMode.SERVE and not recording.viewer_failed:
-            on_open(f"all {drawing.states} states and {drawing.answers} answers are drawn")
+        if is_served and not recording.viewer_failed:
+            _tell_server(name, f"all {drawing.states} states and {drawing.answers} answers are drawn")
             _serve(recording)
     finally:  # also if the user stops it: what is drawn so far can be opened
         took_all = recording.close()
-    return Drawn(
-        states=drawing.states,
-        answers=drawing.answers,
-        took_all=took_all,
-        viewer_failed=recording.viewer_failed,
-    )
+    return Drawn(drawing.states, drawing.answers, took_all, recording.viewer_failed)
+
+
+def _tell_problem(problem: str) -> None:
+    print(f"contact-dynamics replay: {problem}", file=sys.stderr)
+
+
+def _tell_server(name: str, where: str) -> None:
+    print(f"{name}: {where}; press Ctrl-C to stop", file=sys.stderr, flush=True)
 
 
 def _serve(recording: OpenRecording) -> None:
@@ -102,11 +84,10 @@ def _serve(recording: OpenRecording) -> None:
 class _Drawing:
     """A picture, and the states that wait to be drawn together."""
 
-    def __init__(self, picture: Picture, *, on_problem: Callable[[str], object]) -> None:
+    def __init__(self, picture: Picture) -> None:
         self.states = 0
         self.answers = 0
         self._picture = picture
-        self._on_problem = on_problem
         self._told: set[str] = set()
         self._waiting = StatesInTurn(picture, guarded=self._guarded)
 
@@ -148,4 +129,4 @@ class _Drawing:
         except Exception as error:  # noqa: BLE001  what one answer has must not cost the picture of the rest
             if kind not in self._told:
                 self._told.add(kind)
-                self._on_problem(f"cannot draw {kind}; not told again: {type(error).__name__}: {error}")
+                _tell_problem(f"cannot draw {kind}; not told again: {type(error).__name__}: {error}")
