@@ -13,7 +13,7 @@ import numpy as np
 from contact_dynamics.calibration.estimation import Data, Fitting, extra_spread
 from contact_dynamics.calibration.first_flights import gravity_and_center, ratios_of_moments
 from contact_dynamics.calibration.free import BY_STRIKES, Free
-from contact_dynamics.calibration.heights import at_rests, at_strikes
+from contact_dynamics.calibration.heights import at_rests
 from contact_dynamics.calibration.impacts import jump_covariances, jumps
 from contact_dynamics.calibration.model import RATIO_STEP, Model
 from contact_dynamics.calibration.observed import observe
@@ -185,7 +185,6 @@ def _data(model: Model, observed: Sequence[Observed], free: Sequence[Free]) -> D
         gravity=gravity,
         center=center,
         ratios=ratios,
-        struck=at_strikes(strikes),
         resting=at_rests(observed, described, model.half_size),
     )
 

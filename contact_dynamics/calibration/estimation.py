@@ -76,7 +76,6 @@ class Data(Record):
         gravity: Gravity of each recording.
         center: What first flights say of the mass centre.
         ratios: What they say of the ratios of moments, or None where these are not free.
-        struck: The corners at strikes.
         resting: The corners at rests.
     """
 
@@ -85,7 +84,6 @@ class Data(Record):
     gravity: Gravity
     center: Straightness
     ratios: Straightness | None
-    struck: Touching
     resting: Touching
 
 
@@ -194,7 +192,7 @@ class Fitting:
         heights = {Free.ROUNDING, Free.SIZE, Free.SURFACE_HEIGHT} & set(self.free)
         both = heights >= {Free.SIZE, Free.SURFACE_HEIGHT}
         faces = Free.ROUNDING in self.model.standard
-        if not heights or both or not faces or not len(self.data.struck.stds):
+        if not heights or both or not faces or not len(self.data.strikes):
             return moved
         instead = Free.SIZE if Free.SURFACE_HEIGHT in heights else Free.SURFACE_HEIGHT
         free = [*(set(self.free) - heights), Free.ROUNDING, instead]
@@ -248,7 +246,7 @@ class Fitting:
             spin = extra_spread(off[:, 3:], covariances[:, 3:, 3:])
         heights = [
             extra_spread(touch.heights(described)[:, None], touch.stds[:, None, None] ** 2)
-            for touch in (data.struck, data.resting)
+            for touch in (data.strikes, data.resting)
         ]
         return Spread(
             velocity=velocity,
@@ -269,7 +267,7 @@ class Fitting:
         if not set(self.free) & set(GEOMETRY):
             return found
         for name, touch, extra in (
-            ("heights at impacts", data.struck, spread.strike_height),
+            ("heights at impacts", data.strikes, spread.strike_height),
             ("heights at rest", data.resting, spread.rest_height),
         ):
             if len(touch.stds) == 0:

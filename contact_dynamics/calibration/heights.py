@@ -17,7 +17,6 @@ if TYPE_CHECKING:
     from contact_dynamics.calibration.first_flights import IntArray
     from contact_dynamics.calibration.model import Described
     from contact_dynamics.calibration.observed import Observed
-    from contact_dynamics.calibration.strikes import Strikes
     from contact_dynamics.validation import FloatArray
 
 SAME_HEIGHT: Final = 0.15
@@ -26,7 +25,7 @@ SAME_HEIGHT: Final = 0.15
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class Touching(Record):
-    """Corners that touch at n moments.
+    """Corners that touch at n moments: those at rest, and those that strike.
 
     Attributes:
         recordings: (n,), numbers of the recordings. surfaces: (n,), of the surfaces. corners: (n,), of the
@@ -41,6 +40,10 @@ class Touching(Record):
     q_WB: FloatArray
     stds: FloatArray
 
+    def __len__(self) -> int:
+        """Return the number of moments."""
+        return len(self.recordings)
+
     def heights(self, described: Described) -> FloatArray:
         """Return the corners' heights above their surfaces, (n,), m."""
         points = self.p_W + np.einsum("nij,nj->ni", matrices_of(self.q_WB), described.corners[self.corners])
@@ -49,18 +52,6 @@ class Touching(Record):
         )
         heights: FloatArray = above - described.rounding
         return heights
-
-
-def at_strikes(strikes: Strikes) -> Touching:
-    """Return the corners that strike."""
-    return Touching(
-        recordings=strikes.recordings,
-        surfaces=strikes.surfaces,
-        corners=strikes.corners,
-        p_W=strikes.p_W,
-        q_WB=strikes.q_WB,
-        stds=strikes.place_stds,
-    )
 
 
 def at_rests(observed: Sequence[Observed], described: Described, half_size: float) -> Touching:

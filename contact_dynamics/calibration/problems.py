@@ -241,7 +241,7 @@ def bent_surfaces(data: Data, described: Described, names: Sequence[str], half_s
     found = []
     for surface, name in enumerate(names):
         rows = []
-        for touch in (data.resting, data.struck):
+        for touch in (data.resting, data.strikes):
             mine = touch.surfaces == surface
             heights = touch.heights(described)
             moments = {tuple(place) for place in touch.p_W[mine].tolist()}

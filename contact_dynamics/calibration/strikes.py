@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from contact_dynamics.calibration.heights import Touching
 from contact_dynamics.measured.flight_fit import fit_flight
 from contact_dynamics.records import Record
 from contact_dynamics.rigid_body.body import MassProperties
@@ -23,7 +24,6 @@ from contact_dynamics.tolerances import SMALLEST
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from contact_dynamics.calibration.first_flights import IntArray
     from contact_dynamics.calibration.observed import Observed
     from contact_dynamics.measured.flight_fit import MeasuredState
     from contact_dynamics.measured.motion import MeasuredMotion
@@ -65,29 +65,12 @@ class Side(Record):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class Strikes(Record):
-    """All strikes of all recordings.
+class Strikes(Touching):
+    """All strikes of all recordings, with the flights on both sides."""
 
-    Attributes:
-        recordings: (n,), numbers of the recordings. surfaces: (n,), numbers of the surfaces. corners: (n,),
-        numbers of the corners. times: (n,), s. q_WB: (n, 4), attitudes. p_W: (n, 3), m, places of the
-        configured mass centre. place_stds: (n,), m, of a coordinate.
-        before: The flights before. after: The flights after.
-    """
-
-    recordings: IntArray
-    surfaces: IntArray
-    corners: IntArray
-    times: FloatArray
-    q_WB: FloatArray
-    p_W: FloatArray
-    place_stds: FloatArray
+    times: FloatArray  # (n,), s
     before: Side
     after: Side
-
-    def __len__(self) -> int:
-        """Return the number of strikes."""
-        return len(self.times)
 
 
 def strikes_of(observed: Sequence[Observed], *, ratios: FloatArray | None) -> Strikes:
@@ -110,7 +93,7 @@ def strikes_of(observed: Sequence[Observed], *, ratios: FloatArray | None) -> St
         times=np.array([strike.time for _, _, strike in found]),
         q_WB=np.array([before.state.q_WB for before, _ in states]).reshape(-1, 4),
         p_W=np.array(places).reshape(-1, 3),
-        place_stds=np.array([_place_std(*both) for both in states]),
+        stds=np.array([_place_std(*both) for both in states]),
         before=before,
         after=after,
     )
