@@ -28,12 +28,10 @@ from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.measured.recorded_toss import Toss
 from contact_dynamics.motion.velocity_estimate import FEWEST_FRAMES, causal_velocities, frames_in_window
 from contact_dynamics.rigid_body.body import MassProperties
-from contact_dynamics.rotations.many import matrices_of
 from contact_dynamics.validation import check_array
 from contact_dynamics.world import Body, Surface, box_vertices
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
     from pathlib import Path
 
     from contact_dynamics.validation import FloatArray
@@ -64,21 +62,9 @@ POSITION_NOISE: Final = 2.5e-5
 ORIENTATION_NOISE: Final = 3.5e-4
 """rad. The same fits leave 0.017 to 0.024 degrees in the rotation vectors."""
 
-MARGIN: Final = 0.02
-"""m. A corner strikes alone if the next one is at least this much higher."""
 
-FLIGHT_BETWEEN: Final = 10
-"""Least number of frames between the first strike and the second. Eight in flight give the velocity."""
-
-STRIKE_HEIGHT: Final = 0.01
-"""m. A corner that turns back below this height struck the board. Above it, the cube's rotation turned it."""
-
-RISE: Final = 0.003
-"""m. Between two strikes the cube flew if its lowest corner rose by this much, far above its jitter."""
-
-
-def read_cube_toss(path: Path, *, index: int | None = None) -> Toss:
-    """Return toss ``index`` of the file. If it is None, `default_index` chooses.
+def read_cube_toss(path: Path, *, index: int = 0) -> Toss:
+    """Return toss ``index`` of the file, from 0.
 
     The first `FEWEST_FRAMES` - 1 frames are left out, since no velocity is known there.
 
@@ -87,8 +73,6 @@ def read_cube_toss(path: Path, *, index: int | None = None) -> Toss:
     """
     data, offsets = _load(path)
     count = len(offsets) - 1
-    if index is None:
-        index = default_index(data, offsets)
     if not 0 <= index < count:
         raise InvalidFieldError(f"{path.name}: index", index, f"0 to {count - 1}")
     rows = data[offsets[index] : offsets[index + 1]]
@@ -119,41 +103,6 @@ def count_cube_tosses(path: Path) -> int:
         InvalidFieldError: an array is missing or has another shape.
     """
     return len(_load(path)[1]) - 1
-
-
-def default_index(data: FloatArray, offsets: Sequence[int]) -> int:
-    """Return the toss with the longest flight that ends in a clean strike of a single corner.
-
-    A strike is clean if every other corner is `MARGIN` higher, and the next strike comes at least
-    `FLIGHT_BETWEEN` frames later. Among equally long flights, the one with the longest flight after the
-    strike is returned.
-    """
-    heights = data[:, 3, None] + (matrices_of(data[:, 4:8]) @ CUBE.vertices_B.T)[:, 2, :]
-    heights.sort(axis=1)
-    found = []
-    for index in range(len(offsets) - 1):
-        lowest, second = heights[offsets[index] : offsets[index + 1], :2].T
-        strikes = _strikes(lowest)
-        if len(strikes) < 2:
-            continue
-        first, next_one = strikes[:2]
-        alone = second[first] - lowest[first] >= MARGIN
-        rose = lowest[first:next_one].max() - lowest[first] >= RISE
-        if alone and rose and next_one - first >= FLIGHT_BETWEEN:
-            found.append((first, next_one - first, index))
-    if not found:
-        raise InvalidFieldError(
-            "TOSS", "no toss with a clean impact of a single corner", "an index, as in tosses.npz#17"
-        )
-    return max(found)[2]
-
-
-def _strikes(lowest: FloatArray) -> list[int]:
-    """Return the frames at which the lowest corner's height, (n,), m, turns to rising near the board."""
-    inner = lowest[1:-1]
-    turns = (inner < lowest[:-2]) & (inner <= lowest[2:]) & (inner < STRIKE_HEIGHT)
-    frames: list[int] = (np.flatnonzero(turns) + 1).tolist()
-    return frames
 
 
 def _load(path: Path) -> tuple[FloatArray, list[int]]:

@@ -19,8 +19,8 @@ DEFAULT_RECORDING: Final = Path(__file__).parent / "tosses" / "brick.csv"
 def read_toss(path: str | Path = DEFAULT_RECORDING, *, index: int | None = None) -> Toss:
     """Return the toss that ``path`` names: a recording in this project's CSV, or a cube toss in an `.npz`.
 
-    ``index``, or a path that ends in ``#17`` or ``:17``, selects one of the tosses of an `.npz`. Without
-    either, `cube_tosses.default_index` selects it.
+    ``index``, or a path that ends in ``#17`` or ``:17``, selects one of the tosses of an `.npz`. The default
+    is the first.
 
     Raises:
         FileNotFoundError: there is no such file.
@@ -33,7 +33,7 @@ def read_toss(path: str | Path = DEFAULT_RECORDING, *, index: int | None = None)
     if not file.is_file():
         raise FileNotFoundError(f"TOSS must be a toss recording (.csv or .npz), got no file {str(file)!r}")
     if file.suffix == ".npz":
-        return read_cube_toss(file, index=chosen)
+        return read_cube_toss(file, index=chosen or 0)
     if file.suffix == ".csv":
         if chosen is not None:
             raise InvalidFieldError("TOSS", str(path), "a path without an index, since a .csv has one toss")

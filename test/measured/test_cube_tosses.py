@@ -76,36 +76,11 @@ def test_an_index_selects_a_toss(tmp_path: Path) -> None:
     path = save(tmp_path / "t.npz", *(toss_table(tilt=1.0, flight=f, between=14) for f in (10, 14, 12)))
     lengths = [len(read_toss(path, index=index)) for index in range(3)]
     assert lengths == [f + 14 + 30 - (FEWEST_FRAMES - 1) for f in (10, 14, 12)]
+    assert len(read_toss(path)) == lengths[0]
     assert len(read_toss(f"{path}#1")) == lengths[1]
     assert len(read_toss(f"{path}:2")) == lengths[2]
     with pytest.raises(InvalidFieldError, match="index must be 0 to 2, got 3"):
         read_toss(f"{path}#3")
-
-
-def test_the_longest_flight_is_the_default(tmp_path: Path) -> None:
-    tables = [toss_table(tilt=1.0, flight=f, between=14) for f in (10, 18, 12)]
-    assert read_toss(save(tmp_path / "t.npz", *tables)).source.startswith("measured toss 1 ")
-
-
-def test_among_equal_flights_the_longer_second_flight_is_the_default(tmp_path: Path) -> None:
-    tables = [toss_table(tilt=1.0, flight=12, between=b) for b in (13, 16, 14)]
-    assert read_toss(save(tmp_path / "t.npz", *tables)).source.startswith("measured toss 1 ")
-
-
-@pytest.mark.parametrize(
-    "unclean",
-    [
-        toss_table(tilt=0.0, flight=20, between=14),  # four corners at once
-        toss_table(tilt=0.1, flight=20, between=14),  # nearly
-        toss_table(tilt=1.0, flight=20, between=5),  # strikes again too soon
-        toss_table(tilt=1.0, flight=20, between=14)[:10],  # never strikes
-    ],
-)
-def test_a_longer_flight_with_an_unclean_strike_is_not(tmp_path: Path, unclean: np.ndarray) -> None:
-    clean = toss_table(tilt=1.0, flight=10, between=14)
-    assert read_toss(save(tmp_path / "t.npz", unclean, clean)).source.startswith("measured toss 1 ")
-    with pytest.raises(InvalidFieldError, match="no toss with a clean impact"):
-        read_toss(save(tmp_path / "u.npz", unclean))
 
 
 def test_velocities_come_from_the_poses_and_have_no_lag(tmp_path: Path) -> None:
