@@ -23,8 +23,6 @@ from pathlib import Path
 from typing import IO, TYPE_CHECKING, Final
 from urllib.parse import urlsplit
 
-import rerun as rr
-
 if TYPE_CHECKING:
     from collections.abc import Callable
 
@@ -124,7 +122,6 @@ class ViewerProcess:
         executable = viewer_executable()
         output = tempfile.TemporaryFile()  # noqa: SIM115  the viewer's, for as long as it lives
         try:
-            self._tell_other_version(executable)
             process = subprocess.Popen(  # noqa: S603  rerun's own program
                 [
                     *(executable, "--bind", LOCAL, "--port", str(self._port)),
@@ -168,16 +165,6 @@ class ViewerProcess:
             if process.wait() != 0:  # with 0 the user has closed it
                 self._failed = True
                 self._on_problem(_how_it_ended(process, output))
-
-    def _tell_other_version(self, executable: str) -> None:
-        command = [executable, "--version"]
-        done = subprocess.run(command, capture_output=True, text=True, check=False)  # noqa: S603  the same
-        found = re.search(r"\d+\.\d+\.\d+\S*", done.stdout)
-        if found and found.group() != rr.__version__:
-            self._on_problem(
-                f"{executable} is rerun {found.group()} and is drawn to by rerun-sdk {rr.__version__}:"
-                " it may not understand all of it"
-            )
 
 
 def _how_it_ended(process: subprocess.Popen[bytes], output: IO[bytes]) -> str:

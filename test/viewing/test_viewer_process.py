@@ -126,20 +126,6 @@ def test_the_viewer_is_that_of_the_library_which_draws(monkeypatch: pytest.Monke
     assert f" {rr.__version__} " in said.stdout
 
 
-@pytest.mark.usefixtures("no_display")
-def test_a_viewer_of_another_version_is_told(
-    tmp_path: Path, free_port: int, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    other = tmp_path / "other"
-    other.write_text("#!/bin/sh\necho rerun-cli 0.1.2\n", encoding="utf-8")
-    other.chmod(0o755)
-    monkeypatch.setenv("RERUN_CLI_PATH", str(other))
-    problems: list[str] = []
-    assert spawned(tmp_path, free_port, problems).close()
-    assert problems[0].startswith(f"{other} is rerun 0.1.2 and is drawn to by rerun-sdk {rr.__version__}")
-    assert problems[1:] == ["rerun's viewer ended with exit code 0: rerun-cli 0.1.2"]
-
-
 def test_a_viewer_that_is_missing_is_named(
     tmp_path: Path, free_port: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
