@@ -210,33 +210,44 @@ NO_SIZE: Final = 0.1  # m. A body without shape is drawn with this size at its o
 MAX_SETS: Final = 100
 """A map of more modes than this is not drawn, because its regions are too small to see and take seconds."""
 
-_ABOUT: Final = 0.35  # room around body and contacts in each picture, relative to the body's size
+_ABOUT: Final = 0.35  # room around body and contacts in the force dual, relative to the body's size
 _FLAT: Final = 0.1  # half of the length of a contact's flat, relative to the body's size
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class ModesSideBySide:
-    """The consistent modes of a planar answer.
+    """The consistent modes of a planar body. There is one picture without a mode if none is consistent.
 
     Attributes:
-        titles: What is said of each picture. There is one picture without a mode if no mode is consistent.
-        modes: The modes. There may be none.
         contacts: The contacts.
-        walls: The flats of the contacts, a strip (2, 2) each, m.
-        outline: Outline of the body, a closed strip, (k, 2), m, which may be empty.
-        size: m, the size of body and contacts.
-        low: (2,), m, the lower left corner of each picture.
-        high: (2,), m, the upper right corner.
+        modes: The modes. There may be none.
+        titles: What is said of each picture.
+        outline: Outline of the body, a closed strip, (k, 2), m from the centre of mass, which may be empty.
     """
 
-    titles: list[str]
-    modes: tuple[PlanarMode, ...]
     contacts: tuple[PlanarContact, ...]
-    walls: list[FloatArray]
+    modes: tuple[PlanarMode, ...]
+    titles: list[str]
     outline: FloatArray
-    size: float
-    low: FloatArray
-    high: FloatArray
+
+    @property
+    def extent(self) -> FloatArray:
+        """The lower left and the upper right corner of body and contacts, (2, 2), m."""
+        points = [np.reshape(contact.r, (1, 2)) for contact in self.contacts]
+        everything = np.vstack([self.outline, *points, np.zeros((1, 2))])
+        return np.array([everything.min(axis=0), everything.max(axis=0)])
+
+    @property
+    def size(self) -> float:
+        """The size of body and contacts, m."""
+        low, high = self.extent
+        return float(np.linalg.norm(high - low)) or NO_SIZE
+
+    @property
+    def walls(self) -> list[FloatArray]:
+        """The flats of the contacts, a strip (2, 2) each, m."""
+        along = _FLAT * self.size * np.array([[-1.0], [1.0]])
+        return [np.array(contact.r) + along * np.array(contact.tangent) for contact in self.contacts]
 
     @property
     def scenes(self) -> list[Diagram]:
@@ -279,35 +290,11 @@ def modes_side_by_side(
         f"{mode.mode}: {motion_in_words(mode)}\n{margin}".rstrip()
         for mode, margin in zip(modes, margins, strict=True)
     ]
-    return side_by_side(
-        _seen_contacts(answer, plane),
-        modes,
-        titles or ["approaches" if answer.approaching else "no consistent mode"],
-        outline=outline,
-    )
-
-
-def side_by_side(
-    contacts: tuple[PlanarContact, ...],
-    modes: tuple[PlanarMode, ...],
-    titles: list[str],
-    *,
-    outline: FloatArray,
-) -> ModesSideBySide:
-    """Return modes of a planar body with titles, of which there is one where there is no mode."""
-    reach = [contact.r for contact in contacts]
-    everything = np.vstack([outline, np.reshape(reach, (-1, 2)), np.zeros((1, 2))])
-    low, high = everything.min(axis=0), everything.max(axis=0)
-    size = float(np.linalg.norm(high - low)) or NO_SIZE
     return ModesSideBySide(
-        titles=titles,
+        contacts=_seen_contacts(answer, plane),
         modes=modes,
-        contacts=contacts,
-        walls=[_flat_of(contact, size) for contact in contacts],
+        titles=titles or ["approaches" if answer.approaching else "no consistent mode"],
         outline=outline,
-        size=size,
-        low=low - _ABOUT * size,
-        high=high + _ABOUT * size,
     )
 
 
@@ -343,10 +330,11 @@ def dual_chart_of(view: ModesSideBySide, shown: AnswersMap, *, resolution: int) 
     """
     if not view.modes or not isinstance(shown.chart, DirectionChart):
         return None
-    middle = 0.5 * (view.low + view.high)
+    low, high = view.extent
+    middle = 0.5 * (low + high)
     return ForceDualChart(
         length=shown.chart.length,
-        half_side=0.5 * float(np.max(view.high - view.low)),
+        half_side=0.5 * float(np.max(high - low)) + _ABOUT * view.size,
         centre=(float(middle[0]), float(middle[1])),
         resolution=resolution,
     )
@@ -366,12 +354,6 @@ def _change(answer: ContactModeAnswer, plane: PlaneOfMotion) -> PlanarWrench | N
     if not answer.margins or not math.isfinite(answer.margins[0].margin):
         return None
     return _seen_wrench(answer.margins[0].change_W, plane)
-
-
-def _flat_of(contact: PlanarContact, size: float) -> FloatArray:
-    along = _FLAT * size * np.array(contact.tangent)
-    flat: FloatArray = np.array(contact.r) + np.array([-along, along])
-    return flat
 
 
 def _seen_contacts(answer: ContactModeAnswer, plane: PlaneOfMotion) -> tuple[PlanarContact, ...]:

@@ -27,10 +27,10 @@ from contact_dynamics.diagrams.impulse_space import impulse_space, impulse_space
 from contact_dynamics.diagrams.many_states import many_states_marks
 from contact_dynamics.diagrams.mode_map import mode_map
 from contact_dynamics.diagrams.planar_scene import (
+    ModesSideBySide,
     dual_chart_of,
     map_of_answer,
     modes_side_by_side,
-    side_by_side,
     silhouette,
 )
 from contact_dynamics.diagrams.poinsot import poinsot_diagram
@@ -257,10 +257,10 @@ def modes(answer: PlanarModeAnswer | SpatialModeAnswer) -> Figure:
     each = figure.subplots(rows, 1, squeeze=False)[:, 0]
     problem = answer.problem
     if isinstance(answer, PlanarModeAnswer) and isinstance(problem, PlanarContactProblem):
-        view = side_by_side(
-            tuple(problem.contacts),
-            answer.modes[:MAX_MODES],
-            titles or [str(answer.verdict)],
+        view = ModesSideBySide(
+            contacts=tuple(problem.contacts),
+            modes=answer.modes[:MAX_MODES],
+            titles=titles or [str(answer.verdict)],
             outline=np.zeros((0, 2)),
         )
         for axes, scene in zip(each, view.scenes, strict=True):

@@ -15,7 +15,7 @@ from contact_dynamics.contact_modes import contact_modes, wrench_sets
 from contact_dynamics.contact_modes.letters import mode_in_words
 from contact_dynamics.diagrams.impulse_space import impulse_space, impulse_space_in_3d
 from contact_dynamics.diagrams.mode_map import mode_map
-from contact_dynamics.diagrams.planar_scene import side_by_side
+from contact_dynamics.diagrams.planar_scene import ModesSideBySide
 from contact_dynamics.plane.projection import PlaneOfMotion
 from contact_dynamics.plane.types import PlanarWrench
 from contact_dynamics.questions import ImpactQuestion, Problem, ask
@@ -99,7 +99,7 @@ def test_words_of_contact_modes_do_not_cover_each_other(
     (mode,) = contact_modes(leans).modes
     if name == "modes":
         titles = [f"{mode.mode}: {mode_in_words(mode.mode)}\n(margin 6.53 N to llss)"]
-        view = side_by_side(tuple(TRAY), (mode,), titles, outline=OUTLINE)
+        view = ModesSideBySide(contacts=tuple(TRAY), modes=(mode,), titles=titles, outline=OUTLINE)
         draw_side_by_side(recording, view.scenes, "shown", name="mode")
     else:
         draw_diagram(recording, mode_map(wrench_sets(IN_TRAY), DIRECTIONS, applied=APPLIED), "shown")
