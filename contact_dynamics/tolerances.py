@@ -69,6 +69,9 @@ ONLY_REST_WITHIN: Final = 0.01
 ANY_LOAD: Final = 1e12
 """A load this many times the wrench without it stands for any larger one."""
 
+NO_LOAD: Final = 1e-18
+"""Relative to the largest load, also to `ANY_LOAD`: a load this small stands for any smaller one."""
+
 # numerics
 
 SMALL_SHARE: Final = 1e-10

@@ -86,9 +86,12 @@ def check_stamp(field: str, value: Any) -> int:
     return int(value)
 
 
-def check_array(field: str, value: ArrayLike, shape: tuple[int | None, ...]) -> FloatArray:
+def check_array(
+    field: str, value: ArrayLike, shape: tuple[int | None, ...], *, infinite: bool = False
+) -> FloatArray:
     """Return a read-only float64 copy of ``value`` with the given shape, all finite. None is any length.
 
+    If ``infinite``, numbers may be plus infinity, which means that there is no limit.
     Where any number of rows is allowed, an error names the first one that is not finite.
     """
     if getattr(getattr(value, "dtype", None), "kind", "f") == "c":  # NumPy would drop a part and only warn
@@ -101,7 +104,7 @@ def check_array(field: str, value: ArrayLike, shape: tuple[int | None, ...]) -> 
         raise InvalidFieldError(field, f"shape {array.shape}", f"of shape {_in_words(shape)}")
     # Where a sum is finite, so are its terms: the faster test for a few of them.
     surely_finite = array.size <= _FEW and math.isfinite(sum(array.ravel().tolist()))
-    if not surely_finite and not np.isfinite(array).all():
+    if not surely_finite and not (np.isfinite(array) | (infinite & (array == np.inf))).all():
         if shape[:1] != (None,):
             raise InvalidFieldError(field, array, "finite")
         rows = np.isfinite(array.reshape(len(array), -1)).all(axis=1)

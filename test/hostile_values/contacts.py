@@ -160,7 +160,13 @@ CALLS_WITH_CONTACTS: Calls = {
     ),
     "largest_load": (
         largest_load,
-        {"problem": HELD, "force_W": [1.0, 0.0, 0.0], "torque_W": [0.0, 0.1, 0.0], "at_W": [0.0, 0.0, 0.1]},
+        {
+            "problem": HELD,
+            "force_W": [1.0, 0.0, 0.0],
+            "torque_W": [0.0, 0.1, 0.0],
+            "at_W": [0.0, 0.0, 0.1],
+            "max_normal_forces": [1e3] * 4,
+        },
     ),
     "largest_acceleration": (largest_acceleration, {"problem": HELD, "direction_W": [1.0, 0.0, 0.0]}),
     "largest_spin": (largest_spin, {"problem": HELD, "axis_W": [0.0, 0.0, 1.0], "at_W": [1.0, 0.0, 0.0]}),

@@ -3,7 +3,9 @@
 
 All of it is that of Coulomb's round cones, whose sum is a convex cone of wrenches (`wrenches.RoundSum`). A
 wrench outside of it is separated from it by a plane. Where the plane meets the path of the wrenches, the next
-wrench is tried, which is nearer to the last one that the contacts hold, until they do.
+wrench is tried, which is nearer to the last one that the contacts hold, until they do. A limit of a normal
+force is one more row beside those of the wrench: the normal force and what is left to its limit, which is
+one more ray, add up to the limit. So the sum stays a convex cone.
 
 A tray or turntable that accelerates, tilts or spins is at rest in its own frame, in which gravity is less its
 acceleration. So a tilt turns gravity, and a spin adds a centrifugal force and a gyroscopic torque.
@@ -30,11 +32,12 @@ from contact_dynamics.tolerances import (
     LARGEST_NUMBER,
     NEAREST_REACHED,
     NEXT_TO_A_LIMIT,
+    NO_LOAD,
     ONLY_REST_WITHIN,
     SAME_FACTOR,
     STRAIGHT_ARC,
 )
-from contact_dynamics.validation import check_at_rest, check_magnitude, check_vector3
+from contact_dynamics.validation import check_array, check_at_rest, check_magnitude, check_vector3
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -75,9 +78,12 @@ class LargestLoad(Record):
         only_rest: Factor up to which rest is the only consistent mode, <= ``factor``. If it is less than
             ``factor``, it was found by bisection, to 1 %, and modes that are consistent only in an interval
             below it are not searched for. It is 0 if rest is not the only consistent mode without the load.
-        verdict_beyond: Verdict just beyond ``factor``, or UNIQUE if it is infinite.
-        modes_beyond: Modes that are consistent just beyond it.
+        verdict_beyond: Verdict just beyond ``factor``, or UNIQUE if it is infinite. It is UNDECIDED if a
+            contact is ``overloaded`` there: the motion depends on how this contact yields.
+        modes_beyond: Modes that are consistent just beyond it; none if a contact is overloaded.
         unit: Unit of the factors: "times the load", "m/s^2", "rad" or "rad/s".
+        overloaded: Indices of the contacts whose normal forces are at their limits at ``factor``, if rest
+            would be consistent beyond it without these limits.
     """
 
     factor: float
@@ -85,6 +91,7 @@ class LargestLoad(Record):
     verdict_beyond: ModeVerdict
     modes_beyond: tuple[str, ...]
     unit: str = "times the load"
+    overloaded: tuple[int, ...] = ()
 
     def in_short(self) -> str:
         """Return the largest load, and the modes that follow."""
@@ -93,12 +100,15 @@ class LargestLoad(Record):
             surely = f"it stays fixed up to {self.only_rest:.3g}, and may" if self.only_rest else "it may"
             surely = "it stays" if math.isinf(self.only_rest) else f"{surely} stay"
             return f"LargestLoad: {surely} fixed {_UNITS[self.unit]}"
-        then = _moving(self.modes_beyond)
+        then = f"then {_moving(self.modes_beyond)}"
+        if self.overloaded:
+            which = ", ".join(str(contact) for contact in self.overloaded)
+            then = f"limited by the maximum normal force of contact{'s' * (len(which) > 1)} {which}"
         fixed = f"it stays fixed up to {self.factor:.3g} {self.unit}"
         if self.only_rest < self.factor:  # beyond it another mode is consistent too
-            surely = f"it stays fixed up to {self.only_rest:.3g}"
-            fixed = f"{surely}, and may stay fixed up to {self.factor:.3g} {self.unit}"
-        return f"LargestLoad: {fixed}, then {then}"
+            surely = f"it stays fixed up to {self.only_rest:.3g}, and" if self.only_rest else "it"
+            fixed = f"{surely} may stay fixed up to {self.factor:.3g} {self.unit}"
+        return f"LargestLoad: {fixed}, {then}"
 
 
 def largest_load(
@@ -107,6 +117,7 @@ def largest_load(
     force_W: ArrayLike = (0.0, 0.0, 0.0),
     torque_W: ArrayLike = (0.0, 0.0, 0.0),
     at_W: ArrayLike | None = None,
+    max_normal_forces: ArrayLike | None = None,
 ) -> LargestLoad:
     """Return the largest factor of a load, in addition to the problem's own wrench, before the body moves.
 
@@ -120,9 +131,12 @@ def largest_load(
         torque_W: (3,), N m, torque of the load about the centre of mass, in addition to that of the force,
             world axes.
         at_W: (3,), m, point at which the force acts, world axes, or None for the centre of mass.
+        max_normal_forces: (n,) or one for all contacts, N, >= 0: the largest normal force of each contact,
+            such as the force of a gripper. A limit may be infinite. By default, there are no limits.
 
     Raises:
-        InvalidFieldError: rest is not consistent without the load, or the load is zero or not finite.
+        InvalidFieldError: rest is not consistent without the load, or not within ``max_normal_forces``; or
+            the load is zero or not finite.
         NotSupportedError: surfaces do not move as one rigid body.
     """
     problem = seen_in_space(problem, as_one="largest_load")
@@ -133,19 +147,23 @@ def largest_load(
     if not load.any():
         raise InvalidFieldError("force_W", "no load", "a load, or torque_W")
 
+    held = _Held.of(problem, max_normal_forces)
+    start, added = held.limited(problem.wrench_W), held.free(load)
+
     def wrench(factor: float) -> FloatArray:
-        return load if math.isinf(factor) else problem.wrench_W + factor * load
+        return added if math.isinf(factor) else start + factor * added
 
     def nearer(plane: FloatArray, factor: float) -> float:  # noqa: ARG001  a line meets a plane once
-        return -float(plane @ problem.wrench_W) / float(plane @ load)
+        return -float(plane @ start) / float(plane @ added)
 
     far = ANY_LOAD * max(1.0, float(np.linalg.norm(problem.wrench_W) / np.linalg.norm(load)))
-    _check_rests(problem)
-    factor = _last_held(_Held.of(problem), wrench, nearer, math.inf)
-    return _followed(problem, wrench, factor, far=far)
+    _check_rests(problem, held)
+    return _followed(problem, held, wrench, _last_held(held, wrench, nearer, math.inf), far=far)
 
 
-def largest_acceleration(problem: SpatialContactProblem, direction_W: ArrayLike) -> LargestLoad:
+def largest_acceleration(
+    problem: SpatialContactProblem, direction_W: ArrayLike, *, max_normal_forces: ArrayLike | None = None
+) -> LargestLoad:
     """Return the largest acceleration of a support, such as a tray or a truck, before the body moves on it.
 
     Args:
@@ -153,6 +171,7 @@ def largest_acceleration(problem: SpatialContactProblem, direction_W: ArrayLike)
             the result is in addition to its present acceleration.
         direction_W: (3,), direction of the acceleration, world axes. Its length is ignored. A truck that
             drives forward and brakes accelerates backward.
+        max_normal_forces: (n,) or one for all contacts, N, as in `largest_load`.
 
     Returns:
         The largest acceleration, m/s^2.
@@ -162,12 +181,16 @@ def largest_acceleration(problem: SpatialContactProblem, direction_W: ArrayLike)
     """
     problem = seen_in_space(problem, as_one="largest_acceleration")
     direction = _direction("direction_W", direction_W)
-    found = largest_load(problem, force_W=-problem.body.mass * direction)
+    found = largest_load(problem, force_W=-problem.body.mass * direction, max_normal_forces=max_normal_forces)
     return replace(found, unit="m/s^2")
 
 
 def largest_spin(
-    problem: SpatialContactProblem, axis_W: ArrayLike, *, at_W: ArrayLike = (0.0, 0.0, 0.0)
+    problem: SpatialContactProblem,
+    axis_W: ArrayLike,
+    *,
+    at_W: ArrayLike = (0.0, 0.0, 0.0),
+    max_normal_forces: ArrayLike | None = None,
 ) -> LargestLoad:
     """Return the largest steady spin of a support, such as a turntable, before the body moves on it.
 
@@ -175,6 +198,7 @@ def largest_spin(
         problem: The contact problem of the support at rest. All contacts belong to the support.
         axis_W: (3,), direction of the axis, world axes. Its length is ignored.
         at_W: (3,), m, point on the axis, world axes.
+        max_normal_forces: (n,) or one for all contacts, N, as in `largest_load`.
 
     Returns:
         The largest angular velocity, rad/s.
@@ -193,7 +217,8 @@ def largest_spin(
     size = float(np.linalg.norm(load))  # at 1 rad/s
     if size == 0.0:
         raise InvalidFieldError("axis_W, at_W", axis.tolist(), "an axis a spin about which loads the body")
-    found = largest_load(problem, force_W=load[:3] / size, torque_W=load[3:] / size)
+    force, torque = load[:3] / size, load[3:] / size
+    found = largest_load(problem, force_W=force, torque_W=torque, max_normal_forces=max_normal_forces)
     return replace(
         found,
         factor=math.sqrt(found.factor / size),
@@ -203,7 +228,11 @@ def largest_spin(
 
 
 def largest_tilt(
-    problem: SpatialContactProblem, axis_W: ArrayLike, *, gravity_W: ArrayLike | None = None
+    problem: SpatialContactProblem,
+    axis_W: ArrayLike,
+    *,
+    gravity_W: ArrayLike | None = None,
+    max_normal_forces: ArrayLike | None = None,
 ) -> LargestLoad:
     """Return the largest tilt of a support, such as a tray, before the body moves on it.
 
@@ -212,6 +241,7 @@ def largest_tilt(
             force includes the weight; other forces, and the torque, turn with the support.
         axis_W: (3,), axis of the tilt by the right-hand rule, world axes. Its length is ignored.
         gravity_W: (3,), m/s^2, world axes, or None if the force of the problem is the weight alone.
+        max_normal_forces: (n,) or one for all contacts, N, as in `largest_load`.
 
     Returns:
         The largest angle of a slow tilt, rad. Rest is consistent at all angles below it. It is infinite if
@@ -228,7 +258,9 @@ def largest_tilt(
     down, side = weight - (axis @ weight) * axis, -np.cross(axis, weight)
     if np.linalg.norm(down) <= SAME_FACTOR * np.linalg.norm(weight):
         raise InvalidFieldError("axis_W, gravity_W", axis.tolist(), "an axis at an angle to gravity")
-    still, turning = problem.wrench_W - _of_force(down), np.array([_of_force(down), _of_force(side)])
+    held = _Held.of(problem, max_normal_forces)
+    still = held.limited(problem.wrench_W - _of_force(down))
+    turning = np.array([held.free(_of_force(down)), held.free(_of_force(side))])
 
     def wrench(angle: float) -> FloatArray:
         found: FloatArray = still + np.array([math.cos(angle), math.sin(angle)]) @ turning
@@ -245,12 +277,12 @@ def largest_tilt(
         # Near the limit, rounding may turn the plane so that this is a little further.
         return angle if further <= STRAIGHT_ARC else max(0.0, angle - _TURN + further)
 
-    _check_rests(problem)
-    held = _Held.of(problem)
+    _check_rests(problem, held)
     angle = _last_held(held, wrench, nearer, _TURN)
     while (between := _not_held(held, wrench, 0.0, angle)) > 0.0:
         angle = _last_held(held, wrench, nearer, between)
-    return _followed(problem, wrench, math.inf if angle == _TURN else angle, far=math.pi, unit="rad")
+    angle = math.inf if angle == _TURN else angle
+    return _followed(problem, held, wrench, angle, far=math.pi, unit="rad")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
@@ -263,8 +295,8 @@ class LeastFriction(Record):
             prevents an even smaller one.
         frictions: (n,), these smallest coefficients.
         verdict_below: Verdict with coefficients that are smaller by 1e-6 of them, or UNIQUE if the factor is
-            0.
-        modes_below: Consistent modes with these coefficients.
+            0. It is UNDECIDED if rest then requires larger normal forces than those allowed.
+        modes_below: Consistent modes with these coefficients; none if larger normal forces are required.
     """
 
     factor: float
@@ -282,21 +314,26 @@ class LeastFriction(Record):
             return "LeastFriction: it may stay fixed with any friction above 0, with large contact forces"
         low, high = min(self.frictions), max(self.frictions)
         needed = f"{high:.3g}" if low == high else f"{low:.3g} to {high:.3g}"
-        then = _moving(self.modes_below)
-        return f"LeastFriction: it may stay fixed with a friction of {needed}; with less, {then}"
+        then = f"with less, {_moving(self.modes_below)}"
+        if self.verdict_below == ModeVerdict.UNDECIDED and not self.modes_below:
+            then = "with less, not within the largest normal forces"
+        return f"LeastFriction: it may stay fixed with a friction of {needed}; {then}"
 
 
-def least_friction(problem: SpatialContactProblem) -> LeastFriction:
+def least_friction(
+    problem: SpatialContactProblem, *, max_normal_forces: ArrayLike | None = None
+) -> LeastFriction:
     """Return the smallest friction with which a body can stay at rest under the problem's wrench.
 
     All coefficients of friction are scaled by the same factor, and the body is treated as at rest. With this
-    friction or more, rest is consistent, with contact forces that may have any size: fingers that press on a
-    body from opposite sides have to press hard enough. `contact_modes` determines whether rest is the only
-    consistent mode. The factor is exact to about 1e-7, or too large by up to 1e-4 of it if contact forces
-    have to exceed the applied wrench many times.
+    friction or more, rest is consistent, with contact forces of any size, or within ``max_normal_forces``:
+    fingers that press on a body from opposite sides have to press hard enough. `contact_modes` determines
+    whether rest is the only consistent mode. The factor is exact to about 1e-7, or too large by up to 1e-4
+    of it if contact forces have to exceed the applied wrench many times.
 
     Args:
         problem: The contact problem, with coefficients of friction > 0 at contacts with friction.
+        max_normal_forces: (n,) or one for all contacts, N, as in `largest_load`.
 
     Raises:
         InvalidFieldError: no contact has friction, and the body does not rest without it.
@@ -311,7 +348,8 @@ def least_friction(problem: SpatialContactProblem) -> LeastFriction:
         return replace(problem, state=state, contacts=contacts)
 
     def slips(factor: float) -> bool:
-        return bool(_Held.of(scaled(factor)).against(problem.wrench_W).any())
+        held = _Held.of(scaled(factor), max_normal_forces)
+        return bool(held.against(held.limited(problem.wrench_W)).any())
 
     low, factor = 0.0, 1.0 if slips(0.0) else 0.0
     if factor > 0.0 and not problem.contacts.frictions.any():
@@ -327,13 +365,18 @@ def least_friction(problem: SpatialContactProblem) -> LeastFriction:
         below = spatial_contact_modes(scaled(1.0))
     elif factor > 0.0:
         below = spatial_contact_modes(scaled(factor * (1.0 - NEXT_TO_A_LIMIT)))
+    rest = STICKS * len(problem.contacts)
+    modes = () if below is None else tuple(mode.mode for mode in below.modes)
+    verdict = ModeVerdict.UNIQUE if below is None else below.verdict
+    if max_normal_forces is not None and rest in modes:
+        verdict, modes = ModeVerdict.UNDECIDED, ()
     return LeastFriction(
         factor=factor,
         frictions=tuple(
             (factor * friction if friction else 0.0) for friction in problem.contacts.frictions.tolist()
         ),
-        verdict_below=ModeVerdict.UNIQUE if below is None else below.verdict,
-        modes_below=() if below is None else tuple(mode.mode for mode in below.modes),
+        verdict_below=verdict,
+        modes_below=modes,
     )
 
 
@@ -377,32 +420,66 @@ def closure(contacts: ContactSet) -> Closure:
 
 
 class _Held:
-    """The wrenches, force, N, and torque, N m, that forces at contacts can balance."""
+    """The wrenches, force, N, and torque, N m, that forces at contacts can balance.
 
-    def __init__(self, contacts: ContactSet, arms: FloatArray, length: float, share: float = 1.0) -> None:
-        """Take contacts, arms (n, 3), m, a length, m, that compares both, and a factor of friction."""
-        self._scale = np.array([1.0, 1.0, 1.0, length, length, length])
+    Behind the six numbers of a wrench stands the limit, N, of each normal force that has one, negative.
+    """
+
+    def __init__(
+        self,
+        contacts: ContactSet,
+        arms: FloatArray,
+        length: float,
+        share: float = 1.0,
+        limits: ArrayLike | None = None,
+    ) -> None:
+        """Take arms (n, 3), m, a length, m, that compares both, a factor of friction, and limits, N."""
+        n = len(contacts)
+        most = np.full(n, np.inf) if limits is None else _checked_limits(limits, n)
+        self._which = np.flatnonzero(np.isfinite(most) & (most > 0.0))
+        self._limits, self._without = most[self._which], np.flatnonzero(most == 0.0)
+        self._scale = np.concatenate([[1.0, 1.0, 1.0, length, length, length], self._limits])
         self.units = np.diag(self._scale)
-        along = np.array([tangents((x, y, z)) for x, y, z in contacts.normals_W.tolist()]).reshape(-1, 2, 3)
+        normals, rows, acts = contacts.normals_W, np.eye(n)[:, self._which], most > 0.0
+        along = np.array([tangents((x, y, z)) for x, y, z in normals.tolist()]).reshape(-1, 2, 3)
         lean = share * np.minimum(contacts.frictions, LARGEST_NUMBER)[:, None, None] * along
+        leans = [lean, np.cross(arms[:, None], lean), np.zeros((n, 2, len(self._which)))]
         self._sum = RoundSum(
-            rays=np.zeros((0, 6)),
-            axes=np.hstack([contacts.normals_W, np.cross(arms, contacts.normals_W)]) / self._scale,
-            leans=np.concatenate([lean, np.cross(arms[:, None], lean)], axis=2) / self._scale,
+            rays=np.eye(len(self._scale))[6:],
+            axes=(np.hstack([normals, np.cross(arms, normals), rows]) / self._scale)[acts],
+            leans=(np.concatenate(leans, axis=2) / self._scale)[acts],
         )
 
     @classmethod
-    def of(cls, problem: SpatialContactProblem) -> _Held:
-        """Return those of a problem."""
+    def of(cls, problem: SpatialContactProblem, limits: ArrayLike | None = None) -> _Held:
+        """Return those of a problem with limits of its normal forces, (n,) or one, N."""
         arms = problem.contacts.p_WC_W - problem.state.p_WB_W
-        return cls(problem.contacts, arms, problem.body.mean_radius_of_gyration)
+        return cls(problem.contacts, arms, problem.body.mean_radius_of_gyration, limits=limits)
+
+    def limited(self, wrench_W: FloatArray) -> FloatArray:
+        """Return a wrench with the limits behind it."""
+        return np.concatenate([wrench_W, -self._limits])
+
+    def free(self, wrench_W: FloatArray) -> FloatArray:
+        """Return a change of a wrench, which leaves the limits as they are."""
+        return np.concatenate([wrench_W, 0.0 * self._limits])
+
+    def at_limits(self, plane: FloatArray) -> tuple[int, ...]:
+        """Return the contacts whose limits keep a load from growing to the other side of a plane."""
+        shares = -plane[6:] * self._limits
+        at_limits = self._which[shares > NEXT_TO_A_LIMIT * shares.sum()]
+        return tuple(np.union1d(at_limits, self._without).tolist())
 
     def against(self, wrench_W: FloatArray) -> FloatArray:
-        """Return a plane, (6,), that separates a wrench from what can be balanced, or zeros if it can be."""
-        target = -wrench_W / self._scale
-        rest = self._sum.rest(target)
-        apart = NEAREST_REACHED * np.linalg.norm(target) * np.linalg.norm(rest)
-        return rest / self._scale if rest @ target > apart else np.zeros(6)
+        """Return a plane that separates a wrench from what can be balanced, or zeros if it can be."""
+        # In these units each limit is as large as the wrench, so neither hides the other's error.
+        units = np.ones(len(self._scale))
+        units[6:] = np.linalg.norm(wrench_W[:6] / self._scale[:6])
+        target = -wrench_W / self._scale * units
+        found = RoundSum(self._sum.rays, self._sum.axes * units, self._sum.leans * units).rest(target)
+        apart = NEAREST_REACHED * np.linalg.norm(target) * np.linalg.norm(found)
+        plane: FloatArray = found / self._scale * units
+        return plane if found @ target > apart else 0.0 * plane
 
 
 def _last_held(
@@ -448,6 +525,7 @@ def _not_held(held: _Held, wrench: Callable[[float], FloatArray], first: float, 
 
 def _followed(
     problem: SpatialContactProblem,
+    held: _Held,
     wrench: Callable[[float], FloatArray],
     factor: float,
     *,
@@ -459,7 +537,7 @@ def _followed(
 
     def answer(factor: float) -> SpatialModeAnswer:
         wrench_W = wrench(factor)
-        return spatial_contact_modes(replace(problem, force_W=wrench_W[:3], torque_W=wrench_W[3:]))
+        return spatial_contact_modes(replace(problem, force_W=wrench_W[:3], torque_W=wrench_W[3:6]))
 
     def rests_alone(factor: float) -> bool:
         found = answer(factor)
@@ -470,17 +548,20 @@ def _followed(
         return LargestLoad(
             factor=factor, only_rest=alone, verdict_beyond=ModeVerdict.UNIQUE, modes_beyond=(), unit=unit
         )
-    after, inside = answer(factor * (1.0 + NEXT_TO_A_LIMIT)), factor * (1.0 - NEXT_TO_A_LIMIT)
+    beyond, inside = factor * (1.0 + NEXT_TO_A_LIMIT), factor * (1.0 - NEXT_TO_A_LIMIT)
+    after, plane = answer(beyond), held.against(wrench(beyond))
+    overloaded = held.at_limits(plane) if rest in {mode.mode for mode in after.modes} else ()
     return LargestLoad(
         factor=factor,
         only_rest=factor if rests_alone(inside) else _last(rests_alone, inside),
-        verdict_beyond=after.verdict,
-        modes_beyond=tuple(mode.mode for mode in after.modes),
+        verdict_beyond=ModeVerdict.UNDECIDED if overloaded else after.verdict,
+        modes_beyond=() if overloaded else tuple(mode.mode for mode in after.modes),
         unit=unit,
+        overloaded=overloaded,
     )
 
 
-def _check_rests(problem: SpatialContactProblem) -> None:
+def _check_rests(problem: SpatialContactProblem, held: _Held) -> None:
     found = spatial_contact_modes(problem)
     rest = STICKS * len(problem.contacts)
     if not any(mode.mode == rest and not does_turn(mode.angular_acceleration_W) for mode in found.modes):
@@ -489,6 +570,20 @@ def _check_rests(problem: SpatialContactProblem) -> None:
             found.in_short(),
             "one of a body that stays fixed without the additional load or motion",
         )
+    plane = held.against(held.limited(problem.wrench_W))
+    if plane.any() and held.at_limits(plane):
+        needed = "limits within which normal forces balance the problem's own wrench"
+        raise InvalidFieldError("max_normal_forces", "smaller ones", needed)
+
+
+def _checked_limits(limits: ArrayLike, n: int) -> FloatArray:
+    """Return limits of normal forces, (n,), N, checked: each is >= 0, and may be infinite."""
+    name, given = "max_normal_forces", np.full(n, limits) if np.ndim(limits) == 0 else limits
+    most = check_array(name, given, (n,), infinite=True)
+    check_magnitude(name, np.where(np.isinf(most), 0.0, most))
+    if most.min(initial=0.0) < 0.0:
+        raise InvalidFieldError(name, most.tolist(), ">= 0")
+    return most
 
 
 def _direction(name: str, vector: ArrayLike) -> FloatArray:
@@ -505,8 +600,8 @@ def _of_force(force: FloatArray) -> FloatArray:
 
 
 def _last(holds: Callable[[float], bool], beyond: float) -> float:
-    """Return a factor below ``beyond`` up to which something holds, by halving, or 0 if it does not at 0."""
-    if not holds(0.0):
+    """Return a factor below ``beyond`` up to which something holds, by halving, or 0 if at most there."""
+    if not (holds(0.0) and holds(NO_LOAD * beyond)):
         return 0.0
     inside = 0.0
     while beyond - inside > ONLY_REST_WITHIN * beyond:

@@ -5,9 +5,11 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
+from scipy.optimize import linprog
 
 from contact_dynamics import (
     Body,
@@ -20,9 +22,21 @@ from contact_dynamics import (
     contact_modes,
     largest_load,
 )
+from contact_dynamics.contact.friction import linearised_cone
+from contact_dynamics.contact_modes.spatial.largest_load import (
+    largest_acceleration,
+    largest_spin,
+    largest_tilt,
+    least_friction,
+)
 from contact_dynamics.errors import InvalidFieldError
 from contact_modes.evidence import spatial_problem
 from sweeps import seeds
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from contact_dynamics.contact_modes.spatial.largest_load import LargestLoad
 
 WEIGHT = 20.0 * 10.0
 CRATE = Body.box((0.4, 0.3, 0.6), mass=20.0, name="crate")
@@ -102,3 +116,119 @@ def test_rest_is_consistent_just_before_and_not_just_beyond(seed: int) -> None:
         modes = contact_modes(replace(problem, force_W=wrench[:3], torque_W=wrench[3:])).modes
         assert (rest in {mode.mode for mode in modes}) is is_consistent
     assert rest not in found.modes_beyond
+
+
+def between_fingers(grip: ArrayLike | None = None, friction: float = 0.5, **load: list[float]) -> LargestLoad:
+    """Return the largest load on a plate of 1 kg without weight, 0.1 m wide, between two fingers along x."""
+    fingers = ContactSet(
+        p_WC_W=[[-0.05, 0, 0], [0.05, 0, 0]], normals_W=[[1, 0, 0], [-1, 0, 0]], frictions=friction
+    )
+    plate, state = Body.box((0.1, 0.1, 0.1), mass=1.0), BodyState(p_WB_W=[0, 0, 0], q_WB=[0, 0, 0, 1])
+    return largest_load(spatial_problem(plate, state, fingers, [0, 0, 0]), **load, max_normal_forces=grip)
+
+
+@pytest.mark.parametrize(
+    ("grip", "load", "factor", "overloaded"),
+    [
+        (20.0, {"force_W": [0, 0, -1]}, 20.0, (0, 1)),  # 2 mu F
+        ([20.0, 30.0], {"force_W": [0, 0, -1]}, 20.0, (0,)),  # both press with the same force
+        ([math.inf, 20.0], {"force_W": [0, 0, -1]}, 20.0, (1,)),
+        (20.0, {"force_W": [1, 0, 0]}, 20.0, (1,)),  # the other finger lets go
+        (20.0, {"torque_W": [0, 1, 0]}, 1.0, (0, 1)),  # mu F d
+        ([0.0, 20.0], {"force_W": [1, 0, 0]}, 20.0, (0, 1)),
+    ],
+)
+def test_a_gripper_holds_what_its_largest_force_allows(
+    grip: ArrayLike, load: dict[str, list[float]], factor: float, overloaded: tuple[int, ...]
+) -> None:
+    found = between_fingers(grip, **load)
+    assert found.factor == pytest.approx(factor, rel=1e-9)
+    assert found.overloaded == overloaded
+    assert (found.verdict_beyond, found.modes_beyond) == (ModeVerdict.UNDECIDED, ())
+    assert "limited by the maximum normal force of contact" in found.in_short()
+
+
+def test_fingers_that_cannot_press_hold_nothing() -> None:
+    found = between_fingers(0.0, force_W=[0, 0, -1])
+    assert (found.factor, found.overloaded) == (0.0, (0, 1))
+
+
+def test_limits_that_do_not_bind_change_nothing() -> None:
+    problem = on_floor(0.3)
+    push = {"force_W": [1, 0, 0], "at_W": [-0.2, 0, 0.5]}
+    free, limited = largest_load(problem, **push), largest_load(problem, **push, max_normal_forces=WEIGHT)
+    assert limited.factor == pytest.approx(free.factor, rel=1e-10)
+    assert (limited.overloaded, limited.modes_beyond) == ((), free.modes_beyond)
+
+
+def test_limits_that_are_none_or_too_small_are_errors() -> None:
+    push = {"force_W": [1, 0, 0]}
+    with pytest.raises(InvalidFieldError, match=r"^max_normal_forces must be limits within which"):
+        largest_load(on_floor(0.3), **push, max_normal_forces=WEIGHT / 8)
+    for limits, message in ((-1.0, ">= 0"), ([1.0, 2.0], "of shape"), (math.nan, "finite"), ("a", "numbers")):
+        with pytest.raises(InvalidFieldError, match=rf"^max_normal_forces must be {message}"):
+            largest_load(on_floor(0.3), **push, max_normal_forces=limits)
+
+
+def test_each_question_about_the_load_knows_the_limits() -> None:
+    """Four feet of a crate, each of which bears at most a quarter more than its share of the weight."""
+    problem, limit = on_floor(2.0), 1.25 * WEIGHT / 4
+    # The centre of mass is 0.3 m above the feet, which are 0.4 m apart: m a h = 2 * 0.25 * (m g / 4) * 0.4.
+    brakes = largest_acceleration(problem, [1, 0, 0], max_normal_forces=limit)
+    assert brakes.factor == pytest.approx(2 * 0.25 / 4 * 10.0 * 0.4 / 0.3, rel=1e-9)
+    assert brakes.overloaded == (0, 1)
+    tilts = largest_tilt(problem, [0, 1, 0], max_normal_forces=limit)
+    # cos + (h / (d / 2)) sin = 1.25
+    assert math.cos(tilts.factor) + 1.5 * math.sin(tilts.factor) == pytest.approx(1.25, rel=1e-9)
+    spins = largest_spin(problem, [0, 0, 1], at_W=[-1.0, 0, 0], max_normal_forces=limit)
+    assert spins.factor**2 == pytest.approx(brakes.factor, rel=1e-9)  # at 1 m from the axis
+
+
+def test_a_gripper_needs_this_friction() -> None:
+    fingers = ContactSet(
+        p_WC_W=[[-0.05, 0, 0], [0.05, 0, 0]], normals_W=[[1, 0, 0], [-1, 0, 0]], frictions=0.5
+    )
+    plate, state = Body.box((0.1, 0.1, 0.1), mass=1.0), BodyState(p_WB_W=[0, 0, 0], q_WB=[0, 0, 0, 1])
+    problem = spatial_problem(plate, state, fingers, [0, 0, -10.0])
+    found = least_friction(problem, max_normal_forces=20.0)
+    assert found.frictions == pytest.approx((0.25, 0.25), rel=1e-6)
+    assert (found.verdict_below, found.modes_below) == (ModeVerdict.UNDECIDED, ())
+
+
+@seeds(range(6), slow=range(6, 60))
+def test_limits_against_a_linear_program(seed: int) -> None:
+    """Pyramids inside and around the round cones give the program's bounds on the factor."""
+    random = np.random.default_rng(seed)
+    n, edges = 3 + seed % 3, 48
+    normals = random.normal(size=(n, 3))
+    normals /= np.linalg.norm(normals, axis=1)[:, None]
+    points, friction = -0.1 * normals + random.normal(0.0, 0.02, (n, 3)), random.uniform(0.3, 1.0, n)
+    contacts = ContactSet(p_WC_W=points, normals_W=normals, frictions=friction)
+    limits = random.uniform(5.0, 50.0, n) * 10.0 ** random.integers(-6, 7)
+    limits[seed % n] = np.inf if seed % 2 else limits[seed % n]
+    state = BodyState(p_WB_W=[0, 0, 0], q_WB=[0, 0, 0, 1])
+    load = random.normal(size=6) * [1, 1, 1, 0.05, 0.05, 0.05]
+    problem = spatial_problem(Body.box((0.1, 0.1, 0.1), mass=1.0).mass_properties, state, contacts, [0, 0, 0])
+    found = largest_load(problem, force_W=load[:3], torque_W=load[3:], max_normal_forces=limits)
+
+    def bound(scale: float) -> float:
+        cones = [linearised_cone(one, scale * mu, edges) for one, mu in zip(normals, friction, strict=True)]
+        forces = np.vstack(cones)
+        arms = np.repeat(points, edges, axis=0)
+        wrenches = np.hstack([forces, np.cross(arms, forces)]).T
+        pressing = np.zeros((n, n * edges))
+        for i in range(n):
+            pressing[i, i * edges : (i + 1) * edges] = cones[i] @ normals[i]
+        bounded = np.isfinite(limits)
+        program = linprog(
+            np.append(np.zeros(n * edges), -1.0),
+            A_ub=np.hstack([pressing, np.zeros((n, 1))])[bounded],
+            b_ub=limits[bounded],
+            A_eq=np.hstack([wrenches, load[:, None]]),
+            b_eq=np.zeros(6),
+        )
+        return float("inf") if program.status == 3 else float(program.x[-1])
+
+    # A pyramid of 48 edges is inside the round cone, and around it if wider by 1 / cos(pi / 48).
+    inside, around = bound(1.0), bound(1.0 / math.cos(math.pi / edges))
+    assert inside * (1.0 - 1e-7) <= found.factor <= around * (1.0 + 1e-7)
