@@ -80,7 +80,7 @@ def asked_before(
 ) -> dict[float, Context]:
     """Return what is known at each horizon, s, before an event, where enough states were known by then."""
     found: dict[float, Context] = {}
-    body = _known_body(motion, informed)
+    body = known_body(motion, informed)
     for horizon in settings.horizons:
         asked_ns = event.asked_ns(horizon)
         samples = motion.known_by(asked_ns, since=event.first_sample)
@@ -100,7 +100,7 @@ def asked_before(
     return found
 
 
-def _known_body(motion: MeasuredMotion, informed: Informed) -> Body:
+def known_body(motion: MeasuredMotion, informed: Informed) -> Body:
     """Return the body as whoever asks knows it. Its centre of mass may be another point of the body."""
     same = (body for body in informed.world.bodies if body.name == motion.body.name)
     return next(same, motion.body)
@@ -108,7 +108,7 @@ def _known_body(motion: MeasuredMotion, informed: Informed) -> Body:
 
 def of_known_center(event: FoundEvent, motion: MeasuredMotion, informed: Informed) -> FoundEvent:
     """Return an event with the state of the centre of mass that whoever asks knows."""
-    state = carried_over(event.state, motion.body, _known_body(motion, informed))
+    state = carried_over(event.state, motion.body, known_body(motion, informed))
     return replace(event, state=state_of(state))
 
 

@@ -9,7 +9,7 @@ says by number how far the predictions were off.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -18,10 +18,16 @@ import rerun as rr
 from contact_dynamics.diagrams import palette
 from contact_dynamics.diagrams.shape import drawn_shape, outline
 from contact_dynamics.diagrams.world_scene import body_marks
+from contact_dynamics.evaluation.asking import known_body
+from contact_dynamics.evaluation.log_states import parameters_of
 from contact_dynamics.evaluation.report import COLUMNS, UNITS
 from contact_dynamics.evaluation.settings import Method
 from contact_dynamics.measured.events import EventKind, find_events
+from contact_dynamics.nodes.parameter_file import ParameterFile
+from contact_dynamics.questions.subject import carried_over
+from contact_dynamics.questions.uncertain_state import state_of
 from contact_dynamics.records import Record
+from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.viewing.drawing import parts_of
 from contact_dynamics.viewing.entities import entity
 from contact_dynamics.viewing.kept_recording import APPLICATION
@@ -36,6 +42,8 @@ if TYPE_CHECKING:
     from contact_dynamics.evaluation.sources import Source
     from contact_dynamics.measured.events import FoundEvent
     from contact_dynamics.measured.motion import MeasuredMotion
+    from contact_dynamics.validation import FloatArray
+    from contact_dynamics.world import Body
 
 TRAIL_S: Final = 0.08
 """s of the measured path on either side of an event."""
@@ -99,6 +107,7 @@ def _cells(evaluation: Evaluation, sources: Sequence[Source], config: Path | Non
         if result.problem or result.source not in named:
             continue
         recording = named[result.source].read(config=config)
+        asker = recording.informed if config is None else parameters_of(ParameterFile(config))[1]
         found = [(event, motion) for motion in recording.motions for event in find_events(motion)]
         numbers = {(event.kind, event.body, event.time_ns): i for i, (event, _) in enumerate(found)}
         for number, (event, motion) in enumerate(found):
@@ -109,20 +118,38 @@ def _cells(evaluation: Evaluation, sources: Sequence[Source], config: Path | Non
             )
             if event.kind is EventKind.IMPACT or ends_in_landing:
                 continue
+            known = known_body(motion, asker)
             struck = numbers.get((EventKind.IMPACT, event.body, event.time_ns))
             is_struck = event.kind is EventKind.LANDING and struck is not None
             yield _Cell(
                 name=f"{result.source.rpartition('/')[2]}, {event.kind.value} at {event.time:.3f} s",
                 event=event,
                 motion=motion,
-                rows=_rows(result.comparisons, number),
+                rows=_rows(result.comparisons, number, known, motion.body),
                 impact=found[struck][0] if is_struck and struck is not None else None,
-                impact_rows=_rows(result.comparisons, struck) if is_struck else (),
+                impact_rows=_rows(result.comparisons, struck, known, motion.body) if is_struck else (),
             )
 
 
-def _rows(rows: Sequence[Comparison], number: int | None) -> tuple[Comparison, ...]:
-    return tuple(row for row in rows if row.event == number and not row.refused)
+def _rows(
+    rows: Sequence[Comparison], number: int | None, known: Body, measured: Body
+) -> tuple[Comparison, ...]:
+    """Return the answers about an event, with predictions of the measured body's centre of mass.
+
+    They were made for the centre of mass of the body that whoever asked knew.
+    """
+    return tuple(
+        replace(row, predicted=None if row.predicted is None else _of_center(row.predicted, known, measured))
+        for row in rows
+        if row.event == number and not row.refused
+    )
+
+
+def _of_center(predicted: FloatArray, known: Body, measured: Body) -> FloatArray:
+    p, q, v, w = np.split(predicted, [3, 7, 10])
+    state = BodyState(p_WB_W=p, q_WB=q, v_WB_W=v, w_WB_W=w)
+    moved = state_of(carried_over(state, known, measured))
+    return np.concatenate([moved.p_WB_W, moved.q_WB, moved.v_WB_W, moved.w_WB_W])
 
 
 def _draw(recording: rr.RecordingStream, number: int, cell: _Cell, places: SideBySide) -> None:

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import csv
+import itertools
 import json
 import os
 import pty
@@ -15,7 +16,9 @@ import sys
 import time
 from pathlib import Path
 
+import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from contact_dynamics.evaluation.arguments import evaluate_parser
 from contact_dynamics.evaluation.result import read_evaluation
@@ -30,6 +33,7 @@ from viewing.drawn import read_drawn
 
 QUICK = ("--horizons", "50", "--laws", "poisson")
 BRICK = str(DEFAULT_RECORDING)
+BOX_CORNERS = 0.5 * np.array([0.15, 0.09, 0.05]) * list(itertools.product((-1, 1), repeat=3))
 COPIES = 8  # of a recording that is evaluated in a third of a second
 COUNT = 5  # recordings that are evaluated in turn, each in a small part of a second
 
@@ -92,6 +96,30 @@ def test_the_picture_has_each_event_measured_and_predicted(evaluated: list[str],
         assert any(path.startswith(f"/events/{name}/predicted/50") for path in paths)
     struck = [name for name in landings if any(path.endswith("poisson") and name in path for path in paths)]
     assert len(struck) == 3
+
+
+def test_the_picture_has_predictions_of_another_centre_of_mass_where_the_body_is(tmp_path: Path) -> None:
+    """Each outline has the corners of the box, whose frame's origin is off the configured centre of mass."""
+    offset = np.array([0.01, -0.02, 0.005])
+    parameters = {**parameters_of_toss(tmp_path, read_toss()), "body.brick.center_of_mass": offset.tolist()}
+    config, rows, drawn = (tmp_path / name for name in ("config.yaml", "rows.json", "events.rrd"))
+    config.write_text(json.dumps({"/**": {"ros__parameters": parameters}}), encoding="utf-8")
+    assert main([BRICK, *QUICK, "--config", str(config), "--json", str(rows), "--rerun", str(drawn)]) == 0
+    expected = []
+    for row in read_evaluation(rows).results[0].comparisons:
+        if row.kind.value == "landing" and row.method.value == "fit" and row.predicted is not None:
+            turn = Rotation.from_quat(row.predicted[3:7])
+            expected.append(row.predicted[:3] + turn.apply(BOX_CORNERS - offset))
+    values = read_drawn(drawn).values
+    outlines = [
+        np.unique(np.concatenate([np.reshape(strip, (-1, 3)) for strip in strips]), axis=0)
+        for (path, name), column in values.items()
+        if "landing" in path and "/predicted/" in path and name.endswith("strips")
+        for _, strips in column
+    ]
+    assert len(outlines) == len(expected) == 4
+    for corners in expected:  # to the rounding of single precision at a metre
+        assert min(abs(found - np.unique(corners, axis=0)).max() for found in outlines) <= 1e-6
 
 
 def test_a_folder_is_searched_and_what_is_bad_in_it_is_named(
