@@ -68,40 +68,24 @@ class Spread(Record):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class Data(Record):
-    """All that is fitted.
+    """All that is fitted."""
 
-    Attributes:
-        clusters: Number of recordings.
-        strikes: The strikes.
-        gravity: Gravity of each recording.
-        center: What first flights say of the mass centre.
-        ratios: What they say of the ratios of moments, or None where these are not free.
-        resting: The corners at rests.
-    """
-
-    clusters: int
-    strikes: Strikes
-    gravity: Gravity
-    center: Straightness
-    ratios: Straightness | None
-    resting: Touching
+    clusters: int  # number of recordings
+    strikes: Strikes  # the strikes
+    gravity: Gravity  # gravity of each recording
+    center: Straightness  # what first flights say of the mass centre
+    ratios: Straightness | None  # what they say of the ratios of moments, or None where these are not free
+    resting: Touching  # the corners at rests
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class Estimation(Record):
-    """One way's estimate.
+    """One way's estimate."""
 
-    Attributes:
-        fit: The fit, in standard units, of the free parameters.
-        values: (p,), all parameters.
-        spread: The spreads that the residuals were weighed by.
-        kinds: Names of the groups of residuals, in the order of the fit's sizes.
-    """
-
-    fit: ClusteredFit
-    values: FloatArray
-    spread: Spread
-    kinds: tuple[str, ...]
+    fit: ClusteredFit  # the fit, in standard units, of the free parameters
+    values: FloatArray  # (p,), all parameters
+    spread: Spread  # the spreads that the residuals were weighed by
+    kinds: tuple[str, ...]  # names of the groups of residuals, in the order of the fit's sizes
 
 
 class Fitting:

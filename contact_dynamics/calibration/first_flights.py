@@ -40,17 +40,12 @@ IntArray: TypeAlias = NDArray[np.intp]
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class Gravity(Record):
-    """Gravity of each recording for any mass centre: gravity + by_center @ d.
+    """Gravity of each recording for any mass centre: gravity + by_center @ d."""
 
-    Attributes:
-        gravity_W: (m, 3), m/s^2, for the configured mass centre, in each recording's world axes.
-        by_center: (m, 3, 3), 1/s^2.
-        std: (m,), m/s^2, standard deviation of a component, by the noise of positions; NaN where it is not
-            measured but taken from the configuration.
-    """
-
-    gravity_W: FloatArray
-    by_center: FloatArray
+    gravity_W: FloatArray  # (m, 3), m/s^2, for the configured mass centre, in each recording's world axes
+    by_center: FloatArray  # (m, 3, 3), 1/s^2
+    # (m,), m/s^2, standard deviation of a component, by the noise of positions; NaN where it is not measured
+    # but taken from the configuration.
     std: FloatArray
 
     def of(self, center: FloatArray) -> FloatArray:

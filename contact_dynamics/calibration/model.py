@@ -64,27 +64,16 @@ AXES: Final = ("x", "y", "z")
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class Parameter(Record):
-    """One number that may be free.
+    """One number that may be free."""
 
-    Attributes:
-        name: As reports have it, such as ``friction.floor``.
-        group: The group with which it is left free.
-        configured: Its value before, in ``unit``; factors are logarithms.
-        step: The standard unit: the size of what is plausible.
-        lower: Least value.
-        upper: Largest value.
-        unit: m, rad, or empty.
-        is_factor: Whether the number is the logarithm of a factor.
-    """
-
-    name: str
-    group: Free
-    configured: float
-    step: float
-    lower: float = -math.inf
-    upper: float = math.inf
-    unit: str = ""
-    is_factor: bool = False
+    name: str  # as reports have it, such as ``friction.floor``
+    group: Free  # the group with which it is left free
+    configured: float  # its value before, in ``unit``; factors are logarithms
+    step: float  # the standard unit: the size of what is plausible
+    lower: float = -math.inf  # least value
+    upper: float = math.inf  # largest value
+    unit: str = ""  # m, rad, or empty
+    is_factor: bool = False  # whether the number is the logarithm of a factor
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)

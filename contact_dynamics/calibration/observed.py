@@ -43,27 +43,16 @@ FEWEST_IN_FIRST: Final = 8
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class Observed(Record):
-    """What was found in one toss, which is a recording or a part of one.
+    """What was found in one toss, which is a recording or a part of one."""
 
-    Attributes:
-        name: The recording's name, with the number of the toss where there are several.
-        motion: The measured states.
-        flights: All flights, as slices of frames.
-        first: The frames of the first flight that are used, or None if it is too short.
-        strikes: The strikes of single corners.
-        several: Number of strikes of several corners at once, which are not used.
-        rest: The pose at rest, or None.
-        rest_surface: Number of the surface on which it rests.
-    """
-
-    name: str
-    motion: MeasuredMotion
-    flights: tuple[slice, ...]
-    first: slice | None
-    strikes: tuple[Strike, ...]
-    several: int
-    rest: MeasuredState | None
-    rest_surface: int
+    name: str  # the recording's name, with the number of the toss where there are several
+    motion: MeasuredMotion  # the measured states
+    flights: tuple[slice, ...]  # all flights, as slices of frames
+    first: slice | None  # the frames of the first flight that are used, or None if it is too short
+    strikes: tuple[Strike, ...]  # the strikes of single corners
+    several: int  # number of strikes of several corners at once, which are not used
+    rest: MeasuredState | None  # the pose at rest, or None
+    rest_surface: int  # number of the surface on which it rests
 
 
 def observe(name: str, motion: MeasuredMotion) -> list[Observed]:

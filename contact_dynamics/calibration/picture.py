@@ -41,24 +41,16 @@ _WIDTH: Final = -1.8  # negative: points of the screen
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class DrawnStrike(Record):
-    """A strike as it is drawn.
+    """A strike as it is drawn."""
 
-    Attributes:
-        toss: What was found in its toss.
-        strike: The strike.
-        measured: (6,), m/s and rad/s, of the calibrated mass centre after it.
-        predicted: (6,), the same as predicted.
-        deviations: (2,), how large the residuals of velocity and spin are, in standard deviations of noise
-            and the law's own spread together.
-        rejected: Whether it was left out.
-    """
-
-    toss: Observed
-    strike: Strike
-    measured: FloatArray
-    predicted: FloatArray
+    toss: Observed  # what was found in its toss
+    strike: Strike  # the strike
+    measured: FloatArray  # (6,), m/s and rad/s, of the calibrated mass centre after it
+    predicted: FloatArray  # (6,), the same as predicted
+    # (2,), how large the residuals of velocity and spin are, in standard deviations of noise and the law's
+    # own spread together.
     deviations: FloatArray
-    rejected: bool
+    rejected: bool  # whether it was left out
 
 
 def drawn_strikes(found: Calibration) -> list[DrawnStrike]:

@@ -17,41 +17,26 @@ OfSetting: TypeAlias = Callable[[float], float]
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Case(Record):
-    """One question with its exact answer. The engines (`engine.py`) answer it by its name in `CASES`.
+    """One question with its exact answer. The engines (`engine.py`) answer it by its name in `CASES`."""
 
-    Attributes:
-        title: The question in a few words.
-        story: What users saw, and what is right. One or two sentences.
-        discussed: Public threads in which it was asked, as ``owner/repository/issues/1``, space-separated.
-        setting: The name of the number that is varied.
-        settings: Its values.
-        quantity: What the answer is, with its unit.
-        formula: The closed form, in words and symbols.
-        exact: The closed form as a function of the setting.
-        tolerance: Largest difference of this package's answer from it, in the unit of the quantity.
-        why_tolerance: The reason for that size.
-        answer: Service, and path of the number in its response: ``predict_tumbling.poinsot.polhode_period``.
-        request: The request in YAML, as `ros2 service call` takes it. ``%(x)s`` stands for the setting.
-        values: Other values in the request, by name, that follow from the setting.
-        answer_exact: The number in the response, if it is not ``exact``, as a velocity is not a ratio.
-        answer_tolerance: Largest difference from it, if it is not ``tolerance``.
-    """
-
-    title: str
-    story: str
-    discussed: str
-    setting: str
-    settings: tuple[float, ...]
-    quantity: str
-    formula: str
-    exact: OfSetting = field(repr=False)
-    tolerance: float
-    why_tolerance: str
+    title: str  # the question in a few words
+    story: str  # what users saw, and what is right. One or two sentences.
+    discussed: str  # public threads in which it was asked, as ``owner/repository/issues/1``, space-separated
+    setting: str  # the name of the number that is varied
+    settings: tuple[float, ...]  # its values
+    quantity: str  # what the answer is, with its unit
+    formula: str  # the closed form, in words and symbols
+    exact: OfSetting = field(repr=False)  # the closed form as a function of the setting
+    tolerance: float  # largest difference of this package's answer from it, in the unit of the quantity
+    why_tolerance: str  # the reason for that size
+    # service, and path of the number in its response: ``predict_tumbling.poinsot.polhode_period``.
     answer: str
-    request: str
+    request: str  # the request in YAML, as `ros2 service call` takes it. ``%(x)s`` stands for the setting.
+    # Other values in the request, by name, that follow from the setting.
     values: Callable[[float], dict[str, float]] | None = field(default=None, repr=False)
+    # The number in the response, if it is not ``exact``, as a velocity is not a ratio.
     answer_exact: OfSetting | None = field(default=None, repr=False)
-    answer_tolerance: float | None = None
+    answer_tolerance: float | None = None  # largest difference from it, if it is not ``tolerance``
 
     @property
     def threads(self) -> tuple[str, ...]:

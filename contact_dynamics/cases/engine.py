@@ -17,17 +17,11 @@ from contact_dynamics.records import Record
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Engine(Record):
-    """One engine.
+    """One engine."""
 
-    Attributes:
-        name: Its name in the table.
-        package: The Python package that it needs.
-        module: The module with its answers.
-    """
-
-    name: str
-    package: str
-    module: str
+    name: str  # its name in the table
+    package: str  # the Python package that it needs
+    module: str  # the module with its answers
 
     @property
     def version(self) -> str:

@@ -40,29 +40,17 @@ class PublishedVerdict(NamedInt):
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class PublishedValue(Record):
-    """One published number.
+    """One published number."""
 
-    Attributes:
-        source: The title of the source.
-        where: Where the number stands in the source, or its derivation.
-        what: What the number is, with its unit.
-        ask: The function of `QUANTITIES` that answers it.
-        of: Which of that function's answers.
-        inputs: The function's arguments.
-        expected: The published number.
-        tolerance: Largest difference that counts as agreement, in its unit.
-        explained: Why the published number is off, or empty.
-    """
-
-    source: str
-    where: str
-    what: str
-    ask: str
-    of: str
-    inputs: Mapping[str, Any]
-    expected: float
-    tolerance: float
-    explained: str = ""
+    source: str  # the title of the source
+    where: str  # where the number stands in the source, or its derivation
+    what: str  # what the number is, with its unit
+    ask: str  # the function of `QUANTITIES` that answers it
+    of: str  # which of that function's answers
+    inputs: Mapping[str, Any]  # the function's arguments
+    expected: float  # the published number
+    tolerance: float  # largest difference that counts as agreement, in its unit
+    explained: str = ""  # why the published number is off, or empty
 
     def ours(self) -> float:
         """Return the package's answer."""

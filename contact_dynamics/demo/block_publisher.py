@@ -79,14 +79,10 @@ class PushedBlock:
 
     The finger is smooth, and stays at its height. Its sensor measures the wrench on the block in world axes
     and about the world's origin.
-
-    Attributes:
-        height: m over the floor. Above half the block's depth over the friction, the block tips.
-        rate: N/s.
     """
 
-    height: float
-    rate: float
+    height: float  # m over the floor. Above half the block's depth over the friction, the block tips.
+    rate: float  # N/s
     topic: str = "/finger/wrench"
     msg_type: type = WrenchStamped
     _force: float = 0.0
@@ -116,14 +112,10 @@ class TiltingTray:
 
     All is in the axes of the tray, in which gravity turns. What the tray's rotation adds is left out: at 0.05
     rad/s it is 0.05 m/s^2 on a block that slides with 0.5 m/s. The sensor is the tray's accelerometer.
-
-    Attributes:
-        max_tilt: rad, where the tray stops.
-        rate: rad/s.
     """
 
-    max_tilt: float
-    rate: float
+    max_tilt: float  # rad, where the tray stops
+    rate: float  # rad/s
     topic: str = "/tray/gravity"
     msg_type: type = Vector3Stamped
     _tilt: float = 0.0

@@ -41,13 +41,9 @@ Row: TypeAlias = tuple[str, str, str, str]
 
 
 class Section(NamedTuple):
-    """A question, and the rows of its answer.
+    """A question, and the rows of its answer."""
 
-    Attributes:
-        time: When it was asked, s, on the recording's clock.
-    """
-
-    time: float
+    time: float  # when it was asked, s, on the recording's clock
     title: str
     rows: list[Row]
 

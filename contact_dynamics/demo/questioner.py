@@ -54,17 +54,11 @@ _POLL_S: Final = 0.1
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Asked:
-    """One question with its answer.
+    """One question with its answer."""
 
-    Attributes:
-        time: Time of the newest state when it was asked, s, on the recording's clock.
-        response: The service's response.
-        round_trip: Time until the answer came, s.
-    """
-
-    time: float
-    response: Any
-    round_trip: float
+    time: float  # time of the newest state when it was asked, s, on the recording's clock
+    response: Any  # the service's response
+    round_trip: float  # time until the answer came, s
 
 
 class Questioner(Node):

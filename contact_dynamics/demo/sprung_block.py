@@ -33,17 +33,11 @@ DAMPING: Final = 200.0
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Load:
-    """The force and moment that act on the block, besides its corners.
+    """The force and moment that act on the block, besides its corners."""
 
-    Attributes:
-        force_x: N.
-        force_z: N.
-        moment: N m, about the centre of mass and the axis y.
-    """
-
-    force_x: float
-    force_z: float
-    moment: float = 0.0
+    force_x: float  # N
+    force_z: float  # N
+    moment: float = 0.0  # N m, about the centre of mass and the axis y
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -70,27 +64,16 @@ class _Contact:
 
 @dataclass(slots=True, kw_only=True)
 class SprungBlock:
-    """A body between flats, which moves in the plane x, z.
+    """A body between flats, which moves in the plane x, z."""
 
-    Attributes:
-        mass: kg.
-        inertia: kg m^2, about the axis y.
-        x: m, of the centre of mass.
-        z: m.
-        angle: rad, about the axis y: positive tips the block towards x.
-        vx: m/s.
-        vz: m/s.
-        spin: rad/s.
-    """
-
-    mass: float
-    inertia: float
-    x: float
-    z: float
-    angle: float = 0.0
-    vx: float = 0.0
-    vz: float = 0.0
-    spin: float = 0.0
+    mass: float  # kg
+    inertia: float  # kg m^2, about the axis y
+    x: float  # m, of the centre of mass
+    z: float  # m
+    angle: float = 0.0  # rad, about the axis y: positive tips the block towards x
+    vx: float = 0.0  # m/s
+    vz: float = 0.0  # m/s
+    spin: float = 0.0  # rad/s
     _contacts: list[_Contact] = field(default_factory=list)
 
     @classmethod

@@ -33,23 +33,16 @@ answer takes long, it comes a few tenths of a second late."""
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class AfterImpact:
-    """What a body did after an impact, beside the prediction.
+    """What a body did after an impact, beside the prediction."""
 
-    Attributes:
-        answer: The prediction.
-        stamps_ns: The stamps of the poses that the velocities are found from, and of the curves.
-        v_WB_W: (3,), m/s, the measured velocity of the centre of mass when the impact was predicted to end.
-        w_WB_W: (3,), rad/s, the measured angular velocity then.
-        predicted_speeds: (n,), m/s, at the stamps, if the body flies on as predicted.
-        measured_speeds: (n,), m/s, at the stamps.
-    """
-
-    answer: ImpactAnswer
+    answer: ImpactAnswer  # the prediction
+    # The stamps of the poses that the velocities are found from, and of the curves.
     stamps_ns: tuple[int, ...]
+    # (3,), m/s, the measured velocity of the centre of mass when the impact was predicted to end.
     v_WB_W: FloatArray
-    w_WB_W: FloatArray
-    predicted_speeds: FloatArray
-    measured_speeds: FloatArray
+    w_WB_W: FloatArray  # (3,), rad/s, the measured angular velocity then
+    predicted_speeds: FloatArray  # (n,), m/s, at the stamps, if the body flies on as predicted
+    measured_speeds: FloatArray  # (n,), m/s, at the stamps
 
     @property
     def linear_error(self) -> float:

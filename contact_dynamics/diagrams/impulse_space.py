@@ -65,28 +65,17 @@ class ContactImpulse:
 
     After an impulse x at the contact, its velocity is ``velocity + response @ x`` (lecture 27, eq. 9 and 10).
     Both are None without the mass properties of all bodies that move.
-
-    Attributes:
-        contact: The contact.
-        axes_W: (3, 3), unit, right-handed: two tangents and the normal, world axes.
-        path: (k, 3), N s, the vertices of the path.
-        events: (m,), what is marked.
-        points: (m, 3), N s, where.
-        velocity: (3,), m/s, before the impact.
-        response: (3, 3), 1/kg.
-        side: N s, half of the width of the diagram.
-        top: N s, its height.
     """
 
-    contact: int
-    axes_W: FloatArray
-    path: FloatArray
-    events: tuple[PathEvent, ...]
-    points: FloatArray
-    velocity: FloatArray | None
-    response: FloatArray | None
-    side: float
-    top: float
+    contact: int  # the contact
+    axes_W: FloatArray  # (3, 3), unit, right-handed: two tangents and the normal, world axes
+    path: FloatArray  # (k, 3), N s, the vertices of the path
+    events: tuple[PathEvent, ...]  # (m,), what is marked
+    points: FloatArray  # (m, 3), N s, where
+    velocity: FloatArray | None  # (3,), m/s, before the impact
+    response: FloatArray | None  # (3, 3), 1/kg
+    side: float  # N s, half of the width of the diagram
+    top: float  # N s, its height
 
 
 def impulse_space(

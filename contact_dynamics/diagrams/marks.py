@@ -27,110 +27,72 @@ NO_PLACES: Final = np.zeros((0, 2))
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Mark:
-    """The base of all marks.
+    """The base of all marks."""
 
-    Attributes:
-        name: The name of the mark: an entity in rerun, an id in SVG.
-        paint: The colour, in the viewer and on paper.
-        opacity: Its opacity, 0 to 1. On paper, only faces are translucent.
-        legend: What the mark means, for the legend, or an empty string.
-        is_obvious: Whether the viewer's legend leaves it out, since its form says what it is.
-        on_paper: Whether Matplotlib draws it.
-        in_viewer: Whether rerun draws it.
-    """
-
-    name: str
-    paint: Paint
+    name: str  # the name of the mark: an entity in rerun, an id in SVG
+    paint: Paint  # the colour, in the viewer and on paper
     _: KW_ONLY
-    opacity: float = 1.0
-    legend: str = ""
-    is_obvious: bool = False
-    on_paper: bool = True
-    in_viewer: bool = True
+    opacity: float = 1.0  # its opacity, 0 to 1. On paper, only faces are translucent.
+    legend: str = ""  # what the mark means, for the legend, or an empty string
+    is_obvious: bool = False  # whether the viewer's legend leaves it out, since its form says what it is
+    on_paper: bool = True  # whether Matplotlib draws it
+    in_viewer: bool = True  # whether rerun draws it
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Lines(Mark):
-    """Line strips.
+    """Line strips."""
 
-    Attributes:
-        strips: (k, d) each.
-        width: Points of the screen or of paper.
-        dash: The style, as Matplotlib writes it. The viewer draws solid lines.
-    """
-
-    strips: Strips
+    strips: Strips  # (k, d) each
     _: KW_ONLY
-    width: float = 1.2
-    dash: str = "-"
+    width: float = 1.2  # points of the screen or of paper
+    dash: str = "-"  # the style, as Matplotlib writes it. The viewer draws solid lines.
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Points(Mark):
-    """Points with a label each.
+    """Points with a label each."""
 
-    Attributes:
-        places: (n, d).
-        paints: Their colours in the viewer, (n,), if each has its own.
-        size: The diameter, in points of the screen or of paper.
-        radius: The radius in the units of the diagram, which replaces the size in the viewer if it is not 0.
-        marker: The form, as Matplotlib writes it.
-        hollow: Whether paper shows through.
-        labels: (n,), or none.
-        label_all: Whether all labels are shown. Otherwise, the viewer shows the one under the mouse.
-        is_noted: Whether the viewer writes the legend beside the diagram, with a line to the first point.
-    """
-
-    places: FloatArray
+    places: FloatArray  # (n, d)
     _: KW_ONLY
-    paints: Sequence[Paint] = ()
-    size: float = 8.0
+    paints: Sequence[Paint] = ()  # their colours in the viewer, (n,), if each has its own
+    size: float = 8.0  # the diameter, in points of the screen or of paper
+    # The radius in the units of the diagram, which replaces the size in the viewer if it is not 0.
     radius: float = 0.0
-    marker: str = "o"
-    hollow: bool = False
-    labels: Sequence[str] = ()
+    marker: str = "o"  # the form, as Matplotlib writes it
+    hollow: bool = False  # whether paper shows through
+    labels: Sequence[str] = ()  # (n,), or none
+    # Whether all labels are shown. Otherwise, the viewer shows the one under the mouse.
     label_all: bool = False
+    # Whether the viewer writes the legend beside the diagram, with a line to the first point.
     is_noted: bool = False
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Arrows(Mark):
-    """Arrows with a label each.
+    """Arrows with a label each."""
 
-    Attributes:
-        origins: (n, d).
-        vectors: (n, d).
-        paints: Their colours in the viewer, (n,), if each has its own.
-        width: Points of the screen or of paper.
-        radius: The radius in the units of the diagram, which replaces the width in the viewer if it is not 0.
-        labels: (n,), or none.
-        label_all: Whether all labels are shown. Otherwise, the viewer shows the one under the mouse.
-    """
-
-    origins: FloatArray
-    vectors: FloatArray
+    origins: FloatArray  # (n, d)
+    vectors: FloatArray  # (n, d)
     _: KW_ONLY
-    paints: Sequence[Paint] = ()
-    width: float = 2.0
+    paints: Sequence[Paint] = ()  # their colours in the viewer, (n,), if each has its own
+    width: float = 2.0  # points of the screen or of paper
+    # The radius in the units of the diagram, which replaces the width in the viewer if it is not 0.
     radius: float = 0.0
-    labels: Sequence[str] = ()
+    labels: Sequence[str] = ()  # (n,), or none
+    # Whether all labels are shown. Otherwise, the viewer shows the one under the mouse.
     label_all: bool = False
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Faces(Mark):
-    """Triangles. The viewer draws them in three dimensions only.
+    """Triangles. The viewer draws them in three dimensions only."""
 
-    Attributes:
-        corners: (n, d).
-        triangles: (m, 3), indices into the corners. By default, the corners are those of a convex polygon.
-        normals: (n, d), unit, or none.
-    """
-
-    corners: FloatArray
+    corners: FloatArray  # (n, d)
     _: KW_ONLY
+    # (m, 3), indices into the corners. By default, the corners are those of a convex polygon.
     triangles: Triangles | None = None
-    normals: FloatArray | None = None
+    normals: FloatArray | None = None  # (n, d), unit, or none
 
     @property
     def fan(self) -> Triangles:
@@ -144,83 +106,51 @@ class Faces(Mark):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Labels(Mark):
-    """Words at places.
+    """Words at places."""
 
-    Attributes:
-        places: (n, d), of the middle of each.
-        texts: (n,).
-        paints: Their colours in the viewer, (n,), if each has its own.
-    """
-
-    places: FloatArray
-    texts: Sequence[str]
+    places: FloatArray  # (n, d), of the middle of each
+    texts: Sequence[str]  # (n,)
     _: KW_ONLY
-    paints: Sequence[Paint] = ()
+    paints: Sequence[Paint] = ()  # their colours in the viewer, (n,), if each has its own
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Ellipsoids(Mark):
-    """Ellipsoids of uncertainty, in three dimensions.
+    """Ellipsoids of uncertainty, in three dimensions."""
 
-    Attributes:
-        centers: (n, 3).
-        covariances: (n, 3, 3).
-        deviations: The half axes in standard deviations, a number or (n,).
-    """
-
-    centers: FloatArray
-    covariances: FloatArray
+    centers: FloatArray  # (n, 3)
+    covariances: FloatArray  # (n, 3, 3)
     _: KW_ONLY
-    deviations: FloatArray | float = 1.0
+    deviations: FloatArray | float = 1.0  # the half axes in standard deviations, a number or (n,)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Regions(Mark):
-    """Regions of a flat diagram, as a picture of one pixel for each unit, whose rows go down from the top.
+    """Regions of a flat diagram, as a picture of one pixel for each unit, whose rows go down from the top."""
 
-    Attributes:
-        classes: (h, w), indices into the paints.
-        paints: The colour of each class.
-        legends: What each class means, for the legend on paper, or an empty string.
-    """
-
-    classes: NDArray[np.integer]
+    classes: NDArray[np.integer]  # (h, w), indices into the paints
     _: KW_ONLY
-    paints: Sequence[Paint]
-    legends: Sequence[str]
+    paints: Sequence[Paint]  # the colour of each class
+    legends: Sequence[str]  # what each class means, for the legend on paper, or an empty string
 
 
 class Axis(NamedTuple):
-    """An axis.
+    """An axis."""
 
-    Attributes:
-        name: The quantity with its unit.
-        low: Where it begins.
-        high: Where it ends.
-        ticks: Where it has which words, or None for round numbers.
-    """
-
-    name: str
-    low: float
-    high: float
-    ticks: tuple[tuple[float, str], ...] | None = None
+    name: str  # the quantity with its unit
+    low: float  # where it begins
+    high: float  # where it ends
+    ticks: tuple[tuple[float, str], ...] | None = None  # where it has which words, or None for round numbers
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Diagram:
-    """A diagram with two or three axes.
+    """A diagram with two or three axes."""
 
-    Attributes:
-        marks: What it shows. Later marks cover earlier ones.
-        axes: Its axes: to the right and up; or to the right, back and up.
-        title: Its title.
-        is_equal: Whether all axes have one scale.
-    """
-
-    marks: Sequence[Mark]
-    axes: tuple[Axis, ...]
-    title: str = ""
-    is_equal: bool = True
+    marks: Sequence[Mark]  # what it shows. Later marks cover earlier ones.
+    axes: tuple[Axis, ...]  # its axes: to the right and up; or to the right, back and up
+    title: str = ""  # its title
+    is_equal: bool = True  # whether all axes have one scale
 
 
 def mapped(mark: Mark, matrix: FloatArray) -> Mark:

@@ -68,30 +68,19 @@ _APPLIED: Final = Paint(palette.IMPACT, paper.MARK)
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class ModeRegions:
-    """Which modes are consistent at each point of a chart.
+    """Which modes are consistent at each point of a chart."""
 
-    Attributes:
-        classes: (h, w), indices into ``modes``.
-        modes: The consistent modes of each class. OUTSIDE and NO_MODE have none.
-    """
-
-    classes: NDArray[np.uint16]
-    modes: tuple[tuple[str, ...], ...]
+    classes: NDArray[np.uint16]  # (h, w), indices into ``modes``
+    modes: tuple[tuple[str, ...], ...]  # the consistent modes of each class. OUTSIDE and NO_MODE have none.
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class WidestPlace:
-    """The place at which a region has most room for its name.
+    """The place at which a region has most room for its name."""
 
-    Attributes:
-        region: Its class.
-        place: (2,), points.
-        room: Radius of the largest circle that fits, relative to a part's side.
-    """
-
-    region: int
-    place: FloatArray
-    room: float
+    region: int  # its class
+    place: FloatArray  # (2,), points
+    room: float  # radius of the largest circle that fits, relative to a part's side
 
 
 def mode_regions(sets: Sequence[PlanarWrenchSet], chart: WrenchChart) -> ModeRegions:

@@ -131,12 +131,7 @@ def mode_color(mode: str, index: int) -> Color:
 
 
 class Paint(NamedTuple):
-    """A colour with one meaning.
+    """A colour with one meaning."""
 
-    Attributes:
-        dark: On the dark background of the viewer.
-        paper: On paper, as Matplotlib writes it.
-    """
-
-    dark: Color
-    paper: str
+    dark: Color  # on the dark background of the viewer
+    paper: str  # on paper, as Matplotlib writes it

@@ -216,18 +216,12 @@ _FLAT: Final = 0.1  # half of the length of a contact's flat, relative to the bo
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class ModesSideBySide:
-    """The consistent modes of a planar body. There is one picture without a mode if none is consistent.
+    """The consistent modes of a planar body. There is one picture without a mode if none is consistent."""
 
-    Attributes:
-        contacts: The contacts.
-        modes: The modes. There may be none.
-        titles: What is said of each picture.
-        outline: Outline of the body, a closed strip, (k, 2), m from the centre of mass, which may be empty.
-    """
-
-    contacts: tuple[PlanarContact, ...]
-    modes: tuple[PlanarMode, ...]
-    titles: list[str]
+    contacts: tuple[PlanarContact, ...]  # the contacts
+    modes: tuple[PlanarMode, ...]  # the modes. There may be none.
+    titles: list[str]  # what is said of each picture
+    # Outline of the body, a closed strip, (k, 2), m from the centre of mass, which may be empty.
     outline: FloatArray
 
     @property
@@ -262,18 +256,12 @@ class ModesSideBySide:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class AnswersMap:
-    """What the map of modes of a planar answer shows.
+    """What the map of modes of a planar answer shows."""
 
-    Attributes:
-        sets: The applied wrenches of each mode.
-        chart: The chart that suits them.
-        applied: The wrench in question, or None if it is not known.
-        change: The least change that takes it out of the first mode, or None if it is not known.
-    """
-
-    sets: tuple[PlanarWrenchSet, ...]
-    chart: WrenchChart
-    applied: PlanarWrench | None
+    sets: tuple[PlanarWrenchSet, ...]  # the applied wrenches of each mode
+    chart: WrenchChart  # the chart that suits them
+    applied: PlanarWrench | None  # the wrench in question, or None if it is not known
+    # The least change that takes it out of the first mode, or None if it is not known.
     change: PlanarWrench | None
 
 

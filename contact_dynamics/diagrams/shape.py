@@ -37,19 +37,12 @@ NO_SIZE: Final = 0.05  # m. A body without shape is drawn with this size.
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Shape:
-    """Faces and edges of a body, in body axes.
+    """Faces and edges of a body, in body axes."""
 
-    Attributes:
-        triangles_B: (m, 3, 3), m, corners of each triangle, counterclockwise seen from outside.
-        normals_B: (m, 3), unit, outward normal of each triangle.
-        edges_B: (k, 2, 3), m, ends of each edge.
-        size: m, > 0, distance between the two ends of the body's bounding box.
-    """
-
-    triangles_B: FloatArray
-    normals_B: FloatArray
-    edges_B: FloatArray
-    size: float
+    triangles_B: FloatArray  # (m, 3, 3), m, corners of each triangle, counterclockwise seen from outside
+    normals_B: FloatArray  # (m, 3), unit, outward normal of each triangle
+    edges_B: FloatArray  # (k, 2, 3), m, ends of each edge
+    size: float  # m, > 0, distance between the two ends of the body's bounding box
 
 
 def drawn_shape(shape: ConvexShape) -> Shape:

@@ -43,19 +43,12 @@ _TEXT: Final = Paint(palette.NORMAL, paper.BLACK)
 
 
 class TreeNode(NamedTuple):
-    """A strike of the event tree that has regions.
+    """A strike of the event tree that has regions."""
 
-    Attributes:
-        parent: The index of the node before it, or -1 for the state that the toss begins with.
-        text: Which strike it is, what happens, and with which probability.
-        probability: Share of all samples.
-        regions: When and where it happens.
-    """
-
-    parent: int
-    text: str
-    probability: float
-    regions: EventRegions
+    parent: int  # the index of the node before it, or -1 for the state that the toss begins with
+    text: str  # which strike it is, what happens, and with which probability
+    probability: float  # share of all samples
+    regions: EventRegions  # when and where it happens
 
 
 def tree_of(told: TossDistribution) -> list[TreeNode]:

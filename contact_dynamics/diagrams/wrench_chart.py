@@ -44,15 +44,10 @@ _CURVE_POINTS: Final = 3000
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class WrenchChart(ABC):
-    """A flat picture of wrenches (f_x, f_y, moment), N and N m.
+    """A flat picture of wrenches (f_x, f_y, moment), N and N m."""
 
-    Attributes:
-        parts: How many parts stand side by side.
-        resolution: Points on a side of each part.
-    """
-
-    parts: ClassVar[int] = 2
-    resolution: int = 400
+    parts: ClassVar[int] = 2  # how many parts stand side by side
+    resolution: int = 400  # points on a side of each part
 
     @abstractmethod
     def wrenches(self) -> tuple[FloatArray, NDArray[np.bool_]]:
@@ -87,13 +82,9 @@ def part_centre(chart: WrenchChart, part: int) -> Vector2:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DirectionChart(WrenchChart):
-    """Two discs that show all directions of wrenches.
+    """Two discs that show all directions of wrenches."""
 
-    Attributes:
-        length: m, > 0, the radius of gyration, by which torques are divided to compare with forces.
-    """
-
-    length: float
+    length: float  # m, > 0, the radius of gyration, by which torques are divided to compare with forces
 
     def wrenches(self) -> tuple[FloatArray, NDArray[np.bool_]]:
         """Return the wrench of unit size at each point. Each disc keeps areas (Lambert's projection)."""
@@ -119,17 +110,11 @@ class DirectionChart(WrenchChart):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ForceDualChart(WrenchChart):
-    """Two squares that show force duals in the plane of the body.
+    """Two squares that show force duals in the plane of the body."""
 
-    Attributes:
-        length: m, > 0, the radius of gyration.
-        half_side: m, > 0, of each square.
-        centre: m, the middle of each square, from the centre of mass.
-    """
-
-    length: float
-    half_side: float
-    centre: Vector2 = (0.0, 0.0)
+    length: float  # m, > 0, the radius of gyration
+    half_side: float  # m, > 0, of each square
+    centre: Vector2 = (0.0, 0.0)  # m, the middle of each square, from the centre of mass
 
     def wrenches(self) -> tuple[FloatArray, NDArray[np.bool_]]:
         """Return the wrench that would turn the free body about each point with unit angular acceleration."""
@@ -160,16 +145,11 @@ class ForceDualChart(WrenchChart):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ForceChart(WrenchChart):
-    """A square that shows forces at one torque.
-
-    Attributes:
-        moment: N m.
-        half_side: N, > 0.
-    """
+    """A square that shows forces at one torque."""
 
     parts: ClassVar[int] = 1
-    moment: float
-    half_side: float
+    moment: float  # N m
+    half_side: float  # N, > 0
 
     def wrenches(self) -> tuple[FloatArray, NDArray[np.bool_]]:
         """Return the wrench at each point."""

@@ -39,39 +39,23 @@ residuals."""
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class MeasuredState(Record):
-    """A state found by a fit, with the standard deviation of each of its parts.
+    """A state found by a fit, with the standard deviation of each of its parts."""
 
-    Attributes:
-        time: Time of the state, s, on the recording's clock.
-        state: The state of the centre of mass, world axes.
-        position_std: Standard deviation of each coordinate, m.
-        orientation_std: (3,), rad, those of a rotation vector's components, world axes.
-        velocity_std: Standard deviation of each component, m/s.
-        angular_velocity_std: (3,), rad/s, that of each component, world axes.
-    """
-
-    time: float
-    state: BodyState
-    position_std: float
-    orientation_std: FloatArray
-    velocity_std: float
-    angular_velocity_std: FloatArray
+    time: float  # time of the state, s, on the recording's clock
+    state: BodyState  # the state of the centre of mass, world axes
+    position_std: float  # standard deviation of each coordinate, m
+    orientation_std: FloatArray  # (3,), rad, those of a rotation vector's components, world axes
+    velocity_std: float  # standard deviation of each component, m/s
+    angular_velocity_std: FloatArray  # (3,), rad/s, that of each component, world axes
 
 
 class FittedPoses(NamedTuple):
-    """Poses of fitted flights, with the standard deviation of each of their parts.
+    """Poses of fitted flights, with the standard deviation of each of their parts."""
 
-    Attributes:
-        p_WB_W: (..., n, 3), m.
-        q_WB: (..., n, 4), unit quaternions x, y, z, w.
-        position_std: (..., n), m, that of each coordinate.
-        orientation_std: (..., n, 3), rad, those of a rotation vector's components, world axes.
-    """
-
-    p_WB_W: FloatArray
-    q_WB: FloatArray
-    position_std: FloatArray
-    orientation_std: FloatArray
+    p_WB_W: FloatArray  # (..., n, 3), m
+    q_WB: FloatArray  # (..., n, 4), unit quaternions x, y, z, w
+    position_std: FloatArray  # (..., n), m, that of each coordinate
+    orientation_std: FloatArray  # (..., n, 3), rad, those of a rotation vector's components, world axes
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -79,32 +63,20 @@ class FlightFit(Record):
     """A fitted free flight, or many: position and rotation vector at a reference time, with velocity and L.
 
     The leading axes of all arrays are those of the flights; a single flight has none.
-
-    Attributes:
-        reference: (...), the reference time, s.
-        q_reference: (..., 4), x, y, z, w, the measured orientation from which rotation vectors start.
-        p_W: (..., 3), m, position at the reference.
-        v_W: (..., 3), m/s, velocity at the reference.
-        theta_W: (..., 3), rad, rotation vector at the reference, world axes.
-        L_W: (..., 3), kg m^2/s, angular momentum about the centre of mass.
-        gravity_W: (3,), m/s^2.
-        I_B: (3, 3), kg m^2, body axes.
-        cov_p: (..., 2, 2), covariance of a coordinate and its rate: m^2, m^2/s, m^2/s^2.
-        cov_rotation: (..., 6, 6), covariance of theta and L.
-        by_L: (..., n, 3, 3), 1/(kg m^2/s), what L adds to the rotation vectors of the n frames.
     """
 
-    reference: FloatArray
+    reference: FloatArray  # (...), the reference time, s
+    # (..., 4), x, y, z, w, the measured orientation from which rotation vectors start.
     q_reference: FloatArray
-    p_W: FloatArray
-    v_W: FloatArray
-    theta_W: FloatArray
-    L_W: FloatArray
-    gravity_W: FloatArray
-    I_B: FloatArray
-    cov_p: FloatArray
-    cov_rotation: FloatArray
-    by_L: FloatArray
+    p_W: FloatArray  # (..., 3), m, position at the reference
+    v_W: FloatArray  # (..., 3), m/s, velocity at the reference
+    theta_W: FloatArray  # (..., 3), rad, rotation vector at the reference, world axes
+    L_W: FloatArray  # (..., 3), kg m^2/s, angular momentum about the centre of mass
+    gravity_W: FloatArray  # (3,), m/s^2
+    I_B: FloatArray  # (3, 3), kg m^2, body axes
+    cov_p: FloatArray  # (..., 2, 2), covariance of a coordinate and its rate: m^2, m^2/s, m^2/s^2
+    cov_rotation: FloatArray  # (..., 6, 6), covariance of theta and L
+    by_L: FloatArray  # (..., n, 3, 3), 1/(kg m^2/s), what L adds to the rotation vectors of the n frames
 
     def at(self, time: float) -> MeasuredState:
         """Return a single flight's state at ``time``, s; see `poses_at`."""

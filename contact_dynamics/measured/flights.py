@@ -140,26 +140,17 @@ def _deviations(poses: MeasuredPoses, frames: IntArray, expected: FittedPoses) -
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class Strike(Record):
-    """Where one flight passes into the next, at the time when their poses agree best.
+    """Where one flight passes into the next, at the time when their poses agree best."""
 
-    Attributes:
-        time: That time, s, on the recording's clock.
-        time_std: Its standard deviation, s.
-        before: The state then, from the flight that ends.
-        after: The state then, from the flight that begins.
-        frames_before: Frames of the flight that ends, within `FIT_SPAN`.
-        frames_after: Frames of the flight that begins, within `FIT_SPAN`.
-        surface: Number of the nearest of the flat surfaces, or None where there are none or no corners.
-        heights: (k,), m, of the body's corners above it, from both flights' mean; empty where it is None.
-    """
-
-    time: float
-    time_std: float
-    before: MeasuredState
-    after: MeasuredState
-    frames_before: slice
-    frames_after: slice
+    time: float  # that time, s, on the recording's clock
+    time_std: float  # its standard deviation, s
+    before: MeasuredState  # the state then, from the flight that ends
+    after: MeasuredState  # the state then, from the flight that begins
+    frames_before: slice  # frames of the flight that ends, within `FIT_SPAN`
+    frames_after: slice  # frames of the flight that begins, within `FIT_SPAN`
+    # Number of the nearest of the flat surfaces, or None where there are none or no corners.
     surface: int | None
+    # (k,), m, of the body's corners above it, from both flights' mean; empty where it is None.
     heights: FloatArray
 
     @property

@@ -43,40 +43,26 @@ if TYPE_CHECKING:
 class Toss(Record):
     """A recorded toss of one box-shaped body onto one surface. Sample k is row k of each array.
 
-    Attributes:
-        source: Where the numbers come from, in words.
-        body: Mass properties and corners. Its published frame is B itself.
-        box_size: (3,), m, full side lengths along the body's axes.
-        surface: The surface on which it falls, with friction and restitution.
-        gravity_W: (3,), m/s^2, world axes.
-        rate: Rate of the samples, Hz.
-        position_noise: Standard deviation of each coordinate of a measured position, m.
-        times: (n,), s, increasing.
-        p_WB_W: (n, 3), m, centre of mass in the world.
-        q_WB: (n, 4), unit quaternions x, y, z, w: body coordinates into world coordinates.
-        v_WB_W: (n, 3), m/s, velocity of the centre of mass, world axes, estimated from the past.
-        w_WB_W: (n, 3), rad/s, angular velocity, world axes, estimated from the past.
-
     Raises:
         InvalidFieldError: arrays have unequal lengths, a number is not finite, times do not increase, a
             quaternion is not unit, or a rate or noise is not > 0.
     """
 
-    source: str
-    body: Body
-    box_size: FloatArray
-    surface: Surface
-    gravity_W: FloatArray
-    rate: float
-    position_noise: float
+    source: str  # where the numbers come from, in words
+    body: Body  # mass properties and corners. Its published frame is B itself.
+    box_size: FloatArray  # (3,), m, full side lengths along the body's axes
+    surface: Surface  # the surface on which it falls, with friction and restitution
+    gravity_W: FloatArray  # (3,), m/s^2, world axes
+    rate: float  # rate of the samples, Hz
+    position_noise: float  # standard deviation of each coordinate of a measured position, m
     orientation_noise: (
         float  # rad, standard deviation of each component of a measured orientation's rotation error
     )
-    times: FloatArray
-    p_WB_W: FloatArray
-    q_WB: FloatArray
-    v_WB_W: FloatArray
-    w_WB_W: FloatArray
+    times: FloatArray  # (n,), s, increasing
+    p_WB_W: FloatArray  # (n, 3), m, centre of mass in the world
+    q_WB: FloatArray  # (n, 4), unit quaternions x, y, z, w: body coordinates into world coordinates
+    v_WB_W: FloatArray  # (n, 3), m/s, velocity of the centre of mass, world axes, estimated from the past
+    w_WB_W: FloatArray  # (n, 3), rad/s, angular velocity, world axes, estimated from the past
 
     def __post_init__(self) -> None:
         """Check every field, and normalise the quaternions to rounding."""

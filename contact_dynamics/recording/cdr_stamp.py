@@ -36,19 +36,12 @@ _EVENT_TYPES: Final = tuple(EventType)
 
 
 class EventInfo(NamedTuple):
-    """The head of a service event: who asked, and when.
+    """The head of a service event: who asked, and when."""
 
-    Attributes:
-        event_type: Whether this is a request or a response, at the client or the server.
-        stamp_ns: Time of the clock that was given to ``configure_introspection``, ns.
-        client_gid: 16 bytes that identify the client within this session.
-        sequence_number: Number of the request among those of that client.
-    """
-
-    event_type: EventType
-    stamp_ns: int
-    client_gid: bytes
-    sequence_number: int
+    event_type: EventType  # whether this is a request or a response, at the client or the server
+    stamp_ns: int  # time of the clock that was given to ``configure_introspection``, ns
+    client_gid: bytes  # 16 bytes that identify the client within this session
+    sequence_number: int  # number of the request among those of that client
 
 
 def leading_stamp_ns(data: bytes) -> int:

@@ -47,19 +47,12 @@ _STAMP_FIRST: Final = frozenset({"std_msgs/Header", "builtin_interfaces/Time"})
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TypeDefinition:
-    """One message type as a log describes it.
+    """One message type as a log describes it."""
 
-    Attributes:
-        type_name: "package/msg/Name" or "package/srv/Name_Event".
-        text: Its fields, then each type that it uses, in MCAP's ros2msg form.
-        type_hash: "RIHS01_..." of REP 2011; empty if there is no .json beside the text.
-        begins_with_stamp: Whether the first field is a std_msgs/Header or a time.
-    """
-
-    type_name: str
-    text: str
-    type_hash: str
-    begins_with_stamp: bool
+    type_name: str  # "package/msg/Name" or "package/srv/Name_Event"
+    text: str  # its fields, then each type that it uses, in MCAP's ros2msg form
+    type_hash: str  # "RIHS01_..." of REP 2011; empty if there is no .json beside the text
+    begins_with_stamp: bool  # whether the first field is a std_msgs/Header or a time
 
     @property
     def is_service_event(self) -> bool:

@@ -42,21 +42,14 @@ _BOUNDED: Final = "<="
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Field:
-    """A field of a message.
-
-    Attributes:
-        type_name: A key of `PRIMITIVES`, "string", or "package/Name".
-        is_array: Whether it holds several.
-        count: The number of elements, or None if each message has its own.
-        default: The default in the type's text, or None if it has none.
-        names: The names of its values: the constants of its type that stand before it in the type's text.
-    """
+    """A field of a message."""
 
     name: str
-    type_name: str
-    is_array: bool = False
-    count: int | None = None
-    default: Any = None
+    type_name: str  # a key of `PRIMITIVES`, "string", or "package/Name"
+    is_array: bool = False  # whether it holds several
+    count: int | None = None  # the number of elements, or None if each message has its own
+    default: Any = None  # the default in the type's text, or None if it has none
+    # The names of its values: the constants of its type that stand before it in the type's text.
     names: Mapping[Any, str] = field(default_factory=dict, compare=False)
 
 

@@ -55,15 +55,10 @@ class LogProblem(enum.Enum):
 
 
 class Problem(NamedTuple):
-    """A problem of a kind.
+    """A problem of a kind."""
 
-    Attributes:
-        text: What was wrong the last time, in words.
-        last: s, by `time.monotonic`. When that was.
-    """
-
-    text: str
-    last: float
+    text: str  # what was wrong the last time, in words
+    last: float  # s, by `time.monotonic`. When that was.
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -33,15 +33,10 @@ if TYPE_CHECKING:
 
 @dataclass(slots=True, kw_only=True)
 class Refused:
-    """Messages of one topic that made no state.
+    """Messages of one topic that made no state."""
 
-    Attributes:
-        reason: Why the first of them was refused.
-        count: How many were.
-    """
-
-    reason: str
-    count: int = 0
+    reason: str  # why the first of them was refused
+    count: int = 0  # how many were
 
 
 class ServerAgain(ServerCore):

@@ -53,60 +53,38 @@ UNREADABLE = "UNREADABLE"
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StateCame:
-    """A state was published.
+    """A state was published."""
 
-    Attributes:
-        body_name: The body.
-        state: Its state, of the centre of mass.
-    """
-
-    body_name: str
-    state: BodyState
+    body_name: str  # the body
+    state: BodyState  # its state, of the centre of mass
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class WorldChanged:
-    """The bodies or surfaces were configured anew.
+    """The bodies or surfaces were configured anew."""
 
-    Attributes:
-        world: The bodies and surfaces from now on.
-        stamp_ns: ns, the time of the change by the clock of the states' stamps.
-    """
-
-    world: World
-    stamp_ns: int
+    world: World  # the bodies and surfaces from now on
+    stamp_ns: int  # ns, the time of the change by the clock of the states' stamps
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Answered:
-    """A question was answered or refused.
+    """A question was answered or refused."""
 
-    Attributes:
-        service_name: The name of the service that was asked, as "predict_impact".
-        service: The service that was asked.
-        number: Number of the question among those to this service, from 1.
-        log_time_ns: When it came, ns since the epoch by the machine's clock. It is None if nobody asked it
-            then.
-        asked_ns: When it came, ns by the clock of the states' stamps.
-        question: What was asked, by the names of the request's fields, as far as it is not the default.
-        asked: The question, if it was answered.
-        answer: The answer. It is None if the question was refused, or if the answer cannot be read.
-        status: "OK", or the name of the code with which it was refused.
-        message: What was said of it.
-        computation_time: s, how long the answer took.
-    """
-
-    service_name: str
-    service: Service
-    number: int
+    service_name: str  # the name of the service that was asked, as "predict_impact"
+    service: Service  # the service that was asked
+    number: int  # number of the question among those to this service, from 1
+    # When it came, ns since the epoch by the machine's clock. It is None if nobody asked it then.
     log_time_ns: int | None
-    asked_ns: int
+    asked_ns: int  # when it came, ns by the clock of the states' stamps
+    # What was asked, by the names of the request's fields, as far as it is not the default.
     question: Mapping[str, object]
-    asked: Question[Answer] | None
+    asked: Question[Answer] | None  # the question, if it was answered
+    # The answer. It is None if the question was refused, or if the answer cannot be read.
     answer: Answer | None
-    status: str
-    message: str
-    computation_time: float
+    status: str  # "OK", or the name of the code with which it was refused
+    message: str  # what was said of it
+    computation_time: float  # s, how long the answer took
 
 
 Event: TypeAlias = StateCame | WorldChanged | Answered

@@ -46,23 +46,16 @@ MEASURED: Final = frozenset({"computation_time"})
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Difference:
-    """One field in which two responses differ.
+    """One field in which two responses differ."""
 
-    Attributes:
-        field: Path of the field within the response, as in "modes[2].margin".
-        logged: Its value in the log, or the name of that value if it has one.
-        recomputed: Its value when the question is asked again, or its name.
-        size: The difference relative to the larger of the two, or to 1 if both are smaller. For quaternions
-            it is that of the attitudes, which q and -q share. It is infinite if the values are not numbers,
-            if one of them is not finite, or if arrays have unequal lengths.
-        is_length: Whether it is the number of elements of an array.
-    """
-
-    field: str
-    logged: object
-    recomputed: object
+    field: str  # path of the field within the response, as in "modes[2].margin"
+    logged: object  # its value in the log, or the name of that value if it has one
+    recomputed: object  # its value when the question is asked again, or its name
+    # The difference relative to the larger of the two, or to 1 if both are smaller. For quaternions it is
+    # that of the attitudes, which q and -q share. It is infinite if the values are not numbers, if one of
+    # them is not finite, or if arrays have unequal lengths.
     size: float
-    is_length: bool = False
+    is_length: bool = False  # whether it is the number of elements of an array
 
     @property
     def rank(self) -> tuple[bool, bool, bool, float]:
@@ -177,76 +170,50 @@ MAX_FIELDS_TOLD: Final = 5
 
 @dataclass(slots=True, kw_only=True)
 class ServiceTally:
-    """Counts of the questions to one service, by how their answers compare.
+    """Counts of the questions to one service, by how their answers compare."""
 
-    Attributes:
-        questions: Questions that were asked again.
-        equal: Answers that are as in the log to the last bit.
-        within: Other answers, none of which differs by more than the tolerance.
-        different: Answers that differ by more than the tolerance.
-        other_state: Answers that used other states than the logged ones, and are not compared. There are none
-            where the states of the log are at hand, as here.
-        unanswered: Questions without an answer in the log, or with BUSY or TIMEOUT, which depend on the load
-            of the machine. They were not asked again.
-        unreadable: Calls whose question is missing, or that cannot be decoded.
-    """
-
-    questions: int = 0
-    equal: int = 0
-    within: int = 0
-    different: int = 0
+    questions: int = 0  # questions that were asked again
+    equal: int = 0  # answers that are as in the log to the last bit
+    within: int = 0  # other answers, none of which differs by more than the tolerance
+    different: int = 0  # answers that differ by more than the tolerance
+    # Answers that used other states than the logged ones, and are not compared. There are none where the
+    # states of the log are at hand, as here.
     other_state: int = 0
+    # Questions without an answer in the log, or with BUSY or TIMEOUT, which depend on the load of the
+    # machine. They were not asked again.
     unanswered: int = 0
-    unreadable: int = 0
+    unreadable: int = 0  # calls whose question is missing, or that cannot be decoded
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class OtherAnswer:
-    """A question whose answer differs from the logged one.
+    """A question whose answer differs from the logged one."""
 
-    Attributes:
-        service: The service's name with its leading slash.
-        number: Number of the question among those to this service, from 1.
-        asked_ns: When it came, ns since the epoch, by the machine's clock. It is the ``log_time`` of its
-            event.
-        differences: The fields that differ most, in the order of `Difference.rank`.
-        repeated: How many later questions to this service have the same differences, to the digits shown.
-    """
-
-    service: str
-    number: int
+    service: str  # the service's name with its leading slash
+    number: int  # number of the question among those to this service, from 1
+    # When it came, ns since the epoch, by the machine's clock. It is the ``log_time`` of its event.
     asked_ns: int
-    differences: tuple[Difference, ...]
+    differences: tuple[Difference, ...]  # the fields that differ most, in the order of `Difference.rank`
+    # How many later questions to this service have the same differences, to the digits shown.
     repeated: int = 0
 
 
 @dataclass(slots=True, kw_only=True)
 class Verification:
-    """The result of one log's replay.
+    """The result of one log's replay."""
 
-    Attributes:
-        path: Path of the log.
-        tolerance: How much a number may differ, relative to the larger one, or to 1 if both are smaller.
-        versions: Versions of the libraries that wrote the log, by name.
-        versions_now: Versions of the libraries that answered again, by name.
-        instead: Values of parameters that counted instead of those in the log, by name.
-        services: Tallies by the service's name.
-        others: The questions whose answers differ most, in the order of their first differences.
-        unreadable: The first reason why a call could not be read, or None if all could.
-        damage: The damaged parts of the log, in words, or None if all was whole.
-        lost_bytes: How many bytes of the log could not be read.
-    """
-
-    path: Path
-    tolerance: float
-    versions: dict[str, str]
-    versions_now: dict[str, str]
+    path: Path  # path of the log
+    tolerance: float  # how much a number may differ, relative to the larger one, or to 1 if both are smaller
+    versions: dict[str, str]  # versions of the libraries that wrote the log, by name
+    versions_now: dict[str, str]  # versions of the libraries that answered again, by name
+    # Values of parameters that counted instead of those in the log, by name.
     instead: dict[str, Any] = attribute(default_factory=dict)
-    services: dict[str, ServiceTally] = attribute(default_factory=dict)
+    services: dict[str, ServiceTally] = attribute(default_factory=dict)  # tallies by the service's name
+    # The questions whose answers differ most, in the order of their first differences.
     others: list[OtherAnswer] = attribute(default_factory=list)
-    unreadable: str | None = None
-    damage: str | None = None
-    lost_bytes: int = 0
+    unreadable: str | None = None  # the first reason why a call could not be read, or None if all could
+    damage: str | None = None  # the damaged parts of the log, in words, or None if all was whole
+    lost_bytes: int = 0  # how many bytes of the log could not be read
 
     @property
     def agrees(self) -> bool:

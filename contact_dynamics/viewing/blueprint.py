@@ -143,17 +143,11 @@ _ELEVATION: Final = 0.33  # height of the eye above what it looks at, relative t
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Eye:
-    """The place from which the viewer looks at the scene.
+    """The place from which the viewer looks at the scene."""
 
-    Attributes:
-        position_W: (3,), m, world.
-        target_W: (3,), m, world.
-        up_W: (3,), unit, world axes.
-    """
-
-    position_W: FloatArray
-    target_W: FloatArray
-    up_W: FloatArray
+    position_W: FloatArray  # (3,), m, world
+    target_W: FloatArray  # (3,), m, world
+    up_W: FloatArray  # (3,), unit, world axes
 
 
 def eye_on(path_W: FloatArray, *, about_W: FloatArray, up_W: FloatArray, margin: float) -> Eye:

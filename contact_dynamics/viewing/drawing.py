@@ -220,23 +220,14 @@ def _on_screen(places: FloatArray, shift: float = 0.0) -> FloatArray:
 
 
 class _Page(NamedTuple):
-    """The screen as the words of a diagram see it.
+    """The screen as the words of a diagram see it."""
 
-    Attributes:
-        point: One point of the screen, in the units of the diagram.
-        right: (d,), unit, to the right on the screen.
-        up: (d,), unit.
-        low: (d,), the lower left corner of what is between the axes, as seen.
-        width: To the right of this corner.
-        height: Above it.
-    """
-
-    point: float
-    right: FloatArray
-    up: FloatArray
-    low: FloatArray
-    width: float
-    height: float
+    point: float  # one point of the screen, in the units of the diagram
+    right: FloatArray  # (d,), unit, to the right on the screen
+    up: FloatArray  # (d,), unit
+    low: FloatArray  # (d,), the lower left corner of what is between the axes, as seen
+    width: float  # to the right of this corner
+    height: float  # above it
 
     def at(self, right: float, up: float) -> FloatArray:
         """Return the place that is so many points to the right of the lower left corner, and above it."""

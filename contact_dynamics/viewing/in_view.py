@@ -157,19 +157,12 @@ MAX_KEPT: Final = 500
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Prediction:
-    """Where a body was predicted to be.
+    """Where a body was predicted to be."""
 
-    Attributes:
-        begin_ns: When it begins, ns.
-        trajectory: The motion.
-        curves: Its curves by quantity, over the trajectory.
-        number: Its number among those of its body, from 0 on.
-    """
-
-    begin_ns: int
-    trajectory: Trajectory
-    curves: dict[str, FloatArray]
-    number: int
+    begin_ns: int  # when it begins, ns
+    trajectory: Trajectory  # the motion
+    curves: dict[str, FloatArray]  # its curves by quantity, over the trajectory
+    number: int  # its number among those of its body, from 0 on
 
 
 class PredictionsInView:

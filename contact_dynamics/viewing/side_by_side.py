@@ -27,17 +27,11 @@ _APART: Final = 2.6  # sizes of the largest body from place to place
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class SideBySide(Record):
-    """The places of events.
+    """The places of events."""
 
-    Attributes:
-        count: Number of events.
-        size: m, of the largest body.
-        gravity_W: (3,), m/s^2, which tells what is up.
-    """
-
-    count: int
-    size: float
-    gravity_W: FloatArray
+    count: int  # number of events
+    size: float  # m, of the largest body
+    gravity_W: FloatArray  # (3,), m/s^2, which tells what is up
 
     @property
     def up_W(self) -> FloatArray:

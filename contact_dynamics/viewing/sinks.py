@@ -73,27 +73,21 @@ class ViewerMode(Enum):
 class Sinks:
     """The places to draw to.
 
-    Attributes:
-        rrd_path: File to write, which is replaced. If it is empty, no file is written.
-        rrd_size: Bytes. When a file is larger, the next one begins, with _1, _2 and so on in its name. 0
-            means that there is one file.
-        rrd_files: The newest files that stay, where there are several. 0 means all.
-        port: Port of the viewer that is started, or that is served.
-        url: URL of the viewer to connect to, such as rerun+http://127.0.0.1:9876/proxy.
-        memory: Memory of the viewer that is started, or of what is served, as rerun takes it: `2GB`, `50%`.
-        web_port: Port of the web viewer beside what is served. `NO_WEB_PORT` means that there is none.
-
     Raises:
         InvalidFieldError: the memory is not a size.
     """
 
-    rrd_path: str = ""
+    rrd_path: str = ""  # file to write, which is replaced. If it is empty, no file is written.
+    # Bytes. When a file is larger, the next one begins, with _1, _2 and so on in its name. 0 means that there
+    # is one file.
     rrd_size: int = 0
-    rrd_files: int = 0
+    rrd_files: int = 0  # the newest files that stay, where there are several. 0 means all.
     viewer: ViewerMode = ViewerMode.NONE
-    port: int = DEFAULT_PORT
-    url: str = ""
+    port: int = DEFAULT_PORT  # port of the viewer that is started, or that is served
+    url: str = ""  # URL of the viewer to connect to, such as rerun+http://127.0.0.1:9876/proxy
+    # memory of the viewer that is started, or of what is served, as rerun takes it: `2GB`, `50%`.
     memory: str = "1GiB"
+    # Port of the web viewer beside what is served. `NO_WEB_PORT` means that there is none.
     web_port: int = NO_WEB_PORT
 
     def __post_init__(self) -> None:
