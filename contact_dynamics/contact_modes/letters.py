@@ -69,10 +69,14 @@ def mode_in_words(mode: str, *, turns: bool | None = None) -> str:
     return f"it tips ({words})" if set(kinds) == {SEPARATES, STICKS} else words
 
 
-def margin_in_words(mode: str, margin: float, modes_beyond: Collection[str]) -> str:
-    """Return words for a mode, the change of the wrench that ends it, N, and the modes that follow."""
+def margin_in_words(mode: str, margin: float, modes_beyond: Collection[str], unknown: str = "") -> str:
+    """Return words for a mode, the change of the wrench that ends it, N, and the modes that follow.
+
+    A margin that is NaN is ``unknown`` for this reason.
+    """
     if not math.isfinite(margin):
-        ends = "its margin is unknown" if math.isnan(margin) else "no change of the wrench ends that"
+        why = f"its margin is unknown: {unknown}".removesuffix(": ")
+        ends = why if math.isnan(margin) else "no change of the wrench ends that"
         return f"{mode_in_words(mode)}, and {ends}"
     then = " or ".join(map(mode_in_words, modes_beyond)) or "no mode is consistent"
     return f"{mode_in_words(mode)} up to a change of {margin:.3g} N, then {then}"

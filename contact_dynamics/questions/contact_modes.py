@@ -64,8 +64,6 @@ from contact_dynamics.validation import FloatArray, check_array, check_positive,
 from contact_dynamics.world import Body
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from numpy.typing import ArrayLike
 
     from contact_dynamics.contact.noise import NoisyState
@@ -479,15 +477,6 @@ def _planar_answer(
     )
 
 
-def _unknown_margins(margins: Sequence[SpatialModeMargin]) -> list[str]:
-    """Return a warning if margins are NaN, since a NaN alone does not say why."""
-    modes = [each.mode for each in margins if math.isnan(each.margin)]
-    if not modes:
-        return []
-    why = "whether a smaller change leaves the mode could not be made out"
-    return [f"the margin of {', '.join(modes)} is not known: {why}"]
-
-
 def _spatial_answer(question: ContactModeQuestion, case: ModeCase, reason: str) -> ContactModeAnswer:
     subject, state, contacts = case.subject, case.subject.state, case.contacts
     asked = replace(case.in_space, uncertainty=question.uncertainty)
@@ -515,7 +504,7 @@ def _spatial_answer(question: ContactModeQuestion, case: ModeCase, reason: str) 
         undecided_modes=found.undecided_modes,
         warnings=(
             *([_TAKEN_AS_FLUSH] if found.flush_within > FLUSH else []),
-            *_unknown_margins(margins or ()),
+            *(f"the margin of {one.mode} is unknown: {one.unknown}" for one in margins or () if one.unknown),
         ),
         within=found.within,
         geometry_margins=geometry_margins(asked, found) if question.include_geometry_margins else None,

@@ -116,5 +116,8 @@ def test_a_margin_that_is_no_number_is_told_in_words() -> None:
         margin_in_words("ff", math.inf, ())
         == "every contact stays fixed, and no change of the wrench ends that"
     )
-    assert margin_in_words("ff", math.nan, ()) == "every contact stays fixed, and its margin is unknown"
+    assert (
+        margin_in_words("ff", math.nan, (), "it is dark")
+        == "every contact stays fixed, and its margin is unknown: it is dark"
+    )
     assert margin_in_words("ff", 1.0, ()).endswith(" up to a change of 1 N, then no mode is consistent")

@@ -98,7 +98,7 @@ def test_a_margin_that_is_not_known_is_a_warning() -> None:
     assert answer.margins is not None
     assert np.isnan(answer.margins[0].margin)
     (warning,) = answer.warnings
-    assert warning.startswith("the margin of cccccccccccc is not known: ")
+    assert warning.startswith("the margin of cccccccccccc is unknown: the contacts on a plane have more")
     held = modes_questions.answer(replace(pushed, force_W=[0, 0, 0]), KNOWN)
     assert held.margins is not None
     assert np.isfinite(held.margins[0].margin)

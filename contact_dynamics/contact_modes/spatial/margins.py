@@ -126,27 +126,33 @@ def directions_of(
 
 def least_change(
     case: SpatialCase, search: Search, letters: str, metric: FloatArray, *, alone: bool, regular: bool
-) -> tuple[float, FloatArray]:
+) -> tuple[float, FloatArray] | str:
     """Return the least change of the wrench that may leave a mode, N, and its direction, (6,), in the metric.
 
-    The change is NaN if it is unknown. The mode is ``alone`` if there are no others, and ``regular`` if its
+    If it is unknown, return the reason. The mode is ``alone`` if there are no others, and ``regular`` if its
     motion and its forces are unique. The metric is that of `margins`.
     """
+    if not _rests(case):
+        return "contacts begin to slide on a body or surface that moves"
+    if STICKS in letters:
+        return "some contacts begin to slide while others stick"
+    ways_out = _WaysOut(case, search, letters, metric)
+    if not (alone or (regular and ways_out.is_determined)):
+        return "other modes are not excluded, and the contacts can share the load in several ways"
+    partings = ways_out.partings()
+    if not partings:
+        return f"the contacts on a plane have more than {MAX_CORNERS} corners"
     found, least = np.zeros(6), 0.0
-    if _rests(case) and STICKS not in letters:
-        ways_out = _WaysOut(case, search, letters, metric)
-        known = alone or (regular and ways_out.is_determined)
-        partings = ways_out.partings() if known else []
-        stuck = [min((ways_out.sticking(one) for one in carriers), key=_size) for carriers in partings]
-        for k in sorted(range(len(partings)), key=lambda k: -_size(stuck[k])):
-            nearest = stuck[k]
-            for rest in ways_out.others(partings[k]):
-                nearest = min(nearest, rest, key=_size)
-                if _size(nearest) <= least:
-                    break
-            if _size(nearest) > least:
-                found, least = -nearest, _size(nearest)
-    return (least, found / least) if least > 0.0 else (math.nan, found)
+    stuck = [min((ways_out.sticking(one) for one in carriers), key=_size) for carriers in partings]
+    for k in sorted(range(len(partings)), key=lambda k: -_size(stuck[k])):
+        nearest = stuck[k]
+        for rest in ways_out.others(partings[k]):
+            nearest = min(nearest, rest, key=_size)
+            if _size(nearest) <= least:
+                break
+        if _size(nearest) > least:
+            found, least = -nearest, _size(nearest)
+    return (least, found / least) if least > 0.0 else "no change is proven to be too small to end the mode"
 
 
 def _size(vector: FloatArray) -> float:
@@ -318,6 +324,7 @@ class SpatialModeMargin(Record):
             It is zero if there is none.
         verdict_beyond: Verdict just beyond the boundary, or the present verdict if there is no boundary.
         modes_beyond: Letters of the consistent modes there, each listed once.
+        unknown: Reason why the margin is unknown. Empty unless the margin is NaN.
     """
 
     mode: str
@@ -326,10 +333,11 @@ class SpatialModeMargin(Record):
     change_W: FloatArray
     verdict_beyond: ModeVerdict
     modes_beyond: tuple[str, ...]
+    unknown: str = ""
 
     def in_short(self) -> str:
         """Return the mode, the change of the wrench that ends it, and the modes that follow."""
-        words = margin_in_words(self.mode, self.margin, self.modes_beyond)
+        words = margin_in_words(self.mode, self.margin, self.modes_beyond, self.unknown)
         return f"{type(self).__name__}: {words} (change_W in N and N m)"
 
 
@@ -347,9 +355,7 @@ def spatial_mode_margins(
     margin, and none is nearer than it would be if friction were smaller by 1 - cos(pi / 8), or by
     1 - cos(pi / 4) if more than 16 contacts have friction. Where contacts begin to slide in directions that
     depend on the wrench, the margin is proven from both sides: no smaller change leaves the mode, and behind
-    the boundary it is not consistent. Otherwise it is NaN: if the body moves already, if other contacts
-    stick, if several modes are consistent and contacts share loads, if contacts on a plane have more than
-    `MAX_CORNERS` corners, or if the mode is also consistent beyond the boundary that was found.
+    the boundary it is not consistent. Otherwise it is NaN, and ``unknown`` is the reason.
     """
     length = check_length(margin_length, problem.body.mean_radius_of_gyration)
     if answer is None or answer.problem is not problem:
@@ -368,16 +374,22 @@ def spatial_mode_margins(
         known = directions_of(case, search, letters, mode.tangential_directions_W[case.touching])
         verdict, beyond = present.verdict, _letters(present.modes)
         if known is not None:
-            margin, way = _nearest(case, search, letters, metric, known)
+            found = _nearest(case, search, letters, metric, known)
         else:
             regular = mode.forces_unique and mode.motion_unique
             alone = present.verdict == ModeVerdict.UNIQUE
-            margin, way = least_change(case, search, letters, metric, alone=alone, regular=regular)
+            found = least_change(case, search, letters, metric, alone=alone, regular=regular)
+        margin, way, unknown = (math.nan, np.zeros(6), found) if isinstance(found, str) else (*found, "")
         if math.isfinite(margin):
             step = (margin + BEYOND_MARGIN * max(margin, size)) * way * metric
             there = _under(problem, answer.flush_within, problem.wrench_W + step)
-            if known is None and (there[0] == ModeVerdict.UNDECIDED or mode.mode in there[1]):
-                margin = math.nan
+            continues = mode.mode in there[1]
+            if known is None and (continues or there[0] == ModeVerdict.UNDECIDED):
+                further = "the mode continues" if continues else "whether the mode continues is undecided"
+                margin, unknown = (
+                    math.nan,
+                    f"no change below {margin:.3g} N ends the mode, and {further} there",
+                )
             else:
                 verdict, beyond = there
         margins.append(
@@ -388,6 +400,7 @@ def spatial_mode_margins(
                 change_W=margin * way * metric if math.isfinite(margin) else np.zeros(6),
                 verdict_beyond=verdict,
                 modes_beyond=beyond,
+                unknown=unknown,
             )
         )
     return tuple(margins)
@@ -409,11 +422,11 @@ def _letters(modes: Sequence[ResponseMode]) -> tuple[str, ...]:
 
 def _nearest(
     case: SpatialCase, search: Search, letters: str, metric: FloatArray, known: dict[int, FloatArray]
-) -> tuple[float, FloatArray]:
+) -> tuple[float, FloatArray] | str:
     """Return the distance, N, to the mode's nearest boundary and the direction to it, (6,), in the metric.
 
-    The distance is NaN if the wrench is outside. Contacts begin to slide in the ``known`` directions, (3,),
-    and the metric, (6,), m, is ones, then the length that torques are divided by.
+    If it is unknown, return the reason. Contacts begin to slide in the ``known`` directions, (3,), and the
+    metric, (6,), m, is ones, then the length that torques are divided by.
     """
     search = copy.copy(search)
     search.pyramids = [
@@ -437,38 +450,46 @@ def _nearest(
     if sticking:
         every = with_round_cones(case, search, generators, sticking, metric)
         sides = _of_round_cones(every, generators.rays, sides, target)
+        if len(sides) == 0:
+            far = np.eye(6, 7)
+            if any(every.rest(way).any() for way in (*far, *-far)):
+                return "no boundary of its round friction cones was found"
+            return math.inf, np.zeros(6)
     depth = float(sides[0] @ target)
     if depth < -ON_BOUNDARY:
-        return math.nan, np.zeros(6)
+        return "rounding error puts the wrench outside of the mode"
     return max(0.0, depth) * unit, -sides[0, :6]
 
 
 def _of_round_cones(every: RoundSum, rays: FloatArray, sides: FloatArray, target: FloatArray) -> FloatArray:
     """Return the nearest boundary of round cones, (1, 7), that is found from sides of their pyramids, (k, 7).
 
-    The wrenches ``every`` have weighted heights, and their rays, (m, 7), their own. The nearest side comes
-    first.
+    It is (0, 7) if none is found. The wrenches ``every`` have weighted heights, and their rays, (m, 7), their
+    own. The nearest side comes first.
     """
     high = rays[rays[:, 6] > ROW_TOLERANCE]
     height = HEIGHT_WEIGHT if every.rays[:, 6].any() else 0.0
     least = STEP_BEHIND * float(np.linalg.norm(target[:6]))
-    found, nearest = sides[:1], math.inf
+    found, nearest = sides[:0], math.inf
     starts: list[FloatArray] = []
     for start in sides:
         if start @ target >= nearest or len(starts) == _MAX_STARTS:
             break
         if any(start[:6] @ other[:6] > _APART for other in starts):
             continue
-        side, depth = start, math.inf
+        side, depth, step = start, math.inf, least
         for _ in range(_MAX_STEPS):
             inside = max(0.0, float(side @ target))
             behind = target.copy()
-            behind[:6] -= (inside + max(inside, least)) * side[:6]
+            behind[:6] -= (inside + max(inside, step)) * side[:6]
             behind[6] = height
             rest = every.rest(behind)[:6]
             size = float(np.linalg.norm(rest))
-            if size == 0.0:
-                break
+            if size == 0.0:  # the round cones reach further than their pyramids
+                if nearest < math.inf or depth < math.inf:
+                    break
+                step *= 4.0
+                continue
             offset = float((high[:, :6] @ rest / high[:, 6]).max(initial=-math.inf)) / size
             further = np.append(-rest / size, offset)
             if not further @ target < depth * (1.0 - MARGIN_SETTLED):

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -15,8 +16,10 @@ from contact_dynamics.contact_modes import (
     ModeVerdict,
     SpatialContactProblem,
     SpatialModeMargin,
+    closure,
     contact_modes,
     mode_margins,
+    statics,
 )
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_modes.evidence import spatial_problem
@@ -296,12 +299,82 @@ def test_six_feet_that_begin_to_slide_stop_as_one_does() -> None:
     assert margin.modes_beyond == ("ffffff",)
 
 
-def test_what_is_not_known_of_a_mode_that_begins_to_slide_is_not_told() -> None:
-    (many,) = mode_margins(ring(12))
-    # Two modes are consistent, and the forces of none of them are unique.
-    _, shared = mode_margins(pushed_and_turned(30))
-    for margin in (many, shared):
-        assert set(margin.mode) == {"c"}
-        assert math.isnan(margin.margin)
-        assert margin.mode in margin.modes_beyond
-        np.testing.assert_array_equal(margin.change_W, np.zeros(6))
+def on_two(
+    second: tuple[float, ...],
+    normal: tuple[float, ...],
+    *,
+    push: float = 6.0,
+    frictions: float | tuple[float, ...] = 0.3,
+    now: BodyState | None = None,
+) -> SpatialContactProblem:
+    """Return a body on a foot 0.1 m below it and on another contact, pushed along y and turned about x."""
+    contacts = ContactSet(
+        p_WC_W=[(0.0, 0.0, -0.1), second], normals_W=[(0.0, 0.0, 1.0), normal], frictions=frictions
+    )
+    torque = (1.5 * push - 6.0, 0.0, 0.0)
+    return spatial_problem(BODY, now or state(), contacts, (0.0, push, -WEIGHT), torque)
+
+
+@pytest.mark.parametrize(
+    ("problem", "mode", "reason"),
+    [
+        (ring(12), "c" * 12, "the contacts on a plane have more than 8 corners"),
+        (pushed_and_turned(30), "cccc", "other modes are not excluded, and the contacts can share the load"),
+        (
+            on_two((0.1, 0.0, -0.1), (0.0, 0.0, 1.0), push=12.0, now=state((0.0, 0.0, 0.0), (0.0, 0.0, 0.1))),
+            "cc",
+            "contacts begin to slide on a body or surface that moves",
+        ),
+        (
+            on_two((0.0, 0.0, 0.1), (0.0, 0.0, 1.0), frictions=(1.0, 0.1)),
+            "fc",
+            "some contacts begin to slide while others stick",
+        ),
+        (
+            on_two((-0.1, 0.0, 0.0), (1.0, 0.0, 0.0), push=12.0),
+            "cc",
+            "no change is proven to be too small to end the mode",
+        ),
+    ],
+)
+def test_a_margin_that_is_unknown_has_a_reason(
+    problem: SpatialContactProblem, mode: str, reason: str
+) -> None:
+    margin = next(found for found in mode_margins(problem) if found.mode == mode)
+    assert math.isnan(margin.margin)
+    assert margin.unknown.startswith(reason)
+    assert margin.in_short().endswith(f"its margin is unknown: {margin.unknown} (change_W in N and N m)")
+    assert margin.mode in margin.modes_beyond
+    np.testing.assert_array_equal(margin.change_W, np.zeros(6))
+
+
+@seeds(range(2), slow=range(2, 20))
+def test_the_reason_contains_a_lower_bound_where_there_is_one(seed: int) -> None:
+    """No drawn change below it ends the mode."""
+    chance = np.random.default_rng(seed)
+    told = 0
+    while told == 0:
+        asked = replace(pushed_and_turned(int(chance.integers(1000))), torque_W=0.3 * chance.normal(size=3))
+        for margin in mode_margins(asked):
+            bound = re.match(r"no change below (.*) N ends the mode, and the mode continues", margin.unknown)
+            for way in chance.normal(size=(20 if bound else 0, 6)):
+                told += 1
+                metric = np.array([1.0, 1.0, 1.0, *[margin.length] * 3])
+                change = (1.0 - 1e-2) * float(bound[1]) * way / np.linalg.norm(way) * metric  # of 3 digits
+                assert margin.mode in modes_at(asked, change)
+
+
+def test_a_body_that_round_cones_wedge_stays_under_any_wrench() -> None:
+    """Forces in the round cones balance every wrench, while those in pyramids of 8 edges do not."""
+    chance = np.random.default_rng(95)
+    points, normals = chance.uniform(-0.15, 0.15, (4, 3)), chance.normal(size=(4, 3)) * 0.6 + [0.0, 0.0, 1.0]
+    contacts = ContactSet(
+        p_WC_W=points,
+        normals_W=normals / np.linalg.norm(normals, axis=1)[:, None],
+        frictions=[2.0, 0.1, 2.0, 0.3],
+    )
+    problem = spatial_problem(BODY, state(), contacts, DOWN)
+    assert closure(contacts).force
+    assert math.isfinite(statics(problem).stable_disturbance)
+    margin = next(found for found in mode_margins(problem) if found.mode == "ffff")
+    assert (margin.margin, margin.unknown) == (math.inf, "")
