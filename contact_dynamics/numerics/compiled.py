@@ -26,6 +26,12 @@ SLOWER: Final = (
 """The cost of running without the compiled core. `make bench` measures it with `CONTACT_DYNAMICS_PLAIN=1`."""
 
 
+_USES_PLAIN: Final = "uses modules that run as plain Python"
+
+_plain: set[str] = set()
+"""Modules that run as plain Python because a compiled one cannot be used."""
+
+
 def plain_is_chosen() -> bool:
     """Return whether the environment asks for plain Python."""
     return os.environ.get(PLAIN, "0") not in {"", "0"}
@@ -40,24 +46,23 @@ def import_core(*modules: str) -> None:
     """Import modules, of a package that is being imported, in their compiled form if that is up to date.
 
     They share what only C sees, so that all of them are compiled or none. If they are not, a warning says so,
-    unless `CONTACT_DYNAMICS_PLAIN` chooses plain Python.
+    unless `CONTACT_DYNAMICS_PLAIN` chooses plain Python, or an earlier one has named the outdated module.
     """
     if modules[-1] in sys.modules:
         return
-    if os.environ.get(PLAIN, "0") in {"", "0"}:
+    before = set(sys.modules)
+    if not plain_is_chosen():
         problems = [(module, problem) for module in modules if (problem := _problem_of(module))]
         if not problems:
             return
-        module, problem = problems[0]
-        warnings.warn(
-            f"the compiled core of contact_dynamics {problem}; {module} runs as plain Python: {SLOWER}. "
-            "Where there is a C compiler, `make setup` in a clone or `pip install` builds it. "
-            f"{PLAIN}=1 in the environment silences this warning",
-            RuntimeWarning,
-            stacklevel=3,
-        )
+        _warn([one for one in problems if one[1] != _USES_PLAIN or not _plain])
+        _plain.update(modules)
+    package = modules[0].rpartition(".")[0]
+    for module in set(sys.modules) - before:
+        if module.startswith(f"{package}."):  # it may have imported compiled modules
+            del sys.modules[module]
     for module in modules:
-        package, _, name = module.rpartition(".")
+        name = module.rpartition(".")[2]
         spec = importlib.util.spec_from_file_location(module, _source_of(module))
         if spec is None or spec.loader is None:
             raise ImportError(module)
@@ -65,6 +70,17 @@ def import_core(*modules: str) -> None:
         sys.modules[module] = plain
         spec.loader.exec_module(plain)
         setattr(sys.modules[package], name, plain)
+
+
+def _warn(problems: list[tuple[str, str]]) -> None:
+    for module, problem in problems[:1]:
+        warnings.warn(
+            f"the compiled core of contact_dynamics {problem}; {module} runs as plain Python: {SLOWER}. "
+            "Where there is a C compiler, `make setup` in a clone or `pip install` builds it. "
+            f"{PLAIN}=1 in the environment silences this warning",
+            RuntimeWarning,
+            stacklevel=4,
+        )
 
 
 def _source_of(module: str) -> Path:
@@ -76,8 +92,10 @@ def _problem_of(module: str) -> str:
     """Return why the compiled form of a module cannot be used, or nothing if it can."""
     try:
         built = getattr(importlib.import_module(module), "SOURCE_CRC", None)
-    except (ImportError, TypeError, ValueError) as error:  # the latter if what it uses runs as plain Python
+    except ImportError as error:
         return f"cannot be imported ({error})"
+    except (TypeError, ValueError):
+        return _USES_PLAIN
     if built == checksum(_source_of(module)):
         return ""
     return "is missing" if built is None else "was built from other sources"

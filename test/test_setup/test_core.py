@@ -224,3 +224,42 @@ def test_plain_python_can_be_chosen(package: Path, monkeypatch: pytest.MonkeyPat
     shutil.copy(path.__file__ or "", package)
     monkeypatch.setenv("CONTACT_DYNAMICS_PLAIN", "1")
     assert imported() == "path.py"
+
+
+TOSS = """
+import contact_dynamics as cd
+from contact_dynamics.toss import toss
+
+side = dict(p_WS_W=[0, 0, 0], friction=0.5, restitution=0.3)
+sides = [cd.Surface(name=str(x), normal_W=[x, 0, 0.8], **side) for x in (-0.6, 0.6)]
+state = cd.BodyState(p_WB_W=[0, 0, 0.6], q_WB=[0.36, 0.48, 0, 0.8], w_WB_W=[1, 2, 3])
+went = toss(cd.Body.box((0.2, 0.2, 0.1), 1.0), state, cd.World(surfaces=sides))
+print(went.end.name, went.seconds.hex(), went.at([0.5 * went.seconds]).p_WB_W.tolist())
+"""
+
+
+@pytest.mark.parametrize("edited", ["toss/phase.py", "impact/spatial/path.py"])
+def test_a_core_of_which_one_module_is_outdated_gives_the_same_tosses_and_warns_once(
+    tmp_path: Path, edited: str
+) -> None:
+    """Plain modules kept the compiled ones that they had imported, and tosses ended in TypeError."""
+    shutil.copytree(ROOT / NAME, tmp_path / NAME, copy_function=os.symlink)
+    source = tmp_path / NAME / edited
+    text = source.read_text(encoding="utf-8")
+    source.unlink()
+    source.write_text(f"{text}# edited\n", encoding="utf-8")
+    environment = {key: value for key, value in os.environ.items() if key != "CONTACT_DYNAMICS_PLAIN"}
+    whole, partly = (
+        subprocess.run(
+            [sys.executable, "-W", "always", "-c", TOSS],
+            env={**environment, "PYTHONPATH": str(folder)},
+            cwd=folder,
+            capture_output=True,
+            text=True,
+            check=True,
+        )
+        for folder in (ROOT, tmp_path)
+    )
+    assert whole.stdout == partly.stdout != ""
+    assert (whole.stderr.count("RuntimeWarning"), partly.stderr.count("RuntimeWarning")) == (0, 1)
+    assert "was built from other sources" in partly.stderr
