@@ -39,17 +39,10 @@ def velocities_after(
 ) -> FloatArray:
     """Return the velocities after k variations of n strikes, (k, n, 6), m/s and rad/s.
 
-    They are those of the true mass centre. The law is Poisson's. A corner that moves away from its surface
-    is left as it is.
-
-    Args:
-        described: Body and surfaces of each variation, k of them, or one for all.
-        mass: kg.
-        q_WB: (k, n, 4) or (1, n, 4), attitudes at the strikes.
-        velocities_W: (k, n, 3) or (1, n, 3), m/s, of the true mass centre before.
-        spins_W: (k, n, 3) or (1, n, 3), rad/s, before.
-        corners: (n,), numbers of the corners that strike.
-        surfaces: (n,), numbers of the surfaces that are struck.
+    They are those of the true mass centre. The law is Poisson's. A corner that moves away from its surface is
+    left as it is. ``described``, and the attitudes, (k, n, 4), and velocities, (k, n, 3), before the strikes,
+    may have one row for all variations. ``corners`` and ``surfaces``, (n,), are the numbers of what strikes
+    and is struck.
     """
     count = len(corners)
     variations = max(len(described), len(q_WB), len(velocities_W), len(spins_W))
@@ -98,14 +91,7 @@ def _velocities(
 
 
 def jumps(model: Model, values: FloatArray, strikes: Strikes, gravity: Gravity) -> FloatArray:
-    """Return the predicted velocities after the strikes less the measured ones, (k, n, 6), m/s and rad/s.
-
-    Args:
-        model: Names the parameters.
-        values: (k, p), all parameters, k times.
-        strikes: The strikes.
-        gravity: Gravity of each recording.
-    """
+    """Return predicted less measured velocities after strikes, (k, n, 6), m/s and rad/s, at (k, p)."""
     before = _velocities(values, strikes, strikes.before, gravity)
     after = _velocities(values, strikes, strikes.after, gravity)
     return _predicted(model, values, strikes, *before) - np.concatenate(after, axis=2)

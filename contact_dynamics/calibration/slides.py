@@ -76,11 +76,7 @@ def lasting_frictions(
 ) -> tuple[LastingFriction, ...]:
     """Return the friction where contact lasts, of each surface on which enough slides are seen.
 
-    Args:
-        observed: What was found in the tosses.
-        described: The calibrated body and surfaces.
-        gravity_W: (3,), m/s^2, as calibrated.
-        names: Names of the surfaces.
+    The body and the surfaces, whose names follow, are as calibrated, as is gravity, (3,), m/s^2.
     """
     slides = [slide for each in observed if (slide := _slide_of(each, described, gravity_W)) is not None]
     found = []

@@ -46,13 +46,9 @@ class Simulation:
     """A model with its state."""
 
     def __init__(self, world: str, geoms: str = "", *, options: str = "", slope: float | None = 0.0) -> None:
-        """Compile a model.
+        """Compile a model of a `worldbody`, with attributes of every `geom` and of its `option`.
 
-        Args:
-            world: The elements of its `worldbody`.
-            geoms: Attributes of every `geom`.
-            options: Attributes of its `option`.
-            slope: rad, by which standard gravity is tilted towards x. Without gravity if None.
+        Standard gravity is tilted towards x by ``slope``, rad, and there is none if it is None.
         """
         g, angle = (0.0, 0.0) if slope is None else (-STANDARD_GRAVITY_W[2], slope)
         gravity = f"{g * math.sin(angle)} 0 {-g * math.cos(angle)}"

@@ -76,12 +76,7 @@ def print_table(toss: Toss, strikes: Sequence[Strike], questioner: Questioner) -
 
 
 def not_asked(strikes: Sequence[Strike], times: list[float]) -> list[float]:
-    """Return when the body landed after enough flight, s, although nobody asked during that flight.
-
-    Args:
-        strikes: the measured strikes.
-        times: when somebody asked where the body will be, s.
-    """
+    """Return when the body landed, s, after enough flight in which none of these questions was asked."""
     times_of_strikes = [0.0, *(strike.time for strike in strikes)]
     return [
         landing

@@ -92,11 +92,7 @@ class Questioner(Node):
     def get_ready(self, go_on: Callable[[], object]) -> None:
         """Wait until all services are there, and only then subscribe, as the publisher waits for that.
 
-        Args:
-            go_on: a function that raises if it is useless to wait longer.
-
-        Raises:
-            TimeoutError: the services do not come.
+        Waiting ends where ``go_on`` raises because it is useless, or with a `TimeoutError`.
         """
         deadline = time.monotonic() + _START_S
         for client in self._askers.values():

@@ -54,13 +54,7 @@ _NORMAL: Final = Paint(palette.NORMAL, paper.GREY)
 
 
 def impact_marks(shape: Shape, answer: ImpactAnswer, *, other_shape: Shape | None = None) -> list[Mark]:
-    """Return the marks of an impact.
-
-    Args:
-        shape: The shape of the body.
-        answer: The impact.
-        other_shape: The shape of the body that is struck. If it is None, only its velocities are drawn.
-    """
+    """Return the marks of an impact. A struck body without a known shape has velocities alone."""
     size, impact, other = shape.size, answer.impact, answer.other
     struck, points, impulses_W = _struck(answer)
     scale, radius = drawn_scale(impulses_W, size), ARROW_WIDTH * size

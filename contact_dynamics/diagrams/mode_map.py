@@ -130,11 +130,7 @@ def chart_for(
 ) -> WrenchChart:
     """Return the chart that suits: all directions for a body at rest, or else forces at the applied torque.
 
-    Args:
-        sets: the result of `contact_modes.wrench_sets`.
-        length: m, the radius of gyration.
-        applied: the wrench in question, if known.
-        resolution: points on a side.
+    The radius of gyration is ``length``, m, and the chart has ``resolution`` points on a side.
     """
     if all(side.b == 0.0 for one in sets for side in one.half_spaces):
         return DirectionChart(length=length, resolution=resolution)

@@ -69,15 +69,11 @@ def planar_scene_of(
     size: float | None = None,
     title: str = "",
 ) -> Diagram:
-    """Return the diagram of a body and its contacts.
+    """Return the diagram of a body and its contacts, numbered from 1.
 
-    Args:
-        outline: (k, 2), m, outline of the body, whose last point is its first.
-        contacts: numbered from 1.
-        walls: strips, (k, 2) each, m.
-        mode: the mode whose letters, contact forces and accelerations are shown, if any.
-        size: m, the size that arrows and cones suit. By default it is that of the outline.
-        title: the title.
+    The outline, (k, 2), m, whose last point is its first, and the walls, (k, 2) each, m, are strips. The
+    letters, contact forces and accelerations are those of the mode, if any. Arrows and cones suit a body of
+    that size, m, by default that of the outline.
     """
     if size is None:
         size = float(np.linalg.norm(np.ptp(outline, axis=0)))

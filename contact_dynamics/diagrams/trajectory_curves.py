@@ -115,14 +115,10 @@ def over_time(
     *,
     deviations: FloatArray | None = None,
 ) -> Diagram:
-    """Return the diagram of a quantity over a trajectory.
+    """Return the diagram of a quantity, named with its unit, over a trajectory that has a sample.
 
-    Args:
-        trajectory: The trajectory, which has a sample.
-        rows: (n, k), the values.
-        quantity: What they are, with the unit.
-        names: (k,), what each column is.
-        deviations: (n, k), standard deviations, for bands of `DEVIATIONS` to each side, or None.
+    ``rows``, (n, k), are the values, and ``names``, (k,), what each column is. For standard deviations, (n,
+    k), there are bands of `DEVIATIONS` to each side.
     """
     half = DEVIATIONS * (np.zeros_like(rows) if deviations is None else deviations)
     marks: list[Mark] = []

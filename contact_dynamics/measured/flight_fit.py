@@ -144,11 +144,8 @@ def fit_flight(
 ) -> FlightFit:
     """Return the free flight that fits the poses of ``frames`` best, or that of each row of frames.
 
-    Args:
-        poses: The measured poses.
-        frames: At least `FEWEST_FRAMES`, as a slice, or their numbers, (..., n).
-        reference: (...), the frame of each flight to which the fit refers in time and orientation. The
-            default is the last one.
+    These are `FEWEST_FRAMES` or more, a slice or numbers, (..., n). The fit refers in time and orientation to
+    the frame ``reference``, (...), which is the last one by default.
     """
     if isinstance(frames, slice):
         frames = np.arange(frames.start, frames.stop)

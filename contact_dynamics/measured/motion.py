@@ -244,13 +244,9 @@ def motions_of(
 ) -> list[MeasuredMotion]:
     """Return a body's states in stretches without gaps.
 
-    Args:
-        body: The body.
-        world: The world that it moves in.
-        states: Its states in any order. Of several with one stamp, the last one counts.
-        noise: Standard deviations of a position's coordinates, m, and of an orientation's components, rad.
-            If it is None, they are estimated.
-        epoch_ns: The stamp from which times count, ns; the default is the first one.
+    They come in any order, and of several with one stamp the last one counts. Times count from ``epoch_ns``,
+    ns, by default the first stamp. The noise, m of a position's coordinates and rad of an orientation's
+    components, is estimated if it is None.
     """
     stamps_ns, reverse = np.unique(states.stamps_ns[::-1], return_index=True)
     if len(stamps_ns) < FEWEST_STATES:

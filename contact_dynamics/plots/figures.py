@@ -186,8 +186,7 @@ def figures_of_modes(
 def from_side_and_above(draw: Callable[[Axes, str], None]) -> Figure:
     """Return a figure with the side view above the top view, which share the x axis and the scale.
 
-    Args:
-        draw: Draws into axes; the world's axis upwards is "z" or "y".
+    ``draw`` draws into axes; the world's axis upwards is "z" or "y".
     """
     figure = blank_figure(8.0, 8.0)
     views = figure.subplots(2, 1, sharex=True)

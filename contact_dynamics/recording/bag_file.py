@@ -38,14 +38,9 @@ class BagFile:
     def __init__(
         self, path: Path, *, run: Mapping[str, str], compression: Compression, opened_ns: int
     ) -> None:
-        """Create the file, and begin it with the record of the run.
+        """Create a file, which must not exist, and begin it with the record of the run.
 
-        Args:
-            path: the path of the file. If it exists, `FileExistsError` is raised.
-            run: how the run was made, with the package's version.
-            compression: how chunks are packed.
-            opened_ns: the present time, ns since the epoch, which is the span of the file before its first
-                message.
+        Until its first message, ``opened_ns``, the present time, ns since the epoch, is its span.
         """
         from mcap.writer import CompressionType, Writer  # a server can do without it, and then writes no log
 

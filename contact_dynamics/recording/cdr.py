@@ -65,11 +65,7 @@ def decode_without_ros(message: LoggedMessage) -> Message:
 
 
 def deserialize(data: bytes, message_type: type[Message]) -> Message:
-    """Return the message of a type that the bytes are.
-
-    Raises:
-        InvalidFieldError: they are none.
-    """
+    """Return the message of a type that the bytes are, or raise `InvalidFieldError`."""
     return _message_and_end(data, message_type)[0]
 
 
@@ -122,17 +118,9 @@ def decode_columns(messages: Sequence[LoggedMessage]) -> tuple[Message, NDArray[
 
 
 def cut_to_its_end(data: bytes, *, type_name: str, definition: str) -> bytes:
-    """Return a serialised message without what follows its end.
+    """Return a serialised message of a type, whose text is ros2msg, without what follows its end.
 
     What ``rclpy.serialization.serialize_message`` returns ends in some bytes of whatever was in memory.
-
-    Args:
-        data: the serialised message.
-        type_name: "package/msg/Name" or "package/srv/Name_Event".
-        definition: the text of its type, as ros2msg.
-
-    Raises:
-        InvalidFieldError: the bytes are no message of this type.
     """
     _, end = _message_and_end(data, _type_of(type_name, definition))
     return data[:end]

@@ -58,8 +58,7 @@ class McapFile:
     def head(self, position: int) -> tuple[int, int, int]:
         """Return the kind of the record at a position, and where its content begins and ends.
 
-        Raises:
-            DamagedError: the file ends before the record.
+        Where the file ends before the record, raise `DamagedError`.
         """
         head = self.bytes_at(position, HEAD.size)
         if len(head) < HEAD.size:
@@ -73,11 +72,7 @@ class McapFile:
         return kind, begin, begin + length
 
     def content(self, begin: int, end: int) -> bytes:
-        """Return the content of a record whose kind is always short.
-
-        Raises:
-            DamagedError: the record is too long.
-        """
+        """Return the content of a record of a short kind, or raise `DamagedError` if it is too long."""
         if end - begin > _LONGEST_CONTENT:
             message = f"a record claims {end - begin} bytes"
             raise DamagedError(message)
@@ -129,11 +124,7 @@ class Summary:
 
 
 def read_summary(file: McapFile) -> Summary:
-    """Return the summary of a file. It is empty if the writer made none.
-
-    Raises:
-        DamagedError: the file's end is not there, or not whole.
-    """
+    """Return a file's summary, empty if it has none; raise `DamagedError` if its end is not whole."""
     stop = file.size - _FOOTER.size - len(MAGIC)
     tail = file.bytes_at(max(0, stop), _FOOTER.size + len(MAGIC))
     demand(stop > 0 and tail.endswith(MAGIC), "the end of the file")

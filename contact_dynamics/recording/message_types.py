@@ -101,9 +101,7 @@ PYTHON_TYPES: Final = {
 def message_types(type_name: str, definition: str) -> dict[str, type[Message]]:
     """Return the classes of a type and of all that it is built of, by "package/Name".
 
-    Args:
-        type_name: "package/msg/Name", or "package/srv/Name_Event".
-        definition: Its text in MCAP's ros2msg form, as `LoggedMessage.definition` has it.
+    The ``definition`` is its text in MCAP's ros2msg form.
 
     Raises:
         InvalidFieldError: a line of the text is none of a message's, or it leaves out a type that it names.

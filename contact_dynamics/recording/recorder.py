@@ -326,13 +326,7 @@ class Recorder(AbstractContextManager["Recorder"]):
     def _interrupt(
         self, error: OSError, items: list[_Item | _RunChange], before: _Interruption | None = None
     ) -> None:
-        """Write nothing until the disk takes it again.
-
-        Args:
-            error: why.
-            items: what was to be written.
-            before: the interruption that goes on, if it is not a new one.
-        """
+        """Lose the items, and write nothing until the disk takes it; ``before`` is the interruption so far."""
         with self._lock:
             dropped = [*items, *self._items]
             lost_before = self._lost

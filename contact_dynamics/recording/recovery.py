@@ -42,10 +42,7 @@ def recover(
 ) -> tuple[int, list[Loss]]:
     """Write what can be read of a log into a new folder; return how many messages, and what is lost.
 
-    Args:
-        path: the log: its folder, or one of its files.
-        folder: the new folder.
-        on_progress: a function that is told now and then how many messages were written.
+    ``on_progress`` is told now and then how many messages were written.
 
     Raises:
         NotALogError: it is no log.

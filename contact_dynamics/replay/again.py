@@ -70,14 +70,10 @@ class ServerAgain(ServerCore):
         return frozenset({CHANGES} if isinstance(self._source, LoggedParameters) else ())
 
     def receive(self, message: LoggedMessage, *, is_live: bool = True) -> list[tuple[str, BodyState]]:
-        """Take a message about bodies, a tick of the simulated time, or a change; ignore what the server did.
+        """Take a message of a topic, and return the bodies and their states, where it completes any.
 
-        Args:
-            message: a message of one of the `topics`.
-            is_live: whether the clock at its reception is known. If not, a state is taken whatever its stamp.
-
-        Returns:
-            The bodies and their states, where the message completes any.
+        It is about bodies, a tick of the simulated time, or a change of the configuration. Where the clock at
+        its reception is not known, so that it is not ``is_live``, a state is taken whatever its stamp.
         """
         if message.topic == CLOCK:
             self._tick(leading_stamp_ns(message.data))
@@ -121,13 +117,9 @@ class ServerAgain(ServerCore):
     def answer(
         self, service_type: str, request: object, make_response: Callable[[], Any], *, asked_ns: int
     ) -> Any:
-        """Return the response to a request, also where the request is refused.
+        """Return the response to a request as logged, also where the request is refused.
 
-        Args:
-            service_type: "package/srv/Name".
-            request: the request as it was logged.
-            make_response: a function that returns an empty response.
-            asked_ns: when the request came, ns, on the clock of the states' stamps.
+        It came at ``asked_ns``, ns, on the clock of the states' stamps.
         """
         self.asked_ns = asked_ns
         service = service_of_type(service_type)

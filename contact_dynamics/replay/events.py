@@ -132,12 +132,7 @@ class LoggedEvents(Events):
     """A log of the server as a source of events."""
 
     def __init__(self, path: Path, *, span: Span = EVERYTHING, states: bool = True) -> None:
-        """Read how the run was configured.
-
-        Args:
-            path: the log: its folder, or one of its files.
-            span: which part of it is read.
-            states: whether states are read.
+        """Read how the run was configured, to read a span of the log later, with or without states.
 
         Raises:
             NotALogError: it is no log, or none of the server.
@@ -258,14 +253,9 @@ class AskedEvents(Events):
     ) -> None:
         """Configure what would have been a server.
 
-        Args:
-            path: the recording: its folder, or one of its files.
-            source: how the server would have been configured.
-            names: which questions are asked, of `QUESTIONS`. Without any, the states alone are read.
-            bodies: the bodies that are asked about. Without any, all that are configured are.
-            every: s, by the stamps, from one question about a body to the next. With zero each state has one.
-            fit_window: s. The motion is fitted to the states of this last time, with zero to the newest one.
-            span: which part of it is read.
+        Of `QUESTIONS` those of some names are asked about some bodies, or about all without any, ``every`` so
+        many seconds by the stamps, with zero at each state. The motion is fitted to the states of the last
+        ``fit_window``, s, with zero to the newest one.
 
         Raises:
             NotALogError: it is no recording.

@@ -43,9 +43,7 @@ def server_of_log(
 ) -> tuple[dict[str, str], ServerAgain]:
     """Return the record of a log's run, and a server that is configured by it.
 
-    Args:
-        path: The log.
-        instead: Values of parameters that count instead of those in the record.
+    Parameters ``instead`` count instead of those in the record, by name.
 
     Raises:
         NotALogError: it is no log, or none of the server.
@@ -84,12 +82,7 @@ def server_of_log(
 
 
 def digest(event_type: str, definition: str) -> str:
-    """Return a digest of the fields of a service, of their order, names and types. Comments do not count.
-
-    Args:
-        event_type: "package/srv/Name_Event".
-        definition: Its text, as a log holds it.
-    """
+    """Return a digest of a service event's fields, of their order, names and types. Comments do not count."""
     types = message_types(event_type, definition)
     lines = [
         f"{name} {field.type_name}{[field.count] if field.is_array else ''} {field.name}"
@@ -101,12 +94,7 @@ def digest(event_type: str, definition: str) -> str:
 
 
 def check_definitions(path: Path, definitions: Mapping[str, str], version: str | None) -> None:
-    """Refuse a log whose services are defined otherwise than those of this version.
-
-    Args:
-        path: The log.
-        definitions: The texts of its types.
-        version: The version of this package that wrote it, as far as it says so.
+    """Refuse a log, written by a version, whose services are defined otherwise than those of this version.
 
     Raises:
         NotSupportedError: there is such a service, or one that this version does not have. The message names

@@ -15,12 +15,9 @@ class Progress:
     """How far one piece of work is. The line is cleared at the end."""
 
     def __init__(self, name: str, *, begin: float = 0.0, end: float = 0.0) -> None:
-        """Begin.
+        """Begin work that goes from ``begin`` to ``end``, in any unit, such as log times or numbers of logs.
 
-        Args:
-            name: what is worked on.
-            begin: where the work begins, in any unit, such as a log time or a number of logs.
-            end: where it ends. It is not known if it is not later than the beginning.
+        The end is not known if it is not later than the beginning.
         """
         self._name = name
         self._begin = begin

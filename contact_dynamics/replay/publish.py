@@ -75,14 +75,10 @@ class Pacing:
         meanwhile: Callable[[int, float], object],
         is_over: Callable[[], bool],
     ) -> None:
-        """Set the time to nothing; `begin` starts it.
+        """Set the time to nothing; `begin` starts it, at a rate of so many times the machine's time.
 
-        Args:
-            rate: how many times as fast as the machine's time it runs, > 0.
-            is_paused: whether it stands still until somebody presses the space bar.
-            meanwhile: a function that is called again and again with the time of the log, ns, and with how
-                long it may wait, s.
-            is_over: whether to stop.
+        While it passes, ``meanwhile`` is called again and again with the time of the log, ns, and with how
+        long it may wait, s.
         """
         self._rate = rate
         self._is_paused = is_paused

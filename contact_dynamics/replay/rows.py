@@ -415,14 +415,9 @@ class Measuring:
         gravity_W: FloatArray,
         is_impact: bool,
     ) -> None:
-        """Begin to watch.
+        """Begin to watch a body, whose newest state this is, until the stamp of the predicted one has passed.
 
-        Args:
-            body: the body.
-            predicted: what the answer predicts, with its stamp.
-            newest: the newest state of the body by now.
-            gravity_W: (3,), m/s^2, world axes.
-            is_impact: whether the answer predicts what follows an impact, or what a flight comes to.
+        What ``is_impact`` predicts what follows an impact, and otherwise what a flight comes to.
         """
         self.body_name = body.name
         self.predicted = predicted

@@ -32,13 +32,9 @@ EVERYTHING: Final = Span()
 def in_order(
     calls_from: BagReader, states_from: BagReader, topics: Collection[str], *, span: Span = EVERYTHING
 ) -> Iterator[LoggedMessage | ServiceCall]:
-    """Yield the messages of some topics, and each call at the place where its request came.
+    """Yield a span of the messages of some topics, and each call at the place where its request came.
 
-    Args:
-        calls_from: the log, for the calls of this package's services.
-        states_from: the same log, opened a second time, for the messages of the topics.
-        topics: the topics that answers depend on.
-        span: which part of the log is read.
+    The same log is opened twice: ``calls_from`` for the calls, and ``states_from`` for the messages.
     """
     states = states_from.messages(topics, start_ns=span.start_ns, end_ns=span.end_ns)
     state = next(states, None)
@@ -54,11 +50,7 @@ def in_order(
 
 
 def part_of(event: LoggedMessage, part: str) -> Any:
-    """Return the request or the response that an event carries.
-
-    Args:
-        event: The event.
-        part: "request" or "response".
+    """Return the "request" or the "response" that an event carries.
 
     Raises:
         InvalidFieldError: the event carries none, since its service was introspected without contents.

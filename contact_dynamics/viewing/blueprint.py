@@ -173,11 +173,9 @@ def make_blueprint(
 ) -> rrb.Blueprint:
     """Return the arrangement of the views: a page for each question that was asked, and an overview.
 
-    Args:
-        body_names: names of the bodies whose trails stay in view.
-        eye: the eye of the scenes. If it is None, the viewer looks at all that there is.
-        shown: what there is to see, of `DIAGRAMS`, `ERROR`, `ENERGY`, and the entities `PREDICTED`,
-            `IMPACTS`, `CONTACTS`, `TOSSES`, `MANY` and `ANSWERS`. What is not among it has no panel.
+    Without an eye, the viewer looks at all that there is. What is not ``shown``, of `DIAGRAMS`, `ERROR`,
+    `ENERGY`, and the entities `PREDICTED`, `IMPACTS`, `CONTACTS`, `TOSSES`, `MANY` and `ANSWERS`, has no
+    panel.
     """
     pages = [_overview(_scene("Scene", body_names, eye), shown)]
     for kind, page in _PAGES.items():

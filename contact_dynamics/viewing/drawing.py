@@ -49,13 +49,7 @@ _RIGHT: Final = np.array([0.906, 0.423, 0.0])  # on the screen, as seen from the
 
 
 def draw_diagram(recording: rr.RecordingStream, diagram: Diagram, entity: str) -> None:
-    """Draw a diagram in place of what was there.
-
-    Args:
-        recording: To draw into.
-        diagram: The diagram.
-        entity: Where it is put.
-    """
+    """Draw a diagram at an entity in place of what was there."""
     recording.log(entity, rr.Clear(recursive=True))
     _draw_all(recording, diagram.marks, diagram, entity)
 

@@ -140,15 +140,10 @@ class Picture:
     def show(
         self, answer: Answer, *, now_ns: int = 0, remark: str = "", computation_time: float | None = None
     ) -> None:
-        """Draw an answer, and put it into words.
+        """Draw an answer at the stamp of the state that it was predicted from, and put it into words.
 
-        It is drawn at the stamp of the state that it was predicted from.
-
-        Args:
-            answer: The answer.
-            now_ns: ns, the time of the picture if the answer's state has no stamp.
-            remark: A remark that is added to the answer's words.
-            computation_time: s, how long the answer took, or None if that is not known.
+        Where its state has no stamp, the time of the picture is ``now_ns``, ns. The words end with the
+        remark, and with the computation time, s, if that is known.
         """
         service, stamp_ns = service_of(answer), answer.stamp_ns or now_ns
         set_time(self.recording, stamp_ns)

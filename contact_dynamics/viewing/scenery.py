@@ -59,14 +59,7 @@ class Scenery:
             self._recording.log(f"{path}/{name}", part, static=True)
 
     def change(self, path: str, parts: Mapping[str, Part], *, first_ns: int, stamp_ns: int) -> None:
-        """Draw a thing anew from a time on; without parts it is gone.
-
-        Args:
-            path: its path.
-            parts: its parts by name.
-            first_ns: ns, the time that the picture begins at.
-            stamp_ns: ns, the time of the change.
-        """
+        """Draw a thing anew from a stamp on, ns, or nothing without parts; the picture begins at first_ns."""
         before = self._parts.get(path, {})
         form = self._forms.get(path, 0)
         if form == 0:

@@ -346,18 +346,11 @@ class RrdFiles:
         most: int,
         on_problem: Callable[[str], object],
     ) -> None:
-        """Draw a picture into a file, which is replaced.
+        """Draw a picture into a file, which is replaced, or raise `OSError`.
 
-        Args:
-            picture: The picture.
-            path: The first file.
-            size: Bytes. A file that is larger is followed by the next one. 0 means that there is one file.
-            most: The newest files that stay. 0 means all.
-            on_problem: A function that is told, in words, when a file cannot be written any more, and when
-                the picture continues.
-
-        Raises:
-            OSError: the file cannot be written.
+        A file that is larger than ``size``, bytes, is followed by the next one, and the newest ``most`` files
+        stay; 0 means that there is one file, and that all stay. ``on_problem`` is told, in words, when a file
+        cannot be written any more, and when the picture continues.
         """
         self._picture = picture
         self._first = Path(path)

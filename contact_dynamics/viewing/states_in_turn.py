@@ -70,12 +70,7 @@ class StatesInTurn:
     """
 
     def __init__(self, picture: Picture, *, guarded: Callable[[str, Callable[[], None]], None]) -> None:
-        """Begin without any.
-
-        Args:
-            picture: The picture that they are drawn into.
-            guarded: A function that is given what is drawn, in words, and what draws it.
-        """
+        """Begin without any. ``guarded`` is given what is drawn, in words, and what draws it."""
         self.count = 0
         self.pace = Pace()
         self._picture = picture
