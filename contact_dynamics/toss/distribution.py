@@ -283,11 +283,8 @@ def axis_in_words(direction_B: FloatArray) -> str:
 
 def region_of(values: FloatArray) -> Region:
     """Return the region of samples, (n, k)."""
-    mean = values.mean(axis=0)
-    off = values - mean
-    covariance = off.T @ off / max(len(values) - 1, 1)
-    distances = _distances(off, covariance)
-    return Region(mean=mean, covariance=covariance, radii=np.quantile(distances, LEVELS))
+    (region,) = _regions(values[None])
+    return region
 
 
 def region_of_face(positions: FloatArray) -> Region:
@@ -305,14 +302,15 @@ def regions_of(
     mean = q[0]
     for _ in range(_MEAN_ROUNDS):
         mean = turned(mean[None], rotation_vectors(q, mean).mean(axis=0)[None])[0]
+    position, turn, velocity, spin = _regions(np.stack([p, rotation_vectors(q, mean), v, w]))
     return EventRegions(
         probability=share,
         seconds=region_of(seconds[:, None]),
-        position=region_of(p),
+        position=position,
         q_WB=mean,
-        turn=region_of(rotation_vectors(q, mean)),
-        velocity=region_of(v),
-        spin=region_of(w),
+        turn=turn,
+        velocity=velocity,
+        spin=spin,
     )
 
 
@@ -325,9 +323,20 @@ def rest_of(seconds: FloatArray, p: FloatArray) -> RestSpread:
     )
 
 
+def _regions(values: FloatArray) -> list[Region]:
+    """Return the regions of several quantities, (m, n, k), with n samples each."""
+    means = values.mean(axis=1)
+    off = values - means[:, None]
+    covariances = off.transpose(0, 2, 1) @ off / max(values.shape[1] - 1, 1)
+    radii = np.quantile(_distances(off, covariances), LEVELS, axis=-1).T
+    each = zip(means, covariances, radii, strict=True)
+    return [Region(mean=mean, covariance=covariance, radii=two) for mean, covariance, two in each]
+
+
 def _distances(off: FloatArray, covariance: FloatArray) -> FloatArray:
+    """Return the distances, (..., n), of values, (..., n, k), in standard deviations; see `Region`."""
     values, axes = np.linalg.eigh(covariance)
-    least = max(float(values[-1]) * EXACT_SHARE, np.finfo(float).tiny)
-    across: FloatArray = off @ axes / np.sqrt(np.maximum(values, least))
-    distances: FloatArray = np.sqrt(np.einsum("ij,ij->i", across, across))
+    least = np.maximum(values[..., -1:] * EXACT_SHARE, np.finfo(float).tiny)
+    across: FloatArray = off @ axes / np.sqrt(np.maximum(values, least))[..., None, :]
+    distances: FloatArray = np.sqrt(np.einsum("...ij,...ij->...i", across, across))
     return distances
