@@ -46,8 +46,7 @@ class When(NamedTuple):
     def is_met(self, request: object) -> bool:
         """Return whether a request meets the condition."""
         if self.constants:
-            value: object = getattr(request, self.field)
-            return value in {getattr(request, name) for name in self.constants}
+            return getattr(request, self.field) in [getattr(request, name) for name in self.constants]
         return self.is_zero is not any(
             _is_not_zero(leaf.read(request)) for leaf in _leaves(request, self.field)
         )

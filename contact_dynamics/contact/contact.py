@@ -261,7 +261,7 @@ class ContactSet(Record):
         """Return one contact, counted from the end if ``i`` is negative."""
         i = range(len(self))[i]
         body, surface = self.body_curvatures, self.surface_curvatures
-        contact = made(  # of numbers that are checked
+        contact = made(  # its numbers are checked
             Contact,
             self.p_WC_W[i],
             self.normals_W[i],

@@ -211,7 +211,8 @@ def motion_of(
 
 def turns_or_drags(wrench: ConstantWrench, drag: Drag, wrench_of: WrenchFunction | None) -> bool:
     """Return whether something acts that the closed form does not cover."""
-    turns = bool(np.any(wrench.torque)) or (wrench.axes is WrenchAxes.BODY and bool(np.any(wrench.force)))
+    turns = any(wrench.torque.tolist())
+    turns = turns or (wrench.axes is WrenchAxes.BODY and any(wrench.force.tolist()))
     return turns or drag != NO_DRAG or wrench_of is not None
 
 

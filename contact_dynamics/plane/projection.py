@@ -24,7 +24,7 @@ from contact_dynamics.contact.velocities import check_speeds
 from contact_dynamics.errors import OutOfPlaneError
 from contact_dynamics.numerics.vectors import Vector3, cross, dot, norm, normalised, scaled, without
 from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench, Vector2
-from contact_dynamics.records import Record
+from contact_dynamics.records import Record, made
 from contact_dynamics.rigid_body.body import BodyState, HasMassProperties, MassProperties
 from contact_dynamics.tolerances import OUT_OF_PLANE_RATIO, OUT_OF_PLANE_SPEED
 from contact_dynamics.validation import (
@@ -198,7 +198,7 @@ def projected(
     _check_ratio("contact normals", max((abs(dot(n, normal)) for n in normals), default=0.0), plane)
     _check_ratio("inertia", coupling, plane)
     _check_ratio("applied force", _ratio(abs(dot(force, normal)), norm(force)), plane)
-    planar_body = PlanarBody(mass=body.mass, inertia=inertia)
+    planar_body = made(PlanarBody, body.mass, inertia)  # both are checked, as the wrench is
     torque_scale = norm(torque) + planar_body.radius_of_gyration * norm(force)
     _check_ratio("applied torque", _ratio(norm(without(torque, normal)), torque_scale), plane)
     return PlanarProblem(
@@ -223,7 +223,7 @@ def projected(
                 strict=True,
             )
         ),
-        wrench=PlanarWrench(f=in_plane(force), moment=dot(torque, normal)),
+        wrench=made(PlanarWrench, in_plane(force), dot(torque, normal)),
         out_of_plane=out_of_plane,
     )
 

@@ -394,7 +394,8 @@ def _in_plane(
         return None, ""
     box = question.uncertainty
     if question.problem is Problem.AUTOMATIC and (
-        question.include_geometry_margins or np.any(box.points) or np.any(box.normals)
+        question.include_geometry_margins
+        or (not box.is_exact and (np.any(box.points) or np.any(box.normals)))
     ):
         return None, _UNCERTAIN
     state, contacts = case.subject.state, case.contacts

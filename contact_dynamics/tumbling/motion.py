@@ -24,7 +24,7 @@ import numpy as np
 
 from contact_dynamics.constants import STANDARD_GRAVITY_W, ns_after
 from contact_dynamics.numerics.arithmetic import DECIMALS, DOUBLES, Arithmetic, Precision, Scalar, within
-from contact_dynamics.records import Record, Rows
+from contact_dynamics.records import Record, Rows, made
 from contact_dynamics.rigid_body.body import BodyState, HasMassProperties, MassProperties
 from contact_dynamics.rigid_body.inertia.axes_of_inertia import PrincipalFrame, in_doubles, principal_frame
 from contact_dynamics.rotations.many import make_continuous
@@ -277,20 +277,7 @@ def free_motion(
     gravity = check_array("gravity_W", gravity_W, (3,))
     check_extent(state, gravity)
     constants = constants_of(body.I_B.tobytes(), state.q_WB.tobytes(), state.w_WB_W.tobytes(), precision)
-    return FreeMotion(
-        body=body,
-        state=state,
-        gravity_W=gravity,
-        frame=constants.frame,
-        rotation=constants.rotation,
-        form=constants.form,
-        q_WL=constants.q_WL,
-        q_PB=constants.q_PB,
-        w_along=constants.w_along,
-        w_across=constants.w_across,
-        farthest=constants.farthest,
-        regime=constants.regime,
-    )
+    return made(FreeMotion, body, state, gravity, *constants)
 
 
 def check_extent(state: BodyState, gravity_W: FloatArray) -> None:
@@ -302,8 +289,7 @@ def check_extent(state: BodyState, gravity_W: FloatArray) -> None:
         "gravity_W": gravity_W,
     }
     for name, values in numbers.items():
-        if max(map(abs, values.ravel().tolist())) > LARGEST_NUMBER:  # NumPy's calls would cost more
-            check_magnitude(name, values)
+        check_magnitude(name, values)
 
 
 MAX_TURNED: Final = 1e16
