@@ -225,7 +225,7 @@ def _in_time(shape: Body, landing: MeasuredLanding, world: World, hold_step: flo
     sequence = impact_sequence(
         shape, _outside(shape, landing.before), world, window=landing.seconds, hold_step=hold_step
     )
-    states = [strike.impact.state for strike in sequence.strikes if strike.seconds < landing.seconds]
+    states = [strike.state_after for strike in sequence.strikes if strike.seconds < landing.seconds]
     return _flown(shape, landing, states[-1] if states else landing.before)
 
 

@@ -34,8 +34,8 @@ print("in time, going on over corners that stay:")
 sequence = impact_sequence(brick, landing.state, world, window=0.03, hold_step=1e-3)
 for strike in sequence.strikes[:6]:
     print(
-        f"  {1e3 * strike.seconds:7.3f} ms: corner {strike.contact} {strike.impact.outcome.name.lower()},"
-        f" impulse {strike.impact.impulse_W[2]:.3f} N s"
+        f"  {1e3 * strike.seconds:7.3f} ms: corner {strike.contact} {strike.outcome.name.lower()},"
+        f" impulse {strike.impulse_W[2]:.3f} N s"
     )
 print(f"  in all {len(sequence.strikes)} strikes, then it {sequence.end.name.lower().replace('_', ' ')}")
 

@@ -13,16 +13,18 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from contact_dynamics.constants import ns_after
-from contact_dynamics.impact.in_time.result import SequenceEnd
 from contact_dynamics.impact.in_time.sequence import MAX_STRIKES, STRIKE_WINDOW
 from contact_dynamics.impact.law import ImpactOutcome, PathEvent, RestitutionLaw
-from contact_dynamics.impact.several.result import SeveralContactsLaw
+from contact_dynamics.impact.several.result import (
+    ResolvedImpact,
+    SequenceEnd,
+    SequenceStrike,
+    SeveralContactsLaw,
+)
 from contact_dynamics.questions.impact_question import (
     ImpactAnswer,
     ImpactQuestion,
     InTime,
-    ResolvedImpact,
-    SequenceStrike,
     StruckBody,
 )
 from contact_dynamics.questions.plane_of_motion import Problem
@@ -108,13 +110,16 @@ def _read_law(msg: ImpactMsg, field: str, _: fields.Frame) -> SeveralContactsLaw
     return SeveralContactsLaw.SEQUENTIAL if in_time else SeveralContactsLaw(getattr(msg, field))
 
 
-def _write_other_state(msg: ImpactMsg, field: str, state: BodyState | None, frame: fields.Frame) -> None:
-    if isinstance(frame.answer, ImpactAnswer) and frame.answer.other is not None and state is not None:
-        setattr(msg, field, [_struck_to_msg(replace(frame.answer.other, state=state), frame)])
+def _write_states(msg: ImpactMsg, _: str, states: tuple[BodyState, ...], frame: fields.Frame) -> None:
+    fields.STATE.write(msg, "state_after", states[0], frame)
+    if isinstance(frame.answer, ImpactAnswer) and frame.answer.other is not None:
+        struck = [replace(frame.answer.other, state=state) for state in states[1:]]
+        msg.other_state_after = [_struck_to_msg(each, frame) for each in struck]
 
 
-def _read_other_state(msg: ImpactMsg, field: str, frame: fields.Frame) -> BodyState | None:
-    return next((_struck_from_msg(each, frame).state for each in getattr(msg, field)), None)
+def _read_states(msg: ImpactMsg, _: str, frame: fields.Frame) -> tuple[BodyState, ...]:
+    state: BodyState = fields.STATE.read(msg, "state_after", frame)  # type: ignore[assignment]
+    return state, *(_struck_from_msg(each, frame).state for each in msg.other_state_after)
 
 
 def _struck_to_msg(other: StruckBody, frame: fields.Frame) -> BodyStateMsg:
@@ -194,8 +199,7 @@ RESOLVED_IMPACT: Final = fields.Table(
     fields.Row("outcome", "outcome", fields.one_of(ImpactOutcome, none=ImpactMsg.NOT_TOLD)),
     fields.Row("jams", "jams"),
     fields.Row("converged", "converged"),
-    fields.Row("state", "state_after", fields.STATE),
-    fields.Row("other_state", "other_state_after", fields.Kind(_write_other_state, _read_other_state)),
+    fields.Row("states", "", fields.Kind(_write_states, _read_states)),
     fields.Row("impulses_W", "impulses", fields.rows_of(3)),
     fields.Row("compression_impulses_W", "compression_impulses", fields.rows_of(3)),
     fields.Row("velocities_before_W", "contact_velocities_before", fields.rows_of(3)),

@@ -112,9 +112,10 @@ NEVER = {
     "factor",
     "only_rest",
     "frictions",
+    "miss_probability",
 }
 """Fields that may be infinite: a stop that never comes, a corner's curvature, an axis without inertia, a load
-that no friction yields to, and friction that is never enough."""
+that no friction yields to, and friction that is never enough. And one that is NaN unless it is asked for."""
 
 NAN_ALLOWED = {"flips_of_many", "next_flips of a body that flips"}
 """Calls that answer NaN for the time of a flip that never comes, or for a deviation without a covariance."""

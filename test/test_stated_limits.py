@@ -34,7 +34,7 @@ NOT_REFUSED = {
     "impact.several.interleavings.MAX_INCREMENTS",
     "impact.several.orders.MAX_ORDERS",
     "impact.several.sequential.MAX_STRIKES",
-    "impact.several.settling.MAX_JAMS",
+    "impact.several.jamming.MAX_JAMS",
     "impact.several.simultaneous.MAX_SWEEPS",
     "impact.spatial.path.MAX_STRETCHES",
     "impact.spatial.path.MAX_ITERATIONS",

@@ -23,7 +23,8 @@ if TYPE_CHECKING:
 
     from contact_dynamics.diagrams.marks import Mark
     from contact_dynamics.diagrams.shape import Shape
-    from contact_dynamics.questions.impact_question import ImpactAnswer, SequenceStrike
+    from contact_dynamics.impact import SequenceStrike
+    from contact_dynamics.questions.impact_question import ImpactAnswer
     from contact_dynamics.validation import FloatArray
 
 ARROW_LENGTH: Final = 1.1

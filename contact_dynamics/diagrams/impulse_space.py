@@ -34,7 +34,8 @@ from contact_dynamics.numerics.vectors import across, tangents_near_x
 
 if TYPE_CHECKING:
     from contact_dynamics.diagrams.marks import Mark
-    from contact_dynamics.questions.impact_question import ImpactAnswer, ResolvedImpact
+    from contact_dynamics.impact import ResolvedImpact
+    from contact_dynamics.questions.impact_question import ImpactAnswer
     from contact_dynamics.rigid_body.body import BodyState, HasMassProperties, MassProperties
     from contact_dynamics.validation import FloatArray
 

@@ -20,8 +20,9 @@ from contact_dynamics.tumbling.polhode import Regime
 if TYPE_CHECKING:
     from contact_dynamics.contact_modes import BodyStatics, GeometryMargin, SpatialModeMargin, VerdictsWithin
     from contact_dynamics.diagrams.after_impact import AfterImpact
+    from contact_dynamics.impact import ResolvedImpact
     from contact_dynamics.questions.contact_modes import ContactModeAnswer
-    from contact_dynamics.questions.impact_question import ImpactAnswer, ResolvedImpact
+    from contact_dynamics.questions.impact_question import ImpactAnswer
     from contact_dynamics.questions.many import ManyImpactsAnswer, ManyTumblingsAnswer
     from contact_dynamics.questions.many_contact_modes import ManyContactModesAnswer
     from contact_dynamics.questions.settled_impact import SettledImpact

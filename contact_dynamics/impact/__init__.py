@@ -8,46 +8,43 @@
 - Several contacts at one instant, as in a landing on an edge or a face: `several_impact`, `bodies_impact`.
   The result depends on the law, and its spread is returned by `outcomes_over_orders` and
   `outcomes_over_interleavings`.
-- Strikes at separate times, with flight between them: `impact_sequence`, `impact_sequence_of`.
-- Contacts that jam without approaching: `jamming_impact`, `settling_impact`.
+- Strikes at separate times, with flight between them: `impact_sequence`.
+- Contacts that jam without approaching: `jamming_impact`.
 - Uncertain states: `spatial_impact_distribution`.
 
 The modules of this package are internal. `law` contains the laws of restitution and the outcomes, and
 `energy` checks the energy balance of each law. `planar` and `spatial` treat one contact (`one_contact`) and
 many cases (`batch`); `result` contains the types of their results. `several` treats several contacts at one
-instant, `in_time` strikes one after the other, and `distribution` uncertain states.
+instant, `in_time` strikes one after the other; both return a `several.result`. `distribution` treats
+uncertain states.
 
 - In the plane, the impulse path is Routh's construction (`routh`).
 - In space, a contact responds in all directions (`response`), and its sliding direction changes continuously,
   so the impulse `path` is curved. A mechanism, such as a robot arm, is described by its response alone.
 - Several contacts strike one after the other (`sequential`, over all `orders`) or all at once
   (`simultaneous`). Their impulses may also interleave in any way
-  (`interleavings`). Contacts that do not approach can jam (`jamming`) until a mode is consistent
-  (`settling`).
+  (`interleavings`). Contacts that do not approach can jam (`jamming`).
 - In time, `meetings` finds the contact that strikes next, and `sequence` proceeds from strike to strike.
 """
 
 from contact_dynamics.impact.distribution import ImpactDistribution, spatial_impact_distribution
-from contact_dynamics.impact.in_time.result import ImpactSequence, SequenceEnd, TimedStrike
-from contact_dynamics.impact.in_time.sequence import impact_sequence, impact_sequence_of
+from contact_dynamics.impact.in_time.sequence import impact_sequence
 from contact_dynamics.impact.law import ImpactOutcome, PathEvent, RestitutionLaw
 from contact_dynamics.impact.planar.batch import PlanarImpacts, planar_impacts
 from contact_dynamics.impact.planar.one_contact import planar_impact
 from contact_dynamics.impact.planar.result import PlanarImpact
 from contact_dynamics.impact.planar.routh import ImpulsePath, InverseInertia
-from contact_dynamics.impact.several.interleavings import outcomes_over_interleavings
+from contact_dynamics.impact.several.interleavings import InterleavedOutcomes, outcomes_over_interleavings
 from contact_dynamics.impact.several.jamming import jamming_impact
-from contact_dynamics.impact.several.orders import outcomes_over_orders, several_impact
+from contact_dynamics.impact.several.orders import OrderedOutcomes, outcomes_over_orders, several_impact
 from contact_dynamics.impact.several.result import (
-    BodiesImpact,
-    InterleavedOutcomes,
-    OrderedOutcomes,
+    ImpactSequence,
+    ResolvedImpact,
+    SequenceEnd,
+    SequenceStrike,
     SeveralContactsLaw,
-    SeveralImpact,
-    SeveralVerdict,
 )
 from contact_dynamics.impact.several.sequential import bodies_impact
-from contact_dynamics.impact.several.settling import settling_impact
 from contact_dynamics.impact.spatial.batch import (
     ResponseImpacts,
     SpatialImpacts,
@@ -60,7 +57,6 @@ from contact_dynamics.impact.spatial.result import ResponseImpact, SpatialImpact
 from contact_dynamics.validation_types import check_types_of
 
 __all__ = [
-    "BodiesImpact",
     "ImpactDistribution",
     "ImpactOutcome",
     "ImpactSequence",
@@ -71,20 +67,18 @@ __all__ = [
     "PathEvent",
     "PlanarImpact",
     "PlanarImpacts",
+    "ResolvedImpact",
     "ResponseImpact",
     "ResponseImpacts",
     "RestitutionLaw",
     "SequenceEnd",
+    "SequenceStrike",
     "SeveralContactsLaw",
-    "SeveralImpact",
-    "SeveralVerdict",
     "SpatialImpact",
     "SpatialImpacts",
     "StrikingBodies",
-    "TimedStrike",
     "bodies_impact",
     "impact_sequence",
-    "impact_sequence_of",
     "jamming_impact",
     "outcomes_over_interleavings",
     "outcomes_over_orders",
@@ -92,7 +86,6 @@ __all__ = [
     "planar_impacts",
     "response_impact",
     "response_impacts",
-    "settling_impact",
     "several_impact",
     "spatial_impact",
     "spatial_impact_distribution",

@@ -14,10 +14,9 @@ contacts that separate, slide or stick (lecture 26), and `toss` the motion to re
 The kinds share these files: `context` (the world, defaults, and the published states in a `state_store`),
 `subject` (the body and its state, which may be an `uncertain_state`), `twist_axes` (the check of the axes of
 published velocities), `sample_times` (times of samples), `touching` (contacts), `extent` (limits of numbers)
-and `plane_of_motion` (the choice between plane and space, and the modes of a plane in world axes). All
-answers describe impacts in the same way (`resolving`). `settled_impact` computes the impact that follows an
-inconsistency. `many` contains questions about many states at once, and `many_contact_modes` about many
-wrenches or sets of contacts.
+and `plane_of_motion` (the choice between plane and space, and the modes and impacts of a plane in world
+axes). `settled_impact` computes the impact that follows an inconsistency. `many` contains questions about
+many states at once, and `many_contact_modes` about many wrenches or sets of contacts.
 
 `effort` determines whether a question is inexpensive, and `workers` are processes that answer the expensive
 ones.
@@ -29,8 +28,6 @@ from contact_dynamics.questions.impact_question import (
     ImpactAnswer,
     ImpactQuestion,
     InTime,
-    ResolvedImpact,
-    SequenceStrike,
     StruckBody,
 )
 from contact_dynamics.questions.plane_of_motion import Problem
@@ -68,8 +65,6 @@ __all__ = [
     "InTime",
     "Problem",
     "PublishedState",
-    "ResolvedImpact",
-    "SequenceStrike",
     "SettledImpact",
     "StateStore",
     "StruckBody",

@@ -17,7 +17,6 @@ from contact_dynamics.impact import (
     SequenceEnd,
     bodies_impact,
     impact_sequence,
-    impact_sequence_of,
     outcomes_over_orders,
     planar_impact,
     several_impact,
@@ -25,16 +24,14 @@ from contact_dynamics.impact import (
     spatial_impact_distribution,
     spatial_pair_impact,
 )
-from contact_dynamics.impact.several.orders import order_warning
-from contact_dynamics.impact.several.result import SeveralContactsLaw
+from contact_dynamics.impact.several.orders import order_warning, with_orders
+from contact_dynamics.impact.several.result import SeveralContactsLaw, of_one_contact
 from contact_dynamics.landing.earliest import next_landing
 from contact_dynamics.motion.covariance import propagate_covariance
 from contact_dynamics.plane.lifting import (
     check_mirrored,
     mirror_partners,
     planar_in_space,
-    planar_velocity,
-    with_planar_velocity,
 )
 from contact_dynamics.questions.context import Context, or_default
 from contact_dynamics.questions.extent import check_contacts, check_extent
@@ -42,16 +39,13 @@ from contact_dynamics.questions.impact_question import (
     ImpactAnswer,
     ImpactQuestion,
     InTime,
-    ResolvedImpact,
     StruckBody,
 )
-from contact_dynamics.questions.plane_of_motion import Problem, planar_problem_of
-from contact_dynamics.questions.resolving import (
-    planar_resolved,
-    sequence_resolved,
-    several_resolved,
-    spatial_resolved,
-    with_orders,
+from contact_dynamics.questions.plane_of_motion import (
+    Problem,
+    lifted_impact,
+    planar_problem_of,
+    several_in_plane,
 )
 from contact_dynamics.questions.subject import Subject, covariance_of, subject_of
 from contact_dynamics.questions.touching import check_has_shape, contacts_of, outside_shape
@@ -59,9 +53,8 @@ from contact_dynamics.records import Record
 from contact_dynamics.rigid_body.body import BodyState
 
 if TYPE_CHECKING:
-    from contact_dynamics.impact import BodiesImpact, ImpactDistribution, ImpactSequence, SeveralImpact
+    from contact_dynamics.impact import ImpactDistribution, ImpactSequence, ResolvedImpact
     from contact_dynamics.plane.projection import PlanarProblem
-    from contact_dynamics.questions.resolving import Before
     from contact_dynamics.rigid_body.body import MassProperties
 
     _InSpace: TypeAlias = tuple[MassProperties, BodyState, ContactSet]
@@ -89,13 +82,14 @@ def answer(question: ImpactQuestion, context: Context | None = None) -> ImpactAn
     known = Context() if context is None else context
     strike = _strike_of(question, known)
     problem: PlanarProblem | None = None
+    resolved: ResolvedImpact
     warnings = _outside(question, strike)
     law = question.several_contacts_law
-    ordered = strike.before[0] + (strike.contacts,)
+    ordered = strike.subject.body.mass_properties, strike.state, strike.contacts
     if isinstance(law, InTime):
         sequence = _in_time(question, law, strike, known)
         strike = _from_first(sequence, strike)
-        resolved = sequence_resolved(sequence, strike.before[0])
+        resolved = _since_first(sequence)
         if sequence.order_is_open:
             warnings += (_OPEN_AT_AN_INSTANT,)
     elif question.problem is Problem.PLANAR:
@@ -182,17 +176,11 @@ def _order_warning(question: ImpactQuestion, strike: _Strike, ordered: _InSpace)
 def _in_time(question: ImpactQuestion, law: InTime, strike: _Strike, context: Context) -> ImpactSequence:
     """Return the strikes from a state on. Without any, raise `SeparatingContactError` or `NoContactError`."""
     world = context.world
-    if question.contacts is not None:
-        follow = partial(
-            impact_sequence_of,
-            strike.subject.body.mass_properties,
-            strike.state,
-            strike.contacts,
-            gravity_W=world.gravity_W,
-        )
-    else:
-        follow = partial(impact_sequence, strike.subject.body, strike.state, world)
-    sequence = follow(
+    sequence = impact_sequence(
+        strike.subject.body,
+        strike.state,
+        world,
+        contacts=None if question.contacts is None else strike.contacts,
         restitution_law=question.restitution_law,
         window=law.strike_window,
         max_strikes=law.max_strikes,
@@ -225,41 +213,38 @@ def _from_first(sequence: ImpactSequence, strike: _Strike) -> _Strike:
     )
 
 
+def _since_first(sequence: ImpactSequence) -> ImpactSequence:
+    """Return a sequence whose times are those since its first strike."""
+    first = sequence.strikes[0].seconds
+    limit = sequence.limit_seconds
+    return replace(
+        sequence,
+        strikes=tuple(replace(one, seconds=one.seconds - first) for one in sequence.strikes),
+        limit_seconds=None if limit is None else limit - first,
+    )
+
+
 def _in_space(question: ImpactQuestion, law: SeveralContactsLaw, strike: _Strike) -> ResolvedImpact:
-    contacts, (body, state), *others = strike.contacts, *strike.before
+    contacts, (bodies, states) = strike.contacts, strike.before
     if len(contacts) == 1:
-        hit = (
-            partial(spatial_pair_impact, body, state, *others[0])
-            if others
-            else partial(spatial_impact, body, state)
-        )
+        hit = partial(spatial_impact, bodies[0], states[0])
+        if len(bodies) > 1:
+            hit = partial(spatial_pair_impact, bodies[0], states[0], bodies[1], states[1])
         impact = hit(
             contacts[0],
             restitution_law=question.restitution_law,
             velocity_tolerance=strike.velocity_tolerance,
         )
-        return spatial_resolved(impact, *strike.before)
-    several: SeveralImpact | BodiesImpact
-    if others:
-        several = bodies_impact(
-            [each for each, _ in strike.before],
-            [each for _, each in strike.before],
-            contacts,
-            [(0, 1)] * len(contacts),
-            several_contacts_law=law,
-            restitution_law=question.restitution_law,
-            velocity_tolerance=strike.velocity_tolerance,
-        )
-    else:
-        several = several_impact(
-            body,
-            state,
-            contacts,
-            several_contacts_law=law,
-            restitution_law=question.restitution_law,
-            velocity_tolerance=strike.velocity_tolerance,
-        )
-    return several_resolved(several, *strike.before, surfaces_W=contacts.surface_velocities_W)
+        return of_one_contact(impact, bodies, states)
+    return bodies_impact(
+        bodies,
+        states,
+        contacts,
+        [(0, None if len(bodies) == 1 else 1)] * len(contacts),
+        several_contacts_law=law,
+        restitution_law=question.restitution_law,
+        velocity_tolerance=strike.velocity_tolerance,
+    )
 
 
 def _problem(question: ImpactQuestion, strike: _Strike, context: Context) -> PlanarProblem:
@@ -288,7 +273,7 @@ def _in_plane(
     problem: PlanarProblem,
     ordered: _InSpace,
 ) -> ResolvedImpact:
-    (before,) = strike.before
+    body = strike.subject.body.mass_properties
     if len(problem.contacts) == 1:
         impact = planar_impact(
             problem.body,
@@ -297,15 +282,14 @@ def _in_plane(
             restitution_law=question.restitution_law,
             velocity_tolerance=strike.velocity_tolerance,
         )
-        return planar_resolved(impact, problem, before)
+        return of_one_contact(lifted_impact(impact, problem, strike.state), [body], [strike.state])
     several = several_impact(
         *ordered,
         several_contacts_law=law,
         restitution_law=question.restitution_law,
         velocity_tolerance=strike.velocity_tolerance,
     )
-    after = with_planar_velocity(problem, strike.state, planar_velocity(problem.plane, several.state))
-    return several_resolved(replace(several, state=after), before)
+    return several_in_plane(several, problem, body, strike.state)
 
 
 def _distribution(question: ImpactQuestion, strike: _Strike, context: Context) -> ImpactDistribution:
@@ -359,12 +343,13 @@ class _Strike(Record):
     distance_tolerance: float
 
     @property
-    def before(self) -> tuple[Before, ...]:
-        """The bodies just before, one or both."""
-        first = self.subject.body.mass_properties, self.state
-        return (
-            (first,) if self.other is None else (first, (self.other.body.mass_properties, self.other.state))
-        )
+    def before(self) -> tuple[list[MassProperties], list[BodyState]]:
+        """The bodies, one or both, and their states just before."""
+        bodies, states = [self.subject.body.mass_properties], [self.state]
+        if self.other is not None:
+            bodies.append(self.other.body.mass_properties)
+            states.append(self.other.state)
+        return bodies, states
 
 
 def _strike_of(question: ImpactQuestion, context: Context) -> _Strike:

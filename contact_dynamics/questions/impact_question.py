@@ -1,26 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The question about an impact, its answer, and the one form that the results of all impacts have in answers.
-
-The impact chapter has separate results for one contact and for several, in the plane and in space, for one
-body and for two. An answer gives all of them as a `ResolvedImpact`, in world axes.
-"""
+"""The question about an impact, and its answer."""
 
 from __future__ import annotations
 
-import math
-from dataclasses import dataclass, field
-
-import numpy as np
+from dataclasses import dataclass
 
 from contact_dynamics.constants import ns_after
 from contact_dynamics.contact.contact import ContactSet
-from contact_dynamics.impact import (
-    ImpactOutcome,
-    PathEvent,
-    RestitutionLaw,
-    SequenceEnd,
-    SeveralContactsLaw,
-)
+from contact_dynamics.impact import ResolvedImpact, RestitutionLaw, SeveralContactsLaw
 from contact_dynamics.impact.in_time.sequence import MAX_STRIKES, STRIKE_WINDOW
 from contact_dynamics.plane.projection import PlaneOfMotion
 from contact_dynamics.questions.context import check_optional
@@ -31,101 +18,6 @@ from contact_dynamics.records import Record
 from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.validation import FloatArray, check_positive, check_whole
 from contact_dynamics.world import Body
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class SequenceStrike(Record):
-    """One impact of a sequence over time.
-
-    Attributes:
-        seconds: Time of the impact, s after the first one.
-        contact: Index into the answer's contacts.
-        outcome: Motion of the contact during the impact.
-        p_WC_W: (3,), m, position of the contact at that time, world.
-        impulse_W: (3,), N s, impulse on the body, world axes.
-        state_before: State of the body just before the impact.
-        state_after: State of the body just after the impact.
-    """
-
-    seconds: float
-    contact: int
-    outcome: ImpactOutcome
-    p_WC_W: FloatArray
-    impulse_W: FloatArray
-    state_before: BodyState
-    state_after: BodyState
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class ResolvedImpact(Record):
-    """Result of an impact. Row i of an array belongs to contact i, and vectors are in world axes.
-
-    Attributes:
-        restitution_law: Law of restitution.
-        several_contacts_law: Law for several contacts.
-        outcome: Motion of the contact, or of the contact with the largest impulse if there are several. None
-            if the law does not define it (SIMULTANEOUS).
-        jams: Whether sliding drove this contact into compression although it did not approach.
-        converged: Whether the law converged. If false, it reached its iteration limit, and the state is the
-            last one.
-        state: State of the body just after the impact: the pose before it, with the new velocities.
-        other_state: State of the second body just after the impact, or None if the contact is with the world.
-        impulses_W: (n, 3), N s, impulses on the body.
-        compression_impulses_W: (n, 3), N s, impulses up to the end of compression. It has no rows if the law
-            does not define them.
-        velocities_before_W: (n, 3), m/s, velocities of the contact points just before the impact, relative to
-            what they touch.
-        velocities_after_W: (n, 3), m/s, the same velocities just after the impact.
-        path_W: (k, 3), N s, vertices of the impulse path. Impacts in sequence are listed one after the other,
-            each from the impulse that its contact had before. It has no rows if the law does not define a
-            path.
-        path_events: (k,), event at each vertex.
-        path_contacts: (k,), index of the contact of each vertex.
-        kinetic_energy_before: J, kinetic energy of all moving bodies just before the impact.
-        kinetic_energy_after: J, the same just after the impact.
-        creates_energy: Whether the energy increased by more than rounding error.
-        orders: (m,), contacts that struck, for each admissible order. Empty if not requested.
-        order_velocities_W: (m, 6), m/s and rad/s, linear then angular velocity after each order.
-        orders_complete: Whether every order was tried. False if not requested.
-        orders_not_converged: Number of orders that are omitted because they reached the limit on impacts.
-        covariance: (12, 12), covariance of the state just after the impact, in the order of `UncertainState`,
-            or None if not requested.
-        outcome_probabilities: (7,), probability of each outcome, by its value, or None if not requested.
-        miss_probability: Probability that the contact separates, without an impact, or NaN if not requested.
-        strikes: Impacts in the order of time. Empty if all impacts are simultaneous.
-        end: Reason for which there is no further impact, or None if all impacts are simultaneous.
-        staying: Indices of the contacts that stay closed at the end.
-        limit_seconds: Time from which they stay closed, s after the first impact, or None if none does.
-    """
-
-    restitution_law: RestitutionLaw
-    several_contacts_law: SeveralContactsLaw = SeveralContactsLaw.SEQUENTIAL
-    outcome: ImpactOutcome | None = None
-    jams: bool = False
-    converged: bool = True
-    state: BodyState
-    other_state: BodyState | None = None
-    impulses_W: FloatArray
-    compression_impulses_W: FloatArray = field(default_factory=lambda: np.zeros((0, 3)))
-    velocities_before_W: FloatArray
-    velocities_after_W: FloatArray
-    path_W: FloatArray = field(default_factory=lambda: np.zeros((0, 3)))
-    path_events: tuple[PathEvent, ...] = ()
-    path_contacts: tuple[int, ...] = ()
-    kinetic_energy_before: float
-    kinetic_energy_after: float
-    creates_energy: bool
-    orders: tuple[tuple[int, ...], ...] = ()
-    order_velocities_W: FloatArray = field(default_factory=lambda: np.zeros((0, 6)))
-    orders_complete: bool = False
-    orders_not_converged: int = 0
-    covariance: FloatArray | None = None
-    outcome_probabilities: FloatArray | None = None
-    miss_probability: float = math.nan
-    strikes: tuple[SequenceStrike, ...] = ()
-    end: SequenceEnd | None = None
-    staying: tuple[int, ...] = ()
-    limit_seconds: float | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)

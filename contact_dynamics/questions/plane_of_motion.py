@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The plane of motion of a question: it is chosen, and modes in it become modes in world axes.
+"""The plane of motion of a question: it is chosen, and modes and impacts in it are put in world axes.
 
 So planar and spatial answers have one form. Positions in the plane are relative to the centre of mass.
 """
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,17 +14,21 @@ import numpy as np
 from contact_dynamics.contact_modes import SpatialMode, SpatialModeMargin, SpatialWrenchSet
 from contact_dynamics.contact_modes.planar.wrench_sets import PlanarWrenchSet
 from contact_dynamics.contact_modes.result import PlanarMode
-from contact_dynamics.plane.lifting import equal_shares
+from contact_dynamics.impact import SpatialImpact
+from contact_dynamics.impact.energy import created
+from contact_dynamics.plane.lifting import equal_shares, planar_velocity, with_planar_velocity
 from contact_dynamics.plane.plane_search import project_onto_best_plane
 from contact_dynamics.plane.projection import PlanarProblem, PlaneOfMotion, project_onto_plane
 from contact_dynamics.plane.types import PlanarWrench
 from contact_dynamics.records import NamedInt
+from contact_dynamics.rigid_body.body import kinetic_energy
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from contact_dynamics.contact.contact import ContactSet
     from contact_dynamics.contact_modes import PlanarModeMargin
+    from contact_dynamics.impact import PlanarImpact, ResolvedImpact
     from contact_dynamics.plane.types import Vector2
     from contact_dynamics.rigid_body.body import BodyState, MassProperties
     from contact_dynamics.validation import FloatArray
@@ -132,3 +137,45 @@ def _wrench_rows(wrenches: Sequence[PlanarWrench], plane: PlaneOfMotion) -> Floa
 
 def _wrench_row(wrench: PlanarWrench, plane: PlaneOfMotion) -> FloatArray:
     return np.concatenate([plane.lift(wrench.f), wrench.moment * plane.normal_W])
+
+
+def lifted_impact(impact: PlanarImpact, problem: PlanarProblem, state: BodyState) -> SpatialImpact:
+    """Return an impact at the one contact of a plane of motion, in world axes.
+
+    Motion out of the plane stays as it was in ``state``, just before the impact.
+    """
+    (contact,) = problem.contacts
+    axes = np.array((contact.tangent, contact.normal)) @ problem.plane.axes_W
+    a, b, c, _ = impact.inverse_inertia
+    events, vertices = zip(*impact.path, strict=True)
+    return SpatialImpact(
+        restitution_law=impact.restitution_law,
+        outcome=impact.outcome,
+        jams=impact.jams,
+        impulse_W=np.array(impact.impulse_C) @ axes,
+        compression_W=np.array(impact.compression_C) @ axes,
+        path_W=np.array(vertices) @ axes,
+        path_events=events,
+        velocity_before_W=np.array(impact.velocity_before_C) @ axes,
+        velocity_after_W=np.array(impact.velocity_after_C) @ axes,
+        inverse_inertia_W=axes.T @ np.array(((a, b), (b, c))) @ axes,
+        state=with_planar_velocity(problem, state, impact.velocity),
+    )
+
+
+def several_in_plane(
+    impact: ResolvedImpact, problem: PlanarProblem, body: MassProperties, state: BodyState
+) -> ResolvedImpact:
+    """Return the impact of a body that `planar_in_space` stood for, with motion out of the plane as before.
+
+    ``body`` and ``state`` are the real ones just before the impact.
+    """
+    after = with_planar_velocity(problem, state, planar_velocity(problem.plane, impact.state))
+    first, last = kinetic_energy(body, state), kinetic_energy(body, after)
+    return replace(
+        impact,
+        states=(after,),
+        kinetic_energy_before=first,
+        kinetic_energy_after=last,
+        creates_energy=created(last - first, first),
+    )

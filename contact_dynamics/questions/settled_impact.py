@@ -14,22 +14,18 @@ from contact_dynamics.contact_modes import (
     SpatialMode,
     contact_modes,
 )
-from contact_dynamics.impact import outcomes_over_orders, planar_impact, several_impact, spatial_impact
-from contact_dynamics.impact.several.settling import settling_impact
-from contact_dynamics.plane.lifting import (
-    equal_shares,
-    planar_in_space,
-    planar_velocity,
-    with_planar_velocity,
+from contact_dynamics.impact import (
+    ResolvedImpact,
+    jamming_impact,
+    outcomes_over_orders,
+    planar_impact,
+    several_impact,
+    spatial_impact,
 )
-from contact_dynamics.questions.impact_question import ResolvedImpact
-from contact_dynamics.questions.plane_of_motion import lifted_mode
-from contact_dynamics.questions.resolving import (
-    planar_resolved,
-    several_resolved,
-    spatial_resolved,
-    with_orders,
-)
+from contact_dynamics.impact.several.orders import with_orders
+from contact_dynamics.impact.several.result import of_one_contact
+from contact_dynamics.plane.lifting import equal_shares, planar_in_space, planar_velocity
+from contact_dynamics.questions.plane_of_motion import lifted_impact, lifted_mode, several_in_plane
 from contact_dynamics.questions.subject import Subject
 from contact_dynamics.records import Record
 from contact_dynamics.validation import FloatArray
@@ -38,7 +34,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from contact_dynamics.contact_modes import PlanarModeAnswer, SpatialModeAnswer
-    from contact_dynamics.impact import SeveralImpact
     from contact_dynamics.plane.projection import PlanarProblem
     from contact_dynamics.plane.types import PlanarVelocity
     from contact_dynamics.rigid_body.body import BodyState, MassProperties
@@ -105,7 +100,7 @@ def settled_in_space(case: ModeCase, verdict: ModeVerdict) -> SettledImpact | No
     """Return the impact and the modes after it, or None if the verdict on a case in space needs none."""
     if verdict not in _UNSETTLED:
         return None
-    body, state = before = case.subject.body.mass_properties, case.subject.state
+    body, state = case.subject.body.mass_properties, case.subject.state
     contacts, problem = case.contacts, case.in_space
 
     def modes_after(state: BodyState) -> SpatialModeAnswer:
@@ -113,21 +108,17 @@ def settled_in_space(case: ModeCase, verdict: ModeVerdict) -> SettledImpact | No
 
     if len(contacts) == 1:
         impact = spatial_impact(body, state, contacts[0], velocity_tolerance=case.velocity_tolerance)
-        resolved = spatial_resolved(impact, before)
+        resolved = of_one_contact(impact, [body], [state])
     else:
         several = _several(
             case,
-            *before,
+            body,
+            state,
             contacts,
             verdict,
             is_settled=lambda state: modes_after(state).verdict != ModeVerdict.INCONSISTENT,
         )
-        resolved = _with_orders(
-            several_resolved(several, before, surfaces_W=contacts.surface_velocities_W),
-            case,
-            (*before, contacts),
-            verdict,
-        )
+        resolved = _with_orders(several, case, (body, state, contacts), verdict)
     then = modes_after(resolved.state)
     return SettledImpact(impact=resolved, verdict=then.verdict, modes=then.modes)
 
@@ -151,7 +142,7 @@ def settled_in_plane(
     """
     if verdict not in _UNSETTLED:
         return None
-    plane, before = problem.plane, (case.subject.body.mass_properties, case.subject.state)
+    plane, body, state = problem.plane, case.subject.body.mass_properties, case.subject.state
 
     def modes_after(velocity: PlanarVelocity) -> PlanarModeAnswer:
         return contact_modes(replace(in_plane, velocity=velocity))
@@ -163,7 +154,8 @@ def settled_in_plane(
             problem.contacts[0],
             velocity_tolerance=case.velocity_tolerance,
         )
-        velocity, resolved = impact.velocity, planar_resolved(impact, problem, before)
+        velocity = impact.velocity
+        resolved = of_one_contact(lifted_impact(impact, problem, state), [body], [state])
     else:
         flat = planar_in_space(problem.body, problem.velocity, problem.contacts, axes_W=plane.axes_W)
         several = _several(
@@ -176,10 +168,9 @@ def settled_in_plane(
             plane_normal_W=plane.normal_W,
         )
         velocity = planar_velocity(plane, several.state)
-        after = with_planar_velocity(problem, case.subject.state, velocity)
-        impulses = several.impulses_W if several.strikes else equal_shares(several.impulses_W, partners)
-        resolved = several_resolved(replace(several, state=after, impulses_W=impulses), before)
-        resolved = _with_orders(resolved, case, flat, verdict)
+        if not several.order:
+            several = replace(several, impulses_W=equal_shares(several.impulses_W, partners))
+        resolved = _with_orders(several_in_plane(several, problem, body, state), case, flat, verdict)
     then = modes_after(velocity)
     return SettledImpact(
         impact=resolved,
@@ -197,11 +188,11 @@ def _several(
     *,
     is_settled: Callable[[BodyState], bool],
     plane_normal_W: FloatArray | None = None,
-) -> SeveralImpact:
+) -> ResolvedImpact:
     """Return the impact of several contacts. Those that approach strike in turn, those that jam at once."""
     if verdict == ModeVerdict.IMPACT:
         return several_impact(body, state, contacts, velocity_tolerance=case.velocity_tolerance)
-    return settling_impact(
+    return jamming_impact(
         body,
         state,
         contacts,

@@ -21,7 +21,7 @@ import numpy as np
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.impact.law import RestitutionLaw
 from contact_dynamics.impact.several.orders import several_impact
-from contact_dynamics.impact.several.result import SeveralContactsLaw, SeveralVerdict
+from contact_dynamics.impact.several.result import SeveralContactsLaw
 from contact_dynamics.impact.several.tied import mean_path, next_to_strike
 from contact_dynamics.impact.spatial.response import refuse
 from contact_dynamics.tolerances import CONE_CREEPS, NO_SHARED_RESPONSE, STRIKES, TIED_APPROACH
@@ -217,7 +217,7 @@ def simultaneous_strike(
         restitution_law=law,
         velocity_tolerance=STRIKES,
     )
-    if impact.verdict != SeveralVerdict.RESOLVED:
+    if not impact.converged:
         return None
     struck = [
         Struck(touch, _vector(impulse), None)

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import numpy as np
 
 from contact_dynamics.impact.law import ImpactOutcome, RestitutionLaw
-from contact_dynamics.impact.several.result import SeveralContactsLaw, SeveralVerdict
-from contact_dynamics.impact.several.settling import settling_impact
+from contact_dynamics.impact.several.jamming import jamming_impact
+from contact_dynamics.impact.several.result import SeveralContactsLaw
 from contact_dynamics.impact.spatial.path import OUTCOMES
 from contact_dynamics.impact.spatial.response import Strike
 from contact_dynamics.tolerances import (
@@ -274,14 +274,14 @@ class Simulation(History):
             self.note(TossEventKind.JAMS, touching, (), self.impact.impulse, OUTCOMES[outcome])
             return self.touching_now(STILL_TOUCHING)
         contacts = contacts_of(solid, self.y, touching)
-        impact = settling_impact(
+        impact = jamming_impact(
             properties_of(solid),
             state_of(self.y),
             replace(contacts, body_curvatures=None),
             is_settled=lambda state: bool(choose_mode(solid, numbers_of(state), touching).modes),
             force_W=solid.mass * np.array(solid.gravity),
         )
-        if impact.verdict != SeveralVerdict.RESOLVED:
+        if not impact.converged:
             return self._pass_over()
         self.y = [*self.y[:7], *impact.state.v_WB_W.tolist(), *impact.state.w_WB_W.tolist()]
         self.lost_in_strikes += before - energy_of(solid, self.y)

@@ -17,7 +17,7 @@ from contact_dynamics.contact import spatial_contact_velocities
 from contact_dynamics.contact_modes import spatial_sliding_modes
 from contact_dynamics.errors import InvalidFieldError, NotSupportedError
 from contact_dynamics.impact import (
-    impact_sequence_of,
+    impact_sequence,
     jamming_impact,
     outcomes_over_interleavings,
     spatial_impact_distribution,
@@ -144,7 +144,7 @@ SPATIAL: dict[str, Callable[[], object]] = {
     "spatial_impact_distribution": lambda: spatial_impact_distribution(
         CRATE, FALLING, FEET[0], covariance=np.zeros((12, 12))
     ),
-    "impact_sequence_of": lambda: impact_sequence_of(CRATE, FALLING, FEET),
+    "impact_sequence": lambda: impact_sequence(CRATE, FALLING, cd.World(), contacts=FEET),
     "a plane of motion": lambda: project_onto_plane(
         CRATE, AT_REST, FEET, plane=PlaneOfMotion(normal_W=[0, -1, 0]), force_W=UP, torque_W=[0, 0, 0]
     ),

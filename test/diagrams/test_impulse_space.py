@@ -168,15 +168,16 @@ def test_a_contact_that_strikes_after_another_has_its_dots_on_its_lines() -> Non
         restitutions=np.array([0.5, 0.5]),
     )
     impact = several_impact(body, state, contacts)
-    strikes = impact.strikes[:2]
     assert impact.order[:2] == (0, 1)
+    begins = [i for i, event in enumerate(impact.path_events) if event is PathEvent.START]
+    second, end = [*begins, len(impact.path_events)][1:3]
     answer = impact_answer(
         state,
         contacts,
-        impulses_W=np.array([strike.impulse_W for _, strike in strikes]),
-        path_W=np.concatenate([strike.path_W for _, strike in strikes]),
-        path_events=tuple(event for _, strike in strikes for event in strike.path_events),
-        path_contacts=tuple(contact for contact, strike in strikes for _ in strike.path_events),
+        impulses_W=impact.path_W[[second - 1, end - 1]],
+        path_W=impact.path_W[:end],
+        path_events=impact.path_events[:end],
+        path_contacts=impact.path_contacts[:end],
     )
     assert main_contact(answer.impact) == 1
     check_dots(body, answer)

@@ -129,18 +129,9 @@ IMPACTS: Calls = {
             "hold_step": None,
         },
     ),
-    "impact_sequence_of": (
-        impact.impact_sequence_of,
-        {
-            **WHERE,
-            "contacts": CONTACTS,
-            "gravity_W": [0.0, 0.0, -9.8],
-            "window": 0.05,
-            "max_strikes": 3,
-            "distance_tolerance": 1e-6,
-            "velocity_tolerance": 1e-9,
-            "hold_step": None,
-        },
+    "impact_sequence at contacts": (
+        impact_sequence,
+        {"body": BOX, "state": STATE, "world": WORLD, "contacts": CONTACTS, "max_strikes": 3},
     ),
     "spatial_pair_impact": (
         impact.spatial_pair_impact,
@@ -155,15 +146,5 @@ IMPACTS: Calls = {
     "bodies_impact": (
         impact.bodies_impact,
         {"bodies": [BALL], "states": [STATE], "contacts": CONTACTS, "pairs": [(0, None), (0, None)]},
-    ),
-    "settling_impact": (
-        impact.settling_impact,
-        {
-            **SEVERAL,
-            "state": RESTING,
-            "is_settled": bool,
-            "force_W": [1.0, 0.0, -9.8],
-            "plane_normal_W": [0.0, 1.0, 0.0],
-        },
     ),
 }

@@ -18,12 +18,13 @@ from contact_dynamics import (
     PlanarContact,
     PlanarVelocity,
     SpatialContactProblem,
+    World,
 )
 from contact_dynamics.contact_modes import contact_modes
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.impact import (
     bodies_impact,
-    impact_sequence_of,
+    impact_sequence,
     jamming_impact,
     outcomes_over_interleavings,
     outcomes_over_orders,
@@ -58,7 +59,7 @@ IMPACTS: dict[str, Callable[[], object]] = {
     "orders": lambda: outcomes_over_orders(BODY, FALLING, FEET),
     "interleavings": lambda: outcomes_over_interleavings(BODY, FALLING, FEET),
     "jamming": lambda: jamming_impact(BODY, RESTING, FEET, force_W=[0, 0, -1]),
-    "in time": lambda: impact_sequence_of(BODY, FALLING, FEET),
+    "in time": lambda: impact_sequence(CUBE, FALLING, World(), contacts=FEET),
     "distribution": lambda: spatial_impact_distribution(BODY, FALLING, POINT, covariance=1e-6 * np.eye(12)),
     "question": lambda: impact_questions.answer(ImpactQuestion(body=CUBE, state=FALLING, contacts=FEET)),
     "modes that want an impact": lambda: modes_questions.answer(

@@ -190,10 +190,10 @@ def test_a_sequence_of_strikes_is_the_same_from_a_frame_that_moves(carried: list
         t = other.seconds
         assert one.seconds == pytest.approx(t, abs=1e-12)
         np.testing.assert_allclose(one.p_WC_W - u * t - 0.5 * a * t * t, other.p_WC_W, atol=1e-11)
-        np.testing.assert_allclose(one.impact.state.v_WB_W - u - a * t, other.impact.state.v_WB_W, atol=1e-9)
-        np.testing.assert_allclose(one.impact.impulse_W, other.impact.impulse_W, atol=1e-9)
+        np.testing.assert_allclose(one.state_after.v_WB_W - u - a * t, other.state_after.v_WB_W, atol=1e-9)
+        np.testing.assert_allclose(one.impulse_W, other.impulse_W, atol=1e-9)
     first = found.contacts[0]
     t = found.strikes[0].seconds
     np.testing.assert_allclose(first.p_WC_W, found.strikes[0].p_WC_W, atol=1e-12)
     np.testing.assert_allclose(first.surface_velocity_W, u + a * t, atol=1e-12)
-    assert found.state is found.strikes[-1].impact.state
+    assert found.state is found.strikes[-1].state_after

@@ -13,8 +13,10 @@ from contact_dynamics.constants import ns_after
 from contact_dynamics.impact import (
     ImpactOutcome,
     PathEvent,
+    ResolvedImpact,
     RestitutionLaw,
     SequenceEnd,
+    SequenceStrike,
     SeveralContactsLaw,
 )
 from contact_dynamics.questions import (
@@ -22,8 +24,6 @@ from contact_dynamics.questions import (
     ImpactQuestion,
     InTime,
     Problem,
-    ResolvedImpact,
-    SequenceStrike,
     StruckBody,
 )
 from contact_dynamics.questions.subject import NEWEST
@@ -92,8 +92,7 @@ def resolved_impacts(
         outcome=draw(some(st.sampled_from(ImpactOutcome))),
         jams=draw(flags),
         converged=draw(flags),
-        state=state,
-        other_state=draw(states) if other else None,
+        states=(state, draw(states)) if other else (state,),
         impulses_W=draw(arrays(count, 3)),
         compression_impulses_W=draw(arrays(count if told else 0, 3)),
         velocities_before_W=draw(arrays(count, 3)),

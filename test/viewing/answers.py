@@ -10,13 +10,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from contact_dynamics.contact_modes import ModeVerdict, SpatialMode
-from contact_dynamics.impact import PathEvent, RestitutionLaw, SeveralContactsLaw
+from contact_dynamics.impact import PathEvent, ResolvedImpact, RestitutionLaw, SeveralContactsLaw
 from contact_dynamics.motion.integrated import Method
 from contact_dynamics.questions import (
     ContactModeAnswer,
     ImpactAnswer,
     Problem,
-    ResolvedImpact,
     TumblingAnswer,
 )
 
@@ -64,7 +63,7 @@ def impact_answer(
         outcome=None,
         jams=False,
         converged=True,
-        state=replace(state, v_WB_W=np.array(v_after_W)),
+        states=(replace(state, v_WB_W=np.array(v_after_W)),),
         impulses_W=impulses_W,
         compression_impulses_W=none,
         velocities_before_W=none,
@@ -95,7 +94,9 @@ def impact_answer(
 
 def of_two(answer: ImpactAnswer, other: StruckBody, *, other_after: BodyState) -> ImpactAnswer:
     """The impact as one with a second moving body."""
-    return replace(answer, other=other, impact=replace(answer.impact, other_state=other_after))
+    return replace(
+        answer, other=other, impact=replace(answer.impact, states=(answer.impact.state, other_after))
+    )
 
 
 def contact_mode_answer(

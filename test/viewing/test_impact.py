@@ -12,8 +12,8 @@ from contact_dynamics.diagrams.contact_scene import friction_cones
 from contact_dynamics.diagrams.impact_scene import LABEL_DEPTH, impact_marks, main_strikes
 from contact_dynamics.diagrams.impulse_space import main_contact
 from contact_dynamics.diagrams.shape import convex_shape
-from contact_dynamics.impact import ImpactOutcome, PathEvent
-from contact_dynamics.questions import SequenceStrike, StruckBody
+from contact_dynamics.impact import ImpactOutcome, PathEvent, SequenceStrike
+from contact_dynamics.questions import StruckBody
 from contact_dynamics.viewing.drawing import draw_marks
 from viewing.answers import impact_answer, of_two
 

@@ -8,7 +8,7 @@ each point is a contact of its own.
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
@@ -23,20 +23,6 @@ if TYPE_CHECKING:
     from contact_dynamics.rigid_body.body import BodyState, MassProperties
     from contact_dynamics.validation import FloatArray
     from contact_dynamics.world import Body, SurfaceFrame, World
-
-
-class Meetings(Protocol):
-    """A way to find where a flight ends, which remembers the contacts that were met so far."""
-
-    def next(self, state: BodyState, now: float, horizon: float) -> Landing | None:
-        """Return where free flight from a state at ``now``, s, ends within ``horizon``, s, or None."""
-
-    def index(self, landing: Landing, row: int) -> int:
-        """Return the number of the contact that is row ``row`` of a landing's contacts."""
-
-    @property
-    def contacts(self) -> ContactSet:
-        """All contacts that `index` has numbered, in its order."""
 
 
 class FoundMeetings:
@@ -196,3 +182,7 @@ class NamedMeetings:
             velocities_W=velocities[rows],
             strikes=bool((approach[rows] < -self._velocity_tolerance).any()),
         )
+
+
+Meetings: TypeAlias = FoundMeetings | NamedMeetings
+"""A way to find where a flight ends, which remembers the contacts that were met so far."""

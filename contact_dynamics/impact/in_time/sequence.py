@@ -29,13 +29,19 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from contact_dynamics.constants import STANDARD_GRAVITY_W
 from contact_dynamics.contact.found import check_not_inside
 from contact_dynamics.contact.velocities import velocity_accelerations
 from contact_dynamics.errors import InvalidFieldError
+from contact_dynamics.impact.energy import created
 from contact_dynamics.impact.in_time.meetings import FoundMeetings, NamedMeetings
-from contact_dynamics.impact.in_time.result import ImpactSequence, SequenceEnd, TimedStrike, carried_by
 from contact_dynamics.impact.law import RestitutionLaw
+from contact_dynamics.impact.several.result import (
+    ImpactSequence,
+    SequenceEnd,
+    SequenceStrike,
+    SeveralContactsLaw,
+    in_terms_of_strikes,
+)
 from contact_dynamics.impact.several.tied import materials_of, next_to_strike, strike_as_one
 from contact_dynamics.impact.spatial.one_contact import spatial_impact
 from contact_dynamics.landing.search_work import SearchWork
@@ -51,7 +57,6 @@ from contact_dynamics.tolerances import (
 )
 from contact_dynamics.tumbling import Precision, free_motion
 from contact_dynamics.validation import (
-    check_array,
     check_at_rest,
     check_not_negative,
     check_positive,
@@ -61,15 +66,13 @@ from contact_dynamics.validation import (
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from numpy.typing import ArrayLike
-
     from contact_dynamics.contact.contact import ContactSet
     from contact_dynamics.impact.in_time.meetings import Meetings
     from contact_dynamics.impact.spatial.result import SpatialImpact
     from contact_dynamics.landing.earliest import Landing
-    from contact_dynamics.rigid_body.body import BodyState, HasMassProperties, MassProperties
+    from contact_dynamics.rigid_body.body import BodyState, MassProperties
     from contact_dynamics.validation import FloatArray
-    from contact_dynamics.world import Body, World
+    from contact_dynamics.world import Body, SurfaceFrame, World
 
 
 STRIKE_WINDOW: Final = 0.05
@@ -84,6 +87,7 @@ def impact_sequence(
     state: BodyState,
     world: World,
     *,
+    contacts: ContactSet | None = None,
     restitution_law: RestitutionLaw = RestitutionLaw.POISSON,
     window: float = STRIKE_WINDOW,
     max_strikes: int = MAX_STRIKES,
@@ -91,13 +95,16 @@ def impact_sequence(
     velocity_tolerance: float = VELOCITY_TOLERANCE,
     hold_step: float | None = None,
 ) -> ImpactSequence:
-    """Return the impacts of a body's corners on the world's surfaces, from a state in contact or in flight.
+    """Return the impacts of a body over time, from a state in contact or in flight.
 
     Args:
-        body: Mass properties and corners.
+        body: Mass properties, and corners if contacts are detected.
         state: Initial pose and velocities. The first impact must also be within the window.
         world: Surfaces and gravity. Surfaces may move if all have the same velocity and acceleration and none
             rotates.
+        contacts: All touching contacts, whether or not they approach. Each is a point of the body on a plane,
+            and can hit only this plane: immediately if it approaches, and whenever it returns. If None,
+            contacts of the body's corners with the world's surfaces are detected.
         restitution_law: Law of restitution, which defines the coefficient of restitution.
         window: s, > 0. Longest flight between two impacts of one landing.
         max_strikes: Largest number of impacts, >= 1.
@@ -108,93 +115,50 @@ def impact_sequence(
 
     Raises:
         TooLargeError: the sequence requires too many impacts, or too many time steps with closed contacts.
-        InvalidFieldError: a number is out of range, or the body penetrates a surface by more than the
-            tolerance.
+        InvalidFieldError: a number is out of range, the body penetrates a surface by more than the
+            tolerance, or one of ``contacts`` has a curvature.
         NoContactError: the body has no shape that could touch anything.
-        NotSupportedError: surfaces move differently or rotate.
+        NotSupportedError: surfaces move differently or rotate, or one of ``contacts`` has a moving surface.
     """
     tolerance = check_positive("velocity_tolerance", velocity_tolerance)
     held = None if hold_step is None else check_positive("hold_step", hold_step)
-    world, frame = world.seen_from_surfaces("impact_sequence")
-    state = state if frame is None else frame.seen(state)
-    check_not_inside(body, state, world.surfaces, distance_tolerance=distance_tolerance)
-    work = SearchWork("strike_window")
-    meetings = FoundMeetings(
-        body,
-        world,
-        frame=frame,
-        distance_tolerance=distance_tolerance,
-        velocity_tolerance=tolerance,
-        work=work,
-    )
+    work, frame = SearchWork("strike_window"), None
+    meetings: Meetings
+    if contacts is None:
+        world, frame = world.seen_from_surfaces("impact_sequence")
+        state = state if frame is None else frame.seen(state)
+        check_not_inside(body, state, world.surfaces, distance_tolerance=distance_tolerance)
+        meetings = FoundMeetings(
+            body,
+            world,
+            frame=frame,
+            distance_tolerance=distance_tolerance,
+            velocity_tolerance=tolerance,
+            work=work,
+        )
+    else:
+        if contacts.body_curvatures is not None or contacts.surface_curvatures is not None:
+            raise InvalidFieldError("contacts.curvatures", "some", "none: a point of the body on a plane")
+        check_at_rest("contacts", contacts, "impact_sequence")
+        _ = contacts.impact_restitutions
+        meetings = NamedMeetings(
+            body.mass_properties,
+            state,
+            contacts,
+            gravity_W=world.gravity_W,
+            distance_tolerance=check_not_negative("distance_tolerance", distance_tolerance),
+            velocity_tolerance=tolerance,
+            work=work,
+        )
     sequence = _StrikeByStrike(
         body.mass_properties,
         world.gravity_W,
         meetings,
         restitution_law,
+        frame=frame,
         tolerance=tolerance,
         hold_step=held,
         work=work,
-    )
-    return carried_by(sequence.run(state, check_positive("window", window), max_strikes), frame)
-
-
-def impact_sequence_of(
-    body: HasMassProperties,
-    state: BodyState,
-    contacts: ContactSet,
-    *,
-    gravity_W: ArrayLike = STANDARD_GRAVITY_W,
-    restitution_law: RestitutionLaw = RestitutionLaw.POISSON,
-    window: float = STRIKE_WINDOW,
-    max_strikes: int = MAX_STRIKES,
-    distance_tolerance: float = DISTANCE_TOLERANCE,
-    velocity_tolerance: float = VELOCITY_TOLERANCE,
-    hold_step: float | None = None,
-) -> ImpactSequence:
-    """Return the impacts at given contacts. Each contact is a point of the body on the plane that it touches.
-
-    Each point can hit only its own plane: immediately if it approaches, and whenever it returns to the
-    plane.
-
-    Args:
-        body: A `Body`, or its `MassProperties`.
-        state: Initial pose and velocities.
-        contacts: All touching contacts, whether or not they approach.
-        gravity_W: (3,), m/s^2, world axes.
-        restitution_law: Law of restitution, which defines the coefficient of restitution.
-        window: s, > 0. Longest flight between two impacts of one landing.
-        max_strikes: Largest number of impacts, >= 1.
-        distance_tolerance: m, >= 0. A point within this distance of its plane touches it.
-        velocity_tolerance: m/s, > 0. A contact that approaches more slowly has no impact.
-        hold_step: s, > 0. Time step with which the sequence continues if a contact stays closed. If it is
-            None, the sequence ends there.
-
-    Raises:
-        TooLargeError: the sequence requires too many impacts, or too many time steps with closed contacts.
-        InvalidFieldError: a number is out of range, or a contact has a curvature and is therefore not a fixed
-            point of the body.
-    """
-    body = body.mass_properties
-    tolerance = check_positive("velocity_tolerance", velocity_tolerance)
-    held = None if hold_step is None else check_positive("hold_step", hold_step)
-    if contacts.body_curvatures is not None or contacts.surface_curvatures is not None:
-        raise InvalidFieldError("contacts.curvatures", "some", "none: a point of the body on a plane")
-    check_at_rest("contacts", contacts, "impact_sequence_of")
-    _ = contacts.impact_restitutions
-    gravity = check_array("gravity_W", gravity_W, (3,))
-    work = SearchWork("strike_window")
-    meetings = NamedMeetings(
-        body,
-        state,
-        contacts,
-        gravity_W=gravity,
-        distance_tolerance=check_not_negative("distance_tolerance", distance_tolerance),
-        velocity_tolerance=tolerance,
-        work=work,
-    )
-    sequence = _StrikeByStrike(
-        body, gravity, meetings, restitution_law, tolerance=tolerance, hold_step=held, work=work
     )
     return sequence.run(state, check_positive("window", window), max_strikes)
 
@@ -226,6 +190,7 @@ class _StrikeByStrike:
         meetings: Meetings,
         law: RestitutionLaw,
         *,
+        frame: SurfaceFrame | None,
         tolerance: float,
         hold_step: float | None,
         work: SearchWork,
@@ -233,7 +198,10 @@ class _StrikeByStrike:
         self.work = work
         self.body, self.gravity_W, self.meetings = body, gravity_W, meetings
         self.law, self.tolerance, self.hold_step = law, tolerance, hold_step
-        self.strikes: list[TimedStrike] = []
+        self.frame = frame  # in which surfaces are at rest
+        self.strikes: list[SequenceStrike] = []  # in world axes
+        self.impacts: list[tuple[int, SpatialImpact]] = []  # the same in the frame, each with its contact
+        self.creates_energy = False
         self.chattering: tuple[tuple[int, ...], float] | None = None  # struck last, if so, and the limit time
         self.limit: float | None = None
         self.staying: tuple[int, ...] = ()
@@ -247,17 +215,32 @@ class _StrikeByStrike:
         if end == SequenceEnd.NOTHING_STRIKES and not self.strikes:
             end = SequenceEnd.WINDOW_ENDED
         stays = end in {SequenceEnd.STAYS, SequenceEnd.CHATTERS}
+        first = self.strikes[0].state_before if self.strikes else self._in_world(state, 0.0)
+        last = self.strikes[-1].state_after if self.strikes else first
+        contacts = self.meetings.contacts
+        before, after = np.zeros((2, len(contacts), 3))
+        for contact, impact in reversed(self.impacts):
+            before[contact] = impact.velocity_before_W
+        for contact, impact in self.impacts:
+            after[contact] = impact.velocity_after_W
         return ImpactSequence(
             restitution_law=self.law,
-            window=window,
-            contacts=self.meetings.contacts,
+            several_contacts_law=SeveralContactsLaw.SEQUENTIAL,
+            converged=end != SequenceEnd.MAX_STRIKES,
+            velocities_before_W=before,
+            velocities_after_W=after,
+            creates_energy=self.creates_energy,
+            order_is_open=self.order_is_open,
             strikes=tuple(self.strikes),
             end=end,
-            state=self.strikes[-1].impact.state if self.strikes else state,
             staying=self.staying if stays else (),
             limit_seconds=self.limit if stays else None,
-            order_is_open=self.order_is_open,
+            contacts=contacts,
+            **in_terms_of_strikes(self.impacts, [self.body], [first], [last], count=len(contacts)),
         )
+
+    def _in_world(self, state: BodyState, seconds: float) -> BodyState:
+        return state if self.frame is None else self.frame.in_world(state, seconds)
 
     def _strike_on(self, state: BodyState, window: float, most: int) -> SequenceEnd:
         now, until = 0.0, window  # s since the beginning
@@ -336,8 +319,10 @@ class _StrikeByStrike:
         """Resolve the strike at the contacts that approach fastest, and return the state after it."""
         contacts, group = landing.contacts, self._next(landing)
         self.chattering = None
-        limits = []
-        for row, impact in zip(group, self._impacts(landing, group, held=False), strict=True):
+        impacts, struck, limits = self._impacts(landing, group, held=False), [], []
+        before, after = (self._in_world(each, now) for each in (landing.state, impacts[0].state))
+        moved = 0.0 if self.frame is None else self.frame.displacement(now)
+        for row, impact in zip(group, impacts, strict=True):
             normal = contacts.normals_W[row]
             approach, rebound = (
                 float(-impact.velocity_before_W @ normal),
@@ -346,18 +331,29 @@ class _StrikeByStrike:
             pressing = -float(self._lifting(landing)[row])
             if self.tolerance < rebound < approach and rebound * rebound <= 2.0 * CHATTER_HEIGHT * pressing:
                 limits.append(now + 2.0 * rebound / pressing / (1.0 - rebound / approach))
+            struck.append(self.meetings.index(landing, row))
             self.strikes.append(
-                TimedStrike(
+                SequenceStrike(
                     seconds=now,
-                    contact=self.meetings.index(landing, row),
-                    p_WC_W=contacts.p_WC_W[row],
-                    state_before=landing.state,
-                    impact=impact,
+                    contact=struck[-1],
+                    outcome=impact.outcome,
+                    p_WC_W=contacts.p_WC_W[row] + moved,
+                    impulse_W=impact.impulse_W,
+                    state_before=before,
+                    state_after=after,
                 )
             )
+        self.impacts += zip(struck, impacts, strict=True)
+        # Where several contacts strike as one, a contact can return energy that another absorbed.
+        changes = [impact.energy_change for impact in impacts]
+        self.creates_energy |= (
+            impacts[0].creates_energy
+            if len(impacts) == 1
+            else bool(created(sum(changes), sum(map(abs, changes))))
+        )
         if len(limits) == len(group):
-            self.chattering = tuple(one.contact for one in self.strikes[-len(group) :]), max(limits)
-        return self.strikes[-1].impact.state
+            self.chattering = tuple(struck), max(limits)
+        return impacts[0].state
 
     def _next(self, landing: Landing) -> list[int]:
         """Return the rows of the contacts that strike next: the fastest, and those that tie with it."""

@@ -18,6 +18,7 @@ best. The energetic law is the only one here, because no interleaving creates en
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
@@ -25,13 +26,13 @@ import numpy as np
 from contact_dynamics.contact.friction import linearised_cone
 from contact_dynamics.impact.law import RestitutionLaw
 from contact_dynamics.impact.several.orders import outcomes_over_orders
-from contact_dynamics.impact.several.result import InterleavedOutcomes
 from contact_dynamics.impact.several.sequential import Touching, check_touching
 from contact_dynamics.numerics.nonnegative_least_squares import nearest_combination
 from contact_dynamics.numerics.vectors import point_jacobians
+from contact_dynamics.records import Record
 from contact_dynamics.rigid_body.body import HasMassProperties, inverse_mass_matrix
 from contact_dynamics.tolerances import LARGEST_GRIP, NOTHING_DUE, VELOCITY_TOLERANCE
-from contact_dynamics.validation import check_at_rest, check_positive, check_whole
+from contact_dynamics.validation import FloatArray, check_at_rest, check_positive, check_whole
 
 if TYPE_CHECKING:
     from typing import Any
@@ -40,7 +41,6 @@ if TYPE_CHECKING:
 
     from contact_dynamics.contact.contact import ContactSet
     from contact_dynamics.rigid_body.body import BodyState
-    from contact_dynamics.validation import FloatArray
 
 MAX_INTERLEAVINGS: Final = 10_000
 """Largest number of interleavings to draw, which bounds memory and time."""
@@ -69,6 +69,36 @@ _LEAST_SHRINKING: Final = 0.2
 
 _PROJECTIONS: Final = 5
 """Projections onto both sets in each step towards the best bound."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class InterleavedOutcomes(Record):
+    """Outcomes of interleaved impacts, and bounds on the outcomes of all interleavings. World axes.
+
+    Attributes:
+        velocities_W: (m, 6), m/s and rad/s, linear then angular velocity after each interleaving that was
+            tried. The first rows belong to orders of the contacts, and the others to random interleavings.
+        lowest_W: (6,), m/s and rad/s, lower bounds on the components after any interleaving.
+        highest_W: (6,), m/s and rad/s, upper bounds on the components after any interleaving.
+        not_converged: Number of interleavings that are omitted because they reached the limit on increments.
+    """
+
+    velocities_W: FloatArray
+    lowest_W: FloatArray
+    highest_W: FloatArray
+    not_converged: int
+
+    @property
+    def spread(self) -> FloatArray:
+        """Return the largest difference between the outcomes found, (6,), m/s and rad/s."""
+        spread: FloatArray = np.ptp(self.velocities_W, axis=0)
+        return spread
+
+    @property
+    def gap(self) -> FloatArray:
+        """Return the amount by which the bounds are wider than the spread, (6,), m/s and rad/s."""
+        gap: FloatArray = self.highest_W - self.lowest_W - self.spread
+        return gap
 
 
 class _Set(NamedTuple):

@@ -18,6 +18,7 @@ Moments at the contacts are left out. So are resting contacts that their own sli
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass, replace
 from itertools import islice, permutations
 from typing import TYPE_CHECKING, Final
 
@@ -26,28 +27,22 @@ import numpy as np
 from contact_dynamics.contact.velocities import warn_if_far
 from contact_dynamics.errors import TooLargeError
 from contact_dynamics.impact.law import RestitutionLaw
-from contact_dynamics.impact.several.result import (
-    OrderedOutcomes,
-    SeveralContactsLaw,
-    SeveralImpact,
-    SeveralVerdict,
-    of_only_body,
-)
+from contact_dynamics.impact.several.result import ResolvedImpact, SeveralContactsLaw
 from contact_dynamics.impact.several.sequential import (
     Touching,
     bodies_impact,
     check_touching,
     strike_in_turn,
 )
+from contact_dynamics.records import Record
 from contact_dynamics.tolerances import SAME_IMPULSES, VELOCITY_TOLERANCE
-from contact_dynamics.validation import check_positive, check_whole
+from contact_dynamics.validation import FloatArray, check_positive, check_whole
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from contact_dynamics.contact.contact import ContactSet
     from contact_dynamics.rigid_body.body import BodyState, HasMassProperties, MassProperties
-    from contact_dynamics.validation import FloatArray
 
 MAX_ORDERS: Final = 120
 """Number of orders that `outcomes_over_orders` tries. These are all orders of up to five contacts."""
@@ -68,7 +63,7 @@ def several_impact(
     several_contacts_law: SeveralContactsLaw = SeveralContactsLaw.SEQUENTIAL,
     restitution_law: RestitutionLaw = RestitutionLaw.POISSON,
     velocity_tolerance: float = VELOCITY_TOLERANCE,
-) -> SeveralImpact:
+) -> ResolvedImpact:
     """Return the outcome of an impact of ``body`` at all ``contacts``, under the chosen laws.
 
     For a landing on an edge or face, pass the body, ``landing.state`` and ``landing.contacts``.
@@ -87,17 +82,40 @@ def several_impact(
             combined.
     """
     warn_if_far(body, state, contacts.p_WC_W)
-    return of_only_body(
-        bodies_impact(
-            [body],
-            [state],
-            contacts,
-            [(0, None)] * len(contacts),
-            several_contacts_law=several_contacts_law,
-            restitution_law=restitution_law,
-            velocity_tolerance=velocity_tolerance,
-        )
+    return bodies_impact(
+        [body],
+        [state],
+        contacts,
+        [(0, None)] * len(contacts),
+        several_contacts_law=several_contacts_law,
+        restitution_law=restitution_law,
+        velocity_tolerance=velocity_tolerance,
     )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class OrderedOutcomes(Record):
+    """Outcomes of a law for several contacts over orders of the contacts. Row i belongs to order i.
+
+    Attributes:
+        orders: Contacts that struck in each sequence, or the order that led to a simultaneous solution. Empty
+            for the law's own solution if it has no order, because contacts strike at once.
+        velocities_W: (m, 6), m/s and rad/s, linear then angular velocity after the impact, world axes.
+        complete: Whether every order of the contacts was tried.
+        not_converged: Number of orders that are omitted because they reached the limit on strikes or
+            iterations.
+    """
+
+    orders: tuple[tuple[int, ...], ...]
+    velocities_W: FloatArray
+    complete: bool
+    not_converged: int
+
+    @property
+    def spread(self) -> FloatArray:
+        """Return the largest difference between outcomes in each component, (6,), m/s and rad/s."""
+        spread: FloatArray = np.ptp(self.velocities_W, axis=0)
+        return spread
 
 
 def outcomes_over_orders(
@@ -138,9 +156,8 @@ def outcomes_over_orders(
     check_touching(touching, [state])
     max_orders = check_whole("max_orders", max_orders, 1)
     own = strike_in_turn(touching, [state])
-    is_own_listed = own.verdict == SeveralVerdict.RESOLVED
     found: dict[tuple[int, ...], FloatArray] = {}
-    if own.ties and is_own_listed:
+    if own.ties and own.converged:
         found[()] = _velocities(own.states[0])
     struck, lost = len(own.strikes), 0
     for priority in islice(permutations(range(n)), max_orders):
@@ -149,17 +166,28 @@ def outcomes_over_orders(
         if struck > MAX_STRIKES_OVER_ORDERS:
             count = f"{n} contacts, over whose orders there are more strikes"
             raise TooLargeError("contacts", count, f"at most {MAX_STRIKES_OVER_ORDERS} over all orders")
-        if turn.verdict == SeveralVerdict.RESOLVED:
+        if turn.converged:
             found[turn.order] = _velocities(turn.states[0])
         else:
             lost += 1
-    if not own.ties and is_own_listed:
+    if not own.ties and own.converged:
         found[own.order] = _velocities(own.states[0])
     return OrderedOutcomes(
         orders=tuple(found),
         velocities_W=np.array(list(found.values())).reshape(-1, 6),
         complete=math.factorial(n) <= max_orders,
         not_converged=lost,
+    )
+
+
+def with_orders(impact: ResolvedImpact, outcomes: OrderedOutcomes) -> ResolvedImpact:
+    """Return an impact with the outcomes over the admissible orders of its contacts."""
+    return replace(
+        impact,
+        orders=outcomes.orders,
+        order_velocities_W=outcomes.velocities_W,
+        orders_complete=outcomes.complete,
+        orders_not_converged=outcomes.not_converged,
     )
 
 

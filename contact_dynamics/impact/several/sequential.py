@@ -20,8 +20,13 @@ import numpy as np
 
 from contact_dynamics.contact.pairs import check_pairs
 from contact_dynamics.errors import NORMAL_HINT, InvalidFieldError, SeparatingContactError
+from contact_dynamics.impact.energy import created
 from contact_dynamics.impact.law import RestitutionLaw
-from contact_dynamics.impact.several.result import BodiesImpact, SeveralContactsLaw, SeveralVerdict
+from contact_dynamics.impact.several.result import (
+    ResolvedImpact,
+    SeveralContactsLaw,
+    in_terms_of_strikes,
+)
 from contact_dynamics.impact.several.simultaneous import simultaneous_impulses
 from contact_dynamics.impact.several.tied import (
     materials_of,
@@ -56,7 +61,7 @@ def bodies_impact(
     several_contacts_law: SeveralContactsLaw = SeveralContactsLaw.SEQUENTIAL,
     restitution_law: RestitutionLaw = RestitutionLaw.POISSON,
     velocity_tolerance: float = VELOCITY_TOLERANCE,
-) -> BodiesImpact:
+) -> ResolvedImpact:
     """Return the outcome of an impact of several bodies at all ``contacts``, under the chosen laws.
 
     Args:
@@ -79,29 +84,27 @@ def bodies_impact(
     check_pairs(len(masses), states, contacts, pairs)
     touching = Touching(masses, contacts, pairs, restitution_law, tolerance)
     before = check_touching(touching, states)
-    strikes: tuple[tuple[int, SpatialImpact], ...] = ()
-    order_is_open = False
     if several_contacts_law == SeveralContactsLaw.SEQUENTIAL:
-        turn = strike_in_turn(touching, states)
-        strikes, after, verdict, order_is_open = turn.strikes, turn.states, turn.verdict, turn.order_is_open
-        impulses = np.zeros((len(contacts), 3))
-        for contact, impact in strikes:
-            impulses[contact] += impact.impulse_W
+        strikes, after, converged, order_is_open, _ = strike_in_turn(touching, states)
+        found = in_terms_of_strikes(strikes, masses, states, after, count=len(contacts))
     else:
         response = response_of(masses, states, contacts.p_WC_W, pairs, contacts.surface_velocities_W)
         impulses, converged = simultaneous_impulses(contacts, restitution_law, response, tolerance=tolerance)
-        after = pushed(response, states, impulses)
-        verdict = SeveralVerdict.RESOLVED if converged else SeveralVerdict.NOT_CONVERGED
-    return BodiesImpact(
+        after, order_is_open = pushed(response, states, impulses), False
+        found = in_terms_of_strikes((), masses, states, after, count=len(contacts))
+        found["impulses_W"] = impulses
+    surfaces = contacts.surface_velocities_W
+    work = 0.0 if surfaces is None else float(np.sum(found["impulses_W"] * surfaces))
+    first, last = found["kinetic_energy_before"], found["kinetic_energy_after"]
+    return ResolvedImpact(
         several_contacts_law=several_contacts_law,
         restitution_law=restitution_law,
-        verdict=verdict,
-        states=tuple(after),
-        impulses_W=impulses,
+        converged=converged,
         velocities_before_W=before,
         velocities_after_W=_relative_velocities(touching, after),
-        strikes=strikes,
+        creates_energy=created(last - first - work, first + abs(work)),
         order_is_open=order_is_open,
+        **found,
     )
 
 
@@ -149,14 +152,14 @@ class InTurn(NamedTuple):
         strikes: Each contact struck, in order, with its impact. Tied contacts follow each other, each with
             its share and the states after all of them.
         states: The states afterwards.
-        verdict: Whether no contact approaches then.
+        converged: Whether no contact approaches then.
         order_is_open: Whether several contacts approached at one time, so that another could have come first.
         ties: Whether tied contacts struck as one.
     """
 
     strikes: tuple[tuple[int, SpatialImpact], ...]
     states: list[BodyState]
-    verdict: SeveralVerdict
+    converged: bool
     order_is_open: bool
     ties: bool
 
@@ -190,13 +193,13 @@ def strike_in_turn(
         is_open = is_open or int((approach < -touching.tolerance).sum()) > 1
         group = _next_contacts(approach, touching, priority, tie)
         if not group:
-            return InTurn(tuple(strikes), now, SeveralVerdict.RESOLVED, is_open, ties)
+            return InTurn(tuple(strikes), now, converged=True, order_is_open=is_open, ties=ties)
         if len(group) == 1:
             strikes.append((group[0], _strike(touching, now, group[0])))
         else:
             strikes += _tied(touching, now, group)
             ties = True
-    return InTurn(tuple(strikes), now, SeveralVerdict.NOT_CONVERGED, is_open, ties)
+    return InTurn(tuple(strikes), now, converged=False, order_is_open=is_open, ties=ties)
 
 
 def _tied(touching: Touching, states: list[BodyState], group: list[int]) -> list[tuple[int, SpatialImpact]]:

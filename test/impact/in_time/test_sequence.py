@@ -20,7 +20,6 @@ from contact_dynamics.impact import (
     RestitutionLaw,
     SequenceEnd,
     impact_sequence,
-    impact_sequence_of,
     several_impact,
 )
 from contact_dynamics.landing.earliest import next_landing
@@ -70,7 +69,7 @@ def test_a_bouncing_point_comes_to_rest_in_finite_time(e: float, law: Restitutio
     # The time of a strike at speed u is found to rounding of the height, 1e-17 m, over u.
     assert np.diff(times) == pytest.approx(flights, abs=1e-12)
     assert sequence.limit_seconds == pytest.approx(v / G + 2.0 * e * v / (G * (1.0 - e)), abs=1e-12)
-    assert [strike.impact.state.v_WB_W[0] for strike in sequence.strikes] == pytest.approx([0.2] * len(times))
+    assert [strike.state_after.v_WB_W[0] for strike in sequence.strikes] == pytest.approx([0.2] * len(times))
 
 
 def test_a_rebound_without_restitution_stays_at_once() -> None:
@@ -94,16 +93,8 @@ def test_beyond_the_window_nothing_strikes() -> None:
 
 def test_a_drop_that_takes_longer_than_the_window_says_so() -> None:
     state, world = dropped_pin(0.5), world_of(PIN, floor(e=0.5))
-    found = impact_sequence(PIN, state, world)
-    assert found.end == SequenceEnd.WINDOW_ENDED
-    assert found.message.startswith("no impact within the window of 0.05 s after the state; a longer window")
+    assert impact_sequence(PIN, state, world).end == SequenceEnd.WINDOW_ENDED
     assert len(impact_sequence(PIN, state, world, window=1.0).strikes) > 0
-    elastic = impact_sequence(PIN, state, world_of(PIN, floor(e=1.0)), window=0.4)
-    assert elastic.message.startswith("no further impact within the window of 0.4 s after the last one")
-    bounded = impact_sequence(PIN, state, world_of(PIN, floor(e=1.0)), window=1.0, max_strikes=2)
-    assert bounded.message.startswith("the limit of 2 impacts was reached")
-    rests = impact_sequence(PIN, dropped_pin(0.002), world)
-    assert rests.message.startswith("the rebounds vanish, and then the contacts 0 stay")
 
 
 def test_the_number_of_strikes_is_bounded() -> None:
@@ -146,7 +137,7 @@ def test_a_tilted_rod_strikes_with_one_end_and_then_with_the_other(e: float) -> 
     lever = math.cos(angle)
     approach = v_z - G * second + w_y * lever  # of the end at -lever
     impulse = -(1.0 + e) * approach / (1.0 / mass + lever**2 / inertia)
-    after = sequence.strikes[1].impact.state
+    after = sequence.strikes[1].state_after
     assert after.v_WB_W == pytest.approx([0.0, 0.0, v_z - G * second + impulse / mass], abs=1e-12)
     assert after.w_WB_W == pytest.approx([0.0, w_y + lever * impulse / inertia, 0.0], abs=1e-12)
 
@@ -161,7 +152,7 @@ def test_strikes_that_come_together_are_those_of_the_sequential_law() -> None:
     )
     level = BodyState(p_WB_W=np.zeros(3), q_WB=IDENTITY, v_WB_W=[0.0, 0.0, -1.0])
     at_once = several_impact(ROD.mass_properties, level, contacts)
-    named = impact_sequence_of(ROD.mass_properties, level, contacts, window=1e-6)
+    named = impact_sequence(ROD, level, World(), contacts=contacts, window=1e-6)
     found = impact_sequence(ROD, level, world_of(ROD, floor(e=0.5)), window=1e-6)
     for sequence in (named, found):
         assert sequence.order == at_once.order
@@ -184,12 +175,12 @@ def test_named_points_strike_their_own_planes_alone() -> None:
     state = BodyState(
         p_WB_W=np.zeros(3), q_WB=[0.0, math.sin(tilt / 2), 0.0, math.cos(tilt / 2)], v_WB_W=[0.0, 0.0, -0.3]
     )
-    sequence = impact_sequence_of(ROD.mass_properties, state, contacts, window=0.3)
+    sequence = impact_sequence(ROD, state, World(), contacts=contacts, window=0.3)
     assert len(sequence.strikes) > 2
     assert sequence.contacts is contacts
     for strike in sequence.strikes:
         assert strike.p_WC_W[2] == pytest.approx([-s, s][strike.contact], abs=1.1e-6)  # within it, it touches
-        assert strike.impact.velocity_before_W[2] < 0.0
+        assert strike.state_before.velocity_of_point(strike.p_WC_W)[2] < 0.0
 
 
 def random_toss(seed: int) -> tuple[Body, BodyState]:
@@ -237,8 +228,8 @@ def assert_agrees(
     assert len(expected) > 1
     for ours, theirs in zip(sequence.strikes, expected, strict=False):
         assert ours.seconds == pytest.approx(theirs.time, abs=seconds)
-        assert ours.impact.state.v_WB_W == pytest.approx(theirs.v, abs=speed)
-        assert ours.impact.state.w_WB_W == pytest.approx(theirs.w, abs=speed / 0.02)
+        assert ours.state_after.v_WB_W == pytest.approx(theirs.v, abs=speed)
+        assert ours.state_after.w_WB_W == pytest.approx(theirs.w, abs=speed / 0.02)
 
 
 SEEDS_AND_RESTITUTIONS = [
@@ -287,17 +278,20 @@ def test_energy_never_grows_and_nothing_sinks_in(seed: int, e: float, mu: float,
         assert strike.seconds >= before
         before = strike.seconds
         assert strike.p_WC_W[2] == pytest.approx(0.0, abs=2e-6)  # within the distance tolerance
-        assert strike.impact.velocity_before_W[2] < 0.0
-        assert strike.impact.velocity_after_W[2] >= -1e-14  # rounding, at e = 0
+        assert strike.state_before.velocity_of_point(strike.p_WC_W)[2] < 0.0
+        assert strike.state_after.velocity_of_point(strike.p_WC_W)[2] >= -1e-14  # rounding, at e = 0
         assert strike.state_before.stamp_ns == pytest.approx(1e9 * strike.seconds, abs=len(sequence.strikes))
         heights = strike.state_before.p_WB_W[2] + (body.vertices_B @ strike.state_before.R_WB.T)[:, 2]
         assert heights.min() >= -2e-9 * len(sequence.strikes) - 1e-12
-        energies += [energy(body, strike.state_before), energy(body, strike.impact.state)]
+        energies += [energy(body, strike.state_before), energy(body, strike.state_after)]
     assert len(sequence.strikes) > 0
     size = max(energies) - min(0.0, *energies)
     assert np.diff(energies).max() <= 1e-12 * size  # flight keeps it, strikes take of it
-    assert sequence.energy_change == pytest.approx(
-        sum(energies[i + 1] - energies[i] for i in range(1, len(energies), 2)), abs=1e-11 * size
+    assert not sequence.creates_energy
+    taken = sequence.kinetic_energy_before - sequence.kinetic_energy_after
+    fallen = sequence.strikes[0].state_before.p_WB_W[2] - sequence.state.p_WB_W[2]
+    assert energies[1] - energies[-1] == pytest.approx(
+        taken + body.mass_properties.mass * G * fallen, abs=1e-11 * size
     )
     if sequence.limit_seconds is not None:
         assert sequence.limit_seconds >= sequence.seconds
@@ -316,7 +310,7 @@ def test_a_corner_that_turns_up_leaves_even_without_restitution() -> None:
     assert sequence.order[:2] == (0, 1)
     # Frictionless strike below the centre: only the fall is taken. The next corner comes a quarter turn later
     # at most, while the centre falls freely.
-    assert sequence.strikes[0].impact.state.v_WB_W == pytest.approx([0.0, 0.0, 0.0], abs=1e-15)
+    assert sequence.strikes[0].state_after.v_WB_W == pytest.approx([0.0, 0.0, 0.0], abs=1e-15)
 
     def next_corner(t: float) -> float:
         return 0.1 - 0.5 * G * t * t - 0.1 * math.sin(30.0 * t)
@@ -350,11 +344,6 @@ def test_refusals() -> None:
         impact_sequence(PIN, state, world, velocity_tolerance=0.0)
     with pytest.raises(InvalidFieldError, match="distance_tolerance"):
         impact_sequence(PIN, state, world, distance_tolerance=-1.0)
-    contacts = ContactSet(
-        p_WC_W=np.zeros((1, 3)), normals_W=UP[None], frictions=np.zeros(1), restitutions=np.zeros(1)
-    )
-    with pytest.raises(InvalidFieldError, match="gravity"):
-        impact_sequence_of(PIN.mass_properties, state, contacts, gravity_W=[math.nan, 0.0, 0.0])
     assert STANDARD_GRAVITY_W[2] == -G
 
 
@@ -425,7 +414,7 @@ def test_holding_takes_energy_and_never_gives(seed: int, e: float, mu: float) ->
     )
     energies = [energy(body, state)]
     for strike in sequence.strikes:
-        energies += [energy(body, strike.state_before), energy(body, strike.impact.state)]
+        energies += [energy(body, strike.state_before), energy(body, strike.state_after)]
         # It sinks by what a corner at 3 m/s goes in one step, and by half a step's fall in each other.
         heights = strike.state_before.p_WB_W[2] + (body.vertices_B @ strike.state_before.R_WB.T)[:, 2]
         assert heights.min() > -4.0 * step

@@ -17,9 +17,8 @@ from contact_dynamics.contact_modes import (
     contact_modes,
 )
 from contact_dynamics.errors import InvalidFieldError, TooLargeError
-from contact_dynamics.impact import SeveralImpact, SeveralVerdict, planar_impact
+from contact_dynamics.impact import ResolvedImpact, planar_impact
 from contact_dynamics.impact.several.jamming import jamming_impact
-from contact_dynamics.impact.several.settling import settling_impact
 from contact_dynamics.numerics.lemke import solve_complementarity
 from contact_dynamics.plane.lifting import planar_in_space
 from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
@@ -34,7 +33,7 @@ SHORT = 1e-6  # relative: what the wrench does in the short time that it acts fo
 SOLVED = 1e-9  # relative: linear algebra of a few dozen unknowns, of condition up to 1e5
 
 
-def jam(case: FloatCase, *, in_space: bool = False) -> tuple[SeveralImpact, MassProperties, BodyState]:
+def jam(case: FloatCase, *, in_space: bool = False) -> tuple[ResolvedImpact, MassProperties, BodyState]:
     body, velocity, contacts, wrench = case
     contacts = [replace(one, restitution=one.restitution or 0.0) for one in contacts]
     solid, state, touching = planar_in_space(body, velocity, contacts, axes_W=AXES)
@@ -65,7 +64,7 @@ def test_one_contact_that_sticks_ends_where_rouths_path_does(*, restitution: flo
     impact, _, _ = jam((body, velocity, [tip], PlanarWrench(f=(0.0, -9.81))), in_space=in_space)
     routh = planar_impact(body, velocity, tip)
     assert routh.jams
-    assert impact.verdict == SeveralVerdict.RESOLVED
+    assert impact.converged
     near = SOLVED if restitution == 0.0 else SHORT
     np.testing.assert_allclose(impact.impulses_W[0], [*routh.impulse, 0.0], atol=near)
     np.testing.assert_allclose(impact.state.v_WB_W, [*routh.velocity.v, 0.0], atol=near)
@@ -119,7 +118,7 @@ def test_laws_of_impact_on_drawn_sets(*, in_space: bool) -> None:
     cases = inconsistent_cases(range(600))
     for case in cases:
         impact, body, before = jam(case, in_space=in_space)
-        if impact.verdict != SeveralVerdict.RESOLVED:
+        if not impact.converged:
             continue
         touching = planar_in_space(*case[:3], axes_W=AXES)[2]
         impulses, size = impact.impulses_W, float(np.abs(impact.impulses_W).max())
@@ -185,14 +184,14 @@ def test_what_jams_in_space_is_settled() -> None:
                 SpatialContactProblem(body=body, state=now, contacts=touching, force_W=force)
             ).verdict
 
-        impact = settling_impact(
+        impact = jamming_impact(
             body,
             state,
             touching,
             force_W=force,
             is_settled=lambda now: verdict(now) != ModeVerdict.INCONSISTENT,
         )
-        assert impact.verdict == SeveralVerdict.RESOLVED
+        assert impact.converged
         assert verdict(impact.state) in {ModeVerdict.UNIQUE, ModeVerdict.INDETERMINATE}
         assert kinetic_energy(body, impact.state) < kinetic_energy(body, state)
         jump = body.mass * (impact.state.v_WB_W - state.v_WB_W)
@@ -204,8 +203,8 @@ def test_what_never_settles_says_so() -> None:
     body, state, touching = planar_in_space(*slot(2.0)[:3], axes_W=AXES)
     how = {"force_W": (3.0, 3.0, 0.0), "torque_W": (0.0, 0.0, 1.0), "plane_normal_W": OUT}
     asked = []
-    impact = settling_impact(body, state, touching, is_settled=lambda now: bool(asked.append(now)), **how)
-    assert impact.verdict == SeveralVerdict.NOT_CONVERGED
+    impact = jamming_impact(body, state, touching, is_settled=lambda now: bool(asked.append(now)), **how)
+    assert not impact.converged
     assert len(asked) == 1  # since the second impact changes nothing, further ones would not either
     once = jamming_impact(body, state, touching, **how)
     np.testing.assert_allclose(impact.state.v_WB_W, once.state.v_WB_W, atol=1e-6)

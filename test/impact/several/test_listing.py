@@ -11,15 +11,14 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from contact_dynamics import BodyState, ContactSet, MassProperties
+from contact_dynamics import Body, BodyState, ContactSet, MassProperties, World
 from contact_dynamics.impact import (
     RestitutionLaw,
     SeveralContactsLaw,
     bodies_impact,
-    impact_sequence_of,
+    impact_sequence,
     jamming_impact,
     outcomes_over_orders,
-    settling_impact,
     several_impact,
 )
 
@@ -82,9 +81,11 @@ WAYS: dict[str, Callable[[MassProperties, BodyState, ContactSet], np.ndarray]] =
     "all orders": lambda b, s, c: rows(outcomes_over_orders(b, s, c).velocities_W),
     "jamming": lambda b, s, c: velocity(jamming_impact(**slid(b, s, c)).state),  # type: ignore[arg-type]
     "settling": lambda b, s, c: velocity(
-        settling_impact(**slid(b, s, c), is_settled=lambda _: True).state  # type: ignore[arg-type]
+        jamming_impact(**slid(b, s, c), is_settled=lambda _: True).state  # type: ignore[arg-type]
     ),
-    "in time": lambda b, s, c: velocity(impact_sequence_of(b, s, c).state),
+    "in time": lambda b, s, c: velocity(
+        impact_sequence(Body(name="box", mass_properties=b), s, World(), contacts=c).state
+    ),
 }
 
 

@@ -13,11 +13,12 @@ from contact_dynamics.contact.contact import ContactSet
 from contact_dynamics.impact import (
     RestitutionLaw,
     bodies_impact,
-    impact_sequence_of,
+    impact_sequence,
     outcomes_over_orders,
     several_impact,
 )
 from contact_dynamics.rigid_body.body import BodyState, MassProperties, kinetic_energy
+from contact_dynamics.world import Body, World
 from sweeps import seeds
 
 LEVEL = [0.0, 0.0, 0.0, 1.0]
@@ -141,7 +142,9 @@ def test_a_coin_dropped_flat_bounces_level_and_its_order_is_open(law: Restitutio
     assert velocities(answer.state) == pytest.approx([0.0, 0.0, 0.5, 0.0, 0.0, 0.0], abs=1e-12)
     assert answer.impulses_W[:, 2] == pytest.approx(np.full(8, 1.5 * MASS / 8), rel=1e-12)
     assert answer.order_is_open
-    in_time = impact_sequence_of(*flat_coin(), restitution_law=law, window=0.01)
+    coin, state, contacts = flat_coin()
+    body, world = Body(name="coin", mass_properties=coin), World()
+    in_time = impact_sequence(body, state, world, contacts=contacts, restitution_law=law, window=0.01)
     assert velocities(in_time.state) == pytest.approx([0.0, 0.0, 0.5, 0.0, 0.0, 0.0], abs=1e-12)
     assert in_time.order_is_open
     assert not in_time.creates_energy
