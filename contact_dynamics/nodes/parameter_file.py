@@ -16,8 +16,8 @@ from itertools import pairwise
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from contact_dynamics.nodes.links import with_links_read
+from contact_dynamics.nodes.monitor_parameters import PARAMETERS_OF_OTHERS
 from contact_dynamics.nodes.parameter_reader import NODE_NAME, ConfigurationError, ParameterSource
-from contact_dynamics.nodes.visualizer_parameters import VISUALIZER_PARAMETERS
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
@@ -231,8 +231,8 @@ class ParameterFile(ParameterSource):
                 values.update(_flat(section.values))
         for text in topics:
             values.update(_topics(text))
-        # One file may configure both nodes.
-        super().__init__(with_links_read(values), origin=str(path), also_known=VISUALIZER_PARAMETERS)
+        # One file may configure all nodes.
+        super().__init__(with_links_read(values), origin=str(path), also_known=PARAMETERS_OF_OTHERS)
 
 
 def _flat(given: dict[str, Any], prefix: str = "") -> Iterator[tuple[str, Any]]:

@@ -288,13 +288,14 @@ _FIXED: Final = {
 """The fields of the configuration that stay, with the parameters that they come from."""
 
 
-def check_change(before: ServerParameters, after: ServerParameters) -> None:
-    """Refuse a change of what stays as long as the server is configured.
+def check_change(before: ServerParameters, after: ServerParameters, others: Iterable[str] = ()) -> None:
+    """Refuse a change of what stays as long as a node is configured, with the names of others that differ.
 
     Raises:
         ConfigurationError: something of it differs. The message names the parameters.
     """
     changed = [names for field, names in _FIXED.items() if getattr(before, field) != getattr(after, field)]
+    changed += others
     if before.worker_limits.count != after.worker_limits.count:
         changed.append("workers")
     if before.worker_limits.memory != after.worker_limits.memory:
@@ -306,7 +307,7 @@ def check_change(before: ServerParameters, after: ServerParameters) -> None:
     if changed:
         message = (
             f"{', '.join(changed)} must be changed after the lifecycle transition 'cleanup' and before "
-            "'configure', got a change while the server is configured"
+            "'configure', got a change while the node is configured"
         )
         raise ConfigurationError(message)
 

@@ -12,8 +12,8 @@ import platform
 from importlib.metadata import version
 from typing import TYPE_CHECKING, Any, Final, Protocol
 
+from contact_dynamics.nodes.monitor_parameters import PARAMETERS_OF_OTHERS
 from contact_dynamics.nodes.parameter_reader import ConfigurationError, ParameterSource
-from contact_dynamics.nodes.visualizer_parameters import VISUALIZER_PARAMETERS
 from contact_dynamics.recording.cdr import cut_to_its_end
 from contact_dynamics.recording.definitions import find_definition
 from contact_dynamics.version import version_of_this_package
@@ -72,9 +72,7 @@ class LoggedParameters(ParameterSource):
             message = f"the log's record of its run cannot be read: {error}"
             raise ConfigurationError(message) from None
         # Another version of the server may have had other parameters.
-        super().__init__(
-            {**self._logged, **self._instead}, also_known=[*self._logged, *VISUALIZER_PARAMETERS]
-        )
+        super().__init__({**self._logged, **self._instead}, also_known=[*self._logged, *PARAMETERS_OF_OTHERS])
 
     def changed(self, values: Mapping[str, Any]) -> LoggedParameters:
         """Return the parameters after a change, which names those that changed; None is one that is gone."""

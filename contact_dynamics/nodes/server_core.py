@@ -37,15 +37,15 @@ class ServerCore:
             known, as before a simulation tells the time.
     """
 
-    def __init__(self, parameters: ServerParameters) -> None:
-        """Begin without states.
+    def __init__(self, parameters: ServerParameters, states: StateStore | None = None) -> None:
+        """Begin without states, which ``states`` keeps if it is given.
 
         Raises:
             ConfigurationError: a source of states is not there, or is not allowed (`state_sources`).
         """
         self.parameters = parameters
         self.asked_ns = 0
-        self.states = StateStore(history=0.0, timeout=0.0)
+        self.states = states or StateStore(history=0.0, timeout=0.0)
         self.context = Context(
             world=parameters.world,
             states=self.states,

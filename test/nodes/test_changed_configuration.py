@@ -139,7 +139,7 @@ def test_a_configuration_is_checked_as_a_whole_and_refused_as_a_whole(configured
     assert refused == "body.cup.mass is required (Mass, kg.)"
     refused = configured.set(body__brick__odometry_topic="/other", log=False)
     assert says(
-        refused, "log, the topics of body.brick must be ..., got a change while the server is configured"
+        refused, "log, the topics of body.brick must be ..., got a change while the node is configured"
     )
     assert configured.client.ask(slide()).contacts.frictions[0] == 0.3
     assert_reproduced(configured, questions=1)

@@ -1,0 +1,219 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A node with the server's parameters, managed as those of Nav2 are: the server, and the monitor.
+
+`autostart` configures and activates it at its start. Otherwise it waits for a lifecycle manager. Configured,
+it receives states and writes the log; active, it does what it is for.
+"""
+
+from __future__ import annotations
+
+import warnings
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any
+
+from rcl_interfaces.msg import SetParametersResult
+from rclpy.lifecycle import LifecycleNode, TransitionCallbackReturn
+from rclpy.parameter import Parameter
+
+from contact_dynamics.errors import ConcaveShapeWarning, ContactDynamicsError
+from contact_dynamics.nodes.inbox import InboxNode
+from contact_dynamics.nodes.monitor_parameters import PARAMETERS_OF_OTHERS
+from contact_dynamics.nodes.node_parameters import NodeParameters, refuse_lost_sections
+from contact_dynamics.nodes.parameter_reader import ParameterSource, is_of_ros
+from contact_dynamics.nodes.parameters import check_change, read_server_parameters
+from contact_dynamics.nodes.run_record import event_of_change, plain, run_record
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from rclpy.lifecycle import LifecycleState
+
+    from contact_dynamics.nodes.parameter_reader import DeclaredParameter
+    from contact_dynamics.nodes.parameters import ServerParameters
+    from contact_dynamics.nodes.receiving import Receiving
+
+
+class ManagedNode(InboxNode, LifecycleNode):
+    """A node that receives states."""
+
+    def __init__(
+        self,
+        name: str,
+        *,
+        own: Mapping[str, DeclaredParameter] = MappingProxyType({}),
+        ros_arguments: Sequence[str] = (),
+        **node_options: Any,
+    ) -> None:
+        """Read the parameters, and configure and activate the node where ``autostart`` says so.
+
+        Args:
+            name: its name.
+            own: its parameters besides the server's.
+            ros_arguments: ROS's arguments, as `rclpy.init` was given them.
+            node_options: options of `rclpy.node.Node`.
+
+        Raises:
+            ConfigurationError: a parameter is missing, unknown or not allowed.
+        """
+        self._work: Receiving | None = None
+        self._own = own
+        self._problem: ContactDynamicsError | OSError | None = None
+        self._configuration: ServerParameters | None = None
+        self._says_ready = False  # once it is
+        super().__init__(name, **node_options)
+        refuse_lost_sections(self, ros_arguments)
+        source = NodeParameters(
+            self,
+            ros_arguments=ros_arguments,
+            also_known=PARAMETERS_OF_OTHERS,  # one file may configure all nodes
+            read_only=False,
+        )
+        self._source = source
+        self._configuration = self._read(source)
+        if not self._configuration.autostart:
+            self.get_logger().info("waits to be configured and activated, since autostart is false")
+            return
+        self.trigger_configure()
+        if self._problem is not None:
+            raise self._problem
+        self.trigger_activate()
+
+    def _read(self, source: ParameterSource) -> ServerParameters:
+        """Read every parameter, and tell in the log of bodies and obstacles that are not convex."""
+        with warnings.catch_warnings(record=True) as warned:
+            warnings.simplefilter("always", ConcaveShapeWarning)
+            for declared in self._own.values():
+                source.value(*declared)
+            parameters = read_server_parameters(source)
+        for each in warned:
+            self.get_logger().warning(str(each.message))
+        return parameters
+
+    def make_work(self, configuration: ServerParameters, run: Mapping[str, str]) -> Receiving:
+        """Return what the node has while it is configured, of which the log says that the run is made so.
+
+        Raises:
+            ContactDynamicsError: it cannot be made with these parameters.
+            OSError: a file cannot be read or written.
+        """
+        raise NotImplementedError
+
+    def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:  # noqa: ARG002  it is known
+        """Receive states, begin the log, and make what the node is for."""
+        self._problem = None
+        configuration = self._configuration
+        if configuration is None:  # nobody can ask for it before the parameters are read
+            return TransitionCallbackReturn.FAILURE
+        try:
+            self._work = self.make_work(configuration, self._run(self._values()))
+        except (ContactDynamicsError, OSError) as error:
+            self._problem = error
+            self.get_logger().error(f"cannot be configured: {error}")
+            self.unsubscribe()
+            return TransitionCallbackReturn.FAILURE
+        return TransitionCallbackReturn.SUCCESS
+
+    def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Do what the node is for from now on."""
+        if self._work is not None:
+            self._work.activate(is_active=True)
+            self._says_ready = True
+            if not self._work.is_ready:
+                self.get_logger().info(self._work.preparations)
+        returned: TransitionCallbackReturn = super().on_activate(state)
+        return returned
+
+    def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Do no more than receive and log from now on."""
+        if self._work is not None:
+            self._work.activate(is_active=False)
+            self._says_ready = False
+        returned: TransitionCallbackReturn = super().on_deactivate(state)
+        return returned
+
+    def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:  # noqa: ARG002  it is known
+        """Finish the log, and take back what configuring made."""
+        if self._work is not None:
+            self.get_logger().info(self._work.close())
+            self._work.remove()
+            self._work = None
+        return TransitionCallbackReturn.SUCCESS
+
+    def on_shutdown(self, state: LifecycleState) -> TransitionCallbackReturn:
+        """Do as when it is cleaned up; a signal ends the process."""
+        return self.on_cleanup(state)
+
+    def set_parameters_atomically(self, parameter_list: list[Parameter]) -> SetParametersResult:
+        """Set parameters, if the whole configuration is allowed with them; otherwise say why it is not.
+
+        Parameters of bodies and surfaces that are listed from now on come with them. Those of others go.
+        """
+        if self._configuration is None or all(is_of_ros(each.name) for each in parameter_list):
+            return super().set_parameters_atomically(parameter_list)
+        before = self._values()
+        proposed = {**before, **{each.name: plain(each.value) for each in parameter_list}}
+        given = ParameterSource(proposed, also_known=before, resolve=self._source.resolved_topic)
+        try:
+            configuration = self._read(given)
+            if self._work is not None:
+                others = [name for name in self._own if proposed[name] != before[name]]
+                check_change(self._configuration, configuration, others)
+        except ContactDynamicsError as error:
+            return SetParametersResult(successful=False, reason=str(error))
+        new = [name for name in given.read if name not in before]
+        for name in new:
+            self._source.declare(given.read[name])
+        result = super().set_parameters_atomically(parameter_list)
+        unread = [name for name in self._values() if name not in given.read and not is_of_ros(name)]
+        for name in unread if result.successful else new:
+            self.undeclare_parameter(name)
+        if result.successful:
+            self._change(configuration, before)
+        return result
+
+    def _change(self, configuration: ServerParameters, before: Mapping[str, Any]) -> None:
+        """Go on with another configuration."""
+        after = self._values()
+        event = event_of_change(self, before, after)
+        if event is None:
+            return
+        self._configuration = configuration
+        if self._work is not None:
+            self._work.change(configuration, event=event, run=self._run(after))
+        names = sorted(name for name in {*before, *after} if before.get(name) != after.get(name))
+        self.get_logger().info(f"configured anew: {', '.join(names)}")
+
+    def _run(self, values: Mapping[str, Any]) -> dict[str, str]:
+        """Return what the log says of the run."""
+        return run_record(values, self._source.topics)
+
+    def _values(self) -> dict[str, Any]:
+        return {name: plain(self._parameters[name].value) for name in sorted(self._parameters)}
+
+    def attend(self) -> None:
+        """Take messages and events, and look around once a second."""
+        super().attend()
+        if self._work is None:
+            return
+        self._work.attend()
+        if self._says_ready and self._work.is_ready:
+            self._says_ready = False
+            self.get_logger().info(f"ready: {self._work}")
+
+    def end_services(self) -> None:
+        """End what is under way, and take no more requests."""
+        if self._work is not None:
+            self._work.end()
+        super().end_services()
+
+    def close(self) -> bool:
+        """Finish the log and say where it is; return True, since a log that fails has been told."""
+        if self._work is not None:
+            self.get_logger().info(self._work.close())
+        return True
+
+    def destroy_node(self) -> None:
+        """End the workers and the node."""
+        if self._work is not None:
+            self._work.end_workers()
+        super().destroy_node()
