@@ -96,6 +96,8 @@ class SurfaceChanges:
         scatter = self._scatter(is_heavy=math.isfinite(impact.freedom))
         self._deviations = [*self._deviations[1 - REMEMBERED :], impact.deviations()]
         impact = impact.widened(scatter)
+        if self._impacts and not np.array_equal(impact.configured, self._impacts[-1].configured):
+            self._sums, self._changed = [], None  # another coefficient is configured, to test against
         self._impacts = [*self._impacts[1 - REMEMBERED :], impact]
         self._add_ratios(impact)
         largest = np.array([sums.max(initial=0.0) for sums in self._sums])

@@ -51,6 +51,9 @@ SETTLED: Final = 0.25
 """s after an event, when later states no longer change it: a flight after an impact is fitted over 80 ms, and
 found after 47 ms. A rest or a slide is also reported once it has lasted this long."""
 
+SILENT: Final = 1.0
+"""s without a state, after which all events before it are final."""
+
 KEPT: Final = 3.0
 """s of states that are kept. A longer flight, rest or slide is followed all the same."""
 
@@ -124,6 +127,13 @@ class MonitoredEvent(Record):
     surface_report: SurfaceReport | None = None
     problem: str = ""
 
+    @property
+    def smallest_region(self) -> float | None:
+        """The probability of the smallest region that contains the measurement: 1 if none does, or None."""
+        if self.probability is None:
+            return None
+        return next((each for each, is_in in zip(REGIONS, self.regions, strict=True) if is_in), 1.0)
+
 
 class Monitor:
     """Watches the bodies of a world.
@@ -155,18 +165,24 @@ class Monitor:
         """
         track, found = self._tracks[body_name], list[MonitoredEvent]()
         now_ns, every_ns = state.stamp_ns, to_ns(LOOK_EVERY)
-        if track.states and now_ns // every_ns > track.newest_ns // every_ns:
+        if now_ns < track.newest_ns - to_ns(KEPT):  # a simulation or a log begins anew
+            found = self.settle(body_name)
+            track = self._tracks[body_name] = _Track()
+        elif track.states and now_ns > track.newest_ns + to_ns(SILENT):
+            found = self.settle(body_name)
+        elif track.states and now_ns // every_ns > track.newest_ns // every_ns:
             found = self._look(body_name, track, track.newest_ns - to_ns(SETTLED))
         track.add(state, arrival_ns)
         return found
 
+    def settle(self, body_name: str) -> list[MonitoredEvent]:
+        """Return the events of a body that are left, as `add` does when a state comes `SILENT` later."""
+        track = self._tracks[body_name]
+        return self._look(body_name, track, track.newest_ns + 1)
+
     def finish(self) -> list[MonitoredEvent]:
         """Return the events that are left, and forget the states, but not what is known of the surfaces."""
-        found = [
-            event
-            for body_name, track in self._tracks.items()
-            for event in self._look(body_name, track, track.newest_ns + 1)
-        ]
+        found = [event for body_name in list(self._tracks) for event in self.settle(body_name)]
         self._tracks.clear()
         return found
 

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections import Counter
+from collections import Counter, defaultdict
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,7 +12,7 @@ from contact_dynamics.constants import to_seconds
 from contact_dynamics.monitoring.evidence import REGIONS, Parameter
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterator
 
     from contact_dynamics.monitoring.changes import SurfaceReport
     from contact_dynamics.monitoring.monitor import MonitoredEvent
@@ -34,8 +34,8 @@ def _parts(event: MonitoredEvent) -> Iterator[str]:
     elif event.probability is None:
         yield f"not compared ({event.problem or 'no covariance'})"
     else:
-        inside = next((region for region, is_in in zip(REGIONS, event.regions, strict=True) if is_in), None)
-        where = f"inside {100 * inside:.0f} %" if inside else f"outside {100 * REGIONS[-1]:.0f} %"
+        region = event.smallest_region or 1.0
+        where = f"inside {100 * region:.0f} %" if region < 1.0 else f"outside {100 * REGIONS[-1]:.0f} %"
         yield f"{where}, p = {event.probability:.2g}"
     if event.explained_by is not None:
         yield f"another {event.explained_by.value} explains it"
@@ -43,10 +43,11 @@ def _parts(event: MonitoredEvent) -> Iterator[str]:
     if report is not None:
         yield f"this impact has {_values(event.impact_values, event.impact_stds)}"
         if report.is_new and report.changed is not None:
-            yield f"CHANGED: {report.changed.value} of {event.surface}, now {_estimates(report)}"
+            yield f"CHANGED: {report.changed.value} of {event.surface}, now {estimates_in_words(report)}"
 
 
-def _estimates(report: SurfaceReport) -> str:
+def estimates_in_words(report: SurfaceReport) -> str:
+    """Return the estimates for a surface."""
     return f"{_values(report.values, report.stds)} from {report.impacts} impacts"
 
 
@@ -57,25 +58,52 @@ def _values(values: FloatArray, stds: FloatArray) -> str:
     )
 
 
-def summary_of(events: Sequence[MonitoredEvent]) -> str:
-    """Return how many events of each kind were predicted how well, and the estimates for each surface."""
-    lines = []
-    for kind, count in Counter(event.kind for event in events).items():
-        own = [event for event in events if event.kind is kind]
-        parts = [f"{kind.value}: {count} events"]
-        regions = np.array([event.regions for event in own if event.regions])
-        if len(regions):
-            shares = ", ".join(
-                f"{100 * share:.0f} % inside {100 * region:.0f} %"
-                for region, share in zip(REGIONS, regions.mean(axis=0), strict=True)
-            )
-            parts.append(f"{len(regions)} compared: {shares}")
-        modes = [event.as_predicted for event in own if event.as_predicted is not None]
-        if modes:
-            parts.append(f"{sum(modes)} of {len(modes)} as predicted")
-        lines.append(", ".join(parts))
-    latest = {event.surface: event.surface_report for event in events if event.surface_report is not None}
-    for surface, report in latest.items():
-        changed = f"; {report.changed.value} changed" if report.changed else ""
-        lines.append(f"{surface}: {_estimates(report)}{changed}")
-    return "\n".join(lines) or "no events"
+class Summary:
+    """Counts events of each kind, how well they were predicted, and the estimates for each surface.
+
+    Attributes:
+        latest: The last report of each surface, by its name.
+    """
+
+    def __init__(self) -> None:
+        """Begin without events."""
+        self.latest: dict[str, SurfaceReport] = {}
+        self._counts: defaultdict[str, Counter[str]] = defaultdict(Counter)
+        self._inside: defaultdict[str, FloatArray] = defaultdict(lambda: np.zeros(len(REGIONS)))
+
+    def add(self, event: MonitoredEvent) -> None:
+        """Count an event."""
+        kind = event.kind.value
+        counts = self._counts[kind]
+        counts["events"] += 1
+        if event.regions:
+            counts["compared"] += 1
+            self._inside[kind] += event.regions
+        if event.as_predicted is not None:
+            counts["modes"] += 1
+            counts["as predicted"] += event.as_predicted
+        if event.surface_report is not None:
+            self.latest[event.surface] = event.surface_report
+
+    def rows(self) -> dict[str, str]:
+        """Return each kind of events and each surface, with what there is to say of it."""
+        found = {}
+        for kind, counts in self._counts.items():
+            parts = [f"{counts['events']} events"]
+            if counts["compared"]:
+                shares = ", ".join(
+                    f"{100 * share:.0f} % inside {100 * region:.0f} %"
+                    for region, share in zip(REGIONS, self._inside[kind] / counts["compared"], strict=True)
+                )
+                parts.append(f"{counts['compared']} compared: {shares}")
+            if counts["modes"]:
+                parts.append(f"{counts['as predicted']} of {counts['modes']} as predicted")
+            found[kind] = ", ".join(parts)
+        for surface, report in self.latest.items():
+            changed = f"; {report.changed.value} changed" if report.changed else ""
+            found[surface] = f"{estimates_in_words(report)}{changed}"
+        return found
+
+    def __str__(self) -> str:
+        """Return a line for each row."""
+        return "\n".join(f"{name}: {text}" for name, text in self.rows().items()) or "no events"

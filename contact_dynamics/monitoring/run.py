@@ -18,7 +18,7 @@ from contact_dynamics.evaluation.sources import find_sources
 from contact_dynamics.monitoring.arguments import monitor_parser
 from contact_dynamics.monitoring.evidence import ModelError
 from contact_dynamics.monitoring.monitor import Monitor, MonitorSettings
-from contact_dynamics.monitoring.report import line_of, summary_of
+from contact_dynamics.monitoring.report import Summary, line_of
 from contact_dynamics.nodes.parameter_file import ParameterFile
 from contact_dynamics.rotations.many import matrices_of
 
@@ -47,7 +47,7 @@ def _monitor(given: argparse.Namespace) -> int:
     error = ModelError() if given.calibration is None else model_error_of(given.calibration)
     sources, refused = find_sources(given.recordings)
     monitor: Monitor | None = None
-    events: list[MonitoredEvent] = []
+    summary, changed = Summary(), False
     with ExitStack() as stack:
         file = None if given.json is None else stack.enter_context(given.json.open("w", encoding="utf-8"))
         for source in sources:
@@ -60,7 +60,8 @@ def _monitor(given: argparse.Namespace) -> int:
             monitor = monitor or Monitor(recording.informed, settings)
             monitor.informed = recording.informed
             for event in monitored(monitor, recording):
-                events.append(event)
+                summary.add(event)
+                changed |= event.surface_report is not None and event.surface_report.is_new
                 print(f"{source.name}: {line_of(event)}", flush=True)
                 if file is not None:
                     print(json.dumps({"recording": source.name, **event.to_dict()}), file=file)
@@ -68,8 +69,7 @@ def _monitor(given: argparse.Namespace) -> int:
         print(f"not read: {name}: {reason}", file=sys.stderr)
     if monitor is None:
         return NOTHING
-    print(summary_of(events))
-    changed = any(event.surface_report is not None and event.surface_report.is_new for event in events)
+    print(summary)
     return CHANGED if changed or refused else 0
 
 
@@ -87,19 +87,18 @@ def monitored(monitor: Monitor, recording: Recording) -> Iterator[MonitoredEvent
     yield from monitor.finish()
 
 
-def model_error_of(path: Path) -> ModelError:
+def model_error_of(path: Path, name: str = "--calibration") -> ModelError:
     """Return the model errors in a JSON file of `calibrate`.
 
     Raises:
-        InvalidFieldError: it is no such file.
-        OSError: it cannot be read.
+        InvalidFieldError: it cannot be read, or is no such file. The message names ``name``.
     """
     try:
         spread = json.loads(path.read_text(encoding="utf-8"))["spread"]
         return ModelError(velocity=spread["velocity"], spin=spread["spin"], height=spread["strike_height"])
-    except (ValueError, KeyError, TypeError):
-        expected = "a file that calibrate --json has written"
-        raise InvalidFieldError("--calibration", str(path), expected) from None
+    except (OSError, ValueError, KeyError, TypeError):
+        expected = "a readable file that calibrate --json has written"
+        raise InvalidFieldError(name, str(path), expected) from None
 
 
 def _read(source: Source, config: Path | None) -> Recording:

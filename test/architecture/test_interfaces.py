@@ -13,6 +13,8 @@ import pytest
 from contact_dynamics.contact.contact import MAX_CONTACTS
 from contact_dynamics.contact_modes.result import ModeVerdict, Refusal
 from contact_dynamics.impact import ImpactOutcome, PathEvent, RestitutionLaw, SequenceEnd
+from contact_dynamics.measured.events import EventKind as MonitoredKind
+from contact_dynamics.monitoring.evidence import REGIONS, Parameter
 from contact_dynamics.motion.integrated import Method
 from contact_dynamics.questions import EventKind, Problem
 from contact_dynamics.questions.many import MAX_STATES
@@ -26,6 +28,7 @@ from contact_dynamics_interfaces.msg import (
     BodyStates,
     ContactSet,
     Impact,
+    MonitorEvent,
     Poinsot,
     TossBranch,
     TossEvent,
@@ -111,6 +114,18 @@ def test_enumerations_equal_those_of_the_messages(enum: type[IntEnum], message: 
     refused = {SequenceEnd.WINDOW_ENDED}  # the service answers a sequence without a strike with a status
     values = {member.name: int(member) for member in enum if member not in refused}
     assert values == constants(message, list(values))
+
+
+def test_the_names_in_a_monitor_event_are_those_of_the_monitor() -> None:
+    assert {kind.name: kind.value for kind in MonitoredKind} == {
+        name: getattr(MonitorEvent, name) for name in MonitoredKind.__members__
+    }
+    assert [one.value for one in Parameter] == [MonitorEvent.RESTITUTION, MonitorEvent.FRICTION]
+    assert [round(100 * region) for region in REGIONS] == [
+        MonitorEvent.INSIDE_50,
+        MonitorEvent.INSIDE_90,
+        MonitorEvent.INSIDE_99,
+    ]
 
 
 def test_status_codes_are_the_same_in_all_services() -> None:
