@@ -101,6 +101,12 @@ VERBS: Final = {
         (),
         "detect changed friction and restitution, and events outside of their prediction regions",
     ),
+    "live_monitor": Verb(
+        "contact_dynamics.monitoring.live",
+        "contact_dynamics.nodes.arguments:live_monitor_parser",
+        _ROS,
+        "monitor published states over ROS 2",
+    ),
     "recover": Verb(
         "contact_dynamics.replay.recover",
         "contact_dynamics.replay.arguments:recover_parser",

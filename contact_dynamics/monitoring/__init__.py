@@ -4,5 +4,5 @@
 `monitor` takes states one by one, live or from a log, and returns a record for each event that has ended. Of
 an impact at a single contact, `evidence` says what it shows about restitution and friction, and `changes`
 collects this per surface: a sequential test and an estimate. `report` puts it into words. `arguments` and
-`run` are the command.
+`run` are the command for recordings, and `live` is the node, whose messages `event_message` makes.
 """

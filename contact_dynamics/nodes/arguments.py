@@ -12,6 +12,7 @@ import textwrap
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from contact_dynamics.nodes.monitor_parameters import MONITOR_PARAMETERS, PARAMETERS_OF_OTHERS
 from contact_dynamics.nodes.parameter_file import files_given
 from contact_dynamics.nodes.parameters import described_server_parameters
 from contact_dynamics.nodes.visualizer_parameters import VISUALIZER_PARAMETERS
@@ -39,6 +40,17 @@ def visualizer_parser() -> argparse.ArgumentParser:
         "parameters, explained in config/visualizer.yaml, in addition to those of the server "
         f"(`server --help`):\n{_listed(VISUALIZER_PARAMETERS.values())}\n\n"
         "One of rrd_path, spawn, serve and connect is required.",
+    )
+
+
+def live_monitor_parser() -> argparse.ArgumentParser:
+    """Return the parser of `contact-dynamics live_monitor`."""
+    return _parser(
+        "live_monitor",
+        "Predict each event of published states before it happens, publish how it compares, and detect "
+        "changes of friction and restitution.",
+        "parameters, explained in config/monitor.yaml, in addition to those of the server "
+        f"(`server --help`):\n{_listed(MONITOR_PARAMETERS.values())}",
     )
 
 
@@ -73,9 +85,9 @@ def _parsed(parser: argparse.ArgumentParser, arguments: list[str]) -> argparse.N
         name = name.lstrip("-").replace("-", "_")
         if unknown[0] in {"-p", "-r", "--param", "--remap"}:
             parser.error(f"{unknown[0]} must follow --ros-args: --ros-args {' '.join(unknown)}")
-        known = {*VISUALIZER_PARAMETERS, *(each.name for each in described_server_parameters())}
+        known = {*PARAMETERS_OF_OTHERS, *(each.name for each in described_server_parameters())}
         is_known = name in known or name.startswith(("body.", "surface."))
-        if is_known and parser.prog.endswith(("server", "visualizer")):
+        if is_known and parser.prog.endswith(("server", "visualizer", "live_monitor")):
             value = value or next(iter(unknown[1:]), "VALUE")
             parser.error(f"{name} is a parameter of ROS, which is set by --ros-args -p {name}:={value}")
         parser.error(f"unrecognized arguments: {' '.join(unknown)}")

@@ -45,6 +45,7 @@ class Part(Enum):
 
     STATES = "states"
     ANSWERS = "answers"
+    EVENTS = "events"
     LOG = "log"
 
 
@@ -110,6 +111,7 @@ class Situation(Enum):
     FAULT = _Row(Part.ANSWERS, Level.ERROR, "internal errors of the server, {count} so far")
     OVERLOADED = _Row(Part.ANSWERS, Level.WARN, "requests were rejected as BUSY or TIMEOUT, {count} so far")
     WORKERS = _Row(Part.ANSWERS, Level.WARN, "{ready} of {count} workers are ready")
+    CHANGED = _Row(Part.EVENTS, Level.WARN, "the {coefficient} of {surface} has changed: {estimates}")
     NO_MCAP = _Row(Part.LOG, Level.WARN, NO_MCAP)
     LOG_INTERRUPTED = _Row(Part.LOG, Level.ERROR, "{problem}; {lost} messages are missing so far")
     LOG_DROPPING = _Row(Part.LOG, Level.ERROR, "{problem}; {lost} messages are lost so far")

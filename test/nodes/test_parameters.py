@@ -17,6 +17,7 @@ import yaml
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 
+from contact_dynamics.monitoring.live import LiveMonitor
 from contact_dynamics.nodes import server, visualizer
 from contact_dynamics.nodes.log import Log
 from contact_dynamics.nodes.parameter_file import ParameterFile
@@ -30,6 +31,7 @@ from running_server import DOMAIN_ID, PATIENCE_S, ROOT, environment, process, wa
 CONFIG = ROOT / "config"
 SERVER_FILE = CONFIG / "server.yaml"
 VISUALIZER_FILE = CONFIG / "visualizer.yaml"
+MONITOR_FILE = CONFIG / "monitor.yaml"
 Verb: TypeAlias = Callable[[list[str]], int]
 VERBS = [pytest.param(server.main, id="server"), pytest.param(visualizer.main, id="visualizer")]
 OF_ROS = re.compile(r"use_sim_time|start_type_description_service|qos_overrides\..*")
@@ -77,8 +79,9 @@ class Declarations(dict[str, tuple[Any, Any]]):
 
 @pytest.fixture
 def declared(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[dict[str, dict[str, Any]]]:
-    """What the server declares, and what the visualizer declares besides, with the files as they are."""
-    files = ["--ros-args", "--params-file", str(SERVER_FILE), "--params-file", str(VISUALIZER_FILE)]
+    """What the server declares, and what the others declare besides, with the files as they are."""
+    paths = SERVER_FILE, VISUALIZER_FILE, MONITOR_FILE
+    files = ["--ros-args", *(word for path in paths for word in ("--params-file", str(path)))]
     # the command line wins over the files, else the visualizer would refuse to draw to nowhere
     rclpy.init(args=[*files, "-p", "log:=false", "-p", f"rrd_path:={tmp_path / 'picture.rrd'}"])
     declarations = Declarations(monkeypatch)
@@ -89,7 +92,11 @@ def declared(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[dict[s
         drawing.close()
         drawing.destroy_node()
         of_visualizer = {name: d for name, d in declarations.ours().items() if name not in of_server}
-        yield {"server": of_server, "visualizer": of_visualizer}
+        monitor = LiveMonitor()
+        monitor.destroy_node()
+        others = of_server.keys() | of_visualizer.keys()
+        of_monitor = {name: d for name, d in declarations.ours().items() if name not in others}
+        yield {"server": of_server, "visualizer": of_visualizer, "monitor": of_monitor}
     finally:
         rclpy.shutdown()
 
@@ -119,14 +126,14 @@ def comments_of(path: Path) -> dict[str, str]:
     return comments
 
 
-@pytest.mark.parametrize("path", [SERVER_FILE, VISUALIZER_FILE], ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", [SERVER_FILE, VISUALIZER_FILE, MONITOR_FILE], ids=lambda path: path.stem)
 def test_every_parameter_declared_stands_in_the_file_and_none_else(
     declared: dict[str, dict[str, Any]], path: Path
 ) -> None:
     assert set(values_of(path)) == set(declared[path.stem])
 
 
-@pytest.mark.parametrize("path", [SERVER_FILE, VISUALIZER_FILE], ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", [SERVER_FILE, VISUALIZER_FILE, MONITOR_FILE], ids=lambda path: path.stem)
 def test_every_parameter_has_a_comment_that_says_its_default(
     declared: dict[str, dict[str, Any]], path: Path
 ) -> None:
@@ -171,7 +178,8 @@ def test_every_topic_that_is_configured_is_subscribed() -> None:
 
 def test_every_parameter_is_described(declared: dict[str, dict[str, Any]]) -> None:
     """`ros2 param describe` shows the description; that of a number says its unit."""
-    for name, (default, descriptor) in {**declared["server"], **declared["visualizer"]}.items():
+    of_all = {name: one for of_node in declared.values() for name, one in of_node.items()}
+    for name, (default, descriptor) in of_all.items():
         assert re.fullmatch(r"[A-Z].{8,}", descriptor.description), name
         if isinstance(default, float) or default is Parameter.Type.DOUBLE:
             assert re.search(r"\b(m|s|kg|Hz|m/s|MB|[Cc]oefficient)\b", descriptor.description), name

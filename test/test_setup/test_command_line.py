@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 from contact_dynamics.command_line import BROKEN_PIPE, INTERRUPTED, VERBS, main
+from contact_dynamics.nodes.monitor_parameters import MONITOR_PARAMETERS
 from contact_dynamics.nodes.parameters import described_server_parameters
 from contact_dynamics.nodes.visualizer_parameters import VISUALIZER_PARAMETERS
 from contact_dynamics.recording import BagWriter
@@ -26,6 +27,7 @@ OPTIONS = {
     "demo": ["--toss", "--view", "--output", "--quiet"],
     "calibrate": ["--free", "--no-trajectories", "--yaml", "RECORDING"],
     "evaluate": ["--against", "--dask", "--results", "--rerun", "RECORDING"],
+    "live_monitor": ["--params-file", "--ros-args", *MONITOR_PARAMETERS],
     "monitor": ["--config", "--calibration", "--json", "RECORDING"],
     "plot": ["--output", "--format", "--max-questions", "LOG"],
     "recover": ["--output", "LOG"],

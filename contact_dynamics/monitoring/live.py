@@ -1,0 +1,196 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The monitor as a node: published states in, a message for each event out, and both in a log.
+
+It is a managed node with the server's parameters (`nodes.managed_node`). While it is active, the states go
+to the same `Monitor` as those of a recording, so that its log yields the same events.
+"""
+
+from __future__ import annotations
+
+import time
+from importlib import import_module
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from rclpy.serialization import serialize_message
+
+from contact_dynamics.evaluation.asking import Informed
+from contact_dynamics.monitoring.event_message import TYPE, event_to_msg
+from contact_dynamics.monitoring.evidence import ModelError
+from contact_dynamics.monitoring.monitor import LOOK_EVERY, SILENT, Monitor, MonitorSettings
+from contact_dynamics.monitoring.report import Summary, estimates_in_words
+from contact_dynamics.monitoring.run import model_error_of
+from contact_dynamics.nodes.arguments import live_monitor_parser
+from contact_dynamics.nodes.managed_node import ManagedNode
+from contact_dynamics.nodes.monitor_parameters import CALIBRATION, MONITOR_NAME, MONITOR_PARAMETERS
+from contact_dynamics.nodes.receiving import Receiving
+from contact_dynamics.nodes.running import run_node
+from contact_dynamics.nodes.service_front import EVENT_QOS
+from contact_dynamics.nodes.situations import Part, Present, Situation
+from contact_dynamics.questions.services import SERVICES
+from contact_dynamics.questions.state_store import StateStore
+from contact_dynamics.recording.cdr import cut_to_its_end
+from contact_dynamics.recording.definitions import find_definition
+from contact_dynamics_interfaces.msg import MonitorEvent
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Mapping, Sequence
+
+    from contact_dynamics.monitoring.monitor import MonitoredEvent
+    from contact_dynamics.nodes.inbox import InboxNode, Taken
+    from contact_dynamics.nodes.parameters import ServerParameters
+    from contact_dynamics.questions.state_store import ReadState
+    from contact_dynamics.questions.uncertain_state import KnownState
+
+
+class Monitoring(Receiving):
+    """Receives states, publishes events and writes the log of both, for a node."""
+
+    def __init__(
+        self, node: InboxNode, parameters: ServerParameters, *, run: Mapping[str, str], error: ModelError
+    ) -> None:
+        """Begin the log and subscribe; nothing is monitored for now.
+
+        Args:
+            node: the node.
+            parameters: how it is configured.
+            run: what the log says of the run.
+            error: model errors of predictions.
+
+        Raises:
+            ConfigurationError: a source or the log's folder is not there.
+        """
+        import_module("scipy.stats")  # with what answers: imported at the first event, it would delay states
+        for service in SERVICES:
+            service.prepare()
+        self._is_active = False
+        self._came_ns = 0
+        self._came: dict[
+            str, float
+        ] = {}  # s, when the last state of a body came whose events are not settled
+        self._summary = Summary()
+        self._monitor = Monitor(_informed(parameters), MonitorSettings(error=error))
+        super().__init__(node, parameters, run=run, states=_Watched(self._take))
+        self._publisher = node.create_publisher(MonitorEvent, "~/events", EVENT_QOS)
+        self._definition = find_definition(TYPE)
+        self._log.add_topic(self._publisher.topic_name, TYPE, EVENT_QOS)
+        self._begin()
+
+    def activate(self, *, is_active: bool) -> None:
+        """Monitor from now on, or no more."""
+        self._is_active = is_active
+        self._tell(self._monitor.finish())
+
+    def attend(self) -> None:
+        """Publish the last events of bodies that fell silent, and look around once a second."""
+        now = time.monotonic()
+        for body_name in [name for name, came in self._came.items() if now - came > SILENT + LOOK_EVERY]:
+            del self._came[body_name]
+            self._tell(self._monitor.settle(body_name))
+        super().attend()
+
+    def change(self, parameters: ServerParameters, *, event: bytes, run: Mapping[str, str]) -> None:
+        """Predict with another configuration from now on, and log it (see `Receiving`)."""
+        super().change(parameters, event=event, run=run)
+        self._tell(self._monitor.finish())
+        self._monitor.informed = _informed(parameters)
+
+    def close(self) -> str:
+        """Publish the last events, and finish the log; return in words where that is."""
+        self._node.take_messages()
+        self._tell(self._monitor.finish())
+        return super().close()
+
+    def remove(self) -> None:
+        """Take what this made from the node."""
+        self._node.destroy_publisher(self._publisher)
+        super().remove()
+
+    def _record(self, topic: str, taken: Taken) -> None:
+        self._came_ns = taken.received_ns
+        super()._record(topic, taken)
+
+    def _forget_states(self) -> None:
+        super()._forget_states()
+        self._tell(self._monitor.finish())
+
+    def _take(self, body_name: str, state: KnownState) -> None:
+        if self._is_active:
+            self._came[body_name] = time.monotonic()
+            self._tell(self._monitor.add(body_name, state, self._came_ns))
+
+    def _tell(self, events: Iterable[MonitoredEvent]) -> None:
+        for event in events:
+            self._summary.add(event)
+            msg = event_to_msg(event, frame_id=self._core.parameters.world_frame)
+            data = cut_to_its_end(serialize_message(msg), type_name=TYPE, definition=self._definition.text)
+            self._publisher.publish(data)
+            self._log.record(self._publisher.topic_name, data, log_time_ns=time.time_ns())
+            if msg.alarm:
+                self._node.get_logger().warning(msg.text)
+            else:
+                self._node.get_logger().info(msg.text)
+
+    def _values(self) -> Mapping[Part, Mapping[str, str]]:
+        return {Part.EVENTS: self._summary.rows()}
+
+    def _present(self) -> list[Present]:
+        return [
+            Situation.CHANGED.present(
+                coefficient=report.changed.value, surface=surface, estimates=estimates_in_words(report)
+            )
+            for surface, report in self._summary.latest.items()
+            if report.changed is not None
+        ]
+
+
+def _informed(parameters: ServerParameters) -> Informed:
+    return Informed(
+        world=parameters.world, defaults=parameters.defaults, state_timeout=parameters.state_timeout
+    )
+
+
+class _Watched(StateStore):
+    """Hands each state on that it keeps."""
+
+    def __init__(self, take: Callable[[str, KnownState], None]) -> None:
+        super().__init__(history=0.0, timeout=0.0)
+        self._take = take
+
+    def add(self, body_name: str, state: KnownState, *, now_ns: int | None = None) -> None:
+        """Keep a state and hand it on."""
+        super().add(body_name, state, now_ns=now_ns)
+        self._take(body_name, state)
+
+    def add_unread(
+        self, body_name: str, stamp_ns: int, read: ReadState, *, now_ns: int | None = None
+    ) -> None:
+        """Keep a state, and read and hand it on."""
+        super().add_unread(body_name, stamp_ns, read, now_ns=now_ns)
+        state = read()
+        if state is not None:
+            self._take(body_name, state)
+
+
+class LiveMonitor(ManagedNode):
+    """The node `contact_dynamics_monitor`."""
+
+    def __init__(self, *, ros_arguments: Sequence[str] = (), **node_options: Any) -> None:
+        """Read the parameters, and begin where ``autostart`` says so (see `ManagedNode`)."""
+        super().__init__(MONITOR_NAME, own=MONITOR_PARAMETERS, ros_arguments=ros_arguments, **node_options)
+
+    def make_work(self, configuration: ServerParameters, run: Mapping[str, str]) -> Monitoring:
+        """Return what monitors while the node is active."""
+        path: str = self.get_parameter(CALIBRATION).value
+        error = model_error_of(Path(path), CALIBRATION) if path else ModelError()
+        return Monitoring(self, configuration, run=run, error=error)
+
+
+def main(arguments: list[str]) -> int:
+    """Run the monitor until it is told to stop; return the exit code."""
+    return run_node(
+        lambda ros_arguments: LiveMonitor(ros_arguments=ros_arguments),
+        verb="live_monitor",
+        parser=live_monitor_parser(),
+        arguments=arguments,
+    )
