@@ -508,6 +508,14 @@ class World(Record):
 
     Raises:
         InvalidFieldError: two bodies have the same name, or gravity is not three finite numbers.
+
+    Examples:
+        >>> import contact_dynamics as cd
+        >>> brick = cd.Body.box((0.15, 0.09, 0.05), mass=0.4, name="brick")
+        >>> floor = cd.Surface(
+        ...     name="floor", p_WS_W=[0, 0, 0], normal_W=[0, 0, 1], friction=0.4, restitution=0.2
+        ... )
+        >>> world = cd.World(bodies=(brick,), surfaces=(floor,))
     """
 
     bodies: tuple[Body, ...] = ()

@@ -137,7 +137,7 @@ GUESSES: list[tuple[Any, dict[str, Any], str]] = [
     (
         free_motion,
         {"body": BOX, "gravty_W": 0},
-        "free_motion has no argument 'gravty_W', did you mean gravity_W?",
+        "free_motion has no argument 'gravty_W', did you mean gravity_W ((3,), m/s^2, world axes)?",
     ),
     (
         sampled_toss,

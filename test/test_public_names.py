@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import doctest
 import enum
 import importlib
 import inspect
@@ -116,3 +117,17 @@ def test_all_that_the_front_page_lists_is_there() -> None:
         assert getattr(contact_dynamics, name) is not None
     with pytest.raises(AttributeError, match="has no attribute 'bounce'"):
         contact_dynamics.bounce  # noqa: B018
+
+
+def test_examples_in_help_print_what_they_say() -> None:
+    texts = {
+        f"{value.__module__}.{name}": inspect.getdoc(value) or ""
+        for chapter in OFFERED
+        for name, value in offered(chapter).items()
+        if callable(value) and value.__module__.startswith("contact_dynamics")
+    }
+    parser, runner = doctest.DocTestParser(), doctest.DocTestRunner(verbose=False)
+    for name, text in texts.items():
+        runner.run(parser.get_doctest(text, {}, name, None, None))
+    assert runner.tries > 50
+    assert runner.failures == 0

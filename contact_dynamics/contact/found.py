@@ -45,15 +45,34 @@ def find_contacts(
 ) -> ContactSet:
     """Return the contacts of a body with the world's surfaces, in the order of the surfaces.
 
-    On a plane, points of rims follow corners. A point touches if its height above the surface, or its depth
-    below it, is at most ``distance_tolerance`` (m). Measured poses penetrate by their noise and require a
-    tolerance of this size. A circular rim lies flush if all of it touches. The set may be empty.
+    At each plane, contacts of corners precede those of circular rims. A rim lies flush if all of it touches.
+    The set may be empty.
+
+    Args:
+        body: Body with a shape.
+        state: Pose and velocities of the body.
+        world: Surfaces and obstacles.
+        distance_tolerance: m, >= 0. A point touches if its height above a surface, or its depth below it, is
+            at most this. Measured poses require a tolerance of the size of their noise.
 
     Raises:
         NoContactError: the body has no shape that could touch anything.
         InvalidFieldError: the body penetrates a surface by more than the tolerance, or the tolerance is
             negative or not finite.
         NotSupportedError: a rim of the body touches an edge of an obstacle (`touches`).
+
+    Examples:
+        >>> import contact_dynamics as cd
+        >>> box = cd.Body.box((0.2, 0.1, 0.1), mass=1.0)
+        >>> floor = cd.Surface(
+        ...     name="floor", p_WS_W=[0, 0, 0], normal_W=[0, 0, 1], friction=0.3, restitution=0.5
+        ... )
+        >>> standing = cd.BodyState(p_WB_W=[0, 0, 0.05], q_WB=[0, 0, 0, 1])
+        >>> print(cd.find_contacts(box, standing, cd.World(surfaces=(floor,))).p_WC_W)
+        [[-0.1  -0.05  0.  ]
+         [-0.1   0.05  0.  ]
+         [ 0.1  -0.05  0.  ]
+         [ 0.1   0.05  0.  ]]
     """
     check_not_inside(body, state, world.surfaces, distance_tolerance=distance_tolerance)
     return contacts_within(body, state, world.surfaces, distance_tolerance)

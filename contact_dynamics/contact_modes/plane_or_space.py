@@ -65,7 +65,8 @@ def contact_modes(
 ) -> PlanarModeAnswer | SpatialModeAnswer | ResponseModeAnswer:
     """Return the verdict on a contact problem and all consistent modes.
 
-    Each mode contains its accelerations and contact forces.
+    A mode has one letter per contact: s separates, f is fixed (sticks), l and r slide left and right
+    (planar), c slides (spatial). Each mode contains its accelerations and contact forces.
 
     Args:
         problem: The contact problem, such as SpatialContactProblem.of(body, state, world, force_W=push). It
@@ -76,6 +77,21 @@ def contact_modes(
         UndecidedError: lengths, masses or moments differ so much that rounding error prevents a decision.
         NotSupportedError: surfaces move differently in a planar problem (`surface_frame`), or in a spatial
             problem with uncertain contacts.
+
+    Examples:
+        >>> import contact_dynamics as cd
+        >>> crate = cd.Body.box((0.4, 0.3, 0.6), mass=20.0)
+        >>> floor = cd.Surface(
+        ...     name="floor", p_WS_W=[0, 0, 0], normal_W=[0, 0, 1], friction=0.5, restitution=0.0
+        ... )
+        >>> at_rest = cd.BodyState(p_WB_W=[0, 0, 0.3], q_WB=[0, 0, 0, 1])
+        >>> world = cd.World(surfaces=(floor,))
+        >>> problem = cd.SpatialContactProblem.of(
+        ...     crate, at_rest, world, force_W=[70, 0, 0], at_W=[-0.2, 0, 0.6]
+        ... )
+        >>> answer = cd.contact_modes(problem)
+        >>> print(answer.verdict.name, [mode.mode for mode in answer.modes])
+        UNIQUE ['ssff']
 
     Source: lecture 26.
     """
@@ -137,6 +153,20 @@ def mode_margins(
         InvalidFieldError: ``answer`` belongs to another kind of problem, or the length is not > 0.
         UndecidedError: spatial contacts are so nearly equal that rounding error prevents a decision.
         TooLargeError, NotSupportedError: as for `contact_modes`.
+
+    Examples:
+        >>> import contact_dynamics as cd
+        >>> crate = cd.Body.box((0.4, 0.3, 0.6), mass=20.0)
+        >>> floor = cd.Surface(
+        ...     name="floor", p_WS_W=[0, 0, 0], normal_W=[0, 0, 1], friction=0.5, restitution=0.0
+        ... )
+        >>> at_rest = cd.BodyState(p_WB_W=[0, 0, 0.3], q_WB=[0, 0, 0, 1])
+        >>> problem = cd.SpatialContactProblem.of(
+        ...     crate, at_rest, cd.World(surfaces=(floor,)), force_W=[50, 0, 0]
+        ... )
+        >>> (margin,) = cd.mode_margins(problem)
+        >>> print(f"{margin.mode} ends at a change of {margin.margin:.1f} N, then {margin.modes_beyond}")
+        ffff ends at a change of 43.0 N, then ('cccc',)
     """
     if isinstance(problem, PlanarContactProblem) and not isinstance(answer, SpatialModeAnswer):
         return planar_mode_margins(seen_in_plane(problem), answer, margin_length=margin_length)
@@ -281,6 +311,18 @@ def statics(
         UndecidedError: contacts are so nearly equal that rounding error prevents a decision.
         TooLargeError: as for `contact_modes`, or spatial friction pyramids have more than 128 edges in total.
         NotSupportedError: surfaces do not move as one rigid body.
+
+    Examples:
+        >>> import contact_dynamics as cd
+        >>> crate = cd.Body.box((0.4, 0.3, 0.6), mass=20.0)
+        >>> floor = cd.Surface(
+        ...     name="floor", p_WS_W=[0, 0, 0], normal_W=[0, 0, 1], friction=0.5, restitution=0.0
+        ... )
+        >>> at_rest = cd.BodyState(p_WB_W=[0, 0, 0.3], q_WB=[0, 0, 0, 1])
+        >>> problem = cd.SpatialContactProblem.of(crate, at_rest, cd.World(surfaces=(floor,)))
+        >>> balance = cd.statics(problem)
+        >>> print(balance.equilibrium.name, f"{balance.stable_disturbance:.0f} N")
+        CERTAIN 76 N
     """
     if isinstance(problem, PlanarContactProblem):
         return planar_statics(seen_in_plane(problem, resting=True), margin_length=margin_length)

@@ -79,14 +79,21 @@ def next_landing(
 ) -> Landing | None:
     """Return the first contact of a flying body within ``horizon`` (s), or None without a contact.
 
-    A point within ``distance_tolerance`` (m) of a surface touches it. A touching body is in flight
-    only if all of its contacts separate faster than ``velocity_tolerance`` (m/s); then its next contact is
-    returned. ``motion`` is the flight, in closed form or under forces; the default is free flight from the
-    state under the world's gravity. ``work`` counts the steps of this search together with those of other
-    searches; by default, this search has its own count.
+    If the body already touches a surface, it is in flight only if all of its contacts separate faster than
+    ``velocity_tolerance``; its next contact is then returned.
 
-    Surfaces may have constant accelerations and rotate about their normals, such as a paddle or a turntable.
-    The contacts then contain the velocities of the surfaces at the time of contact.
+    Args:
+        body: Body with a shape.
+        state: State of the body at time 0.
+        world: Surfaces, obstacles and gravity. Surfaces may have constant accelerations and rotate about
+            their normals, such as a paddle or a turntable; the contacts then contain the velocities of the
+            surfaces at the time of contact.
+        horizon: s, >= 0. Look-ahead time.
+        distance_tolerance: m, >= 0. A point within this distance of a surface touches it.
+        velocity_tolerance: m/s, >= 0.
+        motion: The flight, in closed form or under forces. The default is free flight from ``state`` under
+            the world's gravity.
+        work: Count of search steps that this search shares with others. By default, it has its own.
 
     Raises:
         NoContactError: the body has no shape that could touch anything.
@@ -95,6 +102,17 @@ def next_landing(
         NotSupportedError: a surface tilts, or rotates about an axis that moves sideways, or moves along its
             normal while the body moves under forces; or as in `first_touch`.
         TooLargeError: the search takes too many steps, because the body spins too fast for the horizon.
+
+    Examples:
+        >>> import contact_dynamics as cd
+        >>> ball = cd.Body.sphere(0.03, mass=0.057)
+        >>> floor = cd.Surface(
+        ...     name="floor", p_WS_W=[0, 0, 0], normal_W=[0, 0, 1], friction=0.3, restitution=0.7
+        ... )
+        >>> dropped = cd.BodyState(p_WB_W=[0, 0, 1.03], q_WB=[0, 0, 0, 1], v_WB_W=[2, 0, 0])
+        >>> landing = cd.next_landing(ball, dropped, cd.World(surfaces=(floor,)))
+        >>> print(f"{landing.seconds:.4f} s", landing.contacts.p_WC_W.round(3))
+        0.4516 s [[0.903 0.    0.   ]]
     """
     check_not_negative("horizon", horizon)
     check_not_negative("velocity_tolerance", velocity_tolerance)

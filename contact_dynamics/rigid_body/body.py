@@ -116,6 +116,12 @@ class BodyState(Record):
     Raises:
         InvalidFieldError: a number is not finite, the quaternion is not a unit quaternion, the stamp is not a
             whole number, or the attitude is given in both orders or in none.
+
+    Examples:
+        >>> import contact_dynamics as cd
+        >>> state = cd.BodyState(p_WB_W=[0, 0, 1], q_WB=[0, 0, 0, 1], v_WB_W=[1.5, 0, 2], w_WB_W=[0, 9, 0])
+        >>> print(state.velocity_of_point([0.1, 0, 1]))
+        [1.5 0.  1.1]
     """
 
     p_WB_W: FloatArray
@@ -219,14 +225,20 @@ def state_covariance(
 ) -> FloatArray:
     """Return the covariance of a state, (12, 12), from standard deviations of independent errors.
 
-    Each is a number, which is the same along all axes, or has one number for each world axis, (3,). The order
-    of rows and columns is that of the arguments.
+    Each standard deviation is one number for all axes, or one number for each world axis, (3,). The order of
+    rows and columns is that of the arguments.
 
     Args:
         position: m, >= 0, of the centre of mass.
         rotation: rad, >= 0, of a small rotation applied after the attitude.
         velocity: m/s, >= 0, of the centre of mass.
         angular_velocity: rad/s, >= 0.
+
+    Examples:
+        >>> import contact_dynamics as cd
+        >>> covariance = cd.state_covariance(position=0.002, velocity=[0.05, 0.05, 0.1])
+        >>> print(covariance.shape, covariance[6:9, 6:9].diagonal())
+        (12, 12) [0.0025 0.0025 0.01  ]
     """
     named = {
         "position": position,

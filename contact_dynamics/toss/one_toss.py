@@ -57,6 +57,8 @@ def toss(
 ) -> Toss:
     """Return the motion of a body from an initial state, in flight or in contact, until it rests.
 
+    docs/toss.md describes the methods and their errors. `sampled_toss` accepts uncertain inputs.
+
     Args:
         body: Mass properties and shape: corners, which may be rounded.
         state: Initial pose and velocities.
@@ -82,6 +84,19 @@ def toss(
         InvalidFieldError: a number is out of range, ENERGETIC and SIMULTANEOUS are combined, or the body
             penetrates a surface by more than the tolerance.
         TooLargeError: the search for the end of a flight takes too many steps.
+
+    Examples:
+        >>> import contact_dynamics as cd
+        >>> brick = cd.Body.box((0.15, 0.09, 0.05), mass=0.4)
+        >>> floor = cd.Surface(
+        ...     name="floor", p_WS_W=[0, 0, 0], normal_W=[0, 0, 1], friction=0.3, restitution=0.4
+        ... )
+        >>> thrown = cd.BodyState(
+        ...     p_WB_W=[0, 0, 1], q_WB=[0, 0, 0, 1], v_WB_W=[1.5, 0, 2], w_WB_W=[0.5, 9, 0.3]
+        ... )
+        >>> toss = cd.toss(brick, thrown, cd.World(surfaces=(floor,)))
+        >>> print(toss.end.name, f"after {toss.seconds:.2f} s, {toss.face_on_top} on top")
+        RESTS after 1.19 s, -z on top
     """
     check_laws(restitution_law, several_contacts_law)
     factors = check_factors("lasting_factors", lasting_factors)

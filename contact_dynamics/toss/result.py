@@ -78,7 +78,7 @@ class TossEvent(Record):
             ``surfaces``.
         p_WC_W: (n, 3), m, positions of these contacts, world.
         impulse_W: (3,), N s, impulse on the body, world axes. It is zero if no contact strikes. At SETTLES it
-            may be that by which contacts lose their last rebound, and then it may pull.
+            can be the impulse that removes the last rebound, which may pull.
         outcome: Outcome of the impact at a striking contact, or None. Contacts that strike at one instant
             under SIMULTANEOUS have no outcome.
         mode: One letter for each contact: f sticks or rolls, c slides. It is empty if no mode follows.
@@ -142,7 +142,7 @@ class Undecided(Record):
 
 
 class Noted(NamedTuple):
-    """An event, as `TossEvent` has it, with the contacts, the mode and the 13 numbers after it."""
+    """The data of a `TossEvent`: the contacts, the mode, and the state after it as 13 numbers."""
 
     seconds: float
     kind: TossEventKind
@@ -178,7 +178,7 @@ Piece: TypeAlias = "FlightPiece | PhaseStep"
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class TossOutcome(Record):
-    """End of a toss, and what happens on the way.
+    """End, events, energy balance and branch points of a toss.
 
     Attributes:
         end: Reason for the end of the toss.
@@ -213,7 +213,10 @@ class TossOutcome(Record):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class Toss(TossOutcome):
-    """Motion of a body from an initial state to rest; `TossOutcome` documents the other fields.
+    """Motion of a body from an initial state to rest.
+
+    `TossOutcome` documents the other fields: ``end``, ``seconds``, ``events``, ``resting_corners``,
+    ``resting_normal_B``, ``energy`` and ``undecided``.
 
     Attributes:
         restitution_law: Law of restitution of all strikes.
@@ -224,7 +227,7 @@ class Toss(TossOutcome):
         starts: (n,), s, times at which the pieces begin.
         began_ns: ns, stamp of the initial state.
         frame: Frame of surfaces that move, to which the pieces refer, or None.
-        noted: The body and the events from which ``events`` are made when they are first asked for, or None.
+        noted: The body and the data from which ``events`` are created on first access, or None.
     """
 
     restitution_law: RestitutionLaw

@@ -135,6 +135,25 @@ def sampled_toss(
             whole number >= 1 nor an executor, or the body penetrates a surface by more than the tolerance.
         BrokenProcessPool: a process died, for example because the main module is not guarded as described
             above.
+
+    Examples:
+        >>> import contact_dynamics as cd
+        >>> brick = cd.Body.box((0.15, 0.09, 0.05), mass=0.4)
+        >>> floor = cd.Surface(
+        ...     name="floor", p_WS_W=[0, 0, 0], normal_W=[0, 0, 1], friction=0.3, restitution=0.4
+        ... )
+        >>> thrown = cd.BodyState(
+        ...     p_WB_W=[0, 0, 1], q_WB=[0, 0, 0, 1], v_WB_W=[1.5, 0, 2], w_WB_W=[0.5, 9, 0.3]
+        ... )
+        >>> covariance = cd.state_covariance(velocity=0.05, angular_velocity=0.5)
+        >>> world = cd.World(surfaces=(floor,))
+        >>> tosses = cd.sampled_toss(brick, thrown, world, covariance=covariance, count=50, to_rest=True)
+        >>> for face, share in zip(tosses.faces_on_top, tosses.face_probabilities):
+        ...     print(f"{face}: {share:.0%}")
+        +z: 48%
+        -z: 36%
+        +y: 14%
+        -y: 2%
     """
     shared_by = check_processes(processes)
     if check_whole("count", count, 1) > MAX_SAMPLES:

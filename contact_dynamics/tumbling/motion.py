@@ -264,14 +264,30 @@ def free_motion(
 ) -> FreeMotion:
     """Return the motion of a body without torque, in uniform gravity, from its state at one time.
 
-    ``free_motion(body, state).at(seconds)`` is the `Trajectory` at many times, and ``.state_at(seconds)`` the
-    state at one time. Gravity is (3,), m/s^2, world axes. The precision is that of the motion's constants:
-    double precision takes a third of the time, and its errors grow with the rotation angle. The constants of
-    the last `constants.REMEMBERED` rotations are cached.
+    Args:
+        body: A `Body`, or its `MassProperties`.
+        state: State of the body at time 0.
+        gravity_W: (3,), m/s^2, world axes.
+        precision: Precision of the constants of the motion. DOUBLE takes a third of the time, and its errors
+            grow with the rotation angle. The constants of the last `constants.REMEMBERED` rotations are
+            cached.
+
+    Returns:
+        The motion: ``.state_at(seconds)`` is the state at one time, s, and ``.at(seconds)`` the `Trajectory`
+        at many times, in the past or future.
 
     Raises:
         InvalidFieldError: gravity is not three finite numbers, or a number exceeds `LARGEST_NUMBER`, beyond
             which squares overflow.
+
+    Examples:
+        >>> import contact_dynamics as cd
+        >>> brick = cd.Body.box((0.15, 0.09, 0.05), mass=0.4)
+        >>> thrown = cd.BodyState(p_WB_W=[0, 0, 1], q_WB=[0, 0, 0, 1], v_WB_W=[2, 0, 3], w_WB_W=[0, 9, 1])
+        >>> print(cd.free_motion(brick, thrown).state_at(0.5).p_WB_W.round(3))
+        [1.    0.    1.274]
+
+    Source: lecture 25; Jacobi's solution of Euler's equations (`tumbling`).
     """
     body = body.mass_properties
     gravity = check_array("gravity_W", gravity_W, (3,))

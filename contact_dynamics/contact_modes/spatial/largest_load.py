@@ -138,6 +138,18 @@ def largest_load(
         InvalidFieldError: rest is not consistent without the load, or not within ``max_normal_forces``; or
             the load is zero or not finite.
         NotSupportedError: surfaces do not move as one rigid body.
+
+    Examples:
+        >>> import contact_dynamics as cd
+        >>> crate = cd.Body.box((0.4, 0.3, 0.6), mass=20.0)
+        >>> floor = cd.Surface(
+        ...     name="floor", p_WS_W=[0, 0, 0], normal_W=[0, 0, 1], friction=0.5, restitution=0.0
+        ... )
+        >>> at_rest = cd.BodyState(p_WB_W=[0, 0, 0.3], q_WB=[0, 0, 0, 1])
+        >>> problem = cd.SpatialContactProblem.of(crate, at_rest, cd.World(surfaces=(floor,)))
+        >>> load = cd.largest_load(problem, force_W=[1, 0, 0], at_W=[-0.2, 0, 0.5])
+        >>> print(f"{load.factor:.1f} N, then {load.modes_beyond}")
+        78.5 N, then ('ssff',)
     """
     problem = seen_in_space(problem, as_one="largest_load")
     force, torque = check_vector3("force_W", force_W), check_vector3("torque_W", torque_W)

@@ -76,11 +76,8 @@ FRICTION_FACETS: Final = 8
 class SpatialContactProblem(Record):
     """Spatial (3-D) contact problem of one body. The planar counterpart is `PlanarContactProblem`.
 
-    ``SpatialContactProblem.of(body, state, world, force_W=push)`` detects the contacts and adds the weight:
-
-        crate = Body.box((0.4, 0.3, 0.6), mass=20.0)
-        problem = SpatialContactProblem.of(crate, state, world, force_W=[90, 0, 0], at_W=[-0.2, 0, 0.5])
-        print(contact_modes(problem))
+    ``SpatialContactProblem.of(body, state, world, force_W=push)`` detects the contacts and adds the weight;
+    the help of `contact_modes` contains an example.
 
     Modes, margins and the reasons for rejected modes are those of round friction cones, regardless of the
     number of facets. In statics and wrench sets, pyramids approximate the cones of contacts at rest. With the

@@ -80,6 +80,18 @@ def several_impact(
         SeparatingContactError: all contacts separate.
         InvalidFieldError: there are no contacts, the tolerance is not > 0, or ENERGETIC and SIMULTANEOUS are
             combined.
+
+    Examples:
+        >>> import contact_dynamics as cd
+        >>> box = cd.Body.box((0.1, 0.1, 0.1), mass=1.0)
+        >>> floor = cd.Surface(
+        ...     name="floor", p_WS_W=[0, 0, 0], normal_W=[0, 0, 1], friction=0.3, restitution=0.5
+        ... )
+        >>> dropped = cd.BodyState(p_WB_W=[0, 0, 0.5], q_WB=[0, 0, 0, 1])
+        >>> landing = cd.next_landing(box, dropped, cd.World(surfaces=(floor,)))
+        >>> impact = cd.several_impact(box, landing.state, landing.contacts)
+        >>> print(len(landing.contacts), landing.state.v_WB_W.round(2), impact.state.v_WB_W.round(2))
+        4 [ 0.    0.   -2.97] [0.   0.   1.49]
     """
     warn_if_far(body, state, contacts.p_WC_W)
     return bodies_impact(

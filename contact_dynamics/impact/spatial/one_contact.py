@@ -78,6 +78,15 @@ def spatial_impact(
         InvalidFieldError: the tolerance is negative; or a velocity, a mass, a moment of inertia or the
             distance of the contact from a centre of mass exceeds `LARGEST_NUMBER`, or a mass or moment of
             inertia is below its inverse.
+
+    Examples:
+        >>> import contact_dynamics as cd
+        >>> ball = cd.Body.sphere(0.03, mass=0.057)
+        >>> falling = cd.BodyState(p_WB_W=[0, 0, 0.03], q_WB=[0, 0, 0, 1], v_WB_W=[2, 0, -5])
+        >>> floor = cd.Contact(p_WC_W=[0, 0, 0], normal_W=[0, 0, 1], friction=0.3, restitution=0.7)
+        >>> impact = cd.spatial_impact(ball, falling, floor)
+        >>> print(impact.outcome.name, impact.state.v_WB_W.round(2))
+        STICKS_IN_COMPRESSION [1.43 0.   3.5 ]
     """
     warn_if_far(body, state, contact.p_WC_W)
     body = body.mass_properties
