@@ -226,8 +226,8 @@ class Body(HasMassProperties):
             TooLargeError: the shape has too many vertices.
 
         Warns:
-        ImplausibleBodyWarning: the mass cannot lie inside the shape, so units or placeholders are probably
-        wrong.
+            ImplausibleBodyWarning: the mass cannot lie inside the shape, so units or placeholders are
+                probably wrong.
         """
         from contact_dynamics.shapes.files import read_link
 
