@@ -100,12 +100,12 @@ def propagate_covariance(
     """Return the covariance at times (n,), s after the state's stamp and of either sign.
 
     Args:
-        body: The body.
-        state: Its state.
-        covariance: (12, 12), at the stamp.
+        body: A `Body`, or its `MassProperties`.
+        state: State at the stamp.
+        covariance: (12, 12), covariance of the state, in the order of `state_derivatives`.
         times: (n,), s.
-        gravity_W: (3,), m/s^2.
-        gravity_covariance_W: (3, 3), m^2/s^4, of gravity in the world's axes, which may be tilted from
+        gravity_W: (3,), m/s^2, world axes.
+        gravity_covariance_W: (3, 3), m^2/s^4, covariance of gravity in world axes, whose tilt may differ from
             recording to recording. If None, gravity is exact.
         by_gravity: s^2 and s, derivatives of the estimated position and velocity with respect to gravity, as
             in `FitResult.by_gravity`.
@@ -139,9 +139,8 @@ def covariance_along(
 ) -> CarriedCovariance:
     """Return the covariance of the state along a given motion, as `propagate_covariance` does.
 
-    The covariance is that of the state at fixed times. It contains no standard deviation of the time of an
-    event such as a landing. ``samples`` and ``seed`` have an effect only if the covariance is sampled: free
-    motions are then set up, and forced ones integrated, for each sample.
+    The covariance refers to fixed times, and does not contain the standard deviation of the time of an event
+    such as a landing. ``samples`` and ``seed`` have an effect only if the covariance is sampled.
 
     Raises:
         InvalidFieldError: `propagate_covariance` rejects an argument, or the number of samples is not from

@@ -121,7 +121,7 @@ def fit_free_motion(
     gravity_W: ArrayLike = STANDARD_GRAVITY_W,
     noise: StateNoise | None = None,
 ) -> FitResult:
-    """Return the free motion that fits ``states``, in the order of time, best.
+    """Return the best fit of a free motion to ``states``, which are in the order of time.
 
     If ``noise`` is given, the covariance follows from it, and the fit uses those velocities for which the
     noise contains a deviation. Otherwise, the fit uses poses alone, and the covariance is an average over

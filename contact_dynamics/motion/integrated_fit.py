@@ -64,7 +64,7 @@ def fit_motion(
     noise: StateNoise | None = None,
     max_steps: int = MAX_STEPS,
 ) -> FitResult:
-    """Return the best fit to ``states``, in the order of time, under the forces that act.
+    """Return the best fit of a motion under given forces to ``states``, which are in the order of time.
 
     If `contact_dynamics.motion_of` uses the closed form, this is `fit_free_motion`. The seconds of
     ``wrench_of`` are relative to the newest state, and ``max_steps`` is as in `forced_motion`. If ``noise``

@@ -109,7 +109,7 @@ def planar_velocity(plane: PlaneOfMotion, state: BodyState) -> PlanarVelocity:
 def planar_in_space(
     body: PlanarBody, velocity: PlanarVelocity, contacts: Sequence[PlanarContact], *, axes_W: ArrayLike
 ) -> tuple[MassProperties, BodyState, ContactSet]:
-    """Return a problem in space that moves as a planar one does, with the plane's x and y, (2, 3).
+    """Return a spatial problem equivalent to a planar one; ``axes_W`` are the plane's x and y axes, (2, 3).
 
     Raises:
         InvalidFieldError: the axes are not two unit vectors at right angles.

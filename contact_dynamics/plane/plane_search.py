@@ -68,14 +68,13 @@ def best_plane(
     """Return a plane in which a problem is planar, or the plane in which it is most nearly planar.
 
     Contact normals and the applied force must lie in the plane. If they leave a choice (a body on a floor),
-    these planes are tried in turn, each made to contain them: normal to the rotation's axis; along the
-    sliding motion; normal to the torque; through all contacts, if there is such a plane; normal to each of
-    the body's principal axes, and to the world's. The first is taken that leaves out no motion above
-    ``speed_tolerance`` (m/s) and couples no inertia beyond `OUT_OF_PLANE_RATIO`. If none does, it is the one
-    that leaves out least.
+    these planes are tried in turn, each turned such that it contains them: normal to the rotation axis; along
+    the sliding motion; normal to the torque; through all contacts, if there is such a plane; normal to each
+    of the body's principal axes, and to the world's. The result is the first plane out of which no speed
+    exceeds ``speed_tolerance`` (m/s) and no coupling of inertia exceeds `OUT_OF_PLANE_RATIO`, or otherwise
+    the plane with the smallest motion out of it.
 
-    Of the two unit normals of a plane, the one is returned that does not depend on load and motion, as the
-    head of this file says.
+    The sign of its normal depends neither on load nor on motion (docs/notation.md).
 
     Raises:
         InvalidFieldError: the wrench is not three finite numbers each, or the tolerance is negative.

@@ -150,7 +150,7 @@ def polygon(outline: ArrayLike) -> ConvexShape:
 
 
 def box(size: ArrayLike, y: float | None = None, z: float | None = None) -> ConvexShape:
-    """Return a box of full side lengths, m, each > 0: one (3,), or three numbers, as `box(0.1, 0.2, 0.3)`."""
+    """Return a box of full side lengths, m, > 0: one (3,), or three numbers, as in `box(0.1, 0.2, 0.3)`."""
     sides = [_positive(f"size[{i}]", x) for i, x in enumerate(check_sides(size, y, z).tolist())]
     return ConvexShape(vertices=box_vertices(sides))
 

@@ -195,8 +195,8 @@ class RollingCurves(Rows):
 def rolling_curves(motion: FreeMotion, count: int) -> RollingCurves:
     """Return ``count`` points of polhode and herpolhode, with the times at which the motion passes them.
 
-    They go once around the polhode, over the period that contains time 0. `polhode` describes the result if
-    there is no period.
+    The points go once around the polhode, over the period that contains time 0. `polhode` describes the
+    result if there is no period.
 
     Raises:
         TooLargeError: there are more than `MAX_POINTS` points.

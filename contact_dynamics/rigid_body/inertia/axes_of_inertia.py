@@ -90,7 +90,7 @@ class InertiaEllipsoid(Record):
 def principal_axes(I_B: ArrayLike) -> PrincipalAxes:
     """Return the principal moments and axes of a (3, 3) symmetric matrix, kg m^2, such as a body's I_B.
 
-    Both are right to the last bit of the numbers given, also the small moments of slim bodies.
+    Both are accurate to the rounding of the given numbers, including the small moments of slender bodies.
 
     Raises:
         InvalidFieldError: the matrix is not symmetric, or not finite.

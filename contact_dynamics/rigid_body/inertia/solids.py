@@ -51,7 +51,7 @@ def sphere(radius: float, *, mass: float | None = None, density: float | None = 
 def hollow_sphere(
     *, outer_radius: float, inner_radius: float, mass: float | None = None, density: float | None = None
 ) -> MassDistribution:
-    """Return a ball with a concentric hollow. For a thin one take `spherical_shell`."""
+    """Return a ball with a concentric hollow. `spherical_shell` is a thin one."""
     R, r = _wall(outer_radius, inner_radius)
     squares = R * R + R * r + r * r
     total = mass_of(4.0 / 3.0 * math.pi * (R - r) * squares, mass=mass, density=density)
@@ -98,7 +98,7 @@ def tube(
 def capsule(
     radius: float, length: float, *, mass: float | None = None, density: float | None = None
 ) -> MassDistribution:
-    """Return a cylinder along z, of that length >= 0, with a half ball on each end, about its centre."""
+    """Return a cylinder of ``length`` >= 0 along z with a half ball on each end, about its centre."""
     r, h = check_length("radius", radius), check_length_or_none("length", length)
     middle, ends = h, 4.0 / 3.0 * r  # volumes over pi r^2
     total = mass_of(math.pi * r * r * (middle + ends), mass=mass, density=density)
