@@ -175,8 +175,8 @@ CASES: Final = {
     ),
     "pressed_book": Case(
         title="A book pressed against a wall",
-        story="Objects slip out of simulated hands however large μ is. Here a smooth hand presses a book "
-        "against a wall with the force N. With Coulomb friction the book stays if μ N ≥ m g.",
+        story="In simulations, objects slip out of hands even if μ is large. Here, a smooth hand presses a "
+        "book against a wall with the force N. With Coulomb friction, the book stays if μ N ≥ m g.",
         discussed="gazebosim/gazebo-classic/issues/2703 bulletphysics/bullet3/issues/2607 "
         "PickNikRobotics/ros2_robotiq_gripper/pull/15",
         setting="μ (the limit is 0.4903)",
@@ -253,8 +253,9 @@ CASES: Final = {
     "four_feet": Case(
         title="The load on one of four feet",
         story="Rigid-body mechanics does not determine how four feet share a weight, and the answer reports "
-        "this (`forces_unique`). An engine returns one distribution, which depends on its contact softness "
-        "and changes if one foot is slightly shorter. MuJoCo's number is that change.",
+        "this (`forces_unique`). An engine returns one distribution, which depends on its contact "
+        "softness and changes if one foot is slightly shorter. The number in MuJoCo's column is this "
+        "change.",
         discussed="schteppe/cannon.js/issues/274 google-deepmind/mujoco/issues/2630",
         setting="mass, kg",
         settings=(8.0,),
@@ -273,8 +274,9 @@ CASES: Final = {
     ),
     "tipping_cube": Case(
         title="A sliding cube that tips only above μ = 1",
-        story="A cube is pushed and slides. Its centre of mass is as far above the floor as its front edge "
-        "is ahead of it, so it stays flat up to μ = 1 and tips beyond. Users saw it tumble at μ = 0.5.",
+        story="A cube is pushed and slides. The height of its centre of mass equals the horizontal distance "
+        "to its front edge, so the cube stays flat up to μ = 1 and tips beyond. Users saw such a cube "
+        "tumble at μ = 0.5.",
         discussed="Genesis-Embodied-AI/genesis-world/issues/3115",
         setting="μ",
         settings=(0.5, 0.99, 1.01),
@@ -373,8 +375,8 @@ CASES: Final = {
     ),
     "hundred_bounces": Case(
         title="A ball at e = 1 that keeps its height",
-        story="Users found that a lossless ball jumps higher with every bounce, or lower, because gravity "
-        "and impact share a time step. Here flight and impact are computed separately, each exactly.",
+        story="Users found that a lossless ball jumps higher, or lower, with every bounce, because gravity "
+        "and impact share a time step. Here, flight and impact are computed separately, and exactly.",
         discussed="dimforge/rapier/issues/97 jrouwe/JoltPhysics/issues/1286 erincatto/box2d/issues/167 "
         "bulletphysics/bullet3/issues/1530",
         setting="number of bounces",
@@ -448,8 +450,9 @@ CASES: Final = {
     ),
     "cradle_at_once": Case(
         title="Newton's cradle, simultaneous law",
-        story="If all contacts collide simultaneously, each under Newton's law of restitution, the balls at rest "
-        "leave together. Neither law is wrong; an engine that returns one result has chosen one of them.",
+        story="If all contacts collide simultaneously, each under Newton's law of restitution, the balls at "
+        "rest leave together. Neither law is wrong, and an engine that returns a single result has "
+        "chosen one of them.",
         discussed="liabru/matter-js/issues/361",
         setting="e",
         settings=(1.0, 0.8),
@@ -485,7 +488,7 @@ CASES: Final = {
     "free_fall": Case(
         title="Free fall",
         story="An integrator that uses the velocity at the end of the step makes a body fall g t Δt / 2 too "
-        "far. Here flight is a closed form at any time.",
+        "far. Here, the flight is computed in closed form at any time.",
         discussed="dimforge/rapier/issues/525 schteppe/cannon.js/issues/353",
         setting="time, s",
         settings=(1.0,),
