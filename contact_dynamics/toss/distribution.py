@@ -17,8 +17,8 @@ from contact_dynamics.errors import InvalidFieldError, NotSupportedError
 from contact_dynamics.records import NamedInt, Record
 from contact_dynamics.rotations.many import rotation_vectors, turned
 from contact_dynamics.tolerances import EXACT_SHARE
-from contact_dynamics.validation import FloatArray, check_within
-from contact_dynamics.validation_batches import check_rows
+from contact_dynamics.validation import FloatArray, check_magnitude, check_within
+from contact_dynamics.validation_batches import check_not_negative_rows, check_rows
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -69,14 +69,14 @@ class Region(Record):
             InvalidFieldError: the values do not have k components, or the noise is negative.
             NotSupportedError: there are too few samples for a region.
         """
-        rows = check_rows("values", values, (len(self.mean),))
-        stds = check_rows("noise", np.broadcast_to(noise, self.mean.shape), self.mean.shape)[0]
-        if (stds < 0.0).any():
-            raise InvalidFieldError("noise", noise, "at least 0")
+        rows = check_magnitude("values", check_rows("values", values, self.mean.shape))
+        stds = check_magnitude("noise", check_not_negative_rows("noise", noise))
+        if len(stds) not in {1, len(self.mean)}:
+            raise InvalidFieldError("noise", noise, f"one number, or {len(self.mean)}")
         if not np.isfinite(self.covariance).all():
             message = f"a region requires at least {FEWEST} samples: covariance and radii are NaN"
             raise NotSupportedError(message)
-        return _distances(rows - self.mean, self.covariance + np.diag(stds**2))
+        return _distances(rows - self.mean, self.covariance + np.diag(stds**2 * np.ones_like(self.mean)))
 
     def holds(self, values: ArrayLike, *, noise: ArrayLike = 0.0) -> NDArray[np.bool_]:
         """Return whether values, (n, k), are inside the 50 and 90 % regions, (n, 2). See `distances`."""

@@ -10,6 +10,7 @@ from hostile_values.shared import BOX, STATE, WORLD, Calls
 TOSSED = {"body": BOX, "state": STATE, "world": WORLD}
 FOLLOWED = toss.toss(**TOSSED, horizon=0.1)
 SAMPLED = toss.sampled_toss(**TOSSED, count=2, horizon=0.1)
+REGION = toss.Region(mean=np.zeros(3), covariance=1e-4 * np.eye(3), radii=np.array([1.5, 2.5]))
 
 TOSSES: Calls = {
     "toss": (
@@ -26,6 +27,8 @@ TOSSES: Calls = {
     "Toss.at": (FOLLOWED.at, {"seconds": [0.01, 0.05]}),
     "Toss.state_at": (FOLLOWED.state_at, {"seconds": 0.05}),
     "TossDistribution.standard_error": (SAMPLED.standard_error, {"probability": 0.5}),
+    "Region.distances": (REGION.distances, {"values": [0.1, 0.0, 0.2], "noise": 0.001}),
+    "Region.holds": (REGION.holds, {"values": [0.1, 0.0, 0.2], "noise": 0.001}),
     "TossUncertainty": (
         toss.TossUncertainty,
         {
