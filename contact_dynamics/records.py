@@ -22,7 +22,7 @@ import numpy as np
 
 from contact_dynamics.errors import NotSupportedError
 from contact_dynamics.tolerances import SHOWN_AS_ZERO
-from contact_dynamics.validation_types import check_names, checks_fields, no_attribute
+from contact_dynamics.validation_types import checks_fields, checks_names, no_attribute
 
 Made = TypeVar("Made", bound="Record")
 
@@ -116,17 +116,13 @@ class Record:
 
     __slots__ = ()
 
-    def __new__(cls: type[Made], *args: object, **fields: object) -> Made:  # noqa: PYI019  Python 3.10 has no Self
-        """Reject arguments without a name, and names that do not exist. The error lists the fields."""
-        if args or fields:
-            check_names(cls, fields, by_place=len(args))
-        return object.__new__(cls)
-
     def __init_subclass__(cls) -> None:
-        """Have the types of fields checked, once, although `dataclass` makes a class with slots anew."""
-        post_init = vars(cls).get("__post_init__")
+        """Have the names and types of fields checked, once: `dataclass` makes a class with slots anew."""
+        post_init, init = vars(cls).get("__post_init__"), vars(cls).get("__init__")
         if post_init is not None and not hasattr(post_init, "__wrapped__"):
             type.__setattr__(cls, "__post_init__", checks_fields(post_init, inspect.get_annotations(cls)))
+        if init is not None and not hasattr(init, "__wrapped__"):
+            type.__setattr__(cls, "__init__", checks_names(init))
         super().__init_subclass__()
 
     if not TYPE_CHECKING:  # type checkers know which attributes there are

@@ -58,9 +58,6 @@ _MEANT: Final[dict[str, tuple[str, ...]]] = {
 _INTERNAL: Final = ("_", "HINT_IF", "ALLOWED")
 """How names begin that no user asks for."""
 
-_NAMES: Final[dict[type, tuple[tuple[str, ...], set[str], bool]]] = {}
-"""The arguments of each class, those required by name, and whether none is given by place. A cache."""
-
 _UNKNOWN: Final[tuple[int, tuple[type, ...]]] = (-1, ())
 """Place and types of an argument that a function does not have."""
 
@@ -240,28 +237,44 @@ def checks_fields(post_init: Callable[[Any], None], annotations: Mapping[str, st
     return checked
 
 
-def check_names(made: type, arguments: Mapping[str, object], by_place: int = 0) -> None:
+def checks_names(init: Callable[..., None]) -> Callable[..., None]:
+    """Return a record's ``__init__`` that raises `UnknownArgumentError` for arguments that it does not take.
+
+    The error names the field that was probably meant, the fields that are missing, or all of them if
+    arguments are given by place to a record that takes them only by name.
+    """
+
+    @functools.wraps(init)
+    def checked(self: object, *args: object, **fields: object) -> None:
+        try:
+            init(self, *args, **fields)
+        except TypeError:
+            _check_names(type(self), fields, by_place=len(args))
+            raise
+
+    return checked
+
+
+def _check_names(made: type, arguments: Mapping[str, object], by_place: int = 0) -> None:
     """Raise `UnknownArgumentError` if a class has no such argument, or requires another one.
 
     It is also raised for arguments ``by_place`` if the class takes arguments only by name.
     """
-    known = _NAMES.get(made)
-    if known is None:
-        (_, *others) = inspect.signature(made.__init__).parameters.values()  # type: ignore[misc]  # not called
-        required = {one.name for one in others if _is_required(one)}
-        names = tuple(one.name for one in others)
-        known = _NAMES[made] = names, required, all(one.kind is one.KEYWORD_ONLY for one in others)
-    names, required, only_by_name = known
-    if by_place and only_by_name:
-        words = f"{made.__qualname__} takes arguments only by name, such as {names[0]}=..."
-        raise UnknownArgumentError(f"{words}, got {by_place} by place. It has {', '.join(names)}")
+    names = dict(inspect.signature(made.__init__).parameters)  # type: ignore[misc]  # not called
+    names.pop("self", None)
+    if by_place:
+        if any(one.kind is not one.KEYWORD_ONLY for one in names.values()):
+            return
+        words = f"{made.__qualname__} takes arguments only by name, such as {next(iter(names))}=..."
+        listed = ", ".join(names)
+        raise UnknownArgumentError(f"{words}, got {by_place} by place. It has {listed}") from None
     for name in arguments:
         if name not in names:
-            refuse_unknown(made, name, names)
-    missing = required.difference(arguments)
+            refuse_unknown(made, name, tuple(names))
+    missing = [name for name, one in names.items() if _is_required(one) and name not in arguments]
     if missing:
-        listed = [f"{name}{_meaning(made, name)}" for name in names if name in missing]
-        raise UnknownArgumentError(f"{made.__qualname__} requires {', '.join(listed)}")
+        listed = ", ".join(f"{name}{_meaning(made, name)}" for name in missing)
+        raise UnknownArgumentError(f"{made.__qualname__} requires {listed}") from None
 
 
 def _is_required(parameter: inspect.Parameter) -> bool:
@@ -280,7 +293,7 @@ def refuse_unknown(called: Callable[..., object], name: str, allowed: Collection
     else:
         words += "."
     hint = getattr(called, "HINT_IF_UNKNOWN", "")
-    raise UnknownArgumentError(f"{words} It has {', '.join(known)}{'; ' if hint else ''}{hint}")
+    raise UnknownArgumentError(f"{words} It has {', '.join(known)}{'; ' if hint else ''}{hint}") from None
 
 
 def no_attribute(record: object, name: str) -> str:
