@@ -192,10 +192,10 @@ def _passed(body: Body, trajectory: Trajectory, known: Context) -> tuple[str, ..
     """Return a warning for each flat surface that the body would be in at some time."""
     if body.shape.is_empty:
         return ()
-    found = []
+    found, R_WB = [], matrices_of(trajectory.q_WB)
     for surface in known.world.surfaces:
         if isinstance(surface, Surface):
-            normal_W, R_WB = surface.normal_W, matrices_of(trajectory.q_WB)
+            normal_W = surface.normal_W
             gaps = lowest_along(body.shape, trajectory.p_WB_W, R_WB, normal_W) - normal_W @ surface.p_WS_W
             deep = gaps < -known.defaults.distance_tolerance
             if deep.any():

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from contact_dynamics.rotations.one import rows_of
+from contact_dynamics.rotations.one import rotation_matrix, rows_of
 
 if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
@@ -27,6 +27,8 @@ def crosses(a: FloatArray, b: FloatArray) -> FloatArray:
 
 def matrices_of(q: FloatArray) -> FloatArray:
     """Return the rotation matrices, (n, 3, 3), of unit quaternions, (n, 4)."""
+    if len(q) == 1:  # floats are faster
+        return rotation_matrix(q[0])[None]
     R = np.empty((len(q), 3, 3))
     R.transpose(1, 2, 0)[:] = rows_of(*q.T)
     return R
