@@ -45,8 +45,8 @@ def contacts_from_msg(msg: ContactSetMsg) -> ContactSet:
         return ContactSet(
             p_WC_W=_rows("contacts.positions", msg.positions, n),
             normals_W=_rows("contacts.normals", msg.normals, n),
-            frictions=np.array(msg.frictions),
-            restitutions=np.array(msg.restitutions) if msg.restitutions or n == 0 else None,
+            frictions=np.asarray(msg.frictions),
+            restitutions=np.asarray(msg.restitutions) if msg.restitutions or n == 0 else None,
             surfaces=tuple(msg.surface_names),
             body_curvatures=body_curvatures,
             surface_curvatures=surface_curvatures,
@@ -92,9 +92,7 @@ def contacts_to_msg(contacts: ContactSet, *, into: ContactSetMsg | None = None) 
 
 def flat(values: FloatArray) -> array[float]:
     """Return numbers as a flat `array.array`, which message fields accept without checking each element."""
-    numbers = array("d")
-    numbers.frombytes(np.ascontiguousarray(values, dtype=np.float64).tobytes())
-    return numbers
+    return array("d", np.asarray(values, dtype=np.float64).tobytes())
 
 
 def rows(numbers: Sequence[float], width: int = 3) -> FloatArray:
@@ -169,4 +167,4 @@ def _optional_rows(field: str, values: array[float], n: int) -> FloatArray | Non
 def _rows(field: str, values: array[float], n: int) -> FloatArray:
     if len(values) != 3 * n:
         raise InvalidFieldError(field, f"{len(values)} numbers", f"{3 * n}, three for each of {n} frictions")
-    return np.array(values).reshape(n, 3)
+    return np.asarray(values).reshape(n, 3)
