@@ -21,7 +21,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
@@ -32,7 +32,7 @@ from contact_dynamics.errors import NotSupportedError
 from contact_dynamics.numerics.vectors import point_jacobians
 from contact_dynamics.plane.types import PlanarVelocity, PlanarWrench
 from contact_dynamics.tolerances import ROW_TOLERANCE, SURFACES_AS_ONE
-from contact_dynamics.validation import check_at_rest
+from contact_dynamics.validation import check_at_rest, check_magnitude
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -43,6 +43,9 @@ if TYPE_CHECKING:
     from contact_dynamics.contact_modes.spatial.wrench_sets import SpatialWrenchSet
     from contact_dynamics.plane.types import PlanarContact, Vector2
     from contact_dynamics.validation import FloatArray
+
+
+_SEEN: Final = "state, contacts: velocities and inertial wrench relative to surfaces that move"
 
 
 class SpatialFrame(NamedTuple):
@@ -125,6 +128,7 @@ def spatial_frame(problem: SpatialContactProblem, *, resting: bool = False) -> S
     acceleration, angular = a_S + 2.0 * np.cross(W, v_rel), A + np.cross(W, w_rel)
     gyroscopic = np.cross(turning, inertia @ turning) - np.cross(w_rel, inertia @ w_rel)
     shift = np.concatenate([body.mass * acceleration, inertia @ angular + gyroscopic])
+    check_magnitude(_SEEN, np.concatenate([v_rel, w_rel, shift]))
     rho = body.mean_radius_of_gyration
     metric = np.array([1.0, 1.0, 1.0, rho, rho, rho])
     wrench = problem.wrench_W - shift
@@ -255,6 +259,7 @@ def planar_frame(problem: PlanarContactProblem, *, resting: bool = False) -> Pla
         ]
     (f_x, f_y), moment = problem.wrench.f, problem.wrench.moment
     x, y, turning = mass * acceleration[0], mass * acceleration[1], inertia * A
+    check_magnitude(_SEEN, np.array([x, y, turning]))
     wrench = PlanarWrench(f=(f_x - x, f_y - y), moment=moment - turning)
     rho = problem.body.radius_of_gyration
     terms = math.hypot(f_x, f_y, moment / rho) + math.hypot(x, y, turning / rho)

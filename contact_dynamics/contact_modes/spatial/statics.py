@@ -34,6 +34,7 @@ from contact_dynamics.contact_modes.spatial.round_cones import held_by_round_con
 from contact_dynamics.contact_modes.spatial.wrenches import distinct
 from contact_dynamics.errors import TooLargeError, UndecidedError
 from contact_dynamics.rotations.one import cross_matrix
+from contact_dynamics.tolerances import LARGEST_NUMBER
 
 if TYPE_CHECKING:
     from contact_dynamics.contact_modes.spatial.problem import SpatialCase, SpatialContactProblem
@@ -56,7 +57,7 @@ def spatial_statics(problem: SpatialContactProblem, *, margin_length: float | No
     arms = contacts.p_WC_W - state.p_WB_W
     start = force / body.mass + np.cross(np.linalg.solve(body.inertia_in_world(state.R_WB), torque), arms)
     pyramids = [
-        linearised_cone(normal, float(friction), friction_facets, towards=-away)
+        linearised_cone(normal, min(float(friction), LARGEST_NUMBER), friction_facets, towards=-away)
         if friction > 0.0
         else normal[None, :]
         for normal, friction, away in zip(contacts.normals_W, contacts.frictions, start, strict=True)

@@ -23,7 +23,7 @@ from contact_dynamics.contact_modes import (
     statics,
     wrench_sets,
 )
-from contact_dynamics.errors import NotSupportedError
+from contact_dynamics.errors import InvalidFieldError, NotSupportedError
 from contact_dynamics.plane import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
 from contact_dynamics.plane.lifting import planar_in_space
 from contact_modes.evidence import check_forces, planar_problem, spatial_problem
@@ -259,3 +259,8 @@ def test_a_surface_that_comes_is_an_impact_whatever_the_others_do() -> None:
     answer = contact_modes(PlanarContactProblem(body=BLOCK, contacts=contacts, wrench=WEIGHT))
     assert answer.verdict.name == "IMPACT"
     assert answer.approaching == (0,)
+
+
+def test_an_extreme_acceleration_of_a_surface_is_not_blamed_on_the_wrench() -> None:
+    with pytest.raises(InvalidFieldError, match=r"^state, contacts: velocities and inertial wrench relative"):
+        contact_modes(problem_on(Motion(a=(1e60, 0.0)), REST, LEFT, RIGHT))

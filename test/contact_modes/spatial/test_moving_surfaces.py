@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import itertools
+import warnings
 from dataclasses import replace
 
 import numpy as np
@@ -19,7 +20,7 @@ from contact_dynamics.contact_modes import (
     spatial_kinematic_modes,
     wrench_sets,
 )
-from contact_dynamics.errors import InvalidFieldError, NotSupportedError
+from contact_dynamics.errors import FarContactWarning, InvalidFieldError, NotSupportedError
 from oracles.relative_motion import RigidMotion, over
 from sweeps import seeds
 
@@ -562,3 +563,25 @@ def test_a_box_rests_on_a_tray_that_falls_freely_and_turns() -> None:
         assert mode.mode == "ffff"
         assert not mode.contact_forces_W.any()
         np.testing.assert_allclose(mode.acceleration_W, [0, 0, -G], atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("moving", "spin"), [({"a_WS_W": [1e60, 0, 0]}, 0.0), ({"w_WS_W": [0, 0, 1e50]}, 1e59)]
+)
+def test_an_extreme_motion_is_not_blamed_on_the_wrench(moving: dict[str, object], spin: float) -> None:
+    """On surfaces that move, the body's own motion and theirs cause inertial forces beyond the limit."""
+    still = cd.SpatialContactProblem.of(BOX, ON_FLOOR, cd.World(surfaces=(surface(**moving),)))
+    tilted = cd.MassProperties(mass=2.0, I_B=[[0.2, 0.0, 0.05], [0.0, 0.3, 0.0], [0.05, 0.0, 0.25]])
+    problem = replace(still, body=tilted, state=ON_FLOOR.with_velocities(STILL, [0, 0, spin]))
+    with pytest.raises(InvalidFieldError, match=r"^state, contacts: velocities and inertial wrench relative"):
+        cd.contact_modes(problem)
+
+
+def test_friction_and_points_beyond_all_scales_warn_of_no_overflow() -> None:
+    problem = cd.SpatialContactProblem.of(BOX, ON_FLOOR, cd.World(surfaces=(surface(friction=1e200),)))
+    assert cd.statics(problem).equilibrium.name == "CERTAIN"
+    points = problem.contacts.p_WC_W.copy()
+    points[0, 0] -= 1e59
+    far = replace(problem, contacts=replace(problem.contacts, p_WC_W=points, frictions=MU))
+    with warnings.catch_warnings(action="ignore", category=FarContactWarning):
+        assert cd.contact_modes(far).verdict.name == "UNDECIDED"
