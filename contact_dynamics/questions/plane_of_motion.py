@@ -148,16 +148,18 @@ def lifted_impact(impact: PlanarImpact, problem: PlanarProblem, state: BodyState
     axes = np.array((contact.tangent, contact.normal)) @ problem.plane.axes_W
     a, b, c, _ = impact.inverse_inertia
     events, vertices = zip(*impact.path, strict=True)
+    ends = impact.impulse_C, impact.compression_C, impact.velocity_before_C, impact.velocity_after_C
+    vectors_W = np.array((*ends, *vertices)) @ axes
     return SpatialImpact(
         restitution_law=impact.restitution_law,
         outcome=impact.outcome,
         jams=impact.jams,
-        impulse_W=np.array(impact.impulse_C) @ axes,
-        compression_W=np.array(impact.compression_C) @ axes,
-        path_W=np.array(vertices) @ axes,
+        impulse_W=vectors_W[0],
+        compression_W=vectors_W[1],
+        path_W=vectors_W[4:],
         path_events=events,
-        velocity_before_W=np.array(impact.velocity_before_C) @ axes,
-        velocity_after_W=np.array(impact.velocity_after_C) @ axes,
+        velocity_before_W=vectors_W[2],
+        velocity_after_W=vectors_W[3],
         inverse_inertia_W=axes.T @ np.array(((a, b), (b, c))) @ axes,
         state=with_planar_velocity(problem, state, impact.velocity),
     )

@@ -5,14 +5,13 @@ The formulas are those for one motion, over arrays and in doubles. Errors of att
 the angle turned, times the motion's sensitivity. A motion that is on the separatrix to the last bit is
 computed as if it were 1e-300 off it.
 
-The constants of the rotations and of their theta functions take most of the time, so rotations are set up
-once for all times.
+The constants of the rotations and of their theta functions take most of the time.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final, NamedTuple
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
@@ -34,9 +33,6 @@ from contact_dynamics.validation import check_array, check_magnitude
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
-
-    from contact_dynamics.tumbling.theta import Bumps, Harmonics
-
 
 CHUNK: Final = 4096
 """Number of rotations computed at a time. Their intermediate arrays stay in the processor's cache."""
@@ -73,61 +69,6 @@ def states_of_many(
         InvalidFieldError: an array has a wrong shape, a number is not finite, a quaternion is not a unit
             quaternion, or an inertia is not symmetric and positive definite.
     """
-    start = _start(I_B, p_WB_W=p_WB_W, q_WB=q_WB, v_WB_W=v_WB_W, w_WB_W=w_WB_W, gravity_W=gravity_W)
-    n = len(start.p)
-    times = np.broadcast_to(_times(seconds, n), (n,))
-    return start.after(times, *rotations_of_many(start.moments, start.w_P, times))
-
-
-class _Start(NamedTuple):
-    """States of n bodies at time 0, a row each.
-
-    Attributes:
-        p: (n, 3), m, world.
-        q: (n, 4), unit quaternions.
-        v: (n, 3), m/s, world axes.
-        gravity: (n, 3), m/s^2, world axes.
-        moments: (n, 3), principal moments, ascending.
-        R_BP: (n, 3, 3), principal axes in the body.
-        R_WP: (n, 3, 3), in the world.
-        w_P: (n, 3), rad/s, principal axes.
-    """
-
-    p: FloatArray
-    q: FloatArray
-    v: FloatArray
-    gravity: FloatArray
-    moments: FloatArray
-    R_BP: FloatArray
-    R_WP: FloatArray
-    w_P: FloatArray
-
-    def after(self, times: FloatArray, turn: FloatArray, w_P: FloatArray) -> Trajectory:
-        """Return the states at times (n,), s, from what `rotations_of_many` returns.
-
-        The turn is in principal axes at time 0. As a rotation of the world it is R_WP turn R_WP^T.
-        """
-        onto_W = np.einsum("nij,nj->ni", self.R_WP, turn[:, :3])
-        then = products(np.column_stack([onto_W, turn[:, 3]]), self.q)
-        elapsed = times[:, None]
-        return Trajectory(
-            seconds=times.copy(),
-            p_WB_W=self.p + elapsed * (self.v + (0.5 * elapsed) * self.gravity),
-            q_WB=then,
-            v_WB_W=self.v + elapsed * self.gravity,
-            w_WB_W=np.einsum("nij,nj->ni", matrices_of(then) @ self.R_BP, w_P),
-        )
-
-
-def _start(
-    I_B: ArrayLike,
-    *,
-    p_WB_W: ArrayLike,
-    q_WB: ArrayLike,
-    v_WB_W: ArrayLike,
-    w_WB_W: ArrayLike,
-    gravity_W: ArrayLike,
-) -> _Start:
     w = check_magnitude("w_WB_W", check_array("w_WB_W", w_WB_W, (None, 3)))
     n = len(w)
     p, v = _rows("p_WB_W", p_WB_W, n, (3,)), _rows("v_WB_W", v_WB_W, n, (3,))
@@ -137,15 +78,17 @@ def _start(
     R_WP = matrices_of(q) @ R_BP
     one = np.ndim(gravity_W) == 1
     gravity = check_array("gravity_W", gravity_W, (3,)) if one else _rows("gravity_W", gravity_W, n, (3,))
-    return _Start(
-        p=p,
-        q=q,
-        v=v,
-        gravity=gravity,
-        moments=moments,
-        R_BP=R_BP,
-        R_WP=R_WP,
-        w_P=np.einsum("nij,ni->nj", R_WP, w),
+    times = np.broadcast_to(_times(seconds, n), (n,))
+    # The turn is in principal axes at time 0. As a rotation of the world it is R_WP turn R_WP^T.
+    turn, w_P = rotations_of_many(moments, np.einsum("nij,ni->nj", R_WP, w), times)
+    then = products(np.column_stack([np.einsum("nij,nj->ni", R_WP, turn[:, :3]), turn[:, 3]]), q)
+    elapsed = times[:, None]
+    return Trajectory(
+        seconds=times.copy(),
+        p_WB_W=p + elapsed * (v + (0.5 * elapsed) * gravity),
+        q_WB=then,
+        v_WB_W=v + elapsed * gravity,
+        w_WB_W=np.einsum("nij,nj->ni", matrices_of(then) @ R_BP, w_P),
     )
 
 
@@ -214,7 +157,7 @@ def rotations_of_many(
     with np.errstate(**_IN_STEADY_SPIN):  # set after
         for start in range(0, n, CHUNK):
             part = slice(start, start + CHUNK)
-            q[part], w_then[part] = turns_of_many(given[part], w[part]).at(times[part])
+            q[part], w_then[part] = _turned(given[part], w[part], times[part])
     return q, w_then
 
 
@@ -308,93 +251,47 @@ def tumbles_of_many(given: FloatArray, w_P: FloatArray) -> Tumbles:
     )
 
 
-@dataclass(frozen=True, slots=True)
-class Turns:
-    """Rotations of n bodies from time 0 on, each about its own principal axes, as `turns_of_many` makes them.
-
-    Attributes:
-        w_P: (n, 3), rad/s, at time 0, principal axes.
-        tumbles: Their constants.
-        rows: Which of them have a trigonometric series, and which have bumps, (n,), bool.
-        forms: The theta functions of the two kinds, or None if there are none of a kind.
-        begin: (4, n), the attitudes at time 0.
-    """
-
-    w_P: FloatArray
-    tumbles: Tumbles
-    rows: tuple[NDArray[np.bool_], NDArray[np.bool_]]
-    forms: tuple[Harmonics | None, Bumps | None]
-    begin: FloatArray
-
-    def at(self, times: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return quaternions, (n, 4), and angular velocities, (n, 3), rad/s, at times (n,), s."""
-        r, w_P = self.tumbles, self.w_P
-        end = _values(r, self.rows, self.forms, times)
-        x0, y0, z0, w0 = self.begin
-        x1, y1, z1, w1 = _attitudes(end)
-        turned = np.stack(
-            (
-                w0 * x1 - x0 * w1 - y0 * z1 + z0 * y1,
-                w0 * y1 + x0 * z1 - y0 * w1 - z0 * x1,
-                w0 * z1 - x0 * y1 + y0 * x1 - z0 * w1,
-            ),
-            axis=1,
-        )
-        norm2 = end[0] ** 2 + end[1] ** 2 + end[2] ** 2 + end[3] ** 2
-        momenta = np.stack((end[4], 2.0 * (end[0] * end[3] - end[1] * end[2]), end[5]))
-        rates = (momenta * (r.L / norm2) / r.moments.T).T
-        q, w_then = np.empty((len(w_P), 4)), np.empty((len(w_P), 3))
-        np.put_along_axis(q, r.axes, r.signs * turned, axis=1)
-        q[:, 3] = w0 * w1 + x0 * x1 + y0 * y1 + z0 * z1
-        q /= np.sqrt(np.einsum("ij,ij->i", q, q))[:, None]
-        np.put_along_axis(w_then, r.axes, r.signs * rates, axis=1)
-        if r.steady.any():
-            spin, half = w_P[r.steady], 0.5 * times[r.steady]
-            rate = np.sqrt(np.einsum("ij,ij->i", spin, spin))
-            q[r.steady, :3] = spin * (np.sin(rate * half) / np.maximum(rate, SMALLEST))[:, None]
-            q[r.steady, 3] = np.cos(rate * half)
-            w_then[r.steady] = spin
-        return q, w_then
-
-
-def turns_of_many(moments: FloatArray, w_P: FloatArray) -> Turns:
-    """Return rotations from principal moments and angular velocities, (n, 3) each, in the same axes.
-
-    Rows of steady spin divide by zero here and in `Turns.at`. Who calls these ignores it (`numpy.errstate`).
-    """
+def _turned(moments: FloatArray, w_P: FloatArray, times: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return `rotations_of_many`, for (n, 3), (n, 3) and (n,). Rows of steady spin divide by zero."""
     r = tumbles_of_many(moments, w_P)
     xi, eta = (zero * r.quarter for zero in zeros(r.a2, r.c2, r.m, ARRAYS))
     by_bumps = 2.0 * (xi + eta) <= SWITCH
-    rows = ~by_bumps, by_bumps
-    first, second = (
-        (xi[some], eta[some], (np.sqrt(r.a2[some]), np.sqrt(r.c2[some]))) if some.any() else None
-        for some in rows
+    begin, end = np.empty((2, 7, len(w_P)))
+    for some, unit, form_of in ((~by_bumps, 2.0 * np.pi, harmonics), (by_bumps, np.pi, bumps)):
+        if some.any():
+            peaks = np.sqrt(r.a2[some]), np.sqrt(r.c2[some])
+            form = form_of(xi[some], eta[some], peaks, functions=np)
+            for values, seconds in ((begin, np.zeros(len(w_P))), (end, times)):
+                turns = (r.z_rate * seconds + r.z_offset)[some] / unit
+                whole, psi = np.rint(turns), 0.5 * (r.precession - r.z_rate) * seconds / np.pi
+                each = form.values(np, turns - whole, whole, psi[some])
+                for value, row in zip(values, each, strict=True):
+                    value[some] = row  # one number where no term of a series matters, as in symmetric bodies
+    x0, y0, z0, w0 = _attitudes(begin)
+    x1, y1, z1, w1 = _attitudes(end)
+    turned = np.stack(
+        (
+            w0 * x1 - x0 * w1 - y0 * z1 + z0 * y1,
+            w0 * y1 + x0 * z1 - y0 * w1 - z0 * x1,
+            w0 * z1 - x0 * y1 + y0 * x1 - z0 * w1,
+        ),
+        axis=1,
     )
-    forms = (
-        None if first is None else harmonics(*first, functions=np),
-        None if second is None else bumps(*second, functions=np),
-    )
-    begin = _attitudes(_values(r, rows, forms, np.zeros(len(w_P))))
-    return Turns(w_P=w_P, tumbles=r, rows=rows, forms=forms, begin=begin)
-
-
-def _values(
-    r: Tumbles,
-    rows: tuple[NDArray[np.bool_], NDArray[np.bool_]],
-    forms: tuple[Harmonics | None, Bumps | None],
-    times: FloatArray,
-) -> FloatArray:
-    """Return `theta.Values` as (7, n)."""
-    values = np.empty((7, len(times)))
-    z, psi = r.z_rate * times + r.z_offset, 0.5 * (r.precession - r.z_rate) * times / np.pi
-    for some, form, unit in zip(rows, forms, (2.0 * np.pi, np.pi), strict=True):
-        if form is not None:
-            turns = z[some] / unit
-            whole = np.rint(turns)
-            each = form.values(np, turns - whole, whole, psi[some])
-            for value, row in zip(values, each, strict=True):
-                value[some] = row  # one number where no term of a series matters, as in symmetric bodies
-    return values
+    norm2 = end[0] ** 2 + end[1] ** 2 + end[2] ** 2 + end[3] ** 2
+    momenta = np.stack((end[4], 2.0 * (end[0] * end[3] - end[1] * end[2]), end[5]))
+    rates = (momenta * (r.L / norm2) / r.moments.T).T
+    q, w_then = np.empty((len(w_P), 4)), np.empty((len(w_P), 3))
+    np.put_along_axis(q, r.axes, r.signs * turned, axis=1)
+    q[:, 3] = w0 * w1 + x0 * x1 + y0 * y1 + z0 * z1
+    q /= np.sqrt(np.einsum("ij,ij->i", q, q))[:, None]
+    np.put_along_axis(w_then, r.axes, r.signs * rates, axis=1)
+    if r.steady.any():
+        spin, half = w_P[r.steady], 0.5 * times[r.steady]
+        rate = np.sqrt(np.einsum("ij,ij->i", spin, spin))
+        q[r.steady, :3] = spin * (np.sin(rate * half) / np.maximum(rate, SMALLEST))[:, None]
+        q[r.steady, 3] = np.cos(rate * half)
+        w_then[r.steady] = spin
+    return q, w_then
 
 
 def _attitudes(values: FloatArray) -> FloatArray:

@@ -22,16 +22,14 @@ from contact_dynamics.numerics.arithmetic import ARRAYS, DOUBLES
 from contact_dynamics.records import Record, Rows
 from contact_dynamics.rigid_body.body import angular_momentum
 from contact_dynamics.rigid_body.inertia.axes_of_inertia import axes_of_bytes
-from contact_dynamics.rotations.one import rotated, rotation_matrix
+from contact_dynamics.rotations.one import rotated
 from contact_dynamics.tolerances import SEPARATRIX_END, SMALLEST_COMPLEMENT
 from contact_dynamics.tumbling.elliptic import average_over_period, carlson_rf
 from contact_dynamics.tumbling.polhode import Regime, Rotation, Spin, Tumble, largest_rate
-from contact_dynamics.validation import FloatArray, check_array, check_whole
+from contact_dynamics.validation import FloatArray, check_whole
 
 if TYPE_CHECKING:
     from decimal import Decimal
-
-    from numpy.typing import ArrayLike
 
     from contact_dynamics.tumbling.motion import FreeMotion
 
@@ -90,7 +88,9 @@ def poinsot(motion: FreeMotion) -> Poinsot:
         L_W=L_W,
         invariable_plane_distance=motion.w_along if motion.regime is not Regime.AT_REST else math.nan,
         polhode_period=period,
-        precession_per_period=_precession(rotation) * period if math.isfinite(period) else math.nan,
+        precession_per_period=float(rotation.precession) * period
+        if math.isfinite(period) and isinstance(rotation, Tumble)
+        else math.nan,
         principal_moments=axes.moments,
         principal_axes_B=axes.R_BP,
         ellipsoid_semi_axes=semi_axes(0.5 * twice_energy, axes.moments),
@@ -257,19 +257,3 @@ def _amplitudes(rotation: Tumble[Decimal] | Tumble[float], count: int) -> FloatA
     """Return Jacobi's amplitudes of u, rad, evenly over one period of the polhode."""
     whole = math.pi if rotation.m1 else 0.5 * math.pi - SEPARATRIX_END
     return np.linspace(-whole, whole, count)
-
-
-def herpolhode(motion: FreeMotion, seconds: ArrayLike) -> FloatArray:
-    """Return the herpolhode at times (n,), s: points (n, 3), rad/s, in the invariable plane.
-
-    The axes of the plane are world axes turned so that z lies along L. The coordinate z is the plane's
-    distance, 2 T / |L|.
-    """
-    times = check_array("seconds", seconds, (None,))
-    w_W = motion.at(times).w_WB_W
-    points: FloatArray = w_W @ rotation_matrix(np.array(motion.q_WL))
-    return points
-
-
-def _precession(rotation: Rotation) -> float:
-    return math.nan if isinstance(rotation, Spin) else float(rotation.precession)
