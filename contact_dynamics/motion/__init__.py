@@ -25,7 +25,7 @@ from contact_dynamics.motion.covariance import (
     propagate_covariance,
 )
 from contact_dynamics.motion.forces import ConstantWrench, Drag, WrenchAxes
-from contact_dynamics.motion.free_derivative import rotation_derivatives, state_derivatives
+from contact_dynamics.motion.free_derivative import state_derivatives
 from contact_dynamics.motion.free_fit import FitResult, fit_free_motion
 from contact_dynamics.motion.integrated import ChosenMotion, ForcedMotion, Method, forced_motion, motion_of
 from contact_dynamics.motion.integrated_derivative import forced_state_derivatives
@@ -53,7 +53,6 @@ __all__ = [
     "measured_noise",
     "motion_of",
     "propagate_covariance",
-    "rotation_derivatives",
     "state_derivatives",
 ]
 

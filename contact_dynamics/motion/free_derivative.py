@@ -42,7 +42,7 @@ from contact_dynamics.rotations.one import cross_matrix, rotation_matrix
 from contact_dynamics.tolerances import GROWTH_ROUNDING, LARGEST_DERIVATIVE_ERROR, SMALL_TURN
 from contact_dynamics.tumbling.poinsot_construction import polhode_period
 from contact_dynamics.tumbling.polhode import Spin, largest_rate
-from contact_dynamics.validation import FloatArray, check_array, check_magnitude
+from contact_dynamics.validation import FloatArray
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -79,14 +79,11 @@ def state_derivatives(motion: FreeMotion, seconds: ArrayLike) -> FloatArray:
     return derivatives
 
 
-def rotation_derivatives(motion: FreeMotion, times: ArrayLike) -> FloatArray:
-    """Return the part of `state_derivatives` for rotation vector and angular velocity, (n, 6, 6)."""
-    checked = check_magnitude("times", check_array("times", times, (None,)), motion.farthest)
-    return derivatives_along(motion, motion.at(checked))
-
-
 def derivatives_along(motion: FreeMotion, then: Trajectory) -> FloatArray:
-    """Return `rotation_derivatives` at the times of a trajectory, which is that of the motion."""
+    """Return the part of `state_derivatives` for rotation vector and angular velocity, (n, 6, 6).
+
+    ``then`` is the motion at the times.
+    """
     times = then.seconds
     if len(times) == 0:
         return np.zeros((0, 6, 6))

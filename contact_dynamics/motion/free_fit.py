@@ -37,7 +37,7 @@ from contact_dynamics.motion.whole_turns import (
     MAX_NOISE_RATIO,
     MAX_ORIENTATION_RESIDUAL,
     Chosen,
-    Stamps,
+    Window,
     chosen_motion,
     turns_near,
 )
@@ -151,7 +151,7 @@ def fit_free_motion(
     jump = velocity_jump(seconds, place.misses_W)
     falls = not is_held(seconds, place.misses_W, gravity)
     flies = jump is None and falls
-    spin = _fit_rotation(body, states, seconds, noise, search=flies)
+    spin = _fit_rotation(body, states, noise, search=flies)
     covariance = np.zeros((12, 12))
     at_place, at_spin = np.r_[0:3, 6:9], np.r_[3:6, 9:12]
     covariance[np.ix_(at_place, at_place)] = np.kron(place.covariance, np.eye(3))
@@ -254,13 +254,13 @@ class _Rotation:
 def _fit_rotation(
     body: MassProperties,
     states: Sequence[BodyState],
-    seconds: FloatArray,
     noise: StateNoise | None,
     *,
     search: bool,
 ) -> _Rotation:
     """Fit the rotation. Without a search no other numbers of turns are tried, which takes long in vain."""
-    window = _Turning(body, states, seconds, noise)
+    window = _Turning(body, states, noise)
+    seconds = window.seconds
     if search:
         chosen = chosen_motion(window, _start(window), window.starts())
     else:
@@ -301,22 +301,13 @@ def _start(window: _Turning) -> FreeMotion:
     return best
 
 
-class _Turning(Stamps[FreeMotion]):
+class _Turning(Window[FreeMotion]):
     """Published attitudes and angular velocities, with the methods that fit a rotation to them."""
 
     unknowns = 6
 
-    def __init__(
-        self,
-        body: MassProperties,
-        states: Sequence[BodyState],
-        seconds: FloatArray,
-        noise: StateNoise | None,
-    ) -> None:
-        self.body = body
-        super().__init__(seconds)
-        self.q = np.array([state.q_WB for state in states])
-        self.w = np.array([state.w_WB_W for state in states])
+    def __init__(self, body: MassProperties, states: Sequence[BodyState], noise: StateNoise | None) -> None:
+        super().__init__(body, states)
         self.by_q = 1.0 if noise is None else 1.0 / noise.orientation
         self.by_w = 0.0 if noise is None or noise.angular_velocity is None else 1.0 / noise.angular_velocity
         self.time = 0.0 if noise is None else noise.orientation_time

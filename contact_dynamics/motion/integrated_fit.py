@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from contact_dynamics.constants import STANDARD_GRAVITY_W, seconds_since
+from contact_dynamics.constants import STANDARD_GRAVITY_W
 from contact_dynamics.motion.flight_check import is_held, velocity_jump
 from contact_dynamics.motion.forces import NO_DRAG, NO_WRENCH, ConstantWrench, Drag
 from contact_dynamics.motion.free_fit import MAX_STATES, FitResult, fit_free_motion
@@ -33,7 +33,7 @@ from contact_dynamics.motion.state_noise import (
     variance_factor,
     whitened,
 )
-from contact_dynamics.motion.whole_turns import Stamps, chosen_motion
+from contact_dynamics.motion.whole_turns import Window, chosen_motion
 from contact_dynamics.numerics.gauss_newton import Fit, gauss_newton
 from contact_dynamics.rigid_body.body import BodyState, HasMassProperties, MassProperties
 from contact_dynamics.rotations.many import rotation_vectors, turned
@@ -142,7 +142,7 @@ def _noise_of(position_residual: float, orientation_residual: float, count: int)
     )
 
 
-class _Seen(Stamps[ForcedMotion]):
+class _Seen(Window[ForcedMotion]):
     """The published states, as arrays, with the methods that fit a motion to them."""
 
     unknowns = 12
@@ -150,13 +150,9 @@ class _Seen(Stamps[ForcedMotion]):
     def __init__(
         self, body: MassProperties, states: Sequence[BodyState], noise: StateNoise, *, noise_is_known: bool
     ) -> None:
-        self.body = body
-        newest = states[-1].stamp_ns
-        super().__init__(seconds_since(newest, [state.stamp_ns for state in states]))
+        super().__init__(body, states)
         self.p = np.array([state.p_WB_W for state in states])
-        self.q = np.array([state.q_WB for state in states])
         self.v = np.array([state.v_WB_W for state in states])
-        self.w = np.array([state.w_WB_W for state in states])
         deviations = (noise.position, noise.orientation, noise.linear_velocity, noise.angular_velocity)
         self._used = np.repeat([deviation is not None for deviation in deviations], 3)
         self._weights = 1.0 / np.repeat([deviation or 1.0 for deviation in deviations], 3)[self._used]

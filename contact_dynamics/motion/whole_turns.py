@@ -21,21 +21,24 @@ from __future__ import annotations
 
 import itertools
 import math
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final, Generic, Protocol, TypeVar
+from typing import TYPE_CHECKING, Final, Generic, TypeVar
 
 import numpy as np
 
+from contact_dynamics.constants import seconds_since
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.rotations.many import rotation_vectors, turned
 from contact_dynamics.tolerances import LEAST_NOISE, ROUNDED_STAMP_TURN
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterable, Iterator, Sequence
 
+    from contact_dynamics.motion.integrated import ForcedMotion
     from contact_dynamics.numerics.gauss_newton import Fit
     from contact_dynamics.rigid_body.body import BodyState, MassProperties
-    from contact_dynamics.tumbling import Trajectory
+    from contact_dynamics.tumbling import FreeMotion, Trajectory
     from contact_dynamics.validation import FloatArray
 
 THIRD_OF_A_TURN: Final = 2.0 * math.pi / 3.0
@@ -68,45 +71,41 @@ _MORE_TURNS: Final = (0, 1, -1, 2, -2)
 _NEAR: Final = 0.5
 """rad. A motion with turns more that misses one of the newest states by more is not searched from."""
 
-Model = TypeVar("Model", bound="SpinningModel")
+Model = TypeVar("Model", bound="FreeMotion | ForcedMotion")
 
 
-class SpinningModel(Protocol):
-    """A motion from a state at the newest stamp."""
+class Window(ABC, Generic[Model]):
+    """Published states, and how a motion is fitted to the last of them.
 
-    @property
-    def state(self) -> BodyState:
-        """The state at the newest stamp."""
-        ...
+    The last motion at their stamps is kept, because many parts of a fit look at it.
+    """
 
-    def at(self, seconds: FloatArray) -> Trajectory:
-        """Return the motion at times (n,), s, from the newest stamp."""
-        ...
-
-
-class Window(Protocol[Model]):
-    """Published states, and how a motion is fitted to the last of them."""
-
-    body: MassProperties
-    seconds: FloatArray  # (n,), s, from the newest
-    q: FloatArray  # (n, 4)
-    w: FloatArray  # (n, 3), rad/s
-    by_q: float  # weight of orientations, 1/rad
     unknowns: int
+    by_q: float  # weight of orientations, 1/rad
     noise_is_known: bool
     rates_weigh: bool  # angular velocities are among the residuals
 
+    def __init__(self, body: MassProperties, states: Sequence[BodyState]) -> None:
+        """Take a body and its states, in the order of time."""
+        self.body = body
+        self.seconds = seconds_since(states[-1].stamp_ns, [state.stamp_ns for state in states])
+        self.q = np.array([state.q_WB for state in states])
+        self.w = np.array([state.w_WB_W for state in states])
+        self._last: tuple[Model, int, Trajectory] | None = None
+
     def at(self, model: Model, count: int) -> Trajectory:
         """Return a motion at the last ``count`` stamps."""
-        ...
+        if self._last is None or self._last[0] is not model or self._last[1] != count:
+            self._last = model, count, model.at(self.seconds[-count:])
+        return self._last[2]
 
+    @abstractmethod
     def fitted(self, start: Model, count: int) -> Fit[Model]:
         """Return the fit to the last ``count`` states."""
-        ...
 
+    @abstractmethod
     def with_rate(self, model: Model, rate: FloatArray) -> Model:
         """Return the motion with another angular velocity, (3,), at the newest state."""
-        ...
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -134,21 +133,6 @@ class _Found(Generic[Model]):
     orientation_residual: float  # rad
     spin_miss: float  # rad/s, rms of the published angular velocities less its own
     converged: bool
-
-
-class Stamps(Generic[Model]):
-    """The stamps of a window's states. The last motion at them is kept: many parts of a fit look at it."""
-
-    def __init__(self, seconds: FloatArray) -> None:
-        """Take the stamps, (n,), s, from the newest."""
-        self.seconds = seconds
-        self._last: tuple[Model, int, Trajectory] | None = None
-
-    def at(self, model: Model, count: int) -> Trajectory:
-        """Return a motion at the last ``count`` stamps."""
-        if self._last is None or self._last[0] is not model or self._last[1] != count:
-            self._last = model, count, model.at(self.seconds[-count:])
-        return self._last[2]
 
 
 def turns_near(q: FloatArray, q_from: FloatArray, expected: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -85,6 +85,5 @@ MOTIONS: Calls = {
     ),
     "fit_motion": (motion.fit_motion, {"body": BALL, "states": SEEN, **APPLIED}),
     "forced_state_derivatives": (motion.forced_state_derivatives, {"motion": FORCED, "seconds": [0.1]}),
-    "rotation_derivatives": (motion.rotation_derivatives, {"motion": FREE, "times": [0.1]}),
     "state_derivatives": (motion.state_derivatives, {"motion": FREE, "seconds": [0.1]}),
 }
