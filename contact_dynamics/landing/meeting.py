@@ -26,8 +26,8 @@ from contact_dynamics.contact.found import check_has_shape
 from contact_dynamics.contact.touches import site_of, touches_of
 from contact_dynamics.errors import InvalidFieldError, NotSupportedError
 from contact_dynamics.landing.acceleration_bounds import all_free_for, bounds_of
+from contact_dynamics.landing.earliest import Landing
 from contact_dynamics.landing.search_work import OBSTACLE_STEP, SearchWork
-from contact_dynamics.records import Record
 from contact_dynamics.rotations.one import rotation_matrix
 from contact_dynamics.shapes.hull_features import features_of
 from contact_dynamics.tolerances import DISTANCE_TOLERANCE, GRAZING_DEPTH, LEAVING_STEP, VELOCITY_TOLERANCE
@@ -52,27 +52,17 @@ MAX_STEPS: Final = 5_000
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class Meeting(Record):
-    """The first contact of two bodies in flight.
+class Meeting(Landing):
+    """The first contact of two bodies in flight; `Landing` documents the other fields.
 
-    Pass one contact to `spatial_pair_impact`, and several to `bodies_impact`.
+    Pass one contact to `spatial_pair_impact`, and several to `bodies_impact`. Normals of the contacts point
+    into the first body, and velocities are those of its points relative to the second body.
 
     Attributes:
-        seconds: Time of the meeting, s after the states' stamps. It is 0 if the bodies already touch.
-        state: State of the first body at that time.
         other_state: State of the second body at that time.
-        contacts: Contacts that touch and do not separate, with normals into the first body.
-        velocities_W: (n, 3), m/s, velocities of the first body's contact points relative to the second body,
-            world axes.
-        strikes: Whether a contact approaches faster than the velocity tolerance, so that there is an impact.
     """
 
-    seconds: float
-    state: BodyState
     other_state: BodyState
-    contacts: ContactSet
-    velocities_W: FloatArray
-    strikes: bool
 
 
 def next_meeting(

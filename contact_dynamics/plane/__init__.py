@@ -12,7 +12,6 @@ from contact_dynamics.plane.plane_search import best_plane
 from contact_dynamics.plane.projection import (
     PlanarProblem,
     PlaneOfMotion,
-    out_of_plane_speed,
     project_onto_plane,
 )
 from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
@@ -26,7 +25,6 @@ __all__ = [
     "PlanarWrench",
     "PlaneOfMotion",
     "best_plane",
-    "out_of_plane_speed",
     "planar_in_space",
     "project_onto_plane",
 ]

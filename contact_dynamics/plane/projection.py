@@ -20,7 +20,6 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import numpy as np
 
 from contact_dynamics.contact.contact import ContactSet
-from contact_dynamics.contact.velocities import check_speeds
 from contact_dynamics.errors import OutOfPlaneError
 from contact_dynamics.numerics.vectors import Vector3, cross, dot, norm, normalised, scaled, without
 from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench, Vector2
@@ -249,14 +248,6 @@ def _curvatures_in(plane: PlaneOfMotion, contacts: ContactSet) -> list[tuple[flo
             sides.append(found)
         pairs.append((sides[0], sides[1]))
     return pairs
-
-
-def out_of_plane_speed(plane: PlaneOfMotion, state: BodyState, contacts: ContactSet) -> float:
-    """Return the largest speed out of the plane, m/s, at contacts and centre of mass."""
-    check_at_rest("contacts", contacts, "out_of_plane_speed")
-    check_speeds(state, contacts.p_WC_W)
-    arms = rows_of(contacts.p_WC_W - state.p_WB_W)
-    return _speed_out_of(three_of(plane.normal_W), three_of(state.v_WB_W), three_of(state.w_WB_W), arms)
 
 
 def _speed_out_of(normal: Vector3, v_W: Vector3, w_W: Vector3, arms: list[Vector3]) -> float:

@@ -23,7 +23,7 @@ from contact_dynamics.impact import (
     spatial_impact_distribution,
     spatial_pair_impact,
 )
-from contact_dynamics.plane import PlaneOfMotion, out_of_plane_speed, project_onto_plane
+from contact_dynamics.plane import PlaneOfMotion, project_onto_plane
 from contact_dynamics.questions import ContactModeQuestion, Context, ImpactQuestion, ask
 
 UP = (0.0, 0.0, 1.0)
@@ -148,7 +148,6 @@ SPATIAL: dict[str, Callable[[], object]] = {
     "a plane of motion": lambda: project_onto_plane(
         CRATE, AT_REST, FEET, plane=PlaneOfMotion(normal_W=[0, -1, 0]), force_W=UP, torque_W=[0, 0, 0]
     ),
-    "out_of_plane_speed": lambda: out_of_plane_speed(PlaneOfMotion(normal_W=[0, -1, 0]), AT_REST, FEET),
 }
 
 

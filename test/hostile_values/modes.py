@@ -19,10 +19,6 @@ LOADED = {
 MODES: Calls = {
     "PlaneOfMotion": (plane.PlaneOfMotion, {"normal_W": [0.0, 0.6, 0.8]}),
     "best_plane": (plane.best_plane, LOADED),
-    "out_of_plane_speed": (
-        plane.out_of_plane_speed,
-        {"plane": UPRIGHT, "state": RESTING, "contacts": CONTACTS},
-    ),
     "planar_in_space": (
         plane.planar_in_space,
         {
