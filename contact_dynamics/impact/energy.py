@@ -10,7 +10,7 @@ from __future__ import annotations
 from abc import abstractmethod
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from contact_dynamics.records import Rows
+from contact_dynamics.records import Record, Rows
 from contact_dynamics.tolerances import ENERGY_TOLERANCE
 
 if TYPE_CHECKING:
@@ -41,6 +41,29 @@ def law_created(impulse: Sequence[Real], before: Sequence[Real], after: Sequence
     """Return whether an impulse gave energy: a bool, or an array of them. The arguments are as above."""
     sizes = [abs(v) + abs(w) for v, w in zip(before, after, strict=True)]
     return created(energy_change(impulse, before, after), _inner([abs(i) for i in impulse], sizes))
+
+
+class OneEnergy(Record):
+    """The energy of one impact, for results that know what happened at their contact."""
+
+    __slots__ = ()
+
+    @property
+    def energy_change(self) -> float:
+        """Return the change of kinetic energy, J: the impulse times the contact's mean velocity.
+
+        The work of a moving surface, the impulse times its velocity, is not part of it.
+        """
+        return energy_change(*self._at_contact())
+
+    @property
+    def creates_energy(self) -> bool:
+        """Return whether the impact increased the energy by more than rounding error. Only Newton's can."""
+        return bool(law_created(*self._at_contact()))
+
+    @abstractmethod
+    def _at_contact(self) -> tuple[Sequence[float], ...]:
+        """Return the impulse and the velocities before and afterwards, each by components."""
 
 
 class ManyEnergies(Rows):

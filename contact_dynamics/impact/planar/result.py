@@ -5,15 +5,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from contact_dynamics.impact.energy import energy_change, law_created
+from contact_dynamics.impact.energy import OneEnergy
 from contact_dynamics.impact.law import ImpactOutcome, PathEvent, RestitutionLaw
 from contact_dynamics.impact.planar.routh import ImpulsePath, InverseInertia
 from contact_dynamics.plane.types import PlanarVelocity, Vector2
-from contact_dynamics.records import Record
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
-class PlanarImpact(Record):
+class PlanarImpact(OneEnergy):
     """Outcome of one planar impact.
 
     The contact axes are the tangent, then the normal. Impulses act on the body.
@@ -87,18 +86,5 @@ class PlanarImpact(Record):
         vertices.append((PathEvent.RESTITUTION_ENDS, (path.t_end, path.p_end)))
         return tuple(vertices)
 
-    @property
-    def energy_change(self) -> float:
-        """Return the change of kinetic energy, J: the impulse times the contact's mean velocity.
-
-        The work of a moving surface, the impulse times its velocity, is not part of it.
-        """
-        return energy_change(self.impulse_C, self.velocity_before_C, self.velocity_after_C)
-
-    @property
-    def creates_energy(self) -> bool:
-        """Return whether the impact increased the energy by more than rounding error.
-
-        Only Newton's law can do this.
-        """
-        return bool(law_created(self.impulse_C, self.velocity_before_C, self.velocity_after_C))
+    def _at_contact(self) -> tuple[Vector2, ...]:
+        return self.impulse_C, self.velocity_before_C, self.velocity_after_C

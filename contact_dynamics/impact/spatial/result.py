@@ -5,15 +5,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from contact_dynamics.impact.energy import energy_change, law_created
+from contact_dynamics.impact.energy import OneEnergy
 from contact_dynamics.impact.law import ImpactOutcome, PathEvent, RestitutionLaw
-from contact_dynamics.records import Record
 from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.validation import FloatArray
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class ResponseImpact(Record):
+class ResponseImpact(OneEnergy):
     """Outcome of one spatial impact of a mechanism. All arrays are in world axes.
 
     Attributes:
@@ -46,19 +45,6 @@ class ResponseImpact(Record):
         """Return the impulse of restitution, (3,), N s."""
         restitution: FloatArray = self.impulse_W - self.compression_W
         return restitution
-
-    @property
-    def energy_change(self) -> float:
-        """Return the change of kinetic energy, J: the impulse times the contact's mean velocity.
-
-        The work of a moving surface, the impulse times its velocity, is not part of it.
-        """
-        return energy_change(*self._at_contact())
-
-    @property
-    def creates_energy(self) -> bool:
-        """Return whether the impact increased the energy by more than rounding error."""
-        return bool(law_created(*self._at_contact()))
 
     def _at_contact(self) -> tuple[list[float], list[float], list[float]]:
         return self.impulse_W.tolist(), self.velocity_before_W.tolist(), self.velocity_after_W.tolist()
