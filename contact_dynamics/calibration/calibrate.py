@@ -13,7 +13,6 @@ import numpy as np
 from contact_dynamics.calibration.estimation import Data, Fitting, extra_spread
 from contact_dynamics.calibration.first_flights import gravity_and_center, ratios_of_moments
 from contact_dynamics.calibration.free import BY_STRIKES, Free
-from contact_dynamics.calibration.heights import at_rests
 from contact_dynamics.calibration.impacts import jump_covariances, jumps
 from contact_dynamics.calibration.model import RATIO_STEP, Model
 from contact_dynamics.calibration.observed import observe
@@ -29,7 +28,7 @@ from contact_dynamics.calibration.problems import (
 )
 from contact_dynamics.calibration.result import Calibration, Estimate, MeasuredGravity, Outlier
 from contact_dynamics.calibration.slides import lasting_frictions
-from contact_dynamics.calibration.strikes import strikes_of
+from contact_dynamics.calibration.strikes import at_rests, strikes_of
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.measured.motion import MeasuredMotion
 from contact_dynamics.numerics.vectors import tangents

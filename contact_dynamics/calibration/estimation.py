@@ -25,9 +25,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from contact_dynamics.calibration.first_flights import Gravity, Straightness
-    from contact_dynamics.calibration.heights import Touching
     from contact_dynamics.calibration.model import Model
-    from contact_dynamics.calibration.strikes import Strikes
+    from contact_dynamics.calibration.strikes import Strikes, Touching
     from contact_dynamics.numerics.clustered_fit import ClusteredFit
     from contact_dynamics.validation import FloatArray
 
@@ -41,8 +40,7 @@ errors."""
 ALIKE: Final = 1.25
 """Ratio of the robust sums of squares below which two choices of free parameters fit the data alike."""
 
-FRICTIONS: Final = (1.0, 0.4)
-"""Shares of the configured friction from which the first fit starts."""
+FRICTIONS: Final = (1.0, 0.4)  # shares of the configured friction from which the first fit starts
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)

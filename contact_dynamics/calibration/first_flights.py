@@ -34,8 +34,7 @@ if TYPE_CHECKING:
     from contact_dynamics.calibration.observed import Observed
     from contact_dynamics.validation import FloatArray
 
-IntArray: TypeAlias = NDArray[np.intp]
-"""Numbers of recordings, surfaces or corners."""
+IntArray: TypeAlias = NDArray[np.intp]  # numbers of recordings, surfaces or corners
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)

@@ -49,8 +49,7 @@ STANDARD: Final = (
 frame of the tracking is seldom known to a millimetre: if they are not free, both end up in the inertia and
 the centre of mass. The rounding of a shape without faces is its radius, and keeps its configured value."""
 
-BY_STRIKES: Final = frozenset({Free.FRICTION, Free.RESTITUTION, Free.INERTIA})
-"""What strikes alone tell."""
+BY_STRIKES: Final = frozenset({Free.FRICTION, Free.RESTITUTION, Free.INERTIA})  # what strikes alone tell
 
 GEOMETRY: Final = (
     Free.ROUNDING,

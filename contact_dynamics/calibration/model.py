@@ -36,24 +36,16 @@ if TYPE_CHECKING:
 PLAUSIBLE_SHARE: Final = 0.2
 """Share of the shape's half size that an offset may plausibly have: the standard unit of lengths."""
 
-PLAUSIBLE_COEFFICIENT: Final = 0.5
-"""The standard unit of friction and restitution."""
-
-PLAUSIBLE_LOGARITHM: Final = 0.3
-"""The standard unit of factors: a third more or less."""
-
-PLAUSIBLE_ANGLE: Final = 0.2
-"""rad. The standard unit of turns and tilts."""
-
-LARGEST_RATIO: Final = 1.0
-"""Logarithm. No ratio of moments is looked for farther off."""
+PLAUSIBLE_COEFFICIENT: Final = 0.5  # the standard unit of friction and restitution
+PLAUSIBLE_LOGARITHM: Final = 0.3  # the standard unit of factors: a third more or less
+PLAUSIBLE_ANGLE: Final = 0.2  # rad. The standard unit of turns and tilts.
+LARGEST_RATIO: Final = 1.0  # logarithm. No ratio of moments is looked for farther off.
 
 RATIO_STEP: Final = 0.05
 """Logarithm. Step of the numerical derivative by a ratio of moments, over which residuals are nearly
 straight. An estimate that is farther away is repeated there."""
 
-RATIO_GROWTH: Final = 0.02
-"""Logarithm by which the range of the ratios grows at a time."""
+RATIO_GROWTH: Final = 0.02  # logarithm by which the range of the ratios grows at a time
 
 ROUND: Final = 0.5
 """Share of the ball that fits into the shape. Corners that are rounder belong to a body that is described as

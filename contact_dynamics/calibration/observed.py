@@ -37,8 +37,7 @@ NEAR: Final = 1.0
 """Largest distance of a striking corner from a surface, in half sizes. Beyond it, something else was
 struck."""
 
-FEWEST_IN_FIRST: Final = 8
-"""Frames. A shorter first flight says next to nothing of gravity and mass centre."""
+FEWEST_IN_FIRST: Final = 8  # frames. A shorter first flight says next to nothing of gravity and mass centre.
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -103,8 +102,7 @@ LIFTED: Final = 0.1
 """Share of the body's largest half size by which all corners are above the surfaces when it is lifted. The
 corners of the published cubes, as configured, go 1 to 6 % into the board when they touch it."""
 
-LONGEST_REST: Final = 4
-"""Spans of rest that are kept at the end of a toss. More would say little more."""
+LONGEST_REST: Final = 4  # spans of rest that are kept at the end of a toss. More would say little more.
 
 
 def tosses_in(motion: MeasuredMotion) -> list[tuple[MeasuredMotion, tuple[slice, ...]]]:

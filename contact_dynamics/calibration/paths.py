@@ -39,8 +39,7 @@ if TYPE_CHECKING:
 OWN: Final = 19
 """Unknowns of a strike: time, place (3), attitude (3), velocities (6), and the law's error (6)."""
 
-LAW: Final = 6
-"""The first residuals of a strike, which are the law's errors in standard deviations."""
+LAW: Final = 6  # the first residuals of a strike, which are the law's errors in standard deviations
 
 APART: Final = 6
 """Six further numbers, by which place and attitude would jump at the strike. They are zero, and only tell

@@ -44,17 +44,10 @@ tosses by three of them, a third of the 90 % intervals miss what all say."""
 UNEVEN: Final = 0.05
 """Half sizes. Corners that touch at heights that scatter by more are not where the shape says."""
 
-NOISIER: Final = 5.0
-"""Factor on the stated noise. It is 1.7 for the published tosses."""
-
-APART: Final = 0.05
-"""Share of the tosses. If more of them have outliers, they are no accidents."""
-
-MAX_NAMED: Final = 10
-"""Tosses that a sentence names."""
-
-FEWEST_COMPARED: Final = 3
-"""Strikes from which medians say something."""
+NOISIER: Final = 5.0  # factor on the stated noise. It is 1.7 for the published tosses.
+APART: Final = 0.05  # share of the tosses. If more of them have outliers, they are no accidents.
+MAX_NAMED: Final = 10  # tosses that a sentence names
+FEWEST_COMPARED: Final = 3  # strikes from which medians say something
 
 UNEXPLAINED: Final = 0.3
 """Share of a strike's change of spin. If more of it is unexplained in the median, other corners struck."""
@@ -69,8 +62,7 @@ WRONG_TURN: Final = 0.17
 WRONG_SIZE: Final = 0.15
 """Share. Gravity that is farther from the configured size comes from wrong units or a wrong clock."""
 
-PLACES: Final = 10
-"""Least number of places at which heights are compared, to tell whether a surface is flat."""
+PLACES: Final = 10  # least number of places at which heights are compared, to tell whether a surface is flat
 
 BENT: Final = 15.0
 """F ratio of three bending terms. Of 15 normal heights on a plane, one set in several thousand exceeds it."""

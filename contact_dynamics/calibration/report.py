@@ -15,11 +15,8 @@ if TYPE_CHECKING:
 
     from contact_dynamics.calibration.result import Calibration, Estimate
 
-CORRELATED: Final = 0.7
-"""Correlations that are told."""
-
-MAX_OUTLIERS: Final = 10
-"""Outliers that are listed on the terminal. The JSON has all."""
+CORRELATED: Final = 0.7  # correlations that are told
+MAX_OUTLIERS: Final = 10  # outliers that are listed on the terminal. The JSON has all.
 
 
 def report(found: Calibration) -> str:

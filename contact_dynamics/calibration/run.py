@@ -24,8 +24,7 @@ if TYPE_CHECKING:
     from contact_dynamics.evaluation.sources import Source
     from contact_dynamics.measured.motion import MeasuredMotion
 
-SOMETHING_OPEN: Final = 1
-"""Exit code: the data leave something open, or a recording could not be read."""
+SOMETHING_OPEN: Final = 1  # exit code: the data leave something open, or a recording could not be read
 
 
 def main(arguments: list[str]) -> int:

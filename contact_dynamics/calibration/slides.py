@@ -27,11 +27,8 @@ if TYPE_CHECKING:
 FLUSH: Final = 0.03
 """Share of the body's half size within which three corners are on the surface, so that the body is flush."""
 
-FEWEST_SLIDING: Final = 8
-"""Frames. A shorter slide says next to nothing of its deceleration."""
-
-FEWEST_SLIDES: Final = 5
-"""Slides on a surface, below which their scatter says too little."""
+FEWEST_SLIDING: Final = 8  # frames. A shorter slide says next to nothing of its deceleration.
+FEWEST_SLIDES: Final = 5  # slides on a surface, below which their scatter says too little
 
 MAX_TURNING: Final = 0.3
 """How far corners of the face may turn, relative to the length of the slide. Friction of a body that turns is

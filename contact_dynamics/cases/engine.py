@@ -35,5 +35,4 @@ class Engine(Record):
 
 OURS: Final = Engine(name="ours", package="contact_dynamics", module="contact_dynamics.cases.ours")
 MUJOCO: Final = Engine(name="MuJoCo", package="mujoco", module="contact_dynamics.cases.mujoco")
-PEERS: Final = (MUJOCO,)
-"""The simulators. Each has an option `--without-` and its package."""
+PEERS: Final = (MUJOCO,)  # the simulators. Each has an option `--without-` and its package.

@@ -18,8 +18,7 @@ from contact_dynamics.constants import STANDARD_GRAVITY_W
 if TYPE_CHECKING:
     from typing_extensions import Self
 
-CONTACT_S: Final = 0.02
-"""How long a bounce on a spring and damper lasts, s."""
+CONTACT_S: Final = 0.02  # how long a bounce on a spring and damper lasts, s
 
 _FLOOR: Final = '<geom type="plane" size="9 9 1"/>'
 _SLIDES: Final = '<joint type="slide" axis="1 0 0"/><joint type="slide" axis="0 0 1"/>'

@@ -16,8 +16,7 @@ from contact_dynamics.cases.published import PublishedValue, PublishedVerdict, p
 NOT_EXACT: Final = 1
 """This exit code says that an answer differs from the exact one by more than its tolerance."""
 
-DIGITS: Final = 6
-"""Significant digits of a number in the table."""
+DIGITS: Final = 6  # significant digits of a number in the table
 
 
 def main(arguments: list[str]) -> int:

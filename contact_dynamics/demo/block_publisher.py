@@ -37,22 +37,15 @@ if TYPE_CHECKING:
 
 QOS: Final = QoSProfile(depth=1000)
 
-PERIOD_S: Final = 0.005
-"""s between two states."""
-
+PERIOD_S: Final = 0.005  # s between two states
 _DISCOVERY_S: Final = 30.0  # how long to wait for somebody who listens
 
 
 _GRAVITY: Final = -STANDARD_GRAVITY_W[2]
 
-BEGINS_S: Final = 1.0
-"""s for which nothing happens at first, so that one sees the block at rest."""
-
-MAX_PUSHED: Final = 0.1
-"""m after which the finger stops."""
-
-MAX_TIPPED: Final = 0.3
-"""rad after which the finger stops: the block falls over by itself."""
+BEGINS_S: Final = 1.0  # s for which nothing happens at first, so that one sees the block at rest
+MAX_PUSHED: Final = 0.1  # m after which the finger stops
+MAX_TIPPED: Final = 0.3  # rad after which the finger stops: the block falls over by itself
 
 
 class Situation(Protocol):

@@ -32,21 +32,13 @@ from contact_dynamics.nodes.running import ros_until_stopped
 from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact
 from msg_adapters.geometry import vector_from_msg, vector_to_msg
 
-QOS: Final = QoSProfile(depth=1000)
-"""Deep queues, since replies can get lost otherwise when many ask at once."""
-
-PERIOD_S: Final = 0.25
-"""s between two questions."""
-
-SOON_S: Final = 0.02
-"""A landing that is nearer than this, s, is told as what touches."""
-
-DEADLINE_S: Final = 1.0
-"""s for an answer. Without one, the next question is asked."""
+QOS: Final = QoSProfile(depth=1000)  # deep queues, since replies can get lost otherwise when many ask at once
+PERIOD_S: Final = 0.25  # s between two questions
+SOON_S: Final = 0.02  # a landing that is nearer than this, s, is told as what touches
+DEADLINE_S: Final = 1.0  # s for an answer. Without one, the next question is asked.
 
 
-SILENCE_S: Final = 1.5
-"""s without a state after which a situation is over."""
+SILENCE_S: Final = 1.5  # s without a state after which a situation is over
 
 
 class Commentator(Node):

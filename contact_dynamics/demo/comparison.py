@@ -25,8 +25,7 @@ if TYPE_CHECKING:
     from contact_dynamics.measured.recorded_toss import Toss
     from contact_dynamics.validation import FloatArray
 
-SAME_STRIKE: Final = 0.03
-"""s. A predicted strike and a measured one that are closer than this are the same."""
+SAME_STRIKE: Final = 0.03  # s. A predicted strike and a measured one that are closer than this are the same.
 
 ENOUGH_FLIGHT: Final = 2.0 * WINDOW + LAST_MOMENT
 """s. A landing after so much flight can be predicted: velocities look back over one window, and another one

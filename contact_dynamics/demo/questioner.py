@@ -39,14 +39,12 @@ LAST_MOMENT: Final = 0.025
 SILENCE_S: Final = 1.0
 """If states are missing, the toss is over when its publisher has ended and none has come for this time, s."""
 
-REST_FRAMES: Final = 2
-"""Number of frames for which a body must be slow before it asks for the contact mode."""
+REST_FRAMES: Final = 2  # number of frames for which a body must be slow before it asks for the contact mode
 
 REST_DEVIATIONS: Final = 3.0
 """A body is slow if its velocities are within this many standard deviations of their noise."""
 
-CURVE_POINTS: Final = 120
-"""Number of points of polhode and herpolhode, for the picture."""
+CURVE_POINTS: Final = 120  # number of points of polhode and herpolhode, for the picture
 
 _START_S: Final = 30.0
 _POLL_S: Final = 0.1

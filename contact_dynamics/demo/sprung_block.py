@@ -21,14 +21,9 @@ from contact_dynamics.world import Surface
 if TYPE_CHECKING:
     from contact_dynamics.world import Body, World
 
-STEP: Final = 1e-4
-"""s. The stiffest oscillation, of 1 kg on two corners, takes 140 such steps."""
-
-STIFFNESS: Final = 1e5
-"""N/m of each corner: a block of 1 kg sinks in by 0.05 mm, less than a robot measures."""
-
-DAMPING: Final = 200.0
-"""N s/m of each corner, somewhat less than what damps 1 kg on two corners critically."""
+STEP: Final = 1e-4  # s. The stiffest oscillation, of 1 kg on two corners, takes 140 such steps.
+STIFFNESS: Final = 1e5  # N/m of each corner: a block of 1 kg sinks in by 0.05 mm, less than a robot measures
+DAMPING: Final = 200.0  # N s/m of each corner, somewhat less than what damps 1 kg on two corners critically
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -36,11 +36,8 @@ if TYPE_CHECKING:
 
     from contact_dynamics.validation import FloatArray
 
-RATE: Final = 148.0
-"""Rate of the frames, Hz."""
-
-HALF_SIDE: Final = 0.0524
-"""Half the side of the cube, m."""
+RATE: Final = 148.0  # rate of the frames, Hz
+HALF_SIDE: Final = 0.0524  # half the side of the cube, m
 
 CUBE: Final = Body(
     name="cube",
@@ -53,14 +50,12 @@ BOARD: Final = Surface(
     name="board", p_WS_W=np.zeros(3), normal_W=np.array([0.0, 0.0, 1.0]), friction=0.18, restitution=0.125
 )
 
-GRAVITY: Final = 9.81
-"""Acceleration of gravity, m/s^2, also nominal."""
+GRAVITY: Final = 9.81  # acceleration of gravity, m/s^2, also nominal
 
 POSITION_NOISE: Final = 2.5e-5
 """m. Parabolas fitted to flights of ten frames and more leave a median of 0.020 to 0.024 mm a coordinate."""
 
-ORIENTATION_NOISE: Final = 3.5e-4
-"""rad. The same fits leave 0.017 to 0.024 degrees in the rotation vectors."""
+ORIENTATION_NOISE: Final = 3.5e-4  # rad. The same fits leave 0.017 to 0.024 degrees in the rotation vectors.
 
 
 def read_cube_toss(path: Path, *, index: int = 0) -> Toss:

@@ -75,8 +75,7 @@ cubes stop soon after the cube does."""
 REST_SPEED: Final = 0.02
 """m/s. Mean speed over `REST_SPAN` below which a body rests: friction of 0.2 ends such a slide in 10 ms."""
 
-REST_SPIN: Final = 0.2
-"""rad/s. Mean angular speed over `REST_SPAN` below which a body of a decimetre rests."""
+REST_SPIN: Final = 0.2  # rad/s. Mean angular speed over `REST_SPAN` below which a body of a decimetre rests.
 
 
 class EventKind(Enum):

@@ -58,8 +58,7 @@ million frames."""
 POSITION_SLACK: Final = 5e-4
 """m. Error within `SPAN` that drag, a gravity off by 2 % and a centre of mass off by a millimetre may add."""
 
-ORIENTATION_SLACK: Final = 5e-3
-"""rad. Error within `SPAN` that an inertia off by some percent may add."""
+ORIENTATION_SLACK: Final = 5e-3  # rad. Error within `SPAN` that an inertia off by some percent may add.
 
 AT_ONCE: Final = 64
 """Stretches that are fitted at once. It is about the length of a flight, beyond which fits are in vain."""

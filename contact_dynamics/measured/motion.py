@@ -13,7 +13,7 @@ import itertools
 import math
 from array import array
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Final, Protocol
+from typing import TYPE_CHECKING, Final, TypeAlias
 
 import numpy as np
 
@@ -31,6 +31,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from contact_dynamics.measured.recorded_toss import Toss
     from contact_dynamics.questions.uncertain_state import KnownState
     from contact_dynamics.validation import FloatArray
     from contact_dynamics.world import Body, World
@@ -40,54 +41,9 @@ if TYPE_CHECKING:
 FEWEST_STATES: Final = 12
 """Shorter stretches hold no flight that could be asked about, and too few differences for their noise."""
 
-GAP: Final = 5.0
-"""Median spacings of states. Where states are farther apart than this, a stretch ends."""
-
+GAP: Final = 5.0  # median spacings of states. Where states are farther apart than this, a stretch ends.
 _ENLARGED: Final = math.sqrt(70.0)  # white noise in fourth differences: 1 + 16 + 36 + 16 + 1
 _MEDIAN: Final = 0.6745  # median of the absolute value of a standard normal variable
-
-
-class MeasuredPoses(Protocol):
-    """The poses of one body in the order of time, and how well they are measured. A `Toss` is one."""
-
-    def __len__(self) -> int:
-        """Return the number of samples."""
-
-    @property
-    def body(self) -> Body:
-        """The body, whose centre of mass the positions are of."""
-
-    @property
-    def gravity_W(self) -> FloatArray:
-        """Acceleration of gravity, (3,), m/s^2, world axes."""
-
-    @property
-    def rate(self) -> float:
-        """Rate of the samples, Hz."""
-
-    @property
-    def position_noise(self) -> float:
-        """Standard deviation of each coordinate of a measured position, m."""
-
-    @property
-    def orientation_noise(self) -> float:
-        """Standard deviation of each component of a measured orientation's rotation error, rad."""
-
-    @property
-    def times(self) -> FloatArray:
-        """Times of the samples, (n,), s, increasing."""
-
-    @property
-    def p_WB_W(self) -> FloatArray:
-        """Positions of the centre of mass, (n, 3), m, world."""
-
-    @property
-    def q_WB(self) -> FloatArray:
-        """Unit quaternions, (n, 4), x, y, z, w: body coordinates into world coordinates."""
-
-    @property
-    def surfaces(self) -> Sequence[Surface]:
-        """The flat surfaces on which it may fall."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -168,6 +124,9 @@ class MeasuredMotion(Record):
         """Return the states from one number up to another, with the times that they had."""
         return replace(self, **{name: getattr(self, name)[begin:stop] for name in COLUMNS})
 
+
+MeasuredPoses: TypeAlias = "MeasuredMotion | Toss"
+"""The poses of one body in the order of time, and how well they are measured."""
 
 COLUMNS: Final = ("stamps_ns", "arrivals_ns", "times", "p_WB_W", "q_WB", "v_WB_W", "w_WB_W", "covariances")
 """The fields of a motion that have a row for each state."""

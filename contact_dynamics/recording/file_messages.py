@@ -96,12 +96,8 @@ class Loss:
 MAGICS: Final = {b"\x28\xb5\x2f\xfd": b"zstd", b"\x04\x22\x4d\x18": b"lz4"}
 """The first bytes of packed data, and MCAP's name of the packing."""
 
-SUFFIXES: Final = (".zstd", ".zst", ".lz4")
-"""The ending of a packed file's name."""
-
-MAX_BYTES: Final = 64 * 1024 * 1024
-"""The size of the largest message that is unpacked, bytes."""
-
+SUFFIXES: Final = (".zstd", ".zst", ".lz4")  # the ending of a packed file's name
+MAX_BYTES: Final = 64 * 1024 * 1024  # the size of the largest message that is unpacked, bytes
 _PIECE: Final = 1024 * 1024  # bytes
 
 

@@ -12,11 +12,8 @@ from contact_dynamics.errors import InvalidFieldError
 LEAST_FILE_BYTES: Final = 64 * 1024
 """The smallest limit of a file's size. With less, nearly every chunk would be a file of its own."""
 
-LEAST_FILE_SECONDS: Final = 1.0
-"""s, the shortest limit of a file's time."""
-
-FILES_KEPT: Final = 2
-"""The number of files for which a limit on all files must have room."""
+LEAST_FILE_SECONDS: Final = 1.0  # s, the shortest limit of a file's time
+FILES_KEPT: Final = 2  # the number of files for which a limit on all files must have room
 
 
 class Compression(enum.Enum):
@@ -64,5 +61,4 @@ class LogLimits:
             raise InvalidFieldError("kept_bytes", self.kept_bytes, allowed)
 
 
-UNLIMITED: Final = LogLimits()
-"""One file that grows as long as the log is written."""
+UNLIMITED: Final = LogLimits()  # one file that grows as long as the log is written

@@ -326,7 +326,7 @@ class Recorder(AbstractContextManager["Recorder"]):
     def _interrupt(
         self, error: OSError, items: list[_Item | _RunChange], before: _Interruption | None = None
     ) -> None:
-        """Lose the items, and write nothing until the disk takes it; ``before`` is the interruption so far."""
+        """Lose the items, and write nothing until the disk takes it; ``before`` is the interruption."""
         with self._lock:
             dropped = [*items, *self._items]
             lost_before = self._lost

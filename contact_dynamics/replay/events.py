@@ -44,11 +44,8 @@ if TYPE_CHECKING:
     from contact_dynamics.rigid_body.body import BodyState
     from contact_dynamics.world import World
 
-OK = "OK"
-"""The status of a question that was answered."""
-
-UNREADABLE = "UNREADABLE"
-"""The status of a question or an answer that this version cannot read."""
+OK = "OK"  # the status of a question that was answered
+UNREADABLE = "UNREADABLE"  # the status of a question or an answer that this version cannot read
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

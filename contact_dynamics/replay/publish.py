@@ -145,8 +145,7 @@ def single_keys() -> Iterator[None]:
 
 NODE_NAME: Final = "contact_dynamics_replay"
 
-DEPTH: Final = 1000
-"""The publishers have a second of states at 1 kHz in their queues."""
+DEPTH: Final = 1000  # the publishers have a second of states at 1 kHz in their queues
 
 _TICK_NS: Final = NS_PER_S // 100
 _ANSWERS_S: Final = 10.0  # how long the next answer is waited for at the end

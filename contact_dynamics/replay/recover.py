@@ -12,8 +12,7 @@ from contact_dynamics.recording.recovery import recover
 from contact_dynamics.replay.arguments import recover_parser
 from contact_dynamics.replay.progress import Progress
 
-REFUSED: Final = 2
-"""This exit code says that nothing was written."""
+REFUSED: Final = 2  # this exit code says that nothing was written
 
 
 def main(arguments: list[str]) -> int:

@@ -89,8 +89,7 @@ _OF_A_SET: Final = {
 }
 """How many numbers of a set of contacts belong to one of them, by the name of the field."""
 
-_MAX_WAITING: Final = 10_000
-"""Rows that wait for what is measured. Beyond, the oldest is given without."""
+_MAX_WAITING: Final = 10_000  # rows that wait for what is measured. Beyond, the oldest is given without.
 
 COLUMNS: Final[dict[str, type]] = {
     "log": str,
@@ -396,8 +395,7 @@ def _contacts(contacts: Mapping[str, list[object]], begin: int, end: int) -> dic
 WITHIN: Final = 0.1
 """s. A state that is older than this when an answer's time comes says nothing of it any more."""
 
-AFTER_IMPACT: Final = 0.05
-"""s. The flight after an impact is fitted to the states of this time."""
+AFTER_IMPACT: Final = 0.05  # s. The flight after an impact is fitted to the states of this time.
 
 _AT_IMPACT: Final = 1
 """States after an impact that do not count, since the impact can come a little later than predicted."""

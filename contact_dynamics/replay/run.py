@@ -50,11 +50,8 @@ DIFFERENT: Final = 1
 """The exit code if an answer differs, a call cannot be read, a viewer failed, or there is nothing to write or
 publish."""
 
-NO_LOG: Final = 2
-"""The exit code if a file cannot be replayed at all."""
-
-LACKS: Final = 3
-"""The exit code if a mode requires a package that is not installed."""
+NO_LOG: Final = 2  # the exit code if a file cannot be replayed at all
+LACKS: Final = 3  # the exit code if a mode requires a package that is not installed
 
 _KINDS: Final = ("*.mcap*", "*.db3*")
 

@@ -25,8 +25,7 @@ if TYPE_CHECKING:
 
 CLOCK: Final = "/clock"
 INTERFACES: Final = "contact_dynamics_interfaces/srv/"
-EVERYTHING: Final = Span()
-"""A log from its beginning to its end."""
+EVERYTHING: Final = Span()  # a log from its beginning to its end
 
 
 def in_order(

@@ -158,14 +158,9 @@ def _size(x: float, y: float) -> float:
     return abs(x - y) / max(1.0, abs(x), abs(y))
 
 
-MAX_TOLD: Final = 10
-"""The differences of this many questions are kept, those of the largest ones."""
-
-BY_LOAD: Final = ("BUSY", "TIMEOUT")
-"""The status codes of responses that depend on the load of the machine."""
-
-MAX_FIELDS_TOLD: Final = 5
-"""This many fields of one answer are kept, those that differ most."""
+MAX_TOLD: Final = 10  # the differences of this many questions are kept, those of the largest ones
+BY_LOAD: Final = ("BUSY", "TIMEOUT")  # the status codes of responses that depend on the load of the machine
+MAX_FIELDS_TOLD: Final = 5  # this many fields of one answer are kept, those that differ most
 
 
 @dataclass(slots=True, kw_only=True)
@@ -348,8 +343,7 @@ def _unreadable(found: Verification, tally: ServiceTally, reason: str) -> None:
     found.unreadable = found.unreadable or reason
 
 
-AS_LOGGED: Final = "as logged"
-"""What comes of a log whose answers are all the same today."""
+AS_LOGGED: Final = "as logged"  # what comes of a log whose answers are all the same today
 
 
 def report(found: Verification) -> str:

@@ -21,9 +21,7 @@ if TYPE_CHECKING:
     from contact_dynamics.replay.progress import Progress
 
 _LOOK_S: Final = 0.2  # how long what is served waits between two looks at its sinks
-
-_AT_ONCE: Final = 1000
-"""States that are drawn together, because a batch costs what a single state does."""
+_AT_ONCE: Final = 1000  # states that are drawn together, because a batch costs what a single state does
 
 
 class Drawn(NamedTuple):

@@ -156,7 +156,7 @@ def brick(tmp_path_factory: pytest.TempPathFactory) -> Run:
 def cube(tmp_path_factory: pytest.TempPathFactory) -> Run:
     if not REAL_TOSSES.is_file():
         pytest.skip(f"no published tosses at {REAL_TOSSES} (CUBE_TOSSES)")
-    return run_demo(str(REAL_TOSSES), tmp_path_factory.mktemp("demo"))
+    return run_demo(f"{REAL_TOSSES}#344", tmp_path_factory.mktemp("demo"))
 
 
 @pytest.fixture(params=["brick", pytest.param("cube", marks=pytest.mark.slow)])
