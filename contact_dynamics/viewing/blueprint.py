@@ -95,7 +95,7 @@ _EYES: Final[dict[str, tuple[ArrayLike, ArrayLike]]] = {
     IMPULSE_SPACE_IN_3D: (EYE, TARGET),
 }
 _OF_ANSWERS: Final = (PREDICTED, IMPACTS, CONTACTS, TOSSES, MANY)  # what scenes have of them
-_BACKGROUND: Final = rrb.Background(color=palette.BACKGROUND, kind=rrb.BackgroundKind.SolidColor)
+BACKGROUND: Final = rrb.Background(color=palette.BACKGROUND, kind=rrb.BackgroundKind.SolidColor)
 
 
 class _Page(NamedTuple):
@@ -232,9 +232,9 @@ def _scene(
         origin="/",
         contents=[f"+ {SCENE}/**", *(f"- {part}/**" for part in without)],
         name=f"{name} ({COLORS_IN_WORDS})",
-        background=_BACKGROUND,
+        background=BACKGROUND,
         line_grid=False,
-        eye_controls=None if eye is None else _orbit(eye.position_W, eye.target_W, eye.up_W),
+        eye_controls=None if eye is None else orbit(eye.position_W, eye.target_W, eye.up_W),
         overrides={
             **{entity(TRAILS, name): _window() for name in body_names},
             **{
@@ -266,13 +266,20 @@ def diagram_view(origin: str) -> rrb.Spatial2DView | rrb.Spatial3DView:
     name = DIAGRAMS[origin]
     if origin not in _EYES:
         return rrb.Spatial2DView(origin=origin, name=name, background=palette.BACKGROUND)
-    eye = _orbit(*_EYES[origin], (0, 0, 1))
+    eye = orbit(*_EYES[origin], (0, 0, 1))
     return rrb.Spatial3DView(
-        origin=origin, name=name, background=_BACKGROUND, line_grid=False, eye_controls=eye
+        origin=origin, name=name, background=BACKGROUND, line_grid=False, eye_controls=eye
     )
 
 
-def _orbit(position: ArrayLike, target: ArrayLike, up: ArrayLike) -> rrb.EyeControls3D:
+def up_of(gravity_W: FloatArray) -> FloatArray:
+    """Return the unit vector against gravity, (3,), or z without gravity."""
+    size = float(np.linalg.norm(gravity_W))
+    return -gravity_W / size if size > 0.0 else np.array([0.0, 0.0, 1.0])
+
+
+def orbit(position: ArrayLike, target: ArrayLike, up: ArrayLike) -> rrb.EyeControls3D:
+    """Return an eye at a place that looks at another one, with this direction upwards, world axes."""
     return rrb.EyeControls3D(kind=rrb.Eye3DKind.Orbital, position=position, look_target=target, eye_up=up)
 
 

@@ -24,12 +24,11 @@ import rerun as rr
 
 from contact_dynamics.constants import ns_after
 from contact_dynamics.diagrams import palette
-from contact_dynamics.diagrams.contact_scene import LETTERS
 from contact_dynamics.diagrams.impact_scene import LABELS
 from contact_dynamics.diagrams.poinsot import ARROW_RADIUS, poinsot_axes, poinsot_marks
 from contact_dynamics.rotations.one import rotation_matrix
 from contact_dynamics.viewing.drawing import draw_marks
-from contact_dynamics.viewing.entities import CONTACTS, IMPACTS, POINSOT_BODIES, POINSOT_WORDS, WHOSE, entity
+from contact_dynamics.viewing.entities import IMPACTS, POINSOT_BODIES, POINSOT_WORDS, WHOSE, entity
 from contact_dynamics.viewing.measured import (
     OF_ONE_BODY,
     curves_of,
@@ -128,21 +127,6 @@ class ConservedInView:
             whose = rr.TextDocument(f"The curves are those of **{body_name}**.", media_type="text/markdown")
             self._recording.log(WHOSE, whose)
         return begins
-
-
-class LettersInView:
-    """The body whose contacts have letters."""
-
-    def __init__(self, recording: rr.RecordingStream) -> None:
-        """Begin without any."""
-        self._recording = recording
-        self._lettered = ""
-
-    def come(self, body_name: str, stamp_ns: int) -> None:
-        """Note the body that the newest answer is about, and clear the letters of another, at a stamp, ns."""
-        if self._lettered not in {"", body_name}:
-            _clear_each(self._recording, [f"{entity(CONTACTS, self._lettered)}/{LETTERS}"], stamp_ns)
-        self._lettered = body_name
 
 
 def _clear_each(recording: rr.RecordingStream, paths: Iterable[str], stamp_ns: int) -> None:

@@ -52,6 +52,9 @@ if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
 
 
+PREDICTED: Final = "after impact, predicted"  # kinds of curves of the speed
+MEASURED: Final = "after impact, measured"
+
 OF_ONE_BODY: Final = (ENERGY, MOMENTUM, ANGULAR_MOMENTUM, ANGULAR_VELOCITY)
 """The entities of the curves that one body has at a time: it must have mass properties."""
 
@@ -59,6 +62,8 @@ _MAX_ACCELERATION: Final = 20.0
 """m/s^2. A body that was struck or lost from view for a while is not taken for one that was put elsewhere."""
 
 _SLACK: Final = 0.05  # m. The same for one whose measured velocities are off.
+
+_GAP_S: Final = 1e-3  # s after a curve, where it ends, so that nothing joins it to the next
 
 SET_BACK_S: Final = 0.5
 """s. Where the stamps of a body fall by more than this, its clock was set back, as by a simulation that
@@ -103,6 +108,9 @@ def style_series(
             path = entity(quantity, body_name, kind)
             series = rr.SeriesLines(colors=own, names=f"{body_name} {kind}", widths=width)
             recording.log(path, series, static=True)
+    for kind, own in ((PREDICTED, palette.IMPACT), (MEASURED, palette.readable(color))):
+        series = rr.SeriesLines(colors=own, names=f"{body_name} {kind}", widths=2.5)
+        recording.log(entity(SPEED, body_name, kind), series, static=True)
 
 
 def draw_states(
@@ -226,22 +234,6 @@ def _draw_curves(
         recording.send_columns(
             entity(quantity, body_name, kind), indexes=[stamps], columns=scalar_columns(values)
         )
-
-
-PREDICTED: Final = "after impact, predicted"
-MEASURED: Final = "after impact, measured"
-
-_GAP_S: Final = 1e-3  # s after a curve, where it ends, so that nothing joins it to the next
-_WIDTH: Final = 2.5
-
-
-def style_after_impact(
-    recording: rr.RecordingStream, body_name: str, color: palette.Color = palette.MEASURED
-) -> None:
-    """Set colours and names of the two curves; ``color`` is the body's own."""
-    for kind, own in ((PREDICTED, palette.IMPACT), (MEASURED, palette.readable(color))):
-        series = rr.SeriesLines(colors=own, names=f"{body_name} {kind}", widths=_WIDTH)
-        recording.log(entity(SPEED, body_name, kind), series, static=True)
 
 
 def draw_after_impact(

@@ -11,16 +11,13 @@ import rerun as rr
 
 from contact_dynamics.constants import ns_after, to_ns
 from contact_dynamics.diagrams.after_impact import AwaitedImpacts
-from contact_dynamics.diagrams.contact_scene import bodies_contact_marks, contact_marks
+from contact_dynamics.diagrams.contact_scene import LETTERS, bodies_contact_marks, contact_marks
 from contact_dynamics.diagrams.flight import DEFAULT_PREDICTIONS, EARLIER, flight_marks, outside, path_mark
 from contact_dynamics.diagrams.impact_scene import impact_marks
 from contact_dynamics.diagrams.many_states import many_states_marks
 from contact_dynamics.diagrams.planar_scene import silhouette
 from contact_dynamics.diagrams.toss_scene import toss_marks
-from contact_dynamics.diagrams.words import (
-    AFTER_IMPACT,
-    after_impact_in_words,
-)
+from contact_dynamics.diagrams.words import AFTER_IMPACT, after_impact_in_words
 from contact_dynamics.numerics.vectors import tangents_near_x
 from contact_dynamics.questions.services import service_of
 from contact_dynamics.tumbling.polhode import Regime
@@ -40,7 +37,7 @@ from contact_dynamics.viewing.entities import (
     TOSSES,
     entity,
 )
-from contact_dynamics.viewing.in_view import ImpactsInView, LettersInView, PoinsotInView, PredictionsInView
+from contact_dynamics.viewing.in_view import ImpactsInView, PoinsotInView, PredictionsInView
 from contact_dynamics.viewing.measured import SET_BACK_S, draw_after_impact, set_time
 from contact_dynamics.viewing.scenery import WorldInView
 from contact_dynamics.viewing.words import LEGEND_TEXT, AnswersInWords, sentence
@@ -93,7 +90,7 @@ class Picture:
         self._newest: dict[str, BodyState] = {}
         self._stamps_ns: dict[str, int] = {}  # the newest, since a clock was last set back
         self._impacts = ImpactsInView(recording)
-        self._letters = LettersInView(recording)
+        self._lettered = ""  # the body whose contacts have letters
         self._answers = AnswersInWords(recording)
         self._awaited = AwaitedImpacts(gravity_W=world.gravity_W)
         self._told_ns: int | None = None  # stamp of the last answer
@@ -122,7 +119,7 @@ class Picture:
         if before is None:  # it was not in the picture before
             self._world.add_body(body_name, stamp_ns=states[0].stamp_ns)
             self._look(self._framing.add_body(body_name, states[0].p_WB_W))
-        gravity_W = self._world.gravity_W
+        gravity_W = self._world.world.gravity_W
         if self._predictions.add_states(body_name, states, before=before, gravity_W=gravity_W):
             self._bring_up(ERROR)
         self._poinsot.add_states(body_name, states)
@@ -152,7 +149,8 @@ class Picture:
             shown, remarks = service.draw(self, answer, stamp_ns)
             self._bring_up(ANSWERS, *shown)
         words = [*service.in_words(answer), *remarks]
-        self._tell_answer(service.kind, answer.body_name, words, remark, computation_time, stamp_ns=stamp_ns)
+        said = sentence(answer.body_name, words, remark=remark, computation_time=computation_time)
+        self.tell(service.kind, said, stamp_ns=stamp_ns)
         for found in self._awaited.see(answer.body_name, ()):  # an impact may have been seen already
             self._show_after_impact(found)
 
@@ -160,9 +158,8 @@ class Picture:
         """Draw contact modes of several bodies at a time, ns, and put them into words."""
         set_time(self.recording, now_ns)
         name = next(iter(self._bodies.names), "")  # which switches modes on and off
-        self._letters.come(name, now_ns)
         marks = bodies_contact_marks(contacts, answer.modes, size=self._bodies.largest_size)
-        self._draw_anew(CONTACTS, name, marks)
+        self._draw_contacts(name, marks)
         self._bring_up(CONTACTS)
         self.tell("contact modes", answer.in_short().partition(": ")[2], stamp_ns=now_ns)
 
@@ -174,7 +171,7 @@ class Picture:
         """
         name, rotation = answer.body_name, answer.poinsot
         shape = self._bodies.shape(name)
-        trajectory, in_the_way = outside(answer.trajectory, shape, self._world.surfaces)
+        trajectory, in_the_way = outside(answer.trajectory, shape, self._world.world.surfaces)
         if len(trajectory) == 0:
             self.recording.log(entity(PREDICTED, name), rr.Clear(recursive=True))
         else:
@@ -207,12 +204,15 @@ class Picture:
         )
         return [IMPACTS, *drawn], []
 
-    def draw_contact_modes(self, answer: ContactModeAnswer, stamp_ns: int) -> tuple[list[str], list[str]]:
+    def draw_contact_modes(
+        self,
+        answer: ContactModeAnswer,
+        stamp_ns: int,  # noqa: ARG002  as all
+    ) -> tuple[list[str], list[str]]:
         """Draw contact modes in the scene, and in 2D if they have a plane of motion."""
         name, plane = answer.body_name, answer.plane
         shape, body = self._bodies.shape(name), self._bodies.mass_properties(name)
-        self._letters.come(name, stamp_ns)
-        self._draw_anew(CONTACTS, answer.body_name, contact_marks(shape, answer, body=body))
+        self._draw_contacts(name, contact_marks(shape, answer, body=body))
         if self._eye is None:
             self._look_at(self._across_from(answer))
         if plane is None:
@@ -237,6 +237,13 @@ class Picture:
         name = answer.body_name
         self._draw_anew(MANY, name, many_states_marks(self._bodies.shape(name), answer))
         return [MANY], []
+
+    def _draw_contacts(self, body_name: str, marks: list[Mark]) -> None:
+        """Draw contacts of a body, and clear the letters of another, which the newest answer is not about."""
+        if self._lettered not in {"", body_name}:
+            self.recording.log(f"{entity(CONTACTS, self._lettered)}/{LETTERS}", rr.Clear(recursive=False))
+        self._lettered = body_name
+        self._draw_anew(CONTACTS, body_name, marks)
 
     def _draw_anew(self, kind: str, body_name: str, marks: list[Mark]) -> None:
         """Draw an answer in the scene in place of the one before about its body."""
@@ -278,30 +285,16 @@ class Picture:
     def _show_after_impact(self, found: AfterImpact) -> None:
         name, end_ns = found.answer.body_name, found.stamps_ns[-1]
         draw_after_impact(self.recording, self._bodies.shape(name), found, color=self._bodies.color(name))
-        words = after_impact_in_words(found)
-        self._tell_answer(AFTER_IMPACT, name, words, "", None, stamp_ns=end_ns)
+        self.tell(AFTER_IMPACT, sentence(name, after_impact_in_words(found)), stamp_ns=end_ns)
 
     def _predict(self, body_name: str, trajectory: Trajectory, *, begin_ns: int) -> list[str]:
         """Note what curves are drawn from until the next prediction, and return what there is to see."""
         has_energy, is_compared = self._predictions.come(
-            body_name, trajectory, begin_ns=begin_ns, gravity_W=self._world.gravity_W
+            body_name, trajectory, begin_ns=begin_ns, gravity_W=self._world.world.gravity_W
         )
         if is_compared:
             self._bring_up(ERROR)
         return [ENERGY] if has_energy else []
-
-    def _tell_answer(
-        self,
-        kind: str,
-        body_name: str,
-        words: list[str],
-        remark: str,
-        computation_time: float | None,
-        *,
-        stamp_ns: int,
-    ) -> None:
-        said = sentence(body_name, words, remark=remark, computation_time=computation_time)
-        self.tell(kind, said, stamp_ns=stamp_ns)
 
     def _look_along(self, trajectory: Trajectory) -> None:
         """Turn the view towards the first trajectory that is predicted."""

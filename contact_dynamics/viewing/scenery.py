@@ -17,16 +17,16 @@ from contact_dynamics.diagrams import palette
 from contact_dynamics.diagrams.shape import Shape, drawn_shape
 from contact_dynamics.diagrams.world_scene import body_marks, obstacle_marks, surface_marks
 from contact_dynamics.shapes.convex import NO_SHAPE
+from contact_dynamics.viewing.blueprint import up_of
 from contact_dynamics.viewing.drawing import parts_of
 from contact_dynamics.viewing.entities import BODIES, SCENE, SURFACES, TRAILS, entity
-from contact_dynamics.viewing.measured import set_time, style_after_impact, style_series
+from contact_dynamics.viewing.measured import set_time, style_series
 from contact_dynamics.world import Surface
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from contact_dynamics.rigid_body.body import MassProperties
-    from contact_dynamics.shapes.obstacle import Obstacle
     from contact_dynamics.validation import FloatArray
     from contact_dynamics.world import World
 
@@ -152,6 +152,7 @@ class WorldInView:
     """Surfaces and bodies in the scene. Both can have other forms from a time on.
 
     Attributes:
+        world: The world as it is now.
         bodies: How the bodies look.
         up_W: (3,), the unit vector against gravity, or the third axis without gravity.
     """
@@ -159,7 +160,7 @@ class WorldInView:
     def __init__(self, recording: rr.RecordingStream, world: World, *, surface_side: float) -> None:
         """Draw the surfaces of a world, as squares of ``surface_side``, m, and set how its bodies look."""
         self._recording = recording
-        self._world = world
+        self.world = world
         self._surface_side = surface_side
         self._scenery = Scenery(recording)
         self._in_scene: list[str] = []  # the bodies that are drawn
@@ -167,23 +168,11 @@ class WorldInView:
         self._center_W: FloatArray | None = None  # the middle of what is looked at
         self._extent = surface_side  # m, of what is looked at
         self.bodies = BodiesInWorld(world)
-        gravity = float(np.linalg.norm(world.gravity_W))
-        self.up_W = -world.gravity_W / gravity if gravity > 0.0 else np.array([0.0, 0.0, 1.0])
+        self.up_W = up_of(world.gravity_W)
         draw_axes(recording, self.up_W)
         self._draw_surfaces()
         for name in self.bodies.names:
             style_series(recording, name, self.bodies.color(name))
-            style_after_impact(recording, name, self.bodies.color(name))
-
-    @property
-    def surfaces(self) -> tuple[Surface | Obstacle, ...]:
-        """The world's surfaces."""
-        return tuple(self._world.surfaces)
-
-    @property
-    def gravity_W(self) -> FloatArray:
-        """The world's gravity, (3,), m/s^2."""
-        return self._world.gravity_W
 
     def add_body(self, name: str, *, stamp_ns: int) -> None:
         """Draw a body that has its first state at a stamp, ns."""
@@ -200,7 +189,7 @@ class WorldInView:
 
     def change(self, world: World, *, stamp_ns: int) -> None:
         """Draw other surfaces and shapes of bodies from a time on, ns."""
-        self._world = world
+        self.world = world
         self.bodies.change(world)
         wanted = self._surfaces()
         gone = self._scenery.paths - wanted.keys()
@@ -219,10 +208,10 @@ class WorldInView:
 
     def _surfaces(self) -> dict[str, dict[str, Part]]:
         """Return the parts of the surfaces by their paths."""
-        flats = [surface for surface in self._world.surfaces if isinstance(surface, Surface)]
+        flats = [surface for surface in self.world.surfaces if isinstance(surface, Surface)]
         side = min(self._surface_side, GROUND * self._extent or self._surface_side)
         parts: dict[str, dict[str, Part]] = {}
-        for surface in self._world.surfaces:
+        for surface in self.world.surfaces:
             if isinstance(surface, Surface):
                 center_W = surface.p_WS_W if self._center_W is None else self._center_W
                 marks = surface_marks(surface, center_W=center_W, side=side, among=flats)

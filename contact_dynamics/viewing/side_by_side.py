@@ -7,12 +7,11 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
-import numpy as np
 import rerun.blueprint as rrb
 
-from contact_dynamics.diagrams import palette
 from contact_dynamics.numerics.vectors import tangents_near_x
 from contact_dynamics.records import Record
+from contact_dynamics.viewing.blueprint import BACKGROUND, orbit, up_of
 
 if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
@@ -36,8 +35,7 @@ class SideBySide(Record):
     @property
     def up_W(self) -> FloatArray:
         """Return the unit vector against gravity, (3,), or z without gravity."""
-        size = float(np.linalg.norm(self.gravity_W))
-        return -self.gravity_W / size if size > 0.0 else np.array([0.0, 0.0, 1.0])
+        return up_of(self.gravity_W)
 
     def place(self, number: int) -> FloatArray:
         """Return the place of an event, (3,), m."""
@@ -55,19 +53,13 @@ class SideBySide(Record):
         row_count = math.ceil(max(1, self.count) / COLUMN_COUNT)
         middle = 0.5 * apart * ((columns - 1) * u_W - (row_count - 1) * v_W)
         distance = apart * max(0.95 * columns, 1.2 * row_count, 1.0)
-        eye = rrb.EyeControls3D(
-            kind=rrb.Eye3DKind.Orbital,
-            position=middle + distance * (0.75 * up_W - 0.65 * v_W),
-            look_target=middle,
-            eye_up=up_W,
-        )
         view = rrb.Spatial3DView(
             origin="/",
             contents=f"{EVENTS}/**",
             name=name,
-            background=rrb.Background(color=palette.BACKGROUND, kind=rrb.BackgroundKind.SolidColor),
+            background=BACKGROUND,
             line_grid=False,
-            eye_controls=eye,
+            eye_controls=orbit(middle + distance * (0.75 * up_W - 0.65 * v_W), middle, up_W),
         )
         return rrb.Blueprint(
             rrb.Horizontal(view, rrb.TextDocumentView(origin=TABLE, name=table), column_shares=[3, 2]),

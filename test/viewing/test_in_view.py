@@ -6,7 +6,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from contact_dynamics.constants import to_ns
-from contact_dynamics.viewing.in_view import LABELS_S, ConservedInView, ImpactsInView, LettersInView
+from contact_dynamics.viewing.in_view import LABELS_S, ConservedInView, ImpactsInView
 from viewing.drawn import STAMP_NS
 
 if TYPE_CHECKING:
@@ -49,17 +49,6 @@ def test_an_impact_that_is_over_goes_when_that_of_another_body_comes(
     impacts.pass_by("a", AFTER_NS)
     impacts.come("b", stamp_ns=AFTER_NS + 7, strike_ns=AFTER_NS + 7)
     assert cleared(read(), "/world/impact/a") == [AFTER_NS + 7]
-
-
-def test_the_body_that_was_asked_about_last_has_letters(
-    recording: rr.RecordingStream, read: Callable[[], Drawn]
-) -> None:
-    letters = LettersInView(recording)
-    for offset, name in enumerate(("a", "a", "b", "a")):
-        letters.come(name, STAMP_NS + offset)
-    drawn = read()
-    assert cleared(drawn, "/world/contacts/a/letters") == [STAMP_NS + 2]
-    assert cleared(drawn, "/world/contacts/b/letters") == [STAMP_NS + 3]
 
 
 def test_the_curves_stay_with_a_body_until_its_prediction_is_over(

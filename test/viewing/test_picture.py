@@ -73,6 +73,22 @@ def test_each_answer_appears_at_its_stamp(
     assert drawn.stamps("/world/contacts/brick/letters", "Points3D:labels") == [STAMP_NS + 2]
 
 
+def test_the_body_that_was_asked_about_last_has_letters(
+    recording: rr.RecordingStream,
+    read: Callable[[], Drawn],
+    world: World,
+    state: BodyState,
+    two_contacts: ContactSet,
+) -> None:
+    picture = Picture(recording, world, surface_side=2.0)
+    for offset, name in enumerate(("a", "a", "b", "a")):
+        picture.show(contact_mode_answer(moved(state, STAMP_NS + offset), two_contacts, body_name=name))
+    drawn = read()
+    for name, cleared_ns in (("a", STAMP_NS + 2), ("b", STAMP_NS + 3)):
+        cleared = drawn.values[f"/world/contacts/{name}/letters", "Clear:is_recursive"]
+        assert [stamp for stamp, _ in cleared] == [cleared_ns]
+
+
 def test_measured_states_after_a_prediction_stand_beside_it(
     recording: rr.RecordingStream,
     read: Callable[[], Drawn],
