@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from contact_dynamics.diagrams import palette, paper
-from contact_dynamics.diagrams.marks import Diagram, Labels, Lines, Points, Regions
+from contact_dynamics.diagrams.marks import Diagram, Labels, Lines, Points, Regions, near_one_another
 from contact_dynamics.diagrams.mode_map import NO_MODE, borders_of, chart_frame, mode_regions
 from contact_dynamics.diagrams.palette import Paint
 from contact_dynamics.diagrams.wrench_chart import ANTICLOCKWISE, CLOCKWISE, HIDDEN
@@ -129,14 +129,7 @@ def answer_marks(
 
 def _names(name: str, paint: Paint, places: FloatArray, labels: list[str], chart: ForceDualChart) -> Labels:
     """Return the labels above points. Points at one place share a label."""
-    groups: list[list[int]] = []
-    for i, place in enumerate(places):
-        near = (g for g in groups if np.linalg.norm(places[g[0]] - place) < _NEAR * chart.resolution)
-        group = next(near, None)
-        if group is None:
-            groups.append([i])
-        else:
-            group.append(i)
+    groups = near_one_another(places, within=_NEAR * chart.resolution)
     return Labels(
         name,
         Paint(paint.dark, paper.BLACK),

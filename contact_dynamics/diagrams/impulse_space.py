@@ -65,16 +65,13 @@ class ContactImpulse:
     """The impulse of an impact's main contact, along the two tangents and the normal of its picture.
 
     After an impulse x at the contact, its velocity is ``velocity + response @ x`` (lecture 27, eq. 9 and 10).
-    Both are None without the mass properties of all bodies that move.
+    Both are known with the mass properties of all bodies that move.
     """
 
-    contact: int  # the contact
-    axes_W: FloatArray  # (3, 3), unit, right-handed: two tangents and the normal, world axes
+    friction: float
     path: FloatArray  # (k, 3), N s, the vertices of the path
-    events: tuple[PathEvent, ...]  # (m,), what is marked
-    points: FloatArray  # (m, 3), N s, where
-    velocity: FloatArray | None  # (3,), m/s, before the impact
-    response: FloatArray | None  # (3, 3), 1/kg
+    events: list[tuple[PathEvent, FloatArray]]  # what is marked, and where, (3,), N s
+    motion: tuple[FloatArray, FloatArray] | None  # velocity, (3,), m/s, before, and response, (3, 3), 1/kg
     side: float  # N s, half of the width of the diagram
     top: float  # N s, its height
 
@@ -90,7 +87,7 @@ def impulse_space(
         other: The body that is struck, or its mass properties. Without it there are no lines for two bodies.
     """
     found = contact_impulse(body, answer, other=other)
-    friction, side, top = float(answer.contacts.frictions[found.contact]), found.side, found.top
+    friction, side, top = found.friction, found.side, found.top
     low, high = np.array([-side, -_BELOW * top]), np.array([side, top])
     reach = min(top, side / friction) if friction > 0.0 else top
     cone = np.array([(-friction * reach, reach), (0.0, 0.0), (friction * reach, reach)])
@@ -99,17 +96,14 @@ def impulse_space(
         Lines("friction_cone", _CONE, [cone], legend=f"friction cone, μ = {friction:.3g}"),
     ]
     in_space = answer.plane is None
-    if found.velocity is not None and found.response is not None:
-        start, slope = _sticking_line(found.velocity, found.response, in_space=in_space)
+    if found.motion is not None:
+        velocity, response = found.motion
+        start, slope = _sticking_line(velocity, response, in_space=in_space)
         ends = [part_in_box(start[[0, 2]], slope[[0, 2]], low, high)]
         name = "sticking line" + (", projected" if in_space else "")
         marks += _line("sticking_line", _STICKING, "--", name, ends)
-        compressed = [
-            point[1]
-            for event, point in zip(found.events, found.points.tolist(), strict=True)
-            if event == PathEvent.COMPRESSION_ENDS
-        ]
-        (v, r) = found.velocity[2], found.response[2]
+        compressed = [point[1] for event, point in found.events if event == PathEvent.COMPRESSION_ENDS]
+        (v, r) = velocity[2], response[2]
         rise = np.array([1.0, -r[0] / r[2]])
         ends = [
             part_in_box(np.array([0.0, -(v + r[1] * aside) / r[2]]), rise, low, high)
@@ -141,7 +135,7 @@ def impulse_space_in_3d(
         other: The body that is struck, or its mass properties. Without it both are missing for two bodies.
     """
     found = contact_impulse(body, answer, other=other)
-    friction, side, top = float(answer.contacts.frictions[found.contact]), found.side, found.top
+    friction, side, top = found.friction, found.side, found.top
     cone = Lines(
         "friction_cone",
         _CONE,
@@ -152,13 +146,14 @@ def impulse_space_in_3d(
     )
     marks: list[Mark] = [cone]
     low, high = np.array([-side, -side, 0.0]), np.array([side, side, top])
-    if found.velocity is not None and found.response is not None:
-        start, slope = _sticking_line(found.velocity, found.response, in_space=True)
+    if found.motion is not None:
+        velocity, response = found.motion
+        start, slope = _sticking_line(velocity, response, in_space=True)
         marks += _line(
             "sticking_line", _STICKING, "--", "sticking line", [part_in_box(start, slope, low, high)]
         )
         flat = side * np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
-        (v, r) = found.velocity[2], found.response[2]
+        (v, r) = velocity[2], response[2]
         corners = np.column_stack([flat, -(v + flat @ r[:2]) / r[2]])
         corners = part_above(corners, corners[:, 2])
         corners = part_above(corners, top - corners[:, 2])
@@ -185,8 +180,9 @@ def contact_impulse(
     ends = [k for k, i in enumerate(marked) if impact.path_events[i] == PathEvent.RESTITUTION_ENDS]
     marked = marked[: ends[0] + 1] if ends else marked  # the lines belong to the first strike
     top = _MARGIN * float(np.abs(path).max(initial=0.0)) or 1.0
-    half_width = min(max(float(answer.contacts.frictions[contact]), _NARROWEST), _WIDEST) * top
-    velocity = response = None
+    friction = float(answer.contacts.frictions[contact])
+    half_width = min(max(friction, _NARROWEST), _WIDEST) * top
+    motion = None
     if body is not None and (answer.other is None or other is not None):
         velocity, response = _contact_motion(
             body.mass_properties,
@@ -195,15 +191,12 @@ def contact_impulse(
             other=None if other is None else other.mass_properties,
             before=chosen[0] if chosen else 0,
         )
-        velocity, response = axes_W @ velocity, axes_W @ response @ axes_W.T
+        motion = axes_W @ velocity, axes_W @ response @ axes_W.T
     return ContactImpulse(
-        contact=contact,
-        axes_W=axes_W,
+        friction=friction,
         path=path,
-        events=tuple(impact.path_events[i] for i in marked),
-        points=impact.path_W[marked] @ axes_W.T,
-        velocity=velocity,
-        response=response,
+        events=[(impact.path_events[i], axes_W @ impact.path_W[i]) for i in marked],
+        motion=motion,
         side=max(half_width, _MARGIN * float(np.abs(path[:, :2]).max(initial=0.0))),
         top=top,
     )
@@ -279,7 +272,8 @@ def _path_marks(found: ContactImpulse, components: list[int], *, legend: str) ->
     if len(found.path) > 0:
         path = found.path[:, components]
         marks.append(Lines("path", _PATH, [path], width=2.75, legend=legend))
-    for i, (event, point) in enumerate(zip(found.events, found.points[:, components], strict=True)):
+    for i, (event, whole) in enumerate(found.events):
+        point = whole[components]
         words, marker = EVENTS[event]
         numbers = ", ".join(f"{round(x, decimals) + 0.0:.3g}" for x in point.tolist())
         marks.append(

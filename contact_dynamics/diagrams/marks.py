@@ -168,3 +168,16 @@ def mapped(mark: Mark, matrix: FloatArray) -> Mark:
         case Faces():
             return replace(mark, corners=mark.corners @ matrix.T)
     return mark
+
+
+def near_one_another(places: FloatArray, *, within: float) -> list[list[int]]:
+    """Return the indices of places, (n, d), grouped by those near the first one of their group."""
+    groups: list[list[int]] = []
+    for i, place in enumerate(places):
+        near = (group for group in groups if np.linalg.norm(places[group[0]] - place) <= within)
+        group = next(near, None)
+        if group is None:
+            groups.append([i])
+        else:
+            group.append(i)
+    return groups

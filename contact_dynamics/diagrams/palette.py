@@ -15,7 +15,9 @@ from typing import Final, NamedTuple, TypeAlias
 
 Color: TypeAlias = tuple[int, int, int, int]
 
-LEAST_DIFFERENCE: Final = 20.0  # difference of two colours, CIE 1976 ΔE*ab, as in `paper`
+LEAST_DIFFERENCE: Final = 20.0
+"""Difference of two colours, CIE 1976 ΔE*ab. Patches side by side are told apart from about 2 on, and thin
+lines far apart need about ten times that."""
 
 WORD_CONTRAST: Final = 7.0
 """Least contrast of a word with the background, as WCAG 2.2 asks for at its level AAA."""

@@ -1,17 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """The colours on paper. Those who see no green tell them apart too.
 
-Any two that mean different things in one diagram differ by `LEAST_DIFFERENCE` at least. This holds for usual
+Any two that mean different things in one diagram differ by `palette.LEAST_DIFFERENCE` at least, for usual
 eyes, and for deuteranopes after the simulation of Machado, Oliveira and Fernandes (2009). A test computes it.
 """
 
 from __future__ import annotations
 
 from typing import Final
-
-LEAST_DIFFERENCE: Final = 20.0
-"""Difference of two colours, CIE 1976 ΔE*ab. Patches side by side are told apart from about 2 on, and thin
-lines far apart on a page need about ten times that."""
 
 BLACK: Final = "#000000"  # what happens: paths, applied wrenches, totals
 BLUE: Final = "#0060b0"  # the first of several: x, contacts that stay fixed, lines on which nothing slides

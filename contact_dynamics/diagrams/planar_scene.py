@@ -17,7 +17,7 @@ from contact_dynamics.contact_modes.planar.wrench_sets import PlanarWrenchSet, W
 from contact_dynamics.contact_modes.result import PlanarMode, applied_wrench, motion_in_words
 from contact_dynamics.diagrams import palette, paper
 from contact_dynamics.diagrams.contact_scene import beyond
-from contact_dynamics.diagrams.marks import Arrows, Axis, Diagram, Labels, Lines, Points
+from contact_dynamics.diagrams.marks import Arrows, Axis, Diagram, Labels, Lines, Points, near_one_another
 from contact_dynamics.diagrams.mode_map import LIVE_RESOLUTION, chart_for
 from contact_dynamics.diagrams.palette import Paint
 from contact_dynamics.diagrams.shape import FLAT
@@ -96,7 +96,7 @@ def planar_scene_of(
         ),
     ]
     places = points - LABEL_OFFSET * size * normals
-    groups = _same_places(places, size)
+    groups = near_one_another(places, within=_COVERED * size)
     for word, group, paint, meaning in _LETTERS:
         chosen = [i for i, letter in enumerate(letters) if letter in group]
         named = [same for same in groups if letters[same[0]] in group]
@@ -186,19 +186,6 @@ def _place_of(contacts: list[int], points: FloatArray, normals: FloatArray, size
         return np.asarray(points[contacts[0]] - LABEL_OFFSET * size * normals[contacts[0]])
     corner = points[contacts].mean(axis=0)
     return np.asarray(corner + 2.4 * LABEL_OFFSET * size * outward / np.linalg.norm(outward))
-
-
-def _same_places(places: FloatArray, size: float) -> list[list[int]]:
-    """Return the indices of places, (k, 2), m, grouped by those whose labels would cover each other."""
-    groups: list[list[int]] = []
-    for i, place in enumerate(places):
-        near = (same for same in groups if np.linalg.norm(places[same[0]] - place) <= _COVERED * size)
-        group = next(near, None)
-        if group is None:
-            groups.append([i])
-        else:
-            group.append(i)
-    return groups
 
 
 NO_SIZE: Final = 0.1  # m. A body without shape is drawn with this size at its only contact.

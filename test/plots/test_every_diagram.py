@@ -17,6 +17,7 @@ from matplotlib.figure import Figure
 from matplotlib.text import Text
 
 from contact_dynamics.diagrams import paper as colors
+from contact_dynamics.diagrams.palette import LEAST_DIFFERENCE
 from plots.drawn_figures import DIAGRAMS, drawn
 
 TO_XYZ = np.array(
@@ -72,7 +73,7 @@ def color_of(handle: object) -> str:
 
 
 def test_the_measure_knows_colours_that_deuteranopes_confuse() -> None:
-    assert difference("#009e73", "#999999") < colors.LEAST_DIFFERENCE  # green and grey
+    assert difference("#009e73", "#999999") < LEAST_DIFFERENCE  # green and grey
     assert difference("black", "white") == pytest.approx(100.0, abs=0.1)
 
 
@@ -90,12 +91,12 @@ def colours_are_told_apart(name: str, axes: Axes) -> None:
     shown = {to_rgb(color_of(handle)) for handle in handles}
     assert len(shown) > 1
     for one, other in combinations(shown, 2):
-        assert difference(one, other) >= colors.LEAST_DIFFERENCE, (name, one, other)
+        assert difference(one, other) >= LEAST_DIFFERENCE, (name, one, other)
 
 
 def test_every_two_modes_of_a_map_have_colours_apart() -> None:
     every = (*colors.MODES, colors.SEVERAL, colors.NONE, colors.MARK)
-    assert min(difference(one, other) for one, other in combinations(every, 2)) >= colors.LEAST_DIFFERENCE
+    assert min(difference(one, other) for one, other in combinations(every, 2)) >= LEAST_DIFFERENCE
     for color in colors.MODES:  # words on it are read: WCAG's contrast for large words
         words = colors.SEVERAL if color in colors.DARK else colors.BLACK
         bright, dark = sorted((float(TO_XYZ[1] @ linear(each)) for each in (color, words)), reverse=True)
