@@ -4,16 +4,13 @@
 from __future__ import annotations
 
 import math
-from itertools import pairwise
 from typing import TYPE_CHECKING, Final, NamedTuple, TypeAlias
 
 import numpy as np
 
 from contact_dynamics.contact_modes import ModeVerdict
-from contact_dynamics.demo.questioner import LAST_MOMENT
 from contact_dynamics.diagrams.words import OUTCOMES
 from contact_dynamics.impact import ImpactOutcome
-from contact_dynamics.motion.velocity_estimate import WINDOW
 from contact_dynamics.rotations.many import rotation_vectors
 from msg_adapters.geometry import vector_from_msg
 
@@ -26,10 +23,6 @@ if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
 
 SAME_STRIKE: Final = 0.03  # s. A predicted strike and a measured one that are closer than this are the same.
-
-ENOUGH_FLIGHT: Final = 2.0 * WINDOW + LAST_MOMENT
-"""s. A landing after so much flight can be predicted: velocities look back over one window, and another one
-passes until the bounce is out of it. Shorter flights are left out without a word."""
 
 _AVERAGED: Final = 12  # number of frames at each end of the rest, whose means show whether the body moved
 
@@ -64,24 +57,11 @@ def print_table(toss: Toss, strikes: Sequence[Strike], questioner: Questioner) -
         print(f"\nt = {section.time:.3f} s, {section.title}")
         for quantity, predicted, measured, difference in section.rows:
             print(f"  {quantity:32}{predicted:>27}{measured:>27}{difference:>16}")
-    if missed := not_asked(strikes, [asked.time for asked in questioner.flights]):
-        times = ", ".join(f"{time:.3f} s" for time in missed)
-        print(f"\nNot asked in time, so not in the table: the landing at t = {times}. The machine was busy.")
     print(
         f"\nThe states that were published carry noise: {1e3 * toss.velocity_noise:.0f} mm/s and "
         f"{toss.angular_velocity_noise:.2f} rad/s in each component of their velocities.\n"
         f"They were on their way for at most {1e3 * questioner.latest:.0f} ms."
     )
-
-
-def not_asked(strikes: Sequence[Strike], times: list[float]) -> list[float]:
-    """Return when the body landed, s, after enough flight in which none of these questions was asked."""
-    times_of_strikes = [0.0, *(strike.time for strike in strikes)]
-    return [
-        landing
-        for start, landing in pairwise(times_of_strikes)
-        if landing - start >= ENOUGH_FLIGHT and not any(start <= time < landing for time in times)
-    ]
 
 
 def _strike_at(strikes: Sequence[Strike], time: float) -> Strike | None:

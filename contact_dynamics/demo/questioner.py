@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from contact_dynamics.rigid_body.body import BodyState
 
 ANSWER_S: Final = 10.0
-"""Longest time for an answer, s, also on a busy machine. The demo tells what it could not ask in time."""
+"""Longest time for an answer, s, also on a busy machine."""
 
 LAST_MOMENT: Final = 0.025
 """Time before the predicted landing at which it asks for the impact, s: late, but early enough to act."""

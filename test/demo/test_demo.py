@@ -24,7 +24,6 @@ from mcap_ros2.decoder import DecoderFactory
 from rosbags.highlevel import AnyReader
 
 from contact_dynamics.command_line import VERBS, main
-from contact_dynamics.demo.comparison import not_asked
 from contact_dynamics.measured.flights import find_strikes
 from contact_dynamics.measured.read_toss import DEFAULT_RECORDING, read_toss
 from contact_dynamics.measured.recorded_toss import Toss
@@ -303,22 +302,6 @@ def test_the_cube_lands_and_leaves_about_as_predicted(cube: Run) -> None:
     assert np.linalg.norm(np.subtract(position[:3], position[3:6])) < 0.015
     *_, error, jump = numbers("velocity after, m/s", impact)
     assert error < jump / 3.0
-
-
-def test_a_landing_that_nobody_asked_about_is_told(brick: Run) -> None:
-    """The brick lands after 0.44 s, 0.32 s and 0.18 s of flight."""
-    strikes = find_strikes(brick.toss)
-    landings = [strike.time for strike in strikes]
-    assert not_asked(strikes, [0.05, 0.51, 0.84]) == []
-    assert not_asked(strikes, [0.05]) == landings[1:]
-    assert not_asked(strikes, []) == landings
-    asked = [
-        float(re.findall(NUMBER, section)[0])
-        for section in brick.sections("in flight")
-        if "landing: where" in section
-    ]
-    for landing in not_asked(strikes, asked):  # none on a machine that is not busy
-        assert f"{landing:.3f} s" in brick.printed.partition("Not asked in time")[2]
 
 
 def test_stopped_in_the_middle_it_stops_all_and_closes_the_log(tmp_path: Path) -> None:
