@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Makes a row for each question of a recording: what was asked, what the answer was, what was then measured.
 
-A question about many states or candidates has a row for each of them. Positions are those of the body's
+A question about many states or candidates has a row for each of them, of which the first has the question.
+Positions are those of the body's
 published frame, linear velocities those of its centre of mass, in world axes.
 
 The records of services name the functions ``cells_of_...``, which yield cells by the names of their columns:
@@ -36,7 +37,7 @@ from contact_dynamics.rigid_body.published_frame import origin_of_published_fram
 from contact_dynamics.tumbling.motion import free_motion
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+    from collections.abc import Callable, Iterable, Iterator, Sequence
 
     from contact_dynamics.questions.contact_modes import ContactModeAnswer
     from contact_dynamics.questions.impact_question import ImpactAnswer
@@ -51,43 +52,9 @@ if TYPE_CHECKING:
 
 Cell: TypeAlias = str | int | float | None
 Cells: TypeAlias = dict[str, Cell]
-Asked: TypeAlias = "Mapping[str, object]"
-"""What was asked, by the names of the request's fields, as far as it is not the default."""
 
 STATE: Final = ("x", "y", "z", "qx", "qy", "qz", "qw", "vx", "vy", "vz", "wx", "wy", "wz")
 """The numbers of a state, as columns name them."""
-
-_OF_A_STATE: Final = {
-    "positions": 3,
-    "orientations": 4,
-    "linear_velocities": 3,
-    "angular_velocities": 3,
-    "contact_positions": 3,
-    "contact_normals": 3,
-    "frictions": 1,
-    "restitutions": 1,
-    "times": 1,
-}
-"""How many numbers of a request belong to a state, by the name of the field."""
-
-_OF_A_SET: Final = {
-    "positions": 3,
-    "normals": 3,
-    "frictions": 1,
-    "restitutions": 1,
-    "surface_names": 1,
-    "surface_velocities": 3,
-    "surface_angular_velocities": 3,
-    "surface_accelerations": 3,
-    "kinds": 1,
-    "body_curvatures": 1,
-    "surface_curvatures": 1,
-    "body_curvature_directions": 3,
-    "body_curvatures_across": 1,
-    "surface_curvature_directions": 3,
-    "surface_curvatures_across": 1,
-}
-"""How many numbers of a set of contacts belong to one of them, by the name of the field."""
 
 _MAX_WAITING: Final = 10_000  # rows that wait for what is measured. Beyond, the oldest is given without.
 
@@ -196,8 +163,9 @@ class Rows:
         if cells_of is None:
             yield row | {"summary": answered.service.in_words(answered.answer)[0]}
             return
-        for cells in cells_of(answered.answer, answered.question):
+        for cells in cells_of(answered.answer):
             yield row | cells
+            row["question"] = None
 
     def _row(self, answered: Answered) -> _Waiting:
         row: dict[str, Cell] = dict.fromkeys(COLUMNS)
@@ -275,14 +243,14 @@ def _errors(predicted: BodyState, measured: BodyState) -> dict[str, Cell]:
     }
 
 
-def cells_of_tumbling(answer: TumblingAnswer, asked: Asked) -> Iterator[Cells]:  # noqa: ARG001  as all
+def cells_of_tumbling(answer: TumblingAnswer) -> Iterator[Cells]:
     """Yield what ends the flight."""
     event = answer.event
     summary, surface = ("flight", "") if event is None else (event.kind.name.lower(), event.surface)
     yield _cells(summary, [surface])
 
 
-def cells_of_impact(answer: ImpactAnswer, asked: Asked) -> Iterator[Cells]:  # noqa: ARG001  as all
+def cells_of_impact(answer: ImpactAnswer) -> Iterator[Cells]:
     """Yield the outcome of the impact, and where its first contact is."""
     outcome = answer.impact.outcome
     summary = "several at once" if outcome is None else outcome.name.lower()
@@ -290,7 +258,7 @@ def cells_of_impact(answer: ImpactAnswer, asked: Asked) -> Iterator[Cells]:  # n
     yield {**_cells(summary, answer.contacts.surfaces), **{f"contact_{axis}": x for axis, x in place}}
 
 
-def cells_of_toss(answer: TossAnswer, asked: Asked) -> Iterator[Cells]:  # noqa: ARG001  as all
+def cells_of_toss(answer: TossAnswer) -> Iterator[Cells]:
     """Yield the end of the toss, and the corners on which the body rests."""
     corners = " ".join(map(str, answer.toss.resting_corners))
     end = answer.toss.end.name.lower()
@@ -298,7 +266,7 @@ def cells_of_toss(answer: TossAnswer, asked: Asked) -> Iterator[Cells]:  # noqa:
     yield _cells(f"{end} on {corners}" if corners else end, surfaces)
 
 
-def cells_of_contact_modes(answer: ContactModeAnswer, asked: Asked) -> Iterator[Cells]:  # noqa: ARG001  as all
+def cells_of_contact_modes(answer: ContactModeAnswer) -> Iterator[Cells]:
     """Yield the verdict with its modes, and what distinguishes them."""
     modes = answer.modes
     yield {
@@ -310,21 +278,21 @@ def cells_of_contact_modes(answer: ContactModeAnswer, asked: Asked) -> Iterator[
     }
 
 
-def cells_of_tumblings(answer: ManyTumblingsAnswer, asked: Asked) -> Iterator[Cells]:
+def cells_of_tumblings(answer: ManyTumblingsAnswer) -> Iterator[Cells]:
     """Yield each state at the end of its flight."""
-    return _of_states(answer, asked, lambda _: "flight")
+    return _of_states(answer, lambda _: "flight")
 
 
-def cells_of_impacts(answer: ManyImpactsAnswer, asked: Asked) -> Iterator[Cells]:
+def cells_of_impacts(answer: ManyImpactsAnswer) -> Iterator[Cells]:
     """Yield the outcome of each impact, and the state after it."""
 
     def summary(i: int) -> str:
         return "separates" if answer.separates[i] else ImpactOutcome(int(answer.outcomes[i])).name.lower()
 
-    return _of_states(answer, asked, summary)
+    return _of_states(answer, summary)
 
 
-def cells_of_many_contact_modes(answer: ManyContactModesAnswer, asked: Asked) -> Iterator[Cells]:
+def cells_of_many_contact_modes(answer: ManyContactModesAnswer) -> Iterator[Cells]:
     """Yield the verdict on each candidate with its modes."""
     mode_ends, set_ends = np.cumsum(answer.mode_counts).tolist(), np.cumsum(answer.contact_counts).tolist()
     for i, verdict in enumerate(answer.verdicts.tolist()):
@@ -332,17 +300,9 @@ def cells_of_many_contact_modes(answer: ManyContactModesAnswer, asked: Asked) ->
         modes = answer.modes[of_modes]
         k = i % len(set_ends)
         begin, end = set_ends[k] - answer.contact_counts[k], set_ends[k]
-        question = _parts(asked, {"forces": 3, "torques": 3}, i, len(answer))
-        contacts = asked.get("contacts")
-        if isinstance(contacts, dict) and len(set_ends) > 1:
-            question |= {
-                "contacts": _contacts(contacts, begin, end),
-                "contact_counts": [end - begin],
-            }
         yield {
             **_cells(_verdict(ModeVerdict(verdict), modes), answer.contacts.surfaces[begin:end]),
             "state": i,
-            "question": json.dumps(question),
             "mode_count": len(modes),
             "margins": None if answer.margins is None else json.dumps(answer.margins[of_modes].tolist()),
         }
@@ -358,7 +318,7 @@ def _verdict(verdict: ModeVerdict, modes: Sequence[str]) -> str:
 
 
 def _of_states(
-    answer: ManyTumblingsAnswer | ManyImpactsAnswer, asked: Asked, summary: Callable[[int], str]
+    answer: ManyTumblingsAnswer | ManyImpactsAnswer, summary: Callable[[int], str]
 ) -> Iterator[Cells]:
     """Yield the cells of each state. Times have none, because such a question names none."""
     states = answer.states
@@ -367,29 +327,9 @@ def _of_states(
     for i, row in enumerate(numbers.tolist()):
         yield {
             "state": i,
-            "question": json.dumps(_parts(asked, _OF_A_STATE, i, len(states))),
             "summary": summary(i),
             **{f"predicted_{name}": number for name, number in zip(STATE, row, strict=True)},
         }
-
-
-def _parts(asked: Asked, widths: Mapping[str, int], i: int, count: int) -> dict[str, object]:
-    """Return what a request says of one of many: its rows of the lists, and what holds for all."""
-    found: dict[str, object] = {}
-    for name, value in asked.items():
-        width = widths.get(name)
-        if width is not None and isinstance(value, list) and len(value) == width * count:
-            found[name] = value[width * i : width * (i + 1)] if width > 1 else value[i]
-        elif isinstance(value, dict) and name == "states":
-            found[name] = _parts(value, widths, i, count)
-        else:
-            found[name] = value
-    return found
-
-
-def _contacts(contacts: Mapping[str, list[object]], begin: int, end: int) -> dict[str, object]:
-    """Return one of many sets of contacts, which stand one after the other."""
-    return {name: value[_OF_A_SET[name] * begin : _OF_A_SET[name] * end] for name, value in contacts.items()}
 
 
 WITHIN: Final = 0.1

@@ -56,7 +56,8 @@ def test_a_row_for_each_question_of_a_log(asked: Asked, tmp_path: Path) -> None:
     assert {row["status"] for row in cats} == {"UNKNOWN_BODY"}
     assert rows[-1]["status"] == "STALE_STATE"
     for row in rows:
-        assert json.loads(row["question"]).get("body_name", "") == row["body"]
+        is_later = row["state"] not in {"", "0"}  # the first one has the question of a batch
+        assert is_later or json.loads(row["question"]).get("body_name", "") == row["body"]
         assert not row["predicted_qw"] or float(row["predicted_qw"]) >= 0.0
         is_impact = row["service"] == "predict_impact" and row["status"] == "OK"
         assert all((row[f"contact_{axis}"] != "") == is_impact for axis in "xyz")
@@ -85,11 +86,10 @@ def test_a_question_about_many_states_has_a_row_for_each(asked: Asked, tmp_path:
         )
     assert [row["summary"] for row in impacts[:MANY]][-1] == "separates"
     assert "separates" not in {row["summary"] for row in impacts[: MANY - 1]}
-    second = json.loads(impacts[1]["question"])
-    assert second["states"]["positions"] == [0.5, 0.0, 1.0]
-    assert (second["frictions"], second["restitutions"]) == (0.2, [0.5])
-    assert second["contact_normals"] == [0.0, 0.0, 1.0]
-    assert [json.loads(row["question"])["times"] for row in flights[:MANY]] == [0.1, 0.2, 0.3]
+    first = json.loads(impacts[0]["question"])
+    assert first["states"]["positions"][3:6] == [0.5, 0.0, 1.0]
+    assert json.loads(flights[0]["question"])["times"] == [0.1, 0.2, 0.3]
+    assert {row["question"] for rows in (impacts, flights) for row in rows if row["state"] != "0"} == {""}
     assert {row["summary"] for row in flights} == {"flight"}
 
 
@@ -112,17 +112,11 @@ def test_a_question_about_many_candidates_has_a_row_for_each(asked: Asked, tmp_p
             assert row["summary"] == (f"{name}: {', '.join(expected)}" if expected else name)
             assert (row["body"], row["status"], row["states_fitted"]) == ("brick", "OK", "0")
     pushed, standing = rows[:MANY], rows[MANY : 2 * MANY]
-    assert [json.loads(row["question"])["forces"] for row in pushed] == [
-        [0.0, 0.0, 0.0],
-        [0.1, 0.0, 0.0],
-        [9.0, 0.0, 0.0],
-    ]
+    assert json.loads(pushed[0]["question"])["forces"] == [0.0, 0.0, 0.0, 0.1, 0.0, 0.0, 9.0, 0.0, 0.0]
     assert len({row["summary"] for row in pushed}) > 1
     assert pushed[0]["summary"] == "unique: ffff (every contact stays fixed)"
     assert [row["surface"] for row in standing] == ["floor", "table", "ramp"]
-    asked_contacts = [json.loads(row["question"])["contacts"] for row in standing]
-    assert [each["frictions"] for each in asked_contacts] == [[0.1, 0.2], [0.3], [0.4]]
-    assert asked_contacts[2]["positions"] == [-0.02, 0.0, 0.0]
+    assert json.loads(standing[0]["question"])["contact_counts"] == [2, 1, 1]
 
 
 def test_parquet_has_the_cells_of_csv_and_needs_no_ros(asked: Asked, tmp_path: Path) -> None:
