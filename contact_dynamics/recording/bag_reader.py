@@ -123,7 +123,8 @@ class BagReader:
                 an index, only the chunks that it names are read.
             end_ns: the end of the log times, ns. Messages of this time or later are left out.
         """
-        span = Span(start_ns, end_ns)
+        given = {"start_ns": start_ns, "end_ns": end_ns}
+        span = Span(**{name: time_ns for name, time_ns in given.items() if time_ns is not None})
         self.losses = []
         for path in self.paths:
             with self._opened(path) as file:

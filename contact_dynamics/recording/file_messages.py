@@ -51,24 +51,10 @@ class StoredMessage(NamedTuple):
 
 
 class Span(NamedTuple):
-    """A stretch of log times, ns since the epoch. None means no end on that side."""
+    """A stretch of log times, ns since the epoch, by default all of them."""
 
-    start_ns: int | None = None  # the first time that belongs to it
-    end_ns: int | None = None  # the first time after it
-
-    def __contains__(self, log_time_ns: object) -> bool:
-        """Return whether a time belongs to it."""
-        if not isinstance(log_time_ns, int):
-            return False
-        return not self.is_before(log_time_ns) and not self.is_after(log_time_ns)
-
-    def is_before(self, log_time_ns: int) -> bool:
-        """Return whether a time is too early to belong to it."""
-        return self.start_ns is not None and log_time_ns < self.start_ns
-
-    def is_after(self, log_time_ns: int) -> bool:
-        """Return whether a time is too late to belong to it."""
-        return self.end_ns is not None and log_time_ns >= self.end_ns
+    start_ns: int = -(2**63)  # the first time that belongs to it
+    end_ns: int = 2**63 - 1  # the first time after it, or the end of time
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

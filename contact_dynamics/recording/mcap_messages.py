@@ -23,7 +23,7 @@ from mcap.records import Channel, Message, Metadata, Schema
 
 from contact_dynamics.recording.bag_metadata import OFFERED_QOS, RUN_RECORD, TYPE_HASH, unsealed_run
 from contact_dynamics.recording.errors import NotALogError
-from contact_dynamics.recording.file_messages import Loss, StoredMessage, Topic, uncompressed
+from contact_dynamics.recording.file_messages import Loss, Span, StoredMessage, Topic, uncompressed
 from contact_dynamics.recording.mcap_file import (
     HEAD,
     MAGIC,
@@ -41,8 +41,6 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from typing_extensions import Self
-
-    from contact_dynamics.recording.file_messages import Span
 
 
 _ENCODINGS: Final = frozenset({"cdr", ""})
@@ -83,12 +81,12 @@ class McapMessages:
         """Yield the messages of some topics, or of all, in the order in which they were written."""
         definitions = _Definitions(self._walk)
         undefined = 0
-        everything = span == (None, None)
+        everything = span == Span()
         for record in self._walk.records() if everything else self._walk.records_within(span):
             if not isinstance(record, Message):
                 definitions.add(record)
                 continue
-            if not everything and record.log_time not in span:
+            if not everything and not span.start_ns <= record.log_time < span.end_ns:
                 continue
             topic = definitions.topic(record.channel_id)
             if topic is None:
@@ -249,7 +247,7 @@ class McapWalk:
         begins = {
             chunk.chunk_start_offset
             for chunk in summary.chunks
-            if not span.is_before(chunk.message_end_time) and not span.is_after(chunk.message_start_time)
+            if chunk.message_end_time >= span.start_ns and chunk.message_start_time < span.end_ns
         }
         for position in sorted(begins):
             end = self._file.size

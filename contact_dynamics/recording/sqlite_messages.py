@@ -29,8 +29,6 @@ _QOS: Final = "offered_qos_profiles"
 _TOPICS: Final = "SELECT id, name, type, serialization_format, offered_qos_profiles FROM topics"
 _TOPICS_OF_DASHING: Final = "SELECT id, name, type, serialization_format, '' FROM topics"
 _SPANNED: Final = " AND timestamp >= ? AND timestamp < ?"
-_LEAST_NS: Final = -(2**63)
-_LATEST_NS: Final = 2**63 - 1
 _MAX_ID: Final = 2**63 - 1
 
 
@@ -69,12 +67,8 @@ class SqliteMessages:
         ids = ", ".join(str(number) for number in known)
         query = _NEXT_ROWS.format(ids)
         bounds: tuple[int, ...] = ()
-        if span != (None, None):
-            query = query.replace(" ORDER", f"{_SPANNED} ORDER")
-            bounds = (
-                _LEAST_NS if span.start_ns is None else span.start_ns,
-                _LATEST_NS if span.end_ns is None else span.end_ns,
-            )
+        if span != Span():
+            query, bounds = query.replace(" ORDER", f"{_SPANNED} ORDER"), span
         for _, topic_id, timestamp, data in self._rows(query, bounds):
             if isinstance(timestamp, int) and isinstance(data, bytes):
                 yield StoredMessage(known[topic_id], data, timestamp, timestamp)

@@ -230,10 +230,11 @@ def _span(path: Path, given: argparse.Namespace) -> Span:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", DamagedLogWarning)  # told when the log is read
         start_ns, _ = log.extent()
-        span = Span(
-            ns_after(start_ns, given.start) if given.start > 0.0 else None,
-            None if given.end is None else ns_after(start_ns, given.end),
-        )
+        span = Span()
+        if given.start > 0.0:
+            span = span._replace(start_ns=ns_after(start_ns, given.start))
+        if given.end is not None:
+            span = span._replace(end_ns=ns_after(start_ns, given.end))
         if next(log.messages(start_ns=span.start_ns, end_ns=span.end_ns), None) is None:
             # A log that was cut short has no index that says when it ends.
             end_ns = max((message.log_time_ns for message in log.messages()), default=start_ns)
