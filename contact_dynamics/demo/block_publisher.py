@@ -11,7 +11,7 @@ import math
 import sys
 import time
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final, Protocol
+from typing import TYPE_CHECKING, Final, TypeAlias
 
 from geometry_msgs.msg import Vector3Stamped, WrenchStamped
 from nav_msgs.msg import Odometry
@@ -46,24 +46,6 @@ _GRAVITY: Final = -STANDARD_GRAVITY_W[2]
 BEGINS_S: Final = 1.0  # s for which nothing happens at first, so that one sees the block at rest
 MAX_PUSHED: Final = 0.1  # m after which the finger stops
 MAX_TIPPED: Final = 0.3  # rad after which the finger stops: the block falls over by itself
-
-
-class Situation(Protocol):
-    """Something that happens to the block.
-
-    Attributes:
-        topic: Where a robot would measure it.
-        msg_type: What it measures.
-    """
-
-    topic: str
-    msg_type: type
-
-    def load(self, seconds: float, block: SprungBlock) -> Load:
-        """Return what acts on the block after so many s, besides the flats that it touches."""
-
-    def measured(self) -> Vector3Stamped | WrenchStamped:
-        """Return what a sensor measures of it now. The stamp and the frame are still missing."""
 
 
 @dataclass(slots=True, kw_only=True)
@@ -124,6 +106,10 @@ class TiltingTray:
         g = _GRAVITY
         turned = vector_to_msg([g * math.sin(self._tilt), 0.0, -g * math.cos(self._tilt)])
         return Vector3Stamped(vector=turned)
+
+
+Situation: TypeAlias = PushedBlock | TiltingTray
+"""Something that happens to the block, and what a sensor measures of it."""
 
 
 class BlockPublisher(Node):

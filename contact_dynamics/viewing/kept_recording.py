@@ -80,7 +80,7 @@ class KeptRecording(rr.RecordingStream):
         super().set_sinks()
         self._places: list[rr.RecordingStream] = []
         self._left: list[rr.RecordingStream] = []
-        self._arrangement = Arrangement(APPLICATION)
+        self._arrangement = Arrangement()
         self._static: dict[tuple[str, type], Sequence[rr.DescribedComponentBatch]] = {}
         self._rows: dict[str, dict[type, _Row]] = {}  # by path and kind
         self._batches: dict[str, deque[_Row | _Batch]] = {}  # columns with the gaps between them, and words
@@ -199,11 +199,11 @@ class KeptRecording(rr.RecordingStream):
         while (kept[0].stamp_ns or 0) < timed.last_ns - to_ns(LAST_S):
             kept.popleft()
 
-    def send_blueprint(self, blueprint: Any, *, make_active: bool = True, make_default: bool = True) -> None:
-        """Arrange the views, as `rr.RecordingStream.send_blueprint` does."""
-        self._arrangement.change(blueprint)
+    def send_blueprint(self, blueprint: Any, **_as_always: bool) -> None:
+        """Arrange the views, as `rr.RecordingStream.send_blueprint` does by default."""
+        self._arrangement.newest = blueprint
         for place in self._places:
-            self._arrangement.send_to(place, make_active=make_active, make_default=make_default)
+            self._arrangement.send_to(place)
 
     def flush(self, *, timeout_sec: float = 1e38) -> None:
         """Wait until all places have what was drawn, each for at most ``timeout_sec``, s."""
@@ -300,12 +300,11 @@ class Arrangement:
         newest: The newest one, or None while there is none.
     """
 
-    def __init__(self, application: str) -> None:
-        """Begin without any, for the pictures of an application."""
+    def __init__(self) -> None:
         self.newest: rrb.Blueprint | None = None
         self._stream = rr.RecordingStream._from_native(  # noqa: SLF001
             bindings.new_blueprint(
-                application_id=application,
+                application_id=APPLICATION,
                 make_default=False,
                 make_thread_default=False,
                 default_enabled=True,
@@ -313,13 +312,7 @@ class Arrangement:
         )
         self._stream.set_time("blueprint", sequence=0)
 
-    def change(self, blueprint: rrb.Blueprint) -> None:
-        """Arrange the views otherwise from now on."""
-        self.newest = blueprint
-
-    def send_to(
-        self, place: rr.RecordingStream, *, make_active: bool = True, make_default: bool = True
-    ) -> None:
+    def send_to(self, place: rr.RecordingStream) -> None:
         """Send the newest arrangement to a place, if there is one."""
         if self.newest is None:
             return
@@ -327,4 +320,5 @@ class Arrangement:
             self._stream.log(path, rr.Clear(recursive=True))
         self.newest._log_to_stream(self._stream)  # noqa: SLF001
         storage = self._stream.memory_recording().storage
-        bindings.send_blueprint(storage, make_active, make_default, recording=place.to_native())
+        active = default = True
+        bindings.send_blueprint(storage, active, default, recording=place.to_native())
