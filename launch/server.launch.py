@@ -23,7 +23,8 @@ def generate_launch_description() -> LaunchDescription:
     namespace = LaunchConfiguration("namespace")
     parameters = LaunchConfiguration("params_file")
     environment = {DISCOVERY: LaunchConfiguration("discovery_range")}  # for these nodes alone
-    full_name = PathJoinSubstitution(["/", namespace, "contact_dynamics"])
+    server = PathJoinSubstitution(["/", namespace, "contact_dynamics"])
+    monitor = PathJoinSubstitution(["/", namespace, "contact_dynamics_monitor"])
     return LaunchDescription(
         [
             DeclareLaunchArgument(
@@ -59,7 +60,7 @@ def generate_launch_description() -> LaunchDescription:
                 namespace=namespace,
                 output="screen",
                 additional_env=environment,
-                parameters=[parameters, {"spawn": True, "server": full_name}],
+                parameters=[parameters, {"spawn": True, "server": server, "monitor": monitor}],
                 condition=IfCondition(LaunchConfiguration("view")),
             ),
         ]

@@ -26,6 +26,7 @@ from rclpy.serialization import deserialize_message
 
 from contact_dynamics.nodes.arguments import visualizer_parser
 from contact_dynamics.nodes.inbox import InboxNode
+from contact_dynamics.nodes.monitor_parameters import PARAMETERS_OF_OTHERS
 from contact_dynamics.nodes.node_parameters import NodeParameters, refuse_lost_sections
 from contact_dynamics.nodes.parameter_reader import ConfigurationError, ParameterSource
 from contact_dynamics.nodes.parameters import check_change, read_server_parameters
@@ -34,7 +35,7 @@ from contact_dynamics.nodes.running import run_node
 from contact_dynamics.nodes.server_core import ServerCore
 from contact_dynamics.nodes.state_subscriptions import StateTopic
 from contact_dynamics.nodes.topic_faults import TopicFaults
-from contact_dynamics.nodes.visualizer_parameters import VISUALIZER_PARAMETERS, read_visualizer_parameters
+from contact_dynamics.nodes.visualizer_parameters import read_visualizer_parameters
 from contact_dynamics.questions.services import SERVICES
 from contact_dynamics.questions.state_store import StateStore
 from contact_dynamics.questions.uncertain_state import state_of
@@ -42,6 +43,7 @@ from contact_dynamics.recording.cdr_stamp import EventType, event_type_of
 from contact_dynamics.viewing.picture import Picture
 from contact_dynamics.viewing.sinks import OpenRecording, ViewerMode, raise_errors
 from contact_dynamics.viewing.states_in_turn import SHORTEST_S, StatesInTurn
+from contact_dynamics_interfaces.msg import MonitorEvent
 from msg_adapters.stamps import stamp_ns_from_msg
 
 if TYPE_CHECKING:
@@ -110,7 +112,7 @@ class Visualizer(InboxNode):
         self._strict = strict
         self._told: set[str] = set()
         self._source = NodeParameters(
-            self, ros_arguments=ros_arguments, also_known=VISUALIZER_PARAMETERS, read_only=True
+            self, ros_arguments=ros_arguments, also_known=PARAMETERS_OF_OTHERS, read_only=True
         )
         self._core = core = ServerCore(read_server_parameters(self._source))
         own = read_visualizer_parameters(self._source)
@@ -127,6 +129,7 @@ class Visualizer(InboxNode):
         self._server = server
         self._values = {name: plain(parameter.value) for name, parameter in self._parameters.items()}
         self.create_subscription(ParameterEvent, CHANGES, self._follow, EVENT_QOS)
+        self.create_subscription(MonitorEvent, f"{own.monitor}/events", self._tell_event, EVENT_QOS)
         self._events = [self._listen(shown, f"{server}/{shown.name}") for shown in SERVICES]
         self._wait_for_server(server, self._events, server_wait)
         handed_on, faults = _HandedOn(self._states), TopicFaults(self.get_logger().warning)
@@ -227,6 +230,12 @@ class Visualizer(InboxNode):
         self._picture.show(
             answer, now_ns=now_ns, remark=response.message, computation_time=response.computation_time
         )
+
+    def _tell_event(self, msg: MonitorEvent) -> None:
+        """Show an event of a monitor in words."""
+        stamp_ns, is_unusual = stamp_ns_from_msg(msg.header.stamp), msg.alarm or msg.region == msg.OUTSIDE_99
+        tell = partial(self._picture.tell, "monitor", msg.text, stamp_ns=stamp_ns, is_error=is_unusual)
+        self._guarded("the monitor's events", tell)
 
     def _follow(self, event: ParameterEvent) -> None:
         """Draw what the server is configured with from now on."""

@@ -23,6 +23,9 @@ MOST: Final = 10**6
 
 _DECLARED: Final = (
     DeclaredParameter("server", "/contact_dynamics", "Full name of the server node whose answers are drawn."),
+    DeclaredParameter(
+        "monitor", "/contact_dynamics_monitor", "Full name of the monitor node whose events are listed."
+    ),
     DeclaredParameter("rrd_path", "", "Output file. An existing file is replaced."),
     DeclaredParameter(
         "rrd_file_size",
@@ -67,6 +70,7 @@ class VisualizerParameters(NamedTuple):
     """What the visualizer is configured with besides the server's parameters."""
 
     server: str  # its full name
+    monitor: str  # its full name
     surface_side: float  # m
     predictions: int  # the newest of a body that are in view
     sinks: Sinks
@@ -103,6 +107,7 @@ def read_visualizer_parameters(source: ParameterSource) -> VisualizerParameters:
         raise ConfigurationError(str(error)) from None
     return VisualizerParameters(
         server=given["server"],
+        monitor=given["monitor"],
         surface_side=given["surface_side"],
         predictions=given["predictions"],
         sinks=sinks,

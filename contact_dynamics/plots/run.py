@@ -13,7 +13,7 @@ from contact_dynamics.errors import ContactDynamicsError
 from contact_dynamics.plots.arguments import plot_parser
 from contact_dynamics.plots.drawing import save_figure
 from contact_dynamics.plots.figures import figures_of
-from contact_dynamics.replay.events import OK, UNREADABLE, LoggedEvents, StateCame, WorldChanged
+from contact_dynamics.replay.events import OK, UNREADABLE, Answered, LoggedEvents, WorldChanged
 from contact_dynamics.shapes.convex import NO_SHAPE
 from contact_dynamics.world import Body
 
@@ -56,7 +56,7 @@ def _answers(path: Path) -> Iterator[tuple[int, Answered, World]]:
     for event in events:
         if isinstance(event, WorldChanged):
             world = event.world
-        elif not isinstance(event, StateCame):
+        elif isinstance(event, Answered):
             number += 1
             if event.status == OK:
                 yield number, event, world

@@ -25,11 +25,12 @@ from contact_dynamics.questions.services import ask, service_of, service_of_type
 from contact_dynamics.questions.subject import PublishedState
 from contact_dynamics.questions.tumbling import TumblingQuestion
 from contact_dynamics.recording.bag_reader import BagReader, kind_of
+from contact_dynamics.recording.cdr import decode_without_ros
 from contact_dynamics.recording.errors import DamagedLogWarning
 from contact_dynamics.recording.message_types import Message
 from contact_dynamics.recording.service_calls import ServiceCall
 from contact_dynamics.replay.of_log import server_of_log, stand_in
-from contact_dynamics.replay.timeline import CLOCK, EVERYTHING, in_order, part_of
+from contact_dynamics.replay.timeline import CLOCK, EVERYTHING, MONITOR_EVENT, in_order, part_of
 from contact_dynamics.replay.verify import differences
 from msg_adapters.status import code_name
 
@@ -39,6 +40,7 @@ if TYPE_CHECKING:
 
     from contact_dynamics.nodes.parameter_reader import ParameterSource
     from contact_dynamics.questions.services import Answer, Question, Service
+    from contact_dynamics.recording.bag_reader import LoggedMessage
     from contact_dynamics.recording.file_messages import Span
     from contact_dynamics.replay.again import Refused, ServerAgain
     from contact_dynamics.rigid_body.body import BodyState
@@ -84,7 +86,31 @@ class Answered:
     computation_time: float  # s, how long the answer took
 
 
-Event: TypeAlias = StateCame | WorldChanged | Answered
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Monitored:
+    """A monitor reported an event of a body."""
+
+    body_name: str
+    surface_name: str  # empty if there is none
+    stamp_ns: int  # the time of the event by the clock of the states' stamps
+    log_time_ns: int  # when it was reported, by the machine's clock
+    text: str  # the event in words
+    is_unusual: bool  # whether it is outside of its 99 % region, or a change was detected
+
+
+def _monitored(logged: LoggedMessage) -> Monitored:
+    msg: Any = decode_without_ros(logged)
+    return Monitored(
+        body_name=msg.body_name,
+        surface_name=msg.surface_name,
+        stamp_ns=logged.publish_time_ns,
+        log_time_ns=logged.log_time_ns,
+        text=msg.text,
+        is_unusual=msg.alarm or msg.region == msg.OUTSIDE_99,
+    )
+
+
+Event: TypeAlias = StateCame | WorldChanged | Answered | Monitored
 
 
 class Events(ABC):
@@ -129,7 +155,7 @@ class LoggedEvents(Events):
     """A log of the server as a source of events."""
 
     def __init__(self, path: Path, *, span: Span = EVERYTHING, states: bool = True) -> None:
-        """Read how the run was configured, to read a span of the log later, with or without states.
+        """Read how the run was configured, to read a span of the log later, with or without states and events.
 
         Raises:
             NotALogError: it is no log, or none of the server.
@@ -137,7 +163,11 @@ class LoggedEvents(Events):
         """
         _, server = server_of_log(path)
         super().__init__(BagReader(path), server)
-        self._topics = self._server.topics if states else self._server.topics_of_changes
+        self._monitored = {
+            topic.name for topic in self._reader.topics() if states and topic.type_name == MONITOR_EVENT
+        }
+        topics = self._server.topics if states else self._server.topics_of_changes
+        self._topics = topics | self._monitored
         self._span = span
         self._numbers: dict[str, int] = {}
         self._path = path
@@ -157,6 +187,9 @@ class LoggedEvents(Events):
                     answered = self._answered(each)
                     if answered is not None:
                         yield answered
+                    continue
+                if each.topic in self._monitored:
+                    yield _monitored(each)
                     continue
                 before = self._server.world
                 for body_name, state in self._server.receive(each):

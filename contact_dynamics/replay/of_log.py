@@ -27,7 +27,7 @@ from contact_dynamics.recording.bag_reader import BagReader
 from contact_dynamics.recording.definitions import EVENT_SUFFIX
 from contact_dynamics.recording.errors import DamagedLogWarning, NotALogError
 from contact_dynamics.recording.message_types import Message, message_types
-from contact_dynamics.replay.timeline import INTERFACES
+from contact_dynamics.replay.timeline import INTERFACES, MONITOR_EVENT
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -60,7 +60,7 @@ def server_of_log(
         damage = f" ({log.damage})" if log.damage else damage
         is_later = log.run_is_later and next(log.messages({CHANGES}), None) is not None
     events = [name for name in definitions if name.startswith(INTERFACES) and name.endswith(EVENT_SUFFIX)]
-    if not events:
+    if not events and MONITOR_EVENT not in definitions:
         known = ", ".join(sorted(definitions)) or "none"
         raise NotALogError(
             f"{path}: not a log of the server: no service of it in the log's types ({known}){damage}"

@@ -32,7 +32,7 @@ from contact_dynamics.contact_modes.result import ModeVerdict
 from contact_dynamics.errors import ContactDynamicsError
 from contact_dynamics.impact import ImpactOutcome
 from contact_dynamics.motion.free_fit import fit_free_motion
-from contact_dynamics.replay.events import StateCame, WorldChanged
+from contact_dynamics.replay.events import Monitored, StateCame, WorldChanged
 from contact_dynamics.rigid_body.published_frame import origin_of_published_frame, origins_of_published_frame
 from contact_dynamics.tumbling.motion import free_motion
 
@@ -125,6 +125,7 @@ class Rows:
         self._newest: dict[str, BodyState] = {}
         self._waiting: deque[_Waiting] = deque()
         self._weight = 0
+        self._monitored = 0
 
     def __iter__(self) -> Iterator[dict[str, Cell]]:
         """Yield the rows in the order in which the questions were asked."""
@@ -136,6 +137,8 @@ class Rows:
                 self._newest[event.body_name] = event.state
             elif isinstance(event, WorldChanged):
                 self._world = event.world
+            elif isinstance(event, Monitored):
+                yield self._of_monitor(event)
             else:
                 self._waiting.append(self._row(event))
                 self._weight += self._waiting[-1].weight
@@ -166,6 +169,19 @@ class Rows:
         for cells in cells_of(answered.answer):
             yield row | cells
             row["question"] = None
+
+    def _of_monitor(self, event: Monitored) -> dict[str, Cell]:
+        self._monitored += 1
+        return dict.fromkeys(COLUMNS) | {
+            "log": self._log,
+            "service": "monitor",
+            "number": self._monitored,
+            "log_time_ns": event.log_time_ns,
+            "body": event.body_name,
+            "summary": event.text,
+            "surface": event.surface_name,
+            "measured_ns": event.stamp_ns,
+        }
 
     def _row(self, answered: Answered) -> _Waiting:
         row: dict[str, Cell] = dict.fromkeys(COLUMNS)

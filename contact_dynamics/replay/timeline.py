@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 
 CLOCK: Final = "/clock"
 INTERFACES: Final = "contact_dynamics_interfaces/srv/"
+MONITOR_EVENT: Final = "contact_dynamics_interfaces/msg/MonitorEvent"
 EVERYTHING: Final = Span()  # a log from its beginning to its end
 
 

@@ -9,7 +9,7 @@ from contextlib import suppress
 from functools import partial
 from typing import TYPE_CHECKING, Final, NamedTuple
 
-from contact_dynamics.replay.events import StateCame, WorldChanged
+from contact_dynamics.replay.events import Monitored, StateCame, WorldChanged
 from contact_dynamics.viewing.picture import Picture
 from contact_dynamics.viewing.sinks import OpenRecording, Sinks, ViewerMode, raise_errors
 from contact_dynamics.viewing.states_in_turn import StatesInTurn
@@ -101,6 +101,10 @@ class _Drawing:
             self._waiting.draw()
             change = partial(self._picture.change_world, event.world, stamp_ns=event.stamp_ns)
             self._guarded("a change of the world", change)
+            return
+        if isinstance(event, Monitored):
+            tell = partial(self._picture.tell, "monitor", event.text, stamp_ns=event.stamp_ns)
+            self._guarded("the monitor's events", partial(tell, is_error=event.is_unusual))
             return
         self.answers += 1
         self._guarded(event.service_name, lambda: self._show_answer(event))
