@@ -9,6 +9,7 @@ import json
 import math
 import subprocess
 import time
+import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
@@ -31,6 +32,10 @@ from contact_dynamics_interfaces.msg import MonitorEvent
 from msg_adapters.odometry import odometry_from_body_state
 from msg_adapters.stamps import stamp_ns_from_msg
 from running_server import DEEP, PATIENCE_S, Client, process, wait_for
+
+with warnings.catch_warnings():
+    warnings.simplefilter("ignore", DeprecationWarning)  # of Python 3.10, at rerun's import
+    from viewing.drawn import read_drawn
 
 TRUTH = Truth(
     friction=0.3,
@@ -162,6 +167,9 @@ def test_events_of_tosses_as_configured_and_their_log(
     table = list(csv.DictReader(io.StringIO(capsys.readouterr().out)))
     assert {row["service"] for row in table} == {"monitor"}
     assert {event.text for event in events} == {row["summary"] for row in table}
+    picture = tmp_path / "picture.rrd"
+    assert main(["replay", "view", str(log), "--rrd", str(picture)]) == 0
+    assert events[-1].text in read_drawn(picture).last("/answers/newest", "TextDocument:text")[0]
 
 
 def test_another_restitution_raises_an_alarm_until_it_is_configured(tmp_path: Path) -> None:

@@ -21,16 +21,14 @@ from contact_dynamics.nodes.inbox import Taken
 from contact_dynamics.nodes.parameter_reader import ParameterSource
 from contact_dynamics.nodes.parameters import read_server_parameters
 from contact_dynamics.questions import services
-from contact_dynamics_interfaces.msg import (
-    ContactMode,
-    Impact,
-)
+from contact_dynamics_interfaces.msg import ContactMode, Impact, MonitorEvent
 from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
+from msg_adapters.stamps import stamp_to_msg
 from nodes.visualizer_bench import (
     CENTER,
     CONFIGURATION,
@@ -54,6 +52,18 @@ def bench(tmp_path: Path, request: pytest.FixtureRequest) -> Iterator[Bench]:
 
 def center_of_mass(position: list[float], orientation: list[float]) -> np.ndarray:
     return np.array(position) + Rotation.from_quat(orientation).apply(CENTER)
+
+
+def test_an_event_of_a_monitor_is_listed(bench: Bench) -> None:
+    events = bench.node.create_publisher(MonitorEvent, "/contact_dynamics_monitor/events", 10)
+    bench.spin_until(lambda: events.get_subscription_count() == 1)
+    msg = MonitorEvent(text="brick on floor: impact, outside 99 %", region=MonitorEvent.OUTSIDE_99)
+    msg.header.stamp = stamp_to_msg(STAMP_NS)
+    events.publish(msg)
+    bench.spin_until(lambda: bench.received == 1)
+    drawn = bench.drawn()
+    assert f"monitor: {msg.text}" in drawn.last("/answers/log", "TextLog:text")
+    assert drawn.last("/answers/log", "TextLog:level") == ["WARN"]
 
 
 def test_states_are_drawn_where_the_centre_of_mass_is(bench: Bench) -> None:
