@@ -20,6 +20,7 @@ from benchmarks._quotes import quote
 from contact_dynamics.measured.cube_tosses import BOARD, CUBE, GRAVITY, HALF_SIDE
 from contact_dynamics.measured.flight_fit import fit_flight
 from contact_dynamics.rotations.many import matrices_of, rotation_vectors
+from contact_dynamics.tolerances import TOUCHING_GAP
 from contact_dynamics.toss import TossEnd, toss
 from contact_dynamics.world import World
 
@@ -142,7 +143,7 @@ def _ours(body: Body, surface: Surface, gravity_W: FloatArray) -> Roll:
     world = World(bodies=(body,), surfaces=(surface,), gravity_W=gravity_W)
 
     def roll(state: BodyState, times: FloatArray) -> tuple[FloatArray, FloatArray]:
-        went = toss(body, state, world, max_alternatives=0)
+        went = toss(body, state, world, max_alternatives=0, distance_tolerance=TOUCHING_GAP)
         known = times if went.end == TossEnd.RESTS else np.minimum(times, went.seconds)
         path = went.at(known)
         return path.p_WB_W, path.q_WB
