@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import numpy as np
 
 from contact_dynamics.constants import to_ns
+from contact_dynamics.contact_modes.result import ModeVerdict
 from contact_dynamics.errors import ContactDynamicsError
 from contact_dynamics.evaluation.asking import asked_before, compare_event, first_answer
 from contact_dynamics.evaluation.log_states import ONE_CLOCK_S
@@ -214,6 +215,8 @@ class Monitor:
             return replace(told, problem="too few states before the event")
         if row.refused:
             return replace(told, problem=row.refused)
+        if row.predicted_mode == ModeVerdict.IMPACT.name:
+            return replace(told, problem="an impact comes first")
         told = replace(
             told,
             predicted=row.predicted,

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from contact_dynamics.constants import to_seconds
+from contact_dynamics.contact_modes.letters import mode_in_words
 from contact_dynamics.monitoring.evidence import REGIONS, Parameter
 
 if TYPE_CHECKING:
@@ -29,8 +30,11 @@ def line_of(event: MonitoredEvent) -> str:
 
 def _parts(event: MonitoredEvent) -> Iterator[str]:
     if event.as_predicted is not None:
-        verdict = "as predicted" if event.as_predicted else f"predicted {event.predicted_mode}"
-        yield f"{event.measured_mode} measured, {verdict}"
+        if event.as_predicted:
+            yield f"{event.measured_mode} measured, as predicted"
+        else:
+            predicted = " or ".join(map(_mode, event.predicted_mode.split("|")))
+            yield f"{_mode(event.measured_mode)} measured, predicted {predicted}"
     elif event.probability is None:
         yield f"not compared ({event.problem or 'no covariance'})"
     else:
@@ -44,6 +48,10 @@ def _parts(event: MonitoredEvent) -> Iterator[str]:
         yield f"this impact has {_values(event.impact_values, event.impact_stds)}"
         if report.is_new and report.changed is not None:
             yield f"CHANGED: {report.changed.value} of {event.surface}, now {estimates_in_words(report)}"
+
+
+def _mode(mode: str) -> str:
+    return f"{mode} ({mode_in_words(mode, turns=False)})" if mode.islower() else mode  # or it is a verdict
 
 
 def estimates_in_words(report: SurfaceReport) -> str:

@@ -155,7 +155,7 @@ class LoggedEvents(Events):
     """A log of the server as a source of events."""
 
     def __init__(self, path: Path, *, span: Span = EVERYTHING, states: bool = True) -> None:
-        """Read how the run was configured, to read a span of the log later, with or without states and events.
+        """Read how the run was configured, to read a span of it later, with states and events or without.
 
         Raises:
             NotALogError: it is no log, or none of the server.

@@ -20,6 +20,7 @@ from contact_dynamics.measured.events import EventKind, find_events
 from contact_dynamics.measured.read_toss import read_toss
 from contact_dynamics.monitoring.evidence import ModelError, Parameter
 from contact_dynamics.monitoring.monitor import Monitor, MonitoredEvent, MonitorSettings
+from contact_dynamics.monitoring.report import line_of
 from contact_dynamics.monitoring.run import monitored
 from contact_dynamics.questions.context import Defaults
 from evaluation.made_logs import BRIEF, write_log
@@ -67,6 +68,20 @@ def test_tosses_with_another_coefficient_are_reported(truth: Truth, parameter: P
     assert reports[-1].changed is parameter
     k = list(Parameter).index(parameter)
     assert abs(reports[-1].values[k] - (truth.restitution, truth.friction)[k]) < 4.0 * reports[-1].stds[k]
+
+
+def test_a_body_that_sticks_where_sliding_was_predicted_is_named() -> None:
+    event = MonitoredEvent(
+        kind=EventKind.REST,
+        body="brick",
+        surface="floor",
+        stamp_ns=0,
+        measured=np.zeros(13),
+        measured_mode="ffff",
+        predicted_mode="cccc",
+        as_predicted=False,
+    )
+    assert line_of(event).endswith("ffff (it stays fixed) measured, predicted cccc (it slides)")
 
 
 def test_states_one_by_one_give_the_events_of_the_whole() -> None:
