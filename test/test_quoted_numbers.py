@@ -155,7 +155,9 @@ NOT_MEASURED: dict[
         "20 % above or below",
         "40 % above it",
         "40 % below it",
-        "0.25 s after it occurred",
+        "0.25 to 0.45 s after its event",
+        "1.2 s without a new state",
+        "0.25 to 0.45 s after it occurred",
     ],
 }
 

@@ -45,7 +45,7 @@ if TYPE_CHECKING:
     from contact_dynamics.questions.uncertain_state import KnownState
     from contact_dynamics.validation import FloatArray
 
-LOOK_EVERY: Final = 0.1
+LOOK_EVERY: Final = 0.2
 """s of stamps between two searches for events."""
 
 SETTLED: Final = 0.25
