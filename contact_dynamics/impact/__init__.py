@@ -3,7 +3,7 @@
 
 - One contact with the fixed world: `planar_impact`, `spatial_impact`; many cases at once: `planar_impacts`,
   `spatial_impacts`.
-- One contact of a mechanism, such as a robot arm, given by J M^-1 J^T: `response_impact`.
+- One contact of a mechanism, such as a robot arm, given by J M^-1 J^T: `response_impact`, `response_impacts`.
 - One contact between two moving bodies: `spatial_pair_impact`.
 - Several contacts at one instant, as in a landing on an edge or a face: `several_impact`, `bodies_impact`.
   The result depends on the law, and its spread is returned by `outcomes_over_orders` and
@@ -46,8 +46,10 @@ from contact_dynamics.impact.several.result import (
 )
 from contact_dynamics.impact.several.sequential import bodies_impact
 from contact_dynamics.impact.spatial.batch import (
+    ResponseImpacts,
     SpatialImpacts,
     StrikingBodies,
+    response_impacts,
     spatial_impacts,
 )
 from contact_dynamics.impact.spatial.one_contact import response_impact, spatial_impact, spatial_pair_impact
@@ -67,6 +69,7 @@ __all__ = [
     "PlanarImpacts",
     "ResolvedImpact",
     "ResponseImpact",
+    "ResponseImpacts",
     "RestitutionLaw",
     "SequenceEnd",
     "SequenceStrike",
@@ -82,6 +85,7 @@ __all__ = [
     "planar_impact",
     "planar_impacts",
     "response_impact",
+    "response_impacts",
     "several_impact",
     "spatial_impact",
     "spatial_impact_distribution",

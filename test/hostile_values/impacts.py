@@ -46,6 +46,17 @@ IMPACTS: Calls = {
             "velocity_tolerance": 1e-9,
         },
     ),
+    "response_impacts": (
+        impact.response_impacts,
+        {
+            "inverse_inertias_W": np.eye(3),
+            "velocities_W": [0.3, 0.0, -1.0],
+            "normals_W": [0.0, 0.0, 1.0],
+            "frictions": 0.5,
+            "restitutions": 0.5,
+            "velocity_tolerance": 1e-9,
+        },
+    ),
     "several_impact": (several_impact, SEVERAL),
     "outcomes_over_orders": (impact.outcomes_over_orders, {**SEVERAL, "max_orders": 2}),
     "outcomes_over_interleavings": (impact.outcomes_over_interleavings, {**SEVERAL, "samples": 1, "seed": 0}),

@@ -8,7 +8,7 @@ kept.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
@@ -37,7 +37,7 @@ from contact_dynamics.validation_batches import (
 from contact_dynamics.validation_types import checks_types
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
     from numpy.typing import ArrayLike, NDArray
 
@@ -153,8 +153,8 @@ class StrikingBodies(Record):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class SpatialImpacts(ManyEnergies):
-    """Outcomes of N spatial impacts. Row i belongs to case i; `SpatialImpact` explains the fields.
+class ResponseImpacts(ManyEnergies):
+    """Outcomes of N impacts of mechanisms. Row i belongs to case i; `ResponseImpact` explains the fields.
 
     Attributes:
         restitution_laws: (N,), values of RestitutionLaw.
@@ -163,11 +163,6 @@ class SpatialImpacts(ManyEnergies):
         compressions_W: (N, 3), N s, impulses up to the end of compression.
         velocities_before_W: (N, 3), m/s, velocities of the contacts before, relative to what they touch.
         velocities_after_W: (N, 3), m/s, velocities of the contacts after, relative to what they touch.
-        v_WB_W: (N, 3), m/s, velocities of the centres of mass after the impacts, world axes.
-        w_WB_W: (N, 3), rad/s, angular velocities after the impacts, world axes.
-        other_v_WB_W: (N, 3), m/s, velocities of the second bodies' centres of mass, or None if the bodies
-            hit the fixed world.
-        other_w_WB_W: (N, 3), rad/s, angular velocities of the second bodies, or None if the world is struck.
     """
 
     restitution_laws: NDArray[np.int64]
@@ -176,13 +171,27 @@ class SpatialImpacts(ManyEnergies):
     compressions_W: FloatArray
     velocities_before_W: FloatArray
     velocities_after_W: FloatArray
+
+    def _at_contacts(self) -> tuple[list[FloatArray], ...]:
+        return list(self.impulses_W.T), list(self.velocities_before_W.T), list(self.velocities_after_W.T)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class SpatialImpacts(ResponseImpacts):
+    """Outcomes of N spatial impacts. Row i belongs to case i; `SpatialImpact` explains the fields.
+
+    Attributes:
+        v_WB_W: (N, 3), m/s, velocities of the centres of mass after the impacts, world axes.
+        w_WB_W: (N, 3), rad/s, angular velocities after the impacts, world axes.
+        other_v_WB_W: (N, 3), m/s, velocities of the second bodies' centres of mass, or None if the bodies
+            hit the fixed world.
+        other_w_WB_W: (N, 3), rad/s, angular velocities of the second bodies, or None if the world is struck.
+    """
+
     v_WB_W: FloatArray
     w_WB_W: FloatArray
     other_v_WB_W: FloatArray | None = None
     other_w_WB_W: FloatArray | None = None
-
-    def _at_contacts(self) -> tuple[list[FloatArray], ...]:
-        return list(self.impulses_W.T), list(self.velocities_before_W.T), list(self.velocities_after_W.T)
 
 
 def spatial_impacts(
@@ -218,13 +227,7 @@ def spatial_impacts(
             false; the message names the first such contact.
         InvalidFieldError: a number is out of range; the message names the field and the first row.
     """
-    tolerance = check_not_negative("velocity_tolerance", velocity_tolerance)
-    fields = {
-        "normals_W": check_unit_rows("normals_W", normals_W, 3),
-        "frictions": check_not_negative_rows("frictions", frictions),
-        "restitutions": check_share_rows("restitutions", restitutions),
-        "restitution_laws": check_law_rows("restitution_laws", restitution_laws),
-    }
+    fields = _checked(normals_W, frictions, restitutions, restitution_laws)
     fields |= {f"bodies.{name}": rows for name, rows in bodies.fields.items()}
     if others is not None:
         fields |= {f"others.{name}": rows for name, rows in others.fields.items()}
@@ -235,46 +238,139 @@ def spatial_impacts(
         fields[name] = check_magnitude(name, check_rows(name, surface_velocities_W, (3,)))
     count = common_length(fields)
     surfaces = fields.get("surface_velocities_W", np.zeros((1, 3)))
-    materials = fields["frictions"][:, None], fields["restitutions"][:, None]
-    tables = (
-        _table(bodies, count, surfaces),
-        np.empty((0, 23)) if others is None else _table(others, count),
-        _columns((fields["normals_W"], *materials), count),
+    tables = [_table(bodies, count, surfaces), np.empty((0, 23)) if others is None else _table(others, count)]
+    found, vectors = _struck(
+        Strike.strike_rows,
+        tables,
+        fields,
+        count=count,
+        width=24,
+        velocity_tolerance=velocity_tolerance,
+        skip_separating=skip_separating,
     )
-    laws = np.broadcast_to(fields["restitution_laws"], count)
-    outcomes, results = np.empty(count, dtype=np.int64), np.empty((count, 24))
-    for law in RestitutionLaw:
-        cases = np.flatnonzero(laws == law)
-        strike = Strike(law)
-        for first in range(0, len(cases), _CHUNK):
-            chunk = cases[first : first + _CHUNK]
-            own, found = np.empty(len(chunk), dtype=np.int64), np.empty((len(chunk), 24))
-            # Python reads a plain number from a memory view, and a NumPy scalar from an array.
-            mine, theirs, contacts = (table[chunk].data if len(table) > 0 else table.data for table in tables)
-            done = strike.strike_rows(
-                mine, theirs, contacts, tolerance, skip_separating, own.data, found.data
-            )
-            if done < len(chunk):
-                refuse(strike, int(own[done]), tolerance, f" of case {chunk[done]}")
-            outcomes[chunk], results[chunk] = own, found
-    after, spins, impulses, compressions, before, left, other_v, other_w = (
-        np.ascontiguousarray(results[:, i : i + 3]) for i in range(0, 24, 3)
-    )
+    after = vectors[0]
     if surfaces.any():
         moved = bodies.v_WB_W + (after - (bodies.v_WB_W - surfaces))
         after = np.where(np.abs(surfaces).max(axis=1, keepdims=True) > 0.0, moved, after)
     return SpatialImpacts(
-        restitution_laws=laws.astype(np.int64),
-        outcomes=outcomes,
-        impulses_W=impulses,
-        compressions_W=compressions,
-        velocities_before_W=before,
-        velocities_after_W=left,
         v_WB_W=after,
-        w_WB_W=spins,
-        other_v_WB_W=None if others is None else other_v,
-        other_w_WB_W=None if others is None else other_w,
+        w_WB_W=vectors[1],
+        other_v_WB_W=None if others is None else vectors[6],
+        other_w_WB_W=None if others is None else vectors[7],
+        **_at_contacts(found, vectors[2:6]),
     )
+
+
+def response_impacts(
+    inverse_inertias_W: ArrayLike,
+    velocities_W: ArrayLike,
+    *,
+    normals_W: ArrayLike,
+    frictions: ArrayLike,
+    restitutions: ArrayLike,
+    restitution_laws: ArrayLike = RestitutionLaw.POISSON,
+    velocity_tolerance: float = VELOCITY_TOLERANCE,
+    skip_separating: bool = False,
+) -> ResponseImpacts:
+    """Return the outcomes of N impacts of mechanisms. Each is that of `response_impact`.
+
+    Args:
+        inverse_inertias_W: (N, 3, 3) or (3, 3), 1/kg, J M^-1 J^T, world axes.
+        velocities_W: (N, 3) or (3,), m/s, velocities of the contact points just before the impacts, world
+            axes.
+        normals_W: (N, 3) or (3,), unit normals into the mechanisms, world axes.
+        frictions: (N,) or one number, >= 0.
+        restitutions: (N,) or one number, in [0, 1].
+        restitution_laws: (N,) or one value of RestitutionLaw.
+        velocity_tolerance: m/s, >= 0. Normal and tangential components of a contact's velocity up to it count
+            as zero.
+        skip_separating: Whether to accept contacts that separate, with the outcome NO_IMPULSE.
+
+    Raises:
+        SeparatingContactError: a contact's normal velocity is above the tolerance, and ``skip_separating`` is
+            false; the message names the first such contact.
+        InvalidFieldError: a number is out of range, or a mechanism wedges; the message names the field and
+            the first row.
+    """
+    fields = _checked(normals_W, frictions, restitutions, restitution_laws)
+    for name, value, shape in (
+        ("inverse_inertias_W", inverse_inertias_W, (3, 3)),
+        ("velocities_W", velocities_W, (3,)),
+    ):
+        fields[name] = check_magnitude(name, check_rows(name, value, shape))
+    count = common_length(fields)
+    tables = [_columns((fields["inverse_inertias_W"].reshape(-1, 9), fields["velocities_W"]), count)]
+    found, vectors = _struck(
+        Strike.strike_mechanism_rows,
+        tables,
+        fields,
+        count=count,
+        width=12,
+        velocity_tolerance=velocity_tolerance,
+        skip_separating=skip_separating,
+    )
+    return ResponseImpacts(**_at_contacts(found, vectors))
+
+
+def _checked(
+    normals_W: ArrayLike, frictions: ArrayLike, restitutions: ArrayLike, restitution_laws: ArrayLike
+) -> dict[str, FloatArray]:
+    """Return the fields of contacts as rows."""
+    return {
+        "normals_W": check_unit_rows("normals_W", normals_W, 3),
+        "frictions": check_not_negative_rows("frictions", frictions),
+        "restitutions": check_share_rows("restitutions", restitutions),
+        "restitution_laws": check_law_rows("restitution_laws", restitution_laws),
+    }
+
+
+def _struck(
+    strike_rows: Callable[..., int],
+    tables: Sequence[FloatArray],
+    fields: Mapping[str, FloatArray],
+    *,
+    count: int,
+    width: int,
+    velocity_tolerance: float,
+    skip_separating: bool,
+) -> tuple[tuple[FloatArray, NDArray[np.int64]], list[FloatArray]]:
+    """Return laws and outcomes, (N,), and the vectors, (N, 3), in the ``width`` columns of the results.
+
+    ``strike_rows`` is a method of `Strike`, and ``tables`` are what it takes before contacts.
+    """
+    tolerance = check_not_negative("velocity_tolerance", velocity_tolerance)
+    every_law = np.broadcast_to(fields["restitution_laws"], count)
+    outcomes, results = np.empty(count, dtype=np.int64), np.empty((count, width))
+    materials = fields["frictions"][:, None], fields["restitutions"][:, None]
+    tables = [*tables, _columns((fields["normals_W"], *materials), count)]
+    for law in RestitutionLaw:
+        cases = np.flatnonzero(every_law == law)
+        strike = Strike(law)
+        for first in range(0, len(cases), _CHUNK):
+            chunk = cases[first : first + _CHUNK]
+            own, found = np.empty(len(chunk), dtype=np.int64), np.empty((len(chunk), width))
+            # Python reads a plain number from a memory view, and a NumPy scalar from an array.
+            rows = [table[chunk].data if len(table) > 0 else table.data for table in tables]
+            done = strike_rows(strike, *rows, tolerance, skip_separating, own.data, found.data)
+            if done < len(chunk):
+                case = chunk[done]
+                refuse(strike, int(own[done]), tolerance, f" of case {case}", f"inverse_inertias_W[{case}]")
+            outcomes[chunk], results[chunk] = own, found
+    vectors = [np.ascontiguousarray(results[:, i : i + 3]) for i in range(0, width, 3)]
+    return (every_law, outcomes), vectors
+
+
+def _at_contacts(
+    found: tuple[FloatArray, NDArray[np.int64]], vectors: Sequence[FloatArray]
+) -> dict[str, Any]:
+    """Return what happened at the contacts, by the fields of `ResponseImpacts`."""
+    names = "impulses_W", "compressions_W", "velocities_before_W", "velocities_after_W"
+    laws, outcomes = found
+    return {
+        "restitution_laws": laws.astype(np.int64),
+        "outcomes": outcomes,
+        **dict(zip(names, vectors, strict=True)),
+    }
 
 
 def _table(bodies: StrikingBodies, count: int, surfaces: FloatArray | float = 0.0) -> FloatArray:

@@ -55,7 +55,7 @@ cdef class Strike:
     cpdef int strike_mechanism(
         self, (double, double, double, double, double, double, double, double, double) inverse_inertia,
         (double, double, double) velocity, (double, double, double) normal, double friction,
-        double restitution, double tolerance,
+        double restitution, double tolerance, bint skips=*,
     ) noexcept nogil
     cdef (double, double) possible(self, double response, double coupling, double least) noexcept nogil
     cdef void drop_sliding(self, (double, double, double) tangent, double size) noexcept nogil
@@ -66,6 +66,12 @@ cdef class Strike:
         self, const double[:, ::1] bodies, const double[:, ::1] others, const double[:, ::1] contacts,
         double tolerance, bint skips, long[::1] outcomes, double[:, ::1] results,
     ) noexcept nogil
+    @cython.locals(outcome=cython.int, i=cython.Py_ssize_t)
+    cpdef Py_ssize_t strike_mechanism_rows(
+        self, const double[:, ::1] mechanisms, const double[:, ::1] contacts, double tolerance, bint skips,
+        long[::1] outcomes, double[:, ::1] results,
+    ) noexcept nogil
+    cdef void put_contact(self, double[:, ::1] results, Py_ssize_t i, int first) noexcept nogil
     cdef void find_axes(
         self, (double, double, double) a, (double, double, double) b, (double, double, double) normal,
         (double, double, double, double, double, double) response,

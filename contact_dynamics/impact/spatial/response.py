@@ -258,6 +258,7 @@ class Strike:
         friction: float,
         restitution: float,
         tolerance: float,
+        skips: bool = False,  # noqa: FBT001, FBT002  C has no keywords
     ) -> int:
         """Strike at a contact whose inverse inertia is given, and return the outcome as `strike` does.
 
@@ -268,6 +269,7 @@ class Strike:
             friction: As of `strike`.
             restitution: As of `strike`.
             tolerance: As of `strike`.
+            skips: As of `strike`.
         """
         w = inverse_inertia
         asymmetry = max(abs(w[1] - w[3]), abs(w[2] - w[6]), abs(w[5] - w[7]))
@@ -294,7 +296,7 @@ class Strike:
         self.law.take(self.l1, self.l2, self.k1, self.k2, self.kn, friction)
         if min(self.l1, self.l2) < 0.0 or not self.law.round_rise(least):
             return _NOT_POSITIVE
-        outcome = self.follow(restitution, tolerance, False)  # noqa: FBT003  C has no keywords
+        outcome = self.follow(restitution, tolerance, skips)
         if outcome > _NO_IMPULSE and not self.progress.p * least <= size:
             return _NOT_ENDED
         return outcome
@@ -371,14 +373,49 @@ class Strike:
                 return i
             put(results, i, 0, self.body.v)
             put(results, i, 3, self.body.w)
-            put(results, i, 6, self.impulse)
-            put(results, i, 9, self.compression)
-            put(results, i, 12, self.before)
-            put(results, i, 15, self.after)
+            self.put_contact(results, i, 6)
             if has_other:
                 put(results, i, 18, self.other.v)
                 put(results, i, 21, self.other.w)
         return len(outcomes)
+
+    def strike_mechanism_rows(  # noqa: PLR0917
+        self,
+        mechanisms: Any,
+        contacts: Any,
+        tolerance: float,
+        skips: bool,  # noqa: FBT001  C has no keywords
+        outcomes: Any,
+        results: Any,
+    ) -> int:
+        """Strike at the contact of each row as `strike_rows` does.
+
+        Rows of ``mechanisms``, (n, 12), are inverse inertias and then velocities. Rows of ``results``,
+        (n, 12), are impulse, compression, and the contact's velocity before and after.
+        """
+        for i in range(len(outcomes)):
+            x, y, z = vector_of(mechanisms, i, 0), vector_of(mechanisms, i, 3), vector_of(mechanisms, i, 6)
+            outcome = self.strike_mechanism(
+                (x[0], x[1], x[2], y[0], y[1], y[2], z[0], z[1], z[2]),
+                vector_of(mechanisms, i, 9),
+                vector_of(contacts, i, 0),
+                contacts[i, 3],
+                contacts[i, 4],
+                tolerance,
+                skips,
+            )
+            outcomes[i] = outcome
+            if outcome < 0:
+                return i
+            self.put_contact(results, i, 0)
+        return len(outcomes)
+
+    def put_contact(self, results: Any, i: int, first: int) -> None:
+        """Write impulse, compression, and the velocities before and after into row ``i``."""
+        put(results, i, first, self.impulse)
+        put(results, i, first + 3, self.compression)
+        put(results, i, first + 6, self.before)
+        put(results, i, first + 9, self.after)
 
     def find_axes(self, a: Vector3, b: Vector3, normal: Vector3, response: Response) -> None:
         """Find the principal tangents, and the response along them, from that in axes a, b and the normal."""

@@ -22,6 +22,7 @@ from contact_dynamics.impact import (
     ResponseImpact,
     RestitutionLaw,
     SpatialImpact,
+    response_impacts,
     spatial_impact,
     spatial_pair_impact,
 )
@@ -289,6 +290,30 @@ def test_a_contact_that_moves_along_its_normal_only_keeps_its_sliding() -> None:
     assert found.impulse_W == pytest.approx([-0.225, -0.3, 0.75])
 
 
+def test_a_batch_has_the_numbers_of_single_calls() -> None:
+    drawn = [drawn_mechanism(seed, 1 + seed % 3) for seed in range(60)]
+    laws = [RestitutionLaw(0 if i % 3 < 2 else i % 9 // 3) for i in range(len(drawn))]
+    table = {
+        "normals_W": [contact.normal_W for _, _, contact in drawn],
+        "frictions": [contact.friction for _, _, contact in drawn],
+        "restitutions": [contact.restitution for _, _, contact in drawn],
+        "restitution_laws": laws,
+    }
+    found = response_impacts([w for w, _, _ in drawn], [v for _, v, _ in drawn], **table)
+    for i, ((response, velocity, contact), law) in enumerate(zip(drawn, laws, strict=True)):
+        one = response_impact(response, velocity, contact, restitution_law=law)
+        assert (found.outcomes[i], found.restitution_laws[i]) == (one.outcome, law)
+        for name in ("impulse", "compression", "velocity_before", "velocity_after"):
+            plural = name.replace("velocity", "velocities") if "vel" in name else f"{name}s"
+            assert getattr(found, f"{plural}_W")[i].tolist() == getattr(one, f"{name}_W").tolist()
+        assert found.energy_changes[i] == one.energy_change
+    alone = response_impacts(
+        ARM_RESPONSE, TIP @ (-2.0, 0.3), **{**table, "restitution_laws": 0}, skip_separating=True
+    )
+    assert len(alone.outcomes) == len(drawn)
+    assert (alone.impulses_W[alone.velocities_before_W @ UP > 0.0] == 0.0).all()
+
+
 SLANTED = touch(0.3, 0.5)
 
 
@@ -323,11 +348,18 @@ def test_what_is_no_mechanism_is_an_error_that_names_it(
 ) -> None:
     with pytest.raises(InvalidFieldError, match=f"^{text}"):
         response_impact(response, velocity, contact)
+    row = re.sub(r"^inverse_inertia_W must (?=be s|be pos|.*along)", r"inverse_inertias_W\\[1\\] must ", text)
+    if contact.restitution is None or row == text:
+        return
+    with pytest.raises(InvalidFieldError, match=f"^{row}"):
+        response_impacts([np.eye(3), response], velocity, normals_W=UP, frictions=0.3, restitutions=0.5)
 
 
 def test_a_contact_that_separates_is_an_error() -> None:
     with pytest.raises(SeparatingContactError, match=r"got v_n = 1 m/s"):
         response_impact(np.eye(3), [0, 0, 1], SLANTED)
+    with pytest.raises(SeparatingContactError, match=r"of case 1"):
+        response_impacts(np.eye(3), [[0, 0, -1], [0, 0, 1]], normals_W=UP, frictions=0.3, restitutions=0.5)
 
 
 RECIPES = re.findall(
