@@ -194,6 +194,19 @@ def test_two_bodies_of_one_frame_on_one_topic_are_refused() -> None:
         state_sources(parameters, static=TransformTree())
 
 
+def test_a_belt_and_a_turntable_move_as_configured() -> None:
+    values = {
+        f"surface.{name}.{key}": 0.5 for name in ("belt", "disc") for key in ("friction", "restitution")
+    }
+    values |= {"surface.belt.velocity": [1.2, 0.0, 0.0]}
+    values |= {"surface.disc.normal": [1.0, 0.0, 0.0], "surface.disc.angular_velocity": 2.0}
+    belt, disc = read_server_parameters(
+        ParameterSource({"bodies": [""], "surfaces": ["belt", "disc"], **values})
+    ).world.surfaces
+    assert [belt.v_WS_W.tolist(), belt.w_WS_W.tolist()] == [[1.2, 0.0, 0.0], [0.0] * 3]
+    assert [disc.v_WS_W.tolist(), disc.w_WS_W.tolist()] == [[0.0] * 3, [2.0, 0.0, 0.0]]
+
+
 SHAPES = {
     "bodies": ["ball", "can", "brick"],
     **{f"body.{name}.mass": 1.0 for name in ("ball", "can", "brick")},

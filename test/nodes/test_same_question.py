@@ -177,6 +177,19 @@ REQUESTS: dict[str, tuple[Any, Fields]] = {
             "friction_facets": 4,
         },
     ),
+    "on a cart that brakes": (
+        PredictContactMode,
+        {
+            **PUSHED,
+            "contact_source": 1,
+            "contacts": {
+                **FEET,
+                "surface_velocities": [2.0, 0.0, 0.0] * 2,
+                "surface_accelerations": [-9.0, 0.0, 0.0] * 2,
+            },
+            "problem": 2,
+        },
+    ),
     "settled by an impact": (
         PredictContactMode,
         {**ROD, **FLIES, "contact_source": 1, "contacts": FEET, "problem": 2, "include_impact": True},

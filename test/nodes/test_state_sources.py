@@ -52,6 +52,7 @@ def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Client]:
             f"body.{name}.source": "pose_array",
             f"body.{name}.source_topics": ["/boxes"],
             f"body.{name}.frame": f"box_{place}",
+            f"body.{name}.state_deviations": [1e-3, 1e-2, 0.1, 1.0],
         }
     for name in parameters["bodies"]:
         parameters |= {
@@ -107,9 +108,19 @@ def publish_all(client: Client, body_name: str, publish: Callable[[int, Pose], N
     return answers[-1]
 
 
-def test_poses_alone_are_states_with_velocities(client: Client) -> None:
+def test_poses_alone_are_states_with_velocities_and_have_a_fit(client: Client) -> None:
     poses = client.publisher(PoseStamped, "/posed/pose")
-    publish_all(client, "posed", lambda ns, pose: poses.publish(stamped(PoseStamped(pose=pose), ns)))
+
+    def publish(stamp_ns: int, pose: Pose) -> None:
+        poses.publish(stamped(PoseStamped(pose=pose), stamp_ns))
+
+    assert publish_all(client, "posed", publish).fit_count == 0
+    asked = PredictTumbling.Request(body_name="posed", times=[0.0], fit_window=0.05)
+    asked.gravity = asked.GRAVITY_NONE
+    fitted = client.ask(asked)
+    assert fitted.status == fitted.OK, fitted.message
+    assert 3 <= fitted.fit_count <= COUNT
+    assert fitted.fit_position_residual < 1e-8
 
 
 def test_published_covariances_are_those_of_the_question(client: Client) -> None:
@@ -139,7 +150,9 @@ def test_bodies_share_the_topic_of_an_installed_adapter(client: Client) -> None:
         beside.position.x, beside.position.y = 2.0 * pose.position.x, 9.0
         arrays.publish(stamped(PoseArray(poses=[pose, beside]), stamp_ns))
 
-    one = publish_all(client, "one", publish)
+    one = publish_all(client, "one", publish, include_covariance=True)
+    variances = np.diag(np.reshape(one.trajectory.covariances, (12, 12)))
+    np.testing.assert_allclose(variances, np.repeat([1e-6, 1e-4, 1e-2, 1.0], 3), rtol=1e-12)
     two = client.ask(PredictTumbling.Request(body_name="two", times=[0.0]))
     assert two.state.header.stamp == one.state.header.stamp
     assert two.state.pose.position.y == 9.0

@@ -8,8 +8,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from contact_dynamics.errors import InvalidFieldError, NoStateError, StaleStateError, UnknownBodyError
+from contact_dynamics.errors import (
+    InvalidFieldError,
+    NoStateError,
+    NotInFlightError,
+    StaleStateError,
+    UnknownBodyError,
+)
+from contact_dynamics.motion.forces import ConstantWrench, Drag
 from contact_dynamics.motion.free_fit import fit_free_motion
+from contact_dynamics.motion.integrated import Method
 from contact_dynamics.questions import (
     AtTimes,
     Context,
@@ -24,7 +32,7 @@ from contact_dynamics.questions.subject import changed_body, subject_of
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.rotations.many import matrices_of
 from contact_dynamics.world import Body
-from questions.known_world import CUBE, GRAVITY, WORLD, state
+from questions.known_world import CUBE, GRAVITY, MASS, WORLD, state
 
 MS = 1_000_000  # ns
 V0 = 2.0  # m/s
@@ -157,6 +165,33 @@ def test_a_fit_finds_the_toss_that_was_published() -> None:
     subject = subject_of("cube", PublishedState(fit_window=0.1), known)
     assert subject.covariance is not None
     assert subject.covariance.shape == (12, 12)
+
+
+def test_a_fit_is_of_a_flight_under_the_forces_asked_for() -> None:
+    """The cube rises steadily: without weight, or held by a force, against its drag too."""
+    states = StateStore(history=10.0, timeout=0.5)
+    for k in range(12):
+        states.add("cube", state(1.0 + 0.02 * k, v=(0.0, 0.0, 2.0), stamp_ns=10 * k * MS))
+    known = Context(world=WORLD, states=states)
+    asked = TumblingQuestion(
+        body="cube", state=PublishedState(fit_window=0.115), sampling=AtTimes(times=[0.0])
+    )
+    weight = MASS * GRAVITY
+    with pytest.raises(NotInFlightError, match="got 12 states of a body that does not fall"):
+        tumbling.answer(asked, known)
+    for change, method in (
+        ({"gravity_W": np.zeros(3)}, Method.CLOSED_FORM),
+        ({"wrench": ConstantWrench(force=[0, 0, weight])}, Method.CLOSED_FORM),
+        (
+            {"wrench": ConstantWrench(force=[0, 0, weight + 0.2 * 2.0]), "drag": Drag(linear=0.2)},
+            Method.INTEGRATED,
+        ),
+    ):
+        found = tumbling.answer(replace(asked, **change), known)
+        assert found.fit is not None
+        assert (found.method, found.fit.count) == (method, 12)
+        assert found.fit.position_residual < 1e-8
+        assert found.state.v_WB_W[2] == pytest.approx(2.0, abs=1e-6)
 
 
 def spinning(rate: float, per_second: float, *, published: float) -> Context:
