@@ -19,6 +19,7 @@ from nav_msgs.msg import Odometry
 
 from contact_dynamics.demo.processes import claim_domain
 from contact_dynamics.nodes.situations import Level, Part, Situation
+from contact_dynamics_interfaces.srv import PredictImpact
 from msg_adapters.stamps import stamp_to_msg
 from running_server import ROOT, Client, process
 
@@ -39,6 +40,15 @@ def odometry(
     return msg
 
 
+def hard() -> PredictImpact.Request:
+    """A landing of a body that spins so fast that the search for it takes seconds."""
+    request = PredictImpact.Request(body_name="brick", state_source=PredictImpact.Request.STATE_EXPLICIT)
+    request.state.pose.position.z = 1.0
+    spin = request.state.angular_velocity
+    spin.x, spin.y, spin.z = 1e9, 1e8, 1e8
+    return request
+
+
 class Monitor:
     """A client that listens to /diagnostics."""
 
@@ -52,28 +62,35 @@ class Monitor:
 
         ``work`` is done meanwhile, again and again.
         """
-        pattern = re.escape(situation.value.text)
-        pattern = re.sub(r"\\\{.*?\\\}", ".*", pattern)
-        found: list[str] = []
+        (message,) = self.wait_all((situation, *words), work=work)
+        return message
 
-        def is_reported() -> bool:
+    def wait_all(self, *expected: tuple[Any, ...], work: Callable[[], object] = int) -> list[str]:
+        """Wait until each of some situations is reported with its words, all at once or in turn."""
+        found: dict[int, str] = {}
+
+        def are_reported() -> bool:
             work()
-            for level, message in self._statuses(situation.value.part):
-                if re.search(pattern, message) and all(each in message for each in words):
-                    assert level >= situation.value.level
-                    found.append(message)
-            return bool(found)
+            for part, level, message in self._statuses():
+                for number, (situation, *words) in enumerate(expected):
+                    pattern = re.sub(r"\\\{.*?\\\}", ".*", re.escape(situation.value.text))
+                    if part is not situation.value.part or not re.search(pattern, message):
+                        continue
+                    if all(each in message for each in words):
+                        assert level >= situation.value.level
+                        found[number] = message
+            return len(found) == len(expected)
 
-        self.client.spin_until(is_reported)
-        return found[-1]
+        self.client.spin_until(are_reported)
+        return [found[number] for number in range(len(expected))]
 
-    def wait_until_over(self, situation: Situation, words: str, *, work: Callable[[], object] = int) -> None:
-        """Wait until a report has no such words."""
+    def wait_until_over(self, part: Part, words: str, *, work: Callable[[], object] = int) -> None:
+        """Wait until a report of a part has no such words."""
 
         def is_over() -> bool:
             work()
-            statuses = self._statuses(situation.value.part)
-            return bool(statuses) and not any(words in message for _, message in statuses)
+            messages = [message for of, _, message in self._statuses() if of is part]
+            return bool(messages) and not any(words in message for message in messages)
 
         self.client.spin_until(is_over)
 
@@ -82,18 +99,17 @@ class Monitor:
 
         def is_ok() -> bool:
             work()
-            return (Level.OK, "ok") in self._statuses(part)
+            return (part, Level.OK, "ok") in self._statuses()
 
         self.client.spin_until(is_ok)
 
-    def _statuses(self, part: Part) -> list[tuple[Level, str]]:
-        """The statuses of a part that came since the last look."""
+    def _statuses(self) -> list[tuple[Part, Level, str]]:
+        """The statuses that came since the last look."""
         reports, self._reports[:] = list(self._reports), []
         return [
-            (Level(each.level[0]), each.message)
+            (Part(each.name.rpartition(": ")[2]), Level(each.level[0]), each.message)
             for report in reports
             for each in report.status
-            if each.name.endswith(f": {part.value}")
         ]
 
 

@@ -11,7 +11,6 @@ import signal
 import subprocess
 import time
 from collections.abc import Iterator
-from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -19,26 +18,23 @@ import pytest
 from geometry_msgs.msg import PoseStamped, TwistStamped
 from nav_msgs.msg import Odometry
 from rclpy.qos import QoSProfile, ReliabilityPolicy
-from rosgraph_msgs.msg import Clock
 
 from contact_dynamics.nodes.situations import Part, Situation
-from contact_dynamics_interfaces.srv import PredictImpact, PredictTumbling
+from contact_dynamics_interfaces.srv import PredictTumbling
 from msg_adapters.stamps import stamp_ns_from_msg, stamp_to_msg
-from nodes.monitor import Monitor, monitored, odometry
+from nodes.monitor import Monitor, hard, monitored, odometry
 from running_server import ROOT, process, wait_for
 
 BEST_EFFORT = QoSProfile(depth=10, reliability=ReliabilityPolicy.BEST_EFFORT)
 HOUR_NS = 3_600_000_000_000
-OTHERS = ("pair", "late", "twice")
-FOUR_BODIES = {
+OTHERS = ("late", "old", "turned", "shared", "twice", "split", "pair")
+BODIES = {
     "bodies": ["brick", *OTHERS],
     **{f"body.{name}.mass": 1.0 for name in OTHERS},
     **{f"body.{name}.inertia": [0.001, 0.001, 0.001, 0.0, 0.0, 0.0] for name in OTHERS},
-    "body.pair.pose_topic": "/pair/pose",
-    "body.pair.twist_topic": "/pair/twist",
-    "body.late.odometry_topic": "/late/odometry",
-    "body.twice.odometry_topic": "/twice/odometry",
+    **{f"body.{name}.odometry_topic": f"/{name}/odometry" for name in OTHERS[:5]},
     "body.twice.pose_topic": "/twice/pose",
+    **{f"body.{name}.{kind}_topic": f"/{name}/{kind}" for name in OTHERS[5:] for kind in ("pose", "twist")},
     "state_timeout": 100.0,
     "silent_after": 1.0,
     "log": False,
@@ -47,122 +43,131 @@ FOUR_BODIES = {
 
 @pytest.fixture(scope="module")
 def monitor(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Monitor]:
-    with monitored(tmp_path_factory.mktemp("config"), **FOUR_BODIES) as (_, monitor):
+    with monitored(tmp_path_factory.mktemp("config"), **BODIES) as (_, monitor):
         yield monitor
 
 
-@pytest.fixture
-def states(monitor: Monitor) -> Iterator[Any]:
-    """The one publisher of the brick's states."""
-    made = monitor.client.publisher(Odometry, "/brick/odometry")
-    yield made
-    monitor.client.node.destroy_publisher(made)
+class Body:
+    """Publishes the states of a body."""
 
+    def __init__(self, monitor: Monitor, name: str) -> None:
+        self.name = name
+        self._node = monitor.client.node
+        self._begun_ns = time.time_ns()
+        if name in {"split", "pair"}:
+            self._made = [
+                monitor.client.publisher(PoseStamped, f"/{name}/pose"),
+                monitor.client.publisher(TwistStamped, f"/{name}/twist"),
+            ]
+        else:
+            self._made = [monitor.client.publisher(Odometry, f"/{name}/odometry")]
 
-def test_a_body_of_which_nothing_came(monitor: Monitor) -> None:
-    monitor.wait(Situation.NO_STATE_YET, "'late' received on /late/odometry (0 publishers)")
-    states = monitor.client.publisher(Odometry, "/late/odometry")
-    monitor.wait_until_over(
-        Situation.NO_STATE_YET, "'late'", work=lambda: states.publish(odometry(child="late"))
-    )
-    monitor.client.node.destroy_publisher(states)
+    def publish(self, **wrong: Any) -> None:
+        self._made[0].publish(odometry(child=self.name, **wrong))
 
-
-def test_states_that_are_rejected(monitor: Monitor, states: Any) -> None:
-    """All of them for each of some reasons, and then one in three."""
-    for wrong, reason in (
-        ({"frame": "map"}, "got 'map'"),
-        ({"x": 2}, "(rclpy sends this for an int"),
-        ({"is_stamped": False}, "stamp must be the time of the state, got 0 (fill in header.stamp"),
-    ):
-        reject = partial(states.publish, odometry(**wrong))
-        monitor.wait(Situation.ALL_REJECTED, "'brick'", reason, work=reject)
-
-    def publish() -> None:
-        states.publish(odometry())
-        states.publish(odometry(frame="map"))
-        states.publish(odometry())
-
-    monitor.wait(Situation.SOME_REJECTED, "'brick'", "got 'map'", work=publish)
-    monitor.wait_until_over(Situation.SOME_REJECTED, "rejected", work=lambda: states.publish(odometry()))
-
-
-def test_states_that_are_old_when_they_come(monitor: Monitor, states: Any) -> None:
-    monitor.wait(Situation.OLD, "by 3600.", work=lambda: states.publish(odometry(ahead_ns=-HOUR_NS)))
-    monitor.wait_until_over(Situation.OLD, "too old", work=lambda: states.publish(odometry()))
-
-
-def test_a_twist_in_the_axes_of_the_world(monitor: Monitor, states: Any) -> None:
-    """The body is turned by 90 degrees about z, and moves along x."""
-    begun_ns = time.time_ns()
-
-    def publish(*, is_right: bool) -> None:
-        msg = odometry()
+    def publish_turned(self, *, is_right: bool) -> None:
+        """The body is turned by 90 degrees about z, and moves along x."""
+        msg = odometry(child=self.name)
         turn, velocity = msg.pose.pose.orientation, msg.twist.twist.linear
         turn.z = turn.w = math.sqrt(0.5)
-        msg.pose.pose.position.x = 3.0 * (stamp_ns_from_msg(msg.header.stamp) - begun_ns) / 1e9
+        msg.pose.pose.position.x = 3.0 * (stamp_ns_from_msg(msg.header.stamp) - self._begun_ns) / 1e9
         velocity.x, velocity.y = (0.0, -3.0) if is_right else (3.0, 0.0)
-        states.publish(msg)
+        self._made[0].publish(msg)
 
-    words = "/brick/odometry: the twist disagrees with the poses by 4.2 m/s"
-    monitor.wait(Situation.TWIST_AXES, words, work=lambda: publish(is_right=False))
-    monitor.wait_until_over(Situation.TWIST_AXES, "the twist disagrees", work=lambda: publish(is_right=True))
-
-
-def test_publishers_that_do_not_match(monitor: Monitor, states: Any) -> None:
-    """The one cannot be received by a reliable subscription, and what the other sends is of another type."""
-    node = monitor.client.node
-    others = [
-        node.create_publisher(Odometry, "/brick/odometry", BEST_EFFORT),
-        node.create_publisher(PoseStamped, "/pair/twist", 10),
-    ]
-
-    def publish() -> None:
-        states.publish(odometry())
-
-    monitor.wait(Situation.NO_MATCH, "1 of 2 publishers cannot be received: Best effort", work=publish)
-    monitor.wait(Situation.NO_MATCH, "/pair/twist: 1 of 1 publishers", "they send geometry", work=publish)
-    for each in others:
-        node.destroy_publisher(each)
-    monitor.wait_until_over(Situation.NO_MATCH, "cannot be received", work=publish)
-
-
-def test_a_second_publisher_of_a_body(monitor: Monitor, states: Any) -> None:
-    second = monitor.client.node.create_publisher(Odometry, "/brick/odometry", 10)
-    monitor.wait(Situation.SEVERAL_PUBLISHERS, "/brick/odometry: 2 publishers")
-    monitor.client.node.destroy_publisher(second)
-    monitor.wait_until_over(Situation.SEVERAL_PUBLISHERS, "publishers send")
-    assert states.topic_name == "/brick/odometry"
-
-
-def test_a_body_with_two_sources_that_both_publish(monitor: Monitor) -> None:
-    states = monitor.client.publisher(Odometry, "/twice/odometry")
-    poses = monitor.client.publisher(PoseStamped, "/twice/pose")
-    monitor.wait(Situation.SEVERAL_PUBLISHERS, "/twice/odometry", " and ", "/twice/pose", ": 2 publishers")
-    monitor.client.node.destroy_publisher(poses)
-    monitor.wait_until_over(Situation.SEVERAL_PUBLISHERS, "publishers send")
-    monitor.client.node.destroy_publisher(states)
-
-
-def test_a_body_that_is_gone_from_a_shared_topic(monitor: Monitor) -> None:
-    """Poses and twists come, and have no equal stamps any more, so that none of them makes a state."""
-    poses = monitor.client.publisher(PoseStamped, "/pair/pose")
-    twists = monitor.client.publisher(TwistStamped, "/pair/twist")
-
-    def publish(apart_ns: int) -> None:
+    def publish_pair(self, *, apart_ns: int) -> None:
         pose, twist, now_ns = PoseStamped(), TwistStamped(), time.time_ns()
         for msg, stamp_ns in ((pose, now_ns), (twist, now_ns - apart_ns)):
             msg.header.frame_id, msg.header.stamp = "world", stamp_to_msg(stamp_ns)
-        poses.publish(pose)
-        twists.publish(twist)
+        for publisher, msg in zip(self._made, (pose, twist), strict=True):
+            publisher.publish(msg)
 
-    monitor.wait_until_over(Situation.BODY_SILENT, "'pair'", work=lambda: publish(0))
-    monitor.wait(
-        Situation.BODY_SILENT, "'pair'", "/pair/pose and /pair/twist", work=lambda: publish(1_000_003)
+    def publish_good(self) -> None:
+        if len(self._made) == 2:
+            self.publish_pair(apart_ns=0)
+        elif self.name == "turned":
+            self.publish_turned(is_right=True)
+        else:
+            self.publish()
+
+    def stop(self) -> None:
+        for each in self._made:
+            self._node.destroy_publisher(each)
+
+
+def test_states_that_are_rejected(monitor: Monitor) -> None:
+    """All of them for each of some reasons, and of one body one in three."""
+    bodies = {name: Body(monitor, name) for name in ("brick", "old", "shared", "twice")}
+
+    def publish() -> None:
+        bodies["brick"].publish(frame="map")
+        bodies["old"].publish(x=2)
+        bodies["shared"].publish(is_stamped=False)
+        for wrong in ({}, {"frame": "map"}, {}):
+            bodies["twice"].publish(**wrong)
+
+    def publish_good() -> None:
+        for each in bodies.values():
+            each.publish_good()
+
+    monitor.wait_all(
+        (Situation.ALL_REJECTED, "'brick'", "got 'map'"),
+        (Situation.ALL_REJECTED, "'old'", "(rclpy sends this for an int"),
+        (Situation.ALL_REJECTED, "'shared'", "must be the time of the state, got 0 (fill in header.stamp"),
+        (Situation.SOME_REJECTED, "'twice'", "got 'map'"),
+        work=publish,
     )
-    monitor.wait_until_over(Situation.BODY_SILENT, "'pair'", work=lambda: publish(0))
-    for each in (poses, twists):
-        monitor.client.node.destroy_publisher(each)
+    monitor.wait_until_over(Part.STATES, "rejected", work=publish_good)
+    for each in bodies.values():
+        each.stop()
+
+
+def test_each_situation_of_states_is_reported_as_long_as_its_cause_is_there(monitor: Monitor) -> None:
+    """A body for each, and all at once: reports come once a second.
+
+    What one publisher sends is of another type, and another cannot be received by a reliable subscription.
+    The poses and twists of a pair come, and have no equal stamps any more, so that none makes a state.
+    """
+    node = monitor.client.node
+    of_another_type = node.create_publisher(PoseStamped, "/split/twist", 10)
+    monitor.wait_all(
+        (Situation.NO_STATE_YET, "'late' received on /late/odometry (0 publishers)"),
+        (Situation.NO_MATCH, "/split/twist: 1 of 1 publishers", "they send geometry"),
+    )
+    node.destroy_publisher(of_another_type)
+    bodies = {name: Body(monitor, name) for name in ("brick", *OTHERS)}
+
+    def publish_good() -> None:
+        for each in bodies.values():
+            each.publish_good()
+
+    monitor.wait_until_ok(Part.STATES, work=publish_good)
+    wrong = [
+        node.create_publisher(Odometry, "/brick/odometry", BEST_EFFORT),
+        node.create_publisher(Odometry, "/shared/odometry", 10),
+        node.create_publisher(PoseStamped, "/twice/pose", 10),
+    ]
+
+    def publish() -> None:
+        for name in ("brick", "late", "split", "shared", "twice"):
+            bodies[name].publish_good()
+        bodies["old"].publish(ahead_ns=-HOUR_NS)
+        bodies["turned"].publish_turned(is_right=False)
+        bodies["pair"].publish_pair(apart_ns=1_000_003)
+
+    monitor.wait_all(
+        (Situation.OLD, "'old'", "by 3600."),
+        (Situation.TWIST_AXES, "/turned/odometry: the twist disagrees with the poses by 4.2 m/s"),
+        (Situation.NO_MATCH, "/brick/odometry: 1 of 2 publishers cannot be received: Best effort"),
+        (Situation.SEVERAL_PUBLISHERS, "/shared/odometry: 2 publishers"),
+        (Situation.SEVERAL_PUBLISHERS, "/twice/odometry and /twice/pose: 2 publishers"),
+        (Situation.BODY_SILENT, "'pair'", "/pair/pose and /pair/twist"),
+        work=publish,
+    )
+    for each in wrong:
+        node.destroy_publisher(each)
+    monitor.wait_until_ok(Part.STATES, work=publish_good)
+    for body in bodies.values():
+        body.stop()
 
 
 def test_a_second_server_of_the_same_name(monitor: Monitor) -> None:
@@ -173,29 +178,6 @@ def test_a_second_server_of_the_same_name(monitor: Monitor) -> None:
         assert told in wait_for(second, "another node has this name")
     assert second.returncode == 0
     monitor.wait_until_ok(Part.ANSWERS)
-
-
-def test_a_simulated_clock_that_does_not_come(tmp_path: Path) -> None:
-    arguments = ("--ros-args", "-p", "use_sim_time:=true")
-    with monitored(tmp_path, *arguments, log=False) as (_, monitor):
-        monitor.wait(Situation.NO_CLOCK)
-        clock = monitor.client.publisher(Clock, "/clock")
-        states = monitor.client.publisher(Odometry, "/brick/odometry")
-
-        def publish() -> None:
-            clock.publish(Clock(clock=stamp_to_msg(time.time_ns())))
-            states.publish(odometry())
-
-        monitor.wait_until_ok(Part.STATES, work=publish)
-
-
-def hard() -> Any:
-    """A landing of a body that spins so fast that the search for it takes seconds."""
-    request = PredictImpact.Request(body_name="brick", state_source=PredictImpact.Request.STATE_EXPLICIT)
-    request.state.pose.position.z = 1.0
-    spin = request.state.angular_velocity
-    spin.x, spin.y, spin.z = 1e9, 1e8, 1e8
-    return request
 
 
 def worker_of(server: subprocess.Popen[str]) -> int:

@@ -7,10 +7,8 @@ import math
 import signal
 import time
 from pathlib import Path
-from typing import Any
 
 import rclpy
-import yaml
 from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import TransformStamped
 from nav_msgs.msg import Odometry
@@ -20,90 +18,58 @@ from rclpy.serialization import serialize_message
 from rosgraph_msgs.msg import Clock
 
 from contact_dynamics.nodes.inbox import InboxNode, Taken
-from contact_dynamics.nodes.situations import FaultLimits
+from contact_dynamics.nodes.situations import FaultLimits, Part, Situation
 from contact_dynamics.nodes.state_sources import BodyReader, StateSource
 from contact_dynamics.nodes.state_subscriptions import LATCHED_QOS, StateTopic
 from contact_dynamics.nodes.topic_faults import TopicFaults, TopicTraffic
 from contact_dynamics.questions.state_store import StateStore
 from contact_dynamics_interfaces.srv import PredictTumbling
 from msg_adapters.stamps import stamp_ns_from_msg, stamp_to_msg
-from running_server import DOMAIN_ID, PATIENCE_S, ROOT, Client, process, wait_for
+from nodes.monitor import monitored
+from running_server import DOMAIN_ID, PATIENCE_S, Client, wait_for
 
 SHALLOW = QoSProfile(depth=10)
-STOOD_STILL_S = 6.0  # longer than a topic may be silent before it is subscribed to anew
+SILENT_AFTER_S = 1.0
 PUBLISHED = 3000  # three times what the server's queue holds
 HOUR_NS = 3_600_000_000_000
 
 
-def odometry(body_name: str, stamp_ns: int) -> Odometry:
-    msg = Odometry(child_frame_id=body_name)
+def odometry(stamp_ns: int) -> Odometry:
+    msg = Odometry(child_frame_id="brick")
     msg.header.frame_id, msg.header.stamp = "world", stamp_to_msg(stamp_ns)
     msg.pose.pose.position.z = 1.0
     return msg
 
 
-def newest_ns(client: Client, body_name: str) -> int:
-    answer = client.ask(PredictTumbling.Request(body_name=body_name, times=[0.0]))
+def newest_ns(client: Client) -> int:
+    answer = client.ask(PredictTumbling.Request(body_name="brick", times=[0.0]))
     return stamp_ns_from_msg(answer.state.header.stamp) if answer.status == answer.OK else -1
 
 
-def two_bodies(folder: Path) -> Path:
-    """Write a configuration with a brick and a second one, whose states come on a topic of their own."""
-    settings: dict[str, Any] = yaml.safe_load((ROOT / "config" / "server.yaml").read_text(encoding="utf-8"))
-    parameters = settings["/**"]["ros__parameters"]
-    parameters["bodies"] = ["brick", "other"]
-    parameters |= {
-        "body.other.mass": 1.0,
-        "body.other.inertia": [0.001, 0.001, 0.001, 0.0, 0.0, 0.0],
-        "body.other.odometry_topic": "/other/odometry",
-        "state_timeout": 1000.0,
-        "log": False,
-    }
-    path = folder / "server.yaml"
-    path.write_text(yaml.safe_dump(settings), encoding="utf-8")
-    return path
-
-
-def test_a_stamp_from_the_future_poisons_no_body_and_is_told_by_topic(tmp_path: Path) -> None:
-    with process("server", "--params-file", str(two_bodies(tmp_path)), ready="ready") as server:
-        client = Client()
-        try:
-            topics = {name: client.publisher(Odometry, f"/{name}/odometry") for name in ("brick", "other")}
-            for name, states in topics.items():
-                now_ns = time.time_ns()
-                states.publish(odometry(name, now_ns + HOUR_NS))
-                states.publish(odometry(name, now_ns))
-                told = wait_for(server, f"/{name}/odometry: message ignored: stamp must be")
-                assert "must be at most 0.5 s (future_tolerance)" in told
-                client.spin_until(lambda name=name, now_ns=now_ns: newest_ns(client, name) == now_ns)
-        finally:
-            client.close()
-
-
 def test_a_simulated_clock_judges_states_from_its_first_message_on(tmp_path: Path) -> None:
-    """Clocks that are no messages, or before zero, for which rclpy raises, are ignored and told."""
-    arguments = ("--params-file", str(two_bodies(tmp_path)), "--ros-args", "-p", "use_sim_time:=true")
-    with process("server", *arguments, ready="ready") as server:
-        client = Client()
-        try:
-            states = client.publisher(Odometry, "/brick/odometry")
-            clock = client.publisher(Clock, "/clock")
-            states.publish(odometry("brick", 5 * HOUR_NS))  # nothing is from the future yet
-            client.spin_until(lambda: newest_ns(client, "brick") == 5 * HOUR_NS)
-            clock.publish(serialize_message(Clock())[:5])
-            wait_for(server, "/clock: message ignored: ")
-            clock.publish(Clock(clock=stamp_to_msg(HOUR_NS)))
-            client.spin_until(lambda: newest_ns(client, "brick") == -1)  # it is ahead of the clock now
-            negative = Clock()
-            negative.clock.sec = -5
-            clock.publish(negative)
-            wait_for(server, "/clock: message ignored: clock.sec must be >= 0, got -5")
-            states.publish(odometry("brick", 5 * HOUR_NS))
-            states.publish(odometry("brick", HOUR_NS))
-            client.spin_until(lambda: newest_ns(client, "brick") == HOUR_NS)
-            wait_for(server, "got 14400.000 s ahead of the clock")
-        finally:
-            client.close()
+    """That none comes is reported. Clocks that are no messages, or before zero, are ignored and told."""
+    simulated = ("--ros-args", "-p", "use_sim_time:=true")
+    with monitored(tmp_path, *simulated, log=False, state_timeout=1000.0) as (server, monitor):
+        client = monitor.client
+        monitor.wait(Situation.NO_CLOCK)
+        states = client.publisher(Odometry, "/brick/odometry")
+        clock = client.publisher(Clock, "/clock")
+        states.publish(odometry(5 * HOUR_NS))  # nothing is from the future yet
+        client.spin_until(lambda: newest_ns(client) == 5 * HOUR_NS)
+        clock.publish(serialize_message(Clock())[:5])
+        wait_for(server, "/clock: message ignored: ")
+        clock.publish(Clock(clock=stamp_to_msg(HOUR_NS)))
+        client.spin_until(lambda: newest_ns(client) == -1)  # it is ahead of the clock now
+        negative = Clock()
+        negative.clock.sec = -5
+        clock.publish(negative)
+        wait_for(server, "/clock: message ignored: clock.sec must be >= 0, got -5")
+        states.publish(odometry(5 * HOUR_NS))
+        states.publish(odometry(HOUR_NS))
+        client.spin_until(lambda: newest_ns(client) == HOUR_NS)
+        told = wait_for(server, "got 14400.000 s ahead of the clock")
+        assert "/brick/odometry: message ignored: stamp must be" in told
+        monitor.wait_until_ok(Part.STATES, work=lambda: states.publish(odometry(HOUR_NS)))
 
 
 def test_each_topic_and_kind_of_fault_has_a_throttle_of_its_own() -> None:
@@ -186,39 +152,39 @@ def test_transforms_that_stand_still_are_told_once_and_their_topic_is_not_silent
 def test_what_got_lost_fell_silent_and_has_two_publishers_is_told(tmp_path: Path) -> None:
     """The server stands still while more comes than its queue holds; /diagnostics has the counts."""
     reports: list[DiagnosticArray] = []
-    with process("server", "--params-file", str(two_bodies(tmp_path)), ready="ready") as server:
-        client = Client()
-        try:
-            client.node.create_subscription(DiagnosticArray, "/diagnostics", reports.append, 10)
-            states = client.publisher(Odometry, "/brick/odometry", SHALLOW)
-            states.publish(odometry("brick", time.time_ns()))
-            client.spin_until(lambda: newest_ns(client, "brick") > 0)
-            server.send_signal(signal.SIGSTOP)
-            stopped = time.monotonic()
-            for _ in range(PUBLISHED):
-                states.publish(odometry("brick", time.time_ns()))
-            time.sleep(max(0.0, stopped + STOOD_STILL_S - time.monotonic()))
-            server.send_signal(signal.SIGCONT)
-            told = wait_for(server, "/brick/odometry: messages were lost before they were received")
-            client.spin_until(lambda: bool(reports) and counted(reports[-1], "lost") > 0)
-            assert "/brick/odometry: messages were lost" in reports[-1].status[0].message
-            received = counted(reports[-1], "messages")
-            assert received + counted(reports[-1], "lost") <= PUBLISHED + 1
-            if "/brick/odometry: nothing came for " not in told:  # while DDS repeated what was not taken
-                wait_for(server, "/brick/odometry: nothing came for ")
-            second = client.publisher(Odometry, "/brick/odometry", SHALLOW)
-            wait_for(server, "/brick/odometry: 2 publishers send states of one body")
-            client.spin_until(lambda: "/brick/odometry is silent" in reports[-1].status[0].message)
-            stamp_ns = time.time_ns()
-            states.publish(odometry("brick", stamp_ns))
-            client.spin_until(lambda: newest_ns(client, "brick") >= stamp_ns)  # else it may leave unsent
-            for each in (states, second):
-                client.node.destroy_publisher(each)
-            told = wait_for(server, "/brick/odometry: nobody publishes any more")
-            assert "nothing came for" not in told
-            assert "[INFO]" in told.splitlines()[-1]
-        finally:
-            client.close()
+    with monitored(tmp_path, log=False, state_timeout=1000.0, silent_after=SILENT_AFTER_S) as (
+        server,
+        monitor,
+    ):
+        client = monitor.client
+        client.node.create_subscription(DiagnosticArray, "/diagnostics", reports.append, 10)
+        states = client.publisher(Odometry, "/brick/odometry", SHALLOW)
+        states.publish(odometry(time.time_ns()))
+        client.spin_until(lambda: newest_ns(client) > 0)
+        server.send_signal(signal.SIGSTOP)
+        stopped = time.monotonic()
+        for _ in range(PUBLISHED):
+            states.publish(odometry(time.time_ns()))
+        time.sleep(max(0.0, stopped + 2.0 * SILENT_AFTER_S - time.monotonic()))
+        server.send_signal(signal.SIGCONT)
+        told = wait_for(server, "/brick/odometry: messages were lost before they were received")
+        client.spin_until(lambda: bool(reports) and counted(reports[-1], "lost") > 0)
+        assert "/brick/odometry: messages were lost" in reports[-1].status[0].message
+        received = counted(reports[-1], "messages")
+        assert received + counted(reports[-1], "lost") <= PUBLISHED + 1
+        if "/brick/odometry: nothing came for " not in told:  # while DDS repeated what was not taken
+            wait_for(server, "/brick/odometry: nothing came for ")
+        second = client.publisher(Odometry, "/brick/odometry", SHALLOW)
+        wait_for(server, "/brick/odometry: 2 publishers send states of one body")
+        client.spin_until(lambda: "/brick/odometry is silent" in reports[-1].status[0].message)
+        stamp_ns = time.time_ns()
+        states.publish(odometry(stamp_ns))
+        client.spin_until(lambda: newest_ns(client) >= stamp_ns)  # else it may leave unsent
+        for each in (states, second):
+            client.node.destroy_publisher(each)
+        told = wait_for(server, "/brick/odometry: nobody publishes any more")
+        assert "nothing came for" not in told
+        assert "[INFO]" in told.splitlines()[-1]
 
 
 def counted(report: DiagnosticArray, what: str) -> int:

@@ -17,12 +17,13 @@ import pytest
 
 from contact_dynamics.nodes.situations import Part, Situation
 from contact_dynamics_interfaces.srv import PredictImpact, PredictTumbling
-from nodes.monitor import monitored
+from nodes.monitor import hard, monitored
 from running_server import PATIENCE_S, ROOT, Client, process, wait_for
 
 DEADLINE_S = 0.4
 QUICKLY_S = 2.0  # far below what the hard questions would take, and far above what a busy machine takes
 ENDS_S = 10.0  # a second on a quiet machine; to answer what waits would take a minute
+MOMENTS = 16  # of an answer on its way
 LEAVING = 200  # requests that a client leaves with
 ARGUMENTS = ("--params-file", str(ROOT / "config" / "server.yaml"), "--ros-args", "-p", "log:=false")
 
@@ -44,13 +45,15 @@ def client() -> Iterator[Client]:
             client.close()
 
 
-def hard() -> Any:
-    """A landing of a body that spins so fast that the search for it takes seconds."""
-    request = PredictImpact.Request(body_name="brick", state_source=PredictImpact.Request.STATE_EXPLICIT)
-    request.state.pose.position.z = 1.0
-    spin = request.state.angular_velocity
-    spin.x, spin.y, spin.z = 1e9, 1e8, 1e8
-    return request
+@contextlib.contextmanager
+def apart(*arguments: str) -> Iterator[tuple[subprocess.Popen[str], Client]]:
+    """A server that a test may end, and a client of it."""
+    with process("server", *ARGUMENTS, *APART, *arguments, ready="ready") as server:
+        client = Client(NAMESPACE)
+        try:
+            yield server, client
+        finally:
+            client.close()
 
 
 def quick() -> Any:
@@ -97,87 +100,69 @@ def test_a_client_that_leaves_with_requests_pending_freezes_nobody(client: Clien
     assert time.monotonic() - begun < 15.0  # of the 20 s that it took to send to who is gone
 
 
-def test_a_server_that_a_busy_machine_stops_answers_all_the_same() -> None:
-    """Stopped for 0.07 s while it sends, it once took its client for gone. Here a stop meets each moment."""
-    with process("server", *ARGUMENTS, *APART, ready="ready") as server:
-        client = Client(NAMESPACE)
-        try:
-            long = quick()
-            long.times = [0.0001 * i for i in range(20_000)]
-            client.ask(long)  # the first takes longer
-            begun = time.monotonic()
-            client.ask(long)
-            trip = time.monotonic() - begun
-            for i in range(32):
-                future = client.begin_to_ask(long)
-                time.sleep(trip * i / 32)
-                server.send_signal(signal.SIGSTOP)
-                time.sleep(0.07)
-                server.send_signal(signal.SIGCONT)
-                client.spin_until(future.done)
-                assert future.result().status == 0, future.result().message
-        finally:
-            client.close()
+def test_a_server_that_a_busy_machine_stops_answers_all_the_same_and_ends_well() -> None:
+    """Stopped for 0.07 s while it sends, it once took its client for gone. Here a stop meets each moment.
+
+    Then it is told to end while requests wait, which are answered or refused.
+    """
+    with apart() as (server, client):
+        long = quick()
+        long.times = [0.0001 * i for i in range(20_000)]
+        client.ask(long)  # the first takes longer
+        begun = time.monotonic()
+        client.ask(long)
+        trip = time.monotonic() - begun
+        for i in range(MOMENTS):
+            future = client.begin_to_ask(long)
+            time.sleep(trip * i / MOMENTS)
+            server.send_signal(signal.SIGSTOP)
+            time.sleep(0.07)
+            server.send_signal(signal.SIGCONT)
+            client.spin_until(future.done)
+            assert future.result().status == 0, future.result().message
+        server.send_signal(signal.SIGSTOP)
+        pending = [client.begin_to_ask(quick()) for _ in range(20)]
+        time.sleep(0.2)  # they arrive
+        server.send_signal(signal.SIGINT)
+        server.send_signal(signal.SIGCONT)
+        client.spin_until(lambda: all(one.done() for one in pending))
+        codes = PredictTumbling.Response
+        assert {one.result().status for one in pending} <= {codes.OK, codes.BUSY}
+        assert server.wait(PATIENCE_S) == 0
 
 
 def test_answers_that_are_ready_while_the_server_ends_do_not_make_it_fail() -> None:
     arguments = ("-p", "answer_deadline:=3600.0", "-p", "workers:=2", "-p", "max_waiting:=1000")
-    with process("server", *ARGUMENTS, *APART, *arguments, ready="ready") as server:
-        client = Client(NAMESPACE)
-        try:
-            slowed = quick()
-            slowed.linear_drag = 0.1
-            slowed.times = [0.001 * i for i in range(1000)]
-            answer = client.ask(slowed)  # a worker, which is ready from here on
-            assert answer.status == answer.OK, answer.message
-            pending = [client.begin_to_ask(slowed) for _ in range(500)]
-            client.ask(quick())  # requests arrive in order, so that all of them are there once it is answered
-            # A busy machine stops this process while the answers arrive, and its socket drops most of them.
-            me = os.getpid()
-            stopped = f"kill -STOP {me}; kill -INT {server.pid}; sleep 0.3; kill -CONT {me}"
-            subprocess.run(["sh", "-c", stopped], check=True)
-            assert server.wait(PATIENCE_S) == 0
-            assert not pending[-1].done()
-            client.spin_until(pending[-1].done)
-            refused = pending[-1].result()
-            assert refused.status == refused.BUSY
-            assert refused.message == "the server ended, or was cleaned up, before the answer was there"
-        finally:
-            client.close()
-
-
-def test_requests_that_wait_when_the_server_is_told_to_end_are_answered_or_refused() -> None:
-    with process("server", *ARGUMENTS, *APART, ready="ready") as server:
-        client = Client(NAMESPACE)
-        try:
-            server.send_signal(signal.SIGSTOP)
-            pending = [client.begin_to_ask(quick()) for _ in range(20)]
-            time.sleep(0.2)  # they arrive
-            server.send_signal(signal.SIGINT)
-            server.send_signal(signal.SIGCONT)
-            client.spin_until(lambda: all(one.done() for one in pending))
-            codes = PredictTumbling.Response
-            assert {one.result().status for one in pending} <= {codes.OK, codes.BUSY}
-            assert server.wait(PATIENCE_S) == 0
-        finally:
-            client.close()
+    with apart(*arguments) as (server, client):
+        slowed = quick()
+        slowed.linear_drag = 0.1
+        slowed.times = [0.001 * i for i in range(1000)]
+        answer = client.ask(slowed)  # a worker, which is ready from here on
+        assert answer.status == answer.OK, answer.message
+        pending = [client.begin_to_ask(slowed) for _ in range(500)]
+        client.ask(quick())  # requests arrive in order, so that all of them are there once it is answered
+        # A busy machine stops this process while the answers arrive, and its socket drops most of them.
+        me = os.getpid()
+        stopped = f"kill -STOP {me}; kill -INT {server.pid}; sleep 0.3; kill -CONT {me}"
+        subprocess.run(["sh", "-c", stopped], check=True)
+        assert server.wait(PATIENCE_S) == 0
+        assert not pending[-1].done()
+        client.spin_until(pending[-1].done)
+        refused = pending[-1].result()
+        assert refused.status == refused.BUSY
+        assert refused.message == "the server ended, or was cleaned up, before the answer was there"
 
 
 def test_the_server_ends_soon_whatever_is_being_computed() -> None:
-    arguments = ("-p", "answer_deadline:=3600.0", "-p", "workers:=1")
-    with process("server", *ARGUMENTS, *APART, *arguments, ready="ready") as server:
-        client = Client(NAMESPACE)
-        try:
-            for _ in range(8):
-                client.begin_to_ask(hard())
-            answer = client.ask(quick())  # the others came before it
-            assert answer.status == answer.OK, answer.message
-            begun = time.monotonic()
-            server.send_signal(signal.SIGTERM)
-            assert server.wait(PATIENCE_S) == 0
-            assert time.monotonic() - begun < ENDS_S
-        finally:
-            client.close()
+    with apart("-p", "answer_deadline:=3600.0", "-p", "workers:=1") as (server, client):
+        for _ in range(8):
+            client.begin_to_ask(hard())
+        answer = client.ask(quick())  # the others came before it
+        assert answer.status == answer.OK, answer.message
+        begun = time.monotonic()
+        server.send_signal(signal.SIGTERM)
+        assert server.wait(PATIENCE_S) == 0
+        assert time.monotonic() - begun < ENDS_S
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])

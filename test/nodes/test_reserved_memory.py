@@ -14,7 +14,7 @@ from lifecycle_msgs.srv import ChangeState
 
 from running_server import PATIENCE_S, ROOT, Client, environment, process
 
-CYCLES = 8
+CYCLES = 5
 ROUND = (
     Transition.TRANSITION_DEACTIVATE,
     Transition.TRANSITION_CLEANUP,
@@ -89,7 +89,7 @@ def test_a_server_that_is_cleaned_up_and_configured_takes_no_more(tmp_path: Path
                 assert future.result().success
 
         try:
-            for _ in range(4):  # libraries keep what they need again
+            for _ in range(3):  # libraries keep what they need again
                 cycle()
             before = taken_mb(server.pid)
             for _ in range(CYCLES):

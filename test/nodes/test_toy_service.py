@@ -109,15 +109,15 @@ def test_its_answer_is_a_row_with_what_was_then_measured(log: Path, folder: Path
     assert float(row["position_error"]) < 1e-8
 
 
-@pytest.mark.parametrize("picture", ["live.rrd", "logged.rrd"])
-def test_its_answer_is_drawn_and_put_into_words(log: Path, folder: Path, picture: str) -> None:
+def test_its_answer_is_drawn_and_put_into_words_live_and_from_the_log(log: Path, folder: Path) -> None:
     run("replay", "view", log, "--rrd", folder / "logged.rrd")
-    drawn = read_drawn(folder / picture)
-    ((_, points),) = drawn.values["/world/apex", "Points3D:positions"]
-    assert points[0][2] == pytest.approx(HEIGHT, abs=1e-6)  # single precision
-    said = str([value for (_, component), value in drawn.values.items() if component == "TextLog:text"])
-    assert "Apex: brick rises for 0." in said
-    assert "a point is drawn at the top" in said
+    for picture in ("live.rrd", "logged.rrd"):
+        drawn = read_drawn(folder / picture)
+        ((_, points),) = drawn.values["/world/apex", "Points3D:positions"]
+        assert points[0][2] == pytest.approx(HEIGHT, abs=1e-6)  # single precision
+        said = str([value for (_, component), value in drawn.values.items() if component == "TextLog:text"])
+        assert "Apex: brick rises for 0." in said
+        assert "a point is drawn at the top" in said
 
 
 def test_its_answer_is_plotted(log: Path, folder: Path) -> None:
