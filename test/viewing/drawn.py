@@ -8,7 +8,10 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import rerun as rr
 from rerun.chunk import RrdReader
+
+from contact_dynamics.viewing.measured import set_time
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -64,3 +67,18 @@ def read_drawn(path: Path) -> Drawn:
     for column in values.values():
         column.sort(key=lambda row: row[0])
     return Drawn(values=values, blueprints=len(reader.blueprints()))
+
+
+class Canvas:
+    """A recording into a file, and what is in it."""
+
+    def __init__(self, path: Path) -> None:
+        self.stream = rr.RecordingStream("test")
+        self.stream.save(path)
+        set_time(self.stream, STAMP_NS)
+        self._path = path
+
+    def read(self) -> Drawn:
+        """Finish the file."""
+        self.stream.disconnect()
+        return read_drawn(self._path)

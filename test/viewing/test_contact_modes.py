@@ -21,19 +21,16 @@ from contact_dynamics.plane.projection import PlaneOfMotion
 from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.viewing.drawing import draw_marks
 from viewing.answers import contact_mode_answer
+from viewing.drawn import Canvas
+from viewing.known import BODY, TWO_CONTACTS
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     import rerun as rr
 
-    from contact_dynamics.contact.contact import ContactSet
     from contact_dynamics.diagrams.shape import Shape
     from contact_dynamics.questions import ContactModeAnswer
     from contact_dynamics.rigid_body.body import MassProperties
     from contact_dynamics.validation import FloatArray
-    from contact_dynamics.world import Body
-    from viewing.drawn import Drawn
 
 CONTACTS = "/world/contacts/brick"
 
@@ -91,14 +88,12 @@ def mode_of(mode: str, forces: FloatArray, *, slides: FloatArray | None = None) 
     )
 
 
-def test_points_carry_letters_and_forces_their_direction(
-    recording: rr.RecordingStream, read: Callable[[], Drawn], body: Body, two_contacts: ContactSet
-) -> None:
+def test_points_carry_letters_and_forces_their_direction(canvas: Canvas) -> None:
     forces = np.array([[0.0, 0.0, 0.0], [-0.3, 0.0, 0.4]])
     slides = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]])
-    answer = contact_mode_answer(AT_REST, two_contacts, mode_of("sr", forces, slides=slides))
-    draw(recording, convex_shape(body.vertices_B), answer)
-    drawn = read()
+    answer = contact_mode_answer(AT_REST, TWO_CONTACTS, mode_of("sr", forces, slides=slides))
+    draw(canvas.stream, convex_shape(BODY.vertices_B), answer)
+    drawn = canvas.read()
     assert drawn.last(f"{CONTACTS}/letters", "Points3D:labels") == ["separates", "slides right"]
     colors = [color.to_bytes(4, "big") for color in drawn.last(f"{CONTACTS}/points", "Points3D:colors")]
     assert colors == [bytes(palette.SEPARATE), bytes(palette.SLIDE)]
@@ -113,42 +108,36 @@ def test_points_carry_letters_and_forces_their_direction(
     np.testing.assert_allclose(edges.reshape(-1, 3).mean(axis=0), [0.0, 0.0, 0.1], atol=1e-6)
 
 
-def test_contacts_that_do_the_same_have_one_label_below_them(
-    recording: rr.RecordingStream, read: Callable[[], Drawn], body: Body, two_contacts: ContactSet
-) -> None:
+def test_contacts_that_do_the_same_have_one_label_below_them(canvas: Canvas) -> None:
     up = np.array([[0.0, 0.0, 1.0], [0.0, 0.0, 1.0]])
-    answer = contact_mode_answer(AT_REST, two_contacts, mode_of("ff", up), mode_of("rr", up))
-    shape = convex_shape(body.vertices_B)
-    draw(recording, shape, answer)
-    drawn = read()
+    answer = contact_mode_answer(AT_REST, TWO_CONTACTS, mode_of("ff", up), mode_of("rr", up))
+    shape = convex_shape(BODY.vertices_B)
+    draw(canvas.stream, shape, answer)
+    drawn = canvas.read()
     assert drawn.last(f"{CONTACTS}/letters", "Points3D:labels") == ["2 contacts stay fixed or slide right"]
     (place,) = drawn.array(f"{CONTACTS}/letters", "Points3D:positions")
-    below = two_contacts.p_WC_W.mean(axis=0) - LABEL_DEPTH * shape.size * two_contacts.normals_W[0]
+    below = TWO_CONTACTS.p_WC_W.mean(axis=0) - LABEL_DEPTH * shape.size * TWO_CONTACTS.normals_W[0]
     np.testing.assert_allclose(place, below, atol=1e-6)  # float32 positions
 
 
-def test_what_acts_besides_the_contacts_is_an_arrow(
-    recording: rr.RecordingStream, read: Callable[[], Drawn], body: Body, two_contacts: ContactSet
-) -> None:
+def test_what_acts_besides_the_contacts_is_an_arrow(canvas: Canvas) -> None:
     """What the mode of 2 m/s^2 downwards has from its two contacts of 1 N upwards, and from this force."""
     up = np.array([[0.0, 0.0, 1.0], [0.0, 0.0, 1.0]])
-    answer = contact_mode_answer(AT_REST, two_contacts, mode_of("ff", up))
-    draw(recording, convex_shape(body.vertices_B), answer, body=body.mass_properties)
-    drawn = read()
-    amount = 2.0 * body.mass_properties.mass + 2.0
+    answer = contact_mode_answer(AT_REST, TWO_CONTACTS, mode_of("ff", up))
+    draw(canvas.stream, convex_shape(BODY.vertices_B), answer, body=BODY.mass_properties)
+    drawn = canvas.read()
+    amount = 2.0 * BODY.mass_properties.mass + 2.0
     assert drawn.last(f"{CONTACTS}/applied", "Arrows3D:labels") == [f"gravity and load: {amount:.3g} N"]
     (arrow,) = drawn.array(f"{CONTACTS}/applied", "Arrows3D:vectors")
     np.testing.assert_allclose(arrow / np.linalg.norm(arrow), [0.0, 0.0, -1.0], atol=1e-6)
 
 
-def test_each_mode_is_an_entity_of_its_own(
-    recording: rr.RecordingStream, read: Callable[[], Drawn], body: Body, two_contacts: ContactSet
-) -> None:
+def test_each_mode_is_an_entity_of_its_own(canvas: Canvas) -> None:
     up = np.array([[0.0, 0.0, 1.0], [0.0, 0.0, 1.0]])
     many = [mode_of("ff", up * (i + 1)) for i in range(MAX_MODES + 2)]
-    answer = contact_mode_answer(AT_REST, two_contacts, *many)
-    draw(recording, convex_shape(body.vertices_B), answer)
-    drawn = read()
+    answer = contact_mode_answer(AT_REST, TWO_CONTACTS, *many)
+    draw(canvas.stream, convex_shape(BODY.vertices_B), answer)
+    drawn = canvas.read()
     forces = [f"{CONTACTS}/{name}/forces" for name in mode_names()]
     assert [drawn.last(path, "Arrows3D:labels")[0] for path in forces] == [
         "1 N",
@@ -161,23 +150,19 @@ def test_each_mode_is_an_entity_of_its_own(
     assert not any("mode_7" in entity for entity in drawn.entities)
 
 
-def test_no_consistent_mode_is_drawn_as_a_question(
-    recording: rr.RecordingStream, read: Callable[[], Drawn], body: Body, two_contacts: ContactSet
-) -> None:
-    draw(recording, convex_shape(body.vertices_B), contact_mode_answer(AT_REST, two_contacts))
-    drawn = read()
+def test_no_consistent_mode_is_drawn_as_a_question(canvas: Canvas) -> None:
+    draw(canvas.stream, convex_shape(BODY.vertices_B), contact_mode_answer(AT_REST, TWO_CONTACTS))
+    drawn = canvas.read()
     assert drawn.last(f"{CONTACTS}/letters", "Points3D:labels") == ["no mode"]
     assert not any("mode_1" in entity for entity in drawn.entities)
 
 
-def test_in_a_plane_the_letters_say_which_way_a_contact_slides(
-    recording: rr.RecordingStream, read: Callable[[], Drawn], body: Body, two_contacts: ContactSet
-) -> None:
+def test_in_a_plane_the_letters_say_which_way_a_contact_slides(canvas: Canvas) -> None:
     """Seen from -y, x is to the right: r slides along it, l against it."""
     plane = PlaneOfMotion(normal_W=np.array([0.0, -1.0, 0.0]))
     mode = mode_of("lr", np.zeros((2, 3)), slides=np.zeros((0, 3)))
-    answer = contact_mode_answer(AT_REST, two_contacts, mode, plane=plane)
-    draw(recording, convex_shape(body.vertices_B), answer)
-    slides = read().array(f"{CONTACTS}/mode_1/sliding", "Arrows3D:vectors")
+    answer = contact_mode_answer(AT_REST, TWO_CONTACTS, mode, plane=plane)
+    draw(canvas.stream, convex_shape(BODY.vertices_B), answer)
+    slides = canvas.read().array(f"{CONTACTS}/mode_1/sliding", "Arrows3D:vectors")
     directions = slides / np.linalg.norm(slides, axis=1, keepdims=True)
     np.testing.assert_allclose(directions, [[-1.0, 0.0, 0.0], [1.0, 0.0, 0.0]], atol=1e-6)

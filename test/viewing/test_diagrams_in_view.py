@@ -17,16 +17,12 @@ from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.viewing.diagrams_in_view import DiagramsInView
 from contact_dynamics.viewing.entities import FORCE_DUAL, MODE_MAP, PLANAR_MODES
 from contact_dynamics.viewing.picture import Picture
-from contact_dynamics.world import Body, World, box_vertices
-from viewing.drawn import STAMP_NS
+from contact_dynamics.world import Body, box_vertices
+from viewing.drawn import STAMP_NS, Canvas
+from viewing.known import WORLD
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    import rerun as rr
-
     from contact_dynamics.questions import ContactModeAnswer
-    from viewing.drawn import Drawn
 
 ROD = MassProperties(mass=1.0, I_B=np.eye(3))
 TIP = np.array([-4.0 * math.cos(math.radians(75.0)), 0.0, -4.0 * math.sin(math.radians(75.0))])
@@ -67,14 +63,12 @@ def answer_of(
 NO_OUTLINE = np.zeros((0, 2))
 
 
-def test_the_modes_of_the_indeterminate_rod_stand_side_by_side(
-    recording: rr.RecordingStream, read: Callable[[], Drawn]
-) -> None:
+def test_the_modes_of_the_indeterminate_rod_stand_side_by_side(canvas: Canvas) -> None:
     outline = np.array([TIP[[0, 2]], -TIP[[0, 2]]])
-    shown = DiagramsInView(recording)
+    shown = DiagramsInView(canvas.stream)
     drawn_names = shown.draw_planar_modes(answer_of(force=ALONG), PLANE, outline=outline, body=ROD)
     assert drawn_names == [PLANAR_MODES, MODE_MAP, FORCE_DUAL]
-    drawn = read()
+    drawn = canvas.read()
     titles = [
         drawn.last(f"/planar_modes/mode_{i}/frame/title", "LineStrips2D:labels")[-1].splitlines()
         for i in (1, 2)
@@ -88,15 +82,13 @@ def test_the_modes_of_the_indeterminate_rod_stand_side_by_side(
     np.testing.assert_allclose(places[1][:, 1], places[0][:, 1])
 
 
-def test_the_inconsistent_rod_says_so_and_has_no_force_dual(
-    recording: rr.RecordingStream, read: Callable[[], Drawn]
-) -> None:
-    shown = DiagramsInView(recording)
+def test_the_inconsistent_rod_says_so_and_has_no_force_dual(canvas: Canvas) -> None:
+    shown = DiagramsInView(canvas.stream)
     shown.draw_planar_modes(answer_of(force=ALONG), PLANE, outline=NO_OUTLINE, body=ROD)
     found = answer_of(force=(0.0, 0.0, -9.81), speed=-1.0)
     names = shown.draw_planar_modes(found, PLANE, outline=NO_OUTLINE, body=ROD)
     assert names == [PLANAR_MODES, MODE_MAP]
-    drawn = read()
+    drawn = canvas.read()
     title = drawn.last("/planar_modes/mode_1/frame/title", "LineStrips2D:labels")[-1]
     assert title == "no consistent mode"
     assert len(drawn.values["/planar_modes/mode_2/frame/title", "LineStrips2D:labels"]) == 1
@@ -106,10 +98,8 @@ def test_the_inconsistent_rod_says_so_and_has_no_force_dual(
     assert len(drawn.values["/force_dual/wrenches", "Image:buffer"]) == 1
 
 
-def test_a_map_that_looks_as_before_is_not_drawn_again(
-    recording: rr.RecordingStream, read: Callable[[], Drawn]
-) -> None:
-    shown = DiagramsInView(recording)
+def test_a_map_that_looks_as_before_is_not_drawn_again(canvas: Canvas) -> None:
+    shown = DiagramsInView(canvas.stream)
     found = answer_of(force=ALONG)
     for each in (
         found,
@@ -118,7 +108,7 @@ def test_a_map_that_looks_as_before_is_not_drawn_again(
         replace(found, wrench_sets=None),
     ):
         shown.draw_planar_modes(each, PLANE, outline=NO_OUTLINE, body=ROD)
-    drawn = read()
+    drawn = canvas.read()
     assert len(drawn.values["/mode_map/regions", "Image:buffer"]) == 2
     places = drawn.values["/mode_map/applied", "Points2D:positions"]
     assert len(places) == 3
@@ -131,25 +121,21 @@ def test_a_map_that_looks_as_before_is_not_drawn_again(
     ]
 
 
-def test_of_a_body_that_is_not_known_the_applied_wrench_is_not_drawn(
-    recording: rr.RecordingStream, read: Callable[[], Drawn]
-) -> None:
-    shown = DiagramsInView(recording)
+def test_of_a_body_that_is_not_known_the_applied_wrench_is_not_drawn(canvas: Canvas) -> None:
+    shown = DiagramsInView(canvas.stream)
     shown.draw_planar_modes(answer_of(force=ALONG), PLANE, outline=NO_OUTLINE, body=None)
-    drawn = read()
+    drawn = canvas.read()
     assert ("/mode_map/regions", "Image:buffer") in drawn.values
     assert ("/mode_map/applied", "Points2D:positions") not in drawn.values
     assert "/mode_map/frame/notes/applied" not in drawn.entities
 
 
-def test_a_map_of_too_many_modes_is_left_out(
-    recording: rr.RecordingStream, read: Callable[[], Drawn]
-) -> None:
+def test_a_map_of_too_many_modes_is_left_out(canvas: Canvas) -> None:
     found = answer_of(force=ALONG)
     assert found.wrench_sets is not None
     many = replace(found, wrench_sets=found.wrench_sets[:1] * (MAX_SETS + 1))
-    DiagramsInView(recording).draw_planar_modes(many, PLANE, outline=NO_OUTLINE, body=ROD)
-    drawn = read()
+    DiagramsInView(canvas.stream).draw_planar_modes(many, PLANE, outline=NO_OUTLINE, body=ROD)
+    drawn = canvas.read()
     assert drawn.last("/mode_map", "Clear:is_recursive") == [True]
     assert "/mode_map/regions" not in drawn.entities
 
@@ -165,15 +151,13 @@ def test_a_silhouette_is_the_hull_as_seen() -> None:
     assert len(silhouette(convex_shape(np.zeros((0, 3))), np.eye(3)[:2])) == 0
 
 
-def test_the_force_dual_shows_the_wrench_in_question_and_the_acceleration_centre(
-    recording: rr.RecordingStream, read: Callable[[], Drawn], world: World
-) -> None:
+def test_the_force_dual_shows_the_wrench_in_question_and_the_acceleration_centre(canvas: Canvas) -> None:
     """A brick on two feet is pushed aside and lifted on the left, so that it tips about its right foot.
 
     A body at rest accelerates about the foot that stays, where the lecture has the centre. The force dual of
     a wrench is the centre about which it would turn the free body.
     """
-    (brick,) = world.bodies
+    (brick,) = WORLD.bodies
     feet = np.array([[-0.075, 0.0, 0.0], [0.075, 0.0, 0.0]])
     known = brick.mass_properties
     weight = known.mass * 9.80665
@@ -186,12 +170,12 @@ def test_the_force_dual_shows_the_wrench_in_question_and_the_acceleration_centre
         plane=PLANE,
         include_wrenches=True,
     )
-    found = answer(question, Context(world=world))
+    found = answer(question, Context(world=WORLD))
     assert [mode.mode for mode in found.modes] == ["sf"]
-    picture = Picture(recording, world, surface_side=1.0)
+    picture = Picture(canvas.stream, WORLD, surface_side=1.0)
     for stamp_ns in (1, 2):
         picture.show(found, now_ns=stamp_ns)
-    drawn = read()
+    drawn = canvas.read()
     assert len(drawn.values["/force_dual/wrenches", "Image:buffer"]) == 1  # the second is the same
     places = {
         name: drawn.array(f"/force_dual/answer/{name}", "Points2D:positions")[0]

@@ -24,13 +24,9 @@ from contact_dynamics.viewing.drawing import EYE, TARGET, draw_diagram, draw_sid
 from contact_dynamics.viewing.picture import Picture
 from contact_dynamics.world import Body, World
 from plots.drawn_figures import APPLIED, DIRECTIONS, IN_TRAY, OUTLINE, TRAY
-from viewing.drawn import STAMP_NS
+from viewing.drawn import STAMP_NS, Canvas
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    import rerun as rr
-
     from contact_dynamics.questions import ImpactAnswer
     from viewing.drawn import Drawn
 
@@ -79,31 +75,29 @@ def words_on_screen(drawn: Drawn, *, in_space: bool, height: float) -> list[tupl
 @pytest.mark.parametrize("in_space", [False, True])
 @pytest.mark.parametrize(("speed", "friction"), [(-1.0, 0.6), (-0.2, 0.05), (0.0, 0.3), (0.7, 1.5)])
 def test_words_of_impulse_space_do_not_cover_each_other(
-    recording: rr.RecordingStream, read: Callable[[], Drawn], *, in_space: bool, speed: float, friction: float
+    canvas: Canvas, *, in_space: bool, speed: float, friction: float
 ) -> None:
     answer = an_impact(speed, friction)
     diagram = (impulse_space_in_3d if in_space else impulse_space)(ROD, answer)
-    draw_diagram(recording, diagram, ORIGIN)
-    words = words_on_screen(read(), in_space=in_space, height=240.0)
+    draw_diagram(canvas.stream, diagram, ORIGIN)
+    words = words_on_screen(canvas.read(), in_space=in_space, height=240.0)
     assert {text for text, _ in words} >= {axis.name for axis in diagram.axes}
     assert {mark.legend for mark in diagram.marks if mark.legend} <= {text for text, _ in words}
     cover_no_other(words)
 
 
 @pytest.mark.parametrize("name", ["modes", "map"])
-def test_words_of_contact_modes_do_not_cover_each_other(
-    recording: rr.RecordingStream, read: Callable[[], Drawn], name: str
-) -> None:
+def test_words_of_contact_modes_do_not_cover_each_other(canvas: Canvas, name: str) -> None:
     """On the page of contact modes, where the map has names for regions and points for the small ones."""
     leans = replace(IN_TRAY, wrench=PlanarWrench(f=(4.0, -9.0)))
     (mode,) = contact_modes(leans).modes
     if name == "modes":
         titles = [f"{mode.mode}: {mode_in_words(mode.mode)}\n(margin 6.53 N to llss)"]
         view = ModesSideBySide(contacts=tuple(TRAY), modes=(mode,), titles=titles, outline=OUTLINE)
-        draw_side_by_side(recording, view.scenes, "shown", name="mode")
+        draw_side_by_side(canvas.stream, view.scenes, "shown", name="mode")
     else:
-        draw_diagram(recording, mode_map(wrench_sets(IN_TRAY), DIRECTIONS, applied=APPLIED), "shown")
-    drawn = read()
+        draw_diagram(canvas.stream, mode_map(wrench_sets(IN_TRAY), DIRECTIONS, applied=APPLIED), "shown")
+    drawn = canvas.read()
     words = words_on_screen(drawn, in_space=False, height=235.0)
     if name == "map":
         assert len(drawn.last("/shown/small_regions", "Points2D:labels")) > 0
@@ -117,28 +111,24 @@ def cover_no_other(words: list[tuple[str, np.ndarray]]) -> None:
         assert wide <= 1.0 or high <= 1.0, f"{one!r} covers {other!r}"
 
 
-def test_every_diagram_in_space_is_equally_high(
-    recording: rr.RecordingStream, read: Callable[[], Drawn]
-) -> None:
+def test_every_diagram_in_space_is_equally_high(canvas: Canvas) -> None:
     heights = []
     for name, speed in (("slow", -0.1), ("fast", -30.0)):
         diagram = impulse_space_in_3d(ROD, an_impact(speed))
-        draw_diagram(recording, diagram, name)
+        draw_diagram(canvas.stream, diagram, name)
         heights.append(diagram.axes[2].high)
     assert heights[1] != pytest.approx(heights[0], rel=0.3)
-    drawn = read()
+    drawn = canvas.read()
     for name in ("slow", "fast"):
         axes = drawn.last(f"/{name}/frame/axes", "LineStrips3D:strips")
         assert max(np.ptp(np.array(axis)[:, 2]) for axis in axes) == pytest.approx(1.0)
 
 
-def test_a_diagram_is_drawn_with_its_numbers_in_place_of_the_one_before(
-    recording: rr.RecordingStream, read: Callable[[], Drawn]
-) -> None:
-    draw_diagram(recording, impulse_space(ROD, an_impact()), "impulse_space")
+def test_a_diagram_is_drawn_with_its_numbers_in_place_of_the_one_before(canvas: Canvas) -> None:
+    draw_diagram(canvas.stream, impulse_space(ROD, an_impact()), "impulse_space")
     diagram = impulse_space(None, an_impact())
-    draw_diagram(recording, diagram, "impulse_space")
-    drawn = read()
+    draw_diagram(canvas.stream, diagram, "impulse_space")
+    drawn = canvas.read()
     marks: dict[str, Any] = {mark.name: mark for mark in diagram.marks}
     path = drawn.array("/impulse_space/path", "LineStrips2D:strips")[0]
     np.testing.assert_allclose(path, marks["path"].strips[0] * (1.0, -1.0), atol=1e-6)  # down on the screen
@@ -152,10 +142,8 @@ def test_a_diagram_is_drawn_with_its_numbers_in_place_of_the_one_before(
 
 
 @pytest.mark.parametrize("first_in_space", [True, False])
-def test_a_planar_impact_takes_away_the_picture_in_3d(
-    recording: rr.RecordingStream, read: Callable[[], Drawn], *, first_in_space: bool
-) -> None:
-    picture = Picture(recording, World(bodies=(ROD,), surfaces=()), surface_side=1.0)
+def test_a_planar_impact_takes_away_the_picture_in_3d(canvas: Canvas, *, first_in_space: bool) -> None:
+    picture = Picture(canvas.stream, World(bodies=(ROD,), surfaces=()), surface_side=1.0)
     side = PlaneOfMotion(normal_W=[0.0, -1.0, 0.0])
     flat = BodyState(p_WB_W=[0, 0, 0], q_WB=[0, 0, 0, 1], v_WB_W=[-1, 0, -1], w_WB_W=[0, 0, 0])
     ground = ContactSet(p_WC_W=[[0.3, 0, -0.9]], normals_W=[0, 0, 1], frictions=0.6, restitutions=0.5)
@@ -163,7 +151,7 @@ def test_a_planar_impact_takes_away_the_picture_in_3d(
     if first_in_space:
         picture.show(an_impact(), now_ns=1)
     picture.show(ask(planar), now_ns=2)
-    drawn = read()
+    drawn = canvas.read()
     if first_in_space:
         assert drawn.values[ORIGIN, "Clear:is_recursive"][-1] == (2, [True])
     else:

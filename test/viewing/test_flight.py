@@ -17,34 +17,30 @@ from contact_dynamics.viewing.drawing import draw_marks
 from contact_dynamics.viewing.picture import Picture
 from diagrams.marks_of import marks_of
 from viewing.answers import tumbling_answer
+from viewing.drawn import Canvas
+from viewing.known import BODY, STATE, TRAJECTORY, WORLD
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    import rerun as rr
-
     from contact_dynamics.tumbling import Trajectory
     from contact_dynamics.validation import FloatArray
-    from contact_dynamics.world import Body, World
-    from viewing.drawn import Drawn
 
 PREDICTED = "/world/predicted/brick"
 
 
-def test_path_outlines_and_end_are_those_of_the_trajectory(body: Body, trajectory: Trajectory) -> None:
-    marks = marks_of(flight_marks(convex_shape(body.vertices_B), trajectory))
-    np.testing.assert_array_equal(marks["path"].strips[0], trajectory.p_WB_W)
+def test_path_outlines_and_end_are_those_of_the_trajectory() -> None:
+    marks = marks_of(flight_marks(convex_shape(BODY.vertices_B), TRAJECTORY))
+    np.testing.assert_array_equal(marks["path"].strips[0], TRAJECTORY.p_WB_W)
     outlines = np.reshape(marks["outlines"].strips, (-1, 24, 3))
     ends = np.reshape(marks["end"].strips, (-1, 24, 3))
-    corners = Rotation.from_quat(trajectory.q_WB[-1]).apply(body.vertices_B.copy()) + trajectory.p_WB_W[-1]
+    corners = Rotation.from_quat(TRAJECTORY.q_WB[-1]).apply(BODY.vertices_B.copy()) + TRAJECTORY.p_WB_W[-1]
     faces = marks["newest_end/faces"].corners
     np.testing.assert_allclose(np.linalg.norm(faces[:, None] - corners, axis=2).min(axis=1), 0.0, atol=1e-9)
-    np.testing.assert_allclose(ends[0].mean(axis=0), trajectory.p_WB_W[-1], atol=1e-6)
+    np.testing.assert_allclose(ends[0].mean(axis=0), TRAJECTORY.p_WB_W[-1], atol=1e-6)
     assert len(outlines) > 0
     for outline in (*outlines, *ends):
-        sample = int(np.linalg.norm(trajectory.p_WB_W - outline.mean(axis=0), axis=1).argmin())
-        turned_vertices = Rotation.from_quat(trajectory.q_WB[sample]).apply(body.vertices_B.copy())
-        corners = trajectory.p_WB_W[sample] + turned_vertices
+        sample = int(np.linalg.norm(TRAJECTORY.p_WB_W - outline.mean(axis=0), axis=1).argmin())
+        turned_vertices = Rotation.from_quat(TRAJECTORY.q_WB[sample]).apply(BODY.vertices_B.copy())
+        corners = TRAJECTORY.p_WB_W[sample] + turned_vertices
         distances = np.linalg.norm(outline[:, None] - corners, axis=2).min(axis=1)
         np.testing.assert_allclose(distances, 0.0, atol=1e-6)
 
@@ -59,25 +55,23 @@ def carried_along(trajectory: Trajectory, covariances: FloatArray, trusted: np.n
     )
 
 
-def test_ellipsoids_have_two_deviations_along_the_axes_of_the_covariance(
-    recording: rr.RecordingStream, read: Callable[[], Drawn], body: Body, trajectory: Trajectory
-) -> None:
+def test_ellipsoids_have_two_deviations_along_the_axes_of_the_covariance(canvas: Canvas) -> None:
     axes = Rotation.from_rotvec([0.3, -0.5, 0.8]).as_matrix()
     deviations = np.array([0.01, 0.02, 0.05])
     covariance = axes @ np.diag(deviations**2) @ axes.T
-    growing = np.zeros((len(trajectory), 12, 12))
-    growing[:, :3, :3] = covariance * np.linspace(0.0, 1.0, len(trajectory))[:, None, None]
-    trusted = np.array([True] * (len(trajectory) - 1) + [False])
-    carried = carried_along(trajectory, growing, trusted)
-    marks = marks_of(flight_marks(convex_shape(body.vertices_B), trajectory, covariance=carried))
+    growing = np.zeros((len(TRAJECTORY), 12, 12))
+    growing[:, :3, :3] = covariance * np.linspace(0.0, 1.0, len(TRAJECTORY))[:, None, None]
+    trusted = np.array([True] * (len(TRAJECTORY) - 1) + [False])
+    carried = carried_along(TRAJECTORY, growing, trusted)
+    marks = marks_of(flight_marks(convex_shape(BODY.vertices_B), TRAJECTORY, covariance=carried))
     (last,) = marks["uncertainty/other"].centers
-    np.testing.assert_array_equal(last, trajectory.p_WB_W[-1])
+    np.testing.assert_array_equal(last, TRAJECTORY.p_WB_W[-1])
     np.testing.assert_allclose(marks["uncertainty/other"].covariances[0], covariance, atol=1e-12)
     assert len(marks["uncertainty/relied_on"].centers) > 0
     colors = [marks[f"uncertainty/{name}"].paint.dark for name in ("relied_on", "other")]
     assert colors == [palette.PREDICTED, palette.UNDECIDED]
-    draw_marks(recording, [marks["uncertainty/other"]], PREDICTED)
-    drawn = read()
+    draw_marks(canvas.stream, [marks["uncertainty/other"]], PREDICTED)
+    drawn = canvas.read()
     path = f"{PREDICTED}/uncertainty/other"
     half_axes = drawn.array(path, "Ellipsoids3D:half_sizes")[-1]
     np.testing.assert_allclose(np.sort(half_axes), DEVIATIONS * deviations, rtol=1e-5)
@@ -86,46 +80,38 @@ def test_ellipsoids_have_two_deviations_along_the_axes_of_the_covariance(
     np.testing.assert_allclose(found, covariance, atol=1e-7)
 
 
-def test_what_no_double_holds_is_not_drawn(body: Body, trajectory: Trajectory) -> None:
-    n = len(trajectory)
-    unknown = carried_along(trajectory, np.full((n, 12, 12), np.nan), np.zeros(n, dtype=bool))
-    marks = marks_of(flight_marks(convex_shape(body.vertices_B), trajectory, covariance=unknown))
+def test_what_no_double_holds_is_not_drawn() -> None:
+    n = len(TRAJECTORY)
+    unknown = carried_along(TRAJECTORY, np.full((n, 12, 12), np.nan), np.zeros(n, dtype=bool))
+    marks = marks_of(flight_marks(convex_shape(BODY.vertices_B), TRAJECTORY, covariance=unknown))
     assert len(marks["uncertainty/relied_on"].centers) == len(marks["uncertainty/other"].centers) == 0
 
 
 @pytest.mark.parametrize("samples", [1, 2, 3, 50 * MAX_PATH_POINTS + 7])
-def test_any_number_of_samples_keeps_both_ends(body: Body, state: BodyState, samples: int) -> None:
-    trajectory = free_motion(body.mass_properties, state).at(np.linspace(0.0, 0.5, samples))
-    (path,) = marks_of(flight_marks(convex_shape(body.vertices_B), trajectory))["path"].strips
+def test_any_number_of_samples_keeps_both_ends(samples: int) -> None:
+    trajectory = free_motion(BODY.mass_properties, STATE).at(np.linspace(0.0, 0.5, samples))
+    (path,) = marks_of(flight_marks(convex_shape(BODY.vertices_B), trajectory))["path"].strips
     assert len(path) == min(samples, MAX_PATH_POINTS)
     np.testing.assert_array_equal(path[[0, -1]], trajectory.p_WB_W[[0, -1]])
 
 
-def test_an_empty_trajectory_takes_away_the_former(
-    recording: rr.RecordingStream,
-    read: Callable[[], Drawn],
-    *,
-    world: World,
-    body: Body,
-    state: BodyState,
-    trajectory: Trajectory,
-) -> None:
-    picture = Picture(recording, world, surface_side=1.0)
-    picture.show(tumbling_answer(state, trajectory))
-    picture.show(tumbling_answer(state, free_motion(body.mass_properties, state).at([])))
-    drawn = read()
+def test_an_empty_trajectory_takes_away_the_former(canvas: Canvas) -> None:
+    picture = Picture(canvas.stream, WORLD, surface_side=1.0)
+    picture.show(tumbling_answer(STATE, TRAJECTORY))
+    picture.show(tumbling_answer(STATE, free_motion(BODY.mass_properties, STATE).at([])))
+    drawn = canvas.read()
     assert len(drawn.values[f"{PREDICTED}/path", "LineStrips3D:strips"]) == 1
     assert drawn.last(PREDICTED, "Clear:is_recursive") == [True]
 
 
-def test_a_body_without_shape_has_a_path_all_the_same(trajectory: Trajectory) -> None:
-    marks = marks_of(flight_marks(convex_shape(np.zeros((0, 3))), trajectory))
+def test_a_body_without_shape_has_a_path_all_the_same() -> None:
+    marks = marks_of(flight_marks(convex_shape(np.zeros((0, 3))), TRAJECTORY))
     assert len(marks["path"].strips) == 1
     assert len(marks["end"].strips) == 0
 
 
 @pytest.mark.parametrize(("speed", "count"), [(0.0, 0), (1.0, 0), (10.0, 2), (1000.0, MAX_OUTLINES)])
-def test_a_longer_path_has_more_outlines(body: Body, speed: float, count: int) -> None:
+def test_a_longer_path_has_more_outlines(speed: float, count: int) -> None:
     """The time is 0.05 s, and the box is 0.182 m from corner to corner."""
     start = BodyState(
         p_WB_W=np.zeros(3),
@@ -133,8 +119,8 @@ def test_a_longer_path_has_more_outlines(body: Body, speed: float, count: int) -
         v_WB_W=np.array([speed, 0, 0]),
         w_WB_W=np.zeros(3),
     )
-    flight = free_motion(body.mass_properties, start, gravity_W=np.zeros(3)).at(np.linspace(0.0, 0.05, 50))
-    marks = marks_of(flight_marks(convex_shape(body.vertices_B), flight))
+    flight = free_motion(BODY.mass_properties, start, gravity_W=np.zeros(3)).at(np.linspace(0.0, 0.05, 50))
+    marks = marks_of(flight_marks(convex_shape(BODY.vertices_B), flight))
     assert len(marks["outlines"].strips) == 12 * count
     assert len(marks["end"].strips) == 12 * (speed > 0.0)
     assert (len(marks["newest_end/faces"].corners) > 0) == (speed > 0.0)

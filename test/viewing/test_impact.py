@@ -16,10 +16,10 @@ from contact_dynamics.impact import ImpactOutcome, PathEvent, SequenceStrike
 from contact_dynamics.questions import StruckBody
 from contact_dynamics.viewing.drawing import draw_marks
 from viewing.answers import impact_answer, of_two
+from viewing.drawn import Canvas
+from viewing.known import BODY, STATE, TWO_CONTACTS
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     import rerun as rr
 
     from contact_dynamics.contact.contact import ContactSet
@@ -27,8 +27,6 @@ if TYPE_CHECKING:
     from contact_dynamics.questions import ImpactAnswer
     from contact_dynamics.rigid_body.body import BodyState
     from contact_dynamics.validation import FloatArray
-    from contact_dynamics.world import Body
-    from viewing.drawn import Drawn
 
 IMPACT = "/world/impact/brick"
 
@@ -51,17 +49,11 @@ def answer_of(state: BodyState, contacts: ContactSet, impulses: FloatArray) -> I
     )
 
 
-def test_arrows_point_along_what_they_stand_for_and_say_how_much(
-    recording: rr.RecordingStream,
-    read: Callable[[], Drawn],
-    body: Body,
-    state: BodyState,
-    two_contacts: ContactSet,
-) -> None:
+def test_arrows_point_along_what_they_stand_for_and_say_how_much(canvas: Canvas) -> None:
     impulses = np.array([[0.0, 0.0, 0.0], [0.3, 0.0, 0.4]])
-    shape = convex_shape(body.vertices_B)
-    draw_impact(recording, shape, answer_of(state, two_contacts, impulses))
-    drawn = read()
+    shape = convex_shape(BODY.vertices_B)
+    draw_impact(canvas.stream, shape, answer_of(STATE, TWO_CONTACTS, impulses))
+    drawn = canvas.read()
     assert drawn.last(f"{IMPACT}/impulse_label", "Points3D:labels") == ["0.5 N s"]
     arrow = drawn.array(f"{IMPACT}/impulse", "Arrows3D:vectors")
     np.testing.assert_allclose(np.cross(arrow, impulses[1:]), [[0.0, 0.0, 0.0]], atol=1e-7)
@@ -72,57 +64,39 @@ def test_arrows_point_along_what_they_stand_for_and_say_how_much(
     (place,) = drawn.array(f"{IMPACT}/impulse_label", "Points3D:positions")
     np.testing.assert_allclose(place, [-0.1, 0.0, -LABEL_DEPTH * shape.size], rtol=1e-6)
     before, after = drawn.array(f"{IMPACT}/velocity", "Arrows3D:vectors")
-    np.testing.assert_allclose(before / after, state.v_WB_W / [0.25, 0.1, 0.5], rtol=1e-5)  # one scale
+    np.testing.assert_allclose(before / after, STATE.v_WB_W / [0.25, 0.1, 0.5], rtol=1e-5)  # one scale
     np.testing.assert_allclose(
         drawn.array(f"{IMPACT}/point", "Points3D:positions"), [[-0.1, 0, 0]], rtol=1e-6
     )
 
 
-def test_an_impact_without_impulse_is_drawn(
-    recording: rr.RecordingStream,
-    read: Callable[[], Drawn],
-    body: Body,
-    state: BodyState,
-    two_contacts: ContactSet,
-) -> None:
-    answer = answer_of(state, two_contacts, np.zeros((2, 3)))
-    draw_impact(recording, convex_shape(body.vertices_B), answer)
-    drawn = read()
+def test_an_impact_without_impulse_is_drawn(canvas: Canvas) -> None:
+    answer = answer_of(STATE, TWO_CONTACTS, np.zeros((2, 3)))
+    draw_impact(canvas.stream, convex_shape(BODY.vertices_B), answer)
+    drawn = canvas.read()
     assert (f"{IMPACT}/impulse", "Arrows3D:vectors") not in drawn.values
     assert drawn.last(f"{IMPACT}/cone", "Clear:is_recursive") == [False]
 
 
-def test_the_path_of_the_impulse_rises_from_its_contact_to_the_arrows_tip(
-    recording: rr.RecordingStream,
-    read: Callable[[], Drawn],
-    body: Body,
-    state: BodyState,
-    two_contacts: ContactSet,
-) -> None:
+def test_the_path_of_the_impulse_rises_from_its_contact_to_the_arrows_tip(canvas: Canvas) -> None:
     impulses = np.array([[0.0, 0.0, 0.0], [0.3, 0.0, 0.4]])
-    draw_impact(recording, convex_shape(body.vertices_B), answer_of(state, two_contacts, impulses))
-    drawn = read()
+    draw_impact(canvas.stream, convex_shape(BODY.vertices_B), answer_of(STATE, TWO_CONTACTS, impulses))
+    drawn = canvas.read()
     (path,) = drawn.array(f"{IMPACT}/impulse_path", "LineStrips3D:strips")
     np.testing.assert_allclose(path[0], [-0.1, 0.0, 0.0], atol=1e-7)
     arrow = drawn.array(f"{IMPACT}/impulse", "Arrows3D:vectors")[0]
     np.testing.assert_allclose(path[-1] - path[0], arrow, atol=1e-6)
 
 
-def test_a_body_that_is_struck_is_drawn_with_its_velocities(
-    recording: rr.RecordingStream,
-    read: Callable[[], Drawn],
-    body: Body,
-    state: BodyState,
-    two_contacts: ContactSet,
-) -> None:
-    struck = replace(state, p_WB_W=np.array([2.0, 0.0, 0.0]), v_WB_W=np.array([0.0, 0.0, 1.0]))
+def test_a_body_that_is_struck_is_drawn_with_its_velocities(canvas: Canvas) -> None:
+    struck = replace(STATE, p_WB_W=np.array([2.0, 0.0, 0.0]), v_WB_W=np.array([0.0, 0.0, 1.0]))
     other = StruckBody(name="bat", p_FB_F=np.zeros(3), state=struck)
     after = replace(struck, v_WB_W=np.array([0.0, 0.0, 0.5]))
     impulses = np.array([[0.0, 0.0, 0.0], [0.3, 0.0, 0.4]])
-    answer = of_two(answer_of(state, two_contacts, impulses), other, other_after=after)
-    shape = convex_shape(body.vertices_B)
-    draw_impact(recording, shape, answer, other_shape=shape)
-    drawn = read()
+    answer = of_two(answer_of(STATE, TWO_CONTACTS, impulses), other, other_after=after)
+    shape = convex_shape(BODY.vertices_B)
+    draw_impact(canvas.stream, shape, answer, other_shape=shape)
+    drawn = canvas.read()
     assert drawn.last(f"{IMPACT}/velocity_label", "Points3D:labels")[2:] == [
         "before 1 m/s",
         "predicted after 0.5 m/s",
@@ -135,33 +109,27 @@ def test_a_body_that_is_struck_is_drawn_with_its_velocities(
     assert edges[len(shape.edges_B) :, :, 0].min() > 1.5
 
 
-def test_of_strikes_in_sequence_the_largest_are_numbered(
-    recording: rr.RecordingStream,
-    read: Callable[[], Drawn],
-    body: Body,
-    state: BodyState,
-    two_contacts: ContactSet,
-) -> None:
+def test_of_strikes_in_sequence_the_largest_are_numbered(canvas: Canvas) -> None:
     sizes = [0.2, 0.01, 0.15, 0.1, 0.3, 0.02, 0.05]
     strikes = tuple(
         SequenceStrike(
             seconds=0.004 * i,
             contact=(i + 1) % 2,
             outcome=ImpactOutcome.SLIDES,
-            p_WC_W=two_contacts.p_WC_W[(i + 1) % 2],
+            p_WC_W=TWO_CONTACTS.p_WC_W[(i + 1) % 2],
             impulse_W=np.array([0.0, 0.0, size]),
-            state_before=replace(state, p_WB_W=state.p_WB_W + np.array([0.0, 0.0, 0.01 * i])),
-            state_after=state,
+            state_before=replace(STATE, p_WB_W=STATE.p_WB_W + np.array([0.0, 0.0, 0.01 * i])),
+            state_after=STATE,
         )
         for i, size in enumerate(sizes)
     )
     assert main_strikes(strikes) == [0, 2, 3, 4, 6]
-    at_once = answer_of(state, two_contacts, np.tile([0.0, 0.0, 0.2], (2, 1)))
+    at_once = answer_of(STATE, TWO_CONTACTS, np.tile([0.0, 0.0, 0.2], (2, 1)))
     answer = replace(at_once, impact=replace(at_once.impact, strikes=strikes))
     assert main_contact(answer.impact) == 1
-    shape = convex_shape(body.vertices_B)
-    draw_impact(recording, shape, answer)
-    drawn = read()
+    shape = convex_shape(BODY.vertices_B)
+    draw_impact(canvas.stream, shape, answer)
+    drawn = canvas.read()
     assert drawn.last(f"{IMPACT}/impulse_label", "Points3D:labels") == [
         "1. at 0.0 ms: 0.2 N s",
         "3. at 8.0 ms: 0.15 N s",

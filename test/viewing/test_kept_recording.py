@@ -15,15 +15,12 @@ from contact_dynamics.viewing.measured import set_time, time_column
 from contact_dynamics.viewing.picture import Picture
 from viewing.answers import contact_mode_answer, tumbling_answer
 from viewing.drawn import STAMP_NS, read_drawn
+from viewing.known import STATE, TRAJECTORY, TWO_CONTACTS, WORLD
 from viewing.test_picture import an_impact, moved
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from contact_dynamics.contact.contact import ContactSet
-    from contact_dynamics.rigid_body.body import BodyState
-    from contact_dynamics.tumbling import Trajectory
-    from contact_dynamics.world import World
     from viewing.drawn import Drawn
 
 
@@ -51,25 +48,18 @@ def places(tmp_path: Path) -> Places:
     return Places(tmp_path)
 
 
-def test_a_late_place_has_the_whole_picture(
-    places: Places,
-    *,
-    world: World,
-    state: BodyState,
-    trajectory: Trajectory,
-    two_contacts: ContactSet,
-) -> None:
+def test_a_late_place_has_the_whole_picture(places: Places) -> None:
     """Of each entity and component, the newest values are those of the place that was there all the time."""
     early = places.open()
-    picture = Picture(places.recording, world, surface_side=0.5)
+    picture = Picture(places.recording, WORLD, surface_side=0.5)
     for i in range(3):
         at_ns = STAMP_NS + 1000 * i
-        picture.add_states("brick", [moved(state, at_ns), moved(state, at_ns + 1)])
-        picture.show(tumbling_answer(moved(state, at_ns + 2), trajectory))
-        picture.show(an_impact(state, two_contacts, stamp_ns=at_ns + 3))
-        picture.show(contact_mode_answer(moved(state, at_ns + 4), two_contacts))
+        picture.add_states("brick", [moved(STATE, at_ns), moved(STATE, at_ns + 1)])
+        picture.show(tumbling_answer(moved(STATE, at_ns + 2), TRAJECTORY))
+        picture.show(an_impact(STATE, TWO_CONTACTS, stamp_ns=at_ns + 3))
+        picture.show(contact_mode_answer(moved(STATE, at_ns + 4), TWO_CONTACTS))
     late = places.open()
-    picture.add_states("brick", [moved(state, STAMP_NS + 5000)])
+    picture.add_states("brick", [moved(STATE, STAMP_NS + 5000)])
     first, second = places.read(early, late)
     assert second.blueprints == 1
     drawn = {key for key in first.values if key[0] != "/__properties" and not key[1].startswith("Clear")}

@@ -18,19 +18,16 @@ from contact_dynamics.viewing.in_view import (
 )
 from contact_dynamics.viewing.picture import Picture
 from viewing.answers import tumbling_answer
-from viewing.drawn import read_drawn
+from viewing.drawn import Canvas, read_drawn
+from viewing.known import BODY, STATE, WORLD
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
     from pathlib import Path
-
-    import rerun as rr
 
     from contact_dynamics.questions import TumblingAnswer
     from contact_dynamics.rigid_body.body import BodyState
     from contact_dynamics.tumbling import FreeMotion
-    from contact_dynamics.world import Body, World
-    from viewing.drawn import Drawn
+    from contact_dynamics.world import Body
 
 PATH = "/poinsot/bodies/brick"
 
@@ -51,17 +48,15 @@ def test_the_net_lies_on_the_ellipsoid() -> None:
     np.testing.assert_allclose(np.sum((points / semi_axes) ** 2, axis=1), 1.0, rtol=1e-12)
 
 
-def test_the_ellipsoid_touches_the_plane_where_the_angular_velocity_ends(
-    recording: rr.RecordingStream, read: Callable[[], Drawn], body: Body, state: BodyState
-) -> None:
-    motion = free_motion(body.mass_properties, state, gravity_W=(0.0, 0.0, 0.0))
+def test_the_ellipsoid_touches_the_plane_where_the_angular_velocity_ends(canvas: Canvas) -> None:
+    motion = free_motion(BODY.mass_properties, STATE, gravity_W=(0.0, 0.0, 0.0))
     constants = poinsot(motion)
     curves = rolling_curves(motion, 50)
     states = [motion.state_at(seconds) for seconds in curves.seconds.tolist()]
-    draw_poinsot(recording, "brick", constants, curves)
-    draw_rolling(recording, "brick", sorted(states, key=lambda state: state.stamp_ns))
-    draw_rolling(recording, "brick", [])
-    drawn = read()
+    draw_poinsot(canvas.stream, "brick", constants, curves)
+    draw_rolling(canvas.stream, "brick", sorted(states, key=lambda state: state.stamp_ns))
+    draw_rolling(canvas.stream, "brick", [])
+    drawn = canvas.read()
     view = drawn.array(PATH, "Transform3D:mat3x3")[0].reshape(3, 3).T  # stored by columns
     np.testing.assert_allclose(view @ view.T * constants.ellipsoid_semi_axes.max() ** 2, np.eye(3), atol=1e-5)
     down = view @ constants.L_W
@@ -88,35 +83,33 @@ def flight_with_an_impact(body: Body, state: BodyState) -> tuple[list[BodyState]
     return before, after
 
 
-def test_states_belong_to_a_flight_until_its_angular_momentum_is_gone(body: Body, state: BodyState) -> None:
-    picture = poinsot(free_motion(body.mass_properties, state))
-    before, after = flight_with_an_impact(body, state)
+def test_states_belong_to_a_flight_until_its_angular_momentum_is_gone() -> None:
+    picture = poinsot(free_motion(BODY.mass_properties, STATE))
+    before, after = flight_with_an_impact(BODY, STATE)
     noisy = [replace(one, w_WB_W=1.05 * one.w_WB_W) for one in before]
     assert count_of_flight(picture, noisy) == len(noisy)
     assert count_of_flight(picture, before + after) == len(before)
     assert count_of_flight(picture, []) == 0
 
 
-def test_an_impact_takes_the_ellipsoid_away_until_the_next_prediction(
-    recording: rr.RecordingStream, tmp_path: Path, *, world: World, body: Body, state: BodyState
-) -> None:
+def test_an_impact_takes_the_ellipsoid_away_until_the_next_prediction(canvas: Canvas, tmp_path: Path) -> None:
     """Read back as a viewer looks: what is there at each stamp."""
-    before, after = flight_with_an_impact(body, state)
-    picture = Picture(recording, world, surface_side=2.0)
-    picture.add_states("brick", [state])
-    picture.show(answer_of(free_motion(body.mass_properties, state)))
+    before, after = flight_with_an_impact(BODY, STATE)
+    picture = Picture(canvas.stream, WORLD, surface_side=2.0)
+    picture.add_states("brick", [STATE])
+    picture.show(answer_of(free_motion(BODY.mass_properties, STATE)))
     picture.add_states("brick", before[:10])
     picture.add_states("brick", before[10:] + after[:5])
     picture.add_states("brick", after[5:10])
-    picture.show(answer_of(free_motion(body.mass_properties, after[9])))
+    picture.show(answer_of(free_motion(BODY.mass_properties, after[9])))
     picture.add_states("brick", after[10:])
-    recording.disconnect()
+    canvas.stream.disconnect()
     drawn = read_drawn(tmp_path / "drawn.rrd")
     turned = drawn.stamps(f"{PATH}/body", "Transform3D:quaternion")
-    of_flights = [state, *before, after[9], *after[10:]]
+    of_flights = [STATE, *before, after[9], *after[10:]]
     assert turned == [one.stamp_ns for one in of_flights]
     assert drawn.stamps(f"{PATH}/angular_velocity", "Arrows3D:vectors") == turned
     for name in ("body/ellipsoid", "body/polhode", "herpolhode", "plane/grid"):
         stamps = drawn.stamps(f"{PATH}/{name}", "LineStrips3D:strips")
-        assert stamps == [state.stamp_ns, after[9].stamp_ns]
+        assert stamps == [STATE.stamp_ns, after[9].stamp_ns]
     assert drawn.values[PATH, "Clear:is_recursive"] == [(after[0].stamp_ns, [True])]

@@ -33,6 +33,7 @@ from msg_adapters.impact import impact_answer_from_msg, impact_answer_to_msg
 from msg_adapters.toss import toss_answer_from_msg, toss_answer_to_msg
 from msg_adapters.tumbling import tumbling_answer_from_msg, tumbling_answer_to_msg
 from viewing.drawn import STAMP_NS, Drawn, read_drawn
+from viewing.known import WORLD
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -106,7 +107,7 @@ PAIRS = {
 
 @pytest.mark.parametrize("draw", PAIRS)
 def test_a_response_and_its_answer_are_drawn_alike(
-    draw: Callable[[Picture, World, Callable[[Any], Any]], None], world: World, tmp_path: Path
+    draw: Callable[[Picture, World, Callable[[Any], Any]], None], tmp_path: Path
 ) -> None:
     to_msg, from_msg = PAIRS[draw]
 
@@ -114,12 +115,12 @@ def test_a_response_and_its_answer_are_drawn_alike(
         path = tmp_path / f"{name}.rrd"
         stream = rr.RecordingStream("test")
         stream.save(path)
-        draw(Picture(stream, world, surface_side=2.0), world, read_back)
+        draw(Picture(stream, WORLD, surface_side=2.0), WORLD, read_back)
         stream.disconnect()
         return read_drawn(path)
 
     asked = drawn("asked", lambda answer: answer)
-    served = drawn("served", lambda answer: from_msg(to_msg(answer, world_frame="map"), world=world))
+    served = drawn("served", lambda answer: from_msg(to_msg(answer, world_frame="map"), world=WORLD))
     described = {key for key in asked.values if key[0] != "/__properties"}  # when it was made
     assert described == {key for key in served.values if key[0] != "/__properties"}
     assert len(described) > 30

@@ -21,27 +21,21 @@ from contact_dynamics.viewing.states_in_turn import (
 )
 from contact_dynamics.world import World
 from viewing.answers import tumbling_answer
-from viewing.drawn import STAMP_NS
+from viewing.drawn import STAMP_NS, Canvas
+from viewing.known import BODY, STATE, TWO_CONTACTS
 from viewing.test_picture import an_impact
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    import rerun as rr
-
-    from contact_dynamics.contact.contact import ContactSet
     from contact_dynamics.rigid_body.body import BodyState
-    from contact_dynamics.world import Body
-    from viewing.drawn import Drawn
 
 NAMES = ("brick", "ball", "rod")
 POSE = "Transform3D:translation"
 
 
 @pytest.fixture
-def picture(recording: rr.RecordingStream, body: Body) -> Picture:
-    bodies = tuple(replace(body, name=name) for name in NAMES)
-    return Picture(recording, World(bodies=bodies, surfaces=()), surface_side=1.0)
+def picture(canvas: Canvas) -> Picture:
+    bodies = tuple(replace(BODY, name=name) for name in NAMES)
+    return Picture(canvas.stream, World(bodies=bodies, surfaces=()), surface_side=1.0)
 
 
 @pytest.fixture
@@ -55,79 +49,73 @@ def add(states: StatesInTurn, state: BodyState, *after_ns: int) -> None:
             states.add(name, replace(state, stamp_ns=STAMP_NS + each))
 
 
-def test_all_are_drawn_by_their_stamps(
-    states: StatesInTurn, state: BodyState, read: Callable[[], Drawn]
-) -> None:
-    add(states, state, 3, 1, 2)
+def test_all_are_drawn_by_their_stamps(canvas: Canvas, states: StatesInTurn) -> None:
+    add(states, STATE, 3, 1, 2)
     assert states.count == 9
     states.draw()
     assert states.count == 0
-    drawn = read()
+    drawn = canvas.read()
     for name in NAMES:
         stamps = drawn.stamps(f"/world/bodies/{name}", POSE)
         assert [stamp - STAMP_NS for stamp in stamps] == [1, 2, 3]
 
 
 def test_those_since_the_clock_was_set_back_are_drawn_after_the_others(
-    picture: Picture, states: StatesInTurn, state: BodyState
+    picture: Picture, states: StatesInTurn
 ) -> None:
     back_ns = -60_000_000_000
-    add(states, state, 1, 3, 2, back_ns + 5, back_ns, back_ns + 7, back_ns + 6)
+    add(states, STATE, 1, 3, 2, back_ns + 5, back_ns, back_ns + 7, back_ns + 6)
     states.draw()
     assert states.count == 0
     assert picture.newest_stamp_ns() == STAMP_NS + back_ns + 7
 
 
-def test_before_an_answer_only_what_it_needs_is_drawn(
-    states: StatesInTurn, state: BodyState, two_contacts: ContactSet, read: Callable[[], Drawn]
-) -> None:
-    add(states, state, 1, 2)
-    states.draw_before(an_impact(state, two_contacts, name="ball"))
+def test_before_an_answer_only_what_it_needs_is_drawn(canvas: Canvas, states: StatesInTurn) -> None:
+    add(states, STATE, 1, 2)
+    states.draw_before(an_impact(STATE, TWO_CONTACTS, name="ball"))
     assert states.count == 4
-    assert {name for name in NAMES if f"/world/bodies/{name}" in read().entities} == {"ball"}
+    assert {name for name in NAMES if f"/world/bodies/{name}" in canvas.read().entities} == {"ball"}
 
 
 def test_an_answer_that_waited_has_no_states_before_it_that_came_after(
-    states: StatesInTurn, state: BodyState, two_contacts: ContactSet, read: Callable[[], Drawn]
+    canvas: Canvas, states: StatesInTurn
 ) -> None:
     for came_ns, after_ns in ((1000, 2), (1001, 1), (1003, 4), (1002, 3)):
         for name in NAMES:
-            states.add(name, replace(state, stamp_ns=STAMP_NS + after_ns), came_ns=came_ns)
-    states.draw_before(an_impact(state, two_contacts, name="ball"), came_ns=1001)
+            states.add(name, replace(STATE, stamp_ns=STAMP_NS + after_ns), came_ns=came_ns)
+    states.draw_before(an_impact(STATE, TWO_CONTACTS, name="ball"), came_ns=1001)
     assert states.count == 10
     assert states.newest_stamp_ns() == STAMP_NS + 4
-    stamps = read().stamps("/world/bodies/ball", POSE)
+    stamps = canvas.read().stamps("/world/bodies/ball", POSE)
     assert [stamp - STAMP_NS for stamp in stamps] == [1, 2]
 
 
 def test_curves_of_one_body_reach_to_those_of_the_next(
-    picture: Picture, states: StatesInTurn, body: Body, state: BodyState, read: Callable[[], Drawn]
+    canvas: Canvas, picture: Picture, states: StatesInTurn
 ) -> None:
     """The energy of a body is drawn up to the last state before the answer about another body."""
-    short = free_motion(body.mass_properties, state).at([0.0, 1e-9])
-    picture.show(tumbling_answer(state, short, body_name="brick"))
-    add(states, state, 10, 20)
-    answer = tumbling_answer(replace(state, stamp_ns=STAMP_NS + 30), short, body_name="ball")
+    short = free_motion(BODY.mass_properties, STATE).at([0.0, 1e-9])
+    picture.show(tumbling_answer(STATE, short, body_name="brick"))
+    add(states, STATE, 10, 20)
+    answer = tumbling_answer(replace(STATE, stamp_ns=STAMP_NS + 30), short, body_name="ball")
     states.draw_before(answer)
     picture.show(answer)
-    add(states, state, 40)
+    add(states, STATE, 40)
     states.draw()
-    drawn = read()
+    drawn = canvas.read()
     component = "Scalars:scalars"
     ns = {name: drawn.stamps(f"/energy/{name}/measured", component) for name in ("brick", "ball")}
     assert [stamp - STAMP_NS for stamp in ns["brick"]] == [10, 20]
     assert STAMP_NS + 40 in ns["ball"]
 
 
-def test_states_that_wait_have_the_newest_stamp_too(
-    picture: Picture, states: StatesInTurn, state: BodyState
-) -> None:
+def test_states_that_wait_have_the_newest_stamp_too(picture: Picture, states: StatesInTurn) -> None:
     assert states.newest_stamp_ns() is None
-    add(states, state, 5)
+    add(states, STATE, 5)
     assert states.newest_stamp_ns() == STAMP_NS + 5
     assert picture.newest_stamp_ns() is None
     states.draw()
-    add(states, state, 7, 6)
+    add(states, STATE, 7, 6)
     assert states.newest_stamp_ns() == STAMP_NS + 7
     assert picture.newest_stamp_ns() == STAMP_NS + 5
 

@@ -17,15 +17,12 @@ from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.toss import TossEventKind
 from contact_dynamics.viewing.picture import Picture
 from diagrams.marks_of import marks_of
+from viewing.drawn import Canvas
+from viewing.known import BODY, WORLD
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    import rerun as rr
-
     from contact_dynamics.questions import TossAnswer
-    from contact_dynamics.world import Body, World
-    from viewing.drawn import Drawn
+    from contact_dynamics.world import World
 
 TOSS = "/world/toss/brick"
 UP = np.array([0.0, 0.0, 1.0])
@@ -44,9 +41,9 @@ def thrown(world: World) -> TossAnswer:
     return ask(question, Context(world=world))
 
 
-def test_path_strikes_and_tree_are_those_of_the_answer(body: Body, world: World) -> None:
-    answer = thrown(world)
-    marks = marks_of(toss_marks(convex_shape(body.vertices_B), answer, up_W=UP))
+def test_path_strikes_and_tree_are_those_of_the_answer() -> None:
+    answer = thrown(WORLD)
+    marks = marks_of(toss_marks(convex_shape(BODY.vertices_B), answer, up_W=UP))
     np.testing.assert_array_equal(marks["path"].strips[0], answer.toss.trajectory.p_WB_W)
     strikes = [event.p_WC_W[0] for event in answer.toss.events if event.kind == TossEventKind.STRIKES]
     np.testing.assert_array_equal(marks["strikes"].places, strikes)
@@ -71,22 +68,20 @@ def test_path_strikes_and_tree_are_those_of_the_answer(body: Body, world: World)
     assert len(marks["samples/strikes"].strips) == 12 * np.count_nonzero(shown)
 
 
-def test_a_later_toss_without_samples_has_no_fan(
-    recording: rr.RecordingStream, read: Callable[[], Drawn], world: World
-) -> None:
-    answer = thrown(world)
-    picture = Picture(recording, world, surface_side=1.0)
+def test_a_later_toss_without_samples_has_no_fan(canvas: Canvas) -> None:
+    answer = thrown(WORLD)
+    picture = Picture(canvas.stream, WORLD, surface_side=1.0)
     picture.show(answer, now_ns=1)
     picture.show(replace(answer, distribution=None, alternatives=()), now_ns=2)
-    drawn = read()
+    drawn = canvas.read()
     assert drawn.stamps(TOSS, "Clear:is_recursive") == [1, 2]
     assert drawn.stamps(f"{TOSS}/path", "LineStrips3D:strips") == [1, 2]
     assert drawn.stamps(f"{TOSS}/tree/nodes", "Points3D:positions") == [1]
     assert drawn.stamps(f"{TOSS}/samples/ways", "LineStrips3D:strips") == [1]
 
 
-def test_the_words_say_where_it_rests_and_what_strikes_first(world: World) -> None:
-    answer = thrown(world)
+def test_the_words_say_where_it_rests_and_what_strikes_first() -> None:
+    answer = thrown(WORLD)
     words = "; ".join(toss_in_words(answer))
     assert (
         f"rests after {answer.toss.seconds:.3g} s with {answer.toss.face_on_top} on top, on corners" in words
