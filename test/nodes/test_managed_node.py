@@ -1,5 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Parameters that change while the server serves: checked as a whole, taken at once, and logged."""
+"""The server as a managed node, whose parameters may change while it serves.
+
+A lifecycle manager brings it up and down over its services. Parameters are checked as a whole, taken at once,
+and logged.
+"""
 
 from __future__ import annotations
 
@@ -7,21 +11,30 @@ import subprocess
 import sys
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import pytest
 import yaml
-from lifecycle_msgs.msg import Transition
+from builtin_interfaces.msg import Time
+from lifecycle_msgs.msg import State, Transition
 from lifecycle_msgs.srv import ChangeState, GetState
 from nav_msgs.msg import Odometry
+from rcl_interfaces.msg import Parameter as ParameterMsg
+from rcl_interfaces.msg import ParameterValue
 from rcl_interfaces.srv import GetParameters, ListParameters, SetParameters, SetParametersAtomically
 from rclpy.parameter import Parameter
+from rosgraph_msgs.msg import Clock
 
+from contact_dynamics.demo.processes import claim_domain
+from contact_dynamics.nodes.log import Log
+from contact_dynamics.nodes.parameter_reader import ConfigurationError
 from contact_dynamics.recording import BagReader
+from contact_dynamics.recording.limits import UNLIMITED
 from contact_dynamics.replay.verify import verify_log
 from contact_dynamics_interfaces.srv import PredictImpact, PredictTumbling
 from message_words import says
-from running_server import PATIENCE_S, ROOT, SERVICES, Client, environment, process
+from nodes.monitor import hard
+from running_server import PATIENCE_S, ROOT, SERVICES, Client, environment, process, wait_for
 
 NODE = "/contact_dynamics"
 FILE = ROOT / "config" / "server.yaml"
@@ -29,26 +42,44 @@ UP = Transition.TRANSITION_CONFIGURE, Transition.TRANSITION_ACTIVATE
 DOWN = Transition.TRANSITION_DEACTIVATE, Transition.TRANSITION_CLEANUP
 
 
-class Configured(NamedTuple):
-    """A client of a running server, and the folder that its log is in."""
+class Managed:
+    """A client of a server that moves it between its states, and the folder that its log is in."""
 
-    client: Client
-    folder: Path
+    def __init__(self, client: Client, folder: Path) -> None:
+        self.client = client
+        self.folder = folder
+        self._callers: dict[str, Any] = {}
 
     def call(self, service: Any, name: str, request: Any) -> Any:
         """Call a service of the node that is not one of ours."""
-        caller = self.client.node.create_client(service, f"{NODE}/{name}")
-        assert caller.wait_for_service(PATIENCE_S)
-        future = caller.call_async(request)
+        if name not in self._callers:
+            self._callers[name] = self.client.node.create_client(service, f"{NODE}/{name}")
+            assert self._callers[name].wait_for_service(PATIENCE_S)
+            self.client.wait_until_found()
+        future = self._callers[name].call_async(request)
         self.client.spin_until(future.done)
-        self.client.node.destroy_client(caller)
         return future.result()
 
+    def change(self, transition: int) -> bool:
+        """Ask for a transition; return whether it was made."""
+        request = ChangeState.Request(transition=Transition(id=transition))
+        return bool(self.call(ChangeState, "change_state", request).success)
+
     def move(self, *transitions: int) -> None:
-        """Make transitions of the life cycle."""
+        """Make transitions."""
         for each in transitions:
-            request = ChangeState.Request(transition=Transition(id=each))
-            assert self.call(ChangeState, "change_state", request).success
+            assert self.change(each)
+
+    def state(self) -> int:
+        return int(self.call(GetState, "get_state", GetState.Request()).current_state.id)
+
+    def wait_until_ready(self) -> None:
+        self.client.spin_until(lambda: self.client.ready() == len(SERVICES))
+        self.client.wait_until_found()
+
+    def forget(self) -> None:
+        for each in self._callers.values():
+            self.client.node.destroy_client(each)
 
     def set(self, **values: Any) -> str:
         """Set parameters at once, with "__" for a point; return why they are refused, or nothing."""
@@ -83,9 +114,9 @@ def client() -> Iterator[Client]:
 
 
 @pytest.fixture
-def configured(client: Client, tmp_path: Path, request: pytest.FixtureRequest) -> Iterator[Configured]:
-    """The server as its file says, with a log of its own for each test."""
-    configured = Configured(client, tmp_path)
+def managed(client: Client, tmp_path: Path, request: pytest.FixtureRequest) -> Iterator[Managed]:
+    """The server, not configured yet, as its file says, with a log of its own for each test."""
+    managed = Managed(client, tmp_path)
     (settings,) = yaml.safe_load(FILE.read_text(encoding="utf-8")).values()
     values = settings["ros__parameters"] | {
         "state_timeout": 1000.0,
@@ -93,14 +124,20 @@ def configured(client: Client, tmp_path: Path, request: pytest.FixtureRequest) -
         "workers": 0,
     }
     values |= getattr(request, "param", {})
-    assert configured.set(**{name.replace(".", "__"): value for name, value in values.items()}) == ""
+    assert managed.set(**{name.replace(".", "__"): value for name, value in values.items()}) == ""
     client.spin_until(lambda: client.ready() == 0)  # those of the test before are gone
-    configured.move(*UP)
-    client.spin_until(lambda: client.ready() == len(SERVICES))
-    client.wait_until_found()
-    yield configured
-    if configured.call(GetState, "get_state", GetState.Request()).current_state.label == "active":
-        configured.move(*DOWN)
+    yield managed
+    if managed.state() == State.PRIMARY_STATE_ACTIVE:
+        managed.move(*DOWN)
+    managed.forget()
+
+
+@pytest.fixture
+def configured(managed: Managed) -> Managed:
+    """The server, configured and active."""
+    managed.move(*UP)
+    managed.wait_until_ready()
+    return managed
 
 
 def slide() -> PredictImpact.Request:
@@ -113,7 +150,7 @@ def slide() -> PredictImpact.Request:
 
 
 def test_a_changed_friction_counts_from_the_next_answer_on_and_replay_reproduces_both(
-    configured: Configured,
+    configured: Managed,
 ) -> None:
     before = configured.client.ask(slide())
     assert configured.set(surface__floor__friction=0.05) == ""
@@ -126,7 +163,7 @@ def test_a_changed_friction_counts_from_the_next_answer_on_and_replay_reproduces
     assert_reproduced(configured, questions=2)
 
 
-def test_a_configuration_is_checked_as_a_whole_and_refused_as_a_whole(configured: Configured) -> None:
+def test_a_configuration_is_checked_as_a_whole_and_refused_as_a_whole(configured: Managed) -> None:
     refused = configured.set(surface__floor__friction=0.1, surface__floor__restitution=1.5)
     assert refused == "surface.floor.restitution must be in [0, 1], got 1.5"
     assert configured.double("surface.floor.friction") == 0.3
@@ -145,7 +182,7 @@ def test_a_configuration_is_checked_as_a_whole_and_refused_as_a_whole(configured
     assert_reproduced(configured, questions=1)
 
 
-def test_bodies_and_surfaces_come_and_go(configured: Configured) -> None:
+def test_bodies_and_surfaces_come_and_go(configured: Managed) -> None:
     names = configured.names()
     question = PredictImpact.Request(body_name="cup", state_source=PredictImpact.Request.STATE_EXPLICIT)
     question.state.pose.position.z = 1.0
@@ -164,7 +201,7 @@ def test_bodies_and_surfaces_come_and_go(configured: Configured) -> None:
     assert_reproduced(configured, questions=3)
 
 
-def test_states_are_read_with_the_centre_of_mass_of_their_time(configured: Configured) -> None:
+def test_states_are_read_with_the_centre_of_mass_of_their_time(configured: Managed) -> None:
     stream = subprocess.Popen(
         [sys.executable, str(ROOT / "test" / "nodes" / "state_stream.py"), "wall"],
         env={**environment(), "PYTHONPATH": str(ROOT)},
@@ -185,7 +222,7 @@ def test_states_are_read_with_the_centre_of_mass_of_their_time(configured: Confi
     assert_reproduced(configured, questions=8)
 
 
-def test_fewer_states_are_kept_from_now_on(configured: Configured) -> None:
+def test_fewer_states_are_kept_from_now_on(configured: Managed) -> None:
     client = configured.client
     states = client.publisher(Odometry, "/brick/odometry")
     first = client.node.get_clock().now().to_msg()
@@ -209,7 +246,7 @@ def test_fewer_states_are_kept_from_now_on(configured: Configured) -> None:
     assert_reproduced(configured, questions=2)
 
 
-def test_what_stays_can_change_while_the_server_is_not_configured(configured: Configured) -> None:
+def test_what_stays_can_change_while_the_server_is_not_configured(configured: Managed) -> None:
     configured.move(*DOWN)
     assert configured.set(body__brick__odometry_topic="/other", surface__floor__friction=0.7) == ""
     configured.move(*UP)
@@ -219,7 +256,7 @@ def test_what_stays_can_change_while_the_server_is_not_configured(configured: Co
     assert configured.client.ask(slide()).contacts.frictions[0] == 0.7
 
 
-def test_ros_own_way_to_set_one_parameter_works(configured: Configured) -> None:
+def test_ros_own_way_to_set_one_parameter_works(configured: Managed) -> None:
     parameters = [
         Parameter("surface.floor.restitution", value=0.9).to_parameter_msg(),
         Parameter("surface.floor.friction", value=-0.9).to_parameter_msg(),
@@ -231,8 +268,8 @@ def test_ros_own_way_to_set_one_parameter_works(configured: Configured) -> None:
     assert refused.reason == "surface.floor.friction must be >= 0, got -0.9"
 
 
-@pytest.mark.parametrize("configured", [{"log_file_duration": 1.0}], indirect=True)
-def test_each_file_of_a_log_says_how_its_part_is_configured(configured: Configured) -> None:
+@pytest.mark.parametrize("managed", [{"log_file_duration": 1.0}], indirect=True)
+def test_each_file_of_a_log_says_how_its_part_is_configured(configured: Managed) -> None:
     client = configured.client
     client.ask(slide())
     assert configured.set(surface__floor__friction=0.1) == ""
@@ -247,9 +284,111 @@ def test_each_file_of_a_log_says_how_its_part_is_configured(configured: Configur
     assert sum(tally.equal for tally in tallies) == sum(tally.questions for tally in tallies) > 0
 
 
-def assert_reproduced(configured: Configured, *, questions: int) -> None:
+def assert_reproduced(configured: Managed, *, questions: int) -> None:
     """End the server's log, and ask all of it again."""
     configured.move(*DOWN)
     found = verify_log(next(configured.folder.iterdir()))
     assert found.others == []
     assert sum(tally.equal for tally in found.services.values()) >= questions
+
+
+def test_a_manager_brings_the_server_up_and_down_and_up_again(managed: Managed) -> None:
+    question = PredictTumbling.Request(body_name="brick", times=[0.0])
+    assert managed.state() == State.PRIMARY_STATE_UNCONFIGURED
+    assert managed.client.ready() == 0
+    for run in (1, 2):
+        assert managed.change(Transition.TRANSITION_CONFIGURE)
+        assert len(list(managed.folder.iterdir())) == run
+        managed.client.spin_until(lambda: managed.client.ready() == len(SERVICES))
+        states = managed.client.publisher(Odometry, "/brick/odometry")
+        msg = Odometry(child_frame_id="brick")
+        msg.header.frame_id, msg.header.stamp = "world", managed.client.node.get_clock().now().to_msg()
+        states.publish(msg)
+        refused = managed.client.ask(question)
+        assert refused.status == refused.BUSY
+        assert "not active" in refused.message
+        assert managed.change(Transition.TRANSITION_ACTIVATE)
+        managed.client.spin_until(lambda: managed.client.ask(question).status == 0)  # the state came before
+        assert managed.state() == State.PRIMARY_STATE_ACTIVE
+        assert managed.change(Transition.TRANSITION_DEACTIVATE)
+        assert managed.client.ask(question).status == refused.BUSY
+        assert managed.change(Transition.TRANSITION_CLEANUP)
+        assert managed.state() == State.PRIMARY_STATE_UNCONFIGURED
+        managed.client.node.destroy_publisher(states)
+        managed.client.spin_until(lambda: managed.client.ready() == 0)
+    readers = [BagReader(folder) for folder in managed.folder.iterdir()]
+    assert all(any(message.topic == "/brick/odometry" for message in log.messages()) for log in readers)
+    assert all(log.damage is None for log in readers)
+
+
+@pytest.mark.parametrize("managed", [{"workers": 2}], indirect=True)
+def test_a_question_that_is_being_answered_at_cleanup_is_refused(managed: Managed) -> None:
+    for _ in range(2):
+        managed.move(*UP)
+        managed.wait_until_ready()
+        answers = [managed.client.begin_to_ask(hard()) for _ in range(4)]
+        quick = PredictTumbling.Request(body_name="brick", times=[0.0])
+        managed.client.ask(quick)  # the others came before it
+        managed.move(*DOWN)
+        managed.client.spin_until(lambda answers=answers: all(answer.done() for answer in answers))
+        for answer in answers:
+            assert answer.result().status == answer.result().BUSY
+            assert "was cleaned up" in answer.result().message
+
+
+def test_transitions_that_are_none_of_the_state_are_refused_and_the_server_goes_on(managed: Managed) -> None:
+    """Managers ask so: one that brings up all its nodes asks one to configure that is active already."""
+    possible = {
+        State.PRIMARY_STATE_UNCONFIGURED: {Transition.TRANSITION_CONFIGURE},
+        State.PRIMARY_STATE_INACTIVE: {Transition.TRANSITION_ACTIVATE, Transition.TRANSITION_CLEANUP},
+        State.PRIMARY_STATE_ACTIVE: {Transition.TRANSITION_DEACTIVATE},
+    }
+    for then in (*UP, *DOWN):
+        state = managed.state()
+        for asked in {*UP, *DOWN, 77} - possible[state]:
+            assert not managed.change(asked)
+            assert managed.state() == state
+        assert managed.change(then)
+
+
+def test_a_parameter_of_no_type_is_refused_and_the_server_goes_on(managed: Managed) -> None:
+    strange = ParameterMsg(name="state_timeout", value=ParameterValue(type=77))
+    results = managed.call(
+        SetParameters, "set_parameters", SetParameters.Request(parameters=[strange])
+    ).results
+    assert not any(result.successful for result in results)
+    assert managed.state() == State.PRIMARY_STATE_UNCONFIGURED
+
+
+def test_a_log_whose_disk_is_not_mounted_is_refused_and_written_once_it_is(tmp_path: Path) -> None:
+    """The simulation begins anew meanwhile, of which a server that could not be configured hears, too."""
+    disk = tmp_path / "disk"
+    (tmp_path / "logs").symlink_to(disk)
+    arguments = ("-p", f"log_directory:={tmp_path / 'logs'}", "-p", "use_sim_time:=true")
+    domain_id = claim_domain()  # another server of this name is in that of this test run
+    given = ("--params-file", str(FILE), "--ros-args", "-p", "autostart:=false", *arguments)
+    with process("server", *given, ready="autostart is false", domain_id=domain_id) as server:
+        client = Client(wait=False, domain_id=domain_id)
+        managed = Managed(client, disk)
+        try:
+            clock = client.publisher(Clock, "/clock")
+            for _ in range(20):
+                assert not managed.change(Transition.TRANSITION_CONFIGURE)
+            assert "log_directory must be" in wait_for(server, "cannot be configured")
+            assert managed.state() == State.PRIMARY_STATE_UNCONFIGURED
+            for seconds in range(200, 100, -1):
+                clock.publish(Clock(clock=Time(sec=seconds)))
+                managed.state()
+            disk.mkdir()
+            managed.move(*UP)
+        finally:
+            client.close()
+    assert len(list(disk.iterdir())) == 1
+
+
+@pytest.mark.parametrize("where", ["~nobody_of_this_name/logs", "{}/link", "{}/link/logs", "{}/file/logs"])
+def test_a_log_that_nobody_can_write_is_refused_by_name(where: str, tmp_path: Path) -> None:
+    (tmp_path / "link").symlink_to(tmp_path / "gone")
+    (tmp_path / "file").touch()
+    with pytest.raises(ConfigurationError, match=r"log_directory must be a folder to write to.*, got .*"):
+        Log(where.format(tmp_path), run={}, limits=UNLIMITED, on_problem=print, on_notice=print)
