@@ -97,19 +97,6 @@ def test_a_request_of_a_hundred_megabytes_is_refused_in_a_short_message(served: 
     assert int(peak) < MEMORY_KB
 
 
-def test_who_comes_late_and_who_leaves_with_requests_pending_are_nothing_special(served: Served) -> None:
-    _, client, domain_id = served
-    for _ in range(3):
-        late = Client(domain_id=domain_id)  # it waits until it has had an answer
-        answer = late.ask(good())
-        assert answer.status == answer.OK, answer.message
-        for _ in range(20):
-            late.begin_to_ask(good())
-        late.close()
-        answer = client.ask(good())
-        assert answer.status == answer.OK, answer.message
-
-
 def test_others_with_the_same_pipe_wait_as_before() -> None:
     reader, writer = os.pipe()
     code = "from contact_dynamics.nodes.own_process import never_wait_for_readers as f; f(); "

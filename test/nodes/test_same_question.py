@@ -201,7 +201,7 @@ REQUESTS: dict[str, tuple[Any, Fields]] = {
             "state_source": 1,
             "state": lying(0.8),
             "contact_source": 1,
-            "contacts": FEET,
+            "contacts": RIGHT,
             "problem": 2,
             "uncertainty_frictions": [0.1],
             "include_geometry_margins": True,

@@ -64,7 +64,7 @@ def test_a_twist_in_world_axes_is_found_within_seconds(rate: float) -> None:
         assert all(speed is not None and 0.5 < speed < 5.0 for speed in results)
 
 
-@pytest.mark.parametrize("rate", [5.0, 30.0, 100.0, 1000.0])
+@pytest.mark.parametrize("rate", [5.0, 30.0, 100.0, pytest.param(1000.0, marks=pytest.mark.slow)])
 @pytest.mark.parametrize(("noise", "jump"), [(0.0, 0.0), (1e-3, 0.0), (0.05, 0.0), (0.0, 0.5)])
 def test_the_right_axes_are_never_called_wrong(rate: float, noise: float, jump: float) -> None:
     """Through impacts, beside noise of more than the way between two states, and where poses jump."""
