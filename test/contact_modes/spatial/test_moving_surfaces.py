@@ -566,7 +566,7 @@ def test_a_box_rests_on_a_tray_that_falls_freely_and_turns() -> None:
 
 
 @pytest.mark.parametrize(
-    ("moving", "spin"), [({"a_WS_W": [1e60, 0, 0]}, 0.0), ({"w_WS_W": [0, 0, 1e50]}, 1e59)]
+    ("moving", "spin"), [({"a_WS_W": [1e60, 0, 0]}, 0.0), ({"w_WS_W": [0, 0, 1e26]}, 1e36)]
 )
 def test_an_extreme_motion_is_not_blamed_on_the_wrench(moving: dict[str, object], spin: float) -> None:
     """On surfaces that move, the body's own motion and theirs cause inertial forces beyond the limit."""
