@@ -158,9 +158,6 @@ class PlanarStrike:
     """
 
     def __init__(self, law: RestitutionLaw) -> None:
-        if law not in _LAWS:
-            message = f"restitution_law must be POISSON, NEWTON or ENERGETIC, got {law}"
-            raise NotImplementedError(message)
         self.law = int(law)
         self.outcome: int = _NO_IMPULSE
         self.jams = False
@@ -385,6 +382,3 @@ class PlanarStrike:
         self.p_stop, self.t_stop = p_stop, t_stop
         self.p_compression, self.t_compression = p_c, t_c
         self.p_end, self.t_end, self.v_t, self.v_n = p_end, t_end, v_t_end, v_end
-
-
-_LAWS: Final = (RestitutionLaw.POISSON, RestitutionLaw.NEWTON, RestitutionLaw.ENERGETIC)

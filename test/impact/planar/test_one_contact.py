@@ -13,7 +13,6 @@ from hypothesis import strategies as st
 
 from contact_dynamics.errors import SeparatingContactError
 from contact_dynamics.impact import ImpactOutcome, PathEvent, PlanarImpact, RestitutionLaw, planar_impact
-from contact_dynamics.impact.planar.routh import impulse_path, inverse_inertia
 from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity
 from oracles import impact_exact
 
@@ -149,12 +148,6 @@ def test_newton_creates_energy_where_friction_stops_the_slide() -> None:
     assert newton.creates_energy
     assert newton.energy_change == pytest.approx(0.07, rel=1e-12)
     assert [law for law in RestitutionLaw if answers[law].creates_energy] == [RestitutionLaw.NEWTON]
-
-
-def test_a_law_that_has_no_branch_is_refused_and_not_taken_for_another() -> None:
-    response = inverse_inertia(1.0, 1.0, 0.0, 0.0)
-    with pytest.raises(NotImplementedError, match=r"restitution_law must be .*, got 3"):
-        impulse_path(-1.0, -1.0, response, 0.25, 0.5, 3)  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize("law", RestitutionLaw)
