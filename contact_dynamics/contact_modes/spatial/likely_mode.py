@@ -42,7 +42,7 @@ _ENOUGH: Final = 0.1
 """The share of what a step should gain that a longer one must gain."""
 
 
-@np.errstate(over="ignore", invalid="ignore")  # of contacts that are extremely far
+@np.errstate(over="ignore", invalid="ignore")  # a contact may be extremely far away
 def likely_mode(search: Search) -> Known | None:
     """Return the most likely mode of touching contacts, or None if there is none with its letters."""
     try:
