@@ -84,16 +84,6 @@ TOSS_ENDS: Final = {
 }
 """What the body does at the end of a toss."""
 
-EVENTS: Final = {
-    TossEventKind.STRIKES: "strikes",
-    TossEventKind.SETTLES: "settles",
-    TossEventKind.NEW_MODE: "changes its contact mode",
-    TossEventKind.LIFTS_OFF: "lifts off",
-    TossEventKind.JAMS: "jams",
-    TossEventKind.RESTS: "rests",
-}
-"""The words for what happens at an event."""
-
 UNDECIDED: Final = {
     UndecidedReason.STRIKE_TOGETHER: "simultaneous impacts",
     UndecidedReason.SEVERAL_MODES: "several modes are consistent",

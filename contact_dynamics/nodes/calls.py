@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 from contact_dynamics.errors import InvalidFieldError
-from contact_dynamics.recording.cdr_stamp import EventType, event_info
+from contact_dynamics.recording.cdr import EventType, event_info
 
 if TYPE_CHECKING:
     from collections.abc import Callable

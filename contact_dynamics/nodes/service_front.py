@@ -22,8 +22,7 @@ from rclpy.service_introspection import ServiceIntrospectionState
 from contact_dynamics.errors import BusyError, ContactDynamicsError
 from contact_dynamics.nodes.calls import CallTimes, GoneClients
 from contact_dynamics.questions.effort import excerpt
-from contact_dynamics.recording.cdr import cut_to_its_end
-from contact_dynamics.recording.cdr_stamp import EventType
+from contact_dynamics.recording.cdr import EventType, cut_to_its_end
 from contact_dynamics.recording.definitions import find_definition
 from contact_dynamics.recording.message_types import message_class
 from msg_adapters.stamps import stamp_to_msg

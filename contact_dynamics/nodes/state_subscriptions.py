@@ -21,7 +21,7 @@ from contact_dynamics.errors import ContactDynamicsError
 from contact_dynamics.nodes.situations import RECENT_S, Present, Situation
 from contact_dynamics.nodes.state_sources import no_message
 from contact_dynamics.nodes.topic_faults import TopicFaults, TopicTraffic
-from contact_dynamics.recording.cdr_stamp import leading_stamp_ns
+from contact_dynamics.recording.cdr import leading_stamp_ns
 from contact_dynamics.recording.message_types import message_class
 from msg_adapters.rejected_fields import check_numbers, in_fields
 

@@ -39,7 +39,7 @@ from contact_dynamics.nodes.visualizer_parameters import read_visualizer_paramet
 from contact_dynamics.questions.services import SERVICES
 from contact_dynamics.questions.state_store import StateStore
 from contact_dynamics.questions.uncertain_state import state_of
-from contact_dynamics.recording.cdr_stamp import EventType, event_type_of
+from contact_dynamics.recording.cdr import EventType, event_type_of
 from contact_dynamics.viewing.picture import Picture
 from contact_dynamics.viewing.sinks import OpenRecording, ViewerMode, raise_errors
 from contact_dynamics.viewing.states_in_turn import SHORTEST_S, StatesInTurn

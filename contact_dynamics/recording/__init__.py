@@ -6,6 +6,7 @@
 from the definitions in the log.
 """
 
+from contact_dynamics.recording.bag_metadata import OfferedQos
 from contact_dynamics.recording.bag_reader import BagReader, LoggedMessage
 from contact_dynamics.recording.bag_writer import BagWriter
 from contact_dynamics.recording.cdr import decode_without_ros
@@ -19,7 +20,6 @@ from contact_dynamics.recording.errors import (
 from contact_dynamics.recording.file_messages import Loss
 from contact_dynamics.recording.limits import Compression, LogLimits
 from contact_dynamics.recording.message_types import decode
-from contact_dynamics.recording.qos import OfferedQos
 from contact_dynamics.recording.recorder import Recorder, RecorderStatus
 from contact_dynamics.recording.service_calls import EVENT_TOPIC_SUFFIX, ServiceCall, service_calls
 from contact_dynamics.validation_types import check_types_of

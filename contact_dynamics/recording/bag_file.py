@@ -13,17 +13,16 @@ from contact_dynamics.recording.bag_metadata import (
     RUN_RECORD,
     TYPE_HASH,
     FileSummary,
+    qos_maps,
     sealed_run,
 )
 from contact_dynamics.recording.limits import Compression
-from contact_dynamics.recording.qos import qos_maps
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
     from pathlib import Path
 
-    from contact_dynamics.recording.bag_metadata import DeclaredTopic
-    from contact_dynamics.recording.qos import OfferedQos
+    from contact_dynamics.recording.bag_metadata import DeclaredTopic, OfferedQos
 
 CHUNK_BYTES: Final = 256 * 1024
 

@@ -42,12 +42,12 @@ from contact_dynamics.recording.bag_metadata import (
     DeclaredTopic,
     file_text_of,
     metadata_of,
+    offers_of,
 )
-from contact_dynamics.recording.cdr_stamp import event_info, leading_stamp_ns
+from contact_dynamics.recording.cdr import event_info, leading_stamp_ns
 from contact_dynamics.recording.definitions import find_definition
 from contact_dynamics.recording.errors import LogExistsError, LogFailedError
 from contact_dynamics.recording.limits import UNLIMITED, LogLimits
-from contact_dynamics.recording.qos import offers_of
 from contact_dynamics.validation_types import checks_types
 from contact_dynamics.version import version_of_this_package
 

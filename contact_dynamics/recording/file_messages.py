@@ -30,7 +30,7 @@ class Topic(NamedTuple):
         name: Its name.
         type_name: Its type, "package/msg/Name" or "package/srv/Name_Event".
         definition: The text of the type, which is empty unless it has MCAP's form ros2msg.
-        qos: The YAML list of what its publishers offered, which `qos.offered_qos` reads, or nothing.
+        qos: The YAML list of what its publishers offered, which `bag_metadata.offered_qos` reads, or nothing.
         type_hash: The hash of its type, "RIHS01_...", or nothing.
     """
 

@@ -18,6 +18,7 @@ from contact_dynamics.recording.bag_metadata import (
     DeclaredTopic,
     file_text_of,
     metadata_of,
+    offered_qos,
 )
 from contact_dynamics.recording.bag_reader import BagReader
 from contact_dynamics.recording.definitions import TypeDefinition
@@ -25,7 +26,6 @@ from contact_dynamics.recording.errors import LogExistsError
 from contact_dynamics.recording.file_messages import Span, unpacked_file
 from contact_dynamics.recording.limits import Compression
 from contact_dynamics.recording.mcap_messages import McapMessages
-from contact_dynamics.recording.qos import offered_qos
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

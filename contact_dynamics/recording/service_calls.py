@@ -11,7 +11,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
-from contact_dynamics.recording.cdr_stamp import EventType, event_info
+from contact_dynamics.recording.cdr import EventType, event_info
 from contact_dynamics.recording.definitions import EVENT_SUFFIX
 from contact_dynamics.recording.message_types import decode
 

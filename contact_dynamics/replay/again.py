@@ -16,8 +16,7 @@ from contact_dynamics.nodes.server_core import ServerCore
 from contact_dynamics.nodes.state_sources import no_message
 from contact_dynamics.questions.services import service_of_type
 from contact_dynamics.questions.uncertain_state import state_of
-from contact_dynamics.recording.cdr import decode_without_ros
-from contact_dynamics.recording.cdr_stamp import leading_stamp_ns
+from contact_dynamics.recording.cdr import decode_without_ros, leading_stamp_ns
 from contact_dynamics.replay.timeline import CLOCK
 from msg_adapters.rejected_fields import check_numbers, in_fields
 from msg_adapters.status import report_error

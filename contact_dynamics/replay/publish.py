@@ -31,12 +31,12 @@ from rosgraph_msgs.msg import Clock
 from contact_dynamics.constants import NS_PER_S
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.nodes.running import ros_until_stopped
+from contact_dynamics.recording.bag_metadata import FOREVER_NS, OfferedQos, offered_qos
 from contact_dynamics.recording.bag_reader import BagReader
-from contact_dynamics.recording.cdr_stamp import leading_stamp_ns
+from contact_dynamics.recording.cdr import leading_stamp_ns
 from contact_dynamics.recording.definitions import EVENT_SUFFIX
 from contact_dynamics.recording.errors import DamagedLogWarning, NotALogError
 from contact_dynamics.recording.message_types import Message, message_class
-from contact_dynamics.recording.qos import FOREVER_NS, OfferedQos, offered_qos
 from contact_dynamics.recording.service_calls import EVENT_TOPIC_SUFFIX, ServiceCall
 from contact_dynamics.replay.arguments import stamps_as_logged
 from contact_dynamics.replay.of_log import server_of_log

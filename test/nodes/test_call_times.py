@@ -9,7 +9,7 @@ import time
 import pytest
 
 from contact_dynamics.nodes.calls import CallTimes
-from contact_dynamics.recording.cdr_stamp import EventType
+from contact_dynamics.recording.cdr import EventType
 
 GID_A, GID_B = b"a" * 16, b"b" * 16
 SECOND = 1_000_000_000

@@ -17,7 +17,7 @@ from rclpy.serialization import deserialize_message
 from contact_dynamics.nodes.log import Log
 from contact_dynamics.nodes.situations import Situation
 from contact_dynamics.recording import BagReader, service_calls
-from contact_dynamics.recording.cdr_stamp import EventType, event_info
+from contact_dynamics.recording.cdr import EventType, event_info
 from contact_dynamics.recording.limits import UNLIMITED
 from contact_dynamics.replay.verify import verify_log
 from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact, PredictTumbling

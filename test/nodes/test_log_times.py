@@ -19,7 +19,7 @@ import numpy as np
 import pytest
 
 from contact_dynamics.recording import BagReader, LoggedMessage, ServiceCall, decode, service_calls
-from contact_dynamics.recording.cdr_stamp import event_info
+from contact_dynamics.recording.cdr import event_info
 from contact_dynamics_interfaces.srv import PredictImpact, PredictTumbling
 from msg_adapters.stamps import stamp_ns_from_msg
 from running_server import PATIENCE_S, ROOT, Client, environment, process

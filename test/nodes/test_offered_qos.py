@@ -18,7 +18,7 @@ from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 
 from contact_dynamics.nodes.inbox import InboxNode
 from contact_dynamics.recording import BagReader, BagWriter, OfferedQos
-from contact_dynamics.recording.qos import offered_qos
+from contact_dynamics.recording.bag_metadata import offered_qos
 from running_server import DOMAIN_ID, PATIENCE_S, ROOT, Client, environment, process
 
 TOPIC = "/brick/odometry"

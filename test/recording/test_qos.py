@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from contact_dynamics.recording import BagReader, OfferedQos
-from contact_dynamics.recording.qos import FOREVER_NS, offered_qos, qos_maps
+from contact_dynamics.recording.bag_metadata import FOREVER_NS, offered_qos, qos_maps
 
 OF_HUMBLE = """
 - history: 3

@@ -7,7 +7,7 @@ import pytest
 
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.recording import LoggedMessage, service_calls
-from contact_dynamics.recording.cdr_stamp import EventType
+from contact_dynamics.recording.cdr import EventType
 from contact_dynamics.recording.message_types import message_class
 
 GID_A, GID_B = b"a" * 16, b"b" * 16

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from contact_dynamics.errors import InvalidFieldError
-from contact_dynamics.recording.cdr_stamp import EventType, event_info, event_type_of, leading_stamp_ns
+from contact_dynamics.recording.cdr import EventType, event_info, event_type_of, leading_stamp_ns
 
 SECONDS = st.integers(-(2**31), 2**31 - 1)
 NANOSECONDS = st.integers(0, 10**9 - 1)
