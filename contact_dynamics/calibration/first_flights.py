@@ -55,15 +55,11 @@ class Gravity(Record):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class Straightness(Record):
-    """Three residuals of each of n flights, linear in some parameters: at_zero + slopes @ x, whitened.
+    """Three residuals of each of n flights, linear in some parameters: at_zero + slopes @ x, whitened."""
 
-    Attributes:
-        at_zero: (n, 3). slopes: (n, 3, k). recordings: (n,), numbers of the recordings.
-    """
-
-    at_zero: FloatArray
-    slopes: FloatArray
-    recordings: IntArray
+    at_zero: FloatArray  # (n, 3)
+    slopes: FloatArray  # (n, 3, k)
+    recordings: IntArray  # (n,), numbers of the recordings
 
 
 def gravity_and_center(

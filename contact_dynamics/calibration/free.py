@@ -51,7 +51,7 @@ the centre of mass. The rounding of a shape without faces is its radius, and kee
 
 BY_STRIKES: Final = frozenset({Free.FRICTION, Free.RESTITUTION, Free.INERTIA})  # what strikes alone tell
 
-GEOMETRY: Final = (
+GEOMETRY: Final = (  # what the heights of corners at strikes and rests tell
     Free.ROUNDING,
     Free.SIZE,
     Free.SHAPE_POSITION,
@@ -59,4 +59,3 @@ GEOMETRY: Final = (
     Free.SURFACE_HEIGHT,
     Free.SURFACE_TILT,
 )
-"""What the heights of corners at strikes and rests tell."""

@@ -70,24 +70,16 @@ class Parameter(Record):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class Described(Record):
-    """What a vector of parameters says of body and surfaces. Row s belongs to surface s.
+    """What a vector of parameters says of body and surfaces. Row s belongs to surface s."""
 
-    Attributes:
-        center: (3,), m, the true centre of mass, in B.
-        I_B: (3, 3), kg m^2, about it.
-        corners: (k, 3), m, of the inner polyhedron, in B.
-        rounding: m, radius of the ball that rolls over it.
-        frictions: (s,). restitutions: (s,). points: (s, 3), m, of the surfaces, world. normals: (s, 3), unit.
-    """
-
-    center: FloatArray
-    I_B: FloatArray
-    corners: FloatArray
-    rounding: float
-    frictions: FloatArray
-    restitutions: FloatArray
-    points: FloatArray
-    normals: FloatArray
+    center: FloatArray  # (3,), m, the true centre of mass, in B
+    I_B: FloatArray  # (3, 3), kg m^2, about it
+    corners: FloatArray  # (k, 3), m, of the inner polyhedron, in B
+    rounding: float  # m, radius of the ball that rolls over it
+    frictions: FloatArray  # (s,)
+    restitutions: FloatArray  # (s,)
+    points: FloatArray  # (s, 3), m, of the surfaces, world
+    normals: FloatArray  # (s, 3), unit
 
 
 class Model:

@@ -37,20 +37,14 @@ SAME_HEIGHT: Final = 0.15
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class Touching(Record):
-    """Corners that touch at n moments: those at rest, and those that strike.
+    """Corners that touch at n moments: those at rest, and those that strike."""
 
-    Attributes:
-        recordings: (n,), numbers of the recordings. surfaces: (n,), of the surfaces. corners: (n,), of the
-        corners. p_W: (n, 3), m, places of the configured mass centre. q_WB: (n, 4). stds: (n,), m, of a
-        height by the noise of measurement.
-    """
-
-    recordings: IntArray
-    surfaces: IntArray
-    corners: IntArray
-    p_W: FloatArray
-    q_WB: FloatArray
-    stds: FloatArray
+    recordings: IntArray  # (n,), numbers of the recordings
+    surfaces: IntArray  # (n,), of the surfaces
+    corners: IntArray  # (n,), of the corners
+    p_W: FloatArray  # (n, 3), m, places of the configured mass centre
+    q_WB: FloatArray  # (n, 4)
+    stds: FloatArray  # (n,), m, of a height by the noise of measurement
 
     def __len__(self) -> int:
         """Return the number of moments."""
@@ -68,25 +62,16 @@ class Touching(Record):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class Side(Record):
-    """The flights on one side of n strikes, at the times of the strikes.
+    """The flights on one side of n strikes, at the times of the strikes."""
 
-    Attributes:
-        velocities_W: (n, 3), m/s, of the configured mass centre without gravity and offset.
-        by_center: (n, 3, 3), 1/s, how they change with the centre's offset in body axes.
-        by_gravity: (n,), s, how they change with gravity.
-        spins_W: (n, 3), rad/s.
-        by_ratio: (n, 3, 2), rad/s, how these change with the logarithms of both ratios of moments.
-        velocity_stds: (n,), m/s. spin_stds: (n, 3), rad/s.
-        factors: (n, 2), by how much residuals of positions and orientations exceed the stated noise, >= 1.
-    """
-
-    velocities_W: FloatArray
-    by_center: FloatArray
-    by_gravity: FloatArray
-    spins_W: FloatArray
-    by_ratio: FloatArray
-    velocity_stds: FloatArray
-    spin_stds: FloatArray
+    velocities_W: FloatArray  # (n, 3), m/s, of the configured mass centre without gravity and offset
+    by_center: FloatArray  # (n, 3, 3), 1/s, how they change with the centre's offset in body axes
+    by_gravity: FloatArray  # (n,), s, how they change with gravity
+    spins_W: FloatArray  # (n, 3), rad/s
+    by_ratio: FloatArray  # (n, 3, 2), rad/s, how these change with the logarithms of both ratios of moments
+    velocity_stds: FloatArray  # (n,), m/s
+    spin_stds: FloatArray  # (n, 3), rad/s
+    # (n, 2), by how much residuals of positions and orientations exceed the stated noise, >= 1.
     factors: FloatArray
 
     def velocities(self, center: FloatArray, gravity_W: FloatArray) -> FloatArray:

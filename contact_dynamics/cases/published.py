@@ -242,7 +242,7 @@ def symmetric_top(*, axial: float, transverse: float, spin: float, wobble: float
     return {"in_body": 2.0 * math.pi / picture.polhode_period, "in_space": in_space}
 
 
-QUANTITIES: Final[Mapping[str, Callable[..., dict[str, float]]]] = {
+QUANTITIES: Final[Mapping[str, Callable[..., dict[str, float]]]] = {  # the functions that data files name
     "flight_at_time": flight_at_time,
     "flight_at_height": flight_at_height,
     "block": block,
@@ -254,4 +254,3 @@ QUANTITIES: Final[Mapping[str, Callable[..., dict[str, float]]]] = {
     "moment": moment,
     "symmetric_top": symmetric_top,
 }
-"""The functions that data files name."""

@@ -39,12 +39,11 @@ if TYPE_CHECKING:
     from contact_dynamics.rigid_body.body import BodyState, HasMassProperties, MassProperties
     from contact_dynamics.validation import FloatArray
 
-EVENTS: Final = {
+EVENTS: Final = {  # the events that are marked, in words and with their markers
     PathEvent.SLIDING_STOPS: ("sliding stops", "s"),
     PathEvent.COMPRESSION_ENDS: ("compression ends", "o"),
     PathEvent.RESTITUTION_ENDS: ("restitution ends", "^"),
 }
-"""The events that are marked, in words and with their markers."""
 
 _MARGIN: Final = 1.2  # height of the diagram, relative to the path
 _BELOW: Final = 0.12  # height of the diagram below the origin, relative to that above it

@@ -20,11 +20,10 @@ GREY: Final = "#999999"  # the body
 AXIS: Final = "#d8d8d8"  # lines through zero, grids and walls, which only help to read
 SERIES: Final = (BLUE, ORANGE, SKY, BLACK)  # curves in one diagram
 
-MODES: Final = (
+MODES: Final = (  # regions of the map of modes. A map of more modes uses them again.
     *("#bbddff", "#aa8800", "#8899bb", "#00cc55", "#ee88ff", "#eeee99", "#226699", "#77ccbb", "#aadd44"),
     *("#778877", "#aa77ff", "#bbff00", "#446633", "#1177ff", "#66eeaa", "#6644bb", "#556677", "#6622ff"),
 )
-"""Regions of the map of modes. A map of more modes uses them again."""
 
 DARK: Final = ("#226699", "#446633", "#1177ff", "#6644bb", "#556677", "#6622ff")
 """Those of them on which words are white."""

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 AFTER_IMPACT: Final = "After the impact"  # the kind of words about what was measured after an answer
 MAX_LISTED: Final = 8  # up to this number of refused modes are listed. The others are only counted.
 
-REGIMES: Final = {
+REGIMES: Final = {  # the words for each kind of rotation
     Regime.UNKNOWN: "a torque acts",
     Regime.AT_REST: "it does not rotate",
     Regime.SPHERICAL: "its moments are equal: it spins steadily",
@@ -45,58 +45,51 @@ REGIMES: Final = {
     Regime.ABOUT_MAJOR_AXIS: "it tumbles about its major axis",
     Regime.SEPARATRIX: "it turns over once, on the separatrix",
 }
-"""The words for each kind of rotation."""
 
 OUTCOMES: Final = {outcome: outcome.name.replace("_", " ").lower() for outcome in ImpactOutcome}
 """The words for what a contact does in an impact."""
 
-SEQUENCE_ENDS: Final = {
+SEQUENCE_ENDS: Final = {  # the words for what follows the last of several strikes in time
     SequenceEnd.NOTHING_STRIKES: "it flies",
     SequenceEnd.STAYS: "a contact stays",
     SequenceEnd.CHATTERS: "it chatters to rest at a contact",
     SequenceEnd.MAX_STRIKES: "the maximum number of impacts was reached",
     SequenceEnd.WINDOW_ENDED: "the window ended",
 }
-"""The words for what follows the last of several strikes in time."""
 
-VERDICTS: Final = {
+VERDICTS: Final = {  # the words for each verdict on a contact set
     ModeVerdict.UNIQUE: "has one consistent mode",
     ModeVerdict.INDETERMINATE: "has several consistent modes, of which mechanics selects none",
     ModeVerdict.INCONSISTENT: "has no consistent mode: an impact without approach resolves it",
     ModeVerdict.IMPACT: "approaches: modes apply only after the impact",
     ModeVerdict.UNDECIDED: "has modes that may be incomplete",
 }
-"""The words for each verdict on a contact set."""
 
-CERTAINTIES: Final = {
+CERTAINTIES: Final = {  # the words for answers to static questions
     Certainty.NO: "no",
     Certainty.POSSIBLE: "possible",
     Certainty.CERTAIN: "certain",
     Certainty.UNKNOWN: "unknown",
 }
-"""The words for answers to static questions."""
 
 
-TOSS_ENDS: Final = {
+TOSS_ENDS: Final = {  # what the body does at the end of a toss
     TossEnd.RESTS: "rests",
     TossEnd.HORIZON: "still moves at the horizon",
     TossEnd.MAX_EVENTS: "exceeds the maximum number of events or steps",
 }
-"""What the body does at the end of a toss."""
 
-UNDECIDED: Final = {
+UNDECIDED: Final = {  # the words for why mechanics does not decide
     UndecidedReason.STRIKE_TOGETHER: "simultaneous impacts",
     UndecidedReason.SEVERAL_MODES: "several modes are consistent",
 }
-"""The words for why mechanics does not decide."""
 
-BRANCHES: Final = {
+BRANCHES: Final = {  # the words for what happens on a branch of the tree
     BranchKind.STRIKES: "strikes",
     BranchKind.STAYS: "stays in contact",
     BranchKind.FLIES: "meets nothing",
     BranchKind.ENDS: "no further strike",
 }
-"""The words for what happens on a branch of the tree."""
 
 
 def tumbling_in_words(answer: TumblingAnswer) -> list[str]:

@@ -39,12 +39,11 @@ if TYPE_CHECKING:
 RATE: Final = 148.0  # rate of the frames, Hz
 HALF_SIDE: Final = 0.0524  # half the side of the cube, m
 
-CUBE: Final = Body(
+CUBE: Final = Body(  # the cube, with its mass in kg and its inertia in kg m^2
     name="cube",
     mass_properties=MassProperties(mass=0.37, I_B=np.diag([8.1e-4] * 3)),
     vertices_B=box_vertices((2.0 * HALF_SIDE,) * 3),
 )
-"""The cube, with its mass in kg and its inertia in kg m^2."""
 
 BOARD: Final = Surface(
     name="board", p_WS_W=np.zeros(3), normal_W=np.array([0.0, 0.0, 1.0]), friction=0.18, restitution=0.125

@@ -97,35 +97,25 @@ class EventKind(Enum):
 class FoundEvent(MeasuredState):
     """One event of one body, with the state then: of an impact, ``duration`` later.
 
-    Attributes:
-        kind: What happened.
-        body: The body's name.
-        surface: The surface's name; empty for a flight.
-        since: s after the epoch. For a flight, a rest and a slide its beginning; otherwise that of the flight
-            before.
-        first_sample: The sample at ``since``: no state before it belongs to a question about this event.
-        time: s after the epoch, when it is compared: near the end of a flight, a rest or a slide; the time of
-            a landing or an impact.
-        time_ns: The same as a stamp, ns.
-        time_std: Standard deviation of ``time``, s; zero where it is that of a sample.
-        gap: m, height of the body's lowest point above the surface then; negative below it.
-            It is None without a flat.
-        duration: s, from the first contact of an impact to the beginning of the flight after it; 0 otherwise.
-        mode: The letters of the contacts of a rest or a slide, as measured; empty otherwise.
-        several: Whether an impact may be that of several corners: another one was lower than `ALONE` of the
-            body's size above the lowest one, or more than one frame lies between both flights.
+    Its ``time``, s after the epoch, is when it is compared: near the end of a flight, a rest or a slide, and
+    at a landing or an impact.
     """
 
-    kind: EventKind
-    body: str
-    surface: str
+    kind: EventKind  # what happened
+    body: str  # the body's name
+    surface: str  # the surface's name; empty for a flight
+    # s after the epoch. For a flight, a rest and a slide its beginning; otherwise that of the flight before.
     since: float
-    first_sample: int
-    time_ns: int
-    time_std: float
+    first_sample: int  # the sample at ``since``: no state before it belongs to a question about this event
+    time_ns: int  # the same as a stamp, ns
+    time_std: float  # standard deviation of ``time``, s; zero where it is that of a sample
+    # m, height of the body's lowest point above the surface then, below it negative; None without a flat.
     gap: float | None = None
+    # s, from the first contact of an impact to the beginning of the flight after it; 0 otherwise.
     duration: float = 0.0
-    mode: str = ""
+    mode: str = ""  # the letters of the contacts of a rest or a slide, as measured; empty otherwise
+    # Whether an impact may be that of several corners: another one was lower than `ALONE` of the body's size
+    # above the lowest one, or more than one frame lies between both flights.
     several: bool = False
 
     def asked_ns(self, horizon: float) -> int:

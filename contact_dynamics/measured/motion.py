@@ -48,33 +48,23 @@ _MEDIAN: Final = 0.6745  # median of the absolute value of a standard normal var
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class MeasuredMotion(Record):
-    """One body's states without gaps; sample k is row k of each array.
+    """One body's states without gaps; sample k is row k of each array."""
 
-    Attributes:
-        body: The body, with its shape. world: The world that the body moves in. epoch_ns: The stamp from
-        which times count, ns. stamps_ns: (n,), ns, ascending. arrivals_ns: (n,), when each state was known,
-        ns, on the clock of the stamps. times: (n,), s after the epoch. p_WB_W: (n, 3), m, centre of mass in
-        the world. q_WB: (n, 4), unit quaternions x, y, z, w: body coordinates into world coordinates.
-        v_WB_W: (n, 3), m/s, and w_WB_W: (n, 3), rad/s, velocities as published, world axes. covariances:
-        (n, 12, 12), in the order of `UncertainState`, NaN where a state had none; empty if none had one.
-        rate: Rate of the states, Hz. position_noise: Standard deviation of each coordinate of a position, m.
-        orientation_noise: Standard deviation of each component of an orientation's rotation error, rad.
-    """
-
-    body: Body
-    world: World
-    epoch_ns: int
-    stamps_ns: IntArray
-    arrivals_ns: IntArray
-    times: FloatArray
-    p_WB_W: FloatArray
-    q_WB: FloatArray
-    v_WB_W: FloatArray
-    w_WB_W: FloatArray
+    body: Body  # with its shape
+    world: World  # the world that the body moves in
+    epoch_ns: int  # the stamp from which times count, ns
+    stamps_ns: IntArray  # (n,), ns, ascending
+    arrivals_ns: IntArray  # (n,), when each state was known, ns, on the clock of the stamps
+    times: FloatArray  # (n,), s after the epoch
+    p_WB_W: FloatArray  # (n, 3), m, centre of mass in the world
+    q_WB: FloatArray  # (n, 4), unit quaternions x, y, z, w: body coordinates into world coordinates
+    v_WB_W: FloatArray  # (n, 3), m/s, as published, world axes
+    w_WB_W: FloatArray  # (n, 3), rad/s, as published, world axes
+    # (n, 12, 12), as in `UncertainState`, NaN where a state had none; empty if none had one.
     covariances: FloatArray
-    rate: float
-    position_noise: float
-    orientation_noise: float
+    rate: float  # rate of the states, Hz
+    position_noise: float  # standard deviation of each coordinate of a position, m
+    orientation_noise: float  # that of each component of an orientation's rotation error, rad
 
     def __post_init__(self) -> None:
         """Refuse a world that moves."""

@@ -125,7 +125,7 @@ COLUMNS: Final = ("t", "px", "py", "pz", "qx", "qy", "qz", "qw", "vx", "vy", "vz
 DECIMALS: Final = (9, *(6,) * 3, *(6,) * 4, *(4,) * 3, *(4,) * 3)
 """Number of decimals of each column: 1 ns, 1 um, 1e-6 (2 urad), 0.1 mm/s, 0.1 mrad/s."""
 
-UNITS: Final = {
+UNITS: Final = {  # the header's names, all required, and their units
     "source": "",
     "body": "",
     "mass": "kg",
@@ -140,7 +140,6 @@ UNITS: Final = {
     "position_noise": "m",
     "orientation_noise": "rad",
 }
-"""The header's names, all required, and their units."""
 
 _HEADER_LINE: Final = re.compile(r"# (\w+)(?: \[([^\]]*)\])?: (.*)")
 

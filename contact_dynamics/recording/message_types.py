@@ -27,11 +27,10 @@ if TYPE_CHECKING:
     from contact_dynamics.recording.bag_reader import LoggedMessage
 
 
-PRIMITIVES: Final = {
+PRIMITIVES: Final = {  # the types of one number, and what the `struct` module calls each
     "bool": "?", "byte": "B", "char": "B", "int8": "b", "uint8": "B", "int16": "h", "uint16": "H",
     "int32": "i", "uint32": "I", "int64": "q", "uint64": "Q", "float32": "f", "float64": "d",
 }  # fmt: skip
-"""The types of one number, and what the `struct` module calls each."""
 
 _HEADING: Final = re.compile(r"^=+\r?\nMSG: (\S+)\r?$", re.MULTILINE)
 _LINE: Final = re.compile(
@@ -91,10 +90,9 @@ class Message:
         return array(code) if field.count is None else np.zeros(field.count, dtype=code)
 
 
-PYTHON_TYPES: Final = {
+PYTHON_TYPES: Final = {  # what Python calls a number of each of `PRIMITIVES`
     name: {"?": bool, "f": float, "d": float}.get(code, int) for name, code in PRIMITIVES.items()
 }
-"""What Python calls a number of each of `PRIMITIVES`."""
 
 
 @lru_cache(maxsize=256)

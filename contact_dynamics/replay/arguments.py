@@ -18,14 +18,13 @@ TABLE: Final = "table"
 VIEW: Final = "view"
 PUBLISH: Final = "publish"
 
-MODES: Final = {
+MODES: Final = {  # what `replay` can do with a log
     VERIFY: "recompute every logged answer and compare it (the default mode)",
     INFO: "list topics, bodies, time span, and requests by service and status",
     TABLE: "write one row per question: request, answer and later measurement",
     VIEW: "draw states and answers in rerun, live or to a file",
     PUBLISH: "publish the states over ROS, and optionally repeat the questions",
 }
-"""What `replay` can do with a log."""
 
 QUESTIONS: Final = ("landing", "impact", "modes")
 """What can be asked of a recording that holds no questions."""

@@ -116,14 +116,13 @@ def check_definitions(path: Path, definitions: Mapping[str, str], version: str |
         )
 
 
-_PACKAGES: Final = (
+_PACKAGES: Final = (  # `msg_adapters` imports messages from these modules
     "builtin_interfaces.msg",
     "contact_dynamics_interfaces.msg",
     "contact_dynamics_interfaces.srv",
     "geometry_msgs.msg",
     "nav_msgs.msg",
 )
-"""`msg_adapters` imports messages from these modules."""
 
 _PARTS: Final = ("_Request", "_Response", EVENT_SUFFIX)
 

@@ -110,7 +110,7 @@ class _Page(NamedTuple):
     below_scene: str = ""
 
 
-_PAGES: Final = {
+_PAGES: Final = {  # the page of each question, by what there is to see
     PREDICTED: _Page("Flight", ((POINSOT,),), (HEIGHT, SPEED, ERROR)),
     IMPACTS: _Page(
         "Impact",
@@ -132,7 +132,6 @@ _PAGES: Final = {
         drawn=(PREDICTED,),
     ),
 }
-"""The page of each question, by what there is to see."""
 
 COLORS_IN_WORDS: Final = "solid: measured, orange: predicted, red: impact, violet: friction cone"
 """The short legend, in the title of each scene."""
