@@ -23,6 +23,7 @@ from contact_dynamics.monitoring.run import model_error_of
 from contact_dynamics.nodes.arguments import live_monitor_parser
 from contact_dynamics.nodes.managed_node import ManagedNode
 from contact_dynamics.nodes.monitor_parameters import CALIBRATION, MONITOR_NAME, MONITOR_PARAMETERS
+from contact_dynamics.nodes.parameter_reader import ConfigurationError
 from contact_dynamics.nodes.receiving import Receiving
 from contact_dynamics.nodes.running import run_node
 from contact_dynamics.nodes.service_front import EVENT_QOS
@@ -181,6 +182,9 @@ class LiveMonitor(ManagedNode):
 
     def make_work(self, configuration: ServerParameters, run: Mapping[str, str]) -> Monitoring:
         """Return what monitors while the node is active."""
+        if not any(body.sources for body in configuration.sources):
+            message = "body.NAME.odometry_topic, or another topic of states, is required for one body"
+            raise ConfigurationError(message)
         path: str = self.get_parameter(CALIBRATION).value
         error = model_error_of(Path(path), CALIBRATION) if path else ModelError()
         return Monitoring(self, configuration, run=run, error=error)

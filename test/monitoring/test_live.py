@@ -216,6 +216,7 @@ def test_a_monitor_that_is_not_active_receives_and_publishes_nothing(tmp_path: P
     ("parameters", "words"),
     [
         ({"calibration": "nowhere.json"}, "calibration must be a readable file that calibrate --json"),
+        ({"body.brick.odometry_topic": ""}, "odometry_topic, or another topic of states, is required"),
         ({"surface.floor.restitution": 1.5}, "surface.floor.restitution must be"),
         ({"calibartion": ""}, "calibartion: there is no such parameter; the nearest is calibration"),
     ],
