@@ -3,11 +3,12 @@
 
 from __future__ import annotations
 
+import os
 import re
 import subprocess
 import time
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
@@ -18,6 +19,7 @@ from geometry_msgs.msg import Point
 from nav_msgs.msg import Odometry
 
 from contact_dynamics.demo.processes import claim_domain
+from contact_dynamics.nodes.log import Log
 from contact_dynamics.nodes.situations import Level, Part, Situation
 from contact_dynamics_interfaces.srv import PredictImpact
 from msg_adapters.stamps import stamp_to_msg
@@ -25,19 +27,33 @@ from running_server import ROOT, Client, process
 
 
 def odometry(
-    *,
-    ahead_ns: int = 0,
-    frame: str = "world",
-    child: str = "brick",
-    x: float = 0.0,
-    is_stamped: bool = True,
+    stamp_ns: int | None = None, *, frame: str = "world", child: str = "brick", x: float = 0.0
 ) -> Odometry:
+    """A state a metre up, now unless it says when."""
     msg = Odometry(child_frame_id=child)
     msg.pose.pose.position = Point(check_fields=False)  # ``x`` may be an int, as where nobody checks
     msg.header.frame_id = frame
-    msg.header.stamp = stamp_to_msg(time.time_ns() + ahead_ns if is_stamped else 0)
-    msg.pose.pose.position.x = x
+    msg.header.stamp = stamp_to_msg(time.time_ns() if stamp_ns is None else stamp_ns)
+    msg.pose.pose.position.x, msg.pose.pose.position.z = x, 1.0
     return msg
+
+
+def hang(log: Log) -> Callable[[], None]:
+    """Let each write of a log block, as a disk does that hangs; return what lets the one that hangs fail."""
+    full, writing = os.pipe()
+    os.set_blocking(writing, False)
+    with suppress(BlockingIOError):
+        while True:
+            os.write(writing, bytes(4096))
+    os.set_blocking(writing, True)
+    assert log._recorder is not None
+    os.dup2(writing, log._recorder._writer._file._file._descriptor)
+
+    def fail() -> None:
+        os.close(full)
+        os.close(writing)
+
+    return fail
 
 
 def hard() -> PredictImpact.Request:

@@ -10,7 +10,7 @@ import pytest
 import yaml
 
 from contact_dynamics.cases import CASES
-from nodes.test_documented_requests import fill
+from nodes.test_same_question import filled
 from running_server import SERVICES, Client
 
 SETTINGS = [(name, setting) for name, case in CASES.items() for setting in case.settings]
@@ -29,7 +29,7 @@ def test_the_service_gives_the_exact_number(client: Client, name: str, setting: 
     case = CASES[name]
     service_name, path = case.answer.split(".", maxsplit=1)
     (service,) = (one for one, address in SERVICES.items() if address.endswith(f"/{service_name}"))
-    response = client.ask(fill(service.Request(), yaml.safe_load(case.request_text(setting))))
+    response = client.ask(filled(service.Request(), yaml.safe_load(case.request_text(setting))))
     assert (response.status, response.message) == (response.OK, "")
     exact, tolerance = case.answer_of(setting)
     assert abs(field(response, path) - exact) <= tolerance

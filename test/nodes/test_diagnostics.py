@@ -101,7 +101,7 @@ def test_states_that_are_rejected(monitor: Monitor) -> None:
     def publish() -> None:
         bodies["brick"].publish(frame="map")
         bodies["old"].publish(x=2)
-        bodies["shared"].publish(is_stamped=False)
+        bodies["shared"].publish(stamp_ns=0)
         for wrong in ({}, {"frame": "map"}, {}):
             bodies["twice"].publish(**wrong)
 
@@ -150,7 +150,7 @@ def test_each_situation_of_states_is_reported_as_long_as_its_cause_is_there(moni
     def publish() -> None:
         for name in ("brick", "late", "split", "shared", "twice"):
             bodies[name].publish_good()
-        bodies["old"].publish(ahead_ns=-HOUR_NS)
+        bodies["old"].publish(stamp_ns=time.time_ns() - HOUR_NS)
         bodies["turned"].publish_turned(is_right=False)
         bodies["pair"].publish_pair(apart_ns=1_000_003)
 

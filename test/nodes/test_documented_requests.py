@@ -24,6 +24,7 @@ from contact_dynamics_interfaces.srv import (
     PredictTumbling,
     PredictTumblingBatch,
 )
+from nodes.test_same_question import filled
 from running_server import ROOT, SERVICES, Client
 
 README = (ROOT / "contact_dynamics_interfaces" / "README.md").read_text(encoding="utf-8")
@@ -40,19 +41,6 @@ COUNTS = {
     PredictTumblingBatch: 1,
     PredictContactModeBatch: 1,
 }
-
-
-def fill(msg: Any, fields: dict[str, Any]) -> Any:
-    """Set the fields of a message as `ros2 service call` does."""
-    for name, value in fields.items():
-        field = getattr(msg, name)
-        if isinstance(value, dict):
-            fill(field, value)
-        elif name == "other_state":
-            setattr(msg, name, [fill(type(msg.state)(), state) for state in value])
-        else:
-            setattr(msg, name, value)
-    return msg
 
 
 @pytest.mark.parametrize(
@@ -89,7 +77,7 @@ def fill(msg: Any, fields: dict[str, Any]) -> Any:
 def test_what_newcomers_type_gets_the_field_that_they_meant(
     client: Client, service: Any, typed: str, words: str
 ) -> None:
-    answer = client.ask(fill(service.Request(), yaml.safe_load(typed)))
+    answer = client.ask(filled(service.Request(), yaml.safe_load(typed)))
     assert answer.status == answer.INVALID_FIELD
     assert words in answer.message
 
@@ -100,7 +88,7 @@ def test_what_newcomers_type_gets_the_field_that_they_meant(
 def test_a_number_may_be_left_out_and_zero_is_zero(client: Client, given: str, status: str) -> None:
     """The server's own horizon is 10 s; the brick lands after 0.3 s."""
     typed = f"{{body_name: brick, state_source: 1, state: {{pose: {{position: {{z: 0.5}}}}}}, {given}}}"
-    answer = client.ask(fill(PredictImpact.Request(), yaml.safe_load(typed)))
+    answer = client.ask(filled(PredictImpact.Request(), yaml.safe_load(typed)))
     assert answer.status == getattr(answer, status), answer.message
 
 
@@ -204,7 +192,7 @@ def test_each_is_answered_as_stated(
 ) -> None:
     (service,) = (service for service in SERVICES if service.__name__ == type_name)
     assert SERVICES[service] == name
-    request = fill(service.Request(), yaml.safe_load(request_text))
+    request = filled(service.Request(), yaml.safe_load(request_text))
     answer = client.ask(request)
     assert answer.status == answer.OK, answer.message
     has_margins = any(getattr(request, f"include_{what}", False) for what in ("margins", "statics"))
@@ -235,7 +223,7 @@ def test_a_request_of_another_page_is_answered(
 ) -> None:
     (service,) = (service for service in SERVICES if service.__name__ == type_name)
     assert SERVICES[service] == name
-    answer = client.ask(fill(service.Request(), yaml.safe_load(request_text)))
+    answer = client.ask(filled(service.Request(), yaml.safe_load(request_text)))
     expected = answer.NO_STATE if page == WITHOUT_STATE else answer.OK
     assert answer.status == expected, answer.message
 
@@ -254,7 +242,7 @@ TO_SET = [
 
 def takes(service: Any, fields: dict[str, Any]) -> bool:
     try:
-        fill(service.Request(), fields)
+        filled(service.Request(), fields)
     except AssertionError:  # of ROS's own checks, which refuse a number where a list is meant
         return False
     return True

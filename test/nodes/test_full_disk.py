@@ -13,7 +13,6 @@ import re
 import resource
 import subprocess
 import time
-from contextlib import suppress
 from pathlib import Path
 
 import pytest
@@ -28,7 +27,7 @@ from contact_dynamics.recording.bag_writer import Gap
 from contact_dynamics.recording.limits import UNLIMITED
 from contact_dynamics_interfaces.srv import PredictTumbling
 from msg_adapters.stamps import stamp_ns_from_msg
-from nodes.monitor import monitored, odometry
+from nodes.monitor import hang, monitored, odometry
 from running_server import PATIENCE_S
 
 BEGIN = bytes([0, 1, 0, 0])  # of each serialised message
@@ -105,15 +104,11 @@ def test_each_kind_of_problem_of_the_log_is_reported_while_it_is_there(tmp_path:
     log.record("/pose", bytes(1_000_000_000))
     (rejecting,) = log.present()
     assert "a message of 1000000200 bytes is not logged" in rejecting.text
-    full, writing = os.pipe()
-    fill(writing)
-    assert log._recorder is not None
-    os.dup2(writing, log._recorder._writer._file._file._descriptor)  # the disk, which now blocks each write
+    fail = hang(log)  # the disk, which now blocks each write
     for _ in range(70):
         log.record("/pose", BEGIN + os.urandom(1_000_000))
     wait_for(log, Situation.LOG_DROPPING)
-    os.close(full)  # the write that hangs fails now
-    os.close(writing)
+    fail()
     wait_for(log, Situation.LOG_INTERRUPTED)
     deadline = time.monotonic() + PATIENCE_S
     while not resumed:
@@ -138,11 +133,3 @@ def wait_for(log: Log, situation: Situation) -> None:
     while not any(words in each.text and each.level is situation.value.level for each in log.present()):
         assert time.monotonic() < deadline
         time.sleep(0.01)
-
-
-def fill(pipe: int) -> None:
-    os.set_blocking(pipe, False)
-    with suppress(BlockingIOError):
-        while True:
-            os.write(pipe, bytes(4096))
-    os.set_blocking(pipe, True)

@@ -3,9 +3,7 @@
 
 from __future__ import annotations
 
-import os
 import time
-from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +19,7 @@ from contact_dynamics.recording.cdr import EventType, event_info
 from contact_dynamics.recording.limits import UNLIMITED
 from contact_dynamics.replay.verify import verify_log
 from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact, PredictTumbling
+from nodes.monitor import hang
 from running_server import PATIENCE_S, ROOT, SERVICES, Client, process
 
 TUMBLING = SERVICES[PredictTumbling]
@@ -115,10 +114,7 @@ def test_a_disk_that_hangs_is_told_of_and_not_waited_for_again(tmp_path: Path) -
     log.start()
     log.settle()
     assert told == []
-    full, writing = os.pipe()
-    fill(writing)
-    assert log._recorder is not None
-    os.dup2(writing, log._recorder._writer._file._file._descriptor)  # the disk, which now blocks each write
+    fail = hang(log)  # the disk, which now blocks each write
     waited = []
     for _ in range(5):
         log.record("/pose", bytes([0, 1, 0, 0]) + bytes(56))
@@ -129,17 +125,8 @@ def test_a_disk_that_hangs_is_told_of_and_not_waited_for_again(tmp_path: Path) -
     assert min(waited[1:]) < 0.1  # the least of four, because a busy machine may let any of them wait
     assert told == ["the disk took longer than 1 s: for 10 s, answers leave before they are on it"]
     assert log.present() == [Situation.LOG_NOT_AWAITED.present()]
-    os.close(full)  # the write that hangs fails now
-    os.close(writing)
+    fail()
     log.close()
-
-
-def fill(pipe: int) -> None:
-    os.set_blocking(pipe, False)
-    with suppress(BlockingIOError):
-        while True:
-            os.write(pipe, bytes(4096))
-    os.set_blocking(pipe, True)
 
 
 def is_response(data: bytes) -> bool:

@@ -17,6 +17,7 @@ from contact_dynamics_interfaces.msg import BodyStates
 from contact_dynamics_interfaces.srv import PredictTumbling, PredictTumblingBatch
 from message_words import says
 from msg_adapters.stamps import stamp_to_msg
+from nodes.monitor import odometry
 from running_server import ROOT, Client, process
 
 HOUR_NS = 3_600_000_000_000
@@ -30,12 +31,6 @@ ARGUMENTS = (
     *("--params-file", str(ROOT / "config" / "server.yaml"), "--ros-args", "-p", "use_sim_time:=true"),
     *(each for parameter in PARCEL for each in ("-p", parameter)),
 )
-
-
-def odometry(stamp_ns: int, *, frame: str = "world") -> Odometry:
-    msg = Odometry(child_frame_id="brick")
-    msg.header.frame_id, msg.header.stamp = frame, stamp_to_msg(stamp_ns)
-    return msg
 
 
 def asked(client: Client, body_name: str) -> Any:

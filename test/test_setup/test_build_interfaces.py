@@ -12,28 +12,22 @@ from pathlib import Path
 
 import pytest
 
-REPOSITORY = Path(__file__).parents[2]
-BUILD = REPOSITORY / "setup" / "build_interfaces.sh"
+from test_setup.programs import ROOT, SETUP, run, script
 
 
 def build(folder: Path, building: str) -> subprocess.CompletedProcess[str]:
     """Run the script with a shell text in place of what cmake does when it builds."""
     programs = folder / "programs"
     venv = folder / "an environment"
-    for each in (programs, venv):
-        each.mkdir()
+    venv.mkdir()
     for name in ("cmake", "ninja"):
-        program = programs / name
-        program.write_text(
-            f'#!/bin/sh\ncase $1 in --version) echo "version 3.28";; --build) {building};; '
-            '--install) : >"$2/install_manifest.txt";; esac\n',
-            encoding="utf-8",
+        script(
+            programs / name,
+            f'case $1 in --version) echo "version 3.28";; --build) {building};; '
+            '--install) : >"$2/install_manifest.txt";; esac',
         )
-        program.chmod(0o755)
     environment = {"PATH": f"{programs}:{os.environ['PATH']}", "PROGRESS_PERIOD_S": "0.2"}
-    return subprocess.run(
-        [BUILD, venv], env=os.environ | environment, capture_output=True, text=True, timeout=300, check=False
-    )
+    return run(SETUP / "build_interfaces.sh", venv, env=os.environ | environment)
 
 
 def test_a_long_build_shows_that_it_lives(tmp_path: Path) -> None:
@@ -59,11 +53,11 @@ def test_a_folder_that_a_shell_would_take_apart_builds_and_is_cleared(tmp_path: 
     folder = tmp_path / "Bob's work (new) & more"
     package = folder / "contact_dynamics_interfaces"
     for name in ("setup", "cmake"):
-        shutil.copytree(REPOSITORY / name, folder / name)
+        shutil.copytree(ROOT / name, folder / name)
     (package / "msg").mkdir(parents=True)
     for name in ("CMakeLists.txt", "package.xml"):
-        shutil.copy(REPOSITORY / "contact_dynamics_interfaces" / name, package)
-    shutil.copy(REPOSITORY / "LICENSE", folder)
+        shutil.copy(ROOT / "contact_dynamics_interfaces" / name, package)
+    shutil.copy(ROOT / "LICENSE", folder)
     (package / "msg" / "First.msg").write_text("float64 value\n", encoding="utf-8")
     venv = folder / ".venv"
     libraries = Path("lib", f"python{sys.version_info[0]}.{sys.version_info[1]}", "site-packages")
@@ -73,8 +67,7 @@ def test_a_folder_that_a_shell_would_take_apart_builds_and_is_cleared(tmp_path: 
     shutil.copytree(Path(sys.prefix) / "share" / "ament_index", venv / "share" / "ament_index")
 
     def installed() -> set[str]:
-        program = [folder / "setup" / "build_interfaces.sh", venv]
-        answer = subprocess.run(program, capture_output=True, text=True, timeout=300, check=False)
+        answer = run(folder / "setup" / "build_interfaces.sh", venv)
         assert answer.returncode == 0, answer.stderr
         return {
             each.stem
@@ -84,8 +77,7 @@ def test_a_folder_that_a_shell_would_take_apart_builds_and_is_cleared(tmp_path: 
     assert installed() == {"_first"}
     (package / "msg" / "First.msg").rename(package / "msg" / "Second.msg")
     assert installed() == {"_second"}
-    pack = [venv / "bin" / "python", folder / "setup" / "interfaces_wheel.py", tmp_path]
-    subprocess.run(pack, check=True, timeout=300)
+    run(venv / "bin" / "python", folder / "setup" / "interfaces_wheel.py", tmp_path, check=True)
     (wheel,) = tmp_path.glob("contact_dynamics_interfaces-*.whl")
     with zipfile.ZipFile(wheel) as packed:
         names = packed.namelist()

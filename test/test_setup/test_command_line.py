@@ -17,8 +17,8 @@ from contact_dynamics.nodes.monitor_parameters import MONITOR_PARAMETERS
 from contact_dynamics.nodes.parameters import described_server_parameters
 from contact_dynamics.nodes.visualizer_parameters import VISUALIZER_PARAMETERS
 from contact_dynamics.recording import BagWriter
+from test_setup.programs import ROOT, run
 
-ROOT = Path(__file__).parents[2]
 BROUGHT = ("numpy", "numpy.libs", "scipy", "scipy.libs", "mcap", "lz4", "zstandard", "typing_extensions.py")
 OPTIONS = {
     "cases": ["--list", "--published", "--without-mujoco", "NAME"],
@@ -78,15 +78,7 @@ class WithoutRos:
 
     def run(self, *arguments: str) -> subprocess.CompletedProcess[str]:
         """Run Python."""
-        return subprocess.run(
-            [sys.executable, "-S", *arguments],  # -S: no site-packages
-            cwd=ROOT,
-            env=self._environment,
-            capture_output=True,
-            text=True,
-            timeout=300,
-            check=False,
-        )
+        return run(sys.executable, "-S", *arguments, cwd=ROOT, env=self._environment)  # -S: no site-packages
 
 
 @pytest.fixture
@@ -158,13 +150,7 @@ def test_a_shell_can_complete_verbs_and_options(tmp_path: Path, line: str, offer
         "COMP_LINE": line,
         "COMP_POINT": str(len(line)),
     }
-    subprocess.run(
-        [sys.executable, "-m", "contact_dynamics"],
-        cwd=ROOT,
-        env={**os.environ, **asked},
-        timeout=300,
-        check=True,
-    )
+    run(sys.executable, "-m", "contact_dynamics", cwd=ROOT, env={**os.environ, **asked}, check=True)
     assert [word.strip() for word in told.read_text().split("\n")] == offered
 
 
@@ -226,7 +212,7 @@ def test_a_reader_of_the_output_that_goes_ends_a_verb_without_a_word(
 
 def test_the_quick_start_names_every_verb() -> None:
     page = (ROOT / "docs" / "quick-start-ros.md").read_text(encoding="utf-8")
-    named = page.split("The commands are ")[1].split("--help")[0]
+    named = page.split("has the subcommands ")[1].split("--help")[0]
     assert [verb for verb in VERBS if f"{verb}`" not in named] == []
 
 
@@ -256,14 +242,7 @@ def test_verbs_use_one_thread_of_linear_algebra_unless_more_are_asked_for() -> N
 
     def threads(**asked: str) -> int:
         given = {key: value for key, value in os.environ.items() if not key.endswith("_NUM_THREADS")}
-        done = subprocess.run(
-            [sys.executable, "-c", program],
-            cwd=ROOT,
-            env={**given, **asked},
-            capture_output=True,
-            text=True,
-            check=True,
-        )
+        done = run(sys.executable, "-c", program, cwd=ROOT, env={**given, **asked}, check=True)
         return int(done.stdout.splitlines()[-1])
 
     assert threads() == 1

@@ -10,30 +10,20 @@ from pathlib import Path
 
 import pytest
 
-INSTALL = Path(__file__).parents[2] / "setup" / "install.sh"
+from test_setup.programs import SETUP, run, script
 
 
 def environment_with(folder: Path, python: str) -> Path:
     """A folder in which the script takes a shell text for Python."""
     venv = folder / "an environment"
-    (venv / "bin").mkdir(parents=True)
-    (venv / ".made").mkdir()
-    program = venv / "bin" / "python"
-    program.write_text(f"#!/bin/sh\n{python}\n", encoding="utf-8")
-    program.chmod(0o755)
+    (venv / ".made").mkdir(parents=True)
+    script(venv / "bin" / "python", python)
     return venv
 
 
 def install(venv: Path, *arguments: str, **environment: str) -> subprocess.CompletedProcess[str]:
     """Run the script."""
-    return subprocess.run(
-        [INSTALL, venv, *arguments],
-        env=os.environ | environment,
-        capture_output=True,
-        text=True,
-        timeout=300,
-        check=False,
-    )
+    return run(SETUP / "install.sh", venv, *arguments, env=os.environ | environment)
 
 
 def test_no_network_is_said_plainly(tmp_path: Path) -> None:

@@ -11,15 +11,7 @@ from pathlib import Path
 
 import pytest
 
-SETUP = Path(__file__).parents[2] / "setup"
-
-
-def script(path: Path, text: str) -> Path:
-    """An executable shell script."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(f"#!/bin/sh\n{text}\n", encoding="utf-8")
-    path.chmod(0o755)
-    return path
+from test_setup.programs import SETUP, run, script
 
 
 def pretender(folder: Path, name: str, pretence: str) -> Path:
@@ -29,8 +21,7 @@ def pretender(folder: Path, name: str, pretence: str) -> Path:
 
 def check(python: Path | str, **environment: str) -> subprocess.CompletedProcess[str]:
     """Ask the script about this machine and a Python."""
-    command = [SETUP / "check_machine.sh", python]
-    return subprocess.run(command, env=os.environ | environment, capture_output=True, text=True, check=False)
+    return run(SETUP / "check_machine.sh", python, env=os.environ | environment)
 
 
 def test_missing_compilers_are_named_together(tmp_path: Path) -> None:
@@ -105,8 +96,7 @@ class Maker:
 
     def __call__(self, *python: Path) -> subprocess.CompletedProcess[str]:
         """Run the script, with the Python that was asked for by name, if one was."""
-        command = [self._folder / "setup" / "make_venv.sh", self.venv, *python]
-        return subprocess.run(command, capture_output=True, text=True, check=False)
+        return run(self._folder / "setup" / "make_venv.sh", self.venv, *python)
 
 
 @pytest.fixture

@@ -7,7 +7,6 @@ import ast
 import os
 import re
 import shutil
-import subprocess
 import sys
 import tarfile
 from functools import cache
@@ -20,8 +19,8 @@ from catkin_pkg.package_version import get_forthcoming_label, rename_section
 from catkin_pkg.packages import find_packages
 
 from contact_dynamics.command_line import VERBS
+from test_setup.programs import ROOT, SETUP, run
 
-ROOT = Path(__file__).parents[2]
 MANIFESTS = (ROOT / "package.xml", ROOT / "contact_dynamics_interfaces" / "package.xml")
 OWN = {"contact_dynamics", "msg_adapters", "benchmarks", *(path.stem for path in (ROOT / "test").iterdir())}
 
@@ -138,16 +137,13 @@ def test_each_package_has_a_changelog_that_a_release_can_read(manifest: Path) ->
 
 
 def test_setup_py_takes_the_version_from_package_xml() -> None:
-    command = [sys.executable, "setup.py", "--version"]
-    answer = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True)
-    assert answer.stdout.split()[-1] == ET.parse(MANIFESTS[0]).getroot().findtext("version")
+    assert described("version") == [ET.parse(MANIFESTS[0]).getroot().findtext("version")]
 
 
 def described(*fields: str) -> list[str]:
     """What setup.py says of some fields of the metadata, line by line."""
     command = [sys.executable, "setup.py", "-q", *(f"--{field}" for field in fields)]
-    answer = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True)
-    return answer.stdout.splitlines()
+    return run(*command, cwd=ROOT, check=True).stdout.splitlines()
 
 
 def test_the_metadata_describe_the_package_and_invent_nobody() -> None:
@@ -168,8 +164,7 @@ def test_the_metadata_describe_the_package_and_invent_nobody() -> None:
 )
 def test_an_sdist_holds_the_project_and_installs(tmp_path: Path, plain: str, suffixes: set[str]) -> None:
     """To compile the core takes a minute. What it is compiled from is what `make setup` compiles."""
-    command = ["git", "ls-files", "--cached", "--others", "--exclude-standard"]
-    listed = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+    listed = run("git", "ls-files", "--cached", "--others", "--exclude-standard", cwd=ROOT)
     if listed.returncode:
         pytest.skip("NOT RUN: what git has cannot be compared with, because this is no clone")
     files = {name for name in listed.stdout.splitlines() if (ROOT / name).exists()}
@@ -177,8 +172,7 @@ def test_an_sdist_holds_the_project_and_installs(tmp_path: Path, plain: str, suf
     for name in files:
         (checkout / name).parent.mkdir(parents=True, exist_ok=True)
         shutil.copy(ROOT / name, checkout / name)
-    command = [sys.executable, "setup.py", "-q", "sdist", "--formats=gztar"]
-    subprocess.run(command, cwd=checkout, capture_output=True, check=True)
+    run(sys.executable, "setup.py", "-q", "sdist", "--formats=gztar", cwd=checkout, check=True)
     (archive,) = (checkout / "dist").iterdir()
     with tarfile.open(archive) as packed:
         assert files - {name.partition("/")[2] for name in packed.getnames()} == set()
@@ -190,26 +184,12 @@ def test_an_sdist_holds_the_project_and_installs(tmp_path: Path, plain: str, suf
         assert re.search(pin, metadata.read().decode(), re.MULTILINE)
     installed = tmp_path / "installed"
     install = [sys.executable, "-m", "pip", "install", "-q", "--no-deps", "--no-build-isolation"]
-    done = subprocess.run(
-        [*install, "--no-index", "--no-compile", "--target", installed, archive],
-        env={**os.environ, "CONTACT_DYNAMICS_PLAIN": plain},
-        capture_output=True,
-        text=True,
-        check=False,
-    )
+    install += ["--no-index", "--no-compile", "--target", str(installed), str(archive)]
+    done = run(*install, env={**os.environ, "CONTACT_DYNAMICS_PLAIN": plain})
     assert done.returncode == 0, done.stderr
-    answer = subprocess.run(
-        [
-            sys.executable,
-            "-c",
-            "import contact_dynamics.command_line as c; print(c.__file__); c.main(['--help'])",
-        ],
-        cwd=tmp_path,
-        env={**os.environ, "PYTHONPATH": str(installed)},
-        capture_output=True,
-        text=True,
-        check=False,
-    )
+    program = "import contact_dynamics.command_line as c; print(c.__file__); c.main(['--help'])"
+    found = {**os.environ, "PYTHONPATH": str(installed)}
+    answer = run(sys.executable, "-c", program, cwd=tmp_path, env=found)
     assert answer.returncode == 0, answer.stderr
     assert answer.stdout.startswith(str(installed))
     assert "usage: contact-dynamics" in answer.stdout
@@ -223,15 +203,9 @@ def colcon_list(folder: Path, *options: str) -> list[str]:
     """The lines that `colcon list` prints in a folder, where it leaves no log."""
     environment = {name: value for name, value in os.environ.items() if not name.startswith("COLCON_")}
     program = "from colcon_core.command import main; raise SystemExit(main())"
-    answer = subprocess.run(
-        [sys.executable, "-c", program, "list", *options],
-        cwd=folder,
-        env=environment | {"COLCON_LOG_PATH": os.devnull},
-        capture_output=True,
-        text=True,
-        check=True,
-    )
-    return answer.stdout.splitlines()
+    environment["COLCON_LOG_PATH"] = os.devnull
+    command = (sys.executable, "-c", program, "list", *options)
+    return run(*command, cwd=folder, env=environment, check=True).stdout.splitlines()
 
 
 def test_colcon_finds_both_packages_from_the_root() -> None:
@@ -245,8 +219,7 @@ def test_colcon_finds_both_packages_from_the_root() -> None:
 
 
 def test_both_packages_of_a_release_are_found_and_need_nothing_that_pip_alone_has(tmp_path: Path) -> None:
-    script = ROOT / "setup" / "release_trees.sh"
-    done = subprocess.run([script, tmp_path], capture_output=True, text=True, check=False)
+    done = run(SETUP / "release_trees.sh", tmp_path)
     if "not a git repository" in done.stderr:
         pytest.skip("NOT RUN: a release is made of the last commit, and this is no clone")
     assert done.returncode == 0, done.stderr
@@ -308,13 +281,8 @@ def test_ros2_run_finds_an_executable_for_each_verb() -> None:
     assert {path.name for path in executables} == set(VERBS)
     assert all(os.access(path, os.X_OK) for path in executables)
     assert {path.resolve() for path in executables} == {ROOT / "executables" / "server"}
-    answer = subprocess.run(
-        [sys.executable, ROOT / "executables" / "replay", "--help"],
-        env=os.environ | {"PYTHONPATH": os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")])},
-        capture_output=True,
-        text=True,
-        check=False,
-    )
+    path = {"PYTHONPATH": os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")])}
+    answer = run(sys.executable, ROOT / "executables" / "replay", "--help", env=os.environ | path)
     assert answer.returncode == 0, answer.stderr
     assert answer.stdout.startswith("usage: contact-dynamics replay ")
 

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import re
-import subprocess
 import sys
 import zipfile
 from pathlib import Path
@@ -13,7 +12,8 @@ import numpy as np
 import pytest
 import scipy
 
-ROOT = Path(__file__).parents[2]
+from test_setup.programs import ROOT, SETUP, run
+
 LIBRARIES = {str(Path(module.__file__ or "").parents[1]) for module in (np, scipy)}
 
 
@@ -21,8 +21,7 @@ LIBRARIES = {str(Path(module.__file__ or "").parents[1]) for module in (np, scip
 def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The wheel that setup/plain_wheel.sh builds."""
     folder = tmp_path_factory.mktemp("plain wheel")
-    script = [ROOT / "setup" / "plain_wheel.sh", sys.executable, folder]
-    subprocess.run(script, capture_output=True, check=True, timeout=300)
+    run(SETUP / "plain_wheel.sh", sys.executable, folder, check=True)
     (built,) = folder.iterdir()
     return built
 
@@ -37,7 +36,7 @@ def test_it_is_for_every_platform_and_holds_nothing_compiled(wheel: Path) -> Non
 
 def test_it_prints_what_the_readme_shows(wheel: Path, tmp_path: Path) -> None:
     install = [sys.executable, "-m", "pip", "install", "-q", "--no-deps", "--no-index", "--no-compile"]
-    subprocess.run([*install, "--target", tmp_path, wheel], capture_output=True, check=True, timeout=300)
+    run(*install, "--target", tmp_path, wheel, check=True)
     readme = (ROOT / "README.md").read_text(encoding="utf-8")
     example = re.search(r"```python\n(.*?)```", readme, re.DOTALL)
     assert example
@@ -46,9 +45,7 @@ def test_it_prints_what_the_readme_shows(wheel: Path, tmp_path: Path) -> None:
         f"import sys; sys.path[:0] = {[str(tmp_path), *LIBRARIES]!r}\n{example[1]}\nprint(cd.__file__)\n"
         "print(sorted({name.partition('.')[0] for name in sys.modules} & {'rclpy', 'mcap', 'rerun'}))"
     )
-    answer = subprocess.run(
-        [sys.executable, "-I", "-c", program], capture_output=True, text=True, check=False, cwd=tmp_path
-    )
+    answer = run(sys.executable, "-I", "-c", program, cwd=tmp_path)
     assert answer.returncode == 0, answer.stderr
     *printed, file, others = answer.stdout.splitlines()
     assert printed == re.findall(r"#> (.*)", example[1])

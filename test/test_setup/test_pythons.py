@@ -3,28 +3,20 @@
 
 from __future__ import annotations
 
-import subprocess
 import sys
 from pathlib import Path
 
 import pytest
 
-PYTHONS = Path(__file__).parents[2] / "setup" / "pythons.sh"
+from test_setup.programs import SETUP, run, script
+
 VERSION = "{}.{}".format(*sys.version_info[:2])
 
 
 def found(**environment: str) -> tuple[dict[str, str], str]:
     """The program of each version, and what is said of the others."""
-    answer = subprocess.run([PYTHONS], env=environment, capture_output=True, text=True, check=True)
+    answer = run(SETUP / "pythons.sh", env=environment, check=True)
     return dict(line.split("\t") for line in answer.stdout.splitlines()), answer.stderr
-
-
-def program(path: Path, text: str) -> Path:
-    """An executable shell script."""
-    path.parent.mkdir(parents=True)
-    path.write_text(f"#!/bin/sh\n{text}\n", encoding="utf-8")
-    path.chmod(0o755)
-    return path
 
 
 @pytest.fixture
@@ -46,9 +38,9 @@ def real() -> str:
 def test_a_python_is_found_behind_a_shim_that_does_not_run(
     tmp_path: Path, real: str, place: str, setting: str
 ) -> None:
-    shim = program(tmp_path / "shims" / f"python{VERSION}", "echo 'pyenv: command not found' >&2; exit 127")
+    shim = script(tmp_path / "shims" / f"python{VERSION}", "echo 'pyenv: command not found' >&2; exit 127")
     folder = tmp_path / place.format(version=VERSION)
-    python = program(folder / f"python{VERSION}", real)
+    python = script(folder / f"python{VERSION}", real)
     environment = {"PATH": f"{shim.parent}:/usr/bin:/bin", "HOME": str(tmp_path / "home")}
     if setting == "PATH":
         environment["PATH"] = f"{shim.parent}:{folder}:/usr/bin:/bin"
@@ -61,7 +53,7 @@ def test_a_python_is_found_behind_a_shim_that_does_not_run(
 
 def test_a_shim_that_does_not_run_is_no_python(tmp_path: Path) -> None:
     for minor in range(10, 15):
-        program(tmp_path / f"3.{minor}" / f"python3.{minor}", "exit 127")
+        script(tmp_path / f"3.{minor}" / f"python3.{minor}", "exit 127")
     shims = ":".join(str(tmp_path / f"3.{minor}") for minor in range(10, 15))
     programs, missing = found(PATH=f"{shims}:/usr/bin:/bin", HOME=str(tmp_path))
     assert not [path for path in programs.values() if path.startswith(str(tmp_path))]
@@ -71,6 +63,6 @@ def test_a_shim_that_does_not_run_is_no_python(tmp_path: Path) -> None:
 
 def test_a_python_of_another_version_than_its_name_says_is_not_taken(tmp_path: Path, real: str) -> None:
     other = "3.10" if VERSION != "3.10" else "3.11"
-    program(tmp_path / "bin" / f"python{other}", real)
+    script(tmp_path / "bin" / f"python{other}", real)
     programs, _ = found(PATH=f"{tmp_path}/bin:/usr/bin:/bin", HOME=str(tmp_path))
     assert not programs.get(other, "").startswith(str(tmp_path))

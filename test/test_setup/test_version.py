@@ -14,8 +14,8 @@ import pytest
 import scipy
 
 import contact_dynamics
+from test_setup.programs import ROOT, run
 
-ROOT = Path(__file__).parents[2]
 ASK = "import contact_dynamics; print(contact_dynamics.__version__)"
 
 
@@ -29,9 +29,7 @@ def ask(folder: Path) -> subprocess.CompletedProcess[str]:
     """Import the package from a folder alone, without what is installed besides the standard library."""
     libraries = {str(Path(module.__file__ or "").parents[1]) for module in (np, scipy)}
     program = f"import sys; sys.path[:0] = {[str(folder), *libraries]!r}; {ASK}"
-    return subprocess.run(
-        [sys.executable, "-I", "-c", program], capture_output=True, text=True, check=False, cwd=folder
-    )
+    return run(sys.executable, "-I", "-c", program, cwd=folder)
 
 
 def test_a_source_tree_knows_its_version() -> None:
