@@ -1,14 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The requests that the interfaces' README gives for pasting, and the answers that it states."""
+"""Requests of the documents and the cases over ROS 2: each has the answer that is stated."""
 
 from __future__ import annotations
 
 import re
+from functools import reduce
 from typing import Any
 
 import pytest
 import yaml
 
+from contact_dynamics.cases import CASES
 from contact_dynamics.contact_modes import ModeVerdict
 from contact_dynamics.impact import ImpactOutcome, SequenceEnd
 from contact_dynamics.motion.integrated import Method
@@ -253,3 +255,25 @@ def test_what_a_sentence_says_to_set_is_taken_by_a_request(page: str, text: str)
     fields = yaml.safe_load(text if text.startswith("{") else f"{{{text}}}")
     asking = [each for each in SERVICES if all(hasattr(each.Request(), name) for name in fields)]
     assert not asking or any(takes(each, fields) for each in asking), page
+
+
+SETTINGS = [(name, setting) for name, case in CASES.items() for setting in case.settings]
+
+
+def field(response: Any, path: str) -> float:
+    """The number at a path such as `modes[0].linear_acceleration[2]`."""
+    steps = path.replace("[", ".").replace("]", "").split(".")
+    return float(
+        reduce(lambda msg, step: msg[int(step)] if step.isdigit() else getattr(msg, step), steps, response)
+    )
+
+
+@pytest.mark.parametrize(("name", "setting"), SETTINGS)
+def test_the_service_gives_the_exact_number(client: Client, name: str, setting: float) -> None:
+    case = CASES[name]
+    service_name, path = case.answer.split(".", maxsplit=1)
+    (service,) = (one for one, address in SERVICES.items() if address.endswith(f"/{service_name}"))
+    response = client.ask(filled(service.Request(), yaml.safe_load(case.request_text(setting))))
+    assert (response.status, response.message) == (response.OK, "")
+    exact, tolerance = case.answer_of(setting)
+    assert abs(field(response, path) - exact) <= tolerance

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The server's parameters out of a file, without ROS: the same as ROS reads, and mistakes named."""
+"""Parameters of a file and of the command line, without ROS: the same as ROS reads, and mistakes named."""
 
 from __future__ import annotations
 
@@ -14,7 +14,13 @@ from rclpy.node import Node
 
 from contact_dynamics import questions
 from contact_dynamics.nodes import server
-from contact_dynamics.nodes.parameter_file import ParameterFile, Section, check_sections, read_sections
+from contact_dynamics.nodes.parameter_file import (
+    ParameterFile,
+    Section,
+    check_sections,
+    read_sections,
+    values_given,
+)
 from contact_dynamics.nodes.parameter_reader import ConfigurationError, ParameterSource
 from contact_dynamics.nodes.parameters import read_server_parameters
 from contact_dynamics.nodes.state_sources import state_sources
@@ -244,3 +250,33 @@ def test_configured_shapes_land_on_configured_surfaces(
     # A contact begins up to 1e-9 m from a surface, the distance_tolerance, and they meet with 2.9 m/s.
     assert landing.seconds_to_contact == pytest.approx(0.3, abs=1e-9)
     assert landing.contacts.surfaces == lands_on
+
+
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [
+        ("true", True),
+        ("no", False),
+        ("-3", -3),
+        ("3.", 3.0),
+        ("1e3", 1000.0),
+        ("1.5E-3", 0.0015),
+        ("/brick/odometry", "/brick/odometry"),
+        ("'3'", "3"),
+        ("3 m", "3 m"),
+        ("", ""),
+        ("2026-11-27", "2026-11-27"),
+        ("[1.0, 2]", [1.0, 2]),
+        ("[a, b]", ["a", "b"]),
+        ("[ ]", "[ ]"),
+        ("{a: 1}", "{a: 1}"),
+    ],
+)
+def test_a_text_is_read_as_yaml_has_it(text: str, value: Any) -> None:
+    (found,) = values_given(["--ros-args", "-p", f"a:={text}"], "/server").values()
+    assert (type(found), found) == (type(value), value)
+
+
+def test_the_last_value_for_the_node_counts() -> None:
+    arguments = ["--ros-args", "-p", "a:=1", "--param", "a:=2", "-p", "other:a:=3", "-p", "server:b:=4"]
+    assert values_given(arguments, "/server") == {"a": 2, "b": 4}

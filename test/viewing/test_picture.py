@@ -15,6 +15,7 @@ from contact_dynamics.tumbling import free_motion
 from contact_dynamics.viewing.entities import ERROR
 from contact_dynamics.viewing.in_view import LABELS_S
 from contact_dynamics.viewing.picture import Picture
+from contact_dynamics.viewing.words import sentence
 from contact_dynamics.world import World
 from viewing.answers import contact_mode_answer, impact_answer, tumbling_answer
 from viewing.drawn import STAMP_NS, Canvas
@@ -266,3 +267,10 @@ def test_a_single_body_has_no_name_in_its_way(canvas: Canvas) -> None:
     picture = Picture(canvas.stream, WORLD, surface_side=0.5)
     picture.add_states("brick", [STATE])
     assert "/world/bodies/brick/name" not in canvas.read().entities
+
+
+@pytest.mark.parametrize(
+    ("seconds", "told"), [(1.234e-4, "0.12 ms"), (0.00563, "5.6 ms"), (0.0921, "92 ms"), (0.1114, "111 ms")]
+)
+def test_the_time_of_an_answer_has_no_power_of_ten(seconds: float, told: str) -> None:
+    assert sentence("brick", ["slides"], computation_time=seconds) == f"brick slides ({told})"

@@ -13,6 +13,7 @@ from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.viewing.sinks import NowhereToDrawError, OpenRecording, Sinks, ViewerMode
 from contact_dynamics.viewing.viewer_process import local_url
 from viewing.drawn import read_drawn
+from viewing.viewers import listeners
 
 
 def draw(recording: OpenRecording) -> None:
@@ -54,10 +55,7 @@ def test_serving_is_for_this_machine_alone(free_port: int) -> None:
     recording = OpenRecording(Sinks(viewer=ViewerMode.SERVE, port=free_port), on_problem=print)
     try:
         draw(recording)
-        listening = f":{free_port:04X} 00000000:0000 0A"
-        tables = "".join(Path(f"/proc/net/{kind}").read_text(encoding="ascii") for kind in ("tcp", "tcp6"))
-        addresses = [line.split()[1] for line in tables.splitlines() if listening in line]
-        assert addresses == [f"0100007F:{free_port:04X}"]
+        assert listeners(free_port) == {f"0100007F:{free_port:04X}"}
     finally:
         assert recording.close()
 

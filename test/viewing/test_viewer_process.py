@@ -8,7 +8,6 @@ import shutil
 import signal
 import socket
 import subprocess
-import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -19,11 +18,11 @@ from rerun.experimental import ViewerClient
 from contact_dynamics.viewing.sinks import OpenRecording, Sinks, ViewerMode
 from contact_dynamics.viewing.viewer_process import LOCAL, viewer_executable
 from viewing.drawn import read_drawn
+from viewing.viewers import wait_until
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-PATIENCE_S = 30.0
 NO_DISPLAY = "neither DISPLAY nor WAYLAND_DISPLAY is set; draw into a file"
 DISPLAYS = ("DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET")
 
@@ -91,9 +90,7 @@ def test_the_viewer_opens_and_is_heard_when_it_is_killed(tmp_path: Path, free_po
         assert viewers_at(free_port) == [viewer]
     finally:
         os.kill(viewer, signal.SIGKILL)
-    deadline = time.monotonic() + PATIENCE_S
-    while not problems and time.monotonic() < deadline:
-        time.sleep(0.05)
+    wait_until(lambda: bool(problems))
     assert problems[0].startswith("rerun's viewer ended with exit code -9: ")
     assert recording.viewer_failed
     recording.close()

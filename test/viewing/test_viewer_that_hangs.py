@@ -17,8 +17,9 @@ import rerun as rr
 from contact_dynamics.viewing.kept_recording import KeptRecording
 from contact_dynamics.viewing.measured import set_time
 from contact_dynamics.viewing.sinks import MAX_BEHIND, LiveViewer
-from contact_dynamics.viewing.viewer_process import LOCAL, connection_problem, local_url, viewer_executable
+from contact_dynamics.viewing.viewer_process import local_url
 from viewing.drawn import STAMP_NS
+from viewing.viewers import listens, rerun_at, wait_until
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -26,24 +27,11 @@ if TYPE_CHECKING:
 FILL = rr.Points3D(np.random.default_rng(1).normal(size=(20_000, 3)))  # 240 kB
 
 
-def serving(port: int) -> subprocess.Popen[bytes]:
-    command = [viewer_executable(), "--serve-grpc", "--bind", LOCAL, "--port", str(port)]
-    quiet = subprocess.DEVNULL
-    environment = {**os.environ, "RERUN_APP_ONLY": "true"}
-    process = subprocess.Popen(command, env=environment, stdin=quiet, stdout=quiet, stderr=quiet)
-    deadline = time.monotonic() + 60.0
-    while connection_problem(LOCAL, port):
-        assert time.monotonic() < deadline, "it does not listen"
-        time.sleep(0.05)
-    return process
-
-
 @pytest.fixture
 def server(free_port: int) -> Iterator[subprocess.Popen[bytes]]:
-    process = serving(free_port)
-    yield process
-    process.kill()
-    process.wait()
+    with rerun_at(free_port, "--serve-grpc") as process:
+        wait_until(lambda: listens(free_port))
+        yield process
 
 
 def resident() -> int:
@@ -78,11 +66,12 @@ def test_nothing_is_drawn_to_it_until_it_goes_on(server: subprocess.Popen[bytes]
     draw(recording, 500)  # 120 MB
     assert resident() - before < 60e6
     server.send_signal(signal.SIGCONT)
-    deadline = time.monotonic() + 60.0
-    while viewer.hangs:
-        assert time.monotonic() < deadline, "it does not go on"
+
+    def goes_on() -> bool:
         viewer.look()
-        time.sleep(0.05)
+        return not viewer.hangs
+
+    wait_until(goes_on)
     assert told[1:] == [f"the viewer at {url} responds again and has the picture"]
     draw(recording, 1)
     recording.flush(timeout_sec=10.0)
@@ -99,16 +88,14 @@ def test_one_that_is_there_again_before_anybody_looked_gets_the_picture(
     viewer.look()
     server.kill()
     server.wait()
-    again = serving(free_port)
-    try:
-        deadline = time.monotonic() + 60.0
-        while len(told) < 2:
-            assert time.monotonic() < deadline, told
-            viewer.look()
-            time.sleep(0.05)
+
+    def are_told() -> bool:
+        viewer.look()
+        return len(told) == 2
+
+    with rerun_at(free_port, "--serve-grpc"):
+        wait_until(lambda: listens(free_port))
+        wait_until(are_told)
         assert [each.split(" at ")[0] for each in told] == ["no viewer listens", "a viewer listens"]
         recording.flush(timeout_sec=10.0)
         recording.disconnect()
-    finally:
-        again.kill()
-        again.wait()

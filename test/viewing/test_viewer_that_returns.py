@@ -4,11 +4,8 @@
 from __future__ import annotations
 
 import contextlib
-import os
-import signal
 import socket
 import subprocess
-import time
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -19,38 +16,31 @@ from rerun.experimental import ViewerClient
 from contact_dynamics.viewing.kept_recording import APPLICATION
 from contact_dynamics.viewing.measured import set_time
 from contact_dynamics.viewing.sinks import OpenRecording, Sinks, ViewerMode
-from contact_dynamics.viewing.viewer_process import LOCAL, connection_problem, local_url, viewer_executable
+from contact_dynamics.viewing.viewer_process import LOCAL, local_url
 from viewing.drawn import STAMP_NS
+from viewing.viewers import listens, rerun_at, wait_until
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-PATIENCE_S = 120.0
-
 
 @contextlib.contextmanager
 def viewer(port: int, *arguments: str) -> Iterator[subprocess.Popen[bytes]]:
-    """A viewer that listens at a port, and is killed at the end."""
-    command = [viewer_executable(), "--headless", "--bind", LOCAL, "--port", str(port), *arguments]
-    environment = {**os.environ, "RERUN_APP_ONLY": "true"}
-    quiet = subprocess.DEVNULL
-    process = subprocess.Popen(command, env=environment, stdin=quiet, stdout=quiet, stderr=quiet)
-    try:
-        wait_until(lambda: not connection_problem(LOCAL, port), process)
+    """A viewer without a window that listens at a port, and is killed at the end."""
+    with rerun_at(port, "--headless", *arguments) as process:
+        wait_for(lambda: listens(port), process)
         yield process
-    finally:
-        process.send_signal(signal.SIGKILL)
-        process.wait()
 
 
-def wait_until(done: Callable[[], bool], viewer: subprocess.Popen[bytes] | None = None) -> None:
-    """Wait for something that may need a viewer. Without a driver for Vulkan, that listens and then ends."""
-    deadline = time.monotonic() + PATIENCE_S
-    while not done():
-        if viewer is not None and viewer.poll() is not None:
+def wait_for(done: Callable[[], bool], viewer: subprocess.Popen[bytes]) -> None:
+    """Wait for something that needs a viewer. Without a driver for Vulkan, that listens and then ends."""
+
+    def is_done_or_ended() -> bool:
+        if viewer.poll() is not None:
             pytest.skip("NOT TESTED: a viewer that returns. It needs `apt install mesa-vulkan-drivers`.")
-        assert time.monotonic() < deadline, "it did not come to that"
-        time.sleep(0.1)
+        return done()
+
+    wait_until(is_done_or_ended)
 
 
 pytestmark = pytest.mark.skipif(
@@ -100,7 +90,7 @@ def test_one_that_is_drawn_to_gets_the_picture_again(free_port: int, closing: co
         recording = OpenRecording(Sinks(viewer=ViewerMode.CONNECT, url=url), on_problem=told.append)
         closing.callback(recording.close)
         draw(recording)
-        wait_until(lambda: {STATIC, NEWEST} <= shown(free_port), first)
+        wait_for(lambda: {STATIC, NEWEST} <= shown(free_port), first)
 
     def has_heard(words: str) -> bool:
         recording.tend()
@@ -109,10 +99,10 @@ def test_one_that_is_drawn_to_gets_the_picture_again(free_port: int, closing: co
     wait_until(lambda: has_heard(f"no viewer listens at {url} any more"))
     recording.stream.log("/meanwhile", rr.Points3D([[1.0, 2.0, 3.0]]))
     with viewer(free_port) as second:
-        wait_until(lambda: has_heard(f"a viewer listens at {url} again"), second)
-        wait_until(lambda: {STATIC, NEWEST, "/meanwhile"} <= shown(free_port), second)
+        wait_for(lambda: has_heard(f"a viewer listens at {url} again"), second)
+        wait_for(lambda: {STATIC, NEWEST, "/meanwhile"} <= shown(free_port), second)
         recording.stream.log("/later", rr.Points3D([[1.0, 2.0, 3.0]]))
-        wait_until(lambda: "/later" in shown(free_port), second)
+        wait_for(lambda: "/later" in shown(free_port), second)
         assert recording.close()
     assert len(told) == 2
 
@@ -126,12 +116,12 @@ def test_one_that_looks_at_what_is_served_gets_the_picture_again(closing: contex
     fill = np.random.default_rng(1).normal(size=(20_000, 3))  # 240 kB, which does not compress
     for _ in range(2):
         with viewer(port, "--connect", local_url(served)) as looking:
-            wait_until(lambda: STATIC in shown(port), looking)
+            wait_for(lambda: STATIC in shown(port), looking)
         for i in range(40):  # 10 MB
             recording.stream.log(f"/fill/{i}", rr.Points3D(fill))
         recording.stream.flush()
         recording.stream.log("/last", rr.Points3D([[1.0, 2.0, 3.0]]))
     with viewer(port, "--connect", local_url(served)) as looking:
-        wait_until(lambda: {STATIC, "/last"} <= shown(port), looking)
+        wait_for(lambda: {STATIC, "/last"} <= shown(port), looking)
         assert "/fill/0" not in shown(port)  # the memory has its limit
     assert recording.close()

@@ -4,38 +4,24 @@
 from __future__ import annotations
 
 import http.client
-import time
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from contact_dynamics.viewing.sinks import OpenRecording, Sinks, ViewerMode, WebViewer
-from contact_dynamics.viewing.viewer_process import LOCAL, connection_problem, serving_problem
+from contact_dynamics.viewing.viewer_process import LOCAL, serving_problem
+from viewing.viewers import PATIENCE_S, listeners, listens, wait_until
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-PATIENCE_S = 120.0
+    pass
 
 
 def page(port: int) -> bytes:
     """What a browser gets, as soon as something listens."""
-    deadline = time.monotonic() + PATIENCE_S
-    while connection_problem(LOCAL, port):
-        assert time.monotonic() < deadline
-        time.sleep(0.05)
+    wait_until(lambda: listens(port))
     connection = http.client.HTTPConnection(LOCAL, port, timeout=PATIENCE_S)
     connection.request("GET", "/")
     content = connection.getresponse().read()
     connection.close()
     return content
-
-
-def listeners(port: int) -> Iterator[str]:
-    listening = f":{port:04X} 00000000:0000 0A"
-    for kind in ("tcp", "tcp6"):
-        for line in Path(f"/proc/net/{kind}").read_text(encoding="ascii").splitlines():
-            if listening in line:
-                yield line.split()[1]
 
 
 def test_a_browser_of_this_machine_finds_it_until_it_is_closed(free_port: int) -> None:
@@ -45,7 +31,7 @@ def test_a_browser_of_this_machine_finds_it_until_it_is_closed(free_port: int) -
     try:
         assert web.address == f"http://{LOCAL}:{free_port}/?url={served}&theme=dark"
         assert b"<title>Rerun Viewer</title>" in page(free_port)
-        assert set(listeners(free_port)) == {f"0100007F:{free_port:04X}"}
+        assert listeners(free_port) == {f"0100007F:{free_port:04X}"}
     finally:
         web.close()
     assert serving_problem(free_port) == ""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The times of calls where events get lost or are not the server's: they cost their own call at most."""
+"""The times of calls where events get lost or are not the server's, and clients that seemed gone."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import time
 
 import pytest
 
-from contact_dynamics.nodes.calls import CallTimes
+from contact_dynamics.nodes.calls import CallTimes, GoneClients
 from contact_dynamics.recording.cdr import EventType
 
 GID_A, GID_B = b"a" * 16, b"b" * 16
@@ -84,3 +84,28 @@ def test_other_events_are_of_when_they_came_and_take_no_calls_time(other: bytes)
     assert calls.log_time_ns(other) == LATER_NS
     came = calls.log_time_ns(event(EventType.REQUEST_RECEIVED, 1, GID_A, 1))
     assert calls.began[0][0] <= came <= calls.began[0][1]
+
+
+HOUR_NS = 3_600_000_000_000
+CLIENT = b"one"
+
+
+def test_what_was_asked_before_gets_no_answer_and_what_is_asked_later_does() -> None:
+    gone = GoneClients(60.0)
+    asked_ns = time.time_ns()
+    gone.note(CLIENT)
+    assert gone.has(CLIENT, asked_ns=asked_ns)
+    assert not gone.has(CLIENT, asked_ns=asked_ns + HOUR_NS)
+    assert not gone.has(b"another", asked_ns=asked_ns)
+
+
+def test_a_clock_that_is_set_back_by_an_hour_silences_nobody_for_an_hour(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    gone = GoneClients(0.01)
+    with monkeypatch.context() as patch:
+        ahead_ns = time.time_ns() + HOUR_NS
+        patch.setattr(time, "time_ns", lambda: ahead_ns)
+        gone.note(CLIENT)
+    time.sleep(0.02)
+    assert not gone.has(CLIENT, asked_ns=time.time_ns())
