@@ -5,11 +5,10 @@ from __future__ import annotations
 
 import sys
 import time
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
-import rclpy
 from nav_msgs.msg import Odometry
-from rclpy.executors import ExternalShutdownException
+from rclpy.duration import Duration
 from rclpy.node import Node
 from rclpy.qos import QoSProfile
 from rclpy.utilities import remove_ros_args
@@ -19,8 +18,11 @@ from contact_dynamics.demo.arguments import toss_publisher_parser
 from contact_dynamics.errors import ContactDynamicsError
 from contact_dynamics.measured.read_toss import read_toss
 from contact_dynamics.measured.recorded_toss import Toss
-from contact_dynamics.nodes.own_process import ensure_ros_log_directory
+from contact_dynamics.nodes.running import ros_until_stopped
 from msg_adapters.odometry import odometry_from_body_state
+
+if TYPE_CHECKING:
+    import threading
 
 WORLD_FRAME: Final = "world"
 QOS: Final = QoSProfile(depth=1000)
@@ -43,16 +45,15 @@ class TossPublisher(Node):
         self._toss = toss
         self._publisher = self.create_publisher(Odometry, topic_of(toss), QOS)
 
-    def wait_for_listeners(self, count: int) -> bool:
+    def wait_for_listeners(self, count: int, stop: threading.Event) -> bool:
         """Return whether this many subscriptions have matched in time."""
         deadline = time.monotonic() + _DISCOVERY_S
         while self._publisher.get_subscription_count() < count:
-            if time.monotonic() > deadline:
+            if stop.wait(0.02) or time.monotonic() > deadline:
                 return False
-            time.sleep(0.02)
         return True
 
-    def play(self) -> None:
+    def play(self, stop: threading.Event) -> None:
         """Publish every sample at its time, which is its stamp.
 
         A listener that this process has found may take some tenths of a second longer to find this process.
@@ -66,14 +67,13 @@ class TossPublisher(Node):
             msg = odometry_from_body_state(
                 state, world_frame=WORLD_FRAME, child_frame=toss.body.name, p_FB_F=toss.body.p_FB_F
             )
-            wait_ns = state.stamp_ns - self.get_clock().now().nanoseconds
-            if wait_ns > 0:
-                time.sleep(to_seconds(wait_ns))
+            if stop.wait(max(0.0, to_seconds(state.stamp_ns - self.get_clock().now().nanoseconds))):
+                return
             self._publisher.publish(msg)
 
     def drain(self) -> None:
         """Wait until every listener has acknowledged every sample."""
-        self._publisher.wait_for_all_acked(rclpy.duration.Duration(seconds=5))
+        self._publisher.wait_for_all_acked(Duration(seconds=5))
 
 
 def main(arguments: list[str]) -> int:
@@ -84,18 +84,14 @@ def main(arguments: list[str]) -> int:
     except (ContactDynamicsError, OSError) as error:
         print(error, file=sys.stderr)
         return 2
-    ensure_ros_log_directory()
-    rclpy.init(args=arguments)
-    publisher = TossPublisher(toss)
-    try:
-        if not publisher.wait_for_listeners(given.listeners):
+    with ros_until_stopped(arguments) as stop:
+        publisher = TossPublisher(toss)
+        if not publisher.wait_for_listeners(given.listeners, stop):
             print(f"fewer than {given.listeners} listeners on {topic_of(toss)}", file=sys.stderr)
             return 1
-        publisher.play()
+        publisher.play(stop)
+        if stop.is_set():
+            return 130
         print(f"published {len(toss)} states on {topic_of(toss)}", flush=True)
         publisher.drain()
-    except (KeyboardInterrupt, ExternalShutdownException):
-        return 130
-    finally:
-        rclpy.try_shutdown()
     return 0
