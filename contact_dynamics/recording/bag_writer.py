@@ -124,7 +124,7 @@ class BagWriter(AbstractContextManager["BagWriter"]):
             limits: when a file is finished, and which files are kept.
             on_deleted: a function that is told, in words, each time that the oldest file was deleted.
         """
-        self._run = {"version": _version(), **_checked_run(run or {})}
+        self._run = {"version": version_of_this_package(), **_checked_run(run or {})}
         self.folder = Path(folder)
         try:
             self.folder.mkdir(parents=True)
@@ -219,7 +219,7 @@ class BagWriter(AbstractContextManager["BagWriter"]):
 
     def change_run(self, run: Mapping[str, str]) -> None:
         """Let the files that begin from now on say that the run is made so, and not the present one."""
-        self._run = {"version": _version(), **_checked_run(run)}
+        self._run = {"version": version_of_this_package(), **_checked_run(run)}
 
     def flush(self) -> None:
         """Bring all messages so far into the file, where a death of this process cannot take them."""
@@ -386,10 +386,3 @@ def _checked_run(run: Mapping[str, str]) -> Mapping[str, str]:
         if key == CHECKSUM_KEY:
             raise InvalidFieldError("run", key, "another key: this one is the log's own")
     return run
-
-
-def _version() -> str:
-    try:
-        return version_of_this_package()
-    except AttributeError:  # a log needs no version
-        return "unknown"
