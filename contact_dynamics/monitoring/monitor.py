@@ -53,7 +53,7 @@ SETTLED: Final = 0.25
 found after 47 ms. A rest or a slide is also reported once it has lasted this long."""
 
 SILENT: Final = 1.0
-"""s without a state, after which all events before it are final."""
+"""s without a state, after which all events before it are final. No state comes later than another by more."""
 
 KEPT: Final = 3.0
 """s of states that are kept. A longer flight, rest or slide is followed all the same."""
@@ -166,11 +166,10 @@ class Monitor:
         """
         track, found = self._tracks[body_name], list[MonitoredEvent]()
         now_ns, every_ns = state.stamp_ns, to_ns(LOOK_EVERY)
-        if now_ns < track.newest_ns - to_ns(KEPT):  # a simulation or a log begins anew
+        if track.states and abs(now_ns - track.newest_ns) > to_ns(SILENT):
             found = self.settle(body_name)
-            track = self._tracks[body_name] = _Track()
-        elif track.states and now_ns > track.newest_ns + to_ns(SILENT):
-            found = self.settle(body_name)
+            if now_ns < track.newest_ns:  # a simulation or a log begins anew
+                track = self._tracks[body_name] = _Track()
         elif track.states and now_ns // every_ns > track.newest_ns // every_ns:
             found = self._look(body_name, track, track.newest_ns - to_ns(SETTLED))
         track.add(state, arrival_ns)

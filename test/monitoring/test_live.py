@@ -113,6 +113,15 @@ class Listener:
                 )
                 self._publisher.publish(msg)
 
+    def newest_ns(self) -> int:
+        """The stamp, ns, before which all states of the newest toss's predecessors are."""
+        return self._epoch_ns
+
+    def received(self) -> int:
+        """How many states the monitor has received, as it says itself."""
+        values = [value for status in self.statuses for value in status.values]
+        return max(int(value.value) for value in values if value.key == "/brick/odometry: messages")
+
     def impacts(self) -> list[MonitorEvent]:
         """The events about restitution and friction so far."""
         return [event for event in self.events if event.kind == MonitorEvent.IMPACT]
@@ -195,21 +204,33 @@ def test_another_restitution_raises_an_alarm_until_it_is_configured(tmp_path: Pa
         assert not any(event.changed for event in listener.impacts()[count:])
 
 
-def test_a_monitor_that_is_not_active_receives_and_publishes_nothing(tmp_path: Path) -> None:
+def change_state(client: Client, transition: int) -> None:
+    """Do what a lifecycle manager does."""
+    change = client.node.create_client(ChangeState, f"/{NODE}/change_state")
+    assert change.wait_for_service(PATIENCE_S)
+    future = change.call_async(ChangeState.Request(transition=Transition(id=transition)))
+    client.spin_until(future.done)
+    assert future.result().success
+
+
+def test_a_monitor_that_is_not_active_receives_states_and_publishes_no_event(tmp_path: Path) -> None:
     domain_id = claim_domain()
     given = arguments(tmp_path, autostart=False)
     with process("live_monitor", *given, ready="autostart is false", domain_id=domain_id):
-        client = Client(wait=False, domain_id=domain_id)
-        try:
-            change = client.node.create_client(ChangeState, f"/{NODE}/change_state")
-            assert change.wait_for_service(PATIENCE_S)
-            for transition in (Transition.TRANSITION_CONFIGURE, Transition.TRANSITION_ACTIVATE):
-                future = change.call_async(ChangeState.Request(transition=Transition(id=transition)))
-                client.spin_until(future.done)
-                assert future.result().success
-            assert client.node.count_publishers(f"/{NODE}/events") == 1
-        finally:
-            client.close()
+        manager = Client(wait=False, domain_id=domain_id)
+        change_state(manager, Transition.TRANSITION_CONFIGURE)
+        listener = Listener(domain_id)
+        client = listener.client
+        listener.publish(TRUTH, 1, 5)
+        client.spin_until(lambda: listener.received() > 0)
+        change_state(manager, Transition.TRANSITION_ACTIVATE)
+        listener.publish(TRUTH, 1, 6)
+        begin = listener.newest_ns()
+        client.spin_until(lambda: bool(listener.impacts()))
+        change_state(manager, Transition.TRANSITION_DEACTIVATE)  # which publishes what is left
+        assert min(stamp_ns_from_msg(event.header.stamp) for event in listener.events) >= begin
+        client.close()
+        manager.close()
 
 
 @pytest.mark.parametrize(

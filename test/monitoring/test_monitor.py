@@ -100,6 +100,23 @@ def test_states_one_by_one_give_the_events_of_the_whole() -> None:
     assert kinds.count(EventKind.REST) == sum(event.kind is EventKind.REST for event in find_events(motion))
 
 
+def test_a_recording_that_is_played_again_has_its_events_again() -> None:
+    toss = read_toss()
+    recorded = recording_of_toss(toss)
+    (motion,) = recorded.motions
+    monitor = Monitor(recorded.informed, MonitorSettings(noise=(toss.position_noise, toss.orientation_noise)))
+    states = [
+        each for each in motion.states(list(range(len(motion)))) if each.stamp_ns < 1.2e9 + motion.epoch_ns
+    ]
+    first, second = (
+        [event for state in states for event in monitor.add("brick", state, state.stamp_ns)] for _ in range(2)
+    )
+    left = monitor.settle("brick")
+    assert first
+    # What was left of the first time comes when the second begins.
+    assert [each.stamp_ns for each in second] == [each.stamp_ns for each in [*left, *first]]
+
+
 def test_the_command_prints_the_events_of_a_log(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     log = write_log(tmp_path / "log", until=BRIEF)
     out = tmp_path / "events.jsonl"
