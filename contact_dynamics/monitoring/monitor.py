@@ -53,7 +53,7 @@ SETTLED: Final = 0.25
 found after 47 ms. A rest or a slide is also reported once it has lasted this long."""
 
 SILENT: Final = 1.0
-"""s without a state, after which all events before it are final. No state comes later than another by more."""
+"""s without a state, after which all events before it are final. No state is out of order by more."""
 
 KEPT: Final = 3.0
 """s of states that are kept. A longer flight, rest or slide is followed all the same."""
