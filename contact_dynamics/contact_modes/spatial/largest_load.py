@@ -78,7 +78,7 @@ class LargestLoad(Record):
         only_rest: Factor up to which rest is the only consistent mode, <= ``factor``. If it is less than
             ``factor``, it was found by bisection, to 1 %, and modes that are consistent only in an interval
             below it are not searched for. It is 0 if rest is not the only consistent mode without the load.
-        verdict_beyond: Verdict just beyond ``factor``, or UNIQUE if it is infinite. It is UNDECIDED if a
+        verdict_beyond: Verdict just beyond ``factor``, or None if it is infinite. It is UNDECIDED if a
             contact is ``overloaded`` there: the motion depends on how this contact yields.
         modes_beyond: Modes that are consistent just beyond it; none if a contact is overloaded.
         unit: Unit of the factors: "times the load", "m/s^2", "rad" or "rad/s".
@@ -88,7 +88,7 @@ class LargestLoad(Record):
 
     factor: float
     only_rest: float
-    verdict_beyond: ModeVerdict
+    verdict_beyond: ModeVerdict | None
     modes_beyond: tuple[str, ...]
     unit: str = "times the load"
     overloaded: tuple[int, ...] = ()
@@ -306,14 +306,14 @@ class LeastFriction(Record):
             rests without friction, and infinite if no friction holds it. Below 1e-9, only rounding error
             prevents an even smaller one.
         frictions: (n,), these smallest coefficients.
-        verdict_below: Verdict with coefficients that are smaller by 1e-6 of them, or UNIQUE if the factor is
+        verdict_below: Verdict with coefficients that are smaller by 1e-6 of them, or None if the factor is
             0. It is UNDECIDED if rest then requires larger normal forces than those allowed.
         modes_below: Consistent modes with these coefficients; none if larger normal forces are required.
     """
 
     factor: float
     frictions: tuple[float, ...]
-    verdict_below: ModeVerdict
+    verdict_below: ModeVerdict | None
     modes_below: tuple[str, ...]
 
     def in_short(self) -> str:
@@ -379,7 +379,7 @@ def least_friction(
         below = spatial_contact_modes(scaled(factor * (1.0 - NEXT_TO_A_LIMIT)))
     rest = STICKS * len(problem.contacts)
     modes = () if below is None else tuple(mode.mode for mode in below.modes)
-    verdict = ModeVerdict.UNIQUE if below is None else below.verdict
+    verdict = None if below is None else below.verdict
     if max_normal_forces is not None and rest in modes:
         verdict, modes = ModeVerdict.UNDECIDED, ()
     return LeastFriction(
@@ -557,9 +557,7 @@ def _followed(
 
     if math.isinf(factor):
         alone = math.inf if rests_alone(far) else _last(rests_alone, far)
-        return LargestLoad(
-            factor=factor, only_rest=alone, verdict_beyond=ModeVerdict.UNIQUE, modes_beyond=(), unit=unit
-        )
+        return LargestLoad(factor=factor, only_rest=alone, verdict_beyond=None, modes_beyond=(), unit=unit)
     beyond, inside = factor * (1.0 + NEXT_TO_A_LIMIT), factor * (1.0 - NEXT_TO_A_LIMIT)
     after, plane = answer(beyond), held.against(wrench(beyond))
     overloaded = held.at_limits(plane) if rest in {mode.mode for mode in after.modes} else ()

@@ -68,7 +68,7 @@ def test_a_crate_on_its_feet(friction: float, push: dict[str, list[float]], fact
 
 def test_a_push_within_the_friction_cone_may_become_any() -> None:
     found = largest_load(on_floor(0.5), force_W=[0.4, 0, -1.0], at_W=[0, 0, 0])
-    assert (found.factor, found.modes_beyond) == (math.inf, ())
+    assert (found.factor, found.verdict_beyond, found.modes_beyond) == (math.inf, None, ())
     assert found.only_rest == math.inf
     assert found.in_short() == "LargestLoad: it stays fixed under any multiple of the load"
 
