@@ -115,7 +115,15 @@ def stop_signals() -> Iterator[threading.Event]:
     numbers = [signal.SIGINT, signal.SIGTERM]
     if signal.getsignal(signal.SIGHUP) is not signal.SIG_IGN:  # which is what nohup makes of it
         numbers.append(signal.SIGHUP)
-    before = {number: signal.signal(number, lambda _number, _frame: stop.set()) for number in numbers}
+
+    came: list[int] = []
+
+    def end(number: int, _frame: object) -> None:
+        if not came:  # otherwise a signal could wait for the event's lock, which the one before has
+            came.append(number)
+            stop.set()
+
+    before = {number: signal.signal(number, end) for number in numbers}
     try:
         yield stop
     finally:

@@ -8,6 +8,7 @@ import os
 import select
 import signal
 import subprocess
+import sys
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -177,6 +178,25 @@ def test_a_signal_to_all_processes_meets_workers_that_still_start_without_a_trac
         printed = server.stdout.read()
         assert server.wait(PATIENCE_S) == 0
         assert "Traceback" not in printed, printed
+
+
+def test_a_signal_that_comes_while_another_is_handled_does_not_wait_for_it() -> None:
+    """Ctrl-C comes in the moment in which the event of a SIGTERM has its lock."""
+    program = """
+import signal, sys
+from contact_dynamics.nodes.running import stop_signals
+
+def interrupt(frame, *_):
+    if frame.f_code.co_name == "notify_all":
+        sys.settrace(None)
+        signal.raise_signal(signal.SIGINT)
+
+with stop_signals() as stop:
+    sys.settrace(interrupt)
+    signal.raise_signal(signal.SIGTERM)
+    assert stop.is_set() and sys.gettrace() is None
+"""
+    subprocess.run([sys.executable, "-c", program], check=True, timeout=PATIENCE_S)
 
 
 def fork_server_of(server: subprocess.Popen[str]) -> int:
