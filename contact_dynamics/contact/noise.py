@@ -214,12 +214,8 @@ def _hypothesis(
 ) -> _Hypothesis:
     """Return the hypothesis that the error of a state causes a violation of conditions, (m,).
 
-    Args:
-        rows: (m, 12), how the conditions change with the state.
-        violation: What they are off at the state ``beside``.
-        noisy: The state with all its noise.
-        beside: The state under the conditions that hold already, with the noise that they leave.
-        tolerance: What may be left of the violation.
+    ``rows``, (m, 12), say how the conditions change with the state. The violation is at the state ``beside``,
+    under the conditions that hold already, with the noise that they leave. ``tolerance`` of it may be left.
     """
     whole, left = rows @ noisy.root, rows @ beside.root
     U, sizes, V = np.linalg.svd(left, full_matrices=False)

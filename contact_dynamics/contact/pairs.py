@@ -55,10 +55,8 @@ def check_pairs(bodies: int, states: Sequence[BodyState], contacts: ContactSet, 
 def pair_jacobians(states: Sequence[BodyState], points_W: FloatArray, pairs: Pairs) -> FloatArray:
     """Return the matrix, (n, 3, 6 k), from the velocities of k bodies to those of contact points.
 
-    Args:
-        states: Those of the bodies, whose velocities, or accelerations, are v then w of each.
-        points_W: (n, 3), m, contact points, of which the first body of each pair moves relative to the other.
-        pairs: The pair of each contact.
+    Velocities, or accelerations, are v then w of each body. At the points, (n, 3), m, those of the first body
+    of each pair are relative to the other.
     """
     jacobians = np.zeros((len(points_W), 3, 6 * len(states)))
     for i, pair in enumerate(pairs):

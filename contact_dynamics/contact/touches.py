@@ -192,13 +192,9 @@ def _axes(
 
 
 def lowest_along(shape: ConvexShape, p_WB_W: FloatArray, R_WB: FloatArray, axes: FloatArray) -> FloatArray:
-    """Return how far down, (n,), m, a body reaches along directions: minus its support function.
+    """Return how far down, (n,), m, a shape that is not empty reaches: minus its support function.
 
-    Args:
-        shape: A shape that is not empty.
-        p_WB_W: (3,), m, place of the centre of mass, or (n, 3) for many poses and one direction.
-        R_WB: (3, 3), rotation, body to world, or (n, 3, 3).
-        axes: (n, 3), unit, the directions, or (3,) for many poses.
+    It is at one pose along unit directions, (n, 3), or at n poses along one direction, (3,).
     """
     axes_B = axes @ R_WB
     parts = [axes_B @ shape.vertices.T]
@@ -292,14 +288,10 @@ class Rounded(NamedTuple):
 def overlap(
     touches: list[Touch], upper: Outline, lower: Outline, frame: FloatArray, rounded: Rounded | None
 ) -> list[Touch]:
-    """Return the extreme points of where a body's outline and an obstacle's overlap.
+    """Return the extreme points of where a body's outline, ``upper``, and an obstacle's overlap.
 
-    Args:
-        touches: the body's contacts with the plane, in the order of its outline's points.
-        upper: the body's outline.
-        lower: the obstacle's outline.
-        frame: (2, 3), unit, the plane's tangents.
-        rounded: the rounding, or None where corners and lines of the body are sharp or belong to rims.
+    ``touches`` are the body's contacts with the plane of tangents ``frame``, in the order of its outline.
+    ``rounded`` is the rounding, or None where corners and lines of the body are sharp or belong to rims.
     """
     if not touches:
         return []

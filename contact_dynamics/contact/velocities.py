@@ -60,12 +60,8 @@ def velocity_accelerations(contacts: ContactSet, velocities_W: FloatArray, w_W: 
     With them, the acceleration along the normal is the gap's second derivative. At a contact at rest, the
     tangential acceleration is the rate of its sliding velocity. A surface that moves adds what makes the
     acceleration relative to it: -a_S - 2 W x v, where v is the relative velocity.
-
-    Args:
-        contacts: n contacts.
-        velocities_W: (n, 3), m/s, of the body's points there, relative to the surfaces, world axes. For the
-            shapes of curved sides, normal parts are not used.
-        w_W: (3,), rad/s, angular velocity of the body, world axes.
+    Velocities, m/s, are those of the body's points relative to the surfaces, of which curved sides do not use
+    the normal parts, and ``w_W``, rad/s, is that of the body.
     """
     added = np.zeros((len(contacts), 3))
     turning_W = np.broadcast_to(w_W, added.shape)

@@ -26,13 +26,10 @@ Real = TypeVar("Real", float, "FloatArray")
 
 
 def energy_change(impulse: Sequence[Real], before: Sequence[Real], after: Sequence[Real]) -> Real:
-    """Return the change of kinetic energy, J, by an impulse at one contact.
+    """Return the change of kinetic energy, J, by an impulse, N s, at one contact.
 
-    Args:
-        impulse: N s, by components along any axes. Each component is a number, or an array with one element
-            for each case.
-        before: m/s, the contact's velocity before, relative to what it touches, along the same axes.
-        after: m/s, the contact's velocity afterwards, in the same axes.
+    All are by components along the same axes, each a number, or an array with an element for each case. The
+    contact's velocities before and afterwards, m/s, are relative to what it touches.
     """
     return 0.5 * _inner(impulse, [v + w for v, w in zip(before, after, strict=True)])
 

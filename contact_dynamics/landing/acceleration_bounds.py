@@ -43,17 +43,11 @@ _FEW: Final = 24
 
 
 class Bound(NamedTuple):
-    """A bound that holds from the time asked for until another.
+    """A bound that holds from the time asked for until another."""
 
-    Attributes:
-        until: End of the bound, s, later than the time asked for.
-        fall: Largest acceleration of the centre of mass against the normal, m/s^2. It may be negative.
-        turning: Largest acceleration of a point relative to it, for each metre of distance, 1/s^2.
-    """
-
-    until: float
-    fall: float
-    turning: float
+    until: float  # end of the bound, s, later than the time asked for
+    fall: float  # largest acceleration of the centre of mass against the normal, m/s^2, may be negative
+    turning: float  # largest acceleration of a point relative to it, for each metre of distance, 1/s^2
 
 
 def bounds_of(motion: Motion, normal_W: FloatArray) -> Callable[[float], Bound]:

@@ -124,22 +124,14 @@ def _hull(corners: ArrayLike) -> ConvexShape:
 
 
 class Above(NamedTuple):
-    """The heights of a shape's parts above a plane at one time.
+    """The heights of a shape's parts above a plane at one time."""
 
-    Attributes:
-        heights: (k + m,), m, heights of corners, then of the lowest points of rims.
-        rates: (k + m,), m/s, rates of these heights.
-        centre: Height of the centre of mass, m.
-        centre_rate: Rate of that height, m/s.
-        sample: The motion at that time.
-    """
-
-    heights: FloatArray
-    rates: FloatArray
+    heights: FloatArray  # (k + m,), m, of corners, then of the lowest points of rims
+    rates: FloatArray  # (k + m,), m/s, of these heights
     rims: list[RimAbove]
-    centre: float
-    centre_rate: float
-    sample: Sample
+    centre: float  # m, height of the centre of mass
+    centre_rate: float  # m/s, of that height
+    sample: Sample  # the motion at that time
 
 
 class Descent:
@@ -290,19 +282,12 @@ distance."""
 
 
 class RimAbove(NamedTuple):
-    """A rim above a plane at one time.
+    """A rim above a plane at one time."""
 
-    Attributes:
-        height: Height of its centre, m.
-        rate: Rate of that height, m/s.
-        a: Heights of the ends of two orthogonal radii above the centre, m.
-        b: Rates of these heights, m/s.
-    """
-
-    height: float
-    rate: float
-    a: tuple[float, float]
-    b: tuple[float, float]
+    height: float  # height of its centre, m
+    rate: float  # rate of that height, m/s
+    a: tuple[float, float]  # heights of the ends of two orthogonal radii above the centre, m
+    b: tuple[float, float]  # rates of these heights, m/s
 
     def lowest(self) -> tuple[float, float, tuple[float, float]]:
         """Return the lowest point's height, m, its rate, m/s, and its direction (cos, sin).

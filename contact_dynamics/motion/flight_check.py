@@ -47,9 +47,7 @@ _FEWEST_OF_PARABOLA: Final = 4  # a parabola fits any three positions
 def velocity_jump(seconds: FloatArray, misses_W: FloatArray) -> float | None:
     """Return when, s, the velocity of a body jumps, or None if the positions show no jump.
 
-    Args:
-        seconds: (n,), s, ascending, times of the positions.
-        misses_W: (n, 3), m, the positions less those of a smooth motion.
+    ``misses_W``, (n, 3), m, are the positions at ascending times less those of a smooth motion.
     """
     total, count, after = len(seconds), _FIRST, 0
     while count <= total:
@@ -68,10 +66,7 @@ def velocity_jump(seconds: FloatArray, misses_W: FloatArray) -> float | None:
 def is_held(seconds: FloatArray, misses_W: FloatArray, gravity_W: FloatArray) -> bool:
     """Return whether a body accelerates unlike one in flight: what carries it takes most of its weight.
 
-    Args:
-        seconds: (n,), s, ascending, times of the positions.
-        misses_W: (n, 3), m, the positions less those of a flight.
-        gravity_W: (3,), m/s^2, world axes.
+    ``misses_W``, (n, 3), m, are the positions at ascending times less those of a flight.
     """
     n, gravity = len(seconds), float(np.linalg.norm(gravity_W))
     if n < _FEWEST_OF_PARABOLA or gravity == 0.0:
@@ -116,13 +111,10 @@ def _newest_is_off(t: FloatArray, x: FloatArray) -> bool:
 
 
 def _is_far_better(n: int, smooth: float, broken: float, free: int) -> bool:
-    """Return whether positions fit another model far better than one parabola.
+    """Return whether n positions fit another model far better than one parabola.
 
-    Args:
-        n: The number of states.
-        smooth: m^2, the sum of the squares of what the parabola misses them by.
-        broken: m^2, that of the other model.
-        free: The number of positions, times three, less that of the other model's coefficients.
+    Sums of squares, m^2, are those of the parabola and of the other model, which has so many degrees of
+    freedom.
     """
     least = n * LEAST_NOISE**2
     ratio = (smooth + least) / (broken + least)

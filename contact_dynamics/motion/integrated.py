@@ -256,19 +256,12 @@ def forced_motion(
 
 
 class IntegratedStep(NamedTuple):
-    """One step of the integrator: all variables are polynomials of degree 7 in time.
+    """One step of the integrator: all variables are polynomials of degree 7 in time."""
 
-    Attributes:
-        start: Time at which the step begins, s.
-        end: Time at which it ends, s, > start.
-        variables: Function from times, (n,), s, to the variables, (13, n) (`equations.VARIABLES`).
-        scale: L over the last three variables, kg m^2.
-    """
-
-    start: float
-    end: float
-    variables: Callable[[FloatArray], FloatArray]
-    scale: float
+    start: float  # s
+    end: float  # s, > start
+    variables: Callable[[FloatArray], FloatArray]  # from times, (n,), s, to (13, n), as `VARIABLES` says
+    scale: float  # L over the last three variables, kg m^2
 
 
 class Steps:

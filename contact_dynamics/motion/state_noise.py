@@ -117,21 +117,13 @@ def _steps(seconds: FloatArray, time: float) -> tuple[FloatArray, FloatArray]:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Whitened:
-    """A linear fit to whitened rows.
+    """A linear fit to whitened rows."""
 
-    Attributes:
-        cost: Sum of squares of the residuals, for unit variance.
-        free: Number of residuals less that of the unknowns.
-        log_weight: Logarithm of the restricted likelihood, but for cost and variance.
-        inverse: (k, k). inverse @ inverse^T is the covariance of the unknowns for unit variance.
-        step: (k, b), the fitted unknowns.
-    """
-
-    cost: float
-    free: int
-    log_weight: float
-    inverse: FloatArray
-    step: FloatArray
+    cost: float  # sum of squares of the residuals, for unit variance
+    free: int  # number of residuals less that of the unknowns
+    log_weight: float  # logarithm of the restricted likelihood, but for cost and variance
+    inverse: FloatArray  # (k, k); inverse @ inverse^T is the covariance of the unknowns for unit variance
+    step: FloatArray  # (k, b), the fitted unknowns
 
 
 def fit_whitened(design: FloatArray, values: FloatArray, seconds: FloatArray, time: float) -> Whitened:

@@ -110,19 +110,12 @@ class Window(ABC, Generic[Model]):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Chosen(Generic[Model]):
-    """The motion that fits best, and others that fit as well.
+    """The motion that fits best, and others that fit as well."""
 
-    Attributes:
-        fit: The best fit.
-        converged: Whether it converged, and its residuals fit the noise.
-        turns_known: Whether published velocities exclude other numbers of turns.
-        alternatives: States at the newest stamp of the other motions.
-    """
-
-    fit: Fit[Model]
-    converged: bool
-    turns_known: bool
-    alternatives: tuple[BodyState, ...]
+    fit: Fit[Model]  # the best fit
+    converged: bool  # whether it converged, and its residuals fit the noise
+    turns_known: bool  # whether published velocities exclude other numbers of turns
+    alternatives: tuple[BodyState, ...]  # states at the newest stamp of the other motions
 
 
 @dataclass(frozen=True, slots=True, eq=False)

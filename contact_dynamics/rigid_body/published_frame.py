@@ -81,11 +81,7 @@ def covariance_of_other_point(covariance: FloatArray, state: BodyState, lever_B:
 
     Covariances are (12, 12), in the order position (m), rotation vector (rad, world axes, a small rotation
     applied after the orientation), linear velocity (m/s), angular velocity (rad/s).
-
-    Args:
-        covariance: That of the state with the first point.
-        state: The state. Its orientation and its angular velocity are those of all points.
-        lever_B: (3,), m, from the first point to the other one, in the axes of the body.
+    ``lever_B``, (3,), m, is from the point of the given covariance to the other one.
     """
     lever = cross_matrix(turned(state.q_WB, lever_B))
     J = np.eye(12)

@@ -47,19 +47,12 @@ _MOMENTS: Final = (("ixx", "ixy", "ixz"), ("ixy", "iyy", "iyz"), ("ixz", "iyz", 
 
 
 class Primitive(NamedTuple):
-    """A collision shape of a link.
+    """A collision shape of a link."""
 
-    Attributes:
-        kind: "box", "sphere", "cylinder", "capsule" or "vertices".
-        numbers: What makes it: side lengths, a radius, a radius and a length, or corners (n, 3), m.
-        position: (3,), m, where it is in the link's frame.
-        orientation: Its unit quaternion there, x, y, z, w.
-    """
-
-    kind: str
-    numbers: FloatArray
-    position: FloatArray
-    orientation: FloatArray
+    kind: str  # "box", "sphere", "cylinder", "capsule" or "vertices"
+    numbers: FloatArray  # what makes it: side lengths, a radius, a radius and a length, or corners (n, 3), m
+    position: FloatArray  # (3,), m, where it is in the link's frame
+    orientation: FloatArray  # its unit quaternion there, x, y, z, w
 
     def shape(self) -> ConvexShape:
         """Return it as a shape in the link's frame."""

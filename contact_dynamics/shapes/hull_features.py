@@ -29,19 +29,12 @@ _KEPT: Final = 64
 
 
 class Features(NamedTuple):
-    """The features of a hull, which is solid, a plate (two faces), a rod (one edge) or a point.
+    """The features of a hull, which is solid, a plate (two faces), a rod (one edge) or a point."""
 
-    Attributes:
-        corners: (k, 3), m.
-        normals: (f, 3), unit, outward.
-        edges: (e, 3), unit directions of edges. Parallel edges have one.
-        triangles: (t, 3, 3), m, the corners of the triangles that the faces consist of.
-    """
-
-    corners: FloatArray
-    normals: FloatArray
-    edges: FloatArray
-    triangles: FloatArray
+    corners: FloatArray  # (k, 3), m
+    normals: FloatArray  # (f, 3), unit, outward
+    edges: FloatArray  # (e, 3), unit directions of edges; parallel edges have one
+    triangles: FloatArray  # (t, 3, 3), m, the corners of the triangles that the faces consist of
 
 
 @lru_cache(maxsize=_KEPT)
@@ -110,19 +103,12 @@ def _distinct(directions: FloatArray, *, signed: bool) -> FloatArray:
 
 
 class Radii(NamedTuple):
-    """A rim as two orthogonal radii.
+    """A rim as two orthogonal radii."""
 
-    Attributes:
-        center: Position of the centre, m.
-        first: The first radius, as a vector, m.
-        second: The second radius, m.
-        reach: A distance from the origin that no point of the rim exceeds, m.
-    """
-
-    center: Vector
-    first: Vector
-    second: Vector
-    reach: float
+    center: Vector  # position of the centre, m
+    first: Vector  # the first radius, as a vector, m
+    second: Vector  # the second radius, m
+    reach: float  # a distance from the origin that no point of the rim exceeds, m
 
 
 def radii_of(rim: Rim) -> Radii:

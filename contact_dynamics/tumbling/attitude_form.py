@@ -18,7 +18,6 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from contact_dynamics.numerics.arithmetic import DOUBLES, Number, Scalar, within
-from contact_dynamics.records import Record
 from contact_dynamics.tolerances import NEGLIGIBLE_TERM
 from contact_dynamics.tumbling.elliptic import carlson_rf
 from contact_dynamics.tumbling.polhode import Spin, Tumble
@@ -34,18 +33,12 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True, repr=False)
-class AttitudeForm(Record):
-    """The attitude about L as a function of time.
+class AttitudeForm:
+    """The attitude about L as a function of time."""
 
-    Attributes:
-        series: The theta functions, in the form that suits this rotation.
-        z: The phase on the polhode, in the series' unit.
-        psi: The phase of the precession about L, in half turns.
-    """
-
-    series: Steady | Harmonics | Bumps | OneFlip
-    z: LinearPhase
-    psi: LinearPhase
+    series: Steady | Harmonics | Bumps | OneFlip  # the theta functions, in the form that suits this rotation
+    z: LinearPhase  # the phase on the polhode, in the series' unit
+    psi: LinearPhase  # the phase of the precession about L, in half turns
 
     def point(self, seconds: float) -> Values:
         """Return what `theta` says at a time, s."""
@@ -234,24 +227,15 @@ _SPLITTER: Final = 134217729.0
 
 
 @dataclass(frozen=True, slots=True, repr=False)
-class LinearPhase(Record):
-    """The phase ``rate * t + offset``, in turns.
+class LinearPhase:
+    """The phase ``rate * t + offset``, in turns."""
 
-    Attributes:
-        rate: Leading part of the rate, turns/s.
-        rate_rest: What ``rate`` leaves of the rate, turns/s.
-        rate_upper: Upper half of the bits of ``rate``, turns/s.
-        rate_lower: Lower half of the bits of ``rate``, turns/s.
-        offset: Leading part of the offset, turns.
-        offset_rest: What ``offset`` leaves of the offset, turns.
-    """
-
-    rate: float
-    rate_rest: float
-    rate_upper: float
-    rate_lower: float
-    offset: float
-    offset_rest: float
+    rate: float  # leading part of the rate, turns/s
+    rate_rest: float  # what ``rate`` leaves of the rate, turns/s
+    rate_upper: float  # upper half of the bits of ``rate``, turns/s
+    rate_lower: float  # lower half of the bits of ``rate``, turns/s
+    offset: float  # leading part of the offset, turns
+    offset_rest: float  # what ``offset`` leaves of the offset, turns
 
     def fraction(self, seconds: float) -> tuple[float, float]:
         """Return the phase at a time, s, as its fraction in [-1/2, 1/2] and its whole turns."""

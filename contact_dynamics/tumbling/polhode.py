@@ -35,48 +35,28 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Spin(Generic[Scalar]):
-    """The angular velocity is constant.
+    """The angular velocity is constant."""
 
-    Attributes:
-        rate: rad/s, >= 0.
-    """
-
-    rate: Scalar
+    rate: Scalar  # rad/s, >= 0
 
 
 @dataclass(frozen=True, slots=True)
 class Tumble(Generic[Scalar]):
-    """The angular velocity moves on a polhode. Axes are in Jacobi's order, right-handed, axis 3 on L's side.
+    """The angular velocity moves on a polhode, in Jacobi's axes, right-handed, axis 3 on L's side."""
 
-    Attributes:
-        moments: kg m^2, about axes 1, 2, 3.
-        gaps: kg m^2, I_2 - I_1, I_3 - I_2, I_3 - I_1; > 0 about the major axis.
-        axes_B: Unit axes 1, 2, 3 in body coordinates, as 3 rows.
-        L: Magnitude of the angular momentum, kg m^2/s.
-        m: Parameter of the elliptic functions, in [0, 1].
-        m1: 1 - m, in [0, 1]. It is 0 on the separatrix.
-        a2: The square of a, 1 - c^2, > 0.
-        b2: The square of b.
-        c2: The square of c.
-        omega_p: du/dt, rad/s, < 0 where axis 3 is the minor one.
-        u0: The value of u at time 0.
-        quarter: pi / 2K, 0 on the separatrix.
-        precession: Mean rate about L, rad/s. On the separatrix it is the rate in the far past and future.
-    """
-
-    moments: tuple[Scalar, Scalar, Scalar]
-    gaps: tuple[Scalar, Scalar, Scalar]
-    axes_B: tuple[tuple[Scalar, Scalar, Scalar], ...]
-    L: Scalar
-    m: Scalar
-    m1: Scalar
-    a2: Scalar
-    b2: Scalar
-    c2: Scalar
-    omega_p: Scalar
-    u0: Scalar
-    quarter: Scalar
-    precession: Scalar
+    moments: tuple[Scalar, Scalar, Scalar]  # kg m^2, about axes 1, 2, 3
+    gaps: tuple[Scalar, Scalar, Scalar]  # kg m^2, I_2 - I_1, I_3 - I_2, I_3 - I_1; > 0 about the major axis
+    axes_B: tuple[tuple[Scalar, Scalar, Scalar], ...]  # unit axes 1, 2, 3 in body coordinates, as 3 rows
+    L: Scalar  # magnitude of the angular momentum, kg m^2/s
+    m: Scalar  # parameter of the elliptic functions, in [0, 1]
+    m1: Scalar  # 1 - m, in [0, 1], 0 on the separatrix
+    a2: Scalar  # the square of a, 1 - c^2, > 0
+    b2: Scalar  # the square of b
+    c2: Scalar  # the square of c
+    omega_p: Scalar  # du/dt, rad/s, < 0 where axis 3 is the minor one
+    u0: Scalar  # the value of u at time 0
+    quarter: Scalar  # pi / 2K, 0 on the separatrix
+    precession: Scalar  # mean rate about L, rad/s; on the separatrix that in the far past and future
 
 
 Rotation: TypeAlias = "Spin[Decimal] | Tumble[Decimal] | Spin[float] | Tumble[float]"

@@ -58,26 +58,16 @@ class Steady(Record):
 
 
 @dataclass(frozen=True, slots=True, repr=False)
-class Harmonics(Record):
-    """Theta functions as trigonometric series: polynomials in cos 2z, lowest power first.
+class Harmonics:
+    """Theta functions as trigonometric series: polynomials in cos 2z, lowest power first."""
 
-    Attributes:
-        r: The number e^{-xi}.
-        A_cos: Coefficients of Re A.
-        A_sin: Coefficients of Im A / sin 2z.
-        B_cos: Coefficients of Re B.
-        B_sin: Coefficients of Im B / sin 2z.
-        C: Coefficients of C / cos z.
-        D: Coefficients of D.
-    """
-
-    r: float
-    A_cos: tuple[float, ...]
-    A_sin: tuple[float, ...]
-    B_cos: tuple[float, ...]
-    B_sin: tuple[float, ...]
-    C: tuple[float, ...]
-    D: tuple[float, ...]
+    r: float  # the number e^{-xi}
+    A_cos: tuple[float, ...]  # coefficients of Re A
+    A_sin: tuple[float, ...]  # coefficients of Im A / sin 2z
+    B_cos: tuple[float, ...]  # coefficients of Re B
+    B_sin: tuple[float, ...]  # coefficients of Im B / sin 2z
+    C: tuple[float, ...]  # coefficients of C / cos z
+    D: tuple[float, ...]  # coefficients of D
 
     def values(self, functions: ModuleType, z: Any, _: Any, psi: Any) -> Values:
         """Return the values for z in turns. They do not depend on whole turns."""
@@ -100,30 +90,18 @@ class Harmonics(Record):
 
 
 @dataclass(frozen=True, slots=True, repr=False)
-class Bumps(Record):
-    """Theta functions after Poisson's summation. The body stays near the middle axis and flips in between.
+class Bumps:
+    """Theta functions after Poisson's summation. The body stays near the middle axis and flips in between."""
 
-    Attributes:
-        steepness: |log| of the ratio of the two nearest bumps, per half turn of z.
-        drift: Half turns of psi per half turn of z.
-        g: Ratio of the next bump to a bump, at the top of the latter.
-        A_cos: Amplitudes of the cosines of A, three terms.
-        A_sin: Amplitudes of the sines of A, three terms.
-        B_cos: Amplitudes of the cosines of B, three terms.
-        B_sin: Amplitudes of the sines of B, three terms.
-        C: Value of C at z = 0, without the terms in g.
-        D: Value of D at z = 0, without the terms in g.
-    """
-
-    steepness: float
-    drift: float
-    g: float
-    A_cos: Three
-    A_sin: Three
-    B_cos: Three
-    B_sin: Three
-    C: float
-    D: float
+    steepness: float  # |log| of the ratio of the two nearest bumps, per half turn of z
+    drift: float  # half turns of psi per half turn of z
+    g: float  # ratio of the next bump to a bump, at the top of the latter
+    A_cos: Three  # amplitudes of the cosines of A, three terms
+    A_sin: Three  # amplitudes of the sines of A, three terms
+    B_cos: Three  # amplitudes of the cosines of B, three terms
+    B_sin: Three  # amplitudes of the sines of B, three terms
+    C: float  # value of C at z = 0, without the terms in g
+    D: float  # value of D at z = 0, without the terms in g
 
     def values(self, functions: ModuleType, z: Any, flips: Any, psi: Any) -> Values:
         """Return the values for z in half turns from the middle of a flip, and the number of flips before."""
@@ -145,20 +123,13 @@ class Bumps(Record):
 
 
 @dataclass(frozen=True, slots=True, repr=False)
-class OneFlip(Record):
-    """The separatrix: the body spins about the middle axis, flips once, and spins about it the other way.
+class OneFlip:
+    """The separatrix: the body spins about the middle axis, flips once, and spins about it the other way."""
 
-    Attributes:
-        A: The two amplitudes of A.
-        B: The two amplitudes of B.
-        C: Value of C at u = 0.
-        D: Value of D at u = 0.
-    """
-
-    A: tuple[float, float]
-    B: tuple[float, float]
-    C: float
-    D: float
+    A: tuple[float, float]  # the two amplitudes of A
+    B: tuple[float, float]  # the two amplitudes of B
+    C: float  # value of C at u = 0
+    D: float  # value of D at u = 0
 
     def values(self, functions: ModuleType, fraction: Any, whole: Any, psi: Any) -> Values:
         """Return the values for u = whole + fraction, 0 in the middle of the flip."""

@@ -109,21 +109,13 @@ def bodies_impact(
 
 
 class Touching(NamedTuple):
-    """Bodies in contact, and the laws of their strikes.
-
-    Attributes:
-        bodies: Mass and angular inertia of each.
-        contacts: All contacts that touch.
-        pairs: For each contact, the body that its normal points into and the other one, or None.
-        restitution_law: What the coefficients of restitution mean.
-        tolerance: m/s. A contact that approaches less fast does not strike.
-    """
+    """Bodies in contact, and the laws of their strikes."""
 
     bodies: Sequence[MassProperties]
     contacts: ContactSet
-    pairs: Sequence[tuple[int, int | None]]
+    pairs: Sequence[tuple[int, int | None]]  # for each contact, the body of its normal and the other or None
     restitution_law: RestitutionLaw
-    tolerance: float
+    tolerance: float  # m/s; a contact that approaches less fast does not strike
 
 
 def check_touching(touching: Touching, states: Sequence[BodyState]) -> FloatArray:
@@ -148,20 +140,14 @@ def check_touching(touching: Touching, states: Sequence[BodyState]) -> FloatArra
 class InTurn(NamedTuple):
     """What striking in turn leads to.
 
-    Attributes:
-        strikes: Each contact struck, in order, with its impact. Tied contacts follow each other, each with
-            its share and the states after all of them.
-        states: The states afterwards.
-        converged: Whether no contact approaches then.
-        order_is_open: Whether several contacts approached at one time, so that another could have come first.
-        ties: Whether tied contacts struck as one.
+    Tied contacts follow each other, each with its share and the states after all of them.
     """
 
     strikes: tuple[tuple[int, SpatialImpact], ...]
-    states: list[BodyState]
-    converged: bool
-    order_is_open: bool
-    ties: bool
+    states: list[BodyState]  # afterwards
+    converged: bool  # no contact approaches then
+    order_is_open: bool  # several contacts approached at one time
+    ties: bool  # tied contacts struck as one
 
     @property
     def order(self) -> tuple[int, ...]:

@@ -45,16 +45,11 @@ class Response(NamedTuple):
 
     If surfaces move, a last column of the Jacobian has their velocities, negative, and the twist has a 1 for
     it, which no impulse changes.
-
-    Attributes:
-        jacobian: (n, 3, 6 k), takes the velocities of the k bodies (v then w of each) into those of contacts.
-        inverse_mass: (6 k, 6 k), 1/kg and 1/(kg m^2), takes impulses and their moments into velocities.
-        twist: (6 k,), m/s and rad/s, the bodies' velocities.
     """
 
-    jacobian: FloatArray
-    inverse_mass: FloatArray
-    twist: FloatArray
+    jacobian: FloatArray  # (n, 3, 6 k), from the bodies' velocities (v then w of each) to those of contacts
+    inverse_mass: FloatArray  # (6 k, 6 k), 1/kg and 1/(kg m^2), from impulses and moments to velocities
+    twist: FloatArray  # (6 k,), m/s and rad/s, the bodies' velocities
 
 
 def response_of(
@@ -106,12 +101,8 @@ def next_to_strike(
 ) -> list[int]:
     """Return the contact that approaches fastest with those that strike as one with it, or none.
 
-    Args:
-        approach: n normal velocities, m/s, negative where contacts approach.
-        materials: Restitution and friction of each contact. Of tied ones that differ, those with the least
-            restitution, then the least friction, come first.
-        tolerance: m/s. A contact that approaches less fast does not strike.
-        tie: m/s. Contacts approach equally fast if their speeds differ by no more.
+    Normal velocities, m/s, are negative where contacts approach, and tie if they differ by at most ``tie``.
+    Of tied contacts that differ, those with the least restitution, then the least friction, come first.
     """
     fast = min(min(approach) + tie, -tolerance)
     tied = [i for i, rate in enumerate(approach) if rate <= fast]
@@ -132,13 +123,8 @@ def strike_as_one(
 ) -> tuple[list[SpatialImpact], list[BodyState]]:
     """Return the share that each of the tied ``contacts`` has in their impact, and all states after it.
 
-    Args:
-        bodies: Mass and angular inertia of each.
-        states: The states of all bodies just before.
-        contacts: The contacts, which approach equally fast and have the same friction and restitution.
-        pairs: The bodies that meet at each.
-        law: What the coefficient of restitution means.
-        tolerance: m/s. A contact that slides less fast does not slide.
+    They approach equally fast and have the same friction and restitution. A contact does not slide if it is
+    slower than ``tolerance``, m/s.
     """
     response = response_of(bodies, states, contacts.p_WC_W, pairs, contacts.surface_velocities_W)
     (restitution, friction), *_ = materials_of(contacts)
@@ -223,13 +209,8 @@ def mean_path(
 ) -> SpatialPath:
     """Return the path of the impulse of contacts that strike as one.
 
-    Args:
-        response: 1/kg, that of their mean velocity, as `SlidingLaw` has it: l_1, l_2, k_1, k_2 and k_n.
-        velocity: m/s, the mean one, by the two tangents and the normal.
-        restitution: The coefficient of restitution.
-        friction: Coulomb's coefficient.
-        law: What the coefficient of restitution means.
-        tolerance: m/s. Contacts that slide less fast do not slide.
+    The response, 1/kg, of their mean velocity is l_1, l_2, k_1, k_2 and k_n of `SlidingLaw`. This velocity,
+    m/s, is by the two tangents and the normal. What slides less fast than ``tolerance`` does not slide.
     """
     l1, l2, k1, k2, kn = response
     u1, u2, v_n = velocity

@@ -271,10 +271,7 @@ def _impact(
 def contact_inverse_inertia(body: MassProperties, state: BodyState, arm: FloatArray) -> FloatArray:
     """Return the change of a point's velocity per impulse there, (3, 3), 1/kg, world (lecture 27, eq. 7).
 
-    Args:
-        body: Mass and angular inertia.
-        state: The state of the body, whose attitude alone matters.
-        arm: (3,), m, from the centre of mass to the point, world axes.
+    Of the state, the attitude alone matters. The arm, (3,), m, is from the centre of mass to the point.
     """
     axes = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
     at_contact = BodyAtContact()
@@ -284,12 +281,7 @@ def contact_inverse_inertia(body: MassProperties, state: BodyState, arm: FloatAr
 
 
 def check_striking(body: MassProperties, state: BodyState, points_W: FloatArray) -> None:
-    """Refuse a body, a motion or contacts whose numbers have products outside the range of doubles.
-
-    Args:
-        body: Mass and angular inertia.
-        state: Pose and velocities.
-        points_W: (n, 3) or (3,), m, contact points, world.
+    """Refuse a body, a motion or contact points, (n, 3) or (3,), whose products doubles do not hold.
 
     Raises:
         InvalidFieldError: a velocity, or the distance of a contact from the centre of mass, is beyond

@@ -174,17 +174,11 @@ _MAX_SWEEPS: Final = 30
 
 @dataclass(frozen=True, slots=True)
 class PrincipalFrame(Generic[Scalar]):
-    """The principal moments in ascending order, and their axes.
+    """The principal moments in ascending order, and their axes."""
 
-    Attributes:
-        moments: kg m^2.
-        gaps: Differences middle - small, large - middle and large - small, kg m^2, >= 0.
-        axes_B: Unit axes in body coordinates, as 3 rows, of either handedness.
-    """
-
-    moments: tuple[Scalar, Scalar, Scalar]
-    gaps: tuple[Scalar, Scalar, Scalar]
-    axes_B: tuple[tuple[Scalar, Scalar, Scalar], ...]
+    moments: tuple[Scalar, Scalar, Scalar]  # kg m^2
+    gaps: tuple[Scalar, Scalar, Scalar]  # kg m^2, middle - small, large - middle and large - small
+    axes_B: tuple[tuple[Scalar, Scalar, Scalar], ...]  # 3 unit rows, body axes, of either handedness
 
 
 def principal_frame(I_B: FloatArray) -> PrincipalFrame[Decimal]:

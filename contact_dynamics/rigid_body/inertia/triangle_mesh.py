@@ -34,7 +34,6 @@ import numpy as np
 
 from contact_dynamics.errors import InvalidFieldError, UndecidedError
 from contact_dynamics.numerics.convex_hull import hull_of
-from contact_dynamics.records import Record
 from contact_dynamics.rigid_body.inertia.distribution import MassDistribution, inertia_of_second_moments
 from contact_dynamics.rigid_body.inertia.solids import mass_of
 from contact_dynamics.tolerances import EPSILON, SURFACES_TOUCH, VOLUME_ROUNDING
@@ -238,18 +237,12 @@ def _dots(x: FloatArray, y: FloatArray) -> FloatArray:
 
 
 @dataclass(frozen=True, slots=True, repr=False)
-class Polyhedron(Record):
-    """What triangles enclose.
+class Polyhedron:
+    """What triangles enclose."""
 
-    Attributes:
-        volume: m^3.
-        center_F: (3,), m.
-        second: (3, 3), m^5, integral of x x^T dV about the centre, F's axes.
-    """
-
-    volume: float
-    center_F: FloatArray
-    second: FloatArray
+    volume: float  # m^3
+    center_F: FloatArray  # (3,), m
+    second: FloatArray  # (3, 3), m^5, integral of x x^T dV about the centre, F's axes
 
 
 def polyhedron(p_FV_F: FloatArray, triangles: NDArray[np.int64]) -> Polyhedron:
@@ -296,18 +289,12 @@ _WOUND: Final = "triangles wound alike: both pass their common edge in opposite 
 
 
 @dataclass(frozen=True, slots=True, repr=False)
-class ClosedSurface(Record):
-    """Triangles that close and are wound alike.
+class ClosedSurface:
+    """Triangles that close and are wound alike."""
 
-    Attributes:
-        triangles: (m, 3), indices of vertices.
-        numbers: (m,), each triangle's number in the caller's list.
-        neighbors: (3 m / 2, 2), the two triangles at each edge, indices into ``triangles``.
-    """
-
-    triangles: NDArray[np.int64]
-    numbers: NDArray[np.int64]
-    neighbors: NDArray[np.int64]
+    triangles: NDArray[np.int64]  # (m, 3), indices of vertices
+    numbers: NDArray[np.int64]  # (m,), each triangle's number in the caller's list
+    neighbors: NDArray[np.int64]  # (3 m / 2, 2), the two triangles at each edge, indices into ``triangles``
 
 
 def closed_surface(p_FV_F: FloatArray, triangles: ArrayLike) -> ClosedSurface:
