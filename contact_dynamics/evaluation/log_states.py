@@ -49,10 +49,14 @@ def parameters_of(source: ParameterSource) -> tuple[ServerParameters, Informed]:
         ConfigurationError: a parameter is missing, or has a value that is not allowed.
     """
     parameters = read_server_parameters(source)
-    informed = Informed(
+    return parameters, informed_by(parameters)
+
+
+def informed_by(parameters: ServerParameters) -> Informed:
+    """Return what of a configuration those know who ask."""
+    return Informed(
         world=parameters.world, defaults=parameters.defaults, state_timeout=parameters.state_timeout
     )
-    return parameters, informed
 
 
 def recording_of_log(path: Path, *, config: Path | None = None, only: Collection[str] = ()) -> Recording:

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 from rclpy.serialization import serialize_message
 
-from contact_dynamics.evaluation.asking import Informed
+from contact_dynamics.evaluation.log_states import informed_by
 from contact_dynamics.monitoring.event_message import TYPE, event_to_msg
 from contact_dynamics.monitoring.evidence import ModelError
 from contact_dynamics.monitoring.monitor import LOOK_EVERY, SILENT, Monitor, MonitorSettings
@@ -70,7 +70,7 @@ class Monitoring(Receiving):
             str, float
         ] = {}  # s, when the last state of a body came whose events are not settled
         self._summary = Summary()
-        self._monitor = Monitor(_informed(parameters), MonitorSettings(error=error))
+        self._monitor = Monitor(informed_by(parameters), MonitorSettings(error=error))
         super().__init__(node, parameters, run=run, states=_Watched(self._take))
         self._publisher = node.create_publisher(MonitorEvent, "~/events", EVENT_QOS)
         self._definition = find_definition(TYPE)
@@ -94,7 +94,7 @@ class Monitoring(Receiving):
         """Predict with another configuration from now on, and log it (see `Receiving`)."""
         super().change(parameters, event=event, run=run)
         self._tell(self._monitor.finish())
-        self._monitor.informed = _informed(parameters)
+        self._monitor.informed = informed_by(parameters)
 
     def close(self) -> str:
         """Publish the last events, and finish the log; return in words where that is."""
@@ -143,12 +143,6 @@ class Monitoring(Receiving):
             for surface, report in self._summary.latest.items()
             if report.changed is not None
         ]
-
-
-def _informed(parameters: ServerParameters) -> Informed:
-    return Informed(
-        world=parameters.world, defaults=parameters.defaults, state_timeout=parameters.state_timeout
-    )
 
 
 class _Watched(StateStore):
