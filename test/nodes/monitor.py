@@ -65,6 +65,13 @@ def hard() -> PredictImpact.Request:
     return request
 
 
+def parameters_file(folder: Path, values: dict[str, Any]) -> Path:
+    """Write parameters of all nodes."""
+    path = folder / "server.yaml"
+    path.write_text(yaml.safe_dump({"/**": {"ros__parameters": values}}), encoding="utf-8")
+    return path
+
+
 class Monitor:
     """A client that listens to /diagnostics."""
 
@@ -146,8 +153,7 @@ def monitored(
     domain_id = claim_domain()  # since another server of the same name is a situation
     parameters = yaml.safe_load((ROOT / "config" / "server.yaml").read_text(encoding="utf-8"))
     parameters["/**"]["ros__parameters"] |= changes
-    path = folder / "server.yaml"
-    path.write_text(yaml.safe_dump(parameters), encoding="utf-8")
+    path = parameters_file(folder, parameters["/**"]["ros__parameters"])
     workers = ("--ros-args", "-p", f"workers:={changes.get('workers', 0)}")
     given = ("--params-file", str(path), *arguments, *workers)
     with process("server", *given, ready=ready, domain_id=domain_id, settings=settings) as server:

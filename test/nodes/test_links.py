@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-import yaml
 from rcl_interfaces.srv import GetParameters, SetParameters
 from rclpy.parameter import Parameter
 
@@ -18,6 +17,7 @@ from contact_dynamics.nodes.parameter_reader import ConfigurationError
 from contact_dynamics.nodes.parameters import read_server_parameters
 from contact_dynamics.replay.verify import verify_log
 from contact_dynamics_interfaces.srv import PredictImpact
+from nodes.monitor import parameters_file
 from running_server import PATIENCE_S, Client, process
 
 SIZES = {"box": 'size="0.1 0.2 0.3"', "cylinder": 'radius="0.1" length="0.3"', "sphere": 'radius="0.1"'}
@@ -41,9 +41,7 @@ def urdf(*shapes: str) -> str:
 
 def written(folder: Path, **values: Any) -> Path:
     parameters = {"bodies": ["part"], **FLOOR} | {f"body.part.{key}": value for key, value in values.items()}
-    path = folder / "server.yaml"
-    path.write_text(yaml.safe_dump({"/**": {"ros__parameters": parameters}}), encoding="utf-8")
-    return path
+    return parameters_file(folder, parameters)
 
 
 @pytest.mark.parametrize("shapes", [(), ("box",), ("cylinder",), ("sphere",), ("box", "box")], ids="+".join)

@@ -26,6 +26,7 @@ from contact_dynamics.nodes.parameters import read_server_parameters
 from contact_dynamics.nodes.state_sources import ADAPTERS
 from contact_dynamics.recording.limits import UNLIMITED
 from message_words import says
+from nodes.monitor import parameters_file
 from running_server import DOMAIN_ID, PATIENCE_S, ROOT, environment, process, wait_for
 
 CONFIG = ROOT / "config"
@@ -358,12 +359,6 @@ def test_the_log_may_go_below_the_home_folder(monkeypatch: pytest.MonkeyPatch, t
     assert log.folder.parent == tmp_path / "logs"
     log.start()
     log.close()
-
-
-def parameters_file(folder: Path, values: dict[str, Any]) -> Path:
-    path = folder / "parameters.yaml"
-    path.write_text(yaml.safe_dump({"/**": {"ros__parameters": values}}), encoding="utf-8")
-    return path
 
 
 def test_a_concave_body_is_told_in_the_log(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:

@@ -14,7 +14,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-import yaml
 from geometry_msgs.msg import PoseStamped, TwistStamped
 from nav_msgs.msg import Odometry
 from rclpy.qos import QoSProfile, ReliabilityPolicy
@@ -26,6 +25,7 @@ from contact_dynamics.recording.limits import LogLimits
 from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact, PredictTumbling
 from message_words import says
 from msg_adapters.stamps import stamp_ns_from_msg, stamp_to_msg
+from nodes.monitor import parameters_file
 from oracles.rigid_flight import about, matrix
 from running_server import PATIENCE_S, ROOT, Client, process, wait_for
 
@@ -123,7 +123,6 @@ class Servers:
 @pytest.fixture(scope="module")
 def servers(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Servers]:
     logs = tmp_path_factory.mktemp("logs")
-    robot_file = tmp_path_factory.mktemp("config") / "robot.yaml"
     parameters: dict[str, Any] = {"bodies": ["club", "disc"], "state_timeout": PATIENT}
     for name in parameters["bodies"]:
         parameters[f"body.{name}.mass"] = 0.5
@@ -133,7 +132,7 @@ def servers(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Servers]:
     parameters["body.disc.pose_topic"] = "disc/pose"
     parameters["body.disc.twist_topic"] = "disc/twist"
     parameters["body.disc.frame"] = "disc_link"
-    robot_file.write_text(yaml.safe_dump({"/**": {"ros__parameters": parameters}}), encoding="utf-8")
+    robot_file = parameters_file(tmp_path_factory.mktemp("config"), parameters)
     log = ["-p", f"log_directory:={logs}"]
     remaps = ["-r", "__ns:=/robot1", "-r", "club/odometry:=/mocap/club"]
     remaps += ["-p", "qos_overrides./mocap/club.subscription.reliability:=best_effort"]

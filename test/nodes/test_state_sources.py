@@ -10,7 +10,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-import yaml
 from geometry_msgs.msg import (
     Pose,
     PoseArray,
@@ -23,6 +22,7 @@ from contact_dynamics.nodes.parameter_reader import ConfigurationError
 from contact_dynamics.nodes.state_sources import ENTRY_POINTS, adapter_of
 from contact_dynamics_interfaces.srv import PredictTumbling
 from msg_adapters.stamps import stamp_ns_from_msg, stamp_to_msg
+from nodes.monitor import parameters_file
 from running_server import PATIENT, ROOT, Client, process
 
 VELOCITY = np.array([0.5, 0.0, 1.0])  # m/s, of all bodies
@@ -59,10 +59,7 @@ def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Client]:
             f"body.{name}.mass": 0.5,
             f"body.{name}.inertia": [0.001, 0.002, 0.0025, 0.0, 0.0, 0.0],
         }
-    file = folder / "server.yaml"
-    file.write_text(
-        yaml.safe_dump({"/**": {"ros__parameters": {**parameters, "log_directory": str(folder / "logs")}}})
-    )
+    file = parameters_file(folder, {**parameters, "log_directory": str(folder / "logs")})
     with pytest.MonkeyPatch.context() as patch:
         for path in (folder, ROOT / "examples" / "pose_array_source"):
             patch.syspath_prepend(str(path))
