@@ -169,8 +169,22 @@ def test_events_of_tosses_as_configured_and_their_log(
     logged = {(EventKind[row["kind"]].value, row["stamp_ns"]): row for row in rows}
     assert live.keys() == logged.keys()
     for key, event in live.items():
-        probability = logged[key]["probability"]
-        assert event.probability == probability or (math.isnan(event.probability) and probability is None)
+        row = logged[key]
+        report = row["surface_report"] or {"values": [None] * 2, "stds": [None] * 2, "impacts": 0}
+        for number, expected in (
+            (event.probability, row["probability"]),
+            (event.time_error, row["time_error"]),
+            *zip((event.restitution, event.friction), row["impact_values"], strict=True),
+            *zip((event.restitution_std, event.friction_std), row["impact_stds"], strict=True),
+            *zip((event.estimated_restitution, event.estimated_friction), report["values"], strict=True),
+            *zip(
+                (event.estimated_restitution_std, event.estimated_friction_std), report["stds"], strict=True
+            ),
+        ):
+            assert number == expected or (math.isnan(number) and expected in {None, "nan"})
+        assert event.impacts == report["impacts"]
+        for name in ("predicted_mode", "measured_mode", "problem"):
+            assert getattr(event, name) == row[name]
     capsys.readouterr()
     assert main(["replay", "table", str(log)]) == 0
     table = list(csv.DictReader(io.StringIO(capsys.readouterr().out)))

@@ -175,7 +175,9 @@ for each in SERVICES:
 
 
 def test_each_interface_has_a_pair() -> None:
-    assert set(PAIRS) == {path.stem if path.suffix == ".msg" else f"{path.stem}.Response" for path in FILES}
+    """An event of the monitor is only written: `monitoring/test_live.py` compares its fields."""
+    names = {path.stem if path.suffix == ".msg" else f"{path.stem}.Response" for path in FILES}
+    assert set(PAIRS) == names - {"MonitorEvent"}
 
 
 @pytest.mark.parametrize("name", PAIRS)
