@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Predictions beside what came: events are found in recordings, asked about beforehand, and compared.
+"""Compares predictions with measured events: flights, landings, impacts, rests and slides of recordings.
 
-`recording` has the one call, `evaluate_recording`. A recording is read from a log (`log_states`) or a toss by
-`sources`. `measured.events` finds what happened in it. `asking` asks, as `settings` say, and makes a
-`comparison` of each answer.
+The entry point is `evaluate_recording` in `recording`. `sources` finds recordings and reads them from a log
+(`log_states`) or a toss, and `measured.events` finds their events. `asking` predicts each event with the
+horizons, laws and fit window of `settings`, and returns one `comparison` for each prediction.
 
-At size, `jobs` are each recording's work, whose results are kept and which processes share, and `result` is
-the whole. `summary` and `significance` put it together. `report`, `plots` and `picture` show it. `arguments`
-and `run` are the command.
+`jobs` distributes many recordings over processes and stores their results. `result` contains the records of
+an evaluation and their file formats. `summary` groups the comparisons, and `significance` tests the
+difference of two evaluations. `report`, `plots` and `picture` display them. `arguments`, `command` and `run`
+implement the command line.
 """

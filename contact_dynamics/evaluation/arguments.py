@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The arguments of `contact-dynamics evaluate`. This file imports what help needs, and no more."""
+"""The arguments of `contact-dynamics evaluate`. This file imports only what `--help` needs."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ from pathlib import Path
 from typing import Final
 
 LAWS: Final = ("poisson", "newton", "energetic", "in time")
-"""The names of the laws; a test holds them to `settings.Law`."""
+"""The names of the laws; a test compares them with `settings.Law`."""
 
 HORIZONS: Final = (0.02, 0.05, 0.1, 0.2)
-"""s, as in `settings`; a test holds the two together."""
+"""s, equal to `settings.HORIZONS`, as a test checks."""
 
 FIT_WINDOW: Final = 0.1
-"""s, as in `settings`, held by the same test."""
+"""s, equal to `settings.FIT_WINDOW`, as the same test checks."""
 
 
 def evaluate_parser() -> argparse.ArgumentParser:
@@ -36,7 +36,7 @@ def evaluate_parser() -> argparse.ArgumentParser:
 
 
 def add_recordings(parser: argparse.ArgumentParser) -> None:
-    """Add the recordings that `sources.find_sources` finds."""
+    """Add the argument for the paths of recordings, which `sources.find_sources` resolves."""
     parser.add_argument(
         "recordings",
         nargs="*",
@@ -47,7 +47,7 @@ def add_recordings(parser: argparse.ArgumentParser) -> None:
 
 
 def add_config(parser: argparse._ActionsContainer) -> None:
-    """Add the configuration that recordings are read with."""
+    """Add the option for the configuration with which recordings are read."""
     parser.add_argument(
         "--config",
         type=Path,
@@ -134,7 +134,7 @@ def _list_of_seconds(text: str) -> tuple[float, ...]:
 
 
 def _seconds(text: str) -> float:
-    """Return s of a number of milliseconds."""
+    """Return a number of milliseconds in s."""
     try:
         value = float(text) / 1000.0
     except ValueError:

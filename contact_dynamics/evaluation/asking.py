@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Each event's questions, asked as they would have been some time before, with the states known by then."""
+"""Predicts each event from the states that were available some time before it, and compares the results."""
 
 from __future__ import annotations
 
@@ -54,20 +54,20 @@ if TYPE_CHECKING:
     from contact_dynamics.world import Body, World
 
 FEWEST_ASKED: Final = 5
-"""Least number of states since a flight began, for a question about its end. A fit of three or four could
-follow their noise anywhere. A question about a mode needs one state."""
+"""Smallest number of states since the start of a flight for a prediction of its end. A fit to three or four
+states would mostly follow their noise. The prediction of a contact mode needs one state."""
 
-_SPARSE: Final = 1.0  # Hz: of a flight until contact, only its end counts
+_SPARSE: Final = 1.0  # Hz, sample rate of a flight until contact, of which only the end is used
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class Informed(Record):
-    """What whoever asks knows besides the states.
+    """The configuration with which predictions are made.
 
     Attributes:
-        world: Bodies, surfaces and gravity. They may be others than those the events were found with.
-        defaults: Tolerances, and how far ahead a contact is looked for.
-        state_timeout: s, how old the newest state may be.
+        world: Bodies, surfaces and gravity. They may differ from those with which the events were found.
+        defaults: Tolerances and the look-ahead time for contacts.
+        state_timeout: Largest age of the newest state, s.
     """
 
     world: World
@@ -78,7 +78,7 @@ class Informed(Record):
 def asked_before(
     event: FoundEvent, motion: MeasuredMotion, informed: Informed, settings: Settings
 ) -> dict[float, Context]:
-    """Return what is known at each horizon, s, before an event, where enough states were known by then."""
+    """Return the context at each horizon, s, before an event. Horizons with too few states are left out."""
     found: dict[float, Context] = {}
     body = known_body(motion, informed)
     for horizon in settings.horizons:
@@ -88,26 +88,26 @@ def asked_before(
             continue
         stamps_ns = motion.stamps_ns[samples]
         store = StateStore(history=settings.fit_window, timeout=informed.state_timeout)
-        window = 0.0 if event.mode else settings.fit_window  # a question about a mode takes the newest state
+        window = 0.0 if event.mode else settings.fit_window  # modes need only the newest
         for state in motion.states(samples[stamps_ns >= stamps_ns[-1] - to_ns(window)].tolist()):
             store.add(event.body, carried_over(state, motion.body, body))
         found[horizon] = Context(
             world=informed.world,
             states=store,
             defaults=informed.defaults,
-            now_ns=lambda asked_ns=asked_ns: asked_ns,  # type: ignore[misc]  # bound now, not when called
+            now_ns=lambda asked_ns=asked_ns: asked_ns,  # type: ignore[misc]  # binds the current value
         )
     return found
 
 
 def known_body(motion: MeasuredMotion, informed: Informed) -> Body:
-    """Return the body as whoever asks knows it. Its centre of mass may be another point of the body."""
+    """Return the body as configured for predictions. Its centre of mass may be another point of the body."""
     same = (body for body in informed.world.bodies if body.name == motion.body.name)
     return next(same, motion.body)
 
 
 def of_known_center(event: FoundEvent, motion: MeasuredMotion, informed: Informed) -> FoundEvent:
-    """Return an event with the state of the centre of mass that whoever asks knows."""
+    """Return an event with the state of the centre of mass that predictions use."""
     state = carried_over(event.state, motion.body, known_body(motion, informed))
     return replace(event, state=state_of(state))
 
@@ -115,7 +115,7 @@ def of_known_center(event: FoundEvent, motion: MeasuredMotion, informed: Informe
 def compare_event(
     number: int, event: FoundEvent, asked: Mapping[float, Context], settings: Settings
 ) -> Iterator[Comparison]:
-    """Yield a row for each question about an event, with what is known at each horizon before it."""
+    """Yield a row for each prediction of an event, from the context at each horizon before it."""
     for horizon, known in asked.items():
         for method, law in _ways(event.kind, settings):
             row = Comparison(
@@ -137,7 +137,7 @@ def compare_event(
 
 
 def _ways(kind: EventKind, settings: Settings) -> list[tuple[Method, Law | None]]:
-    """Return what predictions of an event of this kind are made from, and under which law."""
+    """Return the combinations of method and law with which an event of this kind is predicted."""
     if kind is EventKind.IMPACT:
         fits = [(Method.FIT, law) for law in settings.laws]
         return [*fits, (Method.NEWEST, settings.laws[0]), (Method.NO_IMPACT, None)]
@@ -151,7 +151,7 @@ def _source(row: Comparison, settings: Settings) -> PublishedState:
 
 
 def _has_covariance(row: Comparison, known: Context) -> bool:
-    """Return whether the state that a prediction is made from has a covariance, as each fit has."""
+    """Return whether the initial state of a prediction has a covariance, which every fit has."""
     if row.method is Method.NEWEST:
         return isinstance(known.states.newest(row.body), UncertainState)
     return row.method is Method.FIT
@@ -195,7 +195,7 @@ def _landing(row: Comparison, event: FoundEvent, known: Context, settings: Setti
 
 @lru_cache(maxsize=1)
 def first_answer(event: FoundEvent, known: Context, settings: Settings) -> ImpactAnswer:
-    """Return the answer from the fit under the first law. The baseline flies on from its state before."""
+    """Return the answer from the fit under the first law. `Method.NO_IMPACT` continues its flight."""
     source = PublishedState(fit_window=settings.fit_window)
     return _asked_impact(event, known, settings.laws[0], source, include_covariance=True)
 
@@ -213,19 +213,19 @@ def _asked_impact(
     )
     try:
         if isinstance(several, InTime):
-            # strikes after the next flight has begun do not count, unless the first one is among them
+            # Strikes after the start of the next flight do not count, unless there are no earlier ones.
             brief = replace(several, strike_window=event.duration + HOLD_STEP)
             with suppress(NoContactError, SeparatingContactError):
                 return ask(replace(question, several_contacts_law=brief), known)
         return ask(question, known)
-    except NotSupportedError:  # covariances are carried through one contact alone
+    except NotSupportedError:  # covariances are supported for a single contact only
         if not include_covariance:
             raise
         return ask(replace(question, include_covariance=False), known)
 
 
 def _impact(row: Comparison, event: FoundEvent, known: Context, settings: Settings) -> Comparison:
-    """Return the row with the state after the impact, flown on for as long as the measured one took."""
+    """Return the row with the state that is predicted for the end of the measured impact."""
     law = row.law or settings.laws[0]
     if row.method is not Method.NEWEST and law is settings.laws[0]:
         answer = first_answer(event, known, settings)
@@ -235,7 +235,7 @@ def _impact(row: Comparison, event: FoundEvent, known: Context, settings: Settin
     state, covariance, lasted = answer.impact.state, answer.impact.covariance, 0.0
     if row.method is Method.NO_IMPACT:
         state, covariance = answer.state, None
-    elif answer.impact.strikes:  # only those that were over when the next flight began
+    elif answer.impact.strikes:  # only those before the next flight
         strike = [strike for strike in answer.impact.strikes if strike.seconds <= event.duration][-1]
         state, lasted = strike.state_after, strike.seconds
     body = known.world.body(event.body).mass_properties
@@ -251,7 +251,7 @@ def _mode(
     row: Comparison,
     event: FoundEvent,
     known: Context,
-    settings: Settings,  # noqa: ARG001  as all of them
+    settings: Settings,  # noqa: ARG001  same signature as the other entries of _ANSWERS
 ) -> Comparison:
     answer = ask(ContactModeQuestion(body=event.body), known)
     modes = [mode.mode for mode in answer.modes] if answer.verdict is not ModeVerdict.IMPACT else []
@@ -263,7 +263,7 @@ def _mode(
 
 
 def _does(mode: str) -> EventKind | None:
-    """Return what a body does in a mode: it rests, or slides without a contact leaving, or else None."""
+    """Return the kind of motion in a mode: rest, sliding without a separating contact, or None."""
     if set(mode) <= {"f"}:
         return EventKind.REST
     return None if "s" in mode else EventKind.SLIDING

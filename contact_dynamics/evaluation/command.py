@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What `contact-dynamics evaluate` and `contact-dynamics calibrate` do alike with their arguments."""
+"""Shared parts of the commands `contact-dynamics evaluate` and `contact-dynamics calibrate`."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 NOTHING: Final = 2
-"""This exit code says that no recording was of use, or that an argument is wrong."""
+"""Exit code if no recording could be used, or an argument is invalid."""
 
 
 def run_on_recordings(
     parser: argparse.ArgumentParser, arguments: list[str], work: Callable[[argparse.Namespace], int]
 ) -> int:
-    """Parse arguments that name recordings, do the work, and return the exit code. Errors are printed."""
+    """Parse the arguments, call ``work``, and return the exit code. Errors are printed."""
     given = parser.parse_args(arguments)
-    if not given.recordings:  # here, so that a mistyped option is named first
+    if not given.recordings:  # not by argparse, so that a mistyped option is reported first
         parser.error("at least one RECORDING is required")
     try:
         return work(given)
@@ -32,7 +32,7 @@ def run_on_recordings(
 
 
 def check_writable(*files: Path | None) -> None:
-    """Find out before the long work whether the files that are asked for can be written.
+    """Check that the output files can be written, before the evaluation starts.
 
     Raises:
         OSError: a file cannot be written.

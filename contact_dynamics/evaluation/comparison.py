@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""One prediction beside what was measured, the row of every table, and how far states are apart."""
+"""The comparison of one prediction with its measured event, and the differences of states."""
 
 from __future__ import annotations
 
@@ -24,31 +24,30 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class Comparison(Record):
-    """One question about one event, and how far its answer was from what came.
+    """One prediction of one event, and its errors.
 
     Attributes:
         event: Number of the event in its recording, from 0.
-        kind: What happened.
-        body: The body's name.
-        surface: The surface's name; empty for a flight.
-        time: When the event was, s after the recording's first state; for a toss, as its file has it.
-        horizon: How long before it was asked, s.
-        method: What the prediction was made from.
-        law: The law of the impact. It is None where no impact was asked about.
-        refused: Why there was no answer. It is empty if there was one.
-        time_error: s, predicted less measured.
-        position_error: m, distance of the centre of mass from where it was.
-        attitude_error: rad, angle to the attitude that it had.
-        velocity_error: m/s, size of the difference of linear velocities.
-        spin_error: rad/s, size of the difference of angular velocities.
-        predicted_mode: All consistent modes, or the verdict where there is none.
-        measured_mode: The letters of the measured contacts.
-        mode_is_right: Whether a consistent mode does what was measured: rest or slide.
-        distance: How far the answer is off in standard deviations (Mahalanobis), by its own covariance and
-            that of the measurement.
-        degrees: Number of components that ``distance`` is over.
-        several: Whether an impact may be that of several corners, as `FoundEvent` has it.
-        predicted: (13,), position, quaternion, linear and angular velocity as predicted.
+        kind: Kind of the event.
+        body: Name of the body.
+        surface: Name of the surface; empty for a flight.
+        time: Time of the event, s after the recording's first state; for a toss, the time in its file.
+        horizon: Look-ahead time of the prediction, s.
+        method: Source of the prediction's initial state.
+        law: Impact law, or None if the prediction contains no impact.
+        refused: Reason why there is no prediction; empty if there is one.
+        time_error: s, predicted minus measured.
+        position_error: m, distance of the predicted from the measured centre of mass.
+        attitude_error: rad, angle between the predicted and the measured attitude.
+        velocity_error: m/s, norm of the difference of linear velocities.
+        spin_error: rad/s, norm of the difference of angular velocities.
+        predicted_mode: All consistent modes, or the verdict if there is none.
+        measured_mode: Letters of the measured contacts.
+        mode_is_right: True if a consistent mode is of the measured kind, rest or sliding.
+        distance: Mahalanobis distance of the prediction from the measurement, with the covariances of both.
+        degrees: Number of components in ``distance``.
+        several: True if several corners may have struck (`FoundEvent.several`).
+        predicted: (13,), predicted position, quaternion, linear and angular velocity.
     """
 
     event: int
@@ -75,21 +74,21 @@ class Comparison(Record):
 
 
 def pose_difference(predicted: BodyState, measured: BodyState) -> FloatArray:
-    """Return how a measured pose differs, (6,): m, and rad of the rotation vector, world axes."""
+    """Return measured minus predicted pose, (6,): m, and the rotation vector in rad, world axes."""
     turn = rotation_vectors(measured.q_WB[None], predicted.q_WB)[0]
     return np.concatenate([measured.p_WB_W - predicted.p_WB_W, turn])
 
 
 def velocity_difference(predicted: BodyState, measured: BodyState) -> FloatArray:
-    """Return how measured velocities differ, (6,): m/s and rad/s, world axes."""
+    """Return measured minus predicted velocities, (6,): m/s and rad/s, world axes."""
     return np.concatenate([measured.v_WB_W - predicted.v_WB_W, measured.w_WB_W - predicted.w_WB_W])
 
 
 def in_deviations(difference: FloatArray, covariance: FloatArray, stds: FloatArray) -> float | None:
-    """Return the Mahalanobis distance of a difference, (k,).
+    """Return the Mahalanobis distance of a prediction from a measurement.
 
     Args:
-        difference: What is predicted less what is measured, or the reverse.
+        difference: (k,), predicted minus measured values, or the reverse.
         covariance: (k, k), of the prediction.
         stds: (k,), > 0, standard deviations of the measurement.
 
@@ -98,16 +97,16 @@ def in_deviations(difference: FloatArray, covariance: FloatArray, stds: FloatArr
     """
     if not np.isfinite(covariance).all():
         return None
-    scaled = covariance / np.outer(stds, stds) + np.eye(len(stds))  # regular: at least the measurement's
+    scaled = covariance / np.outer(stds, stds) + np.eye(len(stds))  # regular: at least the identity
     ratios = difference / stds
     return math.sqrt(max(0.0, float(ratios @ np.linalg.solve(scaled, ratios))))
 
 
 def arrival_std(event: Event, state: BodyState, covariance: FloatArray, world: World) -> float | None:
-    """Return the standard deviation, s, of the time of arrival at a flat, or None at an obstacle.
+    """Return the standard deviation, s, of the time of arrival at a plane, or None at an obstacle.
 
-    The point's height has the variance J C J^T of the pose's covariance C, (6, 6), with J = (n, r x n). It is
-    divided by the speed of approach. This is first order in the deviations.
+    The point's height has the variance J C J^T of the pose's covariance C, (6, 6), with J = (n, r x n). The
+    standard deviation of the time is that of the height, divided by the speed of approach (first order).
     """
     for surface in world.surfaces:
         if surface.name == event.surface and isinstance(surface, Surface):

@@ -1,13 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Each recording's work, what identifies it, and who does it: this process, several, or a cluster by Dask.
+"""Evaluates recordings in this process, in several processes, or on a Dask cluster, and stores the results.
 
-A job is plain data, and what it returns is plain data, so that one process, several, and a cluster do the
-same and give the same numbers to the last bit. A folder of their results lets an evaluation that was ended
-go on.
+Jobs and their results are plain data. One process, several processes and a cluster return the same numbers
+to the last bit. An interrupted evaluation continues from its folder of results.
 
-A process that dies (out of memory, a fault in a library) breaks the pool that it belongs to. The jobs that
-were not done then run one by one, each in a process of its own, so that the one that kills its process is
-known. Dask does this by itself: it gives up on a job that has killed several workers.
+A process that dies (out of memory, a crash in a library) breaks its pool. The remaining jobs then run one by
+one, each in its own process, which identifies the job that crashes. Dask does the same: it marks a job as
+failed after it has killed several workers.
 """
 
 from __future__ import annotations
@@ -42,14 +41,15 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Job(Record):
-    """A recording, and what is asked about it.
+    """The evaluation of one recording.
 
     Attributes:
         source: The recording.
-        settings: What is asked.
-        config: File of parameters that describes bodies, surfaces and topics. If it is None, the
-            recording says so itself.
-        asked_with: File of parameters that whoever asks knows instead, where it is not that of the events.
+        settings: Horizons, laws and fit window.
+        config: Parameter file with bodies, surfaces and topics. By default, the recording's own configuration
+            is used.
+        asked_with: Parameter file for the predictions, if it differs from ``config``, with which the events
+            are found.
     """
 
     source: Source
@@ -58,7 +58,7 @@ class Job(Record):
     asked_with: Path | None = None
 
     def key(self) -> str:
-        """Return what identifies the result: a hash of content, configuration, settings and code.
+        """Return the key of the result: a hash of content, configuration, settings and code.
 
         Raises:
             OSError: a file cannot be read.
@@ -74,9 +74,9 @@ class Job(Record):
 
 
 def run_job(job: Job) -> dict[str, Any]:
-    """Return the `SourceResult` of a recording as a dict that JSON takes.
+    """Return the `SourceResult` of a recording as a dict for JSON.
 
-    Whatever goes wrong becomes its ``problem``, so that one bad recording does not stop the rest.
+    Every error becomes its ``problem``, so that one bad recording does not stop the others.
     """
     try:
         digest = job.source.digest()
@@ -85,7 +85,7 @@ def run_job(job: Job) -> dict[str, Any]:
         informed = None if other is None else parameters_of(ParameterFile(other))[1]
         evaluated = evaluate_recording(recording, job.settings, informed=informed, share=job.source.share)
         return replace(evaluated, source=job.source.name, digest=digest).to_dict()
-    except Exception as error:  # noqa: BLE001  a fault of ours too must not stop the others
+    except Exception as error:  # noqa: BLE001  not even a bug here may stop the others
         return failed(job, error).to_dict()
 
 
@@ -96,7 +96,7 @@ def failed(job: Job, error: BaseException) -> SourceResult:
 
 @lru_cache(maxsize=1)
 def code_versions() -> dict[str, str]:
-    """Return the versions that the numbers depend on, with a hash of the package's own code."""
+    """Return the versions on which the results depend, with a hash of the package's code."""
     return {**versions_here(), "code": _code_hash()}
 
 
@@ -121,24 +121,24 @@ _UNUSUAL: Final = re.compile(r"[^A-Za-z0-9._-]+")
 
 
 class ResultsFolder:
-    """The results that are there, and those that come: a file for each recording.
+    """A folder with one file of results for each recording.
 
-    A file is named by its recording and by the key of its job: content, configuration, settings and code. If
-    one of them has changed, the recording is evaluated again. A file appears whole or not at all.
+    The file name contains the recording's name and the key of its job. A recording is evaluated again if its
+    content, the configuration, the settings or the code have changed. Files are written atomically.
     """
 
     def __init__(self, path: Path) -> None:
-        """Make the folder if it is missing.
+        """Create the folder if it does not exist.
 
         Raises:
-            OSError: it cannot be made.
+            OSError: the folder cannot be created.
         """
         path.mkdir(parents=True, exist_ok=True)
         self._path = path
         self._there = {file.stem.rpartition("-")[2]: file for file in path.glob("*.json")}
 
     def find(self, job: Job) -> dict[str, Any] | None:
-        """Return the result of a job that was done before under any name, or None if there is none.
+        """Return the stored result of a job, whatever its recording was named, or None without one.
 
         Raises:
             OSError: the recording cannot be read.
@@ -149,12 +149,12 @@ class ResultsFolder:
         try:
             content: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
             source_result(content)
-        except (ValueError, KeyError, TypeError):  # a damaged file is made again
+        except (ValueError, KeyError, TypeError):  # a damaged file is replaced
             return None
         return {**content, "source": job.source.name}
 
     def put(self, job: Job, content: dict[str, Any]) -> None:
-        """Keep the result of a job; one that could not be evaluated is not kept, and is tried again.
+        """Store the result of a job. Failures are not stored, and are tried again next time.
 
         Raises:
             OSError: the file cannot be written.
@@ -169,22 +169,22 @@ class ResultsFolder:
 
 
 LOCAL: Final = "local:"
-"""What a Dask address begins with that means workers of this machine, ``local:2``."""
+"""Prefix of a Dask address for workers on this machine, such as ``local:2``."""
 
 Done = tuple[int, dict[str, Any]]
 
 
 def run_jobs(jobs: Sequence[Job], *, processes: int = 1, dask: str = "") -> Iterator[Done]:
-    """Yield the number of each job and its result as `run_job` returns it, in the order in which they end.
+    """Yield the number of each job and the result of `run_job`, in the order of completion.
 
     Args:
-        jobs: What is to be done.
-        processes: How many processes of this machine share the work; 1: this one alone.
-        dask: Address of a Dask scheduler, or ``local:N`` for N workers here. If it is
-            empty, Dask takes no part.
+        jobs: The jobs, numbered from 0.
+        processes: Number of processes on this machine. With 1, the jobs run in this process.
+        dask: Address of a Dask scheduler, or ``local:N`` for N workers on this machine. If it is empty,
+            Dask is not used.
 
     Raises:
-        InvalidFieldError: the address is none.
+        InvalidFieldError: the address is invalid.
         NotSupportedError: Dask is not installed.
         OSError: the scheduler cannot be reached.
     """
@@ -197,7 +197,7 @@ def run_jobs(jobs: Sequence[Job], *, processes: int = 1, dask: str = "") -> Iter
 
 
 def _in_parts(jobs: Sequence[Job], processes: int) -> Iterator[Done]:
-    """Share the jobs among processes; where these are more, the bodies and events of each log too."""
+    """Distribute the jobs over processes. If there are more processes than jobs, split the logs too."""
     share = processes // len(jobs) if jobs else 1
     parts = [
         [replace(job, source=each) for each in job.source.parts(share, config=job.config)] for job in jobs
@@ -214,7 +214,7 @@ def _in_parts(jobs: Sequence[Job], processes: int) -> Iterator[Done]:
         if left[number] == 0:
             whole = joined(found[number], [part.source.share[0] for part in parts[number]])
             found[number] = []
-            if len(parts[number]) > 1 and (whole["problem"] or not whole["states"]):  # all at once tells why
+            if len(parts[number]) > 1 and (whole["problem"] or not whole["states"]):  # for its error
                 ((_, whole),) = _in_processes([jobs[number]], 1)
             yield number, whole
 
@@ -247,10 +247,10 @@ def _in_one_pool(jobs: dict[int, Job], processes: int) -> Iterator[Done]:
 
 
 def _clean_processes() -> multiprocessing.context.BaseContext:
-    """Return a way to start processes without a copy of the locks of this one's threads.
+    """Return a context that starts processes without copies of locks that threads of this process hold.
 
-    They are forked from a process that has only imported this package, which takes most of the time of a
-    start. Where the system does not fork, each imports it itself.
+    Processes are forked from a server that has imported this package, since the import takes most of the
+    start-up time. On systems without fork, each process imports the package.
     """
     if "forkserver" not in multiprocessing.get_all_start_methods():
         return multiprocessing.get_context("spawn")
@@ -275,7 +275,7 @@ def _on_dask(jobs: Sequence[Job], address: str) -> Iterator[Done]:
 
 
 def _cluster(address: str, local_cluster: Any) -> Any:
-    """Return the workers of this machine, or a context with the address of a scheduler."""
+    """Return a context of workers on this machine, or of the address of a scheduler."""
     from contextlib import nullcontext
 
     if not address.startswith(LOCAL):

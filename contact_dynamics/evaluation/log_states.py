@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The states of a log's bodies, read without ROS, with when each was known to whoever asked."""
+"""Reads the states of a log's bodies and their arrival times, without ROS."""
 
 from __future__ import annotations
 
@@ -35,15 +35,15 @@ if TYPE_CHECKING:
 _OURS: Final = "contact_dynamics_interfaces/"
 
 _TOGETHER: Final = 4096
-"""Messages of a topic that are read at once, in a fifteenth of the time of one by one."""
+"""Number of messages of a topic that are decoded together, 15 times as fast as one by one."""
 
 ONE_CLOCK_S: Final = 1.0
-"""Largest median difference of a state's arrival and its stamp at which both count as times of one clock, s.
-Clocks that NTP keeps differ by far less, and simulated time differs by years."""
+"""Largest median difference of arrival times and stamps at which both are taken to be of one clock, s.
+Clocks synchronised by NTP differ by far less, and simulated time differs by years."""
 
 
 def parameters_of(source: ParameterSource) -> tuple[ServerParameters, Informed]:
-    """Return what a configuration says, and what of it those know who ask.
+    """Return the server's parameters, and the part of them with which predictions are made.
 
     Raises:
         ConfigurationError: a parameter is missing, or has a value that is not allowed.
@@ -53,27 +53,27 @@ def parameters_of(source: ParameterSource) -> tuple[ServerParameters, Informed]:
 
 
 def informed_by(parameters: ServerParameters) -> Informed:
-    """Return what of a configuration those know who ask."""
+    """Return the part of a server's parameters with which predictions are made."""
     return Informed(
         world=parameters.world, defaults=parameters.defaults, state_timeout=parameters.state_timeout
     )
 
 
 def recording_of_log(path: Path, *, config: Path | None = None, only: Collection[str] = ()) -> Recording:
-    """Return the states of a log's bodies, and what its server was configured with.
+    """Return the states of a log's bodies, and the configuration of its server.
 
     Args:
         path: A bag folder, or one file of a bag.
-        config: File of the server's parameters, instead of the log's own record.
-        only: Names of those whose states are read, if they have any. If it is empty, all are read.
+        config: File of server parameters that replaces the log's own record.
+        only: Names of the bodies whose states are read. If it is empty, all are read.
 
     Raises:
-        NotALogError: it is no log, or there are neither a record of its configuration nor ``config``.
+        NotALogError: the path is not a log, or the log contains no configuration and ``config`` is None.
         ConfigurationError: a parameter is missing, or has a value that is not allowed.
-        InvalidFieldError: the log has no state of any configured body.
+        InvalidFieldError: the log contains no state of a configured body.
     """
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", DamagedLogWarning)  # told in the result
+        warnings.simplefilter("ignore", DamagedLogWarning)  # reported in the result
         log = BagReader(path)
         parameters, informed = parameters_of(_configuration(log, path, config))
         found = _states(log, parameters, only)
@@ -88,10 +88,10 @@ def recording_of_log(path: Path, *, config: Path | None = None, only: Collection
 
 
 def bodies_of_log(path: Path, *, config: Path | None = None) -> list[str]:
-    """Return the names of the bodies that a log, or ``config`` in its stead, describes.
+    """Return the names of the bodies in ``config``, or else in a log's own configuration.
 
     Raises:
-        NotALogError: it is no log, or there are neither a record of its configuration nor ``config``.
+        NotALogError: the path is not a log, or the log contains no configuration and ``config`` is None.
         ConfigurationError: a parameter is missing, or has a value that is not allowed.
     """
     with warnings.catch_warnings():
@@ -113,12 +113,12 @@ def _configuration(log: BagReader, path: Path, config: Path | None) -> Parameter
 
 
 def _states(log: BagReader, parameters: ServerParameters, only: Collection[str]) -> dict[str, StateColumns]:
-    """Return the states of all or some bodies, and when each was known, ns on the clock of the stamps.
+    """Return the states of all or some bodies with their arrival times, ns on the clock of the stamps.
 
-    Where the log was written by another clock, as in simulated time, each state counts as known at its stamp.
+    If the log was written with another clock, as in simulated time, the stamps are the arrival times.
     """
     stand_in((name, text) for name, text in log.definitions().items() if not name.startswith(_OURS))
-    from contact_dynamics.nodes.state_sources import state_sources  # imports what now stands in for ROS
+    from contact_dynamics.nodes.state_sources import state_sources  # imports the stand-ins for ROS
     from msg_adapters.transforms import TransformTree
 
     found = {body.name: StateColumns() for body in parameters.world.bodies}
@@ -140,7 +140,7 @@ def _states(log: BagReader, parameters: ServerParameters, only: Collection[str])
             if len(waiting[message.topic]) == _TOGETHER:
                 _read_together(waiting[message.topic], source, found)
             continue
-        if source.is_latched:  # transforms between frames, which hold for the messages after them
+        if source.is_latched:  # a transform between frames, which applies to later messages
             for name, messages in waiting.items():
                 _read_together(messages, sources[name], found)
         _read(message, source, found)
@@ -154,9 +154,9 @@ def _states(log: BagReader, parameters: ServerParameters, only: Collection[str])
 
 
 def _read(message: LoggedMessage, source: StateSource, found: dict[str, StateColumns]) -> None:
-    """Add the states that a message has."""
+    """Add the states in a message."""
     for body_name, state_from in source.readers:
-        with suppress(ContactDynamicsError):  # the server refused it too
+        with suppress(ContactDynamicsError):  # the server rejected it too
             known = state_from(decode_without_ros(message))
             if known is not None:
                 found[body_name].add(known, message.log_time_ns)
@@ -165,11 +165,11 @@ def _read(message: LoggedMessage, source: StateSource, found: dict[str, StateCol
 def _read_together(
     messages: list[LoggedMessage], source: StateSource, found: dict[str, StateColumns]
 ) -> None:
-    """Add the states of messages about one body as `_read` does, many at once, and clear the list."""
+    """Add the states in messages of one body, with the same result as `_read`, and clear the list."""
     if not messages or source.rows is None:
         return
     alike, rows = np.zeros(len(messages), dtype=np.bool_), None
-    with suppress(ContactDynamicsError):  # the first is no message
+    with suppress(ContactDynamicsError):  # the first message is invalid
         as_one, places = decode_columns(messages)
         rows = source.rows(as_one) if len(places) else None
         if rows is not None:

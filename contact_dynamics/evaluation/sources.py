@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What can be evaluated: logs with states, and recorded tosses; found in folders, named, and read."""
+"""Finds recordings to evaluate, which are logs with states and recorded tosses, and reads them."""
 
 from __future__ import annotations
 
@@ -28,11 +28,11 @@ TOSS: Final = ".csv"
 TOSSES: Final = ".npz"
 
 LOG: Final = re.compile(r"\.(mcap|db3)(\.(zstd|zst|lz4))?$")
-"""How the names of a log's files end."""
+"""Suffixes of a log's files."""
 
 _WHAT: Final = f"a log (.mcap, .db3), a toss ({TOSS}), tosses ({TOSSES}), or a folder with any"
 
-_BLOCK: Final = 1 << 20  # bytes that are read at once
+_BLOCK: Final = 1 << 20  # bytes per read
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
@@ -40,12 +40,11 @@ class Source(Record):
     """One recording to evaluate, before it is read.
 
     Attributes:
-        path: A log's folder or a file of one, or a file of tosses.
-        index: Number of the toss in an ``.npz``, or None where the file is one recording.
-        bodies: Names of the bodies of a log that count, which play no part in its name and digest. If there
-            are none, all count.
-        share: Which share of their events is asked about, and of how many, as `evaluate_recording` takes it.
-            It plays no part in name and digest either.
+        path: Folder of a log or one of its files, or a file of tosses.
+        index: Number of the toss in an ``.npz``, or None if the file is one recording.
+        bodies: Names of the log's bodies to evaluate, or all if empty. Name and digest do not depend on them.
+        share: Share of their events to predict, as in `evaluate_recording`. Name and digest do not depend on
+            it.
     """
 
     path: Path
@@ -55,15 +54,15 @@ class Source(Record):
 
     @property
     def name(self) -> str:
-        """How it is named in tables: its path, with the number of the toss."""
+        """Name in tables: the path, with the number of the toss."""
         return str(self.path) if self.index is None else f"{self.path}#{self.index}"
 
     def digest(self) -> str:
-        """Return a hash of the content, 64 hexadecimal digits; where it lies plays no part.
+        """Return a hash of the content, 64 hexadecimal digits, which does not depend on the path.
 
         Raises:
-            NotALogError: it has no file of a log.
-            OSError: it cannot be read.
+            NotALogError: the path contains no log.
+            OSError: a file cannot be read.
         """
         files = [self.path] if self.is_toss else BagReader(self.path).paths
         hashes = [_hash_of(file.resolve(), file.stat().st_mtime_ns) for file in files]
@@ -71,32 +70,32 @@ class Source(Record):
 
     @property
     def is_toss(self) -> bool:
-        """Return whether it is a toss, which has a body and a surface of its own, and no log."""
+        """True for a toss, which contains its own body and surface; False for a log."""
         return self.path.suffix in {TOSS, TOSSES}
 
     def read(self, *, config: Path | None = None) -> Recording:
-        """Return what it holds.
+        """Return the content of the recording.
 
         Args:
-            config: File of the server's parameters that describes the bodies, surfaces and topics of a log.
-                If it is None, the log's own record counts. A toss describes its body and surface itself.
+            config: Parameter file with the bodies, surfaces and topics of a log, by default the log's own
+                record. A toss contains its own body and surface.
 
         Raises:
-            ContactDynamicsError: it cannot be understood; the message says what is wrong.
-            OSError: it cannot be read.
+            ContactDynamicsError: the content is invalid.
+            OSError: a file cannot be read.
         """
         if self.is_toss:
             return recording_of_toss(read_toss(self.path, index=self.index))
         return recording_of_log(self.path, config=config, only=self.bodies)
 
     def parts(self, most: int, *, config: Path | None = None) -> list[Source]:
-        """Return a log as sources that ``most`` processes evaluate in the same time. Others stay whole.
+        """Return a log as at most ``most`` sources with about the same amount of work. A toss is not split.
 
-        Each has as many of its bodies, or a share of the events of one of those that are left over.
+        Each source has the same number of bodies, or a share of the events of one of the remaining bodies.
         """
         names: list[str] = []
         if most > 1 and not self.is_toss:
-            with suppress(ContactDynamicsError, OSError):  # whoever reads it tells what is wrong
+            with suppress(ContactDynamicsError, OSError):  # `read` reports the error
                 names = bodies_of_log(self.path, config=config)
         each, left = divmod(len(names), max(most, 1))
         groups = [tuple(names[each * k : each * (k + 1)]) for k in range(most if each else 0)]
@@ -112,13 +111,13 @@ class Source(Record):
 
 
 def find_sources(paths: Iterable[str]) -> tuple[list[Source], list[tuple[str, str]]]:
-    """Return what the paths of a command line name, in their order.
+    """Return the recordings at the paths of a command line, in their order.
 
     A path is a log's folder, one file of a log (MCAP or SQLite), a toss in CSV, an ``.npz`` of tosses, one
-    toss of it (``tosses.npz#17``), or a folder in which all of these are looked for, at any depth.
+    toss of it (``tosses.npz#17``), or a folder that is searched for all of these at any depth.
 
     Returns:
-        The sources, and the paths that name none, each with the reason.
+        The sources, and the paths without a recording, each with the reason.
     """
     sources: list[Source] = []
     refused: list[tuple[str, str]] = []
@@ -128,7 +127,7 @@ def find_sources(paths: Iterable[str]) -> tuple[list[Source], list[tuple[str, st
             if not found:
                 raise InvalidFieldError(text, "no recording in it", _WHAT)
             sources += found
-        except (ContactDynamicsError, OSError) as error:  # noqa: PERF203  the others still count
+        except (ContactDynamicsError, OSError) as error:  # noqa: PERF203  the other paths remain
             refused.append((text, str(error)))
     return list(dict.fromkeys(sources)), refused
 
@@ -162,7 +161,7 @@ def _sources_of_file(file: Path) -> Iterator[Source]:
 
 
 @lru_cache(maxsize=1024)
-def _hash_of(file: Path, modified_ns: int) -> str:  # noqa: ARG001  a file that was changed is read again
+def _hash_of(file: Path, modified_ns: int) -> str:  # noqa: ARG001  part of the cache's key
     digest = hashlib.sha256()
     with file.open("rb") as stream:
         while block := stream.read(_BLOCK):
