@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Events side by side in rerun: each has a place of its own, with what was measured and what was predicted.
+"""Draws measured and predicted events side by side in rerun.
 
-Blue grey is the measured body at the event, with its path shortly before and after. Orange outlines are where
-it was predicted to be, one for each horizon, fainter the longer ahead. At impacts, arrows are the velocities
-of the centre of mass afterwards: blue as measured, yellow as predicted under each law. The table beside them
-says by number how far the predictions were off.
+The measured body at the event is blue grey, with its path shortly before and after. Orange outlines are the
+predicted poses, one for each horizon, fainter for longer horizons. At impacts, arrows are the velocities of
+the centre of mass afterwards: blue for measured, yellow for predicted under each law. A table lists the
+errors by event number.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ if TYPE_CHECKING:
     from contact_dynamics.world import Body
 
 TRAIL_S: Final = 0.08
-"""s of the measured path on either side of an event."""
+"""Duration of the measured path that is drawn before and after an event, s."""
 
 _ARROW: Final = 1.0  # length of the longest arrow, in sizes of the body
 _FAINTEST: Final = 0.35
@@ -55,7 +55,7 @@ _WIDTH: Final = -1.8  # negative: points of the screen
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class _Cell(Record):
-    """What is drawn at one place."""
+    """One drawn event, with the impact that follows it."""
 
     name: str
     event: FoundEvent
@@ -71,10 +71,10 @@ def write_picture(
     """Draw the first events of an evaluation into a file, and return how many were drawn.
 
     Args:
-        path: The file, which is replaced.
-        evaluation: What came of the recordings.
-        sources: The recordings, which are read again as far as their events are drawn.
-        config: What their bodies were described with; see `Source.read`.
+        path: The file, which is overwritten.
+        evaluation: The results.
+        sources: The recordings, of which those with drawn events are read again.
+        config: Parameter file with their bodies (`Source.read`).
 
     Raises:
         OSError: the file cannot be written.
@@ -101,7 +101,7 @@ def write_picture(
 
 
 def _cells(evaluation: Evaluation, sources: Sequence[Source], config: Path | None) -> Iterator[_Cell]:
-    """Yield the flights' ends, with the impacts there, the rests and the slides, in their order."""
+    """Yield the ends of flights with their impacts, rests and slides, in their order."""
     named = {source.name: source for source in sources}
     for result in evaluation.results:
         if result.problem or result.source not in named:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""An evaluation as pictures on paper: errors over the horizon, and how well covariances cover."""
+"""Plots of an evaluation: errors over the horizon, and the coverage of covariances."""
 
 from __future__ import annotations
 
@@ -22,19 +22,19 @@ if TYPE_CHECKING:
     from contact_dynamics.evaluation.result import Evaluation
 
 NOMINAL: Final = tuple(np.linspace(0.05, 0.99, 48).tolist())
-"""Probabilities at which coverage is drawn."""
+"""Probabilities at which coverage is plotted."""
 
 _DRAWN: Final = (EventKind.FLIGHT, EventKind.LANDING, EventKind.IMPACT)
 _COLORS: Final = ("#e08a1e", "#3f7fb5", "#3f9b52", "#9059b0", "#8a8a8a", "#c0c0c0")
 _UNUSUAL: Final = re.compile(r"[^A-Za-z0-9._-]+")
-_BOX: Final = 0.8  # the methods share this part of the space between horizons
+_BOX: Final = 0.8  # part of the space between horizons that the boxes of all methods fill
 
 
 def write_plots(folder: Path, evaluation: Evaluation) -> list[Path]:
-    """Draw an evaluation into PNG files of a folder, which is made if it is missing.
+    """Plot an evaluation into PNG files in a folder, which is created if it does not exist.
 
-    There is one picture of errors for each kind of event that was predicted with numbers, each body and each
-    surface, and one of coverage where predictions had covariances.
+    There is one plot of errors for each kind of event with numeric errors, each body and each surface, and
+    one of coverage if predictions had covariances.
 
     Raises:
         NotSupportedError: Matplotlib is not installed.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A recording to evaluate: the states of its bodies, and what whoever asked about them knew besides."""
+"""A recording with the states of its bodies and their configuration, and its evaluation."""
 
 from __future__ import annotations
 
@@ -24,17 +24,17 @@ if TYPE_CHECKING:
     from contact_dynamics.measured.recorded_toss import Toss
 
 SLOW: Final = 5.0
-"""Standard deviations of a corner's measured velocity, within which a contact of a toss counts as at rest."""
+"""Number of standard deviations of a corner's velocity, below which a contact of a toss counts as at rest."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class Recording(Record):
-    """What one log or one toss holds.
+    """The content of one log or one toss.
 
     Attributes:
         motions: The measured states, by body and in stretches without gaps.
-        informed: What is known besides them.
-        damage: What of the log could not be read, in words; empty if all was whole.
+        informed: The configuration of bodies, surfaces and tolerances.
+        damage: Description of what could not be read; empty for an intact recording.
     """
 
     motions: tuple[MeasuredMotion, ...]
@@ -49,19 +49,19 @@ def evaluate_recording(
     informed: Informed | None = None,
     share: tuple[int, int] = (0, 1),
 ) -> SourceResult:
-    """Find the events of a recording, ask about each beforehand, and compare.
+    """Find the events of a recording, predict each from earlier states, and return the comparisons.
 
     Args:
-        recording: What was measured, and what is known besides. The events are found with the latter.
-        settings: What is asked.
-        informed: What whoever asks knows. If it is None, they know the same.
-        share: (k, n): only events of the k-th of n equal parts of each motion's are asked about, k from 0 on.
+        recording: Measured states, and the configuration with which events are found.
+        settings: Horizons, laws and fit window.
+        informed: Configuration for the predictions, by default that of the recording.
+        share: (k, n): predict only the k-th of n equal parts of each motion's events, k from 0.
     """
     part, parts = share
     events: list[FoundEvent] = []
     rows: list[Comparison] = []
     for motion in recording.motions:
-        # an impact is asked about with the states that its landing was asked about with
+        # A landing and its impacts are predicted from the same states.
         by_instant = groupby(find_events(motion), key=lambda event: (event.first_sample, event.time_ns))
         instants = [list(found) for _, found in by_instant]
         for number, found in enumerate(instants):
@@ -75,7 +75,7 @@ def evaluate_recording(
         events=tuple(events),
         comparisons=tuple(rows),
         states=sum(len(motion) for motion in recording.motions),
-        seconds=sum(  # by body, as bodies that are evaluated apart are joined
+        seconds=sum(  # by body, to equal the sum in `joined`
             sum(float(motion.times[-1] - motion.times[0]) for motion in motions)
             for _, motions in groupby(recording.motions, key=lambda motion: motion.body.name)
         ),
@@ -84,10 +84,9 @@ def evaluate_recording(
 
 
 def recording_of_toss(toss: Toss) -> Recording:
-    """Return a recorded toss as a recording. Each state was known at its stamp.
+    """Return a recorded toss as a recording, with the times of its file. Each state arrives at its stamp.
 
-    Times are those of its file. The tolerances are those of the demo: what lies within the noise of the
-    measured velocities counts as none.
+    Like the demo, it treats velocities within the measurement noise as zero.
     """
     world = World(bodies=(toss.body,), surfaces=(toss.surface,), gravity_W=toss.gravity_W)
     states = [toss.state(sample) for sample in range(len(toss))]

@@ -26,7 +26,7 @@ UNITS: Final = {
     "spin_error": ("spin, rad/s", 1.0),
     "wrong_mode": ("wrong modes", 1.0),
 }
-"""How each error is named and by what it is multiplied for people to read."""
+"""Label of each error with its displayed unit, and the factor from SI units."""
 
 COLUMNS: Final = {
     EventKind.FLIGHT: ("position_error", "attitude_error"),
@@ -35,7 +35,7 @@ COLUMNS: Final = {
     EventKind.REST: (),
     EventKind.SLIDING: (),
 }
-"""The errors that tables and plots show of each kind of event."""
+"""Errors in tables and plots, by kind of event."""
 
 TITLES: Final = {
     EventKind.FLIGHT: "flights: pose near the end of the flight",
@@ -46,19 +46,19 @@ TITLES: Final = {
 }
 
 SEVERAL: Final = "impacts of several corners, or longer ones: velocities after the impact"
-"""The title of impacts whose outcome depends on which corners strike, and when."""
+"""Title for impacts whose outcome depends on which corners strike, and when."""
 
 SIGNIFICANT: Final = 0.05
-"""Probability below which a change is marked."""
+"""p-value below which a change is marked."""
 
 MAX_PROBLEMS: Final = 20
-"""Bad recordings that are named one by one; the JSON has them all."""
+"""Largest number of listed recordings with problems. The JSON contains all."""
 
 _WIDE: Final = 22
 
 
 def report(evaluation: Evaluation) -> str:
-    """Return the tables of an evaluation, and what could not be evaluated."""
+    """Return the tables of an evaluation, and the recordings that could not be evaluated."""
     done = [result for result in evaluation.results if not result.problem]
     events = Counter(event.kind for result in done for event in result.events)
     found = ", ".join(f"{events[kind]} {kind.value}" for kind in EventKind if events[kind]) or "none"
@@ -84,7 +84,7 @@ def report(evaluation: Evaluation) -> str:
 
 
 def report_changes(found: Sequence[Change], *, names: tuple[str, str]) -> str:
-    """Return the table of what changed from the evaluation of the first name to that of the second."""
+    """Return the table of changes from a first evaluation to a second one, with the names of both."""
     shown = [
         each
         for each in found
@@ -113,7 +113,7 @@ def report_changes(found: Sequence[Change], *, names: tuple[str, str]) -> str:
 
 
 def _gaps(evaluation: Evaluation) -> Iterator[str]:
-    """Yield how high each body was measured when its flights ended, which should be zero."""
+    """Yield the measured gap of each body to its surface at first contact, which should be zero."""
     gaps: dict[tuple[str, str], list[float]] = {}
     for result in evaluation.results:
         for event in result.events:
@@ -151,7 +151,7 @@ def _table(kind: EventKind, summaries: Sequence[Summary]) -> Iterator[str]:
 
 
 def _conclusion(summaries: Sequence[Summary]) -> Iterator[str]:
-    """Yield what a table says about laws or contact modes, in words."""
+    """Yield the conclusions from a table about laws or contact modes, in words."""
     worst = max(summaries, key=lambda each: each.impacts / each.asked)
     if worst.impacts:
         yield (

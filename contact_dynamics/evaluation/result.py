@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Results of an evaluation, of one recording and of all, as objects, JSON, CSV and Parquet."""
+"""Results of an evaluation, as records, JSON, CSV and Parquet."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 FORMAT: Final = "contact_dynamics evaluation 2"
-"""What the JSON of an evaluation says that it is."""
+"""Value of ``format`` in the JSON of an evaluation."""
 
 _ENUMS: Final[dict[str, type[Enum]]] = {"kind": EventKind, "method": Method, "law": Law}
 _ARRAYS: Final = frozenset({"predicted", "orientation_std", "angular_velocity_std"})
@@ -31,17 +31,17 @@ _ARRAYS: Final = frozenset({"predicted", "orientation_std", "angular_velocity_st
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class SourceResult(Record):
-    """What came of one recording.
+    """The evaluation of one recording.
 
     Attributes:
-        source: Its name; empty if it has none.
-        digest: Hash of its content; empty if it is not known.
-        problem: Why it was not evaluated; empty if it was.
-        damage: What of it could not be read; empty if all was whole.
+        source: Name of the recording; may be empty.
+        digest: Hash of its content; empty if unknown.
+        problem: Reason why it was not evaluated; empty if it was.
+        damage: Description of what could not be read; empty for an intact recording.
         states: Number of measured states.
-        seconds: s of measured motion, over all bodies.
-        events: The events that were found, in the order of bodies and time.
-        comparisons: A row for each question about each of them.
+        seconds: Duration of measured motion, summed over all bodies, s.
+        events: The events, in the order of bodies and time.
+        comparisons: A row for each prediction of each event.
     """
 
     source: str = ""
@@ -56,12 +56,12 @@ class SourceResult(Record):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class Evaluation(Record):
-    """What came of all recordings.
+    """The evaluation of all recordings.
 
     Attributes:
-        versions: Versions of what evaluated, by name, with a hash of the package's own code.
-        configuration: Where bodies and surfaces were described, in words.
-        results: What came of each recording, in the order in which they were given.
+        versions: Versions of the software, by name, with a hash of the package's code.
+        configuration: Description of the source of bodies and surfaces.
+        results: Result of each recording, in the order given.
     """
 
     versions: dict[str, str]
@@ -73,7 +73,7 @@ class Evaluation(Record):
         return [(result.source, row) for result in self.results for row in result.comparisons]
 
     def write_json(self, path: Path) -> None:
-        """Write all of it; `read_evaluation` reads it back to the last bit."""
+        """Write the complete evaluation, which `read_evaluation` reads back to the last bit."""
         content = {"format": FORMAT, **self.to_dict()}
         path.write_text(json.dumps(content) + "\n", encoding="utf-8")
 
@@ -82,8 +82,8 @@ def read_evaluation(path: Path) -> Evaluation:
     """Return an evaluation that was written as JSON.
 
     Raises:
-        InvalidFieldError: the file is none.
-        OSError: it cannot be read.
+        InvalidFieldError: the file does not contain an evaluation.
+        OSError: the file cannot be read.
     """
     try:
         content = json.loads(path.read_text(encoding="utf-8"))
@@ -102,7 +102,7 @@ def read_evaluation(path: Path) -> Evaluation:
 
 
 def source_result(content: dict[str, Any]) -> SourceResult:
-    """Return what came of a recording from its `to_dict`; what is missing raises `KeyError`."""
+    """Return the result from its `to_dict`; a missing field raises `KeyError`."""
     plain = {field.name: content[field.name] for field in fields(SourceResult)}
     plain["events"] = tuple(FoundEvent(**_typed(FoundEvent, each)) for each in plain["events"])
     plain["comparisons"] = tuple(Comparison(**_typed(Comparison, each)) for each in plain["comparisons"])
@@ -110,9 +110,10 @@ def source_result(content: dict[str, Any]) -> SourceResult:
 
 
 def joined(parts: Sequence[dict[str, Any]], shares: Sequence[int]) -> dict[str, Any]:
-    """Join the results of parts of a recording, as `SourceResult.to_dict` has them.
+    """Join the results of parts of a recording, each from `SourceResult.to_dict`.
 
-    Each part has other bodies, or is of another share of the events of those before; ``shares`` numbers them.
+    A part with share 0 begins a group of bodies; the parts after it, with shares 1, 2, ..., contain the other
+    shares of the same bodies' events.
     """
     events: list[Any] = []
     rows: list[Any] = []
@@ -122,7 +123,7 @@ def joined(parts: Sequence[dict[str, Any]], shares: Sequence[int]) -> dict[str, 
             first = len(events)
             events += part["events"]
         rows += ({**row, "event": row["event"] + first} for row in part["comparisons"])
-    rows.sort(key=lambda row: row["event"])  # a share has events of each stretch of its motion
+    rows.sort(key=lambda row: row["event"])  # each share has events of all stretches
     return {
         **parts[0],
         "problem": next((part["problem"] for part in parts if part["problem"]), ""),

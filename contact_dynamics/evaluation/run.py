@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`contact-dynamics evaluate`: recordings are evaluated, and the result is printed, written and drawn."""
+"""Runs `contact-dynamics evaluate`: evaluates recordings, prints the report and writes the output files."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ def _evaluate(given: argparse.Namespace) -> int:
     _check_writable(given)
     against = _against(given.against)
     if given.config is not None:
-        parameters_of(ParameterFile(given.config))  # a mistake in it is told once, and not for each recording
+        parameters_of(ParameterFile(given.config))  # reports an error once, not for each recording
     sources, refused = find_sources(given.recordings)
     nameless = [SourceResult(source=name, problem=reason) for name, reason in refused]
     evaluation = _all(given, settings, sources, nameless)
@@ -73,7 +73,7 @@ def _name(given: argparse.Namespace) -> str:
 
 
 def _against(path: Path | None) -> Evaluation | None:
-    """Return the evaluation to compare with, if it is one; check a configuration before the long work."""
+    """Return the evaluation in a JSON file, or check a configuration before the evaluation starts."""
     if path is None:
         return None
     if path.suffix == ".json":
@@ -83,7 +83,7 @@ def _against(path: Path | None) -> Evaluation | None:
 
 
 def _check_writable(given: argparse.Namespace) -> None:
-    """Find out before the long work whether what it is to write can be written."""
+    """Check that the outputs can be written, before the evaluation starts."""
     check_writable(given.json, given.csv, given.parquet, given.rerun)
     for folder in (given.plots, given.results):
         if folder is not None:
@@ -98,7 +98,7 @@ def _all(
     *,
     asked_with: Path | None = None,
 ) -> Evaluation:
-    """Evaluate what is not in the folder of results yet."""
+    """Evaluate the recordings that have no stored result yet, and return the complete evaluation."""
     jobs = [
         Job(source=source, settings=settings, config=given.config, asked_with=asked_with)
         for source in sources

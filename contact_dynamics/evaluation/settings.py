@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is asked about each event: how long before, under which laws, from how many states."""
+"""Settings of the predictions: horizons, impact laws, and the window of states for fits."""
 
 from __future__ import annotations
 
@@ -15,34 +15,34 @@ from contact_dynamics.tolerances import HOLD_STEP
 from contact_dynamics.validation import check_positive
 
 HORIZONS: Final = (0.02, 0.05, 0.1, 0.2)
-"""s before an event."""
+"""Look-ahead times, s before an event."""
 
 FIT_WINDOW: Final = 0.1
-"""s of states that a flight is fitted to, or as many as there are since it began."""
-
+"""Duration of the states to which a flight is fitted, s. States before the start of the flight are left out.
+"""
 
 MAX_STRIKES: Final = 40
-"""Strikes in time that are resolved. Those until the next flight begins count alone: of the published tosses
-no error changes if more are, and answers take four times as long."""
+"""Largest number of successive strikes. Only those before the next flight count: a larger number changes no
+error of the published tosses, and predictions take four times as long."""
 
 
 class Law(Enum):
-    """The laws of impact that predictions are compared under."""
+    """Impact laws under which predictions are compared."""
 
     POISSON = "poisson"
     NEWTON = "newton"
     ENERGETIC = "energetic"
     IN_TIME = "in time"
-    """Poisson's, with strikes one after the other and going on over corners that stay."""
+    """Poisson's law with strikes one after the other in time, in which corners may stay in contact."""
 
     @property
     def restitution_law(self) -> RestitutionLaw:
-        """What coefficients of restitution mean."""
+        """Definition of the coefficient of restitution."""
         return RestitutionLaw.POISSON if self is Law.IN_TIME else RestitutionLaw[self.name]
 
     @property
     def several_contacts_law(self) -> SeveralContactsLaw | InTime:
-        """What happens at several contacts."""
+        """Law for several contacts."""
         return (
             InTime(hold_step=HOLD_STEP, max_strikes=MAX_STRIKES)
             if self is Law.IN_TIME
@@ -51,27 +51,27 @@ class Law(Enum):
 
 
 class Method(Enum):
-    """What a prediction is made from."""
+    """Source of a prediction's initial state."""
 
     FIT = "fit"
-    """The flight that fits the states of the last time. It is what the package recommends."""
+    """The flight fitted to the latest states. This is the recommended method."""
     NEWEST = "newest"
-    """The newest state as it was published. For flights it is a baseline; for modes the only way."""
+    """The newest published state. It is a baseline for flights, and the only method for contact modes."""
     NO_IMPACT = "no impact"
-    """A baseline: the fit, flying on through the surface."""
+    """A baseline: the fitted flight, continued through the surface."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Settings(Record):
-    """What is asked.
+    """Settings of the predictions.
 
     Attributes:
-        horizons: s, > 0, how long before an event it is asked about.
-        laws: The laws of impact. The first one is also asked about the newest state without a fit.
-        fit_window: s, > 0, of states that a flight is fitted to.
+        horizons: s, > 0, look-ahead times.
+        laws: Impact laws. The first one is also applied to the newest state, without a fit.
+        fit_window: s, > 0, duration of the states to which a flight is fitted.
 
     Raises:
-        InvalidFieldError: there is no horizon or no law, a number is not > 0, or a law is none.
+        InvalidFieldError: ``horizons`` or ``laws`` is empty, or a number is not > 0.
     """
 
     horizons: tuple[float, ...] = HORIZONS
@@ -79,7 +79,7 @@ class Settings(Record):
     fit_window: float = FIT_WINDOW
 
     def __post_init__(self) -> None:
-        """Check all three."""
+        """Check the fields, and sort the horizons."""
         if not self.horizons or not self.laws:
             raise InvalidFieldError("horizons, laws", "an empty list", "at least one of each")
         horizons = tuple(sorted({check_positive("horizons", horizon) for horizon in self.horizons}))

@@ -1,16 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Whether one evaluation is better than another on the same events, by more than chance.
+"""Tests the significance of the difference between two evaluations of the same events.
 
-Errors of one event under both are paired: what makes an event hard to predict is then in both, and cancels.
-Errors have long tails (a corner that strikes or just misses), so the test is Wilcoxon's signed-rank test,
-which goes by the order of the differences and needs no normal distribution; a t-test would be ruled by the
-tails. It is SciPy's, two-sided. Events of one recording share body, surface, noise and often the throw, and
-do not count as independent: where there are at least `FEWEST_RECORDINGS`, their mean differences are what is
-tested. With fewer recordings the events are, and the result says so.
+The errors of an event in both evaluations are paired, so that the difficulty of the event cancels. Errors
+have long tails (a corner that strikes or just misses), which would dominate a t-test. The test is SciPy's
+two-sided Wilcoxon signed-rank test, which uses the order of the differences and assumes no normal
+distribution. Events of one recording share body, surface, noise and often the throw, and are not
+independent. With at least `FEWEST_RECORDINGS` recordings, the mean differences of recordings are tested, and
+otherwise those of events; `Change.units` states which.
 
-The interval of the mean difference is a paired bootstrap: the same units are drawn with replacement, with a
-fixed seed. Because many groups are tested at once, the probabilities are adjusted by Holm's method, so that
-the chance of even one wrong "significant" stays below the level.
+The interval of the mean difference is from a paired bootstrap with a fixed seed. Because many groups are
+tested at once, the probabilities are adjusted by Holm's method, which limits the probability of any false
+positive to the significance level.
 
 Sources: F. Wilcoxon, "Individual comparisons by ranking methods", Biometrics Bulletin 1 (1945) 80; S. Holm,
 "A simple sequentially rejective multiple test procedure", Scand. J. Statistics 6 (1979) 65.
@@ -35,27 +35,27 @@ if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
 
 FEWEST_RECORDINGS: Final = 6
-"""Least number of recordings that are tested as such: 5 pairs cannot come below a probability of 0.06."""
+"""Smallest number of recordings that are tested as units: with 5 pairs, the smallest possible p is 0.06."""
 
 DRAWS: Final = 2000
-"""Draws of the bootstrap: the ends of a 95 % interval are off by some percent of its length."""
+"""Bootstrap samples: the errors of the ends of a 95 % interval are a few percent of its length."""
 
 _SEED: Final = 1945
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Change(Group):
-    """One error of one group under two evaluations.
+    """One error of one group in two evaluations.
 
     Attributes:
-        error: Which error, of `ERRORS`, or ``wrong_mode``, which is 1 where the mode is wrong, else 0.
-        pairs: Events that both evaluations answered.
-        units: What is taken as independent, "recordings" or "events".
-        first: Mean size of the error under the first evaluation.
-        second: Mean size of the error under the second one.
-        low: Lower end of the 95 % interval of the mean difference, second less first.
-        high: Upper end of it.
-        probability: How probable so large a difference is by chance, adjusted for the number of tests.
+        error: Name of the error, from `ERRORS`, or ``wrong_mode``, which is 1 for a wrong mode, else 0.
+        pairs: Number of events that both evaluations predicted.
+        units: Independent units of the test, "recordings" or "events".
+        first: Mean absolute error in the first evaluation.
+        second: Mean absolute error in the second evaluation.
+        low: Lower end of the 95 % interval of the mean difference, second minus first.
+        high: Upper end of this interval.
+        probability: p-value of the difference, adjusted for the number of tests.
     """
 
     error: str
@@ -69,10 +69,10 @@ class Change(Group):
 
 
 def changes(first: Evaluation, second: Evaluation) -> list[Change]:
-    """Return how each error of each group changed from one evaluation to another on the same recordings.
+    """Return the change of each error of each group between two evaluations of the same recordings.
 
-    Recordings are the same if their contents are. Events are the same if they are of one kind and body and
-    closer than `SAME_EVENT`. Events that only one evaluation has, or only one answers, are left out.
+    Recordings are matched by the hash of their content. Events match if they have the same kind and body and
+    are closer in time than `SAME_EVENT`. Events that only one evaluation found or predicted are left out.
     """
     found: dict[tuple[Group, str], dict[str, list[tuple[float, float]]]] = defaultdict(
         lambda: defaultdict(list)
@@ -104,7 +104,7 @@ def _pairs(first: Evaluation, second: Evaluation) -> Iterator[tuple[str, Compari
 
 
 def _what(row: Comparison) -> Group:
-    """Return the group of a comparison without what another configuration may change."""
+    """Return the group of a comparison without the fields that depend on the configuration."""
     return replace(group_of(row), surface="", several=False)
 
 
@@ -137,7 +137,7 @@ def _interval(differences: FloatArray) -> tuple[float, float]:
 
 
 def _probability(differences: FloatArray) -> float:
-    if not differences.any():  # the same to the bit: there is nothing to order
+    if not differences.any():  # Wilcoxon's test needs a difference
         return 1.0
     from scipy.stats import wilcoxon
 
@@ -145,7 +145,7 @@ def _probability(differences: FloatArray) -> float:
 
 
 def _adjusted(found: Sequence[Change]) -> list[Change]:
-    """Return the changes with Holm's probabilities, in their order."""
+    """Return the changes in their order, with probabilities adjusted by Holm's method."""
     order = sorted(range(len(found)), key=lambda i: found[i].probability)
     adjusted = list(found)
     largest = 0.0

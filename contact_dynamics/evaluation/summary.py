@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Comparisons of one kind, body, surface, horizon, method and law, put together."""
+"""Groups comparisons by kind of event, body, surface, horizon, method and law, and summarises each group."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from contact_dynamics.evaluation.comparison import Comparison
 
 LEVELS: Final = (0.5, 0.9, 0.95)
-"""Probabilities of the regions in which measured values are counted."""
+"""Probabilities of the prediction regions in which measured values are counted."""
 
 ERRORS: Final = ("time_error", "position_error", "attitude_error", "velocity_error", "spin_error")
 """The errors of a comparison that are numbers with units: s, m, rad, m/s, rad/s."""
@@ -28,16 +28,16 @@ ERRORS: Final = ("time_error", "position_error", "attitude_error", "velocity_err
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Group(Record):
-    """What comparisons that are put together have in common.
+    """The fields that all comparisons of a group share.
 
     Attributes:
-        kind: What happened.
-        body: The body's name.
-        surface: The surface's name; empty for flights.
-        several: Whether impacts may be those of several corners.
-        horizon: s before the event.
-        method: What the predictions were made from.
-        law: The law of the impact. It is None where no impact was asked about.
+        kind: Kind of the events.
+        body: Name of the body.
+        surface: Name of the surface; empty for flights.
+        several: True if several corners may have struck.
+        horizon: Look-ahead time, s.
+        method: Source of the predictions' initial states.
+        law: Impact law, or None if the predictions contain no impact.
     """
 
     kind: EventKind
@@ -50,19 +50,19 @@ class Group(Record):
 
     @staticmethod
     def shared(row: Comparison | Group) -> dict[str, Any]:
-        """Return these fields by name, of a comparison or a group."""
+        """Return the group's fields of a comparison or a group, by name."""
         return {field.name: getattr(row, field.name) for field in fields(Group)}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Spread(Record):
-    """How one error is distributed.
+    """The distribution of one error.
 
     Attributes:
-        bias: Median of the error with its sign; of an error that is a size, its median.
-        median: Median of its size.
-        most: Size that 90 % of the errors do not exceed.
-        count: How many there are.
+        bias: Median of the signed error, which equals ``median`` for an error >= 0.
+        median: Median of the absolute error.
+        most: 90 % quantile of the absolute error.
+        count: Number of errors.
     """
 
     bias: float
@@ -76,15 +76,14 @@ class Summary(Group):
     """The comparisons of one group.
 
     Attributes:
-        asked: How many questions there were.
-        refused: How many of them had no answer.
-        errors: The distribution of each error of `ERRORS` that there is.
-        impacts: How many questions about a mode were answered by an impact: by its published velocity the
-            body still approached its surface.
-        modes_right: Share of the other modes that were right. It is None without any.
-        covered: Share of the measured values inside of the regions of `LEVELS`. It is empty
-            without covariances.
-        covariances: How many predictions had covariances.
+        asked: Number of requests.
+        refused: Number of rejected requests.
+        errors: Distribution of each error in `ERRORS` that occurs.
+        impacts: Number of contact mode requests that returned an impact, because the published velocity still
+            approached the surface.
+        modes_right: Share of the other contact modes that were correct, or None without any.
+        covered: Share of measured values inside each region of `LEVELS`; empty without covariances.
+        covariances: Number of predictions with a covariance.
     """
 
     asked: int
@@ -105,12 +104,12 @@ def summarise(rows: Iterable[Comparison]) -> list[Summary]:
 
 
 def group_of(row: Comparison) -> Group:
-    """Return what a comparison has in common with those that it is put together with."""
+    """Return the group of a comparison."""
     return Group(**Group.shared(row))
 
 
 def is_inside(row: Comparison, level: float) -> bool | None:
-    """Return whether what was measured is inside of the region of that probability, or None without one."""
+    """Return whether the measured value is inside the region of this probability, or None if unknown."""
     from scipy.special import gammaincinv
 
     if row.distance is None:
@@ -119,7 +118,7 @@ def is_inside(row: Comparison, level: float) -> bool | None:
 
 
 def spread_of(errors: Sequence[float]) -> Spread:
-    """Return the distribution of errors, one at least."""
+    """Return the distribution of at least one error."""
     sizes = np.abs(errors)
     return Spread(
         bias=float(np.median(errors)),
