@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the impacts on one surface show together: a sequential test for changes, and estimates.
+"""Detects changes of a surface's coefficients in successive impacts, and estimates the coefficients.
 
-The test is Page's (1954) cumulative sum of log-likelihood ratios, one for each of the other values that a
-coefficient may have, which is a generalised likelihood ratio over these values (Lorden 1971). Each sum begins
-anew where it falls below zero. A change is reported from when the largest sum is above
-`THRESHOLD` until it is below `ENDS`.
+The detector is Page's (1954) cumulative sum of log-likelihood ratios, with one sum for each alternative value
+of a coefficient. This is a generalised likelihood ratio test over these values (Lorden 1971). A sum that
+falls below zero is reset. A change is reported from the time at which the largest sum exceeds `THRESHOLD`
+until it falls below `ENDS`.
 
 The estimate is recursive: one weighted Gauss-Newton step per impact, with the weights of Student's t. When a
-change is detected, it begins anew at the first impact that the sum contains.
+change is detected, the estimate restarts at the first impact in the sum.
 """
 
 from __future__ import annotations
@@ -26,46 +26,47 @@ if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
 
 THRESHOLD: Final = 5.0
-"""Sum of log-likelihood ratios at which a change is reported. Of 2000 simulated impacts without a change 3
-start such a report, for both coefficients together."""
+"""Sum of log-likelihood ratios at which a change is reported. Of 2000 simulated impacts without a change, 3
+started a report, for both coefficients together."""
 
 ENDS: Final = 0.5 * THRESHOLD
-"""Sum at which the report of a change ends, so that it does not begin again with each impact."""
+"""Sum at which the report of a change ends. This hysteresis avoids repeated reports of one change."""
 
 LARGEST_SUM: Final = 2.0 * THRESHOLD
-"""A sum grows no further, so that the report of a change ends soon after the change is undone."""
+"""Upper limit of a sum, so that a report ends soon after the coefficient has returned to its old value."""
 
 LEARNED: Final = 10
-"""Impacts from which the scatter of both coefficients is estimated."""
+"""Smallest number of impacts from which the scatter of a coefficient is estimated."""
 
 UNKNOWN_SCATTER: Final = 2.0
-"""Factor on the standard deviations along both coefficients until then. On the published cube tosses it is
+"""Factor on the standard deviations along both coefficients before that. On the published cube tosses it is
 1.7 along restitution and 2.1 along friction."""
 
 _MEDIAN_CHANGES: Final = {True: 1.208, False: 0.9539}
-"""Median absolute difference of two variables: of Student's t for `FREEDOM`, and of standard normal ones."""
+"""Median absolute difference of two variables: Student's t with `FREEDOM`, and standard normal."""
 
 LARGEST_RATIO: Final = 2.0
-"""Largest log-likelihood ratio of one impact, so that three impacts at least make a change. A single one may
-be two strikes that were taken for one."""
+"""Upper limit of one impact's log-likelihood ratio, so that a detection needs at least three impacts. A
+single outlier may be two strikes that were detected as one."""
 
 REMEMBERED: Final = 200
-"""Impacts that are kept, with which an estimate begins anew."""
+"""Number of stored impacts, with which an estimate can restart."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class SurfaceReport(Record):
-    """What the impacts on a surface show so far.
+    """Estimates of a surface's coefficients, and detected changes, after an impact.
 
     Attributes:
-        impact: This impact with the scatter of both coefficients from impact to impact.
-        scatter: (2,), factor of this scatter on the standard deviations along restitution and friction, >= 1.
-        impacts: Number of impacts since the estimate began.
+        impact: The latest impact, widened by ``scatter``.
+        scatter: (2,), >= 1, factor on the standard deviations along restitution and friction, for the scatter
+            of the coefficients from impact to impact.
+        impacts: Number of impacts since the start of the estimate.
         values: (2,), estimated restitution and friction, NaN if unknown.
         stds: (2,), their standard deviations.
         sums: (2,), largest sum of log-likelihood ratios for a changed restitution and a changed friction.
-        changed: The coefficient whose change explains the impacts best, if a change is detected.
-        is_new: Whether this impact is the first one at which it is detected.
+        changed: Coefficient whose change explains the impacts best, or None if no change is detected.
+        is_new: True at the impact at which the change is first detected.
     """
 
     impact: ImpactEvidence
@@ -79,25 +80,25 @@ class SurfaceReport(Record):
 
 
 class SurfaceChanges:
-    """Collects the impacts on one surface."""
+    """Detects changes of one surface's coefficients, and estimates them."""
 
     def __init__(self) -> None:
-        """Begin without impacts."""
+        """Start without impacts."""
         self._impacts: list[ImpactEvidence] = []
         self._deviations: list[FloatArray] = []
-        self._sums: list[FloatArray] = []  # with limited ratios, which reports follow
-        self._whole: list[FloatArray] = []  # with whole ones, which tell the value
+        self._sums: list[FloatArray] = []  # limited ratios, for detection
+        self._whole: list[FloatArray] = []  # unlimited ratios, which select the value
         self._lengths: list[FloatArray] = []
         self._estimate: _Estimate | None = None
         self._changed: Parameter | None = None
 
     def add(self, impact: ImpactEvidence) -> SurfaceReport:
-        """Add an impact, and return what all of them show."""
+        """Add an impact, and return the estimates and detected changes."""
         scatter = self._scatter(is_heavy=math.isfinite(impact.freedom))
         self._deviations = [*self._deviations[1 - REMEMBERED :], impact.deviations()]
         impact = impact.widened(scatter)
         if self._impacts and not np.array_equal(impact.configured, self._impacts[-1].configured):
-            self._sums, self._changed = [], None  # another coefficient is configured, to test against
+            self._sums, self._changed = [], None  # the reference values have changed
         self._impacts = [*self._impacts[1 - REMEMBERED :], impact]
         self._add_ratios(impact)
         largest = np.array([sums.max(initial=0.0) for sums in self._sums])
@@ -108,7 +109,7 @@ class SurfaceChanges:
         ]
         before, k = self._changed, int(np.argmax([each.max(initial=-math.inf) for each in likely]))
         self._changed = tuple(Parameter)[k] if largest.max() > limit else None
-        if before is not None and self._changed is None:  # the sums that are not limited would stay large
+        if before is not None and self._changed is None:  # the unlimited sums would stay large
             self._whole = [np.zeros_like(sums) for sums in self._whole]
         is_new = self._changed is not None and before is None
         if is_new:
@@ -132,9 +133,10 @@ class SurfaceChanges:
         )
 
     def _scatter(self, *, is_heavy: bool) -> FloatArray:
-        """Return by how much deviations scatter more than expected, (2,), from those before this impact.
+        """Return the factor, (2,), by which earlier deviations scatter more than expected.
 
-        Differences of successive deviations are used, of which a change of a coefficient affects one alone.
+        It is estimated from differences of successive deviations, because a change of a coefficient affects
+        only one of them.
         """
         factors = np.full(2, UNKNOWN_SCATTER)
         rows = np.array(self._deviations).reshape(-1, 2)
@@ -159,16 +161,16 @@ class SurfaceChanges:
 
 
 class _Estimate:
-    """Restitution and friction, and their information."""
+    """Recursive estimate of restitution and friction, with its information matrix."""
 
     def __init__(self, at: FloatArray) -> None:
-        """Begin at coefficients, (2,), without information: outliers are told by them."""
+        """Start at coefficients, (2,), without information. Outliers are weighted relative to them."""
         self.impacts = 0
         self._at = at
         self._information = np.zeros((2, 2))
 
     def add(self, impact: ImpactEvidence) -> None:
-        """Take a step towards what an impact shows."""
+        """Update the estimate with an impact, by one Gauss-Newton step."""
         self.impacts += 1
         slopes, difference = impact.slopes(self._at), impact.differences(self._at[None])[0]
         own, gradient = slopes.T @ impact.inverse @ slopes, slopes.T @ impact.inverse @ difference
@@ -180,11 +182,11 @@ class _Estimate:
 
     @property
     def values(self) -> FloatArray:
-        """(2,), NaN where nothing is known."""
+        """(2,), NaN for an unknown coefficient."""
         return np.where(is_known(self._information), self._at, math.nan)
 
     @property
     def stds(self) -> FloatArray:
-        """(2,), NaN where nothing is known."""
+        """(2,), NaN for an unknown coefficient."""
         stds: FloatArray = np.sqrt(np.diag(inverse_of_known(self._information)))
         return stds

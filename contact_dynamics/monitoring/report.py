@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The events of a monitor in words."""
+"""Describes the events and estimates of a monitor in words."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 def line_of(event: MonitoredEvent) -> str:
-    """Return one event in a line."""
+    """Return a description of one event in one line."""
     where = f" on {event.surface}" if event.surface else ""
     return f"{to_seconds(event.stamp_ns):.3f} s, {event.body}{where}: {event.kind.value}, " + ", ".join(
         _parts(event)
@@ -51,7 +51,7 @@ def _parts(event: MonitoredEvent) -> Iterator[str]:
 
 
 def _mode(mode: str) -> str:
-    return f"{mode} ({mode_in_words(mode, turns=False)})" if mode.islower() else mode  # or it is a verdict
+    return f"{mode} ({mode_in_words(mode, turns=False)})" if mode.islower() else mode  # or a verdict
 
 
 def estimates_in_words(report: SurfaceReport) -> str:
@@ -67,14 +67,14 @@ def _values(values: FloatArray, stds: FloatArray) -> str:
 
 
 class Summary:
-    """Counts events of each kind, how well they were predicted, and the estimates for each surface.
+    """Counts events and correct predictions by kind, and keeps the latest report of each surface.
 
     Attributes:
-        latest: The last report of each surface, by its name.
+        latest: The latest report of each surface, by name.
     """
 
     def __init__(self) -> None:
-        """Begin without events."""
+        """Start without events."""
         self.latest: dict[str, SurfaceReport] = {}
         self._counts: defaultdict[str, Counter[str]] = defaultdict(Counter)
         self._inside: defaultdict[str, FloatArray] = defaultdict(lambda: np.zeros(len(REGIONS)))
@@ -94,7 +94,7 @@ class Summary:
             self.latest[event.surface] = event.surface_report
 
     def rows(self) -> dict[str, str]:
-        """Return each kind of events and each surface, with what there is to say of it."""
+        """Return a description of each kind of event and of each surface."""
         found = {}
         for kind, counts in self._counts.items():
             parts = [f"{counts['events']} events"]
@@ -113,5 +113,5 @@ class Summary:
         return found
 
     def __str__(self) -> str:
-        """Return a line for each row."""
+        """Return one line per row."""
         return "\n".join(f"{name}: {text}" for name, text in self.rows().items()) or "no events"
