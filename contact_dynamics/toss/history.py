@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The history of a toss while it is computed: its state, its events, and the `Toss` that results."""
+"""The state and events of a toss during its simulation, and the resulting `Toss`."""
 
 from __future__ import annotations
 
@@ -39,29 +39,29 @@ if TYPE_CHECKING:
 
 
 NEAR_CORNERS: Final = 0.1
-"""Distance of two corners, relative to the body's reach, below which heights of touching ones are compared
-more closely."""
+"""Distance of two corners, relative to the reach, below which the tolerance of their heights is smaller."""
 
 
 _MOST_LIFTS: Final = 20
-"""Lifts of a body that begins inside flats. Each leaves an error of second order, so two or three do."""
+"""Largest number of moves of a body out of planes that it penetrates initially. Each leaves an error of
+second order, so two or three suffice."""
 
 
 class History:
-    """A toss as far as it has come.
+    """The present state of a simulated toss, and its motion and events so far.
 
     Attributes:
-        solid: The body and the flats.
-        now: s after the first state's stamp.
-        y: The state now.
-        pieces: The flights and steps up to now.
-        events: What happened up to now; of a sample, strikes alone.
-        count: How much happened up to now.
-        is_sample: Whether this is one of many samples.
-        lost_in_strikes: J, what strikes have taken.
-        lost_in_contact: J, what sliding has taken.
-        resting: The contacts that the body rests on, if it does.
-        undecided: The points up to now that mechanics does not decide.
+        solid: The body and the planes.
+        now: Present time, s after the stamp of the initial state.
+        y: Present state, 13 numbers.
+        pieces: Flights and integration steps so far.
+        events: Events so far; for a sample, only strikes.
+        count: Number of all events so far.
+        is_sample: True for a sample of an uncertain toss.
+        lost_in_strikes: Energy dissipated in strikes, J.
+        lost_in_contact: Energy dissipated by sliding, J.
+        resting: Contacts on which the body rests; empty if it moves.
+        undecided: Branch points so far, at which mechanics does not determine the motion.
     """
 
     def __init__(self, solid: Solid, y: Numbers, ways: tuple[int, ...], began_ns: int) -> None:
@@ -84,7 +84,7 @@ class History:
         alternatives: tuple[Toss, ...] = (),
         all_followed: bool = True,  # noqa: FBT001, FBT002  C has no keywords
     ) -> Toss:
-        """Return the toss, which ends so."""
+        """Return the result for a toss that has ended."""
         energy = TossEnergy(
             first=self._first - energy_of(self.solid, self.y) + kinetic_energy_of(self.solid, self.y),
             lost_in_strikes=self.lost_in_strikes,
@@ -108,26 +108,26 @@ class History:
             began_ns=self._began_ns,
             noted=(self.solid, tuple(self.events)),
         )
-        object.__delattr__(toss, "events")  # they are made when they are asked for
+        object.__delattr__(toss, "events")  # created on first access
         return toss
 
     def resting_normal_B(self) -> Vector3:
-        """Return the normal of the flat on which the body rests, body axes, or zero if it moves."""
+        """Return the normal of the plane on which the body rests, body axes, or zero if it moves."""
         if not self.resting:
             return (0.0, 0.0, 0.0)
         rows = pose_of(self.solid, self.y).rows
         return vec.transposed_times(rows, self.solid.flats[self.resting[0][0]].normal)
 
     def touching_now(self, leaving: float) -> list[Touch]:
-        """Return the contacts that touch and do not leave faster than ``leaving``, m/s."""
+        """Return the touching contacts that do not separate faster than ``leaving``, m/s."""
         listed = low_corners(self.solid, self.y, DISTANCE_TOLERANCE, leaving)
         return [touch for _, touch in listed] if len(listed) < 2 else self._touching_together(listed)
 
     def _touching_together(self, listed: list[tuple[float, Touch]]) -> list[Touch]:
-        """Return the contacts, of those with these heights, m, that the body need not turn to touch with.
+        """Return the contacts among those listed, with heights in m, that touch at the present attitude.
 
-        Contacts that touch together are held together. If two are near to each other, the tolerance of one's
-        height would be a large angle, so it is less there.
+        Contacts that touch together are held together. For two nearby corners, the full tolerance of the
+        height would be a large angle, so the tolerance is smaller for them.
         """
         solid = self.solid
         found: list[Touch] = []
@@ -141,7 +141,7 @@ class History:
         return [touch for _, touch in listed if touch in found]
 
     def way(self, reason: UndecidedReason, options: int) -> int:
-        """Return which way is taken at a point that mechanics does not decide, and note it."""
+        """Record a branch point, and return the index of the branch to follow."""
         k = len(self.undecided)
         taken = self._ways[k] if k < len(self._ways) else 0
         self.undecided.append(Undecided(seconds=self.now, reason=reason, options=options, taken=taken))
@@ -155,16 +155,16 @@ class History:
         impulse: Vector3 = (0.0, 0.0, 0.0),
         outcome: ImpactOutcome | None = None,
     ) -> None:
-        """Tell of an event at contacts that touch now."""
+        """Record an event at contacts that touch now."""
         self.count += 1
         if not self.is_sample or kind == TossEventKind.STRIKES:
             self.events.append(Noted(self.now, kind, touching, impulse, outcome, mode, self.y))
 
 
 def _just_above(solid: Solid, y: Numbers) -> Numbers:
-    """Return the first state, moved out of planes that it penetrates deeper than a contact may.
+    """Return the initial state, moved out of planes that it penetrates by more than `DISTANCE_TOLERANCE`.
 
-    Contacts are found after this. The move may turn the body, so that fewer corners touch than penetrated.
+    The move may turn the body, so that fewer corners touch afterwards than penetrated before.
     """
     for _ in range(_MOST_LIFTS):
         if not low_corners(solid, y, -DISTANCE_TOLERANCE, math.inf):

@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A whole toss: free flight, strikes, contact phases and rest, one after the other.
+"""A toss from its initial state to rest: free flights, strikes and contact phases.
 
-Flights end at the first contact, found to rounding (`flight`). Strikes follow Routh's
-impact (`strike`). A body whose contacts stay goes on in a contact mode (`mode_choice`), which is integrated
-until it ends (`phase`). The toss is over where the kinetic energy has fallen so low that the body could rise
-or slide by `SETTLING_HEIGHT` at most, and friction and contacts hold it there.
+A flight ends at the first contact, which is computed to rounding (`flight`). Strikes follow Routh's impact
+law (`strike`). A body in sustained contact moves in a contact mode (`mode_choice`), which is integrated until
+it ends (`phase`). The body rests when its kinetic energy is so low that it could rise or slide by at most
+`SETTLING_HEIGHT`, and friction and contacts hold it in place.
 
-Where mechanics does not decide (several modes, contacts that strike at one instant), one way is taken and the
-point is listed. The other ways are followed as tosses of their own, as many as are asked for.
+If mechanics does not determine the motion (several modes, or contacts that strike at one instant), the toss
+follows one branch and lists the branch point. Other branches are followed as separate tosses, up to
+``max_alternatives``.
 """
 
 from __future__ import annotations
@@ -37,8 +38,8 @@ if TYPE_CHECKING:
     from contact_dynamics.world import Body, World
 
 MAX_EVENTS: Final = 10_000
-"""Events after which a toss ends unfinished. A toss of a box takes ten to fifty, and one of a smooth body
-among four flats takes thousands."""
+"""Largest number of events of a toss. A toss of a box has ten to fifty, and one of a smooth body among four
+planes has thousands."""
 
 
 def toss(
@@ -129,7 +130,7 @@ def toss(
 
 
 def _other_ways(one: Simulation, decided: int) -> list[tuple[int, ...]]:
-    """Return the ways that leave a toss at one of its undecided points, after those that were set."""
+    """Return the branches that leave a toss at one of its branch points after the first ``decided`` ones."""
     taken = tuple(point.taken for point in one.undecided)
     return [
         (*taken[:k], other)

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Samples of a toss that is not known exactly, followed through the next strikes or to rest.
+"""Samples of an uncertain toss, simulated through the next strikes or to rest.
 
-The next strikes of all samples are found first (`next_strikes`), in some hundredths of a millisecond each. If
-rest is asked for, each sample goes on from there as a toss does (`to_rest`). That takes far longer, and
-several processes can share it. It is done less exactly than a single toss: rebounds below
-`SAMPLED_SETTLING_HEIGHT` are not followed, and neither is a body that only rattles on a face until it rests
-(`laid_flat`). It then has the world's gravity, and not its own: in recorded slides, the gravity of the flight
-before leaves no trace, and the scatter of friction that lasts holds what slides differ by.
+The next strikes of all samples are computed first (`next_strikes`), which takes a few hundredths of a
+millisecond each. With ``to_rest``, the simulation of each sample continues to rest (`to_rest`). This takes
+far longer and can be shared by several processes. It is less accurate than a single toss: rebounds below
+`SAMPLED_SETTLING_HEIGHT` are not resolved, and a body that only rattles on a face is laid flat (`laid_flat`).
+From there on, samples have the world's gravity instead of their own. In recorded slides, no effect of the
+gravity of the flight before is visible, and the scatter of sustained friction covers their differences.
 """
 
 from __future__ import annotations
@@ -61,13 +61,13 @@ if TYPE_CHECKING:
     from contact_dynamics.world import Body, SurfaceFrame, World
 
 MAX_SAMPLES: Final = 2000
-"""Most samples of one toss."""
+"""Largest number of samples."""
 
 MAX_STRIKES: Final = 10
-"""Deepest tree of next strikes."""
+"""Largest depth of the tree of next strikes."""
 
 MAX_GHOSTS: Final = 30
-"""Samples whose poses are kept for pictures."""
+"""Number of samples whose poses are kept for visualization."""
 
 _SAME_FACE: Final = 0.999  # cosine between normals of one face
 
@@ -226,7 +226,7 @@ def sampled_toss(
 
 
 def _add_strikes(many: ManyStrikes, i: int, followed: Followed) -> None:
-    """Add the strikes of one sample that the tree still lacks."""
+    """Add the strikes of one sample that are missing in the tree."""
     k = int((many.corners[:, i] >= 0).sum())
     for seconds, touch, y in followed.strikes:
         many.seconds[k, i] = seconds
@@ -269,7 +269,7 @@ def _branches(solid: Solid, many: ManyStrikes, marginals: tuple[EventRegions, ..
     level = [(-1, np.arange(count))]
     for k in range(len(many.seconds)):
         after = []
-        # What happens next, as a number: the contact that strikes, or below zero why there is none.
+        # Keys >= 0 number the striking contact, and keys < 0 the reason why there is none.
         contacts = many.surfaces[k] * solid.count + many.corners[k]
         keys = np.where(many.corners[k] >= 0, contacts, -1 - many.ends)
         for parent, members in level:
@@ -302,7 +302,7 @@ def _branches(solid: Solid, many: ManyStrikes, marginals: tuple[EventRegions, ..
 
 
 def _faces(rests: list[Vector3]) -> list[tuple[Vector3, list[int]]]:
-    """Return the normals of the faces that samples rest on, and the indices of these, the most first."""
+    """Return the normals of resting faces with the indices of their samples, most frequent first."""
     faces: list[tuple[Vector3, list[int]]] = []
     for i, each in enumerate(rests):
         for normal, which in faces:

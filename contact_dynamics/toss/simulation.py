@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Follows one toss from event to event: flights, strikes, contact phases, jams, and rest."""
+"""Simulates one toss from event to event: flights, strikes, contact phases, jamming, and rest."""
 
 from __future__ import annotations
 
@@ -55,53 +55,53 @@ if TYPE_CHECKING:
     from contact_dynamics.toss.strike import Strikes
 
 MAX_STEPS: Final = 100_000
-"""Steps in contact, after which a toss ends unfinished. A ball that rolls takes some thirteen a turn."""
+"""Largest number of integration steps in contact. A rolling ball takes some thirteen per turn."""
 
 _ROUNDS: Final = 4
-"""Searches for a mode, relative to the bound on events, after which a toss ends unfinished."""
+"""Largest number of rounds of a toss, relative to its largest number of events."""
 
 _ROUNDS_AT_ONCE: Final = 12
-"""Rounds of strikes, modes and flights after which the time that they take is looked at. Up to six are usual
-at one instant."""
+"""Largest number of rounds of strikes, modes and flights within `Simulation.linger`. Up to six are usual at
+one instant."""
 
 _ROUNDS_WHILE_BUSY: Final = 400
-"""Rounds within `BUSY` after which short steps pass over the chatter."""
+"""Largest number of rounds within `BUSY`. After that, short steps pass over the chatter."""
 
 _LONGEST_LINGER: Final = 0.1
-"""s. So long a toss goes on in short steps at most, where rounds lead to one another again and again."""
+"""Longest time, s, over which short steps replace rounds that repeat."""
 
 _LONGER: Final = 4.0
-"""By this factor the time becomes longer then."""
+"""Factor by which this time grows with each repetition."""
 
 _SHARE: Final = 0.25
-"""Length of a short step, relative to the time that is passed over."""
+"""Length of a short step, relative to this time."""
 
 _NEVER: Final = 2**31 - 1
-"""Strikes that no toss has."""
+"""A number of strikes that no toss reaches."""
 
 _MAX_LAID: Final = 3
-"""How often a sample is laid flat. One that rattles on goes on as a toss does."""
+"""Largest number of times that a sample is laid flat. After that, its rattling is simulated in full."""
 
 _SLOWER: Final = 0.25
-"""The kinetic energy at which rest is tried again, relative to that at which the body did not rest."""
+"""Kinetic energy at which rest is checked again, relative to that at the last check."""
 
 
 class TossSettings(NamedTuple):
-    """What all tosses of one question share.
+    """Settings of a simulation.
 
     Attributes:
-        solid: The body and the flats.
-        law: What the coefficients of restitution mean.
-        several_contacts_law: The law for several contacts that strike at one instant.
-        horizon: s, how far a toss is followed.
-        max_events: How many events are followed.
-        error: The error that one step of a contact phase may have (`phase.phase`).
-        kick: What changes velocities after the strike of a single contact, or None.
-        flat_after: After so many strikes, a body that only rattles on a face is laid flat (`laid_flat`). If
-            this is None, it never is.
-        thorough: Whether all modes are looked for where friction may wedge the body. Samples do without, and
-            take the mode that is found first, as a toss does that goes its first way.
-        has_pieces: Whether flights and steps are kept, which give the state at any time. Samples do without.
+        solid: The body and the planes.
+        law: Law of restitution.
+        several_contacts_law: Law for several contacts that strike at one instant.
+        horizon: Duration of the simulation, s.
+        max_events: Largest number of events.
+        error: Largest error of one step of a contact phase (`phase.phase`).
+        kick: Random change of the velocities after strikes, or None.
+        flat_after: Number of strikes after which a body that only rattles on a face is laid flat
+            (`laid_flat`). If it is None, this is never done.
+        thorough: True to compute all modes if friction may wedge the body. Otherwise, as for samples, the
+            mode that is found first is taken, which is also the first branch of a toss.
+        has_pieces: True to keep flights and steps, which contain the state at any time. Samples omit them.
     """
 
     solid: Solid
@@ -117,9 +117,9 @@ class TossSettings(NamedTuple):
 
 
 class Simulation(History):
-    """One toss, as far as it has come, and how it goes on.
+    """The simulation of one toss.
 
-    It takes the given ways at its first undecided points, and way 0 after that.
+    It follows the branches ``ways`` at its first branch points, and branch 0 after these.
     """
 
     def __init__(
@@ -132,19 +132,19 @@ class Simulation(History):
         self.thorough, self.has_pieces = settings.thorough, settings.has_pieces
         self.flat_after = _NEVER if settings.flat_after is None else settings.flat_after
         self.descent = Descent(settings.solid)
-        self.slow = math.inf  # J, rest is tried where the kinetic energy is below this
-        self.struck = self.laid = self.steps = 0  # strikes, how often it was laid flat, steps in contact
+        self.slow = math.inf  # J, kinetic energy below which rest is checked
+        self.struck = self.laid = self.steps = 0  # numbers of strikes, of layings flat, of contact steps
         self.mark, self.rounds = 0.0, 0  # a time, s, and the rounds since then
         self.busy_mark, self.busy_rounds = 0.0, 0  # the same over a longer time
-        self.linger = SHORTEST_LINGER  # s, as long as rounds have to take, and short steps go on
+        self.linger = SHORTEST_LINGER  # s, shortest time for the rounds, and duration of short steps
         self.settled: Strikes | None = None  # the last strikes
         self.unsettled = Unsettled()
-        self.looked_at: list[Touch] = []  # contacts whose modes were all looked for last
-        self.faces: Faces = {}  # that it could be laid on
-        self.way_on: Mode | None = None  # how it goes on where it could rest as well
+        self.looked_at: list[Touch] = []  # contacts for which all modes were computed last
+        self.faces: Faces = {}  # on which it could be laid
+        self.way_on: Mode | None = None  # the mode of a branch in which it does not rest
 
     def to_end(self) -> TossEnd:
-        """Follow the motion to its end, and return why it ends."""
+        """Simulate the motion to its end, and return the reason for the end."""
         touching = self.touching_now(STRIKES)
         for _ in range(_ROUNDS * self.max_events):
             if self.count >= self.max_events or self.steps >= MAX_STEPS:
@@ -165,7 +165,7 @@ class Simulation(History):
         return TossEnd.MAX_EVENTS
 
     def _go_on(self, touching: list[Touch]) -> list[Touch]:
-        """Go on from contacts that neither approach nor leave, and return what touches then."""
+        """Continue from contacts that neither approach nor separate, and return the touching contacts."""
         if not touching:
             return self._fly(0.0)
         found = self._next_mode(touching)
@@ -182,9 +182,10 @@ class Simulation(History):
     # Flights
 
     def _fly(self, pause: float) -> list[Touch]:
-        """Fly on to the next contact or the horizon, and return what touches then.
+        """Fly to the next contact or the horizon, and return the touching contacts.
 
-        A body whose contacts have just left without speed flies for a pause before arrivals are looked for.
+        The search for arrivals begins after ``pause``, s, because contacts that have just lifted off have no
+        speed.
         """
         left = self.horizon - self.now
         self.y = out_of_flats(self.solid, self.y)
@@ -197,7 +198,7 @@ class Simulation(History):
         return self.touching_now(self._fast()) if seconds < left else []
 
     def _forget_instant(self) -> None:
-        """Drop pieces of no length, so that a time belongs to one piece."""
+        """Remove a piece of zero length, so that each time belongs to one piece."""
         last = len(self.pieces) - 1
         if last > 0 and self.pieces[last - 1].start == self.pieces[last].start:
             del self.pieces[last - 1]
@@ -239,10 +240,10 @@ class Simulation(History):
         return staying
 
     def _end_low_rebounds(self, touching: list[Touch], staying: list[Touch], energy: float) -> list[Touch]:
-        """Keep contacts that rebound too low to be followed, and return those that stay.
+        """Close contacts with a negligible rebound, and return those that stay.
 
-        The friction that came with rebounds is given back. If that took more energy than there was before the
-        strikes, J, the rebounds are followed after all.
+        The friction impulses of these rebounds are reversed. If this would raise the energy above that before
+        the strikes, ``energy`` in J, the rebounds are simulated.
         """
         ended = low_rebounds_ended(self.solid, self.y, touching, self.unsettled)
         if ended is None or energy_of(self.solid, ended.y) > energy:
@@ -255,13 +256,13 @@ class Simulation(History):
         return ended.staying
 
     def _fast(self) -> float:
-        """Return the approach, m/s, from which the order of contacts that strike together matters."""
+        """Return the speed of approach, m/s, above which the order of simultaneous strikes matters."""
         return math.sqrt(2.0 * self.solid.settling * vec.norm(self.solid.gravity)) + STRIKES
 
     def _jam(self, touching: list[Touch]) -> list[Touch]:
-        """Settle contacts without a consistent mode by an impact, and return what touches then.
+        """Resolve contacts without a consistent mode by an impact, and return the touching contacts.
 
-        If no impact settles them, short steps pass over that.
+        If no such impact is found, short steps replace it.
         """
         solid = self.solid
         before = energy_of(solid, self.y)
@@ -292,7 +293,7 @@ class Simulation(History):
     # Contact
 
     def _next_mode(self, touching: list[Touch]) -> tuple[Mode, HeldContacts] | None:
-        """Return the consistent mode that is taken, with its rates and forces, or None if there is none."""
+        """Return the next mode with its rates and forces, or None if no mode is consistent."""
         if self.way_on is not None:
             mode, self.way_on = self.way_on, None
             return mode, pushed_by_contacts(self.solid, self.y, mode)
@@ -307,14 +308,14 @@ class Simulation(History):
         return choice.modes[way], choice.pushed_in(way, self.solid, self.y)
 
     def _known_since_strikes(self, touching: list[Touch], thorough: bool) -> Choice | None:  # noqa: FBT001
-        """Return the modes that the last strikes found for these contacts in this state, if they did."""
+        """Return the modes of these contacts in this state if the last strikes computed them."""
         last = self.settled
         if last is None or last.y is not self.y or last.staying != touching:
             return None
         return None if thorough and may_be_wedged(self.solid, touching) else last.choice
 
     def _follow(self, mode: Mode) -> list[Touch]:
-        """Go on in a mode to its end, and return what touches then."""
+        """Integrate a mode to its end, and return the touching contacts."""
         held = [one.touch for one in mode]
         self.note(TossEventKind.NEW_MODE, held, mode)
         before = energy_of(self.solid, self.y)
@@ -341,7 +342,7 @@ class Simulation(History):
         return held
 
     def _lingers(self) -> bool:
-        """Return whether events have led to one another for so long, and time has hardly gone on."""
+        """Return whether there were too many events in a short time."""
         if self.now > self.mark + self.linger:
             self.mark, self.rounds = self.now, 0
             self.linger = max(0.5 * self.linger, SHORTEST_LINGER)
@@ -355,9 +356,9 @@ class Simulation(History):
         return self.rounds > _ROUNDS_AT_ONCE
 
     def _pass_over(self) -> list[Touch]:
-        """Go on in short steps where events lead to one another, and return what touches then.
+        """Pass over a repetition of events in short steps, and return the touching contacts.
 
-        If they do so again, it goes on so for longer.
+        If events repeat again, the next duration is longer.
         """
         until = min(self.now + self.linger, self.horizon)
         mode: tuple[Held, ...] = ()
@@ -378,9 +379,9 @@ class Simulation(History):
         return self.touching_now(self._fast())
 
     def _slow(self, touching: list[Touch]) -> float:
-        """Return the kinetic energy, J, with which a body rises or slides by `settling` at most.
+        """Return the kinetic energy, J, with which the body rises or slides by at most `settling`.
 
-        Without friction it would slide on for ever. There its speed has to be rounding.
+        Without friction the body would never stop. Its speed must then be within `SLIDING_STOPPED`.
         """
         grip = 1.0 if touching else 0.0
         for surface, _ in touching:
@@ -389,11 +390,11 @@ class Simulation(History):
         return self._stopped_within(self.solid.mass * vec.norm(self.solid.gravity) * grip)
 
     def _stopped_within(self, force: float) -> float:
-        """Return the kinetic energy, J, that a force takes within `settling`, or that is rounding."""
+        """Return the kinetic energy, J, that a force dissipates within `settling`, or that of rounding."""
         return max(force * self.solid.settling, 0.5 * self.solid.mass * SLIDING_STOPPED**2)
 
     def _laid_flat(self, touching: list[Touch]) -> list[Touch]:
-        """Lay a body that only rattles on a face flat on it, if it may be, and return what touches then."""
+        """Lay a sample that only rattles on a face flat on it, and return the touching contacts."""
         if self.struck < self.flat_after or self.laid >= _MAX_LAID:
             return touching
         flat = laid_flat(self.solid, self.y, self.faces)
@@ -404,7 +405,7 @@ class Simulation(History):
         return self.touching_now(STILL_TOUCHING)
 
     def _rests(self, touching: list[Touch]) -> bool:
-        """Return whether the body has come to rest. Then its velocities are zero from now on."""
+        """Return whether the body has come to rest, and set its velocities to zero if it has."""
         energy = kinetic_energy_of(self.solid, self.y)
         if energy > min(self._slow(touching), self.slow):
             return False
@@ -417,12 +418,12 @@ class Simulation(History):
         pushed = choice.pushed_in(0, self.solid, still)
         _, _, _, _, _, _, _, a, b, c, d, e, f = pushed.rates
         fastest = max(abs(a), abs(b), abs(c)) + self.solid.reach * max(abs(d), abs(e), abs(f))
-        # A mode of nearly flush contacts may be still by forces that pull, because they are not quite flush.
+        # Nearly flush contacts may need pulling forces for rest, because they are not exactly flush.
         is_held = pushed.least_left() >= 0.0
         if not is_held or fastest > RESTING_ACCELERATION * vec.norm(self.solid.gravity):
             self.slow = _SLOWER * energy
             return False
-        # Friction that bears a slope, or the acceleration of the flats, does not slow the body down.
+        # Friction that carries a load, on a slope or accelerated planes, does not slow the body down.
         self.slow = self._stopped_within(pushed.friction_left())
         if energy > self.slow:
             return False

@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Strikes at the contacts of one instant: Routh's impact at each, and the end of many small rebounds.
+"""Resolves all strikes of one instant, and ends series of small rebounds.
 
-The contact that approaches fastest is struck first, by Routh's impact at one contact (`impact.spatial`), and
-so on until none approaches, which is the sequential law (`impact.several`). Contacts that approach equally
-fast strike as one. The order is a choice, and another contact may be asked to come first. Under the
-simultaneous law all contacts strike at once.
+Under the sequential law (`impact.several`), the contact that approaches fastest is resolved by Routh's impact
+at one contact (`impact.spatial`), and this is repeated until no contact approaches. Contacts that approach
+equally fast strike as one. The order is not determined by mechanics, and ``first`` selects another contact
+to begin with. Under the simultaneous law, all contacts strike at once.
 
-Rebounds shrink by a ratio, and infinitely many of them end in finite time (Zeno). A contact whose rebound
-would not be higher than the solid's `settling` stays from then on. The impulses that it would have had in all
-rebounds together are those of a contact that stays, so the body is off by heights of that size.
+Rebounds decrease geometrically, and infinitely many of them end in finite time (Zeno). A contact that would
+rebound by at most the solid's `settling` remains closed from then on. Its impulse is that of all its rebounds
+together, so that the error of the motion is of the size of that height.
 """
 
 from __future__ import annotations
@@ -42,18 +42,18 @@ if TYPE_CHECKING:
     from contact_dynamics.toss.solid import Numbers, Solid, Touch
 
 MAX_STRIKES_AT_ONCE: Final = 100
-"""Strikes of one instant after which contacts that still approach jam, and have an impact without restitution
-together. A prism that lands on a face of eight corners takes some twenty."""
+"""Largest number of strikes at one instant. Contacts that still approach then jam, and are resolved by one
+impact without restitution. A prism that lands on a face of eight corners takes some twenty."""
 
 _JAMS_AFTER: Final = 40
-"""The same where they approach so slowly that they would not rise by `settling`."""
+"""The same for contacts that approach so slowly that they would rebound by less than `settling`."""
 
 
 class Unsettled:
-    """The contacts, and their state, that were last found to have no mode in which they could settle.
+    """The last contacts and state for which no contact mode exists.
 
-    Strikes that follow each other, at one instant or at two that are nanoseconds apart, mostly lead to the
-    same state without rebounds, and the proof that it has no mode takes some 30 ms.
+    Successive strikes, at one instant or nanoseconds apart, mostly lead to the same state without rebounds,
+    and the proof that it has no mode takes some 30 ms.
     """
 
     def __init__(self) -> None:
@@ -61,9 +61,9 @@ class Unsettled:
         self.y: Numbers = []
 
     def are(self, solid: Solid, y: Numbers, touching: list[Touch]) -> bool:
-        """Return whether these contacts in this state are known to have no mode.
+        """Return whether these are the recorded contacts in the recorded state.
 
-        The body is where it was, and its velocities are the same, to within what counts as no approach.
+        The pose must be equal, and the velocities equal within the tolerance `STRIKES`.
         """
         last = self.y
         if touching != self.touching or y[:7] != last[:7]:
@@ -73,7 +73,7 @@ class Unsettled:
         return max(moved, solid.reach * turned) <= STRIKES
 
     def note(self, y: Numbers, touching: list[Touch]) -> None:
-        """Remember that contacts have no mode in a state."""
+        """Record contacts that have no mode in a state."""
         self.y, self.touching = y, touching
 
 
@@ -81,11 +81,11 @@ class Strikes(NamedTuple):
     """The strikes of one instant.
 
     Attributes:
-        y: The state after them.
-        struck: Each strike.
-        staying: The contacts that neither leave nor approach.
-        settled: Whether rebounds came to their end.
-        choice: The modes of the staying contacts in this state, if they were looked for on the way.
+        y: State after them.
+        struck: The individual strikes.
+        staying: Contacts that neither separate nor approach.
+        settled: True if contacts have settled without restitution.
+        choice: Modes of the staying contacts in this state, or None if they were not computed.
     """
 
     y: Numbers
@@ -109,15 +109,15 @@ def strike(  # noqa: PLR0917
     """Return the state after all strikes of contacts that touch at one instant.
 
     Args:
-        solid: The body and the flats.
-        y: The state before.
-        touching: All contacts that touch, approaching or not.
-        impact: Makes impacts at one contact, by the law.
-        law: What the coefficients of restitution mean.
-        rates: m/s, the normal velocities of these contacts (`approaches`).
-        unsettled: What earlier strikes have found about contacts without a mode.
-        together: The law for several contacts.
-        first: The contact that is struck first under SEQUENTIAL, or None if it is the one that approaches
+        solid: The body and the planes.
+        y: State before the strikes.
+        touching: All touching contacts, approaching or not.
+        impact: Solver for impacts at one contact, with the law of restitution.
+        law: Law of restitution.
+        rates: Normal velocities of these contacts, m/s (`approaches`).
+        unsettled: Contacts without a mode, from earlier strikes; updated here.
+        together: Law for several contacts.
+        first: First contact to be resolved under SEQUENTIAL. If it is None, it is the one that approaches
             fastest, with those that tie with it.
     """
     struck: list[Struck] = []
@@ -132,7 +132,7 @@ def strike(  # noqa: PLR0917
         at_once = None
         if together == SeveralContactsLaw.SIMULTANEOUS and len(touching) > 1:
             at_once = simultaneous_strike(solid, y, touching, law)
-            together = SeveralContactsLaw.SEQUENTIAL  # what is left after it strikes in turn
+            together = SeveralContactsLaw.SEQUENTIAL  # for remaining approaches
         elif len(group) > 1:
             at_once = tied_strike(solid, y, group, law)
         if at_once is None:
@@ -153,10 +153,10 @@ def strike(  # noqa: PLR0917
 def low_rebounds_ended(
     solid: Solid, y: Numbers, touching: list[Touch], unsettled: Unsettled
 ) -> Strikes | None:
-    """Return the state in which contacts that rebound too low to be followed stay, or None if there are none.
+    """Return the state in which contacts with a negligible rebound stay closed, or None if there are none.
 
-    No contact approaches. One stays if what presses it in brings it back before it has risen by the solid's
-    `settling`. Its impulse is that by which it loses its rebound.
+    No contact approaches. A contact stays closed if its normal acceleration brings it back before it has
+    risen by the solid's `settling`. Its impulse removes the rebound.
     """
     rates = approaches(solid, y, touching)
     fast, is_slow = _slow(solid), False
@@ -178,14 +178,14 @@ def low_rebounds_ended(
 
 
 def _slow(solid: Solid) -> float:
-    """Return the speed, m/s, with which a contact rises by the solid's `settling`."""
+    """Return the speed, m/s, at which a contact rises by the solid's `settling`."""
     return math.sqrt(2.0 * solid.settling * vec.norm(solid.gravity))
 
 
 def _settled(
     solid: Solid, y: Numbers, touching: list[Touch], rates: list[float], unsettled: Unsettled
 ) -> Strikes | None:
-    """Return the state in which all slow rebounds have ended, or None if a contact still rebounds."""
+    """Return the state after the end of all slow rebounds, or None if a contact still rebounds."""
     fast = 2.0 * solid.settling * vec.norm(solid.gravity)
     for rate in rates:
         if rate < 0.0 and rate * rate > fast:
@@ -223,7 +223,7 @@ def _slow_ones(solid: Solid, touching: list[Touch], motions: list[Vector3], fast
 
 
 def _modes_of(solid: Solid, y: Numbers, touching: list[Touch], unsettled: Unsettled) -> Choice | None:
-    """Return the modes of contacts that settle, or None if there are none."""
+    """Return the modes of settling contacts, or None if there are none."""
     if unsettled.are(solid, y, touching):
         return None
     choice = choose_mode(solid, y, touching)
@@ -234,17 +234,17 @@ def _modes_of(solid: Solid, y: Numbers, touching: list[Touch], unsettled: Unsett
 
 
 def _held(solid: Solid, y: Numbers, slow: list[Held], touching: list[Touch]) -> Numbers | None:
-    """Return the state with slow contacts held, or None if contacts approach then."""
+    """Return the state with slow contacts held, or None if contacts approach in it."""
     mode = tuple(slow)
     held = held_as_they_are(solid, y, mode)
     return held if min(approaches(solid, held, touching)) >= -STRIKES else None
 
 
 def _all_together(impact: Inelastic, touching: list[Touch]) -> Strikes:
-    """Return what an impact without restitution leaves, where contacts cannot all be held: they jam.
+    """Return the strikes of an impact without restitution at contacts that jam: they cannot all be held.
 
-    Held contacts then meet more equations than there are motions, and what is left of them would have some
-    approach again and again. The impact has left those that it struck without normal velocity.
+    Held contacts would then obey more equations than there are degrees of freedom, and the residuals would
+    make some of them approach repeatedly. After the impact, the struck contacts have no normal velocity.
     """
     staying = [
         touch for touch, motion in zip(touching, impact.motions, strict=True) if motion[2] <= STILL_TOUCHING
@@ -268,11 +268,11 @@ def _pressed(  # noqa: PLR0917
     before: list[float],
     motions: list[Vector3],
 ) -> list[Touch] | None:
-    """Return which slow contacts stay, or None if a contact that was struck presses too little to settle.
+    """Return the slow contacts that stay, or None if the force at a struck contact is too small to settle it.
 
-    ``choice`` has the modes of all slow contacts, one at least. A contact that stays gives up what is left of
-    its normal velocity. It may, if it is pressed in so much that it would not rise by the solid's `settling`
-    before it comes back.
+    ``choice`` contains at least one mode of all slow contacts. A contact that stays loses its remaining
+    normal velocity. It stays if the force on it is so large that it would rise by less than the solid's
+    `settling` before it returns.
     """
     pushed = choice.pushed_in(0, solid, y)
     forces = {one.touch: pushed.force(i) for i, one in enumerate(choice.modes[0])}

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Samples of a toss that go on to rest, each as a toss does. Several processes can share them."""
+"""Simulates samples of a toss until they rest, in one or several processes."""
 
 from __future__ import annotations
 
@@ -25,21 +25,20 @@ if TYPE_CHECKING:
     from contact_dynamics.toss.solid import Numbers, Touch
 
 PART: Final = 100
-"""Samples that a process takes at a time. They take about as long as a process does to start."""
+"""Number of samples that a process receives at a time. They take about as long as the start of a process."""
 
 _MAX_EVENTS: Final = 500
 
 
 class Followed(NamedTuple):
-    """How a sample goes on.
+    """The end of a sample.
 
     Attributes:
-        rests: Whether it comes to rest.
-        seconds: s after the first state, when it ends.
-        y: The 13 numbers of its state then.
-        normal_B: The normal of the flat on which it rests, body axes.
-        strikes: Its first strikes from here on, as many as the tree lacks: times, s, contacts and the states
-            after them.
+        rests: True if the sample comes to rest.
+        seconds: Time of the end, s after the initial state.
+        y: State at that time, 13 numbers.
+        normal_B: Normal of the plane on which the body rests, body axes.
+        strikes: The next strikes, as many as the tree still needs: times, s, contacts, and states after them.
     """
 
     rests: bool
@@ -50,12 +49,13 @@ class Followed(NamedTuple):
 
 
 class _Going(NamedTuple):
-    """A sample that goes on, as it is handed to a process.
+    """A sample to be simulated, which can be sent to a process.
 
     Attributes:
-        settings: How it does. It may be laid flat after as many strikes as the tree lacks.
-        y: The 13 numbers of its state.
-        began: s after the first state, when it is there.
+        settings: Settings of its simulation. ``flat_after`` is the number of strikes that the tree still
+            needs.
+        y: State from which it continues, 13 numbers.
+        began: Time of that state, s after the initial state.
     """
 
     settings: TossSettings
@@ -64,7 +64,7 @@ class _Going(NamedTuple):
 
 
 def check_processes(processes: Any) -> int | Executor:
-    """Return a number of processes, or an executor, as they are."""
+    """Return ``processes`` if it is a whole number >= 1 or an executor, and raise an error otherwise."""
     from concurrent.futures import Executor
 
     if isinstance(processes, Executor):
@@ -85,15 +85,15 @@ def followed_to_rest(
     horizon: float,
     processes: int | Executor,
 ) -> dict[int, Followed]:
-    """Return how samples go on after their strikes so far, by their numbers, if they are not over.
+    """Return the ends of all samples that have not reached the horizon, by sample number.
 
     Args:
-        many: The strikes so far, and the samples.
-        spread: The law's own spread.
-        law: What the coefficients of restitution mean.
-        several_contacts_law: The law for several contacts that strike at one instant.
-        horizon: s, how far they are followed.
-        processes: How many processes share the work, or an executor.
+        many: The samples and their strikes so far.
+        spread: Scatter of the impact law.
+        law: Law of restitution.
+        several_contacts_law: Law for several contacts that strike at one instant.
+        horizon: Duration of the simulation, s.
+        processes: Number of processes, or an executor.
     """
     going = np.flatnonzero(many.now < horizon).tolist()
     began, states = many.now.tolist(), many.last.tolist()
@@ -117,7 +117,7 @@ def followed_to_rest(
 
 
 def _done(tosses: list[_Going], processes: int | Executor) -> Iterable[Followed]:
-    """Return what becomes of samples, in their order."""
+    """Return the ends of samples, in their order."""
     if len(tosses) < 1.5 * PART or processes == 1:
         return map(_followed, tosses)
     if not isinstance(processes, int):
@@ -125,7 +125,7 @@ def _done(tosses: list[_Going], processes: int | Executor) -> Iterable[Followed]
     from concurrent.futures import ProcessPoolExecutor
     from multiprocessing import get_context
 
-    # Spawned: a fork would copy the locks of this process's threads.
+    # A forked process would copy locks that threads of this process hold.
     count = min(processes, -(-len(tosses) // PART))
     with ProcessPoolExecutor(count, mp_context=get_context("spawn")) as pool:
         return list(pool.map(_followed, tosses, chunksize=PART))

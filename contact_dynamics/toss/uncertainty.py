@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is not known exactly about a toss, and samples of it.
+"""The uncertainty of a toss, and samples from it.
 
-A state has a covariance, and so have parameters: what a calibration finds of friction, restitution, mass
-centre and inertia. The law of impact has a spread of its own, by which velocities after strikes differ from
-what it says. Each sample is a body, a world and a state that all this allows.
+The state has a covariance, and so have the parameters that a calibration estimates: friction, restitution,
+centre of mass and inertia. The impact law has a model error, which is the scatter of measured velocities
+after strikes about it. Each sample consists of a body, a world and a state.
 """
 
 from __future__ import annotations
@@ -31,14 +31,14 @@ if TYPE_CHECKING:
     from contact_dynamics.world import Body, World
 
 MAX_PARAMETERS: Final = 100
-"""So many parameters may be uncertain. A request's list is bounded, and nobody has 47 uncertain surfaces."""
+"""Largest number of uncertain parameters, enough for 46 surfaces. It bounds the size of requests."""
 
 
 MAX_SPREAD: Final = 1e6
-"""Largest standard deviation of anything that is uncertain about a toss, in SI units."""
+"""Largest standard deviation of any quantity, in SI units."""
 
 MAX_INERTIA_SPREAD: Final = 10.0
-"""Largest standard deviation of the inertia, as a relative change. Samples have e to the power of it."""
+"""Largest standard deviation of the inertia's relative change. Its exponential scales the inertia."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -87,7 +87,7 @@ class TossUncertainty(Record):
             lasting_factors: ArrayLike = ...,
             lasting_factor_stds: ArrayLike = ...,
         ) -> None:
-            """Take whatever NumPy makes arrays of."""
+            """Accept values that NumPy converts to arrays."""
 
     def __post_init__(self) -> None:
         """Check all fields."""
@@ -108,7 +108,7 @@ class TossUncertainty(Record):
 
 
 def exact_inputs(uncertainty: TossUncertainty, covariance: FloatArray | None) -> tuple[str, ...]:
-    """Return which of state, friction, restitution and the law of impact are not uncertain at all."""
+    """Return the names of those inputs among state, friction, restitution and impact law that are exact."""
     size = len(uncertainty.covariance)
     s = (size - (7 if size % 2 else 4)) // 2  # surfaces
     variances = uncertainty.covariance.diagonal()
@@ -122,7 +122,7 @@ def exact_inputs(uncertainty: TossUncertainty, covariance: FloatArray | None) ->
 
 
 def check_factors(field: str, values: ArrayLike) -> FloatArray:
-    """Return numbers from 0 to `MAX_SPREAD`, (s,)."""
+    """Return numbers in [0, `MAX_SPREAD`], (s,)."""
     factors = check_magnitude(field, check_array(field, values, (None,)), MAX_SPREAD)
     if (factors < 0.0).any():
         raise InvalidFieldError(field, factors, "numbers >= 0")
@@ -130,11 +130,11 @@ def check_factors(field: str, values: ArrayLike) -> FloatArray:
 
 
 EXACT: Final = TossUncertainty()
-"""Parameters and law are exact."""
+"""Exact parameters and an exact impact law."""
 
 
 class Samples(NamedTuple):
-    """Bodies, worlds and states, one of each a row.
+    """Sampled bodies, worlds and states, one per row.
 
     Attributes:
         p_WB_W: (n, 3), m, centres of mass.
@@ -142,10 +142,10 @@ class Samples(NamedTuple):
         v_WB_W: (n, 3), m/s.
         w_WB_W: (n, 3), rad/s.
         inertias_B: (n, 3, 3), kg m^2.
-        corners_B: (n, k, 3), m, from each sample's mass centre.
-        frictions: (n, s), of each surface, in strikes.
-        lasting_frictions: (n, s), where contact lasts.
-        restitutions: (n, s), of each surface.
+        corners_B: (n, k, 3), m, relative to each sample's centre of mass.
+        frictions: (n, s), friction of each surface in strikes.
+        lasting_frictions: (n, s), friction of each surface in sustained contact.
+        restitutions: (n, s), restitution of each surface.
         gravities_W: (n, 3), m/s^2.
     """
 
@@ -172,24 +172,23 @@ def draw(
     count: int,
     chance: Generator,
 ) -> Samples:
-    """Return samples of normal distributions. Frictions and restitutions stay where they are possible.
+    """Return samples of normal distributions, with friction and restitution limited to valid values.
 
     Args:
-        body: The body with its best parameters. Its shape is a hull of corners.
-        state: The best state.
-        world: Surfaces, which are flats.
-        covariance: (12, 12), of the state, in the order of `questions.UncertainState`, or None if the state
-            is exact.
-        by_gravity: s^2 and s, by how much the best position and velocity change with gravity. A state that
-            was fitted under the world's gravity has them from its fit.
-        uncertainty: How uncertain the parameters are.
-        count: How many samples to draw.
-        chance: Where they are drawn from.
+        body: Body with the best estimate of its parameters. Its shape is a hull of corners.
+        state: Best estimate of the state.
+        world: Surfaces, which must be planes, and gravity.
+        covariance: (12, 12), covariance of the state, in the order of `questions.UncertainState`, or None if
+            the state is exact.
+        by_gravity: s^2 and s, derivatives of the estimated position and velocity with respect to gravity, as
+            a fit under the world's gravity returns them.
+        uncertainty: Uncertainty of the parameters.
+        count: Number of samples.
+        chance: Random number generator.
 
     Raises:
-        InvalidFieldError: the parameters' covariance has another size than the world's surfaces ask for,
-            there are not as many factors as surfaces, or a variance is too large (`MAX_SPREAD`,
-            `MAX_INERTIA_SPREAD`).
+        InvalidFieldError: the size of the parameters' covariance or the number of factors does not match the
+            number of surfaces, or a variance is too large (`MAX_SPREAD`, `MAX_INERTIA_SPREAD`).
     """
     flats = [surface for surface in world.surfaces if isinstance(surface, Surface)]
     s = len(flats)
@@ -232,7 +231,7 @@ def draw(
 def _factors(
     uncertainty: TossUncertainty, surfaces: Sequence[Surface], count: int, chance: Generator
 ) -> FloatArray:
-    """Return the friction where contact lasts, relative to that of strikes, (n, s)."""
+    """Return samples of the friction of sustained contact relative to that of strikes, (n, s)."""
     factors = np.tile(factors_of(uncertainty.lasting_factors, surfaces), (count, 1))
     stds = uncertainty.lasting_factor_stds
     if stds.any():
@@ -241,7 +240,7 @@ def _factors(
 
 
 def _corners(body: Body, height: float, count: int, chance: Generator) -> FloatArray:
-    """Return corners, (n, k, 3), m, each moved on its ray from the mass centre."""
+    """Return sampled corners, (n, k, 3), m, each displaced along its ray from the centre of mass."""
     vertices = body.shape.vertices
     lengths = np.linalg.norm(vertices, axis=1)
     rays = np.divide(vertices, lengths[:, None], out=np.zeros_like(vertices), where=lengths[:, None] > 0.0)
@@ -250,7 +249,7 @@ def _corners(body: Body, height: float, count: int, chance: Generator) -> FloatA
 
 
 def _normal(covariance: FloatArray, count: int, chance: Generator) -> FloatArray:
-    """Return normal numbers, (n, k), of a covariance, which may be singular."""
+    """Return normal samples, (n, k), with a covariance that may be singular."""
     scaled, sizes = _scaled(covariance)
     values, axes = np.linalg.eigh(scaled)
     drawn: FloatArray = chance.standard_normal((count, len(sizes))) * np.sqrt(np.maximum(values, 0.0))
@@ -259,7 +258,7 @@ def _normal(covariance: FloatArray, count: int, chance: Generator) -> FloatArray
 
 
 def _scaled(covariance: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return a covariance in units of its standard deviations, and these. What is exact has zero."""
+    """Return the correlation matrix and the standard deviations. Both are zero for exact components."""
     sizes = np.sqrt(np.maximum(covariance.diagonal(), 0.0))
     units = np.where(sizes > 0.0, sizes, 1.0)
     return covariance / np.outer(units, units), sizes
