@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Every threshold of the physics stands here, by chapter, with its unit and the reason for its size.
+"""All numerical thresholds of the physics, by chapter, each with its unit and the reason for its size.
 
-A threshold decides whether a number counts as zero, whether two things count as one, or whether an iteration
-is done. All thresholds up to a hundredth are in this file, and a test over the sources checks this. If a
-caller may want to change a threshold, it is a default here and an argument or parameter there.
+A threshold decides whether a number counts as zero, whether two things count as equal, or whether an
+iteration has converged. All thresholds up to 0.01 are in this file, and a test over the sources enforces
+this. A threshold that a caller may want to change is a default here and an argument or parameter elsewhere.
 
-Some numbers are beside the code that uses them instead: bounds on work and length (`MOST_...`); sizes of
-parts of a computation (`CHUNK`, `PIECE`); shares and angles above a hundredth that only choose between two
-ways to the same answer; and the digits of each kind of number (`numerics.arithmetic`).
+Some numbers are beside the code that uses them instead: limits on work and size (`MAX_...`), chunk sizes of
+computations (`CHUNK`, `PIECE`), fractions and angles above 0.01 that only choose between two methods with the
+same result, and the precision of each number type (`numerics.arithmetic`).
 """
 
 from __future__ import annotations
@@ -15,68 +15,68 @@ from __future__ import annotations
 from decimal import Decimal
 from typing import Final
 
-# What comes in
+# input
 
 UNIT_LENGTH_TOLERANCE: Final = 1e-3
-"""Dimensionless. A quaternion or normal whose norm is off by more is refused, not repaired.
+"""Dimensionless. A quaternion or normal whose norm differs from 1 by more is rejected, not normalised.
 
-Quaternions that went through float32 or four printed decimals are off by at most 2e-4. A quaternion that was
+Quaternions converted to float32 or printed with four decimals are off by at most 2e-4. A quaternion that was
 never normalised, or that lacks a component, is off by far more.
 """
 
 LENGTH_ROUNDING: Final = 1e-15
-"""Dimensionless. A vector whose length is 1 within this is not scaled again, so that scaling twice changes
-nothing."""
+"""Dimensionless. A vector whose length is 1 within this is not normalised again, so that normalisation is
+idempotent."""
 
 SQUARES_UNDERFLOW: Final = 1e-140
-"""Any unit. The length of a shorter vector is not found from squares, which lose digits below 1e-154."""
+"""Any unit. The length of a shorter vector is not computed from squares, which lose digits below 1e-154."""
 
 LARGEST_NUMBER: Final = 1e60
-"""In SI units: s, rad/s, kg m^2, m, m/s, m/s^2. A motion is refused if its numbers are larger, or if its
-moments of inertia are below the inverse, because fourth powers and products of such numbers leave the range
-of doubles. Rates below the inverse count as rest, because such a body does not turn in the age of the
+"""In SI units: s, rad/s, kg m^2, m, m/s, m/s^2. A motion is rejected if its numbers are larger, or if its
+moments of inertia are below the inverse, because fourth powers and products of such numbers overflow or
+underflow in doubles. Rates below the inverse count as rest: such a body does not turn in the age of the
 universe."""
 
 MANGLED: Final = 2.0**-1042
-"""Any unit. A positive number below it in a message is what rclpy sends of an int or a float32 whose type it
-has not checked: their 32 bits, read as the last of a double's 64. Measured numbers are zero or far larger. A
-velocity that a simulation damps forever may end there, as one of any sign."""
+"""Any unit. rclpy without type checks sends an int or a float32 as its 32 bits in the low half of a double's
+64, which is a positive number below this. Measured numbers are zero or far larger. Only a velocity that a
+simulation damps indefinitely may become as small, with either sign."""
 
-# What is shown
+# display
 
 SHOWN_AS_ZERO: Final = 1e-12
-"""Relative to the largest number of an array. Where an array is printed, a smaller one is rounding and 0."""
+"""Relative to the largest number of an array. Smaller numbers are rounding errors and are printed as 0."""
 
-# contacts that are given
+# contacts given by the caller
 
 FAR_CONTACT: Final = 0.01
-"""Relative to the reach of a body's shape: a contact that is out of it by more is a mistake, not noise."""
+"""Relative to the reach of a body's shape. A contact further outside is a mistake, not noise."""
 
 # the largest load
 
 SAME_FACTOR: Final = 1e-9
-"""Relative: factors of a load that differ by less are one."""
+"""Relative. Load factors that differ by less count as equal."""
 
 STRAIGHT_ARC: Final = 1e-4
-"""rad. A wrench that turns by less is off a straight path by about 1e-9 of it."""
+"""rad. A wrench that turns by less deviates from a straight path by about 1e-9 of its size."""
 
 NEXT_TO_A_LIMIT: Final = 1e-6
-"""Relative: this far from the largest factor of a load is what follows it, or goes before it."""
+"""Relative. Distance from the largest load factor at which the modes below and above it are evaluated."""
 
 ONLY_REST_WITHIN: Final = 0.01
-"""Relative: how exactly a smaller factor is found up to which rest is the only consistent mode."""
+"""Relative accuracy of the smaller load factor up to which rest is the only consistent mode."""
 
 ANY_LOAD: Final = 1e12
-"""A load this many times the wrench without it stands for any larger one."""
+"""Relative to the wrench without the load. A load of this size represents all larger ones."""
 
 NO_LOAD: Final = 1e-18
-"""Relative to the largest load, also to `ANY_LOAD`: a load this small stands for any smaller one."""
+"""Relative to the largest load, or to `ANY_LOAD`. A load of this size represents all smaller ones."""
 
 # numerics
 
 SMALL_SHARE: Final = 1e-10
-"""Share of the sum of squares of a fit's residuals. A round is the last if it reduces the sum by less, or if
-the next one would, since rounds explain less and less at a growing rate. Another round would change the
+"""Relative to the sum of squared residuals of a fit. The iteration ends when it reduces the sum by less, or
+when the next iteration would, by extrapolation of the convergence rate. Another iteration would change the
 parameters by about 1e-5 of their standard deviations at most."""
 
 NO_PIVOT: Final = 1e-11
@@ -86,65 +86,67 @@ COVERED: Final = 1e-12
 """Relative to the largest of q in Lemke's method. A covering variable of this size counts as zero."""
 
 WRENCH_ROUNDING: Final = 1e-13
-"""Relative to the wrench that contact forces balance. A remainder up to this is rounding."""
+"""Relative to the wrench that contact forces balance. A residual up to this is rounding error."""
 
 NEAREST_SUM_ROUNDING: Final = 1e-9
-"""Relative to the terms of a nearest non-negative sum. SciPy's rounding is some 1e-13. Where SciPy 1.15 is
-wrong, it is wrong by more than 1e-3."""
+"""Relative to the terms of a non-negative least-squares sum. SciPy's rounding error is about 1e-13. Where
+SciPy 1.15 returns a wrong solution, its error exceeds 1e-3."""
 
 INDEPENDENT_FORCES: Final = 1e-12
-"""Ratio of singular values. Below it, directions of contact forces count as the same."""
+"""Ratio of singular values. Below it, directions of contact forces count as linearly dependent."""
 
 DECIMALS_ZERO: Final = Decimal("1e-60")
-"""Relative. Decimals of `DECIMALS.sums` leave at most this of a zero, even after products of products."""
+"""Relative. Bound on the rounding error of a zero in decimals of `DECIMALS.sums`, even after nested
+products."""
 
 TARGET_ROUNDING: Final = Decimal("1e-14")
-"""Relative. This is the rounding of a target itself. Columns that differ by no more would need huge shares to
-meet it."""
+"""Relative rounding error of the target itself. Columns that differ by no more would need huge coefficients
+to reach it."""
 
 DECIMALS_MET: Final = Decimal("1e-30")
-"""Relative. A target counts as met exactly if this much of it is left."""
+"""Relative. A target counts as reached exactly if the residual is no larger."""
 
 # evaluation
 
 LANDING_GAP: Final = 0.015
-"""m. A flight that ends with the body this near to a surface ended by landing on it. Tracked frames and
-shapes are off by some millimetres, and a body of 2 m/s comes 6 mm nearer between two frames of 150 Hz. A hand
-that catches is farther from the floor."""
+"""m. A flight that ends with the body this close to a surface ended by landing on it. Tracked poses and
+shapes have errors of some millimetres, a body at 2 m/s advances by 13 mm between two frames at 150 Hz, and a
+hand that catches the body is farther from the floor."""
 
 TOUCHING_GAP: Final = 0.003
-"""m. A point of a body at rest or sliding that is this near to a surface touches it: the error of tracked
-frame, shape and surface together."""
+"""m. A point of a resting or sliding body that is this close to a surface touches it. This is the combined
+error of tracked pose, shape and surface."""
 
 IMPACT_SPAN: Final = 0.04
-"""s. A flight that begins this soon after the end of the one before is separated from it by one impact, at
-one corner or at several. Longer stretches without flight are mostly sliding or rocking."""
+"""s. A flight that begins this soon after the end of the previous one is separated from it by one impact, at
+one or several corners. Longer intervals without flight are mostly sliding or rocking."""
 
 SHARP_VELOCITY: Final = 0.15
-"""m/s, and rad/s times the radius of gyration. If the velocities beside an impact are measured with larger
-standard deviations, the impact is not compared. Velocities change by 1 m/s and more."""
+"""m/s, and rad/s times the radius of gyration. An impact is excluded from the comparison if the velocities
+before or after it have larger standard deviations. Velocities change by 1 m/s and more."""
 
 MODE_SPAN: Final = 0.05
-"""s. A mode is looked for in windows of this length. It is short, because recordings stop soon after a body
-does; longer than a bounce of 2 mm."""
+"""s. Length of the windows in which a contact mode is identified. It is short because recordings end soon
+after a body stops, but longer than a bounce of 2 mm."""
 
 MODE_SPEED: Final = 0.02
-"""m/s. A contact point that is slower over `MODE_SPAN` does not move along its surface: friction of 0.2 ends
-such a slide in 10 ms. The noise of the window's velocity is added."""
+"""m/s. A contact point that is slower over `MODE_SPAN` does not slide: friction of 0.2 ends such a slide in
+10 ms. The noise of the window's velocity is added to this."""
 
 LEAST_POSITION_NOISE: Final = 1e-6
-"""m. No tracker is better. Where a body's poses repeat to the bit, their scatter says nothing of the rest."""
+"""m. Lower bound on the estimated noise, since no tracker is more accurate. Where the poses of a body at rest
+are identical to the bit, their scatter does not show the noise of the other poses."""
 
 LEAST_ORIENTATION_NOISE: Final = 1e-6
-"""rad. As `LEAST_POSITION_NOISE`, at a metre."""
+"""rad. Equivalent to `LEAST_POSITION_NOISE` at a distance of 1 m."""
 
 SAME_EVENT: Final = 0.01
-"""s. Events of one kind, found in one recording by two versions of the code, are the same if they are this
+"""s. Events of one kind that two versions of the code detect in one recording are the same if they are this
 close."""
 
 HOLD_STEP: Final = 1e-3
-"""s. Steps in which a body goes on over a corner that stays, where strikes in time are evaluated. In one step
-a corner of 1 m/s moves by a millimetre, which is within the error of tracked frames and shapes."""
+"""s. Step of the motion about a corner that remains in contact, in the evaluation of successive strikes. In
+one step a corner at 1 m/s moves by 1 mm, which is within the error of tracked poses and shapes."""
 
 # rigid_body
 
@@ -152,37 +154,37 @@ SYMMETRY_TOLERANCE: Final = 1e-9
 """Relative to the largest entry. A matrix that is less symmetric than this is not an inertia matrix."""
 
 NEGATIVE_VARIANCE_TOLERANCE: Final = 1e-9
-"""Dimensionless. An eigenvalue of a correlation matrix, whose entries are at most 1, may be this negative. If
-a covariance has no variance in some direction, rounding leaves 1e-15, and more after a filter."""
+"""Dimensionless. An eigenvalue of a correlation matrix may be this negative. If a covariance has no variance
+in some direction, rounding leaves 1e-15, and more after a filter."""
 
 TRIANGLE_TOLERANCE: Final = 1e-6
 """Relative to the largest principal moment. I1 + I2 >= I3 holds with equality for flat bodies, and measured
 or rounded moments of a flat body miss it by their last printed digit."""
 
 EQUAL_MOMENTS_TOLERANCE: Final = Decimal("1e-12")
-"""Relative to the largest principal moment. Two moments within it count as equal when a rotation gets its
-name. Turning an inertia matrix into other axes in doubles separates equal moments by about 1e-16, and real
-bodies of one shape differ by far more. The motion itself is computed with the moments as they are."""
+"""Relative to the largest principal moment. Two moments within it count as equal when a rotation is
+classified. Rotating an inertia matrix in doubles separates equal moments by about 1e-16, and real bodies of
+one shape differ by far more. The motion itself is computed with the given moments."""
 
 SUM_ROUNDING: Final = 1e-14
-"""Relative to the largest of a sum's terms, whose rounding is more than ten times smaller. A difference up to
-this counts as zero."""
+"""Relative to the largest term of a sum, whose rounding error is more than ten times smaller. A difference up
+to this counts as zero."""
 
 VOLUME_ROUNDING: Final = 1e-13
-"""Relative to a surface's area times its size, m^3. A smaller volume is rounding, and the surface is flat."""
+"""Relative to a surface's area times its size, m^3. A smaller volume is rounding error of a flat surface."""
 
 DENSEST: Final = 30_000.0
-"""kg/m^3. No body is denser than osmium, 22,590. A file in which one is has other units."""
+"""kg/m^3. Osmium, the densest material, has 22,590. A file with a denser body uses other units."""
 
 THINNEST: Final = 1.0
-"""kg/m^3. The density of air. A body in a bounding box is hardly lighter."""
+"""kg/m^3, about the density of air. The mean density of a body's bounding box is hardly lower."""
 
 SURFACES_TOUCH: Final = 1e-9
-"""Relative to a part's size. Surfaces that are nearer than this touch, with nothing in between."""
+"""Relative to a part's size. Surfaces closer than this touch, without a gap."""
 
 EPSILON: Final = 2.0**-52
-"""Relative rounding of coordinates. Points within it of a plane count as in the plane. Far from the origin it
-also gives the rounding of a volume."""
+"""Relative rounding of coordinates. Points within it of a plane count as in the plane. It also determines the
+rounding error of a volume far from the origin."""
 
 AXIS_TIE: Final = 1e-9
 """Dimensionless. The largest component of a unit axis decides its sign, and components within this count as
@@ -195,20 +197,20 @@ rotations leave this much in 120 digits."""
 # tumbling
 
 STEADY_AXIS_TOLERANCE: Final = Decimal("1e-24")
-"""Squared angle, rad^2, between L and the major or minor axis. Within it spin is called steady. The angle is
-1e-12 rad, well above the rounding of a quaternion and an angular velocity."""
+"""Squared angle, rad^2, between the angular momentum and the major or minor axis. Below it the spin counts as
+steady. The angle is 1e-12 rad, well above the rounding of a quaternion and an angular velocity."""
 
 NEGLIGIBLE_TERM: Final = 1e-18
-"""Relative to the largest term of a sum of theta functions. Terms below it are left out, since they are far
+"""Relative to the largest term of a sum of theta functions. Smaller terms are omitted, since they are far
 below the last bit."""
 
 SMALLEST: Final = 1e-300
 """In any unit. It replaces zero where a quotient or a logarithm would otherwise fail. Added to a divisor, it
-makes 0/0 a 0 where 0 is meant."""
+makes 0/0 equal 0 where that is the right limit."""
 
 SEPARATRIX_END: Final = 1e-6
-"""rad of Jacobi's amplitude, from its ends, at which the polhode of a single flip is cut off. The motion is
-this near to spin about the middle axis 14 time constants before and after its flip."""
+"""rad. Distance from the ends of Jacobi's amplitude at which the polhode of a single flip is truncated. The
+motion is this close to spin about the middle axis 14 time constants before and after its flip."""
 
 SMALLEST_COMPLEMENT: Final = 1e-100
 """Value of 1 - m, the complement of the parameter. Below it the sensitivity of a tumbling body is beyond 1e90
@@ -222,55 +224,58 @@ stable."""
 # motion
 
 SMALL_TURN: Final = 1e-2
-"""rad. A free rotation that turns by less is differentiated by integrating all its neighbours. For larger
-turns the derivative uses symmetries, which cost at most two digits here."""
+"""rad. The derivative of a free rotation by a smaller angle is found by integrating all neighbouring motions.
+For larger angles the derivative uses symmetries, which cost at most two digits here."""
 
 GROWTH_ROUNDING: Final = 1e-15
-"""Relative. A number that grew by a factor and shrank by it again has this error times the factor squared."""
+"""Relative. A number that grows by a factor and shrinks by it again has this error times the factor
+squared."""
 
 LARGEST_DERIVATIVE_ERROR: Final = 1e-3
-"""Relative. Where neighbours of a motion part and meet again, the derivative loses digits. It is NaN where
-its error is larger than this."""
+"""Relative. The derivative loses digits where neighbouring motions diverge and converge again. It is NaN
+where its error is larger than this."""
 
 SMALL_STEP: Final = 1e-9
-"""rad of attitude, m of position. A round of a fit that changes less everywhere in the window is the last."""
+"""rad of attitude, m of position. A fit has converged when an iteration changes less everywhere in the
+window."""
 
 INTEGRATION_RELATIVE: Final = 3e-14
-"""Relative error of each step of an integrated motion. SciPy's smallest is 2e-14, where rounding begins to
-make steps short without use."""
+"""Relative error of each step of an integrated motion. The smallest that SciPy allows is 2e-14, where
+rounding begins to shorten the steps without benefit."""
 
 INTEGRATION_ABSOLUTE: Final = 1e-15
-"""Absolute error of each step of an integrated motion, m, m/s, rad and rad/s. No sensor resolves it."""
+"""Absolute error of each step of an integrated motion, m, m/s, rad and rad/s, far below sensor resolution."""
 
 DIFFERENCE_STEP: Final = 1e-5
 """Step of central differences of a user's function, m, rad, m/s and rad/s, or relative to a larger number.
 The error is 1e-10 of the third derivative, plus 1e-11 of the force from rounding."""
 
 LEAST_NOISE: Final = 1e-12
-"""m and rad. The noise of a fit counts as at least this. The residuals of exact states are rounding alone,
-which does not say how to weigh positions against orientations."""
+"""m and rad. Lower bound on the noise of a fit. The residuals of exact states are rounding errors, from which
+the relative weight of positions and orientations cannot be estimated."""
 
 ROUNDED_STAMP_TURN: Final = 1e-6
-"""rad. Residuals below this do not decide how many turns a body made. Stamps are whole nanoseconds, and at
-1000 rad/s half of one is 5e-7 rad."""
+"""rad. Residuals below this do not determine the number of turns of a body. Stamps are whole nanoseconds, and
+half a nanosecond at 1000 rad/s is 5e-7 rad."""
 
 # shapes
 
 FLAT_HULL: Final = 1e-9
-"""Relative to the size. A hull thinner than this is a plate or a rod. Corners carry 1e-16 of rounding."""
+"""Relative to the size. A hull thinner than this is a plate or a rod. Corners have rounding errors of
+1e-16."""
 
 INSIDE_HULL: Final = 1e-3
-"""Relative to the size, and in rad. A corner this far inside the hull of all corners is not one of a convex
-body. Coordinates of meshes are rounded to 1e-7 of the size."""
+"""Relative to the size, and in rad. A shape with a corner this far inside the hull of its corners is not
+convex. Coordinates of meshes are rounded to 1e-7 of the size."""
 
 SAME_DIRECTION: Final = 1e-9
-"""1 - cos of an angle of 4e-5 rad. Normals, or directions of edges, within it count as one."""
+"""1 - cos of an angle of 4e-5 rad. Normals, or directions of edges, within it count as equal."""
 
 # contact
 
 NO_NOISE: Final = 1e-9
-"""Relative. Conditions on the error of a state that depend on each other leave singular values of 1e-15 of
-the largest. Corners of a body that are told apart leave more than this."""
+"""Relative to the largest singular value of the conditions on the error of a state. Dependent conditions
+leave 1e-15, and distinct corners of a body more than this."""
 
 VELOCITY_TOLERANCE: Final = 1e-9
 """m/s. A contact's velocity below it counts as zero, if the caller gives no other tolerance. It is far above
@@ -281,22 +286,22 @@ DISTANCE_TOLERANCE: Final = 1e-6
 """m. A point within it of a surface touches, if the caller gives no other tolerance."""
 
 ROW_TOLERANCE: Final = 1e-9
-"""Sine of an angle, for rows of unit length. Contact planes (and wrenches) within it coincide, in the
-enumeration of modes and in their dynamics. Contact rows carry about 1e-15 of rounding, and a hundred times
-that for contacts far from the centre of mass. Results from two planes that meet at 1e-5 rad are still right
-within it."""
+"""Sine of an angle, for rows of unit length. Contact planes and wrenches within it coincide, in the
+enumeration of modes and in their dynamics. Contact rows have rounding errors of about 1e-15, or 1e-13 for
+contacts far from the centre of mass. Results from two planes that meet at 1e-5 rad are still correct to
+this tolerance."""
 
 SAME_POINT: Final = 1e-9
-"""m. Points this close count as one. Separating directions whose separations differ by less are equally
-good, since the difference is rounding."""
+"""m. Points this close count as one. Separating directions whose separations differ by less are equivalent,
+since the difference is rounding."""
 
 PARALLEL_EDGES: Final = 1e-6
-"""Sine of an angle. Edges, or sides of outlines, within it do not cross, and only their ends touch."""
+"""Sine of an angle. Edges, or sides of outlines, that meet at less do not cross; only their ends touch."""
 
 # plane
 
 OUT_OF_PLANE_SPEED: Final = 1e-6
-"""m/s. Motion out of the plane of a planar question counts as zero below this, if the caller gives no other
+"""m/s. Motion out of the plane of a planar problem counts as zero below this, if the caller gives no other
 tolerance."""
 
 OUT_OF_PLANE_RATIO: Final = 1e-2
@@ -315,553 +320,563 @@ RIM_ACCURACY: Final = 1e-9
 a nearly double root the error is as large as the step, but there the depth is its square."""
 
 LEAVING_STEP: Final = 1e-5
-"""Length of a step, s, away from an obstacle where no acceleration is towards it."""
+"""s. Step away from an obstacle when no acceleration is towards it."""
 
 # contact_modes
 
 ACCELERATION_TOLERANCE: Final = 1e-9
 """Relative to the applied wrench plus centripetal terms. An acceleration or a force counts as zero if a
-change of the wrench by this share can change its sign. It is far more than rounding of the input, and far
-less than the accuracy to which wrenches are known."""
+relative change of the wrench by this can change its sign. It is far above the rounding of the input, and far
+below the accuracy to which wrenches are known."""
 
 TURNS: Final = 1e-6
-"""rad/s^2. A body whose contacts all stick turns if its angular acceleration is more. Rounding leaves 1e-12
-in bodies of 1 cm and larger, and with this one a body takes twenty minutes to turn by 1 rad."""
+"""rad/s^2. A body whose contacts all stick turns if its angular acceleration is larger. Rounding leaves 1e-12
+in bodies of 1 cm and larger, and at 1e-6 rad/s^2 a body takes twenty minutes to turn by 1 rad."""
 
 FLUSH: Final = 1e-8
-"""rad, or a share of the reach, in space. Normals and coordinates of contacts that agree within it are taken
-as the same where modes are sought. It is `STRICT`: what this changes counts as no motion."""
+"""rad, or relative to the reach, in space. Normals and coordinates of contacts that agree within it are
+merged in the search for modes. It equals `STRICT`, so that the resulting change counts as no motion."""
 
 FLUSH_ROUGHLY: Final = 1e-4
-"""The same, where a verdict would otherwise be undecided. The answer then says so. Poses and meshes in single
-precision are off by 1e-7, and faces of machined parts by 1e-4 and more."""
+"""As `FLUSH`, for verdicts that would otherwise be undecided. The answer reports this tolerance. Poses and
+meshes in single precision have errors of 1e-7, and faces of machined parts of 1e-4 and more."""
 
 FLUSH_ROUNDING: Final = 1e-14
-"""The same. Contacts that are flush to within it are left as they are, since rounding may move them by
-1e-16."""
+"""As `FLUSH`. Contacts that are flush to within it are not moved, since rounding may move them by 1e-16."""
 
 SAME_ROWS: Final = 1e-11
-"""Dimensionless, in the plane. Contact planes, and wrenches, that meet at a smaller sine are one where modes
-are enumerated. Contacts are one if their unit normals agree within it, and their places within this share of
-the radius of gyration, or of the arm if it is longer. It is some 1e5 roundings of the input, and far below
-what any sensor resolves."""
+"""Dimensionless, in the plane. Contact planes, and wrenches, that meet at a smaller sine count as equal in
+the enumeration of modes. Contacts count as equal if their unit normals agree within it, and their positions
+relative to the radius of gyration, or to the arm if it is longer. It is about 1e5 roundings of the input, and
+far below sensor resolution."""
 
 CLEAR_ROWS: Final = 1e-5
-"""Dimensionless. Floats tell contact planes, and wrenches, apart that meet at a larger sine, to within
-`SAME_ROWS`. Those between the two are told apart with more digits. With 1e-4, the planes of 32 ordinary
+"""Dimensionless. Contact planes, and wrenches, that meet at a larger sine are distinguished in floats, to
+within `SAME_ROWS`; those between the two thresholds require more digits. With 1e-4, the planes of 32 ordinary
 contacts would be between the two, which takes six times as long. With 1e-6, forces at rest missed the load by
 more than 3e-9."""
 
 CLEAR_ROWS_OF_MANY: Final = 1e-6
-"""Dimensionless. It stands in for `CLEAR_ROWS` where there are more than 150 planes or wrenches. So many lie
-closer together without being degenerate. With it, 60 sets of 150 to 400 contacts next to degeneracy got the
-modes that decimals give."""
+"""Dimensionless. It replaces `CLEAR_ROWS` for more than 150 planes or wrenches, which are closer together
+without being degenerate. With it, 60 nearly degenerate sets of 150 to 400 contacts had the same modes as in
+decimals."""
 
 ROUGH_ROWS: Final = 10.0 * SAME_ROWS
-"""Dimensionless, in the plane. Where decimals decide, floats still tell on which side of a row a ray is that
-is this far from it. Their rounding is some 1e-15."""
+"""Dimensionless, in the plane. When a cone is built in decimals, floats still determine the side of a row for
+rays at least this far from it. Their rounding error is about 1e-15."""
 
 LEAST_ROUGH_ROOT: Final = 1e-150
-"""Dimensionless. Square roots of decimals begin with those of floats, unless they are smaller. Their squares
-would lose digits below 2e-308."""
+"""Dimensionless. The iteration for square roots of decimals starts from the root in floats, unless that is
+smaller, since its square would lose digits below 2e-308."""
 
 SAME_SHARP_ROWS: Final = 1e-14
-"""Sine. Rows that are known to more digits than floats have are one if they meet at a smaller sine. If
-friction never slips, a contact's normal is no more than 1e-10 of its tangent, and less if arms are short."""
+"""Sine. Rows known to more digits than floats have count as equal if they meet at a smaller sine. If friction
+never slips, a contact's normal is no more than 1e-10 of its tangent, and less if arms are short."""
 
 INDEPENDENT_EQUATIONS: Final = 1e-6
-"""Pivot of unit rows. Equations with a smaller one do not count as independent, since their solution would
-carry more rounding than the accuracy asked for."""
+"""Pivot of unit rows. Equations with a smaller pivot count as dependent, since the rounding error of their
+solution would exceed the required accuracy."""
 
 FORCES_ROUNDING: Final = 1e-13
-"""Relative to the forces. Sums of forces round by this much."""
+"""Relative to the forces. Rounding error of sums of forces."""
 
 NO_MOTION: Final = 1e-6
 """Relative to the applied wrench over the mass. Where contacts are uncertain, slower accelerations count as
 rest. It is ten times the tolerance of SciPy's linear programs."""
 
 PROVEN: Final = 1e-12
-"""Relative to the applied wrench, in space. A reason against letters of uncertain contacts counts from this
-on. Its terms have at most the size of `NO_MOTION` or 1, and round to less than 1e-14."""
+"""Relative to the applied wrench, in space. A proof that excludes letters of uncertain contacts is valid if
+its contradiction is at least this large. Its terms are at most `NO_MOTION` or 1, and round to less than
+1e-14."""
 
 INSOLUBLE: Final = 1e-9
 """Relative to rows and limits of size 1, in the small simplex that finds contradictions. It does not divide
-by smaller numbers, and takes smaller violations for none. A caller checks what it finds."""
+by smaller numbers, and ignores smaller violations. The caller verifies its results."""
 
 REASON_MARGIN: Final = 3e-7
-"""Relative to unit rows of forces, in space. Where letters of uncertain contacts are excluded, errors are
-taken for larger by this, so that rounding of some 1e-12 spoils no reason."""
+"""Relative to unit rows of forces, in space. Proofs that exclude letters of uncertain contacts increase the
+errors by this, so that rounding of about 1e-12 does not invalidate them."""
 
 REASON_ROUNDING: Final = 1e-9
-"""Relative to the largest multiplier of a reason against letters of uncertain contacts. Smaller multipliers
-and directions are rounding and count as zero. The reason is checked as it then is."""
+"""Relative to the largest multiplier of a proof that excludes letters of uncertain contacts. Smaller
+multipliers and directions are set to zero as rounding errors before the proof is verified."""
 
 SAME_ARCS: Final = 1e-9
-"""rad. Arcs of sliding that differ by less are the same, because all are halves of the same three arcs. The
+"""rad. Arcs of sliding that differ by less are equal, because all arise by halving the same three arcs. The
 narrowest are 1e8 times as wide."""
 
 LEAST_UNCERTAINTY: Final = 1e-5
-"""Relative to unit rows, in space. Proofs about uncertain contacts take smaller errors for this, which is
-thirty times what they add to errors against rounding. With 1e-6 SciPy's linear programs told some modes apart
-no longer."""
+"""Relative to unit rows, in space. Proofs about uncertain contacts increase smaller errors to this, which is
+thirty times `REASON_MARGIN`. With 1e-6, SciPy's linear programs no longer distinguished some modes."""
 
 LARGEST_PLANAR_ARM: Final = 1e8
-"""In radii of gyration, in the plane. If a contact is further away than this, several contacts are not
-decided about. Forces of ordinary size then round in their moments to more than wrenches are known to."""
+"""In radii of gyration, in the plane. Several contacts are undecided if one of them is farther away. The
+moments of forces of ordinary size then have larger rounding errors than the accuracy of wrenches."""
 
 LARGEST_GRIP: Final = 1e10
-"""Dimensionless, in the plane. A coefficient of friction above it, or above it divided by the contact's arm
-in radii of gyration, acts as that one does. The two differ in forces whose normal part is less than 1e-10 of
-the wrench of the tangential one, and wrenches are not known to that accuracy."""
+"""Dimensionless, in the plane. Larger coefficients of friction are reduced to this, or to this divided by the
+contact's arm in radii of gyration. The difference is in forces whose normal part is less than 1e-10 of the
+wrench of the tangential part, and wrenches are not known to that accuracy."""
 
 GRIP_TOLERANCE: Final = 1e-2
-"""Dimensionless, in the plane. The tolerance of forces, times friction, times the arm in radii of gyration,
-stays below it. Otherwise the friction of a normal force that counts as zero would hold or stop the body."""
+"""Dimensionless, in the plane. Upper bound on the tolerance of forces, times friction, times the arm in radii
+of gyration. Otherwise the friction of a normal force that counts as zero would hold or stop the body."""
 
 BEYOND_MARGIN: Final = 1e-5
-"""Share of a margin, or of the wrench if the margin is less. The wrench is moved this far beyond the boundary
-to see which modes are there. It is far more than the tolerances of the boundary, and far less than the
-distance to the next one."""
+"""Relative to a margin, or to the wrench if the margin is smaller. Distance beyond the boundary at which the
+following modes are evaluated. It is far above the tolerances of the boundary, and far below the distance to
+the next boundary."""
 
 SAME_MOTION: Final = 1e-6
-"""Relative. Two motions within it count as one. They are the motions of two modes, or the ends of the range
+"""Relative. Two motions within it count as equal. They are the motions of two modes, or the ends of the range
 that one mode allows, whose motion is then unique."""
 
 FEASIBLE: Final = 1e-11
-"""Relative to the largest acceleration, and to edge forces that cause it. A condition of a mode may be missed
-by this. It is some thousand roundings, and a thousandth of `STRICT`."""
+"""Relative to the largest acceleration, and to the edge forces that cause it. Allowed violation of a
+condition of a mode. It is about a thousand roundings, and a thousandth of `STRICT`."""
 
 STRICT: Final = 1e-8
-"""Relative to the largest acceleration. A strict inequality of a mode must hold by this, a thousand times
-`FEASIBLE`."""
+"""Relative to the largest acceleration. Margin by which a strict inequality of a mode must hold, a thousand
+times `FEASIBLE`."""
 
 SURFACES_AS_ONE: Final = 1e-12
-"""Relative. Surfaces at contacts that move like one rigid body, to this share of their largest velocity and
-acceleration, count as one. An applied wrench that inertial terms cancel to this share counts as zero. It is
-some thousand roundings."""
+"""Relative to the largest velocity and acceleration of surfaces at contacts, which count as one rigid body if
+they move like one within this. An applied wrench that inertial terms cancel within this counts as zero. It is
+about a thousand roundings."""
 
 HIDDEN_BY_FORCES: Final = 1e-4
-"""Relative to the largest acceleration. If `FEASIBLE` of what forces cause is more, they are so large that
-rounding hides the motion: a 50,000th of it is that rounding."""
+"""Relative to the largest acceleration. If `FEASIBLE` times the accelerations caused by contact forces is
+larger, their rounding error, about a 50,000th of this product, may hide the motion."""
 
 AT_SECTORS_BORDER: Final = 1e-9
 """In sectors of a friction pyramid. An edge this far beyond the border of a sector still counts as acting."""
 
 NEARLY_PARALLEL: Final = 1e-4
-"""A sine. Rows that differ, and by less, leave it to rounding which of them vanish together."""
+"""Sine. If distinct rows differ by less, rounding determines which of them vanish together."""
 
 GIVES_WAY: Final = 1e-4
-"""Relative to the largest acceleration. What the stiffest compliant contacts let move by less stays or
-sticks. They give way by about 1e-6 under the load."""
+"""Relative to the largest acceleration. On the stiffest compliant contacts, a point with a smaller
+acceleration stays or sticks. They yield by about 1e-6 under the load."""
 
 COMPLIANT_SETTLED: Final = 1e-18
-"""The square of what the equations of motion may miss on compliant contacts, relative to the load. It is far
-less than those contacts give way."""
+"""Square of the residual of the equations of motion on compliant contacts, relative to the load. It is far
+below the compliance of those contacts."""
 
 ON_PYRAMIDS_SIDE: Final = 1e-9
-"""Relative to the largest force. A force this far outside of a pyramid still counts as on its side. A force
-as small as this has no direction."""
+"""Relative to the largest force. A force this far outside a pyramid still counts as on its side. A smaller
+force has no direction."""
 
 LEAST_FORCE_SEEN: Final = 1e-13
-"""Relative to the largest effect of unit forces. Rounding hides smaller effects, so forces without a larger
-one are free."""
+"""Relative to the largest effect of unit forces. Smaller effects are within rounding, so forces without a
+larger one are undetermined."""
 
 LEAST_FORCE_MET: Final = 1e-12
-"""Relative to the wrench. The search for the least forces ends when they leave no more of it."""
+"""Relative to the wrench. The search for the least forces ends when the unbalanced wrench is no larger."""
 
 LEAST_FORCE_FLAT: Final = 1e-3
-"""Share of what is left of the wrench, for unit curvature. It makes steps of the search for the least forces
-finite, and is small enough that they double the number of right digits."""
+"""Relative to the unbalanced wrench, for unit curvature. It makes steps of the search for the least forces
+finite, and is small enough for quadratic convergence."""
 
 BEHIND_BOUNDARY: Final = 1e-5
-"""Relative to the wrench. The search for neighbouring modes looks this far behind a boundary of a mode's
-wrenches, a thousand times `STRICT`."""
+"""Relative to the wrench. Distance beyond a boundary of a mode's wrenches at which neighbouring modes are
+sought, a thousand times `STRICT`."""
 
 NEAREST_GAIN: Final = 1e-10
-"""Relative to the distance of a wrench from a sum of round cones. The distance is exact to this."""
+"""Relative accuracy of the distance of a wrench from a sum of round cones."""
 
 SQUEEZE_TRIED: Final = 1e5
-"""Relative to the wrench. Contacts that press against each other are tried with forces of this size."""
+"""Relative to the wrench. Size of the trial forces at contacts that press against each other."""
 
 NEAREST_REACHED: Final = 1e-11
-"""Relative to the wrench. A sum this near to it counts as the wrench itself."""
+"""Relative to the wrench. A sum this close to the wrench counts as equal to it."""
 
 STEP_BEHIND: Final = 1e-3
-"""Relative to the wrench. A wrench this far behind a boundary is projected on a mode's wrenches, or as far as
-the boundary is if that is more. The nearer it is, the fewer steps lead to the nearest boundary."""
+"""Relative to the wrench. Least distance beyond a boundary of the wrench that is projected on a mode's
+wrenches; it is the distance to the boundary if that is larger. A smaller value takes fewer steps to the
+nearest boundary."""
 
 MARGIN_SETTLED: Final = 1e-9
-"""Relative. Steps to a boundary end when they bring it nearer by less."""
+"""Relative. The steps to the nearest boundary end when they reduce the distance by less."""
 
 ON_BOUNDARY: Final = 10.0 * ROW_TOLERANCE
-"""For unit rows. A wrench this far outside of a cone still counts as on its boundary."""
+"""For unit rows. A wrench this far outside a cone still counts as on its boundary."""
 
 NO_DISTANCE: Final = 1e-7
 """Relative to the applied wrench. A smaller distance to a mode's wrenches counts as zero. It is ten times the
-error that the weight of a wrench's height in that distance leaves."""
+error caused by the weight of a wrench's height in that distance."""
 
 # impact
 
 SAME_IMPULSES: Final = 1e-8
-"""Relative to the largest impulse. Two ways to a solution that differ by less have found the same one."""
+"""Relative to the largest impulse. Two solutions that differ by less are the same."""
 
 TIED_APPROACH: Final = 1e-9
-"""Relative to the largest velocity of the contacts just before the impact. Contacts whose approaches differ
-by no more approach equally fast. Rounding of attitudes and of some strikes leaves 1e-14, and no measurement
-is as good as this."""
+"""Relative to the largest velocity of the contacts just before the impact. Contacts whose approach velocities
+differ by no more approach equally fast. Rounding of attitudes and of some strikes leaves 1e-14, and no
+measurement is as accurate as this."""
 
 NO_SHARED_RESPONSE: Final = 1e-12
 """Relative to the response along the normal. If equal impulses at tied contacts change their mean velocity by
-no more, they change it by rounding."""
+no more, the change is rounding error."""
 
 ENERGY_TOLERANCE: Final = 1e-12
-"""Relative to the energy that an impact exchanges. If the gain is larger, the law creates energy. Rounding is
-about 1e-15 of the terms of the energy."""
+"""Relative to the energy that an impact exchanges. If the gain is larger, the law creates energy. The
+rounding error is about 1e-15 of the terms of the energy."""
 
 LEAST_PIVOT: Final = 1e-30
-"""Relative to its diagonal entry. A pivot of an inertia matrix is at least this, since only rounding can make
+"""Relative to its diagonal entry. Lower bound on a pivot of an inertia matrix, since only rounding can make
 it smaller."""
 
 LARGEST_ARM: Final = 1e7
 """In radii of gyration, about the axis with the largest. A contact in space that is farther from the centre
-of mass is refused in an impact. Its responses to impulses in different directions differ by the square of
-this, which leaves doubles two digits."""
+of mass is rejected in an impact. Its responses to impulses in different directions differ by the square of
+this, which leaves two digits in doubles."""
 
 SINGULAR_RESPONSE: Final = 1e-11
-"""Relative to the largest response of a mechanism along a contact axis. A smaller one counts as none. The
-rounding of J M^-1 J^T is about 1e-12 for a mass matrix with a condition number of 1e4."""
+"""Relative to the largest response of a mechanism along a contact axis. A smaller response counts as zero.
+The rounding error of J M^-1 J^T is about 1e-12 for a mass matrix with a condition number of 1e4."""
 
 STRAIGHT: Final = 4e-15
-"""Relative to the sliding law's scale. A direction that repels its neighbours counts as invariant if it turns
-more slowly at first. It then turns by the rounding of contact axes and inertia, which it would amplify."""
+"""Relative to the sliding law's scale. A repelling direction counts as invariant if its initial turning rate
+is smaller. This rate is the rounding of contact axes and inertia, which the repulsion would amplify."""
 
 SETTLED_TURN: Final = 8e-15
-"""rad. A direction of sliding this close to an invariant one that attracts it counts as that one. The series
-of a stretch leave up to 2e-15 of it, and never less."""
+"""rad. A direction of sliding this close to an attracting invariant direction counts as equal to it. The
+series of a stretch of sliding leave an error of up to 2e-15."""
 
 UNCOUPLED: Final = 1e-15
-"""Relative to the tangential inverse inertia. A slower turn than this is the rounding of a coupling that is
-zero. For a sphere the sliding law's scale is rounding too."""
+"""Relative to the tangential inverse inertia. A slower turn is the rounding error of a coupling that is zero.
+For a sphere the sliding law's scale is rounding error too."""
 
 STOPPED: Final = 1e-13
-"""Relative to the first sliding speed. A slower contact goes straight to its stop. The error in impulse is
-below this share of the impulse that stops the contact."""
+"""Relative to the initial sliding speed. A slower contact slides straight to its stop. The error in impulse
+is below this fraction of the impulse that stops the contact."""
 
 LAST_TERM: Final = 1e-15
-"""Relative to the sum of the series that leads to a stop. The series ends with a term of this size, and the
-terms left out are together about as large."""
+"""Relative to the sum of the series that leads to a stop. The series is truncated at a term of this size, and
+the sum of the omitted terms is about as large."""
 
 AT_THE_STOP: Final = 1e-15
-"""rad. Newton's method has found the direction in which sliding stops when its step is smaller."""
+"""rad. Newton's method for the direction in which sliding stops has converged when its step is smaller."""
 
 SLOW_TURNING: Final = 1e-12
 """Relative. Turning counts as slow if (|h| + |h'|)/|g|, to the power of the number of terms, times the speed
-is below this share of the first speed. Then the iteration can reach `LAST_TERM`."""
+is below this fraction of the initial speed. The iteration can then reach `LAST_TERM`."""
 
 TRUNCATION: Final = 1e-14
-"""Relative. A stretch of sliding ends where the last terms of the series of u and |u| reach this share of
-|u|. The terms left out are smaller."""
+"""Relative. A stretch of sliding ends where the last terms of the series of u and |u| reach this fraction of
+|u|. The omitted terms are smaller."""
 
 EVENT_LOCATED: Final = 1e-15
 """Relative. Newton's method has located an event of an impact when its next step is smaller."""
 
 NOTHING_DUE: Final = 1e-9
-"""Relative to the work that the fastest approach could do. What restitution still owes below it is left, in
-interleaved impacts, whose increments are far coarser."""
+"""Relative to the work that the fastest approach could do. Smaller remaining work of restitution is neglected
+in interleaved impacts, whose increments are far coarser."""
 
 SWEEPS_CONVERGED: Final = 1e-13
-"""Relative to the largest approach velocity. The sweeps over simultaneous impulses are done when one changes
-the contacts' velocities by less."""
+"""Relative to the largest approach velocity. The sweeps over simultaneous impulses have converged when one
+changes the contacts' velocities by less."""
 
 SHORT_TIMES: Final = (1e-7, 1e-5, 1e-3)
 """Change of a jammed body's velocities by the wrench in the time for which it acts, relative to the largest
-speed. They are tried in this order, and the first is taken for which rounding allows an answer."""
+speed. They are tried in this order, up to the first for which rounding allows an answer."""
 
 CHATTER_HEIGHT: Final = 1e-7
-"""m. Lower rebounds are not followed. This height is a hundred times `GRAZING_DEPTH`, and far below the
+"""m. Lower rebounds are not simulated. This height is a hundred times `GRAZING_DEPTH`, and far below the
 roughness of surfaces."""
 
 LEAST_FRICTION: Final = 1e-20
-"""Dimensionless. Less friction in an impact in space counts as none: it changes velocities by far less than
-they are rounded by. Below 1e-34 the energetic law gave bodies energy out of rounding, without a limit."""
+"""Dimensionless. A smaller coefficient of friction in an impact in space counts as zero, since its effect on
+velocities is far below their rounding. Below 1e-34, rounding in the energetic law created unbounded
+energy."""
 
 SAME_CORNER: Final = 1e-5
-"""m. Corners of a body nearer to each other are one corner in a whole toss: ten times the height of rebounds
-that are not followed. Of 200 drawn boxes with two corners in place of each, up to 10 micrometres apart, 12
-did not come to rest, all of them below 1 micrometre. Of 700 others 5 did not, none beyond 2.5."""
+"""m. Corners of a body closer together count as one corner in a whole toss. It is ten times
+`SETTLING_HEIGHT`. Of 200 random boxes with each corner doubled, at distances up to 10 micrometres, 12 did not
+come to rest, all of them below 1 micrometre; of 700 others, 5 did not, none beyond 2.5 micrometres."""
 
 SAME_CORNER_SHARE: Final = 1e-4
-"""The same, relative to the reach of the body, for small bodies."""
+"""As `SAME_CORNER`, relative to the reach of the body, for small bodies."""
 
 SETTLING_HEIGHT: Final = 1e-6
-"""m. In a whole toss, a contact whose rebounds are lower stays, and a body that can only rise or slide so far
-rests. It is a hundredth of what motion capture resolves, and below the roughness of most surfaces."""
+"""m. In a whole toss, a contact with lower rebounds remains in contact, and a body that can rise or slide by
+no more than this is at rest. It is a hundredth of the resolution of motion capture, and below the roughness
+of most surfaces."""
 
 SAMPLED_SETTLING_HEIGHT: Final = 1e-4
-"""m. The same in samples of an uncertain toss. It is far below how far samples are apart, which is some
-centimetres at rest, and it takes half of the time."""
+"""m. As `SETTLING_HEIGHT`, in samples of an uncertain toss. It is far below the distances between samples,
+which are centimetres at rest, and halves the computation time."""
 
 EXACT_SHARE: Final = 1e-12
-"""Share of the largest variance of samples that each direction has at least, so that a quantity which is
-exact in some direction has distances. It is far above the rounding of variances, 1e-16."""
+"""Relative to the largest variance of samples. Lower bound on the variance in each direction, so that
+distances are defined if a quantity is exact in some direction. It is far above the rounding of variances,
+1e-16."""
 
 SAMPLED_ARRIVAL: Final = 1e-7
-"""m. A corner of a sample that is nearer to a flat has arrived. At 1 m/s this is 1e-7 s."""
+"""m. A corner of a sample that is closer to a flat has arrived. At 1 m/s this is 1e-7 s."""
 
 SAMPLED_PHASE_ERROR: Final = 1e-3
 """m, or m/s. The error that a step of a contact phase of a sample may have. Velocities after strikes of
 recorded cubes are twenty times as uncertain."""
 
 FACE_ROUNDING: Final = 1e-9
-"""Relative to the reach, or to the face. What is outside a face by less is on its border. Corners carry 1e-16
-of rounding."""
+"""Relative to the reach, or to the face. A point outside a face by less is on its border. Corners have
+rounding errors of 1e-16."""
 
 STRIKES: Final = 1e-9
-"""m/s. A contact of a whole toss that approaches faster strikes. As `VELOCITY_TOLERANCE`."""
+"""m/s. A contact of a whole toss that approaches faster strikes. It equals `VELOCITY_TOLERANCE`."""
 
 STILL_TOUCHING: Final = 1e-8
-"""m/s. A contact of a whole toss that leaves more slowly stays for contact modes to judge. It is above the
+"""m/s. A contact of a whole toss that separates more slowly is resolved by contact modes. It is above the
 rounding of impacts at several contacts, which end at `STRIKES`."""
 
 SLIDING_STOPPED: Final = 1e-6
-"""m/s. A contact of a whole toss that slides more slowly has stopped. Friction of 0.1 takes a microsecond for
-the rest, in which the contact slides by less than 1e-12 m."""
+"""m/s. A contact of a whole toss that slides more slowly has stopped. Friction of 0.1 removes this speed in a
+microsecond, in which the contact slides by less than 1e-12 m."""
 
 RESOLVED_SLIDING: Final = 50.0
-"""Relative to the error of a step of a contact phase. Slower contacts that are stopping have stopped, if
-friction holds them: their direction turns within a step. Contacts were seen to slide on at 15 to 28 times the
-error, for ten thousands of steps, although friction took the speed of each in microseconds."""
+"""Relative to the error of a step of a contact phase. A decelerating contact below this speed has stopped if
+friction holds it, since its direction turns within a step. Contacts continued to slide at 15 to 28 times the
+error for tens of thousands of steps, although friction stops each in microseconds."""
 
 COARSE_SLIDING_STOPPED: Final = 1e-4
-"""m/s. The same for large errors, of samples too. Friction of 0.1 stops that within 5e-9 m."""
+"""m/s. As `SLIDING_STOPPED`, for large step errors, including those of samples. Friction of 0.1 stops the
+contact within 5e-9 m."""
 
 SLIDING_DIRECTION_SPEED: Final = 1e-9
-"""m/s. At much lower speeds, the direction in which sliding begins counts, and not that of the velocity,
-whose digits are rounding."""
+"""m/s. At much lower speeds, the direction of incipient sliding is used instead of that of the velocity,
+whose digits are rounding errors."""
 
 SAME_FORCES: Final = 1e-10
-"""Ratio of singular values. Below it, combinations of contact forces cause no acceleration, and the least
-ones are taken."""
+"""Ratio of singular values. Combinations of contact forces below it cause no acceleration, and the forces of
+least norm are chosen."""
 
 FORCE_ROUNDING: Final = 1e-9
-"""Relative to the weight, or to the largest force. A contact that pulls by less may stay."""
+"""Relative to the weight, or to the largest force. A contact with a smaller tensile force may remain."""
 
 CONE_SWEEPS_CONVERGED: Final = 1e-12
-"""Relative to the largest velocity or acceleration. A sweep over the contacts that changes less is the last,
-since it is near rounding."""
+"""Relative to the largest velocity or acceleration. The sweeps over the contacts end when one changes less,
+which is near rounding."""
 
 CONE_CREEPS: Final = 1e-6
-"""Relative to the largest velocity. Where impulses of contacts against each other creep on from sweep to
-sweep, and hardly change the velocities, a sweep that changes less is the last."""
+"""Relative to the largest velocity. If opposing impulses of contacts keep growing slowly from sweep to sweep
+and hardly change the velocities, the sweeps end when one changes less."""
 
 SHORT_STEP_CREEPS: Final = 1e-4
-"""The same in short steps (`toss.short_step`). Their own error, of first order, is larger."""
+"""As `CONE_CREEPS`, in short steps (`toss.short_step`), whose own first-order error is larger."""
 
 BEGINNING_ROUNDING: Final = 1e-7
-"""Relative to gravity. Where a contact begins to slide, its acceleration may be off the direction of friction
-by this much. Accelerations carry the rounding of forces, `FORCE_ROUNDING`, times some ten."""
+"""Relative to gravity. The acceleration of a contact that begins to slide may deviate from the direction of
+friction by this. The rounding error of accelerations is about ten times `FORCE_ROUNDING`."""
 
 BEGINNING_TURN: Final = 1e-4
-"""rad. By so much the direction in which a contact begins to slide is turned, to see how accelerations
-change. Their rounding is then a thousandth of the change, and so is what a straight line misses of it."""
+"""rad. Step of the direction of incipient sliding for numerical derivatives of accelerations. Their rounding
+and truncation errors are then a thousandth of the change."""
 
 BEGUN_TO_SLIDE: Final = 1e-3
 """m/s. Below this speed, a contact that begins to slide does so along its acceleration. At 1e-3 m/s, friction
 of 10 m/s^2 turns the sliding in 1e-4 s, which is as short as a step of a phase should be."""
 
 HELD_DRIFT: Final = 1e-11
-"""m, or m/s. A held contact that is off by less is left as it is. It is a hundredth of `GRAZING_DEPTH` and of
+"""m, or m/s. A smaller drift of a held contact is not corrected. It is a hundredth of `GRAZING_DEPTH` and of
 `STRIKES`."""
 
 SUNK: Final = 1e-10
-"""m. A body of a whole toss whose corners are deeper in a flat is taken out of it. It is a tenth of
+"""m. A body of a whole toss whose corners penetrate a flat more deeply is moved out of it. It is a tenth of
 `GRAZING_DEPTH`."""
 
 PHASE_ERROR: Final = 1e-7
-"""m, or m/s. The error that a step of a contact phase may have. It is a tenth of `SETTLING_HEIGHT`."""
+"""m, or m/s. Allowed error of a step of a contact phase. It is a tenth of `SETTLING_HEIGHT`."""
 
 LEAST_PHASE_ERROR: Final = 1e-15
-"""m, or m/s. Doubles tell no less apart on the way of a toss. It would take its shortest steps in vain."""
+"""m, or m/s. Smallest step error of a toss that doubles resolve. A smaller one would force the shortest steps
+without benefit."""
 
 PHASE_LEAST_STEP: Final = 1e-13
-"""s. A step this short is taken whatever its error, and events are found to this time."""
+"""s. A step this short is accepted whatever its error, and events are located to this accuracy."""
 
 COMES_DOWN_FOUND: Final = 1e-12
 """m. A corner that is below a flat by less has just come down. It is a thousandth of `GRAZING_DEPTH`."""
 
 FORCE_END_FOUND: Final = 1e-3
-"""Relative to the force that counts as none. A force that is beyond that by less has just left its cone."""
+"""Relative to the force that counts as zero. A force that exceeds it by less has just left its cone."""
 
 LIFT_OFF_PAUSE: Final = 1e-6
-"""s. A contact that lifts off begins without speed. It is looked for again after this time, in which the body
-moves by less than 1e-11 m relative to it."""
+"""s. A contact lifts off with zero velocity. Its next landing is sought only after this time, in which the
+body moves by less than 1e-11 m relative to it."""
 
 RESTING_ACCELERATION: Final = 1e-6
-"""Relative to gravity. A body with less acceleration, and hardly any velocity, rests. A cube that balances on
-an edge is off balance by less than 1e-7 of its size then."""
+"""Relative to gravity. A body with a smaller acceleration, and hardly any velocity, is at rest. A cube on an
+edge is then off balance by less than 1e-7 of its size."""
 
 HELD_STILL: Final = 0.01
-"""Share of the speed that a step of free motion gives to a held contact. This much may be left where several
-held contacts throw each other back."""
+"""Relative to the speed that a step of free motion gives to a held contact. Allowed residual speed when
+several held contacts push each other away."""
 
 CHATTER_PAUSE: Final = 1e-6
-"""s. If rounding makes a leaving contact look like an arriving one, the search goes on after this time."""
+"""s. If rounding makes a separating contact appear to approach, the search continues after this time."""
 
 HELD_INDEPENDENT: Final = 1e-9
-"""Ratio of singular values. Below it, the directions in which jammed contacts are held count as the same."""
+"""Ratio of singular values. Below it, the constraint directions of jammed contacts count as dependent."""
 
 ESCAPE_ARRIVED: Final = 1e-16
-"""Relative. The last of Newton's steps towards the direction in which a contact leaves its stop: below the
-last bit."""
+"""Relative. Newton's method for the direction in which a contact leaves its stop has converged when its step
+is smaller, which is below the last bit."""
 
 MODE_STRAIGHT: Final = 1e-8
-"""rad. Friction that misses the direction against the sliding by no more opposes it to rounding."""
+"""rad. Friction within this angle of the direction opposite to sliding opposes it exactly, up to rounding."""
 
 MODE_RESTS: Final = 1e-12
-"""Relative to the load. Forces that hold a body may leave so much of it unbalanced."""
+"""Relative to the load. Allowed residual of forces that hold a body."""
 
 MODE_BETTER: Final = 1e-2
-"""Relative. Forces replace others where they leave less than this part of what those left unbalanced. A
-smaller gain would be rounding."""
+"""Relative. Forces replace others if their residual is below this fraction of the previous residual. A
+smaller improvement would be rounding."""
 
 CAREFUL_UNMET: Final = 1e-9
-"""Relative to the largest acceleration. Equations that count as the same may demand accelerations that differ
-by so much, as where centripetal terms are rounded."""
+"""Relative to the largest acceleration. Equations that count as the same may differ by this in the required
+accelerations, for example by rounding of centripetal terms."""
 
 CAREFUL_LEAST_PIVOT: Final = 1e-13
-"""Entries of the table that are no larger may be the rounding of the doubles from which it is made."""
+"""Smaller entries of the tableau may be rounding errors of the doubles from which it is made."""
 
 TABLE_SMALL_PIVOT: Final = 1e-3
-"""Division by a larger entry counts as harmless. The rounding that it adds is within `FEASIBLE`."""
+"""Division by a larger entry is harmless, since the rounding error that it adds is within `FEASIBLE`."""
 
 TABLE_ROUNDING: Final = 1e-16
-"""Relative. Doubles lose so much in a step or two."""
+"""Relative rounding error of doubles in one or two steps."""
 
 SLOWEST_SHARED: Final = (1e-3, 1e-5, 1e-7, 3e-8)
-"""Relative to the largest acceleration. Contacts that share a load are made to slide at least so fast, one
-after another, since forces at rest would also do at zero."""
+"""Relative to the largest acceleration. Lower bounds, tried in turn, on the sliding of contacts that share a
+load, since forces at rest would also satisfy a bound of zero."""
 
 ALONE_WITHIN: Final = (0.3, 0.1, 0.03, 0.01, 0.003)
-"""rad. These ranges of directions around a solution are tried, and the first is taken that has no other one.
-Instead of smaller ones it is as fast to part ranges."""
+"""rad. Ranges of directions around a solution, tried in turn until one contains no other solution. For
+smaller ranges, bisection is as fast."""
 
 NARROWEST_RANGE: Final = 1e-5
-"""rad. A range of sliding directions is not parted further if it is narrower. Then it is undecided whether
-there is a mode in it."""
+"""rad. A narrower range of sliding directions is not bisected further. Whether it contains a mode is then
+undecided."""
 
 SAME_SLIDING: Final = 1e-3
-"""rad. Modes with the same letters may count as one where no direction of sliding differs by more. Bounds
-cannot tell them apart where the equations are nearly singular."""
+"""rad. Modes with the same letters may count as one if no direction of sliding differs by more. Bounds cannot
+separate them where the equations are nearly singular."""
 
 LETTERS_SETTLED: Final = 1e-13
-"""Relative to the largest acceleration. The equations may be missed by so much in the last step."""
+"""Relative to the largest acceleration. Allowed residual of the equations in the last step."""
 
 LETTERS_REGULAR: Final = 1e-11
 """Ratio of singular values. Below it, the unknowns count as dependent, because loads are shared."""
 
 NEARLY_ALIKE: Final = 1e-3
-"""rad. Normals that differ by less and by more than `FLUSH`, or are opposite but for that, as in a slot whose
-walls lean by 1e-5 rad, may have forces between them that are a million times the load. The modes of
-friction pyramids are sought then, too."""
+"""rad. Normals within this of parallel or opposite, but not within `FLUSH`, such as those of a slot whose
+walls lean by 1e-5 rad, may have forces between them that are a million times the load. In this case the modes
+of friction pyramids are sought too."""
 
 NARROWLY: Final = 1e-11
-"""Relative to the largest acceleration. Where no mode holds by `STRICT`, one must hold by this. It is a
-hundred times `LETTERS_SETTLED`."""
+"""Relative to the largest acceleration. If no mode holds by `STRICT`, one must hold by this. It is a hundred
+times `LETTERS_SETTLED`."""
 
 LETTERS_NO_FORCE: Final = 1e-9
-"""Relative to the largest force. Where contacts share loads, one with less force has none."""
+"""Relative to the largest force. A smaller force of one of several contacts that share loads counts as
+zero."""
 
 LETTERS_ON_CONE: Final = 1e-10
-"""Relative. A force that sticks may lie so far outside of its cone."""
+"""Relative. The force of a sticking contact may exceed its cone by this."""
 
 ONE_CONTACT_ON_CONE: Final = 1e-9
-"""Relative. A force that sticks may lie so far outside of its cone. Sliding begins just as strictly."""
+"""Relative. The force of a sticking contact may exceed its cone by this. The condition for incipient sliding
+has the same tolerance."""
 
 ONE_CONTACT_ZERO: Final = 1e-13
-"""Relative to the largest acceleration, and to the largest coefficient. Less counts as rounding."""
+"""Relative to the largest acceleration, and to the largest coefficient. Smaller values are rounding."""
 
 ONE_CONTACT_ON_CIRCLE: Final = 1e-3
-"""A root may lie so far from the unit circle before it is polished. Double roots are known to half the
+"""Allowed distance of a root from the unit circle before it is refined. Double roots are accurate to half the
 digits."""
 
 ONE_CONTACT_SAME_ANGLE: Final = 1e-6
-"""rad. Two roots within it are one."""
+"""rad. Two roots within it count as one."""
 
 ROUND_CONE_HELD: Final = 1e-11
-"""Relative to the load. Forces that hold the contacts may leave so much of it unbalanced."""
+"""Relative to the load. Allowed residual of forces that hold the contacts."""
 
 ROUND_CONE_NO_HELP: Final = 1e-12
-"""A cosine, between the effect of a force and the remainder. A smaller one counts as rounding."""
+"""Cosine of the angle between the effect of a force and the residual. A smaller value is rounding."""
 
 ROUND_CONE_ACROSS: Final = 1e-9
-"""The same cosine. Below it, rounding of the contacts' normals may decide whether a force helps."""
+"""As `ROUND_CONE_NO_HELP`. Below this cosine, rounding of the contacts' normals may decide whether a force
+reduces the residual."""
 
 ROUND_CONE_INDEPENDENT: Final = 1e-15
-"""Ratio of singular values. Smaller ones count as rounding."""
+"""Ratio of singular values. Smaller ratios are rounding."""
 
 ROUND_CONE_APART: Final = 1e-13
-"""Dimensionless, for rows of unit length. Rows that differ by more do so by more than rounding."""
+"""Dimensionless, for rows of unit length. A larger difference between rows exceeds rounding."""
 
 ROUND_CONE_ON_CONE: Final = 1e-12
-"""Relative to the largest force. A force may lie so far outside of its cone."""
+"""Relative to the largest force. A force may exceed its cone by this."""
 
 ROUND_CONE_REACHED: Final = 1e-10
-"""Relative. All forces together count as having at least this effect in every direction. So what they leave
-unbalanced is not divided by rounding."""
+"""Relative. Lower bound on the effect of all forces together in every direction, so that their residual is
+not divided by a rounding error."""
 
 ROUND_CONE_ROUNDING: Final = 1e-13
-"""Relative. A smaller remainder is rounding, and refutes nothing."""
+"""Relative. A smaller residual is rounding, and refutes nothing."""
 
 ROUND_CONE_NEAR: Final = 1e-3
-"""Relative to the load. A remainder is freed from the rounding of the forces only if it is smaller. Their
-rounding is nothing beside a larger one."""
+"""Relative to the load. Only a smaller residual is corrected for the rounding of the forces, which is
+negligible compared with a larger one."""
 
 ROUND_CONE_WIDE: Final = 1e-6
-"""Relative to the load. That wide friction cones do not hold it is certain only if they leave more than this,
-because forces in them are found in many steps."""
+"""Relative to the load. Wide friction cones certainly do not hold it only if the residual is larger, because
+forces in them are found in many steps."""
 
 # calibration
 
 NEGLIGIBLE_GAIN: Final = 1e-4
-"""Squares of standard deviations. A calibration has converged where the next step would gain less: the
-estimate is then within a hundredth of its own standard deviation."""
+"""Squared standard deviations. A calibration has converged when the next step would gain less. The estimate
+is then within a hundredth of its own standard deviation."""
 
 DERIVATIVE_STEP: Final = 1e-5
-"""Standard units of parameters. Step of numerical derivatives: the impact's rounding of 1e-13 becomes 1e-8 of
+"""Standard units of parameters. Step of numerical derivatives. The impact's rounding of 1e-13 becomes 1e-8 of
 the slope, and its curvature adds 1e-5."""
 
 SPREAD_FOUND: Final = 1e-3
-"""Relative. A variance is known to this, which is far better than its estimate from any number of strikes."""
+"""Relative accuracy to which a variance is computed, far better than its estimate from any number of
+strikes."""
 
 SAME_FACE: Final = 1e-6
-"""Half sizes. A corner so near to a face's plane belongs to the face. Configured corners have six digits."""
+"""Half sizes. A corner this close to a face's plane belongs to the face. Configured corners have six
+digits."""
 
 LEAST_STEP_OF_SURFACE: Final = 0.01
-"""Half sizes. A surface that bends by less over the places that were touched counts as flat."""
+"""Half sizes. A surface that bends by less over the touched area counts as flat."""
 
 LEAST_LAW_VELOCITY: Final = 1e-3
-"""m/s. Least spread of the law of impact in fits of trajectories. Without any, a velocity after a strike
-would hang on rounding; this is below what any tracking system tells."""
+"""m/s. Lower bound on the spread of the impact law in fits of trajectories. Without it, a velocity after a
+strike would depend on rounding. It is below the resolution of tracking systems."""
 
 LEAST_LAW_SPIN: Final = 1e-2
-"""rad/s. The same for angular velocities."""
+"""rad/s. As `LEAST_LAW_VELOCITY`, for angular velocities."""
 
 # toss
 
 SWEEPS_CHANGE_ALIKE: Final = 1e-3
-"""Ratio of singular values. Below it, changes by sweeps over contacts count as the same."""
+"""Ratio of singular values. Below it, changes by sweeps over contacts count as linearly dependent."""
 
 SHORTEST_LINGER: Final = 1e-5
-"""s. If rounds of a toss take less time, it is not followed by them, but for so long in short steps."""
+"""s. If rounds of a toss advance it by less time, short steps replace them for this long."""
 
 BUSY: Final = 0.01
 """s. If a toss needs hundreds of strikes and modes within this time, its contacts chatter."""
 
 CREEPING_STEP: Final = 1e-6
-"""s. A contact phase whose steps are that short again and again creeps."""
+"""s. A contact phase with many successive steps this short is creeping."""
 
 LONGEST_SHORT_STEP: Final = 2e-4
-"""s. A short step is no longer. A body that turns by 10 rad/s meanwhile turns by a tenth of a degree."""
+"""s. Maximum length of a short step. A body with 10 rad/s turns by a tenth of a degree in it."""
 
 SHORTEST_SHORT_STEP: Final = 1e-7
-"""s. A short step may be this short, where a corner comes down."""
+"""s. Minimum length of a short step, used when a corner comes down."""
