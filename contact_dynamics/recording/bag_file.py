@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""This file writes one MCAP file of a log. `bag_writer.BagWriter` writes a folder of them."""
+"""Writes one MCAP file of a log; `bag_writer.BagWriter` writes a folder of them."""
 
 from __future__ import annotations
 
@@ -28,20 +28,21 @@ CHUNK_BYTES: Final = 256 * 1024
 
 
 class BagFile:
-    """A file that grows by chunks, each of which is whole. Methods raise `OSError` if the disk refuses.
+    """A file that grows by complete chunks. Methods raise `OSError` if a write fails.
 
-    After the first failure the file is as it was after the last `flush`, when it was whole and readable, and
-    `failure` says why.
+    After the first failure the file is cut back to its state after the last `flush`, which is readable, and
+    `failure` contains the reason.
     """
 
     def __init__(
         self, path: Path, *, run: Mapping[str, str], compression: Compression, opened_ns: int
     ) -> None:
-        """Create a file, which must not exist, and begin it with the record of the run.
+        """Create a file, which must not exist, and write the record of the run at its head.
 
-        Until its first message, ``opened_ns``, the present time, ns since the epoch, is its span.
+        ``opened_ns`` is the present time, ns since the epoch; the file's time span begins and ends there
+        until the first message.
         """
-        from mcap.writer import CompressionType, Writer  # a server can do without it, and then writes no log
+        from mcap.writer import CompressionType, Writer  # optional: without it, the server writes no log
 
         self.path = path
         self.failure: str | None = None
@@ -51,11 +52,11 @@ class BagFile:
         self._counts: dict[str, int] = {}  # messages given, by topic
         self._safe_counts: dict[str, int] = {}  # messages in the file
         self._defined: dict[tuple[str, str, tuple[OfferedQos, ...]], int] = {}  # channels
-        self._channels: dict[str, int] = {}  # the present ones, by topic
+        self._channels: dict[str, int] = {}  # the current ones, by topic
         self._schemas: dict[str, int] = {}
         self._file = AppendFile(path)
         self._safe_size = 0
-        self._writer: Any = Writer(  # Any: the library is typed in part only
+        self._writer: Any = Writer(  # Any: the library is only partly typed
             self._file,  # type: ignore[arg-type]  # has what the library calls: write, tell, flush
             chunk_size=CHUNK_BYTES,
             compression=CompressionType[compression.name],
@@ -72,12 +73,12 @@ class BagFile:
 
     @property
     def size(self) -> int:
-        """The size of the file by now, bytes. What waits for its chunk to be full does not count."""
+        """The current size of the file, bytes, without the chunk that is still being filled."""
         return self._file.tell()
 
     @property
     def summary(self) -> FileSummary:
-        """The content of the file that a death of this process can no longer take."""
+        """Summary of the flushed content, which survives the death of this process."""
         return FileSummary(
             name=self.path.name,
             # Before the first message the start is when the file was opened, not the end of time as rosbag2
@@ -89,7 +90,7 @@ class BagFile:
         )
 
     def add_topic(self, topic: DeclaredTopic) -> None:
-        """Write the definition of a topic, or another one, which holds for its messages from now on."""
+        """Write a topic's definition, which applies to its messages from now on."""
         name, definition, qos = topic.name, topic.definition, topic.qos
         with self._cut_back_on_failure():
             type_name = definition.type_name
@@ -113,7 +114,7 @@ class BagFile:
 
     def write(self, topic: str, data: bytes, *, log_time_ns: int, publish_time_ns: int) -> None:
         """Append a message of a topic that was added."""
-        try:  # a context manager would cost a tenth of all that it takes to log a message
+        try:  # a context manager would take a tenth of the time to log a message
             self._writer.add_message(
                 channel_id=self._channels[topic],
                 log_time=log_time_ns,
@@ -130,13 +131,13 @@ class BagFile:
             self.start_ns, self._end_ns = min(self.start_ns, log_time_ns), max(self._end_ns, log_time_ns)
 
     def flush(self) -> None:
-        """Bring all messages so far into the file, where a death of this process cannot take them."""
+        """Write all messages so far to the file, where they survive the death of this process."""
         with self._cut_back_on_failure():
             self._writer.flush()
             self._mark_safe()
 
     def sync(self) -> None:
-        """Wait until the disk has all that was flushed, which then survives the death of the machine."""
+        """Wait until all flushed data are on the disk, where they survive the death of the machine."""
         with self._cut_back_on_failure():
             self._file.sync()
 
@@ -169,18 +170,18 @@ class BagFile:
             raise
 
     def _cut_back(self, error: Exception) -> None:
-        """Leave the file as it was when it was whole."""
+        """Cut the file back to its last complete state."""
         self.failure = f"an earlier write failed: {error}"
         with contextlib.suppress(OSError):
             self._file.cut_back(self._safe_size)
 
 
 class AppendFile:
-    """A stream that only grows, with the methods that ``mcap.writer.Writer`` needs.
+    """An append-only stream with the methods that ``mcap.writer.Writer`` needs.
 
-    The process holds nothing back, so a kill loses nothing that was written. Python's own buffered file keeps
-    data that a full disk refused, and then cannot be closed. This one does not do that, and it can be cut
-    back to where it was last whole.
+    It is unbuffered, so a kill loses nothing that was written. Python's buffered file keeps data that a full
+    disk rejected, and then cannot be closed. This stream can be closed, and cut back to its last complete
+    state.
     """
 
     def __init__(self, path: Path) -> None:
@@ -189,7 +190,7 @@ class AppendFile:
         self._size = 0
 
     def write(self, data: bytes | bytearray | memoryview) -> int:
-        """Hand all of ``data`` to the operating system. If the disk refuses, raise `OSError`."""
+        """Pass all of ``data`` to the operating system, or raise `OSError` if the write fails."""
         rest = memoryview(data)
         while rest:
             count = os.write(self._descriptor, rest)
@@ -202,14 +203,14 @@ class AppendFile:
         return self._size
 
     def flush(self) -> None:
-        """Do nothing, since nothing is held back."""
+        """Do nothing: the stream is unbuffered."""
 
     def sync(self) -> None:
-        """Wait until the disk itself has all that was written. If it refuses, raise `OSError`."""
+        """Wait until all written data are on the disk, or raise `OSError` if that fails."""
         os.fdatasync(self._descriptor)
 
     def cut_back(self, size: int) -> None:
-        """Drop everything behind the first ``size`` bytes."""
+        """Truncate the file to ``size`` bytes."""
         os.ftruncate(self._descriptor, size)
         os.lseek(self._descriptor, size, os.SEEK_SET)
         self._size = size

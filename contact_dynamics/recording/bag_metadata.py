@@ -25,7 +25,7 @@ RUN_RECORD: Final = "contact_dynamics"  # the MCAP metadata record that says how
 OFFERED_QOS: Final = "offered_qos_profiles"  # in the metadata of a channel, as rosbag2 names it
 TYPE_HASH: Final = "topic_type_hash"  # beside it
 CHECKSUM_KEY: Final = "checksum"  # in that record, because MCAP gives metadata none
-FOREVER_NS: Final = 2**63 - 1  # a duration without a limit
+FOREVER_NS: Final = 2**63 - 1  # an unlimited duration
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -81,7 +81,7 @@ def _of_profile(profile: Any) -> OfferedQos:
 
 
 def qos_maps(offers: tuple[OfferedQos, ...]) -> list[dict[str, Any]]:
-    """Return offers as the maps that a bag has of them."""
+    """Return offers as maps in a bag's format."""
     return [
         {
             name: dict(zip(("sec", "nsec"), divmod(value, NS_PER_S), strict=True))
@@ -96,9 +96,9 @@ def qos_maps(offers: tuple[OfferedQos, ...]) -> list[dict[str, Any]]:
 def offered_qos(text: str) -> list[OfferedQos]:
     """Return what publishers offered, by the YAML list that a bag has for a topic.
 
-    What cannot be read is left out, as is what the list does not say.
+    Unreadable and missing entries are left out.
     """
-    import yaml  # only bags of others need it
+    import yaml  # only other writers' bags need it
 
     try:
         listed = yaml.safe_load(text)
@@ -182,8 +182,8 @@ def metadata_of(
                     "type": topic.definition.type_name,
                     "serialization_format": "cdr",
                     "offered_qos_profiles": qos_maps(topic.qos),
-                    # rosbags refuses the whole folder if this is not its own hash of the text. It cannot be
-                    # for an event, which is written out as a message. The channel has the true hash.
+                    # rosbags rejects the whole folder if this is not its own hash of the text, which it
+                    # cannot be for an event that is written as a message. The channel has the true hash.
                     "type_description_hash": ""
                     if topic.definition.is_service_event
                     else topic.definition.type_hash,

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Reads a log: a folder of rosbag2 or one file of it, ours or another's, in the order of its writing.
+"""Reads a log in writing order: a rosbag2 folder or one of its files, from this package or any other writer.
 
-The files are MCAP or SQLite (``.db3``), split or not, packed as a whole, by message or not at all. The reader
-checks every checksum of MCAP. It skips what is damaged and reads everything else (`mcap_messages`), and all
-whole chunks of a log that a crash or a full disk cut short. `BagReader.losses` then says what is missing, and
-the reader warns once for each file (`DamagedLogWarning`).
+The files are MCAP or SQLite (``.db3``), split or not, compressed by file, by message or not at all. The
+reader verifies every MCAP checksum. It skips damaged parts and reads everything else (`mcap_messages`),
+including all complete chunks of a log that a crash or a full disk cut short. `BagReader.losses` lists what is
+missing, and the reader warns once for each file (`DamagedLogWarning`).
 
 It needs no ROS. Messages are bytes, and `message_types` turns them into message objects if their packages are
 installed.
@@ -58,7 +58,7 @@ class LoggedMessage:
         data: The serialised message (CDR).
         log_time_ns: When the message was received, ns since the epoch.
         publish_time_ns: When its source made it, ns since the epoch.
-        definition: The text of its type in the log, which is empty unless it has MCAP's form ros2msg.
+        definition: The type definition in the log, empty unless its encoding is MCAP's ros2msg.
     """
 
     topic: str
@@ -85,7 +85,7 @@ class BagReader:
         path = Path(path)
         self.paths = _files_of(path) if path.is_dir() else [path]
         self.run_is_later = False  # whether the last record of the run is newer than the log's beginning
-        self.losses: list[Loss] = []  # the stretches that the last reading has had to leave out so far
+        self.losses: list[Loss] = []  # the unreadable stretches that the last reading has met so far
         if not self.paths or not self.paths[0].is_file():
             found = "no MCAP file here, and no .db3 file" if path.exists() else "no such file or folder"
             raise NotALogError(f"{path}: {found}")
@@ -101,7 +101,7 @@ class BagReader:
 
     @property
     def damage(self) -> str | None:
-        """The damage that the last reading met, in words, or None if all was whole."""
+        """A description of the damage that the last reading met, or None if there was none."""
         described = [
             _described(path, losses)
             for path in self.paths
@@ -145,14 +145,14 @@ class BagReader:
     def definitions(self) -> dict[str, str]:
         """Return the text of each type that the log describes before its first message or at its end.
 
-        Texts in another form than MCAP's ros2msg are left out.
+        Texts in encodings other than MCAP's ros2msg are left out.
         """
         return {topic.type_name: topic.definition for topic in self.topics() if topic.definition}
 
     def extent(self) -> tuple[int, int]:
         """Return the first and the last log time, ns since the epoch; both are zero without messages.
 
-        The index of each file tells them. Where the last file has none, the last time is that of its first
+        They come from the index of each file. If the last file has none, the last time is that of its first
         message.
         """
         self.losses = []
@@ -171,8 +171,8 @@ class BagReader:
     def run(self) -> dict[str, str]:
         """Return the writer's record of its run.
 
-        If that of the first file is damaged, it is the record of a later one, or that in the bag's
-        ``metadata.yaml``, and `run_is_later` says so. It is empty if there is none that is whole.
+        If the record in the first file is damaged, return that of a later file, or of the bag's
+        ``metadata.yaml``, and set `run_is_later`. The record is empty if none is intact.
         """
         self.losses = []
         self.run_is_later = False
@@ -185,7 +185,7 @@ class BagReader:
         return self._run_of_metadata() if self.losses else {}
 
     def _run_of_metadata(self) -> dict[str, str]:
-        """Return the record in ``metadata.yaml``, if that describes the first file."""
+        """Return the record in ``metadata.yaml`` if that file describes the first file."""
         import yaml  # only damaged logs need it
 
         path = self.paths[0]
@@ -198,7 +198,7 @@ class BagReader:
 
     def _made(self, path: Path, stored: StoredMessage) -> LoggedMessage | None:
         topic, data, log_time_ns, publish_time_ns = stored
-        if data[:1] != b"\0":  # no serialised message: perhaps a packed one
+        if data[:1] != b"\0":  # no serialised message: perhaps a compressed one
             try:
                 data = unpacked_message(data)
             except InvalidFieldError as error:
@@ -217,8 +217,8 @@ class BagReader:
 
     @contextmanager
     def _opened(self, path: Path) -> Iterator[McapMessages | SqliteMessages]:
-        """Open a file, and say at the end what was lost."""
-        from contact_dynamics.recording.mcap_messages import McapMessages  # a server can do without mcap
+        """Open a file, and report at the end what was lost."""
+        from contact_dynamics.recording.mcap_messages import McapMessages  # mcap is optional for a server
 
         with unpacked_file(path) as (plain, cut):
             match = _NAME.search(path.name)
@@ -240,7 +240,7 @@ class BagReader:
 
 
 def _files_of(folder: Path) -> list[Path]:
-    """Return the files of a bag. If a packed file has been unpacked beside it, the plain one is taken."""
+    """Return the files of a bag. If a compressed file was unpacked beside it, use the unpacked one."""
     matches = {path: match for path in folder.iterdir() if (match := _NAME.search(path.name)) is not None}
     files = [path for path in matches if path.suffix not in SUFFIXES or path.with_suffix("") not in matches]
     return sorted(
@@ -249,7 +249,7 @@ def _files_of(folder: Path) -> list[Path]:
 
 
 def kind_of(losses: list[Loss]) -> type[DamagedLogWarning]:
-    """Return whether a log is damaged, or only lacks its end."""
+    """Return the kind of damage: a damaged log, or one that only lacks its end."""
     return UnfinishedLogWarning if all(loss.begin == loss.end for loss in losses) else DamagedLogWarning
 
 

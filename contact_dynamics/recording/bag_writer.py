@@ -7,16 +7,16 @@ Each file has these parts:
 - Each type has a schema with its full definition (`definitions`), so a reader does not need our packages.
 - Each topic has a channel with its quality of service and type hash.
 - Chunks are small and compressed (256 KiB, closed by each `BagWriter.flush`), so that a kill of the process
-  costs only what came since the last flush.
-- A metadata record ``contact_dynamics`` at the head says how the run was made. rosbag2's own is at the end.
+  loses only the messages since the last flush.
+- A metadata record ``contact_dynamics`` at the head describes the run; rosbag2's own record is at the end.
 
-`limits.LogLimits` says when a file is finished and another one begins, and which files are kept. The index of
-a file grows with each chunk and is freed with its file.
+`limits.LogLimits` determines when a new file begins and which files are kept. The index of a file grows with
+each chunk and is freed with its file.
 
-The writer is not thread-safe. `recorder.Recorder` owns one on its own thread. Messages are bytes as a
-subscription with ``raw=True`` gives them. The result of ``rclpy.serialization.serialize_message`` ends in
-random bytes and is not for logs. What was flushed survives the death of the process. What was synchronised
-survives that of the machine too.
+The writer is not thread-safe; `recorder.Recorder` owns one on its own thread. Messages are bytes as a
+subscription with ``raw=True`` receives them. The result of ``rclpy.serialization.serialize_message`` ends in
+random bytes and must not be logged. Flushed messages survive the death of the process, synchronised ones also
+that of the machine.
 """
 
 from __future__ import annotations
@@ -58,10 +58,10 @@ if TYPE_CHECKING:
     from contact_dynamics.recording.definitions import TypeDefinition
 
 _LATEST_NS: Final = 2**63 - 1  # rosbag2 keeps times as int64
-_SHORTEST_MESSAGE: Final = 5  # bytes: encapsulation and one of content, which even an empty message has
-_DELETED_KEY: Final = "deleted_files"  # in metadata.yaml: how many files the limit has cost
-_LEAST_ROOM: Final = 1_000_000  # bytes on the disk with which an interrupted log goes on
-_METADATA_EVERY_S: Final = 5.0  # how old the counts of metadata.yaml may grow while writing
+_SHORTEST_MESSAGE: Final = 5  # bytes: encapsulation, and one byte of content even in an empty message
+_DELETED_KEY: Final = "deleted_files"  # in metadata.yaml: number of files deleted to keep the limit
+_LEAST_ROOM: Final = 1_000_000  # bytes of free disk space required to resume a log
+_METADATA_EVERY_S: Final = 5.0  # update period of the counts in metadata.yaml
 
 
 _GAPS_KEY: Final = "gaps"  # in the record of the run
@@ -72,7 +72,7 @@ class Gap(NamedTuple):
 
     Attributes:
         from_ns: When the first of them was received, ns since the epoch.
-        until_ns: When the log went on, ns since the epoch.
+        until_ns: When the log resumed, ns since the epoch.
         lost: Number of messages.
     """
 
@@ -81,26 +81,26 @@ class Gap(NamedTuple):
     lost: int
 
     def __str__(self) -> str:
-        """Return in words what is missing."""
+        """Describe what is missing."""
         began = datetime.fromtimestamp(self.from_ns / NS_PER_S, timezone.utc)
         seconds = (self.until_ns - self.from_ns) / NS_PER_S
         return f"{self.lost} messages of {seconds:.1f} s from {began:%Y-%m-%d %H:%M:%S} UTC are missing"
 
 
 def _record_of_gaps(gaps: Sequence[Gap]) -> dict[str, str]:
-    """Return what the record of the run says of gaps."""
+    """Return the run record's entry about gaps."""
     return {_GAPS_KEY: json.dumps([gap._asdict() for gap in gaps])} if gaps else {}
 
 
 def _stamp_ns(definition: TypeDefinition, data: bytes, *, otherwise_ns: int) -> int:
-    """Return the stamp with which a serialised message begins, ns, or another time if it has none."""
+    """Return the leading stamp of a serialised message, ns, or ``otherwise_ns`` if it has none."""
     if definition.is_service_event:
         stamp_ns = event_info(data).stamp_ns
     elif definition.begins_with_stamp:
         stamp_ns = leading_stamp_ns(data)
     else:
         return otherwise_ns
-    return max(0, stamp_ns)  # MCAP has no time before the epoch, but the message itself keeps its stamp
+    return max(0, stamp_ns)  # MCAP has no times before the epoch; the message itself keeps its stamp
 
 
 class BagWriter(AbstractContextManager["BagWriter"]):
@@ -122,7 +122,7 @@ class BagWriter(AbstractContextManager["BagWriter"]):
             run: how the run was made (parameters, configuration), kept in the log beside the package's
                 version.
             limits: when a file is finished, and which files are kept.
-            on_deleted: a function that is told, in words, each time that the oldest file was deleted.
+            on_deleted: a function that is called with a description each time the oldest file is deleted.
         """
         self._run = {"version": version_of_this_package(), **_checked_run(run or {})}
         self.folder = Path(folder)
@@ -158,7 +158,7 @@ class BagWriter(AbstractContextManager["BagWriter"]):
 
     @property
     def safe_count(self) -> int:
-        """Number of messages that a death of this process can no longer take."""
+        """Number of messages that survive the death of this process."""
         return self._earlier_count + sum(self._file.summary.counts.values())
 
     def add_topic(self, name: str, type_name: str, qos: Any = None) -> None:
@@ -168,9 +168,9 @@ class BagWriter(AbstractContextManager["BagWriter"]):
             name: the topic's name with its leading slash. A service's events are at
                 ``<service>/_service_event``.
             type_name: ``package/msg/Name``, or ``package/srv/Name_Event``.
-            qos: the quality of service of the publisher, as rclpy's ``QoSProfile`` or an `OfferedQos`, whose
-                defaults are taken for None. A list has what each of several publishers offers, and is empty
-                where none is known yet.
+            qos: the quality of service of the publisher, as rclpy's ``QoSProfile`` or an `OfferedQos`. None
+                means the defaults of `OfferedQos`. A list contains the offers of several publishers; it is
+                empty if none is known yet.
 
         Raises:
             InvalidFieldError: the name is taken or not absolute, or the type is not installed.
@@ -196,11 +196,12 @@ class BagWriter(AbstractContextManager["BagWriter"]):
             topic: the name of a declared topic.
             data: the serialised message (CDR).
             log_time_ns: when the message was received, ns since the epoch.
-            publish_time_ns: when its source made it, ns. For None it is the stamp with which the message
-                begins, or the time of reception if it has no stamp.
+            publish_time_ns: when its source made it, ns. None means the message's leading stamp, or the time
+                of reception if it has no stamp.
 
         Raises:
-            InvalidFieldError: an argument is not as described. Nothing is written then, and the log goes on.
+            InvalidFieldError: an argument is not as described. The message is not written, and the log
+                continues.
         """
         self._check_open()
         declared = self._declared(topic)
@@ -218,7 +219,7 @@ class BagWriter(AbstractContextManager["BagWriter"]):
         self._file.write(topic, data, log_time_ns=log_time, publish_time_ns=publish_time)
 
     def change_run(self, run: Mapping[str, str]) -> None:
-        """Let the files that begin from now on say that the run is made so, and not the present one."""
+        """Replace the record of the run in all files that begin from now on, but not in the current one."""
         self._run = {"version": version_of_this_package(), **_checked_run(run)}
 
     def flush(self) -> None:
@@ -229,13 +230,13 @@ class BagWriter(AbstractContextManager["BagWriter"]):
             self._write_metadata_file()
 
     def resume(self, gap: Gap) -> None:
-        """Go on in another file after the disk refused a write; its record says what is missing.
+        """Continue in another file after a failed write; its record says what is missing.
 
         Args:
             gap: the time of which the log has no messages.
 
         Raises:
-            OSError: the disk still refuses. It may be tried again.
+            OSError: writing still fails. The call may be repeated.
         """
         if shutil.disk_usage(self.folder).free < _LEAST_ROOM:
             raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
@@ -255,7 +256,7 @@ class BagWriter(AbstractContextManager["BagWriter"]):
         self._file.sync()
 
     def close(self) -> None:
-        """Finish the file and ``metadata.yaml``, or only the latter after a failed write. Twice is fine."""
+        """Finish the file and ``metadata.yaml``, or only the latter after a failed write. May be repeated."""
         if self._closed:
             return
         self._closed = True
@@ -293,7 +294,7 @@ class BagWriter(AbstractContextManager["BagWriter"]):
         self._file.finish(self._metadata([self._file.summary]))
 
     def _is_full(self, log_time_ns: int) -> bool:
-        """Return whether the file has reached its limit before a message of some time."""
+        """Return whether the file reaches its limit before a message with this log time."""
         begun_ns = self._file.start_ns
         if begun_ns is None:
             return False
@@ -304,12 +305,12 @@ class BagWriter(AbstractContextManager["BagWriter"]):
         return span is not None and log_time_ns - begun_ns >= span * NS_PER_S
 
     def _next_file(self) -> None:
-        """Finish the file, begin another one, and delete the oldest ones if there is a limit."""
+        """Finish the file, begin another one, and delete the oldest ones as the limit requires."""
         self._finish_file()
         self._leave(self._file, self._begun_file(self._deleted + len(self._finished) + 1))
 
     def _leave(self, file: BagFile, following: BagFile) -> None:
-        """Go on in another file."""
+        """Continue in another file."""
         self._finished.append(file.summary)
         self._earlier_count += sum(file.summary.counts.values())
         file.close()
@@ -317,7 +318,7 @@ class BagWriter(AbstractContextManager["BagWriter"]):
         self._delete_oldest()
 
     def _begun_file(self, number: int) -> BagFile:
-        """Return another file with all topics. If the disk refuses, nothing of the file is left."""
+        """Return a new file with all topics. If writing fails, the file is removed."""
         try:
             file = self._new_file(number)
             try:
@@ -334,7 +335,7 @@ class BagWriter(AbstractContextManager["BagWriter"]):
         return file
 
     def _delete_oldest(self) -> None:
-        """Delete the files that the limit has no room for beside the one that begins."""
+        """Delete the oldest files until the new one fits within the limit."""
         limits = self._limits
         oldest: list[FileSummary] = []
         if limits.kept_bytes is not None and limits.file_bytes is not None:

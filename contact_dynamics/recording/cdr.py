@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Turns serialised messages (CDR) into objects, with nothing but the types' texts in the log.
+"""Deserialises messages (CDR) by the type definitions in the log alone.
 
-A message begins with four bytes of encapsulation, of which the second says the byte order. Its fields follow
-one after the other. A number is aligned to its own size, counted from the fifth byte. A string is its length
-with the closing zero, as uint32, and its bytes. A sequence is its count, as uint32, and its elements.
+A message begins with four bytes of encapsulation, the second of which gives the byte order. Its fields follow
+one another. A number is aligned to its own size, counted from the fifth byte. A string is its length with the
+closing zero, as uint32, and its bytes. A sequence is its count, as uint32, and its elements.
 
 Source: OMG, Real-time Publish-Subscribe Wire Protocol 2.2, section 10; ROS 2 calls it ``cdr``.
 
@@ -11,11 +11,11 @@ A message that begins with a ``std_msgs/Header`` or a time has int32 seconds and
 4 and 8. A service event begins with ``service_msgs/ServiceEventInfo``: uint8 event type at 4, stamp at 8 and
 12, 16 bytes of client identity at 16, int64 sequence number at 36. These are read without the type.
 
-Each type is compiled once. Numbers that follow each other, across nested messages too, are one `struct`; only
-where it begins within eight bytes matters, because a string before it can have any length.
+Each type is compiled once. Consecutive numbers, also across nested messages, are read by one `struct` for
+each alignment of their first byte modulo eight, which depends on the length of the strings before them.
 
-The library `mcap` leaves messages as bytes. `mcap-ros2-support` refuses types with an underscore in their
-name, which the events of services have.
+The library `mcap` returns messages as bytes. `mcap-ros2-support` rejects types with an underscore in their
+name, such as the events of services.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ _NOTHING: Final = "x"  # a byte that means nothing
 _STRING: Final = "s"
 _SIZES: Final = {code: struct.calcsize(f"<{code}") for code in PRIMITIVES.values()} | {
     _NOTHING: 1,
-    _STRING: 4,  # its length comes first
+    _STRING: 4,  # preceded by its length
 }
 
 _Part: TypeAlias = tuple[str, int | None]
@@ -76,7 +76,7 @@ def deserialize(data: bytes, message_type: type[Message]) -> Message:
 
 
 def _message_and_end(data: bytes, message_type: type[Message]) -> tuple[Message, int]:
-    """Return the message that the bytes are, and where it ends among them."""
+    """Return the deserialised message and the position of its end."""
     if len(data) < _HEAD or data[0] != 0 or data[1] not in _CDR:
         raise InvalidFieldError("data", f"bytes that begin with {data[:_HEAD].hex()}", "CDR: 0000 or 0001")
     try:
@@ -91,8 +91,8 @@ def _message_and_end(data: bytes, message_type: type[Message]) -> tuple[Message,
 def decode_columns(messages: Sequence[LoggedMessage]) -> tuple[Message, NDArray[np.intp]]:
     """Return many messages of a topic as one, whose numbers are arrays with a row for each of them.
 
-    They are those with the type, the length and the strings of the first. Their places among ``messages``
-    come second; there are none if the type has sequences.
+    Only messages with the type, the length and the strings of the first one are included. The second result
+    is their indices in ``messages``; it is empty if the type has sequences.
 
     Raises:
         InvalidFieldError: the first one cannot be decoded, as by `decode_without_ros`.
@@ -124,9 +124,9 @@ def decode_columns(messages: Sequence[LoggedMessage]) -> tuple[Message, NDArray[
 
 
 def cut_to_its_end(data: bytes, *, type_name: str, definition: str) -> bytes:
-    """Return a serialised message of a type, whose text is ros2msg, without what follows its end.
+    """Return a serialised message without the bytes after its end; ``definition`` is ros2msg text.
 
-    What ``rclpy.serialization.serialize_message`` returns ends in some bytes of whatever was in memory.
+    ``rclpy.serialization.serialize_message`` appends some bytes of uninitialised memory.
     """
     _, end = _message_and_end(data, _type_of(type_name, definition))
     return data[:end]
@@ -139,14 +139,14 @@ def _type_of(type_name: str, definition: str) -> type[Message]:
 
 
 class _Plan(NamedTuple):
-    """How messages of a type are read: first all values in their order, then the objects that hold them."""
+    """A compiled reader of a type: it reads all values in order, then builds objects from them."""
 
     reads: tuple[Read, ...]
     build: Build
-    parts: tuple[_Part, ...]  # the numbers and strings that are read; empty if there are sequences too
+    parts: tuple[_Part, ...]  # the numbers and strings of the type; empty if it has sequences
 
     def message_at(self, data: bytes, at: int) -> tuple[Message, int]:
-        """Return the message that begins at a place, and where it ends."""
+        """Return the message that begins at a position, and the position of its end."""
         values: list[Any] = []
         for read in self.reads:
             at = read(data, at, values)
@@ -159,16 +159,16 @@ def _is_of_numbers(part: _Part | Read) -> bool:
 
 @lru_cache(maxsize=512)
 def _plan(message_type: Any, order: str) -> _Plan:
-    """Return how messages of a type, which is a subclass of `Message`, are read."""
+    """Return the compiled reader of a type, which is a subclass of `Message`."""
     parts: list[_Part | Read] = []
-    places = itertools.count()  # one for each value
+    places = itertools.count()  # indices of the values
 
     def add(owner: type[Message]) -> Build:
-        """Add what a message consists of, and return what makes it of the values."""
+        """Add the parts of a message, and return a function that builds it from the values."""
         singles: list[tuple[str, int]] = []
         nested: list[tuple[str, Build]] = []
         if not owner.FIELDS:
-            parts.append((_NOTHING, None))  # a type without fields has a byte that means nothing
+            parts.append((_NOTHING, None))  # a type without fields has one padding byte
         for field in owner.FIELDS:
             code = PRIMITIVES.get(field.type_name)
             if not field.is_array and field.type_name in owner.TYPES:
@@ -196,7 +196,7 @@ def _plan(message_type: Any, order: str) -> _Plan:
 def _building(
     message_type: type[Message], singles: list[tuple[str, int]], parts: list[tuple[str, Build]]
 ) -> Build:
-    """Return what makes a message of values, given the places of some and what makes the others."""
+    """Return a function that builds a message: ``singles`` are indices of values, ``parts`` build others."""
     make = message_type.__new__
 
     def build(values: list[Any]) -> Any:
@@ -212,9 +212,9 @@ def _building(
 
 
 def _numbers(numbers: tuple[_Part, ...], order: str) -> Read:
-    """Return what reads numbers, and arrays of fixed lengths, that follow each other."""
+    """Return a function that reads consecutive numbers and arrays of fixed lengths."""
     layouts: dict[int, struct.Struct] = {}
-    arrays: list[tuple[int, str, int]] = []  # places among the values, what they are, and how many
+    arrays: list[tuple[int, str, int]] = []  # index among the values, type code, length
     index = 0
     for code, count in numbers:
         if count is not None:
@@ -240,7 +240,7 @@ def _numbers(numbers: tuple[_Part, ...], order: str) -> Read:
 
 
 def _layout(numbers: tuple[_Part, ...], order: str, offset: int) -> str:
-    """Return the format of numbers that begin ``offset`` bytes behind an aligned place."""
+    """Return the format of numbers that begin ``offset`` bytes after an aligned position."""
     parts = [order]
     for code, count in numbers:
         size = _SIZES[code]
@@ -254,11 +254,11 @@ def _layout(numbers: tuple[_Part, ...], order: str, offset: int) -> str:
 def _fixed(raw: bytes, code: str, count: int, order: str) -> Any:
     if code == "?":
         return list(struct.unpack(f"{count}?", raw))
-    return np.frombuffer(raw, dtype=np.dtype(f"{order}{code}")).astype(code)  # a copy, to write to
+    return np.frombuffer(raw, dtype=np.dtype(f"{order}{code}")).astype(code)  # a writable copy
 
 
 def _several(field: Field, owner: type[Message], order: str) -> Read:
-    """Return what reads a sequence, or an array of strings or messages."""
+    """Return a function that reads a sequence, or an array of strings or messages."""
     code = PRIMITIVES.get(field.type_name)
     if code is not None:
         return _sequence_of_numbers(field, code, order)
@@ -275,7 +275,7 @@ def _several(field: Field, owner: type[Message], order: str) -> Read:
 
     def read_messages(data: bytes, at: int, values: list[Any]) -> int:
         kind: Any = owner.TYPES[field.type_name]
-        plan = _plan(kind, order)  # only here, because a type can have a sequence of itself
+        plan = _plan(kind, order)  # compiled on use, since a type can contain a sequence of itself
         messages: list[Any] = []
         number, at = _length(field, length, data, at)
         for _ in range(number):
@@ -311,14 +311,14 @@ def _sequence_of_numbers(field: Field, code: str, order: str) -> Read:
 
 
 def _length(field: Field, length: struct.Struct, data: bytes, at: int) -> tuple[int, int]:
-    """Return how many elements there are, and where the first begins."""
+    """Return the number of elements and the position of the first one."""
     if field.count is not None:
         number = field.count
     else:
         at += (_HEAD - at) % length.size
         (number,) = length.unpack_from(data, at)
         at += length.size
-    if number > len(data) - at:  # each takes a byte at least
+    if number > len(data) - at:  # each takes at least one byte
         message = f"{field.name} claims {number} elements, {len(data) - at} bytes are left"
         raise ValueError(message)
     return number, at
@@ -364,7 +364,7 @@ _EVENT_TYPES: Final = tuple(EventType)
 
 
 class EventInfo(NamedTuple):
-    """The head of a service event: who asked, and when."""
+    """The head of a service event: the client and the time."""
 
     event_type: EventType  # whether this is a request or a response, at the client or the server
     stamp_ns: int  # time of the clock that was given to ``configure_introspection``, ns
@@ -373,7 +373,7 @@ class EventInfo(NamedTuple):
 
 
 def leading_stamp_ns(data: bytes) -> int:
-    """Return the stamp, in ns, of a serialised message that begins with a ``std_msgs/Header`` or a time."""
+    """Return the stamp, ns, of a serialised message that begins with a ``std_msgs/Header`` or a time."""
     seconds, nanoseconds = _unpack(_LEADING_STAMP, data)
     return int(seconds) * NS_PER_S + int(nanoseconds)
 

@@ -1,17 +1,17 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A message type's definition is its full text in ROS's notation and its hash, found by the ament prefixes.
+"""Finds a message type's definition (its full text in ROS's notation and its hash) by the ament prefixes.
 
-A log explains itself. For each type it has the `.msg` text, followed by the text of each type that it uses
-(MCAP's encoding ``ros2msg``: a line of 80 ``=``, a line ``MSG: package/Type``, the text). The texts are in
-``share/<package>/{msg,srv}/`` of the folders in ``AMENT_PREFIX_PATH``, and of this Python's own prefix, where
-packages from wheels are. No ROS library is needed.
+A log is self-describing: for each type it contains the `.msg` text, followed by the text of each type that it
+uses (MCAP's encoding ``ros2msg``: a line of 80 ``=``, a line ``MSG: package/Type``, the text). The texts are
+in ``share/<package>/{msg,srv}/`` of the folders in ``AMENT_PREFIX_PATH``, and of this Python's own prefix,
+where packages from wheels are. No ROS library is needed.
 
 The event type of a service, ``package/srv/Name_Event``, has no file. Its text is made here from the `.srv`,
 as a message with the fields ``info``, ``request``, ``response``. Most readers can decode this form. rosbag2
 itself writes the `.srv` text, which only rosbag2 understands.
 
-Bags of rosbag2 in SQLite from before ROS 2 Iron name the types of their topics and nothing more. The texts of
-published states' types are here for them (`standard_definition`). They have been the same since ROS 2 began.
+SQLite bags from before ROS 2 Iron contain only the names of their types. `standard_definition` has the texts
+for the types of published states, which have not changed since ROS 2 began.
 
 Not covered: types defined by `.idl` alone (no such type is logged here), actions.
 """

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""These errors tell of misused or damaged logs. A full disk raises its own `OSError`."""
+"""Errors and warnings about misused or damaged logs. A full disk raises `OSError`."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ class LogExistsError(ContactDynamicsError, FileExistsError):
 
 
 class LogFailedError(ContactDynamicsError):
-    """The log of a message is closed, or an earlier write to its disk failed."""
+    """The log is closed, or an earlier write to its disk failed."""
 
 
 class NotALogError(ContactDynamicsError):

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The readers of all kinds of files give these types to `bag_reader`, and unpack what is packed.
+"""Types that the readers of all file formats share, and decompression of files and messages.
 
-Chunks of MCAP, and files and messages of rosbag2's compression modes FILE and MESSAGE, are unpacked piece by
-piece, so that damaged data with a huge size take no memory. A packed file goes into a temporary one, because
-a reader has to jump about in it. A serialised message begins with a zero byte, and the magic number of packed
-data does not, so the first byte shows which of the two it is.
+Chunks of MCAP, and files and messages of rosbag2's compression modes FILE and MESSAGE, are decompressed piece
+by piece, so that damaged data that claim a huge size take no memory. A compressed file is unpacked into a
+temporary one, because readers need random access. A serialised message begins with a zero byte and compressed
+data do not, so the first byte distinguishes them.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ class Topic(NamedTuple):
     Attributes:
         name: Its name.
         type_name: Its type, "package/msg/Name" or "package/srv/Name_Event".
-        definition: The text of the type, which is empty unless it has MCAP's form ros2msg.
+        definition: The type definition, empty unless its encoding is MCAP's ros2msg.
         qos: The YAML list of what its publishers offered, which `bag_metadata.offered_qos` reads, or nothing.
         type_hash: The hash of its type, "RIHS01_...", or nothing.
     """
@@ -42,7 +42,7 @@ class Topic(NamedTuple):
 
 
 class StoredMessage(NamedTuple):
-    """A message as a file has it. Times are in ns since the epoch."""
+    """A message as stored in a file. Times are in ns since the epoch."""
 
     topic: Topic
     data: bytes
@@ -53,7 +53,7 @@ class StoredMessage(NamedTuple):
 class Span(NamedTuple):
     """A stretch of log times, ns since the epoch, by default all of them."""
 
-    start_ns: int = -(2**63)  # the first time that belongs to it
+    start_ns: int = -(2**63)  # the first time within it
     end_ns: int = 2**63 - 1  # the first time after it, or the end of time
 
 
@@ -74,7 +74,7 @@ class Loss:
     reason: str
 
     def __str__(self) -> str:
-        """Say what is lost and why."""
+        """Describe what is lost and why."""
         count = "an unknown number of" if self.messages is None else self.messages
         return f"bytes {self.begin} to {self.end}, {count} messages ({self.reason})"
 
@@ -82,17 +82,17 @@ class Loss:
 MAGICS: Final = {b"\x28\xb5\x2f\xfd": b"zstd", b"\x04\x22\x4d\x18": b"lz4"}
 """The first bytes of packed data, and MCAP's name of the packing."""
 
-SUFFIXES: Final = (".zstd", ".zst", ".lz4")  # the ending of a packed file's name
-MAX_BYTES: Final = 64 * 1024 * 1024  # the size of the largest message that is unpacked, bytes
+SUFFIXES: Final = (".zstd", ".zst", ".lz4")  # suffixes of compressed files
+MAX_BYTES: Final = 64 * 1024 * 1024  # the size of the largest message that is decompressed, bytes
 _PIECE: Final = 1024 * 1024  # bytes
 
 
 def uncompressed(compression: bytes, data: bytes, size: int) -> bytes:
-    """Return the unpacked data. Unpacking stops soon after ``size`` bytes.
+    """Return the decompressed data. Decompression stops soon after ``size`` bytes.
 
     Raises:
-        ValueError: MCAP has no such compression.
-        Exception: the data are damaged. The class is that of the unpacking library.
+        ValueError: MCAP does not define this compression.
+        Exception: the data are damaged. The class is that of the decompression library.
     """
     if compression == b"":
         return data
@@ -125,9 +125,9 @@ def unpacked_message(data: bytes) -> bytes:
 
 @contextmanager
 def unpacked_file(path: Path) -> Iterator[tuple[Path, str | None]]:
-    """Yield the path of a file's content, and why it ends early, or None if it does not.
+    """Yield the path of a file's content, and the reason if it ends early, else None.
 
-    The content of a packed file is in a temporary one, which is deleted afterwards.
+    A compressed file is unpacked into a temporary one, which is deleted afterwards.
     """
     if path.suffix not in SUFFIXES:
         yield path, None
@@ -148,7 +148,7 @@ def unpacked_file(path: Path) -> Iterator[tuple[Path, str | None]]:
 def _pieces(compression: bytes, packed: BinaryIO) -> Iterator[bytes]:
     stream: Any
     if compression == b"zstd":
-        import zstandard  # it comes with the mcap library, as lz4 does, and a log needs one of them at most
+        import zstandard  # a dependency of mcap, like lz4; a log needs at most one of them
 
         stream = zstandard.ZstdDecompressor().stream_reader(packed, read_across_frames=True)
     elif compression == b"lz4":

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A log that is written for weeks has limits: how it is cut into files and packed, and which are kept."""
+"""Limits of a log that is written for weeks: how it is split and compressed, and which files are kept."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ FILES_KEPT: Final = 2  # the number of files for which a limit on all files must
 
 
 class Compression(enum.Enum):
-    """The ways in which chunks can be packed, by MCAP's names."""
+    """Compression of chunks, by MCAP's names."""
 
     NONE = "none"
     LZ4 = "lz4"
@@ -29,11 +29,11 @@ class LogLimits:
     """The limits of a log's files. By default there are none.
 
     Attributes:
-        compression: How chunks are packed.
-        file_bytes: A file that has this size is finished, and another one begins. None means no limit.
-        file_seconds: s. The same for the time that a file spans. None means no limit.
-        kept_bytes: The oldest files are deleted, so that all files together stay below this size. It has room
-            for two files of ``file_bytes`` at least. None means that no file is deleted.
+        compression: Compression of chunks.
+        file_bytes: Size at which a file is finished and another one begins. None means no limit.
+        file_seconds: s, the same for the time span of a file. None means no limit.
+        kept_bytes: Limit on the total size: the oldest files are deleted to stay below it. At least twice
+            ``file_bytes``. None means that no file is deleted.
 
     Raises:
         InvalidFieldError: a limit is too small, or ``kept_bytes`` is given without ``file_bytes``.
@@ -61,4 +61,4 @@ class LogLimits:
             raise InvalidFieldError("kept_bytes", self.kept_bytes, allowed)
 
 
-UNLIMITED: Final = LogLimits()  # one file that grows as long as the log is written
+UNLIMITED: Final = LogLimits()  # one file of unlimited size

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""This file finds where the records of an MCAP file begin and end, and reads the summary at its end."""
+"""Locates the records of an MCAP file, and reads the summary at its end."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ if TYPE_CHECKING:
     from typing import BinaryIO
 
 MAGIC: Final = b"\x89MCAP0\r\n"
-HEAD: Final = struct.Struct("<BQ")  # the head of a record: its kind, and the length of what follows
-WINDOW: Final = 1024 * 1024  # bytes looked through at once
+HEAD: Final = struct.Struct("<BQ")  # the head of a record: its kind and the length of its content
+WINDOW: Final = 1024 * 1024  # bytes searched at once
 
 _LONGEST_CONTENT: Final = 16 * 1024 * 1024  # bytes, of a record that is neither chunk, message nor attachment
 
 
 class DamagedError(Exception):
-    """There is no whole record at a place of the file. This error never leaves the package."""
+    """There is no intact record at a position of the file. This error never leaves the package."""
 
 
 class McapFile:
@@ -38,9 +38,9 @@ class McapFile:
         self._stream = stream
 
     def bytes_at(self, position: int, count: int) -> bytes:
-        """Return this many bytes, or fewer where the file ends."""
+        """Return this many bytes, or fewer at the end of the file."""
         if position >= self.size:
-            return b""  # a position of a damaged file can be one that no system seeks to
+            return b""  # a damaged file can contain an impossible position
         self._stream.seek(position)
         return self._stream.read(max(0, min(count, self.size - position)))
 
@@ -56,9 +56,9 @@ class McapFile:
         return checksum
 
     def head(self, position: int) -> tuple[int, int, int]:
-        """Return the kind of the record at a position, and where its content begins and ends.
+        """Return the kind of the record at a position, and the begin and end of its content.
 
-        Where the file ends before the record, raise `DamagedError`.
+        Raise `DamagedError` if the file ends before the record.
         """
         head = self.bytes_at(position, HEAD.size)
         if len(head) < HEAD.size:
@@ -80,7 +80,7 @@ class McapFile:
 
 
 def demand(condition: bool, what: str) -> None:  # noqa: FBT001  as an assertion
-    """Raise `DamagedError` unless the condition holds. ``what`` says what is wrong."""
+    """Raise `DamagedError` with the text ``what`` unless the condition holds."""
     if not condition:
         message = f"{what} is wrong"
         raise DamagedError(message)
@@ -91,7 +91,7 @@ def parsed(record_type: Any, content: bytes) -> Any:
     stream = ReadDataStream(io.BytesIO(content))
     try:
         record = record_type.read(stream)
-    except Exception as error:  # damaged bytes make the library raise nearly anything
+    except Exception as error:  # on damaged bytes the library raises nearly any exception
         message = f"a {record_type.__name__} record is wrong: {error!r}"
         raise DamagedError(message) from error
     demand(stream.count == len(content), f"the length of a {record_type.__name__} record")
@@ -101,19 +101,19 @@ def parsed(record_type: Any, content: bytes) -> Any:
 _FOOTER: Final = struct.Struct("<BQQQI")  # head, start of the summary and of its offsets, checksum
 _CHECKSUM_BYTES: Final = 4
 _INDEX_BYTES: Final = 15  # bytes of a message index beside its entries, with its head
-_ENTRY_BYTES: Final = 16  # bytes of an entry, which belongs to one message
+_ENTRY_BYTES: Final = 16  # bytes of the entry for one message
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Summary:
-    """Definitions by their numbers, and where the chunks are."""
+    """Definitions by their numbers, and the index of the chunks."""
 
     schemas: dict[int, Schema] = field(default_factory=dict)
     channels: dict[int, Channel] = field(default_factory=dict)
     chunks: tuple[ChunkIndex, ...] = ()
 
     def messages_between(self, begin: int, end: int) -> int | None:
-        """Return how many messages the chunks have that begin in a stretch, or None without an index."""
+        """Return the number of messages in chunks that begin within a stretch, or None without an index."""
         chunks = [chunk for chunk in self.chunks if begin <= chunk.chunk_start_offset < end]
         if any(chunk.message_index_length == 0 for chunk in chunks):
             return None
@@ -124,7 +124,7 @@ class Summary:
 
 
 def read_summary(file: McapFile) -> Summary:
-    """Return a file's summary, empty if it has none; raise `DamagedError` if its end is not whole."""
+    """Return a file's summary, empty if it has none; raise `DamagedError` if its end is damaged."""
     stop = file.size - _FOOTER.size - len(MAGIC)
     tail = file.bytes_at(max(0, stop), _FOOTER.size + len(MAGIC))
     demand(stop > 0 and tail.endswith(MAGIC), "the end of the file")

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Reads the messages of an MCAP file. For a span of times it reads only the chunks that the index names.
+"""Reads the messages of an MCAP file. For a time span it reads only the chunks that the index lists.
 
-Otherwise it walks through the file from front to back, and skips what is damaged. The walk gives only whole
-records. A checksum shows that a chunk is whole. Any other record is checked by its lengths, each of which the
-file has twice. The length of a damaged record cannot be trusted, so the walk searches for the next whole
-record byte by byte. The bytes in between are a `Loss`. The summary at the end of the file, which has its own
-checksum, says how many messages were lost.
+Otherwise it walks through the file from front to back and yields only intact records. A chunk is verified by
+its checksum, any other record by its lengths, each of which the file contains twice. The length of a damaged
+record cannot be trusted, so the walk searches for the next intact record byte by byte; the bytes in between
+are a `Loss`. The number of lost messages comes from the summary at the end of the file, which has a checksum
+of its own.
 
 The walk needs memory for the largest chunk and the summary, whatever lengths a damaged file claims.
 """
@@ -51,7 +51,7 @@ class McapMessages:
     """An MCAP file to read from. `SqliteMessages` has the same methods."""
 
     def __init__(self, path: Path) -> None:
-        """Name the file, which is opened later."""
+        """Set the file, which `__enter__` opens."""
         self._path = path
 
     def __enter__(self) -> Self:
@@ -74,7 +74,7 @@ class McapMessages:
 
     @property
     def losses(self) -> list[Loss]:
-        """What could not be read by now."""
+        """The losses so far."""
         return self._walk.losses
 
     def messages(self, topics: Collection[str] | None, span: Span) -> Iterator[StoredMessage]:
@@ -111,7 +111,7 @@ class McapMessages:
     def extent(self) -> tuple[int, int] | None:
         """Return the first and the last log time, ns, or None without messages.
 
-        Without an index the last one is not known, and it is the first.
+        Without an index the last time is unknown, and the first one takes its place.
         """
         chunks = (self._walk.summary or Summary()).chunks
         filled = [chunk for chunk in chunks if chunk.message_end_time > 0]
@@ -122,7 +122,7 @@ class McapMessages:
         return None if first is None else (first.log_time, first.log_time)
 
     def run(self) -> dict[str, str] | None:
-        """Return the record of the run that made it, or None if there is none that is whole."""
+        """Return the record of the run that made the file, or None if none is intact."""
         for record in self._walk.records():
             if isinstance(record, Metadata) and record.name == RUN_RECORD:
                 run = unsealed_run(record.metadata)
@@ -133,7 +133,7 @@ class McapMessages:
 
 
 class _Definitions:
-    """Channels and schemas of one file. The file's summary has those that a lost chunk defined."""
+    """Channels and schemas of one file. Those that a lost chunk defined come from the file's summary."""
 
     def __init__(self, walk: McapWalk) -> None:
         self._walk = walk
@@ -190,7 +190,7 @@ WalkedRecord: TypeAlias = Schema | Channel | Message | Metadata
 
 
 class McapWalk:
-    """One walk through a file. `losses` is complete when `records` has ended."""
+    """One walk through a file. `losses` is complete once `records` is exhausted."""
 
     def __init__(self, file: McapFile) -> None:
         """Start at the head of the file.
@@ -202,7 +202,7 @@ class McapWalk:
         self._losses: list[Loss] = []
         self._summary: Summary | None = None
         self._chunked = False
-        self._unchecked = False  # messages without a checksum of their own were given
+        self._unchecked = False  # whether messages outside of chunks were yielded, which have no checksum
         self._readers: dict[int, Callable[[int, int], list[WalkedRecord]]] = {
             Opcode.CHUNK: self._chunk,
             Opcode.MESSAGE_INDEX: self._message_index,
@@ -217,7 +217,7 @@ class McapWalk:
             self._lose(0, len(MAGIC), "its first bytes are not those of an MCAP file", messages=0)
 
     def records(self) -> Iterator[WalkedRecord]:
-        """Yield all whole records, except repetitions and indexes, in the order of the file."""
+        """Yield all intact records, except repetitions and indexes, in the order of the file."""
         position: int | None = len(MAGIC)
         while position is not None:
             found: list[WalkedRecord] = []
@@ -262,7 +262,7 @@ class McapWalk:
 
     @property
     def losses(self) -> list[Loss]:
-        """The losses so far, with the number of messages if the summary has it."""
+        """The losses so far, with the number of messages if the summary contains it."""
         summary = self.summary if self._losses else None
         if summary is None:
             return list(self._losses)
@@ -284,11 +284,11 @@ class McapWalk:
         return self._summary
 
     def lose_undefined(self, count: int) -> None:
-        """Note that messages are lost because no whole record defines their channel."""
+        """Note that messages are lost because no intact record defines their channel."""
         self._lose(0, self._file.size, "what defines their channels is lost", messages=count)
 
     def lose_run(self) -> None:
-        """Note that the record of how the run was made is damaged."""
+        """Note that the record of the run is damaged."""
         self._lose(0, self._file.size, "the record of how the run was made fails its checksum", messages=0)
 
     def _lose(self, begin: int, end: int, reason: str, messages: int | None = None) -> None:
@@ -297,7 +297,7 @@ class McapWalk:
         )
 
     def _whole(self, kind: int, begin: int, end: int) -> list[WalkedRecord]:
-        """Return the content of a whole record, or raise `DamagedError` if it is not whole."""
+        """Return the content of a record, or raise `DamagedError` if it is not intact."""
         if kind in self._readers:
             return self._readers[kind](begin, end)
         if kind == Opcode.HEADER and begin == len(MAGIC) + HEAD.size:
@@ -327,7 +327,7 @@ class McapWalk:
         packed = self._file.bytes_at(data_begin, end - data_begin)
         try:
             data = uncompressed(name, packed, size)
-        except Exception as error:  # damaged bytes make the libraries raise nearly anything
+        except Exception as error:  # on damaged bytes the libraries raise nearly any exception
             message = f"a chunk cannot be unpacked: {error}"
             raise DamagedError(message) from error
         demand(len(data) == size, "the size of a chunk")
@@ -352,7 +352,7 @@ class McapWalk:
         return []
 
     def _find_whole(self, start: int) -> int | None:
-        """Return the position of the next whole chunk, metadata record or end of the data."""
+        """Return the position of the next intact chunk, metadata record or end of the data."""
         for window_start in range(start, self._file.size, WINDOW):
             window = self._file.bytes_at(window_start, WINDOW + HEAD.size)
             for match in _PERHAPS_WHOLE.finditer(window):

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Turns logged bytes into message objects: of ROS if it has the type, or of classes made from a log's texts.
+"""Turns logged bytes into message objects: of ROS's classes, or of classes made from the log's definitions.
 
-Such classes need no ROS. A log holds the full text of each type (`definitions`). Here it becomes a class with
-the fields, the defaults and the constants of the type. What reads a message of ROS can read one of these.
+The latter need no ROS. A log contains the full text of each type (`definitions`), from which a class with the
+fields, defaults and constants of the type is made. Code that reads ROS messages can read its objects too.
 
-Not covered: texts in another form than MCAP's ros2msg; wide strings.
+Not covered: texts in encodings other than MCAP's ros2msg; wide strings.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from contact_dynamics.recording.bag_reader import LoggedMessage
 
 
-PRIMITIVES: Final = {  # the types of one number, and what the `struct` module calls each
+PRIMITIVES: Final = {  # the numeric types with their codes in the `struct` module
     "bool": "?", "byte": "B", "char": "B", "int8": "b", "uint8": "B", "int16": "h", "uint16": "H",
     "int32": "i", "uint32": "I", "int64": "q", "uint64": "Q", "float32": "f", "float64": "d",
 }  # fmt: skip
@@ -45,10 +45,10 @@ class Field:
 
     name: str
     type_name: str  # a key of `PRIMITIVES`, "string", or "package/Name"
-    is_array: bool = False  # whether it holds several
-    count: int | None = None  # the number of elements, or None if each message has its own
-    default: Any = None  # the default in the type's text, or None if it has none
-    # The names of its values: the constants of its type that stand before it in the type's text.
+    is_array: bool = False  # whether it is an array or a sequence
+    count: int | None = None  # the number of elements, or None for a sequence
+    default: Any = None  # the default in the definition, or None if it has none
+    # The names of its values: the constants of its type that precede it in the definition.
     names: Mapping[Any, str] = field(default_factory=dict, compare=False)
 
 
@@ -57,7 +57,7 @@ class Message:
 
     Attributes:
         FIELDS: The fields of the type.
-        TYPES: The types of the messages that it is built of, by "package/Name".
+        TYPES: The types of nested messages, by "package/Name".
     """
 
     FIELDS: ClassVar[tuple[Field, ...]] = ()
@@ -90,19 +90,20 @@ class Message:
         return array(code) if field.count is None else np.zeros(field.count, dtype=code)
 
 
-PYTHON_TYPES: Final = {  # what Python calls a number of each of `PRIMITIVES`
+PYTHON_TYPES: Final = {  # the Python type of each of `PRIMITIVES`
     name: {"?": bool, "f": float, "d": float}.get(code, int) for name, code in PRIMITIVES.items()
 }
 
 
 @lru_cache(maxsize=256)
 def message_types(type_name: str, definition: str) -> dict[str, type[Message]]:
-    """Return the classes of a type and of all that it is built of, by "package/Name".
+    """Return the classes of a type and of all its nested types, by "package/Name".
 
     The ``definition`` is its text in MCAP's ros2msg form.
 
     Raises:
-        InvalidFieldError: a line of the text is none of a message's, or it leaves out a type that it names.
+        InvalidFieldError: a line of the text is not valid in a message definition, or a type that it uses is
+            missing.
     """
     package, _, name = type_name.partition("/")[0], "", type_name.rpartition("/")[2]
     first, *others = _HEADING.split(definition)
@@ -169,7 +170,7 @@ def _default(text: str, type_name: str, *, is_array: bool) -> Any:
 
 
 def _value(text: str, type_name: str) -> Any:
-    """Return a constant or a default. What follows a number is a comment."""
+    """Return a constant or a default. Text after a number is a comment."""
     if type_name in {"string", "wstring"}:
         quoted = re.match(r"""(["'])(.*)\1""", text)
         return quoted[2] if quoted else text
@@ -203,6 +204,6 @@ def message_class(type_name: str) -> Any:
 
 def decode(message: LoggedMessage) -> Any:
     """Return the logged ROS message. A service's event has ``info``, ``request`` and ``response``."""
-    from rclpy.serialization import deserialize_message  # here, for logs are read without ROS too
+    from rclpy.serialization import deserialize_message  # imported here, since logs are also read without ROS
 
     return deserialize_message(message.data, message_class(message.type_name))

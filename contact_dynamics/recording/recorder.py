@@ -1,18 +1,18 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A recorder writes a log beside a running server. To hand over a message takes µs and never raises.
+"""Writes a log beside a running server. Recording a message takes microseconds and never raises.
 
-Every 100 ms (sooner above 1 MiB) a thread takes the messages that wait, writes and flushes them. So a kill of
-the process costs at most that much. Every second it waits until the disk itself has them, so a loss of power
-costs little more. `Recorder.settle` returns when that is done for all that was handed over before.
+Every 100 ms (sooner above 1 MiB) a thread writes and flushes the queued messages, so that a kill of the
+process loses at most these. Every second it synchronises the file with the disk, so that a power failure
+loses little more. `Recorder.settle` returns when all messages recorded before it are on the disk.
 
-The queue has a limit in bytes. If the disk stalls, messages wait until there are `MAX_WAITING_BYTES`. Newer
-ones are then dropped and counted, to spare the server's memory.
+The queue has a limit in bytes. If the disk stalls, messages wait until they fill `MAX_WAITING_BYTES`. Newer
+ones are then dropped and counted, to limit the server's memory.
 
-If the disk refuses a write (it is full), the file ends where it was last whole. Messages from then on are
-counted as lost until there is room again, which the thread looks for every second. The log then continues in
-another file, whose record says what is missing.
+If a write fails (the disk is full), the file is cut back to its last complete state. Messages are counted as
+lost until there is room again, which the thread checks every second. The log then continues in another file,
+whose record says what is missing.
 
-``on_problem`` is called when a problem of some kind begins, and again every minute while it goes on.
+``on_problem`` is called when a problem of some kind begins, and again every minute while it lasts.
 `Recorder.status` can be read at any time.
 """
 
@@ -41,9 +41,9 @@ RESUME_EVERY_S: Final = 1.0
 TELL_EVERY_S: Final = 60.0
 MAX_WAITING_BYTES: Final = 64 * 1024 * 1024  # a minute of Odometry at 1 kHz
 
-_ITEM_BYTES: Final = 200  # what a message waiting costs beside its data
-_WAKE_BYTES: Final = 1024 * 1024  # waiting bytes that wake the thread before its time
-_SETTLE_WAITS: Final = 10  # in so many parts the disk is waited for; a process that stands still loses one
+_ITEM_BYTES: Final = 200  # overhead of a waiting message
+_WAKE_BYTES: Final = 1024 * 1024  # number of waiting bytes that wakes the thread early
+_SETTLE_WAITS: Final = 10  # number of parts of the wait for the disk; a stall of the process uses up only one
 
 
 class LogProblem(enum.Enum):
@@ -57,8 +57,8 @@ class LogProblem(enum.Enum):
 class Problem(NamedTuple):
     """A problem of a kind."""
 
-    text: str  # what was wrong the last time, in words
-    last: float  # s, by `time.monotonic`. When that was.
+    text: str  # description of the last occurrence
+    last: float  # s, by `time.monotonic`, time of the last occurrence
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -70,7 +70,7 @@ class RecorderStatus:
         lost: Number of messages dropped because the disk failed, the queue was full, or they were invalid.
         waiting: Number of messages that are not in the file yet.
         max_waiting_bytes: The most memory that waiting messages have taken so far, bytes.
-        is_interrupted: Whether nothing is written now, which is a problem of that kind.
+        is_interrupted: Whether writing is suspended after a failure.
         problems: The problems so far, by their kind.
     """
 
@@ -83,7 +83,7 @@ class RecorderStatus:
 
     @property
     def problem(self) -> str | None:
-        """All problems so far in words, or None if there was none."""
+        """A description of all problems so far, or None if there was none."""
         return "; ".join(each.text for each in self.problems.values()) or None
 
 
@@ -99,9 +99,9 @@ class _RunChange(NamedTuple):
 
 
 class _Interruption(NamedTuple):
-    from_ns: int  # since the epoch: what was received from then on is missing
+    from_ns: int  # since the epoch: messages received from then on are missing
     lost_before: int  # messages
-    again: float  # s, by a clock that nobody sets: when to try to go on
+    again: float  # s, on the monotonic clock: when to try to resume
 
 
 class Recorder(AbstractContextManager["Recorder"]):
@@ -119,10 +119,10 @@ class Recorder(AbstractContextManager["Recorder"]):
 
         Args:
             writer: the log. Nobody else may use it from here on.
-            on_problem: a function that takes a problem in words, when one of its kind begins, and each minute
-                while it goes on. The default warns through `logging`.
-            on_resumed: the same for what is missing, when a log that was interrupted goes on.
-            max_waiting_bytes: if this much waits, newer messages are dropped and counted.
+            on_problem: a function that is called with a description when a problem begins, and each minute
+                while it lasts. The default warns through `logging`.
+            on_resumed: the same, with a description of what is missing, when an interrupted log resumes.
+            max_waiting_bytes: size of the queue above which newer messages are dropped and counted.
         """
         self.folder = writer.folder
         self._writer = writer
@@ -131,7 +131,7 @@ class Recorder(AbstractContextManager["Recorder"]):
         self._max_waiting_bytes = max_waiting_bytes
         self._lock = threading.Lock()
         self._items: list[_Item | _RunChange] = []
-        self._qos: dict[str, Any] = {}  # by topic, to be declared anew
+        self._qos: dict[str, Any] = {}  # by topic, to be declared again
         self._waiting_bytes = 0
         self._most_waiting_bytes = 0
         self._given = 0
@@ -146,7 +146,7 @@ class Recorder(AbstractContextManager["Recorder"]):
         self._settled = threading.Condition(self._lock)
         self._asked_to_settle = False
         self._synced = time.monotonic()
-        self._on_disk = 0  # number of the messages given that are on the disk itself, or lost
+        self._on_disk = 0  # number of recorded messages that are on the disk, or lost
         self._thread = threading.Thread(target=self._run, name="contact_dynamics log", daemon=True)
         self._thread.start()
 
@@ -170,7 +170,7 @@ class Recorder(AbstractContextManager["Recorder"]):
     def record(
         self, topic: str, data: bytes, *, log_time_ns: int, publish_time_ns: int | None = None
     ) -> None:
-        """Hand over one message from any thread, with the arguments of `BagWriter.write`. It never raises."""
+        """Record one message, from any thread, with the arguments of `BagWriter.write`. It never raises."""
         size = _size(data)
         with self._lock:
             self._given += 1
@@ -200,7 +200,7 @@ class Recorder(AbstractContextManager["Recorder"]):
             self._qos[topic] = qos
 
     def change_run(self, run: Mapping[str, str]) -> None:
-        """Let the files that begin after the messages handed over so far say that the run is made so."""
+        """Replace the record of the run in the files that begin after the messages recorded so far."""
         with self._lock:
             if not self._dead and not self._closing:
                 self._items.append(_RunChange(run))
@@ -209,11 +209,10 @@ class Recorder(AbstractContextManager["Recorder"]):
         return not (self._dead or self._closing or self._interruption is not None)
 
     def settle(self, *, timeout_s: float = 10.0) -> bool:
-        """Wait until the disk itself has all messages handed over so far. Return whether it has them.
+        """Wait until all messages recorded so far are on the disk, and return whether they are.
 
-        It does not if the log is interrupted, or if the disk hangs for longer than ``timeout_s``. While the
-        whole process stands still, as on a starved machine, it is not the disk that hangs, and little time
-        counts.
+        They are not if the log is interrupted, or if the disk hangs for longer than ``timeout_s``. Time in
+        which the whole process is stalled, as on an overloaded machine, hardly counts.
         """
         with self._lock:
             given = self._given
@@ -229,8 +228,8 @@ class Recorder(AbstractContextManager["Recorder"]):
     def close(self, *, timeout_s: float = 10.0) -> RecorderStatus:
         """Write all waiting messages, finish the file, and return the status. Later messages count as lost.
 
-        If the disk hangs for longer than ``timeout_s``, the method returns, and the status says that messages
-        wait.
+        If the disk hangs for longer than ``timeout_s``, the method returns with a status in which messages
+        are waiting.
         """
         with self._lock:
             self._closing = True
@@ -252,11 +251,11 @@ class Recorder(AbstractContextManager["Recorder"]):
             self._die(error)
 
     def _take(self) -> bool:
-        """Write what waits, and return whether the log is to be closed now."""
+        """Write the waiting messages, and return whether to close the log now."""
         self._wake.wait(FLUSH_EVERY_S)
         self._wake.clear()
         with self._lock:
-            closing = self._closing  # once it is set, nothing is added behind these items
+            closing = self._closing  # once it is set, nothing is added after these items
             items, self._items = self._items, []
             qos, self._qos = self._qos, {}
             given = self._given
@@ -277,14 +276,14 @@ class Recorder(AbstractContextManager["Recorder"]):
         return closing
 
     def _resume(self) -> bool:
-        """Try to go on after an interruption, and return whether the log is to be closed now."""
+        """Try to resume after an interruption, and return whether to close the log now."""
         self._wake.wait(FLUSH_EVERY_S)
         self._wake.clear()
         with self._lock:
             interruption = self._interruption
             if self._closing or interruption is None or time.monotonic() < interruption.again:
                 return self._closing
-            self._interruption = None  # so that messages wait again, which are lost only if it fails
+            self._interruption = None  # messages wait again, and are lost only if resuming fails
             lost = self._lost - interruption.lost_before
         gap = Gap(from_ns=interruption.from_ns, until_ns=time.time_ns(), lost=lost)
         try:
@@ -326,7 +325,7 @@ class Recorder(AbstractContextManager["Recorder"]):
     def _interrupt(
         self, error: OSError, items: list[_Item | _RunChange], before: _Interruption | None = None
     ) -> None:
-        """Lose the items, and write nothing until the disk takes it; ``before`` is the interruption."""
+        """Count the items as lost, and suspend writing; ``before`` is an interruption that continues."""
         with self._lock:
             dropped = [*items, *self._items]
             lost_before = self._lost
@@ -352,7 +351,7 @@ class Recorder(AbstractContextManager["Recorder"]):
             self._writer.close()
 
     def _drop(self) -> None:
-        """Count all that waits as lost."""
+        """Count all waiting messages as lost."""
         self._items = []
         self._waiting_bytes = 0
         self._written = self._writer.safe_count
@@ -372,5 +371,5 @@ class Recorder(AbstractContextManager["Recorder"]):
 
 
 def _size(data: object) -> int:
-    # The writer refuses what is not bytes.
+    # The writer rejects anything but bytes.
     return _ITEM_BYTES + (len(data) if isinstance(data, bytes) else 0)

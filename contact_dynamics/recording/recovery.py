@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Rewrites a damaged or unfinished log, so that every reader takes it.
+"""Rewrites a damaged or unfinished log so that every reader accepts it.
 
-What can be read is written into a new folder: the same topics, types and messages, with an index and an end,
-and a ``metadata.yaml`` that fits. The damaged log stays as it is.
+The readable part is written to a new folder: the same topics, types and messages, with an index, an end, and
+a matching ``metadata.yaml``. The damaged log is not changed.
 """
 
 from __future__ import annotations
@@ -40,15 +40,15 @@ _TOLD_EVERY: Final = 1000  # messages
 def recover(
     path: Path, folder: Path, *, on_progress: Callable[[int], object] = lambda _: None
 ) -> tuple[int, list[Loss]]:
-    """Write what can be read of a log into a new folder; return how many messages, and what is lost.
+    """Write the readable part of a log to a new folder; return the number of messages, and the losses.
 
-    ``on_progress`` is told now and then how many messages were written.
+    ``on_progress`` is called now and then with the number of messages written.
 
     Raises:
-        NotALogError: it is no log.
-        NotSupportedError: it is SQLite, which its own tools repair.
+        NotALogError: the path is not a log.
+        NotSupportedError: the log is SQLite, which SQLite's own tools repair.
         LogExistsError: the folder exists.
-        OSError: the disk refuses.
+        OSError: a write failed.
     """
     paths = BagReader(path).paths
     for each in paths:
@@ -105,7 +105,7 @@ def _rewrite(
     *,
     on_written: Callable[[int], object],
 ) -> FileSummary:
-    """Write one file anew, add its topics to those of the log, and return what is in it."""
+    """Rewrite one file, add its topics to those of the log, and return its summary."""
     file = BagFile(target, run={"version": "unknown", **run}, compression=Compression.ZSTD, opened_ns=0)
     defined: dict[str, Topic] = {}
     try:

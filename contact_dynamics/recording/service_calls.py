@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Brings requests and responses of a log together, by client and sequence number.
+"""Matches the requests and responses of a log by client and sequence number.
 
 A call can leave four events. This file uses the server's two: request received, response sent. The client's
-two (request sent, response received) have the same contents, and are there only if the client is introspected
+two (request sent, response received) have the same contents, and exist only if the client is introspected
 too.
 """
 
@@ -59,17 +59,17 @@ class ServiceCall:
 
 
 def service_calls(messages: Iterable[LoggedMessage], *, max_held: int = MAX_HELD) -> Iterator[ServiceCall]:
-    """Yield the calls in the order in which their requests came.
+    """Yield the calls in the order of their requests.
 
-    A hard question is answered after quick ones that came later, so a call waits here until those before it
-    are answered. The calls without a response come when the log ends, or when many later ones wait.
+    Responses can be sent out of order, so a call is held back until all calls before it have a response.
+    Calls without a response are yielded at the end of the log, or when too many are held.
 
     Args:
-        messages: the messages of a log, also others than events.
-        max_held: how many answered calls wait for one before them, >= 0.
+        messages: the messages of a log. Those that are not service events are skipped.
+        max_held: maximum number of answered calls that wait for an earlier one, >= 0.
     """
     open_calls: dict[_Key, ServiceCall] = {}  # in the order of their requests
-    answered: set[_Key] = set()  # those of them whose response has come
+    answered: set[_Key] = set()  # those of them that have a response
     for message in messages:
         if not message.topic.endswith(EVENT_TOPIC_SUFFIX):
             continue

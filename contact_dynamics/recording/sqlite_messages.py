@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Reads the messages of a ``.db3`` file of rosbag2, which is an SQLite database.
 
-SQLite has no checksums of its own, so a flipped bit within a message is not found. If the structure of the
-file is damaged, the reader gives what it can reach on both sides of the damage.
+SQLite has no checksums, so a flipped bit within a message is not detected. If the structure of the file is
+damaged, the reader yields the messages that it can reach on both sides of the damage.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ class SqliteMessages:
     """A database to read from, with the methods of `McapMessages`."""
 
     def __init__(self, path: Path) -> None:
-        """Name the file, which is opened later."""
+        """Set the file, which `__enter__` opens."""
         self._path = path
         self.losses: list[Loss] = []
 
@@ -90,10 +90,10 @@ class SqliteMessages:
         """Return None, because the server writes no database."""
 
     def _opened(self) -> sqlite3.Connection:
-        """Return a connection that writes nothing, not even what a killed writer has left beside the file."""
+        """Return a read-only connection, which does not even apply the journal that a killed writer left."""
         address = self._path.resolve().as_uri()
         error: Exception | None = None
-        for options in ("mode=ro", "mode=ro&immutable=1"):  # the latter for folders that cannot be written
+        for options in ("mode=ro", "mode=ro&immutable=1"):  # the latter for read-only folders
             database = sqlite3.connect(f"{address}?{options}", uri=True, check_same_thread=False)
             try:
                 if hasattr(database, "setlimit"):  # not yet in Python 3.10
@@ -136,7 +136,7 @@ class SqliteMessages:
         }
 
     def _rows(self, query: str, bounds: tuple[int, ...]) -> Iterator[Any]:
-        """Yield rows by their number. After damage, go on in ever larger steps until rows come again."""
+        """Yield rows by their number. After damage, skip ahead in growing steps until rows are readable."""
         last, end = 0, self._last_id()
         step = 1
         while last < end:
