@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Logs that answer again: from the file alone and without ROS, every logged question is asked anew.
+"""Replays logs: recomputes the response to every logged request from the file alone, without ROS.
 
-There are five modes. `verify` compares the answers with those in the log, and reports it. `rows` makes a
-table, with what was measured after each answer, and `table_file` writes it. `view` draws. `publish` plays a
-log over ROS. The fifth lists its contents (`run`).
+There are five modes. `verify` compares the recomputed responses with the logged ones and reports the result.
+`rows` makes a table that includes the measurements after each response, and `table_file` writes it. `view`
+draws a log. `publish` plays it over ROS. The fifth mode lists its contents (`run`).
 
-Tables and pictures are made of `events`, which are read from a log of the server, or of any recording, with a
-configuration beside it and questions that are asked now.
+Tables and pictures are made of `events`, which come from a log of the server, or from any recording with a
+separate configuration and requests that are made on replay.
 
-`of_log` makes the server of a log, or rejects one whose services have other fields, and `again` answers as it
-did. `timeline` puts questions and states into the order in which they came, and takes both out of events.
-`arguments`, `run` and `progress` are the command.
+`of_log` configures the server of a log, or rejects a log whose services have different fields, and `again`
+recomputes that server's responses. `timeline` orders requests and states by their arrival and extracts both
+from service events. `arguments`, `run` and `progress` are the command.
 """

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Answers questions as the server of a log did, with its configuration and the states that it knew.
+"""Recomputes the responses of a log's server from its configuration and the states that it had received.
 
 It shares the server's core (`nodes.server_core`), and needs no ROS.
 """
@@ -32,21 +32,21 @@ if TYPE_CHECKING:
 
 @dataclass(slots=True, kw_only=True)
 class Refused:
-    """Messages of one topic that made no state."""
+    """Rejected messages of one topic."""
 
-    reason: str  # why the first of them was refused
-    count: int = 0  # how many were
+    reason: str  # why the first of them was rejected
+    count: int = 0  # number of rejected messages
 
 
 class ServerAgain(ServerCore):
-    """Answers requests as the server of a log did, from its configuration and what it had received.
+    """Answers requests as the server of a log did, from its configuration and the messages it received.
 
     Attributes:
-        refused: The messages that made no state, by topic.
+        refused: The rejected messages, by topic.
     """
 
     def __init__(self, source: ParameterSource) -> None:
-        """Take the configuration, from a log's record of its run or from a file.
+        """Read the configuration from a log's record of its run or from a file.
 
         Raises:
             ConfigurationError: a parameter is missing, or one is not allowed.
@@ -69,10 +69,11 @@ class ServerAgain(ServerCore):
         return frozenset({CHANGES} if isinstance(self._source, LoggedParameters) else ())
 
     def receive(self, message: LoggedMessage, *, is_live: bool = True) -> list[tuple[str, BodyState]]:
-        """Take a message of a topic, and return the bodies and their states, where it completes any.
+        """Process a message, and return the bodies whose state it completes, with these states.
 
-        It is about bodies, a tick of the simulated time, or a change of the configuration. Where the clock at
-        its reception is not known, so that it is not ``is_live``, a state is taken whatever its stamp.
+        The message contains poses or velocities of bodies, a tick of the simulated time, or a change of the
+        configuration. Without ``is_live``, the clock at its reception is unknown, and states are accepted
+        whatever their stamp.
         """
         if message.topic == CLOCK:
             self._tick(leading_stamp_ns(message.data))
@@ -116,9 +117,9 @@ class ServerAgain(ServerCore):
     def answer(
         self, service_type: str, request: object, make_response: Callable[[], Any], *, asked_ns: int
     ) -> Any:
-        """Return the response to a request as logged, also where the request is refused.
+        """Return the response to a logged request, also if the request is rejected.
 
-        It came at ``asked_ns``, ns, on the clock of the states' stamps.
+        The request arrived at ``asked_ns``, ns, on the clock of the states' stamps.
         """
         self.asked_ns = asked_ns
         service = service_of_type(service_type)
@@ -131,13 +132,13 @@ class ServerAgain(ServerCore):
         return response
 
     def _change(self, values: Mapping[str, Any]) -> None:
-        """Answer with another configuration from now on, as the log says that the server did."""
+        """Change the configuration from now on, as the server did according to the log."""
         if isinstance(self._source, LoggedParameters):
             self._source = self._source.changed(values)
             self.change(read_server_parameters(self._source))
             self.expect()
 
     def _tick(self, clock_ns: int) -> None:
-        if clock_ns < self._clock_ns:  # the server forgets all states when its clock is set back
+        if clock_ns < self._clock_ns:  # the server discards all states when its clock is set back
             self.states.clear()
         self._clock_ns = clock_ns

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""These are the arguments of `contact-dynamics replay`, with its modes, and of `contact-dynamics recover`."""
+"""The arguments of `contact-dynamics replay`, with its modes, and of `contact-dynamics recover`."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ TABLE: Final = "table"
 VIEW: Final = "view"
 PUBLISH: Final = "publish"
 
-MODES: Final = {  # what `replay` can do with a log
+MODES: Final = {  # the modes of `replay`
     VERIFY: "recompute every logged answer and compare it (the default mode)",
     INFO: "list topics, bodies, time span, and requests by service and status",
     TABLE: "write one row per question: request, answer and later measurement",
@@ -71,13 +71,13 @@ def recover_parser() -> argparse.ArgumentParser:
 
 
 def stamps_as_logged(given: argparse.Namespace) -> bool:
-    """Return whether what is published keeps the stamps of the log."""
+    """Return whether published messages keep the stamps of the log."""
     chosen = given.stamps or ("logged" if given.clock else "now")
     return bool(chosen == "logged")
 
 
 class _WithDefaultMode(argparse.ArgumentParser):
-    """A parser that takes what names no mode as the arguments of the first one."""
+    """A parser that passes arguments without a mode to the first mode."""
 
     def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
         given: Sequence[str] = args or ()

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What happened, in the order in which it came: states of bodies, and answers to questions about them.
+"""Events in the order of their arrival: states of bodies, and responses to requests about them.
 
-`LoggedEvents` are read from a log of the server. `AskedEvents` are states of any recording, and answers to
-questions that are asked now: what would a server of ours have said? Their clock is that of the states'
-stamps. Each question is asked at a state, of what was published by then.
+`LoggedEvents` are read from a log of the server. `AskedEvents` are the states of any recording, and the
+responses that a server would have returned to requests made on replay. Their clock is that of the states'
+stamps. Each request is made at a state, and uses only what was published by then.
 """
 
 from __future__ import annotations
@@ -46,8 +46,8 @@ if TYPE_CHECKING:
     from contact_dynamics.rigid_body.body import BodyState
     from contact_dynamics.world import World
 
-OK = "OK"  # the status of a question that was answered
-UNREADABLE = "UNREADABLE"  # the status of a question or an answer that this version cannot read
+OK = "OK"  # the status of a successful response
+UNREADABLE = "UNREADABLE"  # the status of a request or response that this version cannot read
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -60,7 +60,7 @@ class StateCame:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class WorldChanged:
-    """The bodies or surfaces were configured anew."""
+    """The configuration of bodies or surfaces changed."""
 
     world: World  # the bodies and surfaces from now on
     stamp_ns: int  # ns, the time of the change by the clock of the states' stamps
@@ -68,22 +68,22 @@ class WorldChanged:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Answered:
-    """A question was answered or refused."""
+    """A request was answered or rejected."""
 
-    service_name: str  # the name of the service that was asked, as "predict_impact"
-    service: Service  # the service that was asked
-    number: int  # number of the question among those to this service, from 1
-    # When it came, ns since the epoch by the machine's clock. It is None if nobody asked it then.
+    service_name: str  # the name of the service, such as "predict_impact"
+    service: Service  # the service
+    number: int  # number of the request among those to this service, from 1
+    # When the request arrived, ns since the epoch by the machine's clock; None for a request made on replay.
     log_time_ns: int | None
-    asked_ns: int  # when it came, ns by the clock of the states' stamps
-    # What was asked, by the names of the request's fields, as far as it is not the default.
+    asked_ns: int  # when the request arrived, ns by the clock of the states' stamps
+    # The request's fields that differ from their defaults, by name.
     question: Mapping[str, object]
-    asked: Question[Answer] | None  # the question, if it was answered
-    # The answer. It is None if the question was refused, or if the answer cannot be read.
+    asked: Question[Answer] | None  # the parsed request, if it was answered
+    # The answer, or None if the request was rejected or the response cannot be read.
     answer: Answer | None
-    status: str  # "OK", or the name of the code with which it was refused
-    message: str  # what was said of it
-    computation_time: float  # s, how long the answer took
+    status: str  # "OK", or the name of the status code
+    message: str  # the response's message
+    computation_time: float  # s
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -95,7 +95,7 @@ class Monitored:
     stamp_ns: int  # the time of the event by the clock of the states' stamps
     log_time_ns: int  # when it was reported, by the machine's clock
     text: str  # the event in words
-    is_unusual: bool  # whether it is outside of its 99 % region, or a change was detected
+    is_unusual: bool  # whether it lies outside its 99 % region, or a change was detected
 
 
 def _monitored(logged: LoggedMessage) -> Monitored:
@@ -114,21 +114,21 @@ Event: TypeAlias = StateCame | WorldChanged | Answered | Monitored
 
 
 class Events(ABC):
-    """A recording that events are read from.
+    """A source of events: a recording and a server without ROS.
 
     Attributes:
-        world: The bodies and surfaces that they are about, as they were at the beginning.
+        world: The bodies and surfaces, as configured at the beginning.
     """
 
     def __init__(self, reader: BagReader, server: ServerAgain) -> None:
-        """Take the recording, and what stands in for the server."""
+        """Set the recording, and the server that replaces the original one."""
         self._reader = reader
         self._server = server
         self.world = server.world
 
     @abstractmethod
     def __iter__(self) -> Iterator[Event]:
-        """Read the recording and yield what happened."""
+        """Read the recording and yield its events."""
 
     @property
     @abstractmethod
@@ -137,16 +137,16 @@ class Events(ABC):
 
     @property
     def refused(self) -> Mapping[str, Refused]:
-        """Messages that made no state, by topic."""
+        """Rejected messages, by topic."""
         return self._server.refused
 
     @property
     def damage(self) -> str | None:
-        """What of the recording could not be read, in words, or None if all was whole."""
+        """A description of the unreadable parts of the recording, or None if there are none."""
         return self._reader.damage
 
     def warn_of_damage(self) -> None:
-        """Warn whoever called the caller, unless all was whole."""
+        """Warn of damage, if there is any, at the line that called the caller."""
         if self.damage is not None:
             warnings.warn(self.damage, kind_of(self._reader.losses), stacklevel=3)
 
@@ -155,7 +155,7 @@ class LoggedEvents(Events):
     """A log of the server as a source of events."""
 
     def __init__(self, path: Path, *, span: Span = EVERYTHING, states: bool = True) -> None:
-        """Read how the run was configured, to read a span of it later, with states and events or without.
+        """Read the configuration of the run. Iteration reads a span, with states and events or without.
 
         Raises:
             NotALogError: it is no log, or none of the server.
@@ -178,7 +178,7 @@ class LoggedEvents(Events):
         return "the log contains no requests with a response; --ask makes predictions from its states"
 
     def __iter__(self) -> Iterator[Event]:
-        """Read the log; each answer comes after the states that were known when its question came."""
+        """Read the log; each response follows the states that were known when its request arrived."""
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", DamagedLogWarning)  # told by `damage`
             again = BagReader(self._path)
@@ -214,7 +214,7 @@ class LoggedEvents(Events):
             if status == OK:
                 asked = self._server.question_of(service, request)
                 answer = service.answer_from_msg(response, world=self._server.world)
-        except (ContactDynamicsError, AttributeError) as error:  # the latter of a log with other fields
+        except (ContactDynamicsError, AttributeError) as error:  # the latter if a log's fields differ
             status, message, seconds = UNREADABLE, f"this version cannot read it: {error}", 0.0
         return Answered(
             service_name=call.service.rpartition("/")[2],
@@ -249,7 +249,7 @@ def _plain(value: Any) -> object:
 
 
 def status_of(response: Any) -> str:
-    """Return the name of a response's status; its codes are above those of its other constants."""
+    """Return the name of a response's status; status codes are larger than its other constants."""
     if response.status == response.OK:
         return OK
     constants = vars(type(response)).items()
@@ -268,7 +268,7 @@ QUESTIONS: Final[Mapping[str, Callable[..., Question[Answer]]]] = {
 
 
 class AskedEvents(Events):
-    """A recording as a source of events: its states, and answers to questions that are asked now."""
+    """A recording as a source of events: its states, and responses to requests that are made on replay."""
 
     def __init__(
         self,
@@ -281,20 +281,20 @@ class AskedEvents(Events):
         fit_window: float,
         span: Span,
     ) -> None:
-        """Configure what would have been a server.
+        """Configure the server.
 
-        Of `QUESTIONS` those of some names are asked about some bodies, or about all without any, ``every`` so
-        many seconds by the stamps, with zero at each state. The motion is fitted to the states of the last
-        ``fit_window``, s, with zero to the newest one.
+        The requests ``names``, of `QUESTIONS`, are made about ``bodies``, or about all bodies if it is empty,
+        with a period of ``every``, s, by the stamps; 0 means at each state. The motion is fitted to the
+        states of the last ``fit_window``, s; 0 means to the newest one.
 
         Raises:
             NotALogError: it is no recording.
             ConfigurationError: a parameter is missing or not allowed.
-            InvalidFieldError: a body that is asked about is not configured.
+            InvalidFieldError: one of ``bodies`` is not configured.
         """
         reader = BagReader(path)
         stand_in(())
-        from contact_dynamics.replay.again import ServerAgain  # here, for it imports what stands in for ROS
+        from contact_dynamics.replay.again import ServerAgain  # imports what `stand_in` has made
 
         super().__init__(reader, ServerAgain(source))
         self._names, self._bodies = names, bodies
@@ -317,7 +317,7 @@ class AskedEvents(Events):
         return f"the configured topics ({topics}) contain no state of {bodies}; --topics selects others"
 
     def __iter__(self) -> Iterator[Event]:
-        """Read the recording, and ask after each state that it is time for."""
+        """Read the recording, and make the requests that are due after each state."""
         topics = self._server.topics
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", DamagedLogWarning)  # told by `damage`

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A log's own record configures the server that answers its questions again.
+"""Configures a server from the record of the run in a log, to recompute its responses.
 
 Without ROS, the messages of a log are read by the definitions in the log. `msg_adapters` imports the classes
 that ROS generates from interface files. If ``geometry_msgs.msg`` and the like are missing, modules of the
@@ -7,7 +7,7 @@ same names are made here, with classes made from the definitions. If ROS is inst
 used.
 
 The adapters, however, are those of this version. If a field has another name or type, they cannot read the
-questions, or they compare answers that mean something else. Such a log is rejected.
+requests, or would compare responses with different meanings. Such a log is rejected.
 """
 
 from __future__ import annotations
@@ -41,19 +41,19 @@ _PACKAGE: Final = INTERFACES.partition("/")[0] + "/"
 def server_of_log(
     path: Path, *, instead: Mapping[str, Any] | None = None
 ) -> tuple[dict[str, str], ServerAgain]:
-    """Return the record of a log's run, and a server that is configured by it.
+    """Return the record of a log's run, and a server configured by it.
 
-    Parameters ``instead`` count instead of those in the record, by name.
+    ``instead`` contains values, by name, that replace parameters of the record.
 
     Raises:
         NotALogError: it is no log, or none of the server.
         ConfigurationError: its record of the run lacks a parameter, or has one that is not allowed.
-        NotSupportedError: the log's services have other fields than this version's; or ROS is not installed,
-            and another log in this process gave a message other fields.
+        NotSupportedError: the log's services differ in their fields from this version's; or ROS is not
+            installed, and another log in this process defined a message with different fields.
     """
     log = BagReader(path)
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", DamagedLogWarning)  # told when the log is read
+        warnings.simplefilter("ignore", DamagedLogWarning)  # reported when the log is read
         definitions = log.definitions()
         damage = f" ({log.damage})" if log.damage else ""
         run = log.run()
@@ -76,13 +76,13 @@ def server_of_log(
         )
     check_definitions(path, definitions, run.get("version"))
     stand_in(definitions.items())
-    from contact_dynamics.replay.again import ServerAgain  # here, for it imports what now stands in for ROS
+    from contact_dynamics.replay.again import ServerAgain  # imports what `stand_in` has made
 
     return run, ServerAgain(LoggedParameters(run, instead))
 
 
 def digest(event_type: str, definition: str) -> str:
-    """Return a digest of a service event's fields, of their order, names and types. Comments do not count."""
+    """Return a digest of the order, names and types of a service event's fields, without comments."""
     types = message_types(event_type, definition)
     lines = [
         f"{name} {field.type_name}{[field.count] if field.is_array else ''} {field.name}"
@@ -94,7 +94,7 @@ def digest(event_type: str, definition: str) -> str:
 
 
 def check_definitions(path: Path, definitions: Mapping[str, str], version: str | None) -> None:
-    """Refuse a log, written by a version, whose services are defined otherwise than those of this version.
+    """Reject a log, written by ``version``, whose services differ in their definitions from this version's.
 
     Raises:
         NotSupportedError: there is such a service, or one that this version does not have. The message names
@@ -128,10 +128,10 @@ _PARTS: Final = ("_Request", "_Response", EVENT_SUFFIX)
 
 
 def stand_in(definitions: Iterable[tuple[str, str]]) -> None:
-    """Make the missing modules of messages importable, from pairs of a type's name and its text.
+    """Make missing message modules importable, from pairs of a type's name and its definition.
 
     Raises:
-        NotSupportedError: a type of this name was made before, with other fields.
+        NotSupportedError: a type of this name was defined before, with different fields.
     """
     modules = {name: _module(name) for name in _PACKAGES if _is_missing(name)}
     for type_name, text in definitions:
@@ -160,10 +160,10 @@ def _put(module: ModuleType, name: str, part: str, message_type: type[Message]) 
 
 
 class _StandIn(ModuleType):
-    """A module of messages. A type that no log has described can be imported, but not instantiated."""
+    """A module of messages. Types that no log has defined can be imported, but not instantiated."""
 
     def __getattr__(self, name: str) -> Any:
-        """Return a class that cannot be instantiated, for a type that no log has described."""
+        """Return a class that cannot be instantiated, for a type that no log has defined."""
         if name.startswith("__"):
             raise AttributeError(name)
 
@@ -174,7 +174,7 @@ class _StandIn(ModuleType):
 
 
 def _is_missing(name: str) -> bool:
-    """Return whether a module is not installed. A folder without code, as in the sources, does not count."""
+    """Return whether a module is not installed; a folder without code, as in the sources, is no module."""
     if isinstance(sys.modules.get(name), _StandIn):
         return True
     try:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""This line on the terminal says how far long work is, where somebody watches."""
+"""Shows the progress of long work in a line on an interactive terminal."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ _BAR: Final = 24  # characters
 
 
 class Progress:
-    """How far one piece of work is. The line is cleared at the end."""
+    """Progress of one task. The line is cleared at the end."""
 
     def __init__(self, name: str, *, begin: float = 0.0, end: float = 0.0) -> None:
-        """Begin work that goes from ``begin`` to ``end``, in any unit, such as log times or numbers of logs.
+        """Begin a task from ``begin`` to ``end``, in any unit, such as log times or numbers of logs.
 
-        The end is not known if it is not later than the beginning.
+        The end is unknown unless it is larger than the beginning.
         """
         self._name = name
         self._begin = begin
@@ -28,7 +28,7 @@ class Progress:
         self._told = False
 
     def tell(self, at: float, what: str) -> None:
-        """Show how far the work has come, in the unit of its beginning, and what was done, in words."""
+        """Show the position, in the unit of the beginning, and a description of the work."""
         now_s = time.monotonic()
         if not self._watched or now_s < self._next_s:
             return

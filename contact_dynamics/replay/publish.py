@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Publishes the states of a log over ROS as they came, and asks its questions again, each at its time.
+"""Publishes the states of a log over ROS, and repeats its requests, each at its logged time.
 
-The time of the log passes as it did: at a rate, with pauses. A server whose clock is the machine's would
-refuse the stamps of a log as old. So stamps are shifted to the present, unless the log's own time is
-published at `/clock` for those who run with ``use_sim_time``.
+Playback has a rate and can be paused. A server on the machine's clock would reject the stamps of a log as too
+old, so stamps are shifted to the present, unless the log's time is published at `/clock` for nodes with
+``use_sim_time``.
 """
 
 from __future__ import annotations
@@ -61,11 +61,11 @@ PAUSE: Final = " "
 STEP: Final = "."
 
 _STEP_NS: Final = NS_PER_S // 10
-_AT_ONCE_S: Final = 1.0 / 200.0  # how long the meanwhile may wait for something to do
+_AT_ONCE_S: Final = 1.0 / 200.0  # maximum waiting time of one call of ``meanwhile``
 
 
 class Pacing:
-    """The time of a log, which runs beside the machine's own."""
+    """The playback clock of a log."""
 
     def __init__(
         self,
@@ -75,10 +75,10 @@ class Pacing:
         meanwhile: Callable[[int, float], object],
         is_over: Callable[[], bool],
     ) -> None:
-        """Set the time to nothing; `begin` starts it, at a rate of so many times the machine's time.
+        """Set the clock to zero; `begin` sets another time. ``rate`` is relative to the machine's clock.
 
-        While it passes, ``meanwhile`` is called again and again with the time of the log, ns, and with how
-        long it may wait, s.
+        `wait_until` calls ``meanwhile`` repeatedly with the time of the log, ns, and the time for which it
+        may block, s.
         """
         self._rate = rate
         self._is_paused = is_paused
@@ -88,7 +88,7 @@ class Pacing:
 
     @property
     def now_ns(self) -> int:
-        """The time of the log now, ns."""
+        """The current time of the log, ns."""
         if self._is_paused:
             return self._log_ns
         return self._log_ns + round((time.monotonic() - self._since_s) * self._rate * NS_PER_S)
@@ -98,14 +98,14 @@ class Pacing:
         self._log_ns, self._since_s, self._since_ns = log_ns, time.monotonic(), time.time_ns()
 
     def present_of(self, log_ns: int) -> int:
-        """Return when a time of the log is now, ns since the epoch by the machine's clock.
+        """Convert a time of the log to the machine's clock, ns since the epoch.
 
-        What is at one time in the log stays at one time, such as a pose and its twist.
+        Equal times in the log remain equal, such as those of a pose and its twist.
         """
         return self._since_ns + round((log_ns - self._log_ns) / self._rate)
 
     def wait_until(self, log_ns: int) -> bool:
-        """Let time pass until it is that time of the log; return False where it was told to stop before."""
+        """Wait until this time of the log; return False if playback was stopped before."""
         while not self._is_over():
             self._read_keys()
             now_ns = self.now_ns
@@ -118,7 +118,7 @@ class Pacing:
 
     def _read_keys(self) -> None:
         while sys.stdin.isatty() and select.select([sys.stdin], [], [], 0.0)[0]:
-            key = os.read(sys.stdin.fileno(), 1).decode(errors="replace")  # select sees what is left
+            key = os.read(sys.stdin.fileno(), 1).decode(errors="replace")  # select reports the rest
             now_ns = self.now_ns
             if key == PAUSE:
                 self._is_paused = not self._is_paused
@@ -131,12 +131,12 @@ class Pacing:
 
 @contextmanager
 def single_keys() -> Iterator[None]:
-    """Let each key come at once, without the return key, where a terminal is at the standard input."""
+    """Read single keys without the return key, if the standard input is a terminal."""
     if not sys.stdin.isatty():
         yield
         return
     before = termios.tcgetattr(sys.stdin)
-    tty.setcbreak(sys.stdin, termios.TCSADRAIN)  # keys that were pressed before count too
+    tty.setcbreak(sys.stdin, termios.TCSADRAIN)  # keys pressed before are kept
     try:
         yield
     finally:
@@ -145,23 +145,24 @@ def single_keys() -> Iterator[None]:
 
 NODE_NAME: Final = "contact_dynamics_replay"
 
-DEPTH: Final = 1000  # the publishers have a second of states at 1 kHz in their queues
+DEPTH: Final = 1000  # the publishers' queues hold a second of states at 1 kHz
 
 _TICK_NS: Final = NS_PER_S // 100
-_ANSWERS_S: Final = 10.0  # how long the next answer is waited for at the end
+_ANSWERS_S: Final = 10.0  # time limit for the next response at the end
 _STAMPED: Final = ("std_msgs/Header", "builtin_interfaces/Time")
 _LITTLE_ENDIAN: Final = 1  # the second byte of a serialised message
 _POLL_S: Final = 0.02
-_OF_THE_STATE: Final = ("stamp.sec", "stamp.nanosec", "fit_count")  # fields that say which states were used
+_OF_THE_STATE: Final = ("stamp.sec", "stamp.nanosec", "fit_count")  # fields that identify the states used
 
 
 def publish(given: argparse.Namespace, of_ros: list[str], *, span: Span) -> int:
     """Publish a log as the arguments say; return the exit code.
 
-    It is 1 where a question got no answer or another one than logged, and where nothing was to be published.
+    It is 1 if a request got no response or a different one, or if there was nothing to publish.
 
     Raises:
-        NotALogError: it is no recording; or it is none of the server, and that is what was asked for.
+        NotALogError: the path is not a recording; or it is not one of the server, and requests were to be
+            repeated.
     """
     path = Path(given.log)
     start_ns, end_ns = BagReader(path).extent()
@@ -189,10 +190,10 @@ def publish(given: argparse.Namespace, of_ros: list[str], *, span: Span) -> int:
 
 
 class _LogPublisher:
-    """A node that publishes what a log holds.
+    """A node that publishes the contents of a log.
 
     Attributes:
-        found: How the answers compare with those of the log, or None if questions are not asked.
+        found: The comparison with the logged responses, or None if requests are not repeated.
     """
 
     def __init__(self, path: Path, given: argparse.Namespace, *, span: Span) -> None:
@@ -218,12 +219,12 @@ class _LogPublisher:
 
     @property
     def has_published(self) -> bool:
-        """Whether anything was published or asked."""
+        """Whether any message was published or request made."""
         return self._published + self._asked > 0
 
     @property
     def told(self) -> str:
-        """What was published and asked, in words."""
+        """A description of the published messages and the requests."""
         lines = [f"{self._path}: {self._published} messages published"]
         if self._asks:
             lines[0] += f", {self._asked} questions asked, {self._answered} answered"
@@ -231,7 +232,7 @@ class _LogPublisher:
         return "\n".join(lines)
 
     def wait_for_listeners(self, patience_s: float) -> None:
-        """Wait until somebody listens to each topic and serves each service, or until patience ends."""
+        """Wait until each topic has a subscriber and each service a server, or until the time limit."""
         deadline = time.monotonic() + patience_s
         while time.monotonic() < deadline and not self._is_heard():
             time.sleep(_POLL_S)
@@ -259,7 +260,7 @@ class _LogPublisher:
         return begun
 
     def meanwhile(self, log_ns: int, seconds: float) -> None:
-        """Tick, and take answers, while nothing is due."""
+        """Publish the clock and process responses while no message is due."""
         if self._ticks is not None and log_ns >= self._next_tick_ns:
             self._ticks.publish(Clock(clock=stamp_to_msg(log_ns)))
             self._next_tick_ns = log_ns + _TICK_NS
@@ -269,7 +270,7 @@ class _LogPublisher:
             time.sleep(seconds)
 
     def wait_for_answers(self) -> bool:
-        """Wait for answers that are due, as long as some come; return whether all came."""
+        """Wait for pending responses as long as some arrive; return whether all did."""
         came, deadline = self._answered, time.monotonic() + _ANSWERS_S
         while time.monotonic() < deadline and self._answered < self._asked:
             rclpy.spin_once(self._node, timeout_sec=_POLL_S)
@@ -339,7 +340,7 @@ class _LogPublisher:
         tally = self.found.services.setdefault(call.service, ServiceTally())
         tally.questions += 1
         differing = list(differences(logged, response := future.result()))
-        if logged.status == response.status != logged.OK:  # words tell of ages and stamps
+        if logged.status == response.status != logged.OK:  # messages contain ages and stamps
             differing = [each for each in differing if each.field != "message"]
         if _used_other_states(logged, response, differing):
             tally.other_state += 1
@@ -349,12 +350,12 @@ class _LogPublisher:
 
 
 def _topics(path: Path, *, given: argparse.Namespace) -> list[Topic]:
-    """Return the topics to publish: those of bodies' states, or all of a recording that is no server's."""
+    """Return the topics to publish: those of bodies' states, or all if the recording is not a server's."""
     wanted = None
     if given.requests or not given.all_topics:
         try:
             server = server_of_log(path)[1]
-            wanted = server.topics - server.topics_of_changes  # those of today's nodes are others
+            wanted = server.topics - server.topics_of_changes  # those of the running nodes differ
         except NotALogError:
             if given.requests:
                 raise
@@ -362,15 +363,14 @@ def _topics(path: Path, *, given: argparse.Namespace) -> list[Topic]:
     if given.all_topics or wanted is None:
         wanted = frozenset(topic.name for topic in found if not topic.name.endswith(EVENT_TOPIC_SUFFIX))
     if not given.clock:
-        wanted -= {CLOCK}  # a clock of other times than the present would mislead who listens to it
+        wanted -= {CLOCK}  # a clock that is not that of the shifted stamps would mislead subscribers
     return [topic for topic in found if topic.name in wanted]
 
 
 def _as_offered(text: str) -> QoSProfile:
-    """Return a QoS that those who heard the publishers of a bag hear, too.
+    """Return a QoS that is compatible with all subscribers of a bag's publishers.
 
-    Several publishers that offer different things become one that offers the most. What a bag does not say is
-    as for an ordinary publisher.
+    Of different offers it takes the strongest. Settings that are missing in the bag have the defaults.
     """
     offers = offered_qos(text) or [OfferedQos()]
     best_effort = all(offer.reliability == "best_effort" for offer in offers)
@@ -387,7 +387,7 @@ def _as_offered(text: str) -> QoSProfile:
 
 
 def _duration(ns: int) -> Duration:
-    return Duration(nanoseconds=0 if ns == FOREVER_NS else ns)  # zero stands for no limit
+    return Duration(nanoseconds=0 if ns == FOREVER_NS else ns)  # zero means no limit
 
 
 def _time_of(each: LoggedMessage | ServiceCall) -> int | None:
@@ -397,13 +397,13 @@ def _time_of(each: LoggedMessage | ServiceCall) -> int | None:
 
 
 def _stamped(data: bytes, stamp_ns: int) -> bytes:
-    """Return a serialised message that begins with a stamp, with another one."""
+    """Return a serialised message that begins with a stamp, with the stamp replaced."""
     order = "<" if data[1] == _LITTLE_ENDIAN else ">"
     return data[:4] + struct.pack(f"{order}iI", *divmod(stamp_ns, NS_PER_S)) + data[12:]
 
 
 def _used_other_states(logged: Any, response: Any, differing: list[Difference]) -> bool:
-    """Return whether an answer differs because the server had other states, or no time, when it was asked."""
+    """Return whether a response differs because the server had different states, or was too busy."""
     if logged.status != response.status:
         names = ("NO_STATE", "STALE_STATE", "BUSY", "TIMEOUT")
         return bool({logged.status, response.status} & {getattr(logged, name, None) for name in names})
@@ -411,7 +411,7 @@ def _used_other_states(logged: Any, response: Any, differing: list[Difference]) 
 
 
 def _move_all(message: Message, pacing: Pacing) -> None:
-    """Move all stamps of a logged message into the present."""
+    """Shift all stamps of a logged message to the present."""
     for field in message.FIELDS:
         value: Any = getattr(message, field.name)
         if isinstance(value, Message) and hasattr(value, "nanosec"):
@@ -427,7 +427,7 @@ def _move_all(message: Message, pacing: Pacing) -> None:
 
 
 def _move(request: Any, pacing: Pacing) -> None:
-    """Move the times that a request names into the present."""
+    """Shift the times in a request to the present."""
     stamp_ns = stamp_ns_from_msg(request.stamp) if hasattr(request, "stamp") else 0  # batches have none
     if stamp_ns > 0:
         stamp_to_msg(pacing.present_of(stamp_ns), into=request.stamp)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The command `contact-dynamics recover` rewrites a damaged log, so that every reader takes it."""
+"""The command `contact-dynamics recover`, which rewrites a damaged log so that every reader accepts it."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from contact_dynamics.recording.recovery import recover
 from contact_dynamics.replay.arguments import recover_parser
 from contact_dynamics.replay.progress import Progress
 
-REFUSED: Final = 2  # this exit code says that nothing was written
+REFUSED: Final = 2  # exit code if nothing was written
 
 
 def main(arguments: list[str]) -> int:
     """Rewrite a log and return the exit code."""
     parser = recover_parser()
     given = parser.parse_args(arguments)
-    if given.log is None:  # argparse would complain of this before it complains of a mistyped option
+    if given.log is None:  # argparse would report this before a mistyped option
         parser.error("a LOG is required")
     path = Path(given.log)
     named = path.resolve() if path.name in {"", ".."} else path  # . and .. are no names

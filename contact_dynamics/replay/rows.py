@@ -1,18 +1,18 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Makes a row for each question of a recording: what was asked, what the answer was, what was then measured.
+"""Makes a table row for each request of a recording: the request, the response, and the measured outcome.
 
-A question about many states or candidates has a row for each of them, of which the first has the question.
-Positions are those of the body's
-published frame, linear velocities those of its centre of mass, in world axes.
+A request about many states or candidates has a row for each of them, the first of which contains the request.
+Positions are those of the body's published frame, linear velocities those of its centre of mass, in world
+axes.
 
 The records of services name the functions ``cells_of_...``, which yield cells by the names of their columns:
-once, or once for each of many states or candidates. `Rows` adds what holds for all rows of a question.
+once, or once for each of many states or candidates. `Rows` adds the cells that all rows of a request share.
 
-A flight is measured by the last state that was published before the time that the answer is about. It is
-carried on to that time as a free flight, over a few ms where states come often. An impact is measured by the
-free flight that fits the poses of the 50 ms after it best, carried back to it. So what a tracker makes of
-velocities across an impact plays no part. Where the body does not fly then, or strikes again, what is
-measured is no answer to what was asked.
+The measured outcome of a flight is the last state published before the predicted time, extrapolated to that
+time as free flight (over a few ms at usual rates). The measured outcome of an impact is the free flight that
+best fits the poses of the 50 ms after it, extrapolated back to it; a tracker's velocities across the impact
+do not enter. If the body does not fly then, or strikes again, the measured values are not comparable with the
+prediction.
 """
 
 from __future__ import annotations
@@ -56,7 +56,7 @@ Cells: TypeAlias = dict[str, Cell]
 STATE: Final = ("x", "y", "z", "qx", "qy", "qz", "qw", "vx", "vy", "vz", "wx", "wy", "wz")
 """The numbers of a state, as columns name them."""
 
-_MAX_WAITING: Final = 10_000  # rows that wait for what is measured. Beyond, the oldest is given without.
+_MAX_WAITING: Final = 10_000  # rows that wait for measurements; beyond, the oldest is yielded without
 
 COLUMNS: Final[dict[str, type]] = {
     "log": str,
@@ -104,21 +104,21 @@ world axes, are JSON too.
 
 @dataclass(slots=True, kw_only=True)
 class _Waiting:
-    row: dict[str, Cell]  # what holds for all rows of the question
+    row: dict[str, Cell]  # cells that all rows of the request share
     answered: Answered
-    measuring: Measuring | None = None  # None if nothing of it can be measured
+    measuring: Measuring | None = None  # None if no outcome can be measured
 
     @property
     def weight(self) -> int:
-        """About how many rows it is."""
+        """Approximate number of rows."""
         return len(self.answered.answer) if isinstance(self.answered.answer, Sized) else 1
 
 
 class Rows:
-    """Makes rows of events. Memory is for the rows that wait for what is measured, whatever the length."""
+    """Makes rows of events. Only rows that wait for measurements are kept in memory."""
 
     def __init__(self, events: Events, *, log: str) -> None:
-        """Read from ``events``, which are of the recording named ``log``."""
+        """Read ``events`` of the recording named ``log``."""
         self._events = events
         self._world: World = events.world
         self._log = log
@@ -128,7 +128,7 @@ class Rows:
         self._monitored = 0
 
     def __iter__(self) -> Iterator[dict[str, Cell]]:
-        """Yield the rows in the order in which the questions were asked."""
+        """Yield the rows in the order of the requests."""
         for event in self._events:
             if isinstance(event, StateCame):
                 for waiting in self._waiting:
@@ -244,12 +244,12 @@ class Rows:
 
 
 def _with_positive_w(q_WB: FloatArray) -> FloatArray:
-    """Return quaternions, (..., 4), of the two that mean the same attitude, so that rows compare."""
+    """Return the quaternions, (..., 4), with the sign that makes w positive, so that rows are comparable."""
     return np.where(q_WB[..., 3:] < 0.0, -q_WB, q_WB)
 
 
 def _errors(predicted: BodyState, measured: BodyState) -> dict[str, Cell]:
-    """Return how far measured and predicted are apart."""
+    """Return the differences between measured and predicted values."""
     apart = np.linalg.norm(predicted.q_WB - measured.q_WB), np.linalg.norm(predicted.q_WB + measured.q_WB)
     return {
         "position_error": float(np.linalg.norm(predicted.p_WB_W - measured.p_WB_W)),
@@ -260,14 +260,14 @@ def _errors(predicted: BodyState, measured: BodyState) -> dict[str, Cell]:
 
 
 def cells_of_tumbling(answer: TumblingAnswer) -> Iterator[Cells]:
-    """Yield what ends the flight."""
+    """Yield the event that ends the flight."""
     event = answer.event
     summary, surface = ("flight", "") if event is None else (event.kind.name.lower(), event.surface)
     yield _cells(summary, [surface])
 
 
 def cells_of_impact(answer: ImpactAnswer) -> Iterator[Cells]:
-    """Yield the outcome of the impact, and where its first contact is."""
+    """Yield the outcome of the impact, and the position of its first contact."""
     outcome = answer.impact.outcome
     summary = "several at once" if outcome is None else outcome.name.lower()
     place = zip("xyz", answer.contacts.p_WC_W[0].tolist(), strict=True)
@@ -283,7 +283,7 @@ def cells_of_toss(answer: TossAnswer) -> Iterator[Cells]:
 
 
 def cells_of_contact_modes(answer: ContactModeAnswer) -> Iterator[Cells]:
-    """Yield the verdict with its modes, and what distinguishes them."""
+    """Yield the verdict with its modes, and their distinguishing quantities."""
     modes = answer.modes
     yield {
         **_cells(_verdict(answer.verdict, [mode.mode for mode in modes]), answer.contacts.surfaces),
@@ -336,7 +336,7 @@ def _verdict(verdict: ModeVerdict, modes: Sequence[str]) -> str:
 def _of_states(
     answer: ManyTumblingsAnswer | ManyImpactsAnswer, summary: Callable[[int], str]
 ) -> Iterator[Cells]:
-    """Yield the cells of each state. Times have none, because such a question names none."""
+    """Yield the cells of each state, without times, because such a request has none."""
     states = answer.states
     origins = origins_of_published_frame(states.p_WB_W, states.q_WB, answer.p_FB_F)
     numbers = np.concatenate([origins, _with_positive_w(states.q_WB), states.v_WB_W, states.w_WB_W], axis=1)
@@ -351,14 +351,14 @@ def _of_states(
 WITHIN: Final = 0.1
 """s. A state that is older than this when an answer's time comes says nothing of it any more."""
 
-AFTER_IMPACT: Final = 0.05  # s. The flight after an impact is fitted to the states of this time.
+AFTER_IMPACT: Final = 0.05  # s. Span of the states after an impact to which the flight is fitted.
 
 _AT_IMPACT: Final = 1
 """States after an impact that do not count, since the impact can come a little later than predicted."""
 
 
 class Measuring:
-    """Watches the states of a body until what an answer predicts has been measured."""
+    """Collects the states of a body until the predicted outcome has been measured."""
 
     def __init__(
         self,
@@ -369,9 +369,9 @@ class Measuring:
         gravity_W: FloatArray,
         is_impact: bool,
     ) -> None:
-        """Begin to watch a body, whose newest state this is, until the stamp of the predicted one has passed.
+        """Begin with a body's newest state; collect states until the stamp of the predicted one has passed.
 
-        What ``is_impact`` predicts what follows an impact, and otherwise what a flight comes to.
+        ``is_impact`` means that the predicted state follows an impact; otherwise it ends a flight.
         """
         self.body_name = body.name
         self.predicted = predicted
@@ -383,7 +383,7 @@ class Measuring:
         self._after: list[BodyState] = []
 
     def see(self, body_name: str, state: BodyState) -> None:
-        """Take a state that was published, of whatever body."""
+        """Process a published state of any body."""
         if body_name != self.body_name or self.is_complete:
             return
         if state.stamp_ns <= self.predicted.stamp_ns:
@@ -396,7 +396,7 @@ class Measuring:
             self.is_complete = True
 
     def result(self) -> BodyState | None:
-        """Return what was measured, stamped with the predicted time, or None if too little was."""
+        """Return the measured state, stamped with the predicted time, or None if there are too few states."""
         if not self.is_complete:
             return None
         try:
@@ -410,5 +410,5 @@ class Measuring:
             if abs(seconds) > WITHIN:
                 return None
             return free_motion(self._body, state, gravity_W=self._gravity_W).state_at(seconds)
-        except ContactDynamicsError:  # too few states, or they are of no flight
+        except ContactDynamicsError:  # too few states, or not a flight
             return None

@@ -69,7 +69,7 @@ def main(arguments: list[str]) -> int:
             "match stretched stamps. With --clock, stamps are unchanged, for a server with use_sim_time"
         )
     if given.mode == VERIFY:
-        if not given.logs:  # argparse would complain of this before it complains of a mistyped option
+        if not given.logs:  # argparse would report this before a mistyped option
             parser.error("at least one LOG is required")
         return _verify(given)
     lacking = _lacking(given.mode)
@@ -165,14 +165,14 @@ def _view(given: argparse.Namespace) -> int:
     path = Path(given.log)
     events = _events(path, given)
     progress = _progress(path)
-    if given.serve:  # stopped in either way, it closes what it drew to
+    if given.serve:  # both SIGTERM and Ctrl-C close the sinks
         signal.signal(signal.SIGTERM, signal.default_int_handler)
     drawn = draw(str(path), events, sinks, surface_side=given.surface_side, progress=progress)
     progress.end()
     _tell(str(path), f"drew {drawn.states} states and {drawn.answers} answers", events)
     if not drawn.took_all:
         sys.stdout.flush()
-        os._exit(DIFFERENT)  # a usual exit would wait for a viewer that hangs
+        os._exit(DIFFERENT)  # a normal exit would wait for a viewer that hangs
     return DIFFERENT if drawn.viewer_failed else 0
 
 
@@ -187,7 +187,7 @@ def _logs_below(path: Path) -> Iterator[Path]:
     for folder in sorted(inner for inner in path.iterdir() if inner.is_dir()):
         if _is_bag(folder):
             yield folder
-        elif not folder.is_symlink():  # a link can lead back
+        elif not folder.is_symlink():  # links can be circular
             yield from _logs_below(folder)
 
 
@@ -219,16 +219,16 @@ def _events(path: Path, given: argparse.Namespace) -> Events:
 
 
 def _span(path: Path, given: argparse.Namespace) -> Span:
-    """Return the part of a log between --start and --end, which count from its beginning.
+    """Return the part of a log between --start and --end, which are relative to its beginning.
 
     Raises:
-        InvalidFieldError: the log has nothing in this part. The message says how long it lasts.
+        InvalidFieldError: this part of the log is empty. The message contains the log's length.
     """
     if given.start == 0.0 and given.end is None:
         return Span()
     log = BagReader(path)
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", DamagedLogWarning)  # told when the log is read
+        warnings.simplefilter("ignore", DamagedLogWarning)  # reported when the log is read
         start_ns, _ = log.extent()
         span = Span()
         if given.start > 0.0:
@@ -236,7 +236,7 @@ def _span(path: Path, given: argparse.Namespace) -> Span:
         if given.end is not None:
             span = span._replace(end_ns=ns_after(start_ns, given.end))
         if next(log.messages(start_ns=span.start_ns, end_ns=span.end_ns), None) is None:
-            # A log that was cut short has no index that says when it ends.
+            # A log that was cut short has no index, so its end is unknown.
             end_ns = max((message.log_time_ns for message in log.messages()), default=start_ns)
             end = "its end" if given.end is None else f"{given.end:g} s"
             lasts = f"{to_seconds(end_ns - start_ns):.9g} s (log_time {start_ns} to {end_ns} ns)"
@@ -251,7 +251,7 @@ def _span(path: Path, given: argparse.Namespace) -> Span:
 def _progress(path: Path) -> Progress:
     start_ns = end_ns = 0
     if sys.stderr.isatty():
-        with suppress(ContactDynamicsError, OSError):  # what is wrong is told when the log is read
+        with suppress(ContactDynamicsError, OSError):  # damage is reported when the log is read
             start_ns, end_ns = BagReader(path).extent()
     return Progress(str(path), begin=start_ns, end=end_ns)
 
@@ -310,7 +310,7 @@ def info(path: Path) -> str:
                 messages[message.topic, message.type_name] += 1
 
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", DamagedLogWarning)  # told below
+        warnings.simplefilter("ignore", DamagedLogWarning)  # reported below
         run = log.run()
         for call in service_calls(counted()):
             calls[call.service, _status(call)] += 1

@@ -69,7 +69,7 @@ def log_to_frame(log: Path | str) -> Any:
             missing.
     """
     try:
-        import pandas as pd  # few need it
+        import pandas as pd  # optional
     except ModuleNotFoundError:
         raise NotSupportedError("log_to_frame needs pandas: pip install pandas") from None
     events = LoggedEvents(Path(log))
@@ -83,15 +83,15 @@ def log_to_frame(log: Path | str) -> Any:
 
 @contextmanager
 def open_table(path: Path | None) -> Iterator[Write]:
-    """Yield a function that takes a row. The file is there when the context ends, unless it has no rows.
+    """Yield a function that writes a row. The file appears when the context ends, unless there are no rows.
 
     Args:
-        path: a file that ends in `CSV` or `PARQUET`, which is replaced. Without a file, CSV goes to
-            the standard output.
+        path: a file with the suffix `CSV` or `PARQUET`, which is replaced. None means CSV on the standard
+            output.
 
     Raises:
-        InvalidFieldError: the file has another ending.
-        NotSupportedError: it is to be Parquet, and pyarrow is not installed.
+        InvalidFieldError: the file has another suffix.
+        NotSupportedError: the format is Parquet, and pyarrow is not installed.
     """
     if path is None:
         yield _csv(sys.stdout)
@@ -137,7 +137,7 @@ def _csv(stream: TextIO) -> Write:
 @contextmanager
 def _parquet(path: Path) -> Iterator[Write]:
     try:
-        import pyarrow as pa  # it is large, so it is an extra
+        import pyarrow as pa  # large, hence an extra
         import pyarrow.parquet as pq
     except ModuleNotFoundError:
         message = "a .parquet file requires pyarrow: pip install '.[evaluate]'"

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Yields the questions of a log in the order in which they came, each after the states known by then.
+"""Yields the requests of a log in the order of their arrival, each after the states known by then.
 
-A log has states in the order in which they came. The events of a call come later in it than the states that
-came while the answer was computed. So the file is read twice at the same time. One reading finds the calls,
-and the other follows with the states up to the ``log_time`` of each request. However long the log is, one
-message is in memory, and the calls that wait for the answer to one before them.
+A log contains states in the order of their arrival, but the events of a call follow the states that arrived
+while the response was computed. The file is therefore read twice in parallel: one reading finds the calls,
+and the other follows with the states up to the ``log_time`` of each request. Memory holds one message, and
+the calls that wait for the response to an earlier one.
 """
 
 from __future__ import annotations
@@ -26,13 +26,13 @@ if TYPE_CHECKING:
 CLOCK: Final = "/clock"
 INTERFACES: Final = "contact_dynamics_interfaces/srv/"
 MONITOR_EVENT: Final = "contact_dynamics_interfaces/msg/MonitorEvent"
-EVERYTHING: Final = Span()  # a log from its beginning to its end
+EVERYTHING: Final = Span()  # the whole log
 
 
 def in_order(
     calls_from: BagReader, states_from: BagReader, topics: Collection[str], *, span: Span = EVERYTHING
 ) -> Iterator[LoggedMessage | ServiceCall]:
-    """Yield a span of the messages of some topics, and each call at the place where its request came.
+    """Yield a span of the messages of some topics, and each call at the arrival of its request.
 
     The same log is opened twice: ``calls_from`` for the calls, and ``states_from`` for the messages.
     """
@@ -44,16 +44,16 @@ def in_order(
                 yield state
                 state = next(states, None)
         yield call
-    while state is not None:  # what was measured after the last question
+    while state is not None:  # messages after the last request
         yield state
         state = next(states, None)
 
 
 def part_of(event: LoggedMessage, part: str) -> Any:
-    """Return the "request" or the "response" that an event carries.
+    """Return the "request" or the "response" in an event.
 
     Raises:
-        InvalidFieldError: the event carries none, since its service was introspected without contents.
+        InvalidFieldError: the event has none, since its service was introspected without contents.
     """
     contents: list[Any] = getattr(decode_without_ros(event), part)
     if not contents:

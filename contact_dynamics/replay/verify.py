@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Asks every logged question again, with the logged states, compares the answers, and reports the result."""
+"""Recomputes the response to every logged request, with the logged states, and reports the differences."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 _PUBLISHERS: Final = re.compile(r" \(\d+ publishers?\)")
 """In a message: how many publishers there were, which no log has. It is not compared either."""
 
-_LONGEST_VALUE: Final = 120  # characters, since a message that an answer carries can be pages long
+_LONGEST_VALUE: Final = 120  # characters; a response can contain pages of text
 
 _QUATERNION: Final = "geometry_msgs/Quaternion"
 _QUATERNIONS: Final = "orientations"  # how the names of lists of quaternions end, row-major (n, 4)
@@ -50,7 +50,7 @@ class Difference:
 
     field: str  # path of the field within the response, as in "modes[2].margin"
     logged: object  # its value in the log, or the name of that value if it has one
-    recomputed: object  # its value when the question is asked again, or its name
+    recomputed: object  # its recomputed value, or its name
     # The difference relative to the larger of the two, or to 1 if both are smaller. For quaternions it is
     # that of the attitudes, which q and -q share. It is infinite if the values are not numbers, if one of
     # them is not finite, or if arrays have unequal lengths.
@@ -59,9 +59,9 @@ class Difference:
 
     @property
     def rank(self) -> tuple[bool, bool, bool, float]:
-        """Where it stands among others: fields, then elements of arrays, then lengths; the largest first.
+        """Sort key: fields, then elements of arrays, then lengths; the largest differences first.
 
-        Of fields and elements, those come last whose difference 6 digits do not show.
+        Fields and elements whose difference does not show in 6 digits come last in their group.
         """
         is_hidden = _rounded(self.logged) == _rounded(self.recomputed)
         return self.is_length, is_hidden, self.field.endswith("]"), -self.size
@@ -81,7 +81,7 @@ def _rounded(value: object) -> str:
 
 
 def differences(logged: Message, recomputed: object, *, path: str = "") -> Iterator[Difference]:
-    """Yield each field of a logged message whose value in another message is not the same to the last bit."""
+    """Yield each field of a logged message whose value in another message is not bitwise equal."""
     for field in logged.FIELDS:
         if not path and field.name in MEASURED:
             continue
@@ -158,38 +158,38 @@ def _size(x: float, y: float) -> float:
     return abs(x - y) / max(1.0, abs(x), abs(y))
 
 
-MAX_TOLD: Final = 10  # the differences of this many questions are kept, those of the largest ones
+MAX_TOLD: Final = 10  # number of requests whose differences are kept, those with the largest ones
 BY_LOAD: Final = ("BUSY", "TIMEOUT")  # the status codes of responses that depend on the load of the machine
-MAX_FIELDS_TOLD: Final = 5  # this many fields of one answer are kept, those that differ most
+MAX_FIELDS_TOLD: Final = 5  # number of fields kept for one response, those that differ most
 
 
 @dataclass(slots=True, kw_only=True)
 class ServiceTally:
-    """Counts of the questions to one service, by how their answers compare."""
+    """Counts of the requests to one service, by the comparison of their responses."""
 
-    questions: int = 0  # questions that were asked again
-    equal: int = 0  # answers that are as in the log to the last bit
-    within: int = 0  # other answers, none of which differs by more than the tolerance
-    different: int = 0  # answers that differ by more than the tolerance
-    # Answers that used other states than the logged ones, and are not compared. There are none where the
-    # states of the log are at hand, as here.
+    questions: int = 0  # requests that were answered again
+    equal: int = 0  # responses that are bitwise equal to the logged ones
+    within: int = 0  # responses that differ within the tolerance
+    different: int = 0  # responses that differ by more than the tolerance
+    # Responses that used other states than the logged ones, and are not compared. Only `replay publish` has
+    # such.
     other_state: int = 0
-    # Questions without an answer in the log, or with BUSY or TIMEOUT, which depend on the load of the
-    # machine. They were not asked again.
+    # Requests without a response in the log, or with BUSY or TIMEOUT, which depend on the load of the
+    # machine. They are not repeated.
     unanswered: int = 0
-    unreadable: int = 0  # calls whose question is missing, or that cannot be decoded
+    unreadable: int = 0  # calls whose request is missing, or that cannot be decoded
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class OtherAnswer:
-    """A question whose answer differs from the logged one."""
+    """A request whose response differs from the logged one."""
 
     service: str  # the service's name with its leading slash
-    number: int  # number of the question among those to this service, from 1
-    # When it came, ns since the epoch, by the machine's clock. It is the ``log_time`` of its event.
+    number: int  # number of the request among those to this service, from 1
+    # When it arrived, ns since the epoch, by the machine's clock: the ``log_time`` of its event.
     asked_ns: int
     differences: tuple[Difference, ...]  # the fields that differ most, in the order of `Difference.rank`
-    # How many later questions to this service have the same differences, to the digits shown.
+    # Number of later requests to this service with the same differences, to the digits shown.
     repeated: int = 0
 
 
@@ -198,28 +198,28 @@ class Verification:
     """The result of one log's replay."""
 
     path: Path  # path of the log
-    tolerance: float  # how much a number may differ, relative to the larger one, or to 1 if both are smaller
+    tolerance: float  # allowed difference, relative to the larger number, or to 1 if both are smaller
     versions: dict[str, str]  # versions of the libraries that wrote the log, by name
-    versions_now: dict[str, str]  # versions of the libraries that answered again, by name
-    # Values of parameters that counted instead of those in the log, by name.
+    versions_now: dict[str, str]  # versions of the libraries that recomputed the responses, by name
+    # Values of parameters that replaced those in the log, by name.
     instead: dict[str, Any] = attribute(default_factory=dict)
     services: dict[str, ServiceTally] = attribute(default_factory=dict)  # tallies by the service's name
-    # The questions whose answers differ most, in the order of their first differences.
+    # The requests whose responses differ most, in the order of their first differences.
     others: list[OtherAnswer] = attribute(default_factory=list)
     unreadable: str | None = None  # the first reason why a call could not be read, or None if all could
-    damage: str | None = None  # the damaged parts of the log, in words, or None if all was whole
-    lost_bytes: int = 0  # how many bytes of the log could not be read
+    damage: str | None = None  # a description of the damaged parts of the log, or None if there are none
+    lost_bytes: int = 0  # number of unreadable bytes of the log
 
     @property
     def agrees(self) -> bool:
-        """Whether every question that could be read is answered as in the log, within the tolerance."""
+        """Whether all readable requests have the same responses as in the log, within the tolerance."""
         return not any(tally.different or tally.unreadable for tally in self.services.values())
 
 
 def nothing_yet(
     path: Path, run: Mapping[str, str], *, tolerance: float, instead: Mapping[str, Any] | None = None
 ) -> Verification:
-    """Return the result of a log's replay before there is an answer; ``run`` is the log's record."""
+    """Return the result of a log's replay before the first response; ``run`` is the log's record."""
     here = versions_here()
     return Verification(
         path=path,
@@ -237,28 +237,28 @@ def verify_log(
     instead: Mapping[str, Any] | None = None,
     on_progress: Callable[[int, str], object] | None = None,
 ) -> Verification:
-    """Ask every question of a log again and compare the answers field by field.
+    """Recompute the response to every request of a log, and compare it with the logged one field by field.
 
-    Fields that tell how an answer was made (`MEASURED`) are left out.
+    Fields that describe the computation (`MEASURED`) are not compared.
 
     Args:
         path: a log of the server, as its folder or as an ``.mcap`` file.
         tolerance: >= 0. How much a number may differ, relative to the larger one, or to 1 if both are
             smaller; quaternions are compared with the sign that fits. With zero every bit counts.
-        instead: values of parameters that count instead of those in the log, by name: what would have been
-            answered with them?
-        on_progress: a function that is called after each message, with its log time, ns, and with what was
-            read so far, in words.
+        instead: values of parameters, by name, that replace those in the log, to compute the responses that
+            they would have given.
+        on_progress: a function that is called after each message, with its log time, ns, and a description of
+            what was read so far.
 
     Raises:
-        NotALogError: the path has no log, or a log of something else than the server.
+        NotALogError: the path is not a log of the server.
         ConfigurationError: its record of the run lacks a parameter, or has one that is not allowed.
-        NotSupportedError: the log's services have other fields than this version's, or ROS is not installed,
-            and another log in this process gave a message other fields.
+        NotSupportedError: the log's services differ in their fields from this version's; or ROS is not
+            installed, and another log in this process defined a message with different fields.
     """
     check_not_negative("tolerance", tolerance)
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", DamagedLogWarning)  # the result says it
+        warnings.simplefilter("ignore", DamagedLogWarning)  # the result contains the damage
         run, server = server_of_log(path, instead=instead)
         found = nothing_yet(path, run, tolerance=tolerance, instead=instead)
         log, again = BagReader(path), BagReader(path)
@@ -278,7 +278,7 @@ def verify_log(
 
 
 def _ask(call: ServiceCall, server: ServerAgain, found: Verification) -> None:
-    """Ask one question again and note how the answers compare."""
+    """Recompute one response and compare it with the logged one."""
     tally = found.services.setdefault(call.service, ServiceTally())
     if call.response_event is None:
         tally.unanswered += 1
@@ -297,7 +297,7 @@ def _ask(call: ServiceCall, server: ServerAgain, found: Verification) -> None:
         tally.unanswered += 1
         return
     tally.questions += 1
-    # The node's clock told this time when the question came.
+    # The time on the node's clock when the request arrived.
     asked_ns = call.request_event.publish_time_ns
     recomputed = server.answer(call.service_type, request, make_response, asked_ns=asked_ns)
     note_difference(
@@ -311,7 +311,7 @@ def _ask(call: ServiceCall, server: ServerAgain, found: Verification) -> None:
 def note_difference(
     found: Verification, service: str, differing: Iterable[Difference], *, asked_ns: int
 ) -> None:
-    """Note how an answer compares with the logged one, by the fields in which they differ."""
+    """Count a response by its difference from the logged one."""
     tally = found.services[service]
     same, told = _beyond(differing, found.tolerance)
     if told:
@@ -343,11 +343,11 @@ def _unreadable(found: Verification, tally: ServiceTally, reason: str) -> None:
     found.unreadable = found.unreadable or reason
 
 
-AS_LOGGED: Final = "as logged"  # what comes of a log whose answers are all the same today
+AS_LOGGED: Final = "as logged"  # the result of a log whose responses have not changed
 
 
 def report(found: Verification) -> str:
-    """Return the table of one log, the answers that differ most, and what could not be read."""
+    """Return the table of one log, the responses that differ most, and a description of unreadable parts."""
     lines = [str(found.path)]
     changed = [
         f"{name} {text} (here {found.versions_now[name]})"
@@ -371,7 +371,7 @@ def report(found: Verification) -> str:
 
 
 def summary(results: Sequence[tuple[str, str]]) -> str:
-    """Return a table of several logs: the name of each, and what came of it."""
+    """Return a table of several logs: the name of each, and its result."""
     width = max(len(name) for name, _ in results)
     good = sum(result == AS_LOGGED for _, result in results)
     lines = [f"  {name:{width}}  {result}" for name, result in results]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Draws a recording in rerun: states of bodies, and the answers that it holds or that are asked now."""
+"""Draws a recording in rerun: states of bodies, and responses that are logged or requested on replay."""
 
 from __future__ import annotations
 
@@ -20,26 +20,27 @@ if TYPE_CHECKING:
     from contact_dynamics.replay.events import Answered, Event, Events
     from contact_dynamics.replay.progress import Progress
 
-_LOOK_S: Final = 0.2  # how long what is served waits between two looks at its sinks
-_AT_ONCE: Final = 1000  # states that are drawn together, because a batch costs what a single state does
+_LOOK_S: Final = 0.2  # time between two checks of the sinks of a served picture
+_AT_ONCE: Final = 1000  # number of states in a batch, which takes as long as a single state
 
 
 class Drawn(NamedTuple):
-    """What came of a drawing."""
+    """The result of a drawing."""
 
     states: int
-    answers: int  # with the refused ones
-    took_all: bool  # whether the sinks took all of it
+    answers: int  # including rejected requests
+    took_all: bool  # whether the sinks received all of it
     viewer_failed: bool  # whether a viewer could not be reached, or failed later
 
 
 def draw(name: str, events: Events, sinks: Sinks, *, surface_side: float, progress: Progress) -> Drawn:
-    """Draw the recording of that name. What is served stays so until `KeyboardInterrupt`.
+    """Draw the recording of that name. A served picture remains available until `KeyboardInterrupt`.
 
-    What cannot be drawn is told on the terminal, each kind once. Surfaces are squares of ``surface_side``, m.
+    Failures to draw are reported on the terminal, each kind once. Surfaces are squares of ``surface_side``,
+    m.
 
     Raises:
-        NowhereToDrawError: a viewer was asked for alone, and there is none.
+        NowhereToDrawError: only a viewer was requested, and there is none.
         OSError: the file cannot be written.
     """
     raise_errors()
@@ -58,7 +59,7 @@ def draw(name: str, events: Events, sinks: Sinks, *, surface_side: float, progre
         if is_served and not recording.viewer_failed:
             _tell_server(name, f"all {drawing.states} states and {drawing.answers} answers are drawn")
             _serve(recording)
-    finally:  # also if the user stops it: what is drawn so far can be opened
+    finally:  # also if the user stops it, so that the picture so far can be opened
         took_all = recording.close()
     return Drawn(drawing.states, drawing.answers, took_all, recording.viewer_failed)
 
@@ -90,7 +91,7 @@ class _Drawing:
         self._waiting = StatesInTurn(picture, guarded=self._guarded)
 
     def show(self, event: Event) -> None:
-        """Draw an event, or keep a state to be drawn with others."""
+        """Draw an event, or queue a state to be drawn with others."""
         if isinstance(event, StateCame):
             self.states += 1
             self._waiting.add(event.body_name, event.state)
@@ -110,7 +111,7 @@ class _Drawing:
         self._guarded(event.service_name, lambda: self._show_answer(event))
 
     def finish(self, *, look_at_all: bool) -> None:
-        """Draw what is left, and look at all of it where no viewer was open from the beginning."""
+        """Draw the queued states, and frame the whole picture if no viewer was open from the beginning."""
         self._waiting.draw()
         if look_at_all:
             self._guarded("the last look", self._picture.frame_all)
