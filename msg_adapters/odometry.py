@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from msg_adapters.state_adapter import SourceSettings
 
 
+@np.errstate(invalid="ignore", over="ignore")  # an infinite twist is rejected, without a warning before
 def body_state_from_odometry(msg: Odometry, *, world_frame: str, p_FB_F: FloatArray) -> BodyState:
     """Return the state of the body whose centre of mass is at ``p_FB_F``, (3,), m, in the child frame.
 

@@ -8,7 +8,6 @@ import signal
 from pathlib import Path
 from typing import Any
 
-import pytest
 from nav_msgs.msg import Odometry
 from rosgraph_msgs.msg import Clock
 
@@ -53,7 +52,6 @@ def ask_beyond_reason(client: Client) -> None:
     assert client.ask(far).status != 0
 
 
-@pytest.mark.filterwarnings("ignore:invalid value encountered in matmul")  # replay reads infinite twists too
 def test_no_state_says_what_became_of_those_that_came(tmp_path: Path) -> None:
     """Nor is a state kept that makes no sense, or is NumPy's warning of it printed."""
     ready = "ready: bodies brick, parcel (no state topic); log"
