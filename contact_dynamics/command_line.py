@@ -21,11 +21,11 @@ if TYPE_CHECKING:
 
 
 class Verb(NamedTuple):
-    """One verb, with the places of its `main(arguments) -> exit code` and of its parser.
+    """One verb, with the locations of its `main(arguments) -> exit code` and of its parser.
 
     Attributes:
-        parser: The parser, as module:function. It needs no ROS, so that `--help` works everywhere.
-        needs: Modules that `pip install .` does not bring.
+        parser: The parser, as module:function. It does not require ROS, so that `--help` works everywhere.
+        needs: Modules that `pip install .` does not install.
         is_listed: Whether `--help` lists it. The nodes of the examples are not.
     """
 
@@ -43,17 +43,17 @@ class Verb(NamedTuple):
 
 
 INTERRUPTED: Final = 130
-"""The exit code after Ctrl-C, as shells have it."""
+"""The exit code after Ctrl-C, as in shells."""
 
 BROKEN_PIPE: Final = 141
-"""The exit code where the reader of the output has gone, as `head` goes. Shells have it too."""
+"""The exit code when the reader of the output, such as `head`, has closed the pipe, as in shells."""
 
 DISCOVERY_RANGE: Final = "ROS_AUTOMATIC_DISCOVERY_RANGE"
 _SERVER_OF_DISCOVERY: Final = "ROS_DISCOVERY_SERVER"
 
 _THREADS_OF_BLAS: Final = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
-"""Matrices of a few dozen rows gain nothing from threads, and wait for them on a busy machine: the singular
-values of a matrix with 64 rows took 300 ms instead of 2."""
+"""Threads do not speed up matrices of a few dozen rows, and delay them on a busy machine: the singular values
+of a matrix with 64 rows took 300 ms instead of 2 ms."""
 
 _ROS: Final = ("rclpy", "geometry_msgs.msg", "nav_msgs.msg", "contact_dynamics_interfaces.srv")
 
@@ -168,14 +168,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 class _Output(io.FileIO):
-    """The standard output. It ends the command without a word where the reader has gone, as `head` goes."""
+    """The standard output. The command exits silently when the reader, such as `head`, closes the pipe."""
 
     def write(self, data: Any) -> int:
         """Write some bytes."""
         try:
             return super().write(data)
         except BrokenPipeError:
-            os.dup2(os.open(os.devnull, os.O_WRONLY), self.fileno())  # what else is written on the way out
+            os.dup2(os.open(os.devnull, os.O_WRONLY), self.fileno())  # for output during exit
             raise SystemExit(BROKEN_PIPE) from None
 
 
@@ -187,10 +187,10 @@ def _main(given: list[str]) -> int:
     if given[0] not in VERBS:
         if not given[0].startswith("-"):
             parser.error(_unknown(given[0]))
-        parser.parse_args(given)  # `--help` and `--version` end here, and anything else is an error
+        parser.parse_args(given)  # `--help` and `--version` exit here; anything else is an error
     try:
         return _run(given[0], given[1:])
-    except KeyboardInterrupt:  # nodes have handlers of their own, but only once they have begun
+    except KeyboardInterrupt:  # nodes install their own handlers, but only once they have started
         print("\nstopped", file=sys.stderr)
         return INTERRUPTED
 
@@ -201,7 +201,7 @@ def _run(name: str, arguments: list[str]) -> int:
         os.environ.setdefault(variable, "1")
     with warnings.catch_warnings():
         if not {"-h", "--help"}.isdisjoint(arguments):
-            warnings.simplefilter("ignore", RuntimeWarning)  # that the compiled core is outdated
+            warnings.simplefilter("ignore", RuntimeWarning)  # about an outdated compiled core
         from contact_dynamics.nodes.arguments import check_arguments  # loads SciPy
 
         check_arguments(verb.make_parser(), arguments)
@@ -210,20 +210,20 @@ def _run(name: str, arguments: list[str]) -> int:
         print(_remedy(name, missing), file=sys.stderr)
         return 3
     _stay_on_this_machine()
-    if name == "server":  # whose imports take seconds where nothing of them is in memory
+    if name == "server":  # its imports take seconds when the files are not cached
         print("contact-dynamics server: starting", file=sys.stderr, flush=True)
     exit_code: int = _imported(verb.module).main(arguments)
     return exit_code
 
 
 def _stay_on_this_machine() -> None:
-    """Let ROS find nodes of this machine alone, and be found by them, unless more is asked for."""
+    """Restrict ROS discovery to this machine, unless the environment configures discovery."""
     if not (os.environ.get(DISCOVERY_RANGE) or os.environ.get(_SERVER_OF_DISCOVERY)):
         os.environ[DISCOVERY_RANGE] = "LOCALHOST"
 
 
 def _imported(module: str) -> Any:
-    """Return a module. What it makes stays, and to search that for garbage costs a tenth of a start."""
+    """Return a module, imported without garbage collection, which would take a tenth of the startup time."""
     gc.disable()
     try:
         return import_module(module)
@@ -233,7 +233,7 @@ def _imported(module: str) -> Any:
 
 
 def _is_installed(module: str) -> bool:
-    """Return whether a module can be found. A folder without code, such as the sources' `srv`, is none."""
+    """Return whether a module can be found. A folder without code, such as `srv` of the sources, is none."""
     try:
         spec = find_spec(module)
     except ModuleNotFoundError:
@@ -257,7 +257,7 @@ def _remedy(verb: str, missing: list[str]) -> str:
 
 
 def _unknown(name: str) -> str:
-    """Return an error with the verb that is probably meant, or with all of them."""
+    """Return an error that suggests the verb probably meant, or lists all verbs."""
     from contact_dynamics.replay.arguments import MODES
 
     near = difflib.get_close_matches(name.replace("-", "_"), VERBS, n=1)
@@ -268,8 +268,8 @@ def _unknown(name: str) -> str:
 
 
 def _complete() -> None:
-    """Print what a shell may complete a command line to, and end the process."""
-    import argcomplete  # the extra [completion] brings it, and only the shell's hook gets here
+    """Print the shell completions of a command line, and exit."""
+    import argcomplete  # in the extra [completion]; only the shell's hook calls this function
 
     parser = argparse.ArgumentParser(prog="contact-dynamics")
     verbs = parser.add_subparsers()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The base class of the library's values: a short `repr`, a readable `str`, and a `dict` that JSON takes."""
+"""The base class of the library's records: a short `repr`, a readable `str`, and a JSON-compatible `dict`."""
 
 from __future__ import annotations
 
@@ -27,23 +27,23 @@ from contact_dynamics.validation_types import checks_fields, checks_names, no_at
 Made = TypeVar("Made", bound="Record")
 
 _DIGITS: Final = 6
-"""Significant digits of a number that is shown. `to_dict` keeps all of them."""
+"""Significant digits of a displayed number. `to_dict` keeps all digits."""
 
 _MAX_SHOWN: Final = 9
-"""Largest number of elements of an array or a list that is shown. Longer ones are shown as their shape."""
+"""Maximum number of elements of a displayed array or list. Longer ones are displayed as their shape."""
 
 
 _PUT: Final[dict[type[Record], tuple[Callable[[Record, object], None], ...]]] = {}
-"""What `made` puts values into records with, once one of the class was made."""
+"""The field setters that `made` uses, cached for each class."""
 
 _NUMBERS: Final = (float, Decimal, Fraction, np.floating)
 
 
 class MembersInHelp(enum.EnumMeta):
-    """The kind of an enumeration whose help lists its members with what the source says of each."""
+    """The metaclass of enumerations whose help lists the members with their descriptions in the source."""
 
     @property
-    def __doc__(cls) -> str:  # type: ignore[override]  # made where it is asked for, since it reads the source
+    def __doc__(cls) -> str:  # type: ignore[override]  # computed on access, since it reads the source
         """The enumeration's own text, and its members."""
         own = inspect.cleandoc(vars(cls).get("__doc__") or "")
         texts = _texts_of_members(cls)
@@ -54,7 +54,7 @@ class MembersInHelp(enum.EnumMeta):
     if not TYPE_CHECKING:
 
         def __getattr__(cls, name: str) -> Any:
-            """Return a member, which older Pythons look for here, or raise an error that names the others."""
+            """Return a member, as older Python versions require, or raise an error that lists the members."""
             members = vars(cls).get("_member_map_", {})
             if name.startswith("_") or name in members:
                 return members[name] if name in members else type.__getattribute__(cls, name)
@@ -65,7 +65,7 @@ class MembersInHelp(enum.EnumMeta):
 
 @functools.cache
 def _texts_of_members(cls: type) -> dict[str, str]:
-    """Return the text that follows each member in the source, where there is a source."""
+    """Return the description that follows each member in the source, if the source is available."""
     try:
         (kind,) = ast.parse(textwrap.dedent(inspect.getsource(cls))).body
     except (OSError, TypeError, SyntaxError):
@@ -79,45 +79,45 @@ def _texts_of_members(cls: type) -> dict[str, str]:
 
 
 class NamedInt(enum.IntEnum, metaclass=MembersInHelp):
-    """An enumeration of whole numbers, as messages have them, that prints as its name on every Python."""
+    """An enumeration of integers, as in messages, that prints as its name in every Python version."""
 
     def __str__(self) -> str:
         """Return the name."""
         return self.name
 
     def __format__(self, spec: str) -> str:
-        """Return the name, laid out as a string is."""
+        """Return the name, formatted as a string."""
         return format(self.name, spec)
 
 
 _LINE: Final = 100
-"""Letters of a line that is shown."""
+"""Characters of a displayed line."""
 
 _LONGEST_ARRAY: Final = 75
-"""Letters of an array whose numbers are shown. A longer one is shown as its shape."""
+"""Maximum characters of a displayed array. A longer array is displayed as its shape."""
 
 _LINES: Final = 20
-"""Lines of a value that is printed."""
+"""Maximum lines of a printed value."""
 
 _MAX_TABLE: Final = 5
-"""Rows and columns of an array that is shown row by row, where there is room."""
+"""Maximum rows and columns of an array that is displayed row by row if there is room."""
 
 _FEW: Final = 4
-"""Lines that are worth a list of records of which more follow."""
+"""Minimum lines available for a list of records that is displayed in part."""
 
 
 class Record:
-    """A value of named fields, made by `dataclasses.dataclass` with ``repr=False``.
+    """A value with named fields, created by `dataclasses.dataclass` with ``repr=False``.
 
-    Fields whose name begins with an underscore, functions, and fields of ``field(repr=False)``, which are how
-    a value works inside, are not shown. A record that checks its fields when it is made, in
-    ``__post_init__``, has their types checked first.
+    Internal fields are not displayed: those whose name begins with an underscore, functions, and fields with
+    ``field(repr=False)``. If a record validates its fields in ``__post_init__``, their types are checked
+    first.
     """
 
     __slots__ = ()
 
     def __init_subclass__(cls) -> None:
-        """Have the names and types of fields checked, once: `dataclass` makes a class with slots anew."""
+        """Add the checks of names and types of fields, once: `dataclass` recreates a class with slots."""
         post_init, init = vars(cls).get("__post_init__"), vars(cls).get("__init__")
         if post_init is not None and not hasattr(post_init, "__wrapped__"):
             type.__setattr__(cls, "__post_init__", checks_fields(post_init, inspect.get_annotations(cls)))
@@ -125,10 +125,10 @@ class Record:
             type.__setattr__(cls, "__init__", checks_names(init))
         super().__init_subclass__()
 
-    if not TYPE_CHECKING:  # type checkers know which attributes there are
+    if not TYPE_CHECKING:  # type checkers know the attributes
 
         def __getattr__(self, name: str) -> Any:
-            """Raise the error that there is no such attribute, and name the one that was probably meant."""
+            """Raise an error for an unknown attribute that suggests the one probably meant."""
             if name.startswith("_") or hasattr(type(self), name):
                 return object.__getattribute__(self, name)  # a property's own error
             raise AttributeError(no_attribute(self, name))
@@ -138,31 +138,31 @@ class Record:
         return _in_a_line(self, _LINE)
 
     def __str__(self) -> str:
-        """Return what it is in short, and below it the fields, in at most 20 lines."""
+        """Return a summary, and below it the fields, in at most 20 lines."""
         gist = textwrap.wrap(self.in_short(), _LINE, subsequent_indent="  ", break_on_hyphens=False)
         return "\n".join([*gist, *_lines(self, _LINES - len(gist))])
 
     def in_short(self) -> str:
-        """Return what it is in a few words. Results whose gist is not a field of theirs have more to say."""
+        """Return a summary in a few words. Results whose summary is not one of their fields override this."""
         return type(self).__name__
 
     def _repr_html_(self) -> str:
-        """Return the fields as a table, which notebooks show. Fields of fields open with a click."""
+        """Return the fields as a table for notebooks. Nested fields expand on a click."""
         return _table(self)
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the fields by name, as plain numbers, strings, lists and dicts that JSON takes.
+        """Return the fields by name, as JSON-compatible numbers, strings, lists and dicts.
 
-        Enumerations stand by name. Numbers that are not finite, which JSON does not have, are the strings
-        "nan", "inf" and "-inf", which `float` takes.
+        Enumeration members are represented by name, and non-finite numbers, which JSON lacks, by the strings
+        "nan", "inf" and "-inf", which `float` accepts.
         """
         return {name: _plain(value) for name, value in _fields(self)}
 
 
 def made(cls: type[Made], *values: object) -> Made:
-    """Return a record of values, one for each field of its own class, that need no checks.
+    """Return a record of unchecked values, one for each field that its own class defines.
 
-    It takes a third of the time of a call of the class.
+    It takes a third of the time of a constructor call.
     """
     record, puts = object.__new__(cls), _PUT.get(cls) or _puts_of(cls)
     if len(values) != len(puts):
@@ -173,22 +173,22 @@ def made(cls: type[Made], *values: object) -> Made:
 
 
 def _puts_of(cls: type[Record]) -> tuple[Callable[[Record, object], None], ...]:
-    """Return what puts a value into each field, although records are frozen."""
+    """Return the setter of each field, which also works on frozen records."""
     return _PUT.setdefault(
         cls, tuple([vars(cls)[name].__set__ for name in cast("tuple[str, ...]", cls.__slots__)])
     )
 
 
 class Rows(Record):
-    """A result of many cases or times, whose arrays have a row for each."""
+    """A result for many cases or times, whose arrays have one row for each."""
 
     __slots__ = ()
 
     def to_frame(self) -> Any:
-        """Return the result as a `DataFrame` of pandas, with a row for each case or time.
+        """Return the result as a pandas `DataFrame` with one row for each case or time.
 
-        Each component of a vector has a column, such as ``v_WB_W.x``. Other arrays count theirs from 0.
-        What is None, or the same for all rows, is left out.
+        Each component of a vector has a column, such as ``v_WB_W.x``. Components of other arrays are numbered
+        from 0. Fields that are None or equal for all rows are omitted.
 
         Raises:
             NotSupportedError: pandas is not installed.
@@ -201,7 +201,7 @@ class Rows(Record):
 
 
 def _columns(prefix: str, rows: Rows) -> Iterator[tuple[str, Any]]:
-    """Yield the columns of a result of many, by their names."""
+    """Yield the name and values of each column."""
     for name, value in _fields(rows):
         if isinstance(value, Rows):
             yield from _columns(f"{prefix}{name}.", value)
@@ -213,7 +213,7 @@ def _columns(prefix: str, rows: Rows) -> Iterator[tuple[str, Any]]:
 
 
 def _fields(record: object) -> list[tuple[str, Any]]:
-    """Return the fields that are shown, and their values."""
+    """Return the displayed fields and their values."""
     if isinstance(record, tuple):
         return list(record._asdict().items())  # type: ignore[attr-defined]  # a NamedTuple
     return [
@@ -230,7 +230,7 @@ def _has_fields(value: object) -> bool:
 
 
 def _plain(value: Any) -> Any:
-    """Return a value as JSON has it."""
+    """Return a value as JSON-compatible types."""
     plain: Any
     if isinstance(value, enum.Enum):
         plain = value.name
@@ -275,7 +275,7 @@ def _short(value: Any) -> str:
 
 
 def _in_words(values: Any) -> str:
-    """Return the entries of a list, or how many there are where they are records, or many."""
+    """Return the entries of a list, or their number if they are records or too many."""
     records = {type(each).__name__ for each in values if isinstance(each, Record)}
     if records:
         return f"{len(values)} {' or '.join(sorted(records))}"
@@ -288,14 +288,14 @@ def _in_words(values: Any) -> str:
 
 
 def _without_rounding(array: Any) -> Any:
-    """Return an array whose numbers that are nothing but the rounding of the others are zero."""
+    """Return an array in which numbers within the rounding of the largest are zero."""
     if array.dtype.kind != "f" or not np.isfinite(array).all():
         return array
     return np.where(abs(array) < SHOWN_AS_ZERO * abs(array).max(initial=0.0), 0.0, array)
 
 
 def _in_a_line(record: Record, longest: int) -> str:
-    """Return the fields of a record in one line, as many as fit."""
+    """Return as many fields of a record as fit in one line."""
     name = type(record).__name__
     shown: list[str] = []
     left = longest - len(name) - len("(, ...)")
@@ -309,7 +309,7 @@ def _in_a_line(record: Record, longest: int) -> str:
 
 
 def _lines(record: Record, count: int) -> list[str]:
-    """Return a line for each field. Where there is room, lines for what is in a field follow."""
+    """Return a line for each field, followed by lines for nested fields if there is room."""
     named = _fields(record)
     width = max((len(name) for name, _ in named), default=0)
     hidden = named[count - 1 :] if len(named) > count else []
@@ -347,7 +347,7 @@ def _cut(line: str) -> str:
 
 
 def _table(record: object) -> str:
-    """Return the fields as a table in HTML."""
+    """Return the fields as an HTML table."""
     rows = "".join(
         f'<tr><th style="text-align:left">{html.escape(name)}</th>'
         f'<td style="text-align:left">{_cell(value)}</td></tr>'
@@ -357,7 +357,7 @@ def _table(record: object) -> str:
 
 
 def _cell(value: Any) -> str:
-    """Return a value in a table. Other results, and lists of them, are closed until they are clicked."""
+    """Return a table cell. Nested records, and lists of them, are collapsed until they are clicked."""
     if isinstance(value, Record):
         return f"<details><summary>{type(value).__name__}</summary>{_table(value)}</details>"
     if isinstance(value, tuple | list) and value and all(isinstance(each, Record) for each in value):

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The check of types: what public functions and records are given is what their annotations say.
+"""Type checks of the arguments of public functions and records against their annotations.
 
-A chapter's page checks the functions that it offers (`check_types_of`), so that functions call each other
-without a check. A record that checks its fields when it is made has their types checked first (`Record`).
-Numbers and arrays are left to the checks of `validation`, which take whatever NumPy makes numbers of.
+A chapter's `__init__` adds the checks to its public functions (`check_types_of`), so that internal calls are
+unchecked. If a record validates its fields in `__post_init__`, their types are checked first (`Record`).
+Numbers and arrays are checked by `validation` instead, which accepts whatever NumPy converts to numbers.
 """
 
 from __future__ import annotations
@@ -53,24 +53,25 @@ _MEANT: Final[dict[str, tuple[str, ...]]] = {
     "law": ("restitution_law",),
     "force": ("force_W", "f"),
 }
-"""Names that newcomers guess, with what they may mean. Arguments that begin with the guess are found too."""
+"""Names that newcomers guess, with the names probably meant. Arguments that begin with the guess are also
+suggested."""
 
 _INTERNAL: Final = ("_", "HINT_IF", "ALLOWED")
-"""How names begin that no user asks for."""
+"""Prefixes of internal names."""
 
 _UNKNOWN: Final[tuple[int, tuple[type, ...]]] = (-1, ())
-"""Place and types of an argument that a function does not have."""
+"""Position and types of an argument that a function does not have."""
 
-_FUNCTION: Final[type] = Callable  # type: ignore[assignment]  # a class in all that it is used for here
+_FUNCTION: Final[type] = Callable  # type: ignore[assignment]  # used as a class here
 _SEQUENCES: Final = (collections.abc.Sequence, Collection, tuple, list)
 
 
 class Expected(NamedTuple):
-    """What an argument may be.
+    """The values that an argument accepts.
 
     Attributes:
-        types: The types of which it may be.
-        elements: What the elements of a sequence may be, or None if no sequence is allowed.
+        types: The allowed types.
+        elements: The allowed elements of a sequence, or None if no sequence is allowed.
     """
 
     types: tuple[type, ...]
@@ -78,7 +79,7 @@ class Expected(NamedTuple):
 
 
 class CallableChapter(types.ModuleType):
-    """A chapter that is called as its function of the same name: ``contact_dynamics.toss(...)``."""
+    """A chapter that can be called like its function of the same name: ``contact_dynamics.toss(...)``."""
 
     def __call__(self, *args: Any, **kwargs: Any) -> Any:
         """Call the function."""
@@ -86,7 +87,7 @@ class CallableChapter(types.ModuleType):
 
     @property
     def __signature__(self) -> inspect.Signature:
-        """The function's signature, which help and completion show."""
+        """The function's signature, for help and completion."""
         return inspect.signature(_own_function(self))
 
 
@@ -95,13 +96,13 @@ def _own_function(chapter: types.ModuleType) -> Any:
 
 
 def check_types_of(page: dict[str, Any]) -> None:
-    """Make the functions that a chapter's page offers check the types of their arguments.
+    """Make the public functions of a chapter check the types of their arguments.
 
-    A page that offers a function of its own name can be called as that function, and has its help, with a
-    list of the other names. The page's own text is for those who read the source.
+    A chapter with a function of its own name can be called like that function, and its help is the help of
+    the function with a list of the other names. The chapter's own docstring is for readers of the source.
 
     Args:
-        page: The page's ``globals()``, with ``__all__``.
+        page: The ``globals()`` of the chapter's `__init__`, with ``__all__``.
     """
     for name in page["__all__"]:
         function = page[name]
@@ -124,8 +125,8 @@ def check_types_of(page: dict[str, Any]) -> None:
 def checks_types(function: Callable[P, R]) -> Callable[P, R]:
     """Return the function with a check of its arguments' names and types.
 
-    The function raises `UnknownArgumentError` where it has no argument of a name, and `WrongTypeError` where
-    an argument has another type than its annotation.
+    It raises `UnknownArgumentError` for an unknown argument name, and `WrongTypeError` for an argument whose
+    type does not match its annotation.
     """
     arguments: _Arguments | None = None
 
@@ -148,11 +149,11 @@ def checks_types(function: Callable[P, R]) -> Callable[P, R]:
 
 
 class _Arguments:
-    """What a function may be given.
+    """The arguments that a function accepts.
 
     Attributes:
-        by_place: The types of each argument that may be given by place.
-        by_keyword: The place and the types of each argument that may be given by name.
+        by_place: The types of each positional argument.
+        by_keyword: The position and the types of each argument that may be given by name.
     """
 
     def __init__(self, function: Callable[..., object]) -> None:
@@ -168,7 +169,7 @@ class _Arguments:
         return self.expected[name].types if name in self.expected else (object,)
 
     def check(self, args: tuple[object, ...], kwargs: dict[str, Any]) -> None:
-        """Raise the error of arguments, unless `check_type` finds nothing wrong with them."""
+        """Raise an error for the first argument that is not accepted."""
         for name in kwargs:
             if name not in self.parameters:
                 refuse_unknown(self.function, name, self.parameters)
@@ -180,7 +181,7 @@ class _Arguments:
 
 
 def _places(parameters: Iterable[inspect.Parameter]) -> dict[str, int]:
-    """Return the place of each argument that may be given by place."""
+    """Return the position of each argument that may be given by position."""
     return {each.name: i for i, each in enumerate(parameters) if each.kind is each.POSITIONAL_OR_KEYWORD}
 
 
@@ -190,7 +191,7 @@ def _refuse_places(
     args: Collection[object],
     kwargs: Collection[str],
 ) -> NoReturn:
-    """Raise the error that a call has too many arguments by place, or one by place and by name."""
+    """Raise the error for too many positional arguments, or for an argument by position and by name."""
     places = _places(parameters)
     is_method = next(iter(places), "") in {"self", "cls"}
     by_place = [name for name in places if name not in {"self", "cls"}]
@@ -208,8 +209,8 @@ def _refuse_places(
 def checks_fields(post_init: Callable[[Any], None], annotations: Mapping[str, str]) -> Callable[[Any], None]:
     """Return a record's ``__post_init__`` that checks the types of the fields first.
 
-    A sequence becomes a tuple, which nobody can change afterwards. A field that is made from other types than
-    it has is a ``field(metadata={"accepts": ...})``, with an annotation of these.
+    A sequence becomes an immutable tuple. A field that is converted from other types states them as an
+    annotation in ``field(metadata={"accepts": ...})``.
     """
     if _is_numeric(annotations.values()):
         return post_init
@@ -238,10 +239,10 @@ def checks_fields(post_init: Callable[[Any], None], annotations: Mapping[str, st
 
 
 def checks_names(init: Callable[..., None]) -> Callable[..., None]:
-    """Return a record's ``__init__`` that raises `UnknownArgumentError` for arguments that it does not take.
+    """Return a record's ``__init__`` that raises `UnknownArgumentError` for arguments that it does not have.
 
-    The error names the field that was probably meant, the fields that are missing, or all of them if
-    arguments are given by place to a record that takes them only by name.
+    The error names the field probably meant, the missing fields, or all fields if positional arguments are
+    given to a record with keyword-only arguments.
     """
 
     @functools.wraps(init)
@@ -256,9 +257,9 @@ def checks_names(init: Callable[..., None]) -> Callable[..., None]:
 
 
 def _check_names(made: type, arguments: Mapping[str, object], by_place: int = 0) -> None:
-    """Raise `UnknownArgumentError` if a class has no such argument, or requires another one.
+    """Raise `UnknownArgumentError` for an unknown or missing argument of a class.
 
-    It is also raised for arguments ``by_place`` if the class takes arguments only by name.
+    It is also raised if ``by_place`` arguments are positional and the class has only keyword arguments.
     """
     names = dict(inspect.signature(made.__init__).parameters)  # type: ignore[misc]  # not called
     names.pop("self", None)
@@ -282,7 +283,7 @@ def _is_required(parameter: inspect.Parameter) -> bool:
 
 
 def refuse_unknown(called: Callable[..., object], name: str, allowed: Collection[str]) -> NoReturn:
-    """Raise the error that a call has no argument of a name, with the one that was meant and what it is."""
+    """Raise the error for an unknown argument name, with the name probably meant and its description."""
     known = [one for one in allowed if one not in {"self", "cls"}]
     guesses = [one for one in _MEANT.get(name, ()) if one in known]
     guesses += [one for one in known if one.startswith(f"{name}_")]
@@ -297,7 +298,7 @@ def refuse_unknown(called: Callable[..., object], name: str, allowed: Collection
 
 
 def no_attribute(record: object, name: str) -> str:
-    """Return the error that a record has no attribute of a name, with the one that was probably meant."""
+    """Return the error for an unknown attribute of a record, with the attribute probably meant."""
     kind = type(record)
     fields = _shown_fields(record)
     hidden = {one.name for one in _fields_of(record)}
@@ -325,7 +326,7 @@ def _shown_fields(record: object) -> list[str]:
 
 
 def _meaning(called: Callable[..., object], name: str) -> str:
-    """Return the first sentence on an argument in the help of a call, in brackets, or nothing."""
+    """Return the first sentence of an argument's description, in parentheses, or an empty string."""
     meaning = re.search(
         rf"^\s*{name}: (.+?)(\.\s|\.?\n\s*\w+: |\.?\n\n|\.?\Z)",
         inspect.getdoc(called) or "",
@@ -335,7 +336,7 @@ def _meaning(called: Callable[..., object], name: str) -> str:
 
 
 def check_type(field: str, value: object, expected: Expected) -> None:
-    """Raise `WrongTypeError` if a value is not what is expected."""
+    """Raise `WrongTypeError` if a value has the wrong type."""
     if isinstance(value, expected.types):
         return
     if expected.elements is None or not _is_iterable(value) or isinstance(value, Iterator):
@@ -346,7 +347,7 @@ def check_type(field: str, value: object, expected: Expected) -> None:
 
 
 def in_words(value: object) -> str:
-    """Return what a value is, in the words of an error."""
+    """Return a description of a value for an error."""
     if value is None:
         return "None"
     if isinstance(value, Enum):
@@ -358,12 +359,12 @@ def in_words(value: object) -> str:
 
 
 def members_in_words(kind: type[Enum]) -> str:
-    """Return the members of an enumeration in the words of an error."""
+    """Return the members of an enumeration for an error."""
     return " or ".join(f"{kind.__name__}.{one.name}" for one in kind)
 
 
 def _is_iterable(value: object) -> TypeGuard[Iterable[object]]:
-    """Tell whether a value can be gone through, without strings, and without mappings, which give keys."""
+    """Return whether a value is iterable. Strings, and mappings, which iterate over keys, do not count."""
     if isinstance(value, tuple | list):  # the common case
         return True
     scalar = isinstance(value, np.ndarray) and value.ndim == 0
@@ -371,7 +372,7 @@ def _is_iterable(value: object) -> TypeGuard[Iterable[object]]:
 
 
 def _refuse(field: str, value: object, expected: Expected) -> NoReturn:
-    """Raise the error, with a hint where a field of the value is what is expected, or its type has one."""
+    """Raise the error, with a hint if a field of the value has the expected type, or its type has a hint."""
     found = in_words(value) + getattr(type(value), "HINT_IF_WRONG", "")
     for name in getattr(type(value), "__dataclass_fields__", ()):
         if isinstance(getattr(value, name), tuple({*expected.types} - {type(None), str})):
@@ -404,12 +405,12 @@ def _with_article(name: str) -> str:
 
 
 def _is_numeric(annotations: Collection[str]) -> bool:
-    """Tell whether annotations are of numbers and arrays alone, without a look at what the names mean."""
+    """Return whether annotations contain only numbers and arrays, without resolving the names."""
     return {*re.findall(r"\w+", " ".join(annotations))} <= {*_UNCHECKED, "None"}
 
 
 def _expected(annotations: Mapping[str, str], module: Mapping[str, Any]) -> dict[str, Expected]:
-    """Return what arguments may be, by name, without those that are numbers or arrays."""
+    """Return the expected values of arguments by name, except for numbers and arrays."""
     found = {
         name: _expected_by(ast.parse(text, mode="eval").body, module) for name, text in annotations.items()
     }
@@ -417,10 +418,10 @@ def _expected(annotations: Mapping[str, str], module: Mapping[str, Any]) -> dict
 
 
 def _expected_by(node: ast.expr, module: Mapping[str, Any]) -> Expected | None:
-    """Return what a value with this annotation may be, or None for numbers and arrays."""
+    """Return the expected values of an annotation, or None for numbers and arrays."""
     if isinstance(node, ast.Constant):
         return Expected((type(None),)) if node.value is None else _expected_of(node.value, module)
-    if isinstance(node, ast.BinOp):  # lazily, since the other side of a number need not be defined
+    if isinstance(node, ast.BinOp):  # lazily, since an operand beside a number may be undefined
         return _either(_expected_by(side, module) for side in (node.left, node.right))
     if isinstance(node, ast.Subscript):
         return _generic(node, module)
@@ -430,7 +431,7 @@ def _expected_by(node: ast.expr, module: Mapping[str, Any]) -> Expected | None:
 
 
 def _generic(node: ast.Subscript, module: Mapping[str, Any]) -> Expected | None:
-    """Return what a value may be whose annotation has parameters."""
+    """Return the expected values of an annotation with parameters."""
     if not isinstance(node.value, ast.Name) or node.value.id in _UNCHECKED:
         return None
     outer, _ = _named(node.value.id, module)
@@ -440,13 +441,13 @@ def _generic(node: ast.Subscript, module: Mapping[str, Any]) -> Expected | None:
         inner = inner.elts[0] if ellipsis else None
     if outer in {*_SEQUENCES, Iterable}:
         elements = None if inner is None else _expected_by(inner, module)
-        once = (Iterator,) if outer is Iterable else ()  # its elements are not looked at here
+        once = (Iterator,) if outer is Iterable else ()  # its elements are not checked here
         return None if elements is None else Expected(once, elements)
     return _expected_of(outer, module)
 
 
 def _expected_of(kind: object, module: Mapping[str, Any]) -> Expected | None:
-    """Return what a value of this type may be. A string is an annotation of the module."""
+    """Return the expected values of a type. A string is an annotation of the module."""
     if isinstance(kind, str):
         return _expected_by(ast.parse(kind, mode="eval").body, module)
     if isinstance(kind, types.UnionType):
@@ -459,7 +460,7 @@ def _expected_of(kind: object, module: Mapping[str, Any]) -> Expected | None:
 
 
 def _either(options: Iterable[Expected | None]) -> Expected | None:
-    """Return what a value may be that is one or the other. If one is a number, it is not checked here."""
+    """Return the expected values of a union, or None, which means unchecked, if it contains a number."""
     known = []
     for one in options:
         if one is None:
@@ -472,10 +473,10 @@ def _either(options: Iterable[Expected | None]) -> Expected | None:
 
 
 def _named(name: str, module: Mapping[str, Any]) -> tuple[Any, Mapping[str, Any]]:
-    """Return what a name of an annotation means, and the names of the module where that was found.
+    """Return the object that a name in an annotation refers to, and the namespace that contains it.
 
-    Modules import what stands in annotations for the type checker only. A name means one thing in this
-    package, so that it is found where it is defined.
+    Modules import names in annotations only for the type checker. Each name is unique in this package, so
+    that the defining module is searched for.
     """
     ours = (
         vars(each)
