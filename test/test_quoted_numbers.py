@@ -69,7 +69,7 @@ NOT_MEASURED: dict[
         "92 % to 100 %",
         "1e16 rad",
         "at the 99.9 % confidence",
-        "for a covariance (0.1 rad)",
+        "exceeds 0.1 rad",
         "by at most 8 % with the default",
         "by at most 2 % with 16",
         "within 1e-5 m of each other",
