@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The letters of contact modes (Mason, lecture 26). A letter says what one contact does.
+"""The letters of contact modes (Mason, lecture 26). A letter describes the motion of one contact.
 
 A mode is a string with one letter for each contact, in the contacts' order, such as "ffs". In the plane a
 contact slides left or right. In space it slides in any direction, its letter is `STAYS`, and the answer gives
@@ -39,20 +39,20 @@ LETTERS: Final[dict[str, tuple[str, str]]] = {
     STICKS: ("stays fixed", "stay fixed"),
     STAYS: ("slides", "slide"),
 }
-"""The words for what one contact does in a mode with forces, and for several."""
+"""The verbs for one contact and for several, in a mode with forces."""
 
 _ALTOGETHER: Final = {SEPARATES: "leaves"}
-"""The words for a body that is not said to do what its contacts do."""
+"""The verbs for a body that differ from those for its contacts."""
 
 
 def mode_in_words(mode: str, *, turns: bool | None = None) -> str:
-    """Return words for a mode with forces, one letter for each contact: what the body does, or each kind.
+    """Return a description of a mode with forces: the body's motion, or the number of contacts by letter.
 
-    A body of which every contact sticks may turn, about one finger or about the line through two. The letters
-    do not determine that: ``turns`` is whether it does, or None if it is unknown.
+    A body whose contacts all stick may turn, about one finger or about the line through two. The letters do
+    not determine this: ``turns`` is whether it turns, or None if this is unknown.
 
     Raises:
-        InvalidFieldError: a letter is none of a contact mode.
+        InvalidFieldError: a letter is not one of a contact mode.
     """
     if set(mode) - set(LETTERS):
         raise InvalidFieldError("mode", mode, f"letters of {', '.join(LETTERS)}")
@@ -65,14 +65,14 @@ def mode_in_words(mode: str, *, turns: bool | None = None) -> str:
     (first, most), *others = kinds.items()
     words = f"{most} contact{'s' * (most > 1)} {LETTERS[first][most > 1]}"
     words += "".join(f", {count} {LETTERS[kind][count > 1]}" for kind, count in others)
-    # A rigid body of which one contact stays fixed can only turn about it.
+    # A rigid body with one fixed contact can only turn about it.
     return f"it tips ({words})" if set(kinds) == {SEPARATES, STICKS} else words
 
 
 def margin_in_words(mode: str, margin: float, modes_beyond: Collection[str], unknown: str = "") -> str:
-    """Return words for a mode, the change of the wrench that ends it, N, and the modes that follow.
+    """Return a description of a mode, the change of the wrench that ends it, N, and the modes that follow.
 
-    A margin that is NaN is ``unknown`` for this reason.
+    ``unknown`` is the reason for a margin that is NaN.
     """
     if not math.isfinite(margin):
         why = f"its margin is unknown: {unknown}".removesuffix(": ")

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""This file imports modules of the compiled core: those that have a `.pxd` with C types beside their `.py`.
+"""Import of the compiled core: the modules that have a `.pxd` with C types beside their `.py`.
 
-Both forms give the same bits, and the compiled one is much faster. Python imports it by itself where it
-exists, even if it was built from older sources. So compiled modules carry a checksum of their sources, and
-where it does not fit, the `.py` runs. The variable `CONTACT_DYNAMICS_PLAIN=1` in the environment chooses the
-`.py` too, for tests, coverage and debuggers, and makes setup.py build a wheel without the core.
+Both forms give bitwise equal results, and the compiled one is much faster. Python prefers a compiled module
+even if it was built from older sources. Compiled modules therefore contain a checksum of their sources, and
+if it differs, the `.py` is imported. The environment variable `CONTACT_DYNAMICS_PLAIN=1` also selects the
+`.py`, for tests, coverage and debuggers, and makes setup.py build a wheel without the core.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ _plain: set[str] = set()
 
 
 def plain_is_chosen() -> bool:
-    """Return whether the environment asks for plain Python."""
+    """Return whether the environment selects plain Python."""
     return os.environ.get(PLAIN, "0") not in {"", "0"}
 
 
@@ -43,10 +43,11 @@ def checksum(source: Path) -> int:
 
 
 def import_core(*modules: str) -> None:
-    """Import modules, of a package that is being imported, in their compiled form if that is up to date.
+    """Import modules of a package that is being imported, in their compiled form if it is up to date.
 
-    They share what only C sees, so that all of them are compiled or none. If they are not, a warning says so,
-    unless `CONTACT_DYNAMICS_PLAIN` chooses plain Python, or an earlier one has named the outdated module.
+    They share declarations that only C sees, so that all of them are compiled or none. If they are not, a
+    warning is issued, unless `CONTACT_DYNAMICS_PLAIN` selects plain Python, or an earlier warning has named
+    the outdated module.
     """
     if modules[-1] in sys.modules:
         return
@@ -89,7 +90,7 @@ def _source_of(module: str) -> Path:
 
 
 def _problem_of(module: str) -> str:
-    """Return why the compiled form of a module cannot be used, or nothing if it can."""
+    """Return why the compiled form of a module cannot be used, or an empty string if it can."""
     try:
         built = getattr(importlib.import_module(module), "SOURCE_CRC", None)
     except ImportError as error:

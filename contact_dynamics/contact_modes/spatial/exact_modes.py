@@ -1,17 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The modes that a search of friction pyramids found, with forces that realise them, exactly where they can.
+"""Refinement of the modes of friction pyramids to modes of Coulomb's round cones.
 
-A body that stays rests to rounding. Where contacts at rest come to slide, friction on a pyramid is up to half
-a sector away from the direction against their sliding. Such a mode is close to one of the round cones, if
-there is one: with the same letters (`exact_letters`), with sticking and sliding exchanged, or with another
-sharing of the load (`shared_loads`).
+A body whose contacts all stick is at rest to rounding. For contacts at rest that begin to slide, friction on
+a pyramid differs by up to half a sector from the direction opposite to sliding. If the round cones have a
+mode nearby, it has the same letters (`exact_letters`), sticking and sliding exchanged, or another
+distribution of the load (`shared_loads`).
 
-The search asks that strict inequalities hold by `STRICT`. It finds no mode if contacts begin to slide or to
-separate more slowly than this, although their friction is at its limit. Then the search continues with
-loads that differ a little from that of the case. A mode of such a load has the letters and nearly the forces
-of one of the case, if there is one. Newton's method finds it, and the inequalities then hold by more than
-rounding (`NARROWLY`). That there is no mode at all is certain only if linear programs refute all letters
-(`completeness.has_none`).
+The search requires that strict inequalities hold by `STRICT`. It finds no mode if contacts with friction at
+its limit begin to slide or to separate more slowly than this. The search then continues with slightly
+different loads, whose modes have the letters and nearly the forces of a mode of the case, if there is one.
+Newton's method finds that mode, and its inequalities hold by more than rounding (`NARROWLY`). It is certain
+that there is no mode only if linear programs refute all letters (`completeness.has_none`).
 """
 
 from __future__ import annotations
@@ -65,7 +64,7 @@ def realised(case: SpatialCase, search: Search, found: Found) -> ResponseMode:
 
 
 def as_given(case: SpatialCase, mode: ResponseMode) -> ResponseMode:
-    """Return a mode of flush contacts, with forces under which the given ones rest if all of them stick."""
+    """Return a mode of flush contacts. If all stick, its forces hold the body at the given contacts."""
     given = case.given
     letters = case.of_touching(mode.mode)
     if given is None or set(letters) != {STICKS}:
@@ -81,15 +80,15 @@ def as_given(case: SpatialCase, mode: ResponseMode) -> ResponseMode:
 
 
 def _rested(search: Search, forces: FloatArray) -> FloatArray:
-    """Return forces under which a body rests to rounding, near others under which it nearly does."""
+    """Return forces that hold a body at rest to rounding, near forces that do so approximately."""
     rows = sticking(search)
     motion = np.append(search.motion_of(forces), 1.0)
-    if float(np.abs(rows @ motion).max()) > STRICT:  # what tells merged contacts apart was lost
+    if float(np.abs(rows @ motion).max()) > STRICT:  # the differences between merged contacts were lost
         held = held_by_round_cones(search, rows)
         forces = forces if held.forces is None else held.forces
 
     def left(forces: FloatArray) -> float:
-        """Return the size of the wrench that forces leave unbalanced."""
+        """Return the norm of the unbalanced wrench."""
         return float(np.linalg.norm(search.mass @ search.motion_of(forces)))
 
     enough = MODE_RESTS * left(np.zeros_like(forces))
@@ -100,7 +99,7 @@ def _rested(search: Search, forces: FloatArray) -> FloatArray:
     for tolerance in (ROW_TOLERANCE, ROUND_CONE_APART):
         if left(best) <= enough:
             break
-        # The merged conditions hold, and forces elsewhere in the cones meet all of them.
+        # The merged conditions are met. Other forces in the cones also meet the original ones.
         held = held_by_round_cones(search, rows, tolerance=tolerance)
         if held.forces is not None and left(held.forces) <= MODE_BETTER * left(best):
             best = held.forces
@@ -108,12 +107,12 @@ def _rested(search: Search, forces: FloatArray) -> FloatArray:
 
 
 def is_exact(mode: ResponseMode) -> bool:
-    """Return whether friction opposes the sliding to rounding."""
+    """Return whether friction opposes sliding exactly, up to rounding."""
     return mode.misdirection <= MODE_STRAIGHT
 
 
 def each_once(case: SpatialCase, found: list[ResponseMode]) -> list[ResponseMode]:
-    """Return the modes without those that are the same as an earlier one."""
+    """Return the modes without duplicates."""
     kept: list[ResponseMode] = []
     for mode in found:
         if not any(are_the_same(case, mode, other) for other in kept):
@@ -122,7 +121,7 @@ def each_once(case: SpatialCase, found: list[ResponseMode]) -> list[ResponseMode
 
 
 def by_letters(case: SpatialCase, search: Search, found: list[ResponseMode]) -> list[ResponseMode]:
-    """Return the modes, with exact ones in place of others, or without these if certainly none exists."""
+    """Return the modes, each replaced by exact modes nearby, or omitted if certainly none exists."""
     kept: list[ResponseMode] = []
     for mode in found:
         if is_exact(mode):
@@ -155,9 +154,9 @@ def by_letters(case: SpatialCase, search: Search, found: list[ResponseMode]) -> 
 
 
 def _shared(case: SpatialCase, search: Search, letters: str, modes: Sequence[ResponseMode]) -> Held:
-    """Return forces of contacts that share a load, or whether it is certain that there are none.
+    """Return the forces of contacts that share a load, or whether there are certainly none.
 
-    The first mode has these letters, and friction that could not be turned.
+    The first mode has these letters, and no exact direction of friction was found for it.
     """
     own = case.own_forces(modes[0].contact_forces_W)
     forces = forces_with_letters(search, letters, own, shared=True)
@@ -173,7 +172,7 @@ def _shared(case: SpatialCase, search: Search, letters: str, modes: Sequence[Res
 
 
 def letters_of(mode: ResponseMode, case: SpatialCase, search: Search) -> str:
-    """Return the letters of the touching contacts, where c stands for all that stay without friction."""
+    """Return the letters of the touching contacts, with c for contacts that stay without friction."""
     return "".join(
         STAYS if contact.friction == 0.0 and mode.mode[i] == STICKS else mode.mode[i]
         for i, contact in zip(case.touching.tolist(), search.touching, strict=True)
@@ -181,12 +180,12 @@ def letters_of(mode: ResponseMode, case: SpatialCase, search: Search) -> str:
 
 
 _LOADS: Final = 3
-"""Number of directions in which loads on both sides of the case's own are tried. Boundaries between modes
-that lie in none of them are rare."""
+"""Number of directions in which the load is changed, by both signs. They rarely miss the neighbouring
+modes."""
 
 
 class Narrow(NamedTuple):
-    """A mode that holds narrowly."""
+    """A mode whose inequalities hold by `NARROWLY`, but not by `STRICT`."""
 
     letters: str  # s, c or f for each touching contact
     forces: FloatArray  # (n, 3), in the units of the motion
@@ -194,14 +193,14 @@ class Narrow(NamedTuple):
 
 
 class Narrowly(NamedTuple):
-    """What holds narrowly."""
+    """The narrow modes of a case."""
 
-    modes: list[Narrow]  # the modes that were found
-    nearby: list[str]  # the letters of the modes of loads nearby
+    modes: list[Narrow]
+    nearby: list[str]  # the letters of the modes of nearby loads
 
 
 def narrowly(search: Search) -> Narrowly:
-    """Return the modes that hold narrowly, near those of loads nearby."""
+    """Return the narrow modes of a case, found from the modes of nearby loads."""
     chance = np.random.default_rng(26)
     free = search.motion[:, -1]
     modes: list[Narrow] = []
@@ -225,7 +224,7 @@ def narrowly(search: Search) -> Narrowly:
 
 
 def _near(search: Search, letters: str, start: FloatArray) -> list[Narrow]:
-    """Return the modes of a case whose forces are near to given ones."""
+    """Return the modes of a case with forces near the given ones."""
     found = []
     for trial in letters_near(search, letters):
         for shared in (False, True):
@@ -237,7 +236,7 @@ def _near(search: Search, letters: str, start: FloatArray) -> list[Narrow]:
 
 
 def _each_motion_once(search: Search, modes: list[Narrow]) -> list[Narrow]:
-    """Return one mode for each motion: the one in which most contacts stick, if rounding lets some slide."""
+    """Return one mode for each motion, the one with the most sticking contacts."""
     kept: list[tuple[Narrow, FloatArray]] = []
     for mode in sorted(modes, key=lambda one: -one.letters.count("f")):
         motion = search.motion_of(mode.forces)

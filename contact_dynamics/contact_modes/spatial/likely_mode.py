@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The most likely mode: what a body does whose contacts give way a little.
+"""The most likely mode, which is that of slightly compliant contacts.
 
-A contact that would penetrate presses in proportion to that. Friction opposes its sliding in the same
-proportion, up to Coulomb's limit. So the motion solves as many equations as it has components, however
-many contacts there are. Newton's method solves them for stiffer and stiffer contacts. What gives way in the
-end separates or slides, and then forces with these letters are made exact (`exact_letters`). This finds one
-mode at most.
+The normal force of a compliant contact is proportional to its penetrating acceleration. Friction is
+proportional to the sliding acceleration with the same stiffness, up to Coulomb's limit. The number of
+equations is that of the components of the motion, however many contacts there are. Newton's method solves
+them for increasing stiffness. Contacts that still move separate or slide, and forces with these letters are
+then made exact (`exact_letters`). This finds at most one mode.
 """
 
 from __future__ import annotations
@@ -29,17 +29,17 @@ if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
 
 _STIFFNESSES: Final = (1.0, 1e1, 1e2, 1e3, 1e4, 1e6)
-"""Forces of contacts that penetrate with unit acceleration, in parts of those that give it to the body."""
+"""Force of a contact per unit penetrating acceleration, relative to the mass of the body."""
 
 _MAX_STEPS: Final = 30
-"""Newton's steps for each stiffness. Two are enough on average, and some 25 where many feet are at their
-limits of friction."""
+"""Maximum number of Newton steps for each stiffness. Two are enough on average, and about 25 if many feet are
+at their friction limits."""
 
 _SHORTEST_STEP: Final = 0.02
-"""The share of a step that is taken whatever it gains."""
+"""Fraction of a Newton step below which it is accepted without improvement."""
 
 _ENOUGH: Final = 0.1
-"""The share of what a step should gain that a longer one must gain."""
+"""Fraction of the predicted improvement that a longer step must achieve."""
 
 
 @np.errstate(over="ignore", invalid="ignore")  # a contact may be extremely far away
@@ -53,7 +53,7 @@ def likely_mode(search: Search) -> Known | None:
     for gives_way in (GIVES_WAY, 0.0):
         letters = body.letters(now, gives_way)
         if set(letters) <= {SEPARATES}:
-            free = body.response(search.motion[:, -1], 0.0)  # what is not settled may move in any way
+            free = body.response(search.motion[:, -1], 0.0)  # an unconverged motion is arbitrary
             if free.rising.min(initial=1.0) > STRICT:
                 return Known(letters, np.zeros_like(now.forces), alone=True)
             continue
@@ -76,9 +76,10 @@ def _known(letters: str, solution: Solution) -> Known:
 
 
 def _in_round_cones(search: Search, letters: str, solution: Solution) -> Solution | None:
-    """Return a solution with the motion of another one, whose forces are in the round cones, or None.
+    """Return a solution with the same motion and forces in the round cones, or None.
 
-    By their motion, compliant contacts may give a foot too much friction that others could take.
+    Compliant contacts may assign more friction to a foot than its cone allows, although others could carry
+    it.
     """
     acting = [i for i, letter in enumerate(letters) if letter != SEPARATES]
     caused = search.of_forces @ solution.forces.ravel()
@@ -105,9 +106,9 @@ def _in_round_cones(search: Search, letters: str, solution: Solution) -> Solutio
 
 
 class _Response(NamedTuple):
-    """What compliant contacts do under a motion."""
+    """The response of compliant contacts to a motion."""
 
-    missed: FloatArray  # (d,), the force and torque that the equations of motion miss
+    missed: FloatArray  # (d,), residual force and torque of the equations of motion
     forces: FloatArray  # (n, 3), on the body
     rising: FloatArray  # (n,), the normal accelerations
     speeds: FloatArray  # (n,), the tangential ones
@@ -129,7 +130,7 @@ class _Compliant:
         self._along = self._normals[:, :, None] * self._normals[:, None, :]
 
     def response(self, motion: FloatArray, stiffness: float) -> _Response:
-        """Return what the contacts do under a motion, (d,)."""
+        """Return the response of the contacts to a motion, (d,)."""
         accelerations = (self._points @ motion + self._constant).reshape(-1, 3)
         rising = (self._normals * accelerations).sum(axis=1)
         across = accelerations - rising[:, None] * self._normals
@@ -160,7 +161,7 @@ class _Compliant:
         return found
 
     def letters(self, now: _Response, gives_way: float) -> str:
-        """Return what contacts do, where those that move by no more than ``gives_way`` stay or stick."""
+        """Return the letters of the contacts, which stay or stick if they move by at most ``gives_way``."""
         sticks = self._rests & (now.grips if gives_way == 0.0 else now.speeds <= gives_way)
         return "".join(np.where(now.rising > gives_way, SEPARATES, np.where(sticks, STICKS, STAYS)).tolist())
 
@@ -171,7 +172,7 @@ def _directions(vectors: FloatArray, sizes: FloatArray) -> FloatArray:
 
 
 def _settled(search: Search) -> tuple[_Compliant, _Response]:
-    """Return a body on the stiffest contacts, and what these do."""
+    """Return a body on the stiffest contacts, and their response."""
     body, inverse = _Compliant(search), np.linalg.inv(search.mass)
     motion: FloatArray = search.motion[:, -1]
     for stiffness in _STIFFNESSES:

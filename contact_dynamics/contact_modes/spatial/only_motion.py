@@ -1,21 +1,21 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Whether one mode's motion is the only one, by one matrix, without looking for others.
+"""Proof that the motion of a mode is unique, by the definiteness of a matrix, without a search for others.
 
 Let A* be the motion of a mode with forces f*, and A another one with forces f, with d = A - A*. Then d M d is
 the sum of (f - f*) (a - a*) over the contacts, whose accelerations are a. A contact that begins to slide in
 the direction u has f = n (N - mu u), with N its normal, and u* is that direction in the first mode. There,
-the turn of its friction takes mu n (1 - u u*) (|a| + |a*|). Normal forces and separations exclude each other,
-so that their share is negative. What is left is - sum mu (n - n*) u* (a - a*).
+the rotation of its friction contributes - mu n (1 - u u*) (|a| + |a*|). Normal forces and separations are
+complementary, so that their contribution is not positive. The remainder is - sum mu (n - n*) u* (a - a*).
 
 If some virtual motion z, linear in d, has the acceleration mu u* (a - a*) along N - mu u* at every contact,
-the equations of motion turn what is left into - z M d - sum mu n z (u - u*). The turns of friction make this
-larger than what they take by n mu |z|^2 / (2 |a*|) at most, with the tangential part of z at the contact. So
-if M + z M, less these parts, is positive definite, d is zero.
+the equations of motion turn the remainder into - z M d - sum mu n z (u - u*). The rotation of friction
+increases this sum, beyond its own negative contribution, by at most n mu |z|^2 / (2 |a*|), with the
+tangential part of z at the contact. Therefore d is zero if M + z M, less these terms, is positive definite.
 
-A contact that slides already has friction in a known direction, which does not turn. A contact that sticks
-has f* = n* (N - mu s) with |s| <= 1, which takes the place of u*. There z must vanish along the surface.
-Where contacts share friction, s is that of a common virtual motion, so that there is a z. Where all contacts
-of a body are on one plane, it vanishes everywhere. Where normal forces alone hold a body, z is zero.
+A contact that already slides has friction in a known, fixed direction. A contact that sticks has
+f* = n* (N - mu s) with |s| <= 1, where s replaces u*, and z must vanish along its surface. If contacts share
+friction, s is that of a common virtual motion, so that a z exists. If all contacts of a body are on one
+plane, z vanishes everywhere. If normal forces alone hold a body, z is zero.
 """
 
 from __future__ import annotations
@@ -38,10 +38,10 @@ if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
 
 _MAX_STEPS: Final = 12
-"""The largest number of Newton's steps to forces that friction of a common motion allows. Five are enough."""
+"""Maximum number of Newton steps to forces with friction of a common motion. Five are usually enough."""
 
 _SHARED: Final = 2
-"""The least number of contacts that stick whose friction can be shared in several ways."""
+"""Minimum number of sticking contacts whose friction can be shared in several ways."""
 
 
 class _Contacts(NamedTuple):
@@ -56,11 +56,11 @@ class _Contacts(NamedTuple):
 
 
 def is_only_motion(search: Search, forces: FloatArray, staying: Sequence[int] | None = None) -> bool:
-    """Return whether it is proven that no mode has another motion than the one that forces bring about.
+    """Return whether it is proven that all modes have the motion that the forces cause.
 
-    Where contacts stick, other forces may bring about the same motion. If the given ones, (n, 3), prove
-    nothing, those are tried with which friction is that of a common virtual motion. If ``staying`` is given,
-    only modes are meant in which just these contacts stay, as in the first.
+    If contacts stick, other forces may cause the same motion. If the given forces, (n, 3), do not yield a
+    proof, forces with the friction of a common virtual motion are tried. If ``staying`` is given, only modes
+    in which exactly these contacts stay are considered.
     """
     if not search.touching:
         return True
@@ -95,10 +95,10 @@ def is_only_motion(search: Search, forces: FloatArray, staying: Sequence[int] | 
 
 
 def rests_alone(search: Search) -> bool:
-    """Return whether it is proven that a body rests and can do nothing else.
+    """Return whether it is proven that rest is the only motion of a body.
 
-    Normal forces alone may hold it. Otherwise forces are sought that hold it with friction of one common
-    virtual motion, in parts of what slides with it would have.
+    Normal forces alone may hold it. Otherwise forces are sought whose friction is that of one common virtual
+    motion, relative to the friction limit.
     """
     if not search.at_rest or not search.touching:
         return False
@@ -127,11 +127,11 @@ def _evened(
     sticks: NDArray[np.bool_],
     rising: FloatArray,
 ) -> FloatArray | None:
-    """Return friction, (n, 3), with which forces bring a motion about, or None if none was found.
+    """Return the friction, (n, 3), of forces that cause a motion, or None if none was found.
 
-    Where contacts stick, it is that of a common virtual motion, in parts of what slides would have. That of
-    contacts that slide is given as ``ways``, (n, 3), reversed, in parts of the largest. Those that leave do
-    not press.
+    The friction of sticking contacts is that of a common virtual motion, relative to the friction limit.
+    ``ways``, (n, 3), is the reversed friction of sliding contacts, relative to the limit. Separating contacts
+    have no force.
     """
     left = search.mass @ (search.motion[:, -1] - motion)
     normal = contacts.rising.T * (rising <= SAME_MOTION)  # (d, n)
@@ -179,9 +179,9 @@ def _excludes_others(
 ) -> bool:
     """Return whether it is proven that no mode has another motion.
 
-    Only modes are meant in which all contacts stay, if ``within``. In the first mode, friction is ``ways``,
-    (n, 3), as parts of the largest, reversed. Contacts begin to slide at ``speeds``, (n,), which are zero
-    where they stick, or slide already.
+    If ``within``, only modes in which all contacts stay are considered. ``ways``, (n, 3), is the reversed
+    friction of the first mode, relative to its limit. Contacts begin to slide with accelerations ``speeds``,
+    (n,), which are zero for contacts that stick or already slide.
     """
     basis = seen_and_unseen(contacts.rising)[1].T if within else np.eye(search.freedoms)
     if basis.size == 0:
@@ -194,9 +194,9 @@ def _excludes_others(
     z = np.linalg.pinv(E, rcond=ROW_TOLERANCE) @ U
     if np.abs(E @ z - U).max() > ROW_TOLERANCE * max(1.0, float(np.abs(U).max())):
         return False
-    # The virtual motions that have these accelerations and turn friction least are taken.
+    # Choose the virtual motions with these accelerations that rotate friction least.
     tangents = contacts.turns[:, None, None] * contacts.across
-    # Where contacts stick, they may turn it not at all, so that these come first.
+    # Sticking contacts come first, since their friction must not rotate.
     others, rests = seen_and_unseen(E)[1].T, speeds == 0.0
     for chosen in (rests, ~rests) if rests.any() and not rests.all() else (slice(None),):
         tangential = tangents[chosen].reshape(-1, search.freedoms)
@@ -222,7 +222,7 @@ def _excludes_others(
 
 
 def _most_pressing(search: Search, contacts: _Contacts) -> float:
-    """Return a bound on the sum of the normal forces of any mode, which is infinite if none is known.
+    """Return an upper bound on the sum of the normal forces of any mode, or infinity if none is known.
 
     Friction dissipates: a body at rest accelerates by A with A M A <= A w, where w is the applied wrench.
     This confines A to a ball and bounds the forces that press in one direction.
