@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A sample that only rattles on a face from now on is laid flat on it, and slides on.
+"""Replaces the rattling of a sample on a face by sliding flush on it.
 
-A body that strikes with a face rattles from corner to corner while it slides, up to its rest. That takes most
-of a sample's time, and hardly moves the place of rest: the normal impulse over the whole rattling is that of
-the weight, plus what stops the mass centre's motion along the normal. Friction is mu times that as long as
-the body slides one way. So the sample is laid flat, with the speed by which this impulse is the same.
+A body that strikes with a face rattles from corner to corner while it slides, until it rests. The simulation
+of the rattling takes most of a sample's computing time, but hardly affects the place of rest: the total
+normal impulse is that of the weight, plus the momentum of the centre of mass along the normal. The friction
+impulse is mu times that, as long as the body slides in one direction. The sample is therefore laid flat, with
+the speed for which the friction impulse is the same.
 
-It is done where the energy out of the plane could not raise the mass centre by more than a share of what
-tipping over an edge of the face takes.
+The condition is that the energy of the motion out of the plane could raise the centre of mass by only a share
+of the height that tipping over an edge of the face requires.
 """
 
 from __future__ import annotations
@@ -27,26 +28,26 @@ if TYPE_CHECKING:
     from contact_dynamics.toss.solid import Numbers, Solid
 
 RATTLING: Final = 0.15
-"""Energy out of the plane that is left, as a share of what tipping over an edge takes. The place of rest of a
-cube of a decimetre moves by a millimetre at this share, or at a tenth of it."""
+"""Largest energy of the motion out of the plane, relative to that for tipping over an edge. The place of rest
+of a cube of a decimetre changes by a millimetre at this share, or at a tenth of it."""
 
 NEARLY_FLUSH: Final = 0.1
-"""Share of the reach within which corners can belong to the face below."""
+"""Largest height of corners that may belong to the face below, relative to the reach."""
 
 MAX_CORNERS: Final = 10
-"""Corners of a face, of which any three are tried as those that it stands on."""
+"""Largest number of corners near the plane. All combinations of three are tried as supports."""
 
 SAME_FACE: Final = 0.03
-"""Share of the reach within which corners belong to one face. Corners of samples are not quite in a plane."""
+"""Tolerance for corners of one face, relative to the reach. Sampled corners are not exactly in a plane."""
 
 
 class Face:
-    """A face on which a body can stand: three corners and what follows.
+    """A face on which a body can stand.
 
     Attributes:
         up: Unit normal into the body, body axes.
-        high: m, the height of the mass centre above the corners.
-        tipping: m, by how much the mass centre rises when the body tips over the nearest edge.
+        high: m, height of the centre of mass above the face.
+        tipping: m, rise of the centre of mass when the body tips over the nearest edge.
     """
 
     def __init__(self, up: Vector3, high: float, tipping: float) -> None:
@@ -54,18 +55,18 @@ class Face:
 
 
 Faces: TypeAlias = "dict[tuple[int, ...], Face | None]"
-"""The faces that have been looked for, by three corners each; None where these are not on one."""
+"""The known faces by three corners each, or None for three corners that are not on one face."""
 
 
 def laid_flat(solid: Solid, y: Numbers, faces: Faces) -> Numbers | None:
-    """Return the state of a body that slides flush on a face, or None if it does more than rattle on one.
+    """Return the state of the body laid flush on a face, or None if it does more than rattle on one.
 
-    Only a body near a single flat is laid on it, and only with `MAX_CORNERS` there at most. ``faces`` are
-    those of this body that are known, and gets others that are looked for.
+    Only a body near a single plane is laid flat, with at most `MAX_CORNERS` corners near it. ``faces`` caches
+    the faces of this body, and is extended.
     """
     low = NEARLY_FLUSH * solid.reach
     near = [touch for _, touch in low_corners(solid, y, low, math.inf)]
-    if not 3 <= len(near) <= MAX_CORNERS or near[0][0] != near[len(near) - 1][0]:  # they come flat after flat
+    if not 3 <= len(near) <= MAX_CORNERS or near[0][0] != near[len(near) - 1][0]:  # sorted by plane
         return None
     flat = solid.flats[near[0][0]]
     n, pressing = flat.normal, -vec.dot(solid.gravity, flat.normal)
@@ -77,11 +78,11 @@ def laid_flat(solid: Solid, y: Numbers, faces: Faces) -> Numbers | None:
     flush = [*y[:7], along[0], along[1], along[2], turning[0], turning[1], turning[2]]
     pose = pose_of(solid, y)
     rattles = (pose.kinetic_energy() - kinetic_energy_of(solid, flush)) / (solid.mass * pressing)
-    if rattles > RATTLING * solid.reach:  # no face takes more than the reach to tip over
+    if rattles > RATTLING * solid.reach:  # tipping needs at most the reach
         return None
     rows, speed = pose.rows, vec.norm(along)
     share = max(1.0 + flat.friction * v_n / speed, 0.0) if speed > 0.0 else 0.0
-    # Friction at the ground moves the place where the weight is borne ahead of the mass centre.
+    # Friction shifts the centre of pressure ahead of the centre of mass.
     rests = (share * speed) ** 2 <= 2.0 * pressing * flat.friction * solid.settling
     ahead = 0.0 if rests else flat.friction / speed
     lean = vec.transposed_times(rows, (ahead * along[0], ahead * along[1], ahead * along[2]))
@@ -108,9 +109,9 @@ def laid_flat(solid: Solid, y: Numbers, faces: Faces) -> Numbers | None:
 
 
 def _face_below(solid: Solid, n_B: Vector3, lean: Vector3, near: list[int], faces: Faces) -> Face | None:
-    """Return the face of some of the corners on which the body can stand, or None if there is none.
+    """Return the face through three of the corners on which the body can stand, or None if there is none.
 
-    ``lean`` says how far ahead the weight is borne, body axes, relative to the height of the mass centre.
+    ``lean`` is the shift of the centre of pressure, body axes, relative to the height of the centre of mass.
     """
     for three in combinations(near, 3):
         if three not in faces:
@@ -136,7 +137,7 @@ def _less(a: Vector3, b: Vector3) -> Vector3:
 
 
 def _face_of(solid: Solid, three: tuple[int, ...]) -> Face | None:
-    """Return the face of the body on which three corners are, or None if they are not on one."""
+    """Return the face of the body that contains three corners, or None if there is none."""
     i, j, k = three
     p, q, r = solid.corner(i), solid.corner(j), solid.corner(k)
     up = vec.cross(_less(q, p), _less(r, p))
@@ -166,13 +167,13 @@ def _stands(up: Vector3, p: Vector3, q: Vector3, r: Vector3) -> bool:
 
 
 def _tipping(up: Vector3, high: float, face: list[Vector3]) -> float:
-    """Return by how much the mass centre rises at least, m, when the body tips over an edge of a face."""
+    """Return the smallest rise of the centre of mass, m, when the body tips over an edge of a face."""
     one, other = tangents(up)
     turn = sorted(face, key=lambda corner: math.atan2(vec.dot(corner, other), vec.dot(corner, one)))
     least = math.inf
     for a, b in zip(turn, [*turn[1:], turn[0]], strict=True):
         side = vec.norm(_less(b, a))
-        # The distance of the edge from below the mass centre, seen along the normal.
+        # The distance of the edge from the projection of the centre of mass along the normal.
         if side > 0.0:
             least = min(least, abs(vec.dot(up, vec.cross(a, b))) / side)
     return math.sqrt(high * high + least * least) - high

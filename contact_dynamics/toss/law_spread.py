@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The law's own spread: by how much velocities after strikes differ from what the law of impact says.
+"""The model error of the impact law: random changes of the velocities after strikes.
 
-A body is pushed at the contact alone, whatever the law says. So what the law is off by is an impulse through
-the contact, for the most part, and changes of velocity and spin belong together. A small rest does not: the
-contact is not quite where the shape has it. If several contacts touch, as under a face that lands flush, the
-impulse is through their middle, and one spread is that of all strikes of the instant together.
+The impact acts on the body only at the contact. Most of the error is therefore an impulse at the contact
+point, which changes velocity and spin together. A small remainder is independent, since the real contact
+point is not exactly that of the shape. If several contacts touch, as when a face lands flush, the impulse
+acts at their mean position, and one change represents all strikes of the instant.
 
-Recorded strikes of a cube have one spread, whether they change the velocity by 0.3 or by 1.8 m/s. A strike
-of a sample that is much weaker than its first one has a smaller spread. Otherwise a body that comes to rest
-would be shaken by it.
+In recorded strikes of a cube, the scatter is the same for velocity changes from 0.3 to 1.8 m/s. A strike of a
+sample that is much weaker than its first one has a smaller scatter, because the full scatter would keep a
+body from coming to rest.
 
 `law_spread.pxd` gives the C types with which this file compiles.
 """
@@ -33,29 +33,29 @@ if TYPE_CHECKING:
 
 
 FREEDOM: Final = 3.0
-"""Degrees of freedom of Student's t. Residuals of recorded strikes have heavier tails than normal ones. Among
-the tosses that the law was fitted to, nine tenths were in the regions of nine tenths with 3, and three
-quarters with normal numbers."""
+"""Degrees of freedom of Student's t. Residuals of recorded strikes have heavier tails than normal ones. Of
+the tosses to which the law was fitted, 90 % were inside the 90 % regions with 3, and 75 % with the normal
+distribution."""
 
 _SAME_MEDIAN: Final = 0.8881
 """Root of the ratio of the medians of the squared distance in three dimensions: chi squared's, and by t."""
 
 BY_IMPULSE: Final = 0.9
-"""Share of a variance that an impulse through the contact has: that of velocity or that of spin, whichever it
-reaches first. The residuals of recorded strikes have it so. Those to which the law was fitted are e^153 times
-as probable with such impulses as with changes of velocity and spin that do not belong together."""
+"""Share of the variance of velocity or spin, whichever is reached first, that is due to an impulse at the
+contact, from residuals of recorded strikes. Those to which the law was fitted are e^153 times as probable
+with such impulses as with independent changes of velocity and spin."""
 
 FULL: Final = 0.2
-"""A strike that changes the velocity by this share of what the first one did has the full spread, and so have
-stronger ones. Weaker ones have it in proportion."""
+"""Velocity change of a strike, relative to that of the first one, from which on the scatter is not reduced.
+For weaker strikes, it decreases in proportion."""
 
 MAX_TURNED_BACK: Final = 100
-"""Approaches that are turned back, after which a strike keeps the velocities of the law. Four corners of a
-plate need some ten."""
+"""Largest number of reversed approaches, after which a strike keeps the velocities of the law. Four corners
+of a plate need some ten."""
 
 
 class LawSpread:
-    """What changes the velocities of n samples after strikes: one `Kick` each."""
+    """The random velocity changes of n samples after strikes, one `Kick` each."""
 
     def __init__(self, uncertainty: TossUncertainty, count: int, chance: Generator) -> None:
         velocity, spin = uncertainty.velocity, uncertainty.spin
@@ -65,18 +65,18 @@ class LawSpread:
         self._own: list[Generator] = []
 
     def draw(self) -> FloatArray:
-        """Return numbers for one more strike of all samples, (n, 10), as `Kick.changed` takes them.
+        """Return random numbers for one strike of all samples, (n, 10), the argument of `Kick.changed`.
 
-        They are drawn for all, so that a sample's do not depend on what others do.
+        They are drawn for all samples, so that those of one sample do not depend on the others.
         """
         count = len(self.kicks)
         normal = self._chance.standard_normal((count, 9))
         return np.column_stack([normal, self._chance.chisquare(FREEDOM, count)])
 
     def of_one(self, i: int) -> Kick:
-        """Return what changes the velocities of one sample from now on.
+        """Return the `Kick` of one sample, with its own random number generator.
 
-        Each sample has numbers of its own then, so that it does not matter which one goes on first.
+        The results then do not depend on the order in which samples are simulated.
         """
         self._own = self._own or self._chance.spawn(len(self.kicks))
         self.kicks[i].chance = self._own[i]
@@ -84,19 +84,19 @@ class LawSpread:
 
 
 class Kick:
-    """Changes the velocities of one sample after its strikes. It can be handed to another process.
+    """Changes the velocities of one sample after its strikes. It can be sent to another process.
 
     Attributes:
-        chance: Where its numbers are drawn from, if they are its own.
+        chance: The sample's own random number generator, or None if the numbers are arguments.
     """
 
     def __init__(self, velocity: float, spin: float) -> None:
         self.velocity, self.spin = velocity, spin
-        self.first = 0.0  # m/s, by how much the first strike changed the velocity
+        self.first = 0.0  # m/s, velocity change of the first strike
         self.chance: Generator | None = None
 
     def kicked(self, solid: Solid, before: Numbers, after: Numbers, touching: list[Touch]) -> Numbers:
-        """Return the changed state after a strike, with numbers of the sample's own (`changed`)."""
+        """Return the changed state after a strike, with numbers from ``chance`` (`changed`)."""
         if self.chance is None:
             raise AssertionError
         by_t = self.chance.chisquare(FREEDOM)
@@ -105,9 +105,10 @@ class Kick:
     def changed(
         self, solid: Solid, before: Numbers, after: Numbers, touching: list[Touch], drawn: list[float]
     ) -> Numbers:
-        """Return the changed state after a strike, for those before and after it and all that touches.
+        """Return the changed state after a strike, from those before and after it and the touching contacts.
 
-        Of the numbers that are drawn, nine are normal, and the last one is chi squared's with `FREEDOM`.
+        The first nine of the random numbers ``drawn`` are standard normal, and the last one is chi squared
+        with `FREEDOM` degrees of freedom.
         """
         jump = vec.norm((after[7] - before[7], after[8] - before[8], after[9] - before[9]))
         self.first = self.first or jump
@@ -132,7 +133,7 @@ class Kick:
             after[11] + (turn[1] + spin * h),
             after[12] + (turn[2] + spin * i),
         )
-        # No corner goes on into its flat: an impulse along the normal turns it back.
+        # An impulse along the normal reverses the velocity of each corner that approaches its plane.
         n = (0.0, 0.0, 0.0)
         for _ in range(MAX_TURNED_BACK):
             least = 0.0
@@ -151,13 +152,13 @@ class Kick:
 
 
 def _parts(velocity: float, spin: float, square: float) -> tuple[float, float, float]:
-    """Return standard deviations: of velocities by an impulse, and of what is left of both.
+    """Return the standard deviations of velocity due to an impulse, and of the rest of velocity and spin.
 
     Args:
-        velocity: m/s, that of each component of a velocity.
-        spin: rad/s, that of each component of a spin.
-        square: 1/m^2, the variance of a spin's components by an impulse that changes those of the velocity
-            by 1.
+        velocity: m/s, standard deviation of each component of the velocity.
+        spin: rad/s, standard deviation of each component of the spin.
+        square: 1/m^2, variance of the spin's components due to an impulse with which the variance of the
+            velocity's components is 1.
     """
     velocity, spin = velocity * velocity, spin * spin
     pushed = BY_IMPULSE * (min(velocity, spin / square) if square > 0.0 else velocity)

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The next strikes of samples of a toss: flight, Routh's impact, and so on.
+"""Computes the next strikes of the samples of a toss.
 
-The samples go on strike after strike: the flight of each (`flight`), its impact (`impacts`), and what the
-spread of the impact law adds to the velocities after it (`law_spread`). A sample with a low rebound continues
-as a single toss (`to_rest`), since several corners may strike or stay.
+For each strike, every sample has a flight (`flight`), an impact (`impacts`), and a random change of the
+velocities after it by the scatter of the impact law (`law_spread`). A sample with a low rebound continues as
+a single toss (`to_rest`), since several corners may strike or stay in contact.
 """
 
 from __future__ import annotations
@@ -33,38 +33,38 @@ if TYPE_CHECKING:
     from contact_dynamics.toss.uncertainty import Samples
 
 FEWEST_AT_ONCE: Final = 32
-"""Samples that go on together to later strikes. Fewer go on by themselves."""
+"""Smallest number of samples for which later strikes are computed together. Fewer continue separately."""
 
 MAX_FURTHER: Final = 50
-"""Strikes that are followed beyond those returned. A body that still bounces then goes on by itself."""
+"""Largest number of strikes computed beyond those returned. Bodies that still bounce continue separately."""
 
 
 class SampleEnd(NamedInt):
-    """Why a sample has no further strike."""
+    """Reason why a sample has no further strike."""
 
     FOLLOWED = 0
-    """It has as many strikes as were asked for."""
+    """The sample has all requested strikes."""
     STAYS = 1
-    """A contact rebounds too little to be followed, and stays."""
+    """The rebound of the last contact is negligible, and it stays closed."""
     FLIES = 2
-    """It meets nothing until the horizon."""
+    """The sample has no contact until the horizon."""
     ENDS = 3
-    """It was followed to its end, and has no further strike."""
+    """The sample was simulated to its end, and has no further strike."""
 
 
 class ManyStrikes(NamedTuple):
     """The next strikes of n samples, d of each.
 
     Attributes:
-        seconds: (d, n), s after the first state; NaN where a sample has no such strike.
-        surfaces: (d, n), the flat that is struck, or -1.
-        corners: (d, n), the corner that strikes, or -1.
-        states: (d, n, 13), the numbers of the states after the strikes.
+        seconds: (d, n), s after the initial state; NaN without a strike.
+        surfaces: (d, n), index of the plane that is struck, or -1.
+        corners: (d, n), index of the striking corner, or -1.
+        states: (d, n, 13), states after the strikes.
         ends: (n,), values of `SampleEnd`.
-        now: (n,), s, the time of the last state.
-        last: (n, 13), the numbers of the last states.
-        solid: The body and the flats of a sample.
-        rows: (n, m), in what they differ (`Solid.take`).
+        now: (n,), s, times of the last states.
+        last: (n, 13), last states.
+        solid: Body and planes of a sample.
+        rows: (n, m), parameters that differ between samples (`Solid.take`).
     """
 
     seconds: FloatArray
@@ -78,7 +78,7 @@ class ManyStrikes(NamedTuple):
     rows: FloatArray
 
     def solid_of(self, i: int) -> Solid:
-        """Return the body and the flats of sample ``i``."""
+        """Return the body and the planes of sample ``i``."""
         return self.solid.sample(self.rows.data, i)
 
 
@@ -96,15 +96,15 @@ def next_strikes(
     """Return the next ``depth`` strikes of samples, within ``horizon`` s.
 
     Args:
-        solid: The body and the flats; corners, frictions and restitutions are those of the samples.
-        samples: What differs between them.
-        law: What the coefficients of restitution mean.
-        spread: The law's own spread.
-        depth: How many strikes to return.
-        horizon: s, how far.
-        further: Whether the last states are those after later strikes. Samples go on as long as
-            `FEWEST_AT_ONCE` fly on after each.
-        together: The law for several contacts that strike at one instant.
+        solid: Body and planes. Corners, friction and restitution are replaced by those of the samples.
+        samples: Sampled parameters and states.
+        law: Law of restitution.
+        spread: Scatter of the impact law.
+        depth: Number of strikes to return.
+        horizon: Duration of the simulation, s.
+        further: True to compute later strikes as well, for the last states only, while at least
+            `FEWEST_AT_ONCE` samples still bounce.
+        together: Law for several contacts that strike at one instant.
     """
     n = len(samples.p_WB_W)
     state = np.hstack([samples.p_WB_W, samples.q_WB, samples.v_WB_W, samples.w_WB_W])
@@ -145,7 +145,7 @@ def next_strikes(
 
 
 class Flights:
-    """Samples that fly to their next strikes."""
+    """Computes flights of samples to their next strikes."""
 
     def __init__(
         self, many: ManyStrikes, spread: LawSpread, law: RestitutionLaw, together: SeveralContactsLaw
@@ -166,17 +166,18 @@ class Flights:
         parts: Any,
         rebounds: Any,
     ) -> None:
-        """Go on to the ends of the flights of some samples, and strike there.
+        """Compute one flight and its strike for some samples. The last four arguments are written.
 
         Args:
-            horizon: s, where flights end at the latest.
-            which: (m,), the samples.
-            gravities: (n, 3), m/s^2, of all samples.
-            drawn: (n, 10), the numbers of `LawSpread.draw`.
-            states: (n, 13), which change to those after the strikes.
-            now: (n,), s, the times of the states, which change too.
-            parts: (m,), get the flat times the number of corners plus the corner that strikes, or -1.
-            rebounds: (m,), get the speeds, m/s, with which these corners leave.
+            horizon: Latest end of a flight, s.
+            which: (m,), indices of the samples.
+            gravities: (n, 3), m/s^2, gravity of all samples.
+            drawn: (n, 10), random numbers from `LawSpread.draw`.
+            states: (n, 13), states, which become those after the strikes.
+            now: (n,), s, times of the states.
+            parts: (m,), index of the plane times the number of corners, plus the index of the striking
+                corner; or -1.
+            rebounds: (m,), m/s, normal velocities of these corners after the strikes.
         """
         solid, descent = self.solid, self.descent
         for j in range(len(which)):
@@ -226,7 +227,7 @@ class Flights:
 
 
 def _rows_of(samples: Samples) -> FloatArray:
-    """Return the bodies and flats of samples as `Solid.take` has them."""
+    """Return the parameters of samples in the layout of `Solid.take`."""
     materials = [samples.lasting_frictions, samples.restitutions, samples.frictions]
     parts = [samples.inertias_B, np.linalg.inv(samples.inertias_B), samples.corners_B, np.stack(materials, 2)]
     return np.hstack([part.reshape(len(part), -1) for part in parts])

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A short step of a body whose contacts strike, stick and leave too fast to be followed (Moreau 1988).
+"""A time-stepping scheme for contacts that strike, stick and separate too fast to be resolved (Moreau 1988).
 
-Strikes, modes and their ends can lead to one another at one instant, as where flats jam the body and several
-motions are nearly consistent. The step passes over that: all contacts have one impulse without restitution
-that stands for strikes and forces over the step, and keeps the body out of the flats at its end. The impulses
-do no work on the motion, so energy never grows. The error is that of a step of first order.
+Strikes and contact modes can alternate at one instant, for example if planes jam the body and several motions
+are nearly consistent. In a short step, each contact has one impulse without restitution that replaces the
+strikes and forces of the step and keeps the body out of the planes at its end. The impulses do no positive
+work, so that energy never increases. The scheme is of first order.
 """
 
 from __future__ import annotations
@@ -33,9 +33,9 @@ class ShortStep(NamedTuple):
     """A short step.
 
     Attributes:
-        y: The state at its end.
-        step: The motion meanwhile.
-        mode: The contacts that press, and whether they slide at the end.
+        y: State at its end.
+        step: Motion during the step.
+        mode: Contacts with an impulse, and whether they slide at the end.
     """
 
     y: Numbers
@@ -47,10 +47,10 @@ def short_step(solid: Solid, y: Numbers, *, start: float, span: float) -> ShortS
     """Return a short step from a state.
 
     Args:
-        solid: The body and the flats.
-        y: The state.
-        start: s, its time.
-        span: s, > 0, how long the step may be. It ends where a corner comes down, which strikes then.
+        solid: The body and the planes.
+        y: Initial state.
+        start: Time of that state, s.
+        span: Largest duration of the step, s, > 0. The step ends earlier if a corner arrives.
     """
     listed = heights_and_rates(solid, y)
     for height, rate, _ in listed:
@@ -69,10 +69,10 @@ def short_step(solid: Solid, y: Numbers, *, start: float, span: float) -> ShortS
     after = out_of_flats(solid, [*after[:3], *normalised(after[3:7]), *v, *w])
     gained = energy_of(solid, after) - energy_of(solid, y)
     kinetic = kinetic_energy_of(solid, after)
-    if gained > 0.0:  # by the turn within the step
+    if gained > 0.0:  # due to the rotation during the step
         slower = math.sqrt(max(1.0 - gained / kinetic, 0.0)) if kinetic > 0.0 else 0.0
         after = [*after[:7], *(slower * each for each in after[7:])]
-    # Where the body falls or rises within the step, its velocities change such that energy stays.
+    # The velocities at the start conserve energy over the fall or rise during the step.
     fallen = energy_of(solid, [*after[:3], *impact.y[3:]]) - energy_of(solid, impact.y)
     begun = math.sqrt(max(1.0 + fallen / kinetic, 0.0)) if kinetic > 0.0 else 1.0
     first = [*y[:7], *(begun * each for each in after[7:])]
