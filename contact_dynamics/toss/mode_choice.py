@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Which contact mode follows, at a body whose contacts touch and do not approach (lecture 26).
+"""Selects the next contact mode of a body whose contacts touch and do not approach (lecture 26).
 
-The mode that goes on is tried first: contacts that slide slide on, contacts at rest stick. If mechanics
-refuses it, the forces of one consistent mode are sought (`cone_forces`), and the mode is read off them. Where
-friction at a contact could by itself lift the body or press it down, whatever the sliding (Painleve), there
-may be several modes or none, and all of them are sought (`contact_modes`). So they are where all contacts
-slide and their forces need not be the only ones (`_several_forces`). Where some stick, all are sought on
-demand, if friction may wedge the body between flats.
+The present mode is tried first: sliding contacts continue to slide, and contacts at rest stick. If it is not
+consistent, the forces of one consistent mode are computed (`cone_forces`), which determine the mode. If
+friction at a contact could by itself lift the body or press it down (Painleve), several modes or none may be
+consistent, and all of them are computed (`contact_modes`). The same is done if all contacts slide and their
+forces may not be unique (`_several_forces`). If some stick, all modes are computed on request, provided that
+friction may wedge the body between planes.
 """
 
 from __future__ import annotations
@@ -41,14 +41,14 @@ if TYPE_CHECKING:
 Mode = tuple[Held, ...]
 
 _MAX_CORRECTIONS: Final = 30
-"""Rounds of corrections of a guessed mode. One to three are usual."""
+"""Largest number of corrections of a guessed mode. One to three are usual."""
 
 _FEW_CORRECTIONS: Final = 8
-"""After so many rounds, directions in which contacts begin to slide are sought all at once."""
+"""Number of rounds after which all directions of incipient sliding are computed together."""
 
 
 _MAX_TURNS: Final = 12
-"""Newton's steps towards these directions."""
+"""Largest number of Newton steps for these directions."""
 
 _FARTHEST: Final = 0.5
 """rad. The largest turn of a step: a friction cone is round."""
@@ -61,12 +61,12 @@ more. With a share of 1, a fifth of those on a floor and a wall would be missed.
 
 
 class Choice(NamedTuple):
-    """The modes that are consistent.
+    """The consistent contact modes.
 
     Attributes:
-        verdict: On the contact set.
-        modes: The held contacts of each mode; a contact that separates is in none. The first goes on.
-        pushed: The rates and forces in the first mode, if they are known.
+        verdict: Verdict on the contact set.
+        modes: Held contacts of each mode, without those that separate. The first mode is the default.
+        pushed: Rates and forces in the first mode, or None if they were not computed.
     """
 
     verdict: ModeVerdict
@@ -74,7 +74,7 @@ class Choice(NamedTuple):
     pushed: HeldContacts | None = None
 
     def pushed_in(self, way: int, solid: Solid, y: Numbers) -> HeldContacts:
-        """Return the rates and forces in a mode, for the state that modes were looked for in."""
+        """Return the rates and forces in a mode. ``y`` is the state for which the modes were computed."""
         if way == 0 and self.pushed is not None:
             return self.pushed
         return pushed_by_contacts(solid, y, self.modes[way])
@@ -86,9 +86,9 @@ def choose_mode(
     touching: list[Touch],
     thorough: bool = False,  # noqa: FBT001, FBT002  C has no keywords
 ) -> Choice:
-    """Return the modes that are consistent at touching contacts that do not approach.
+    """Return the consistent modes of touching contacts that do not approach.
 
-    ``thorough`` asks for all of them where friction may wedge the body, too, which takes some 10 to 50 ms.
+    With ``thorough``, all modes are computed if friction may wedge the body, which takes some 10 to 50 ms.
     """
     if not touching:
         return Choice(ModeVerdict.UNIQUE, [()])
@@ -141,7 +141,7 @@ def choose_mode(
 
 
 def _cones_of(solid: Solid, pose: Pose, guess: list[Held], ways: list[tuple[float, float]]) -> ConeForces:
-    """Return the contacts' problem, where those that slide do so in directions by the two tangents."""
+    """Return the contact problem. ``ways`` are the directions of sliding contacts along the two tangents."""
     cones = ConeForces(len(guess))
     for one, (u, v) in zip(guess, ways, strict=True):
         arm = pose.arm(one.flat, one.corner)
@@ -153,7 +153,7 @@ def _cones_of(solid: Solid, pose: Pose, guess: list[Held], ways: list[tuple[floa
 
 
 def _put_first(modes: list[Mode], guess: list[Held]) -> None:
-    """Move the mode that lasts to the front."""
+    """Move the mode that continues the present motion to the front."""
     going_on = [(one.touch, one.slides) for one in guess]
     modes.sort(key=lambda mode: [(one.touch, one.slides) for one in mode] != going_on)
 
@@ -163,7 +163,7 @@ def _letters(mode: Mode) -> set[tuple[Touch, bool]]:
 
 
 def _several_forces(solid: Solid, pose: Pose, sliding: list[Held]) -> bool:
-    """Return whether contacts that all slide may have several forces that mechanics allows, or none.
+    """Return whether contacts that all slide may have several consistent sets of forces, or none.
 
     Normal forces f >= 0 and normal accelerations b + M f >= 0, of which one is zero at each contact, are
     unique for any b where all principal minors of M are positive (Cottle, Pang and Stone, The Linear
@@ -201,11 +201,11 @@ def _beginning(touch: Touch, towards: Vector3) -> Held:
 
 
 def corrected(solid: Solid, y: Numbers, guess: Mode) -> tuple[Mode, HeldContacts] | tuple[None, None]:
-    """Return a consistent mode near a guess and what it does, or None if corrections do not lead to one.
+    """Return a consistent mode near a guess with its rates and forces, or None if corrections find none.
 
-    In each round, a contact that pulls separates, one that approaches is held again, one that friction does
-    not hold slides against its friction, and one that begins to slide does so along its acceleration, or
-    sticks where that is against its sliding.
+    In each round, a contact with a pulling force separates, one that approaches is held again, one whose
+    friction exceeds the limit slides against its friction, and one that begins to slide does so along its
+    acceleration, or sticks if the acceleration opposes its sliding.
     """
     held: list[Held | None] = list(guess)  # None where a contact separates
     for k in range(_MAX_CORRECTIONS):
@@ -232,14 +232,14 @@ def corrected(solid: Solid, y: Numbers, guess: Mode) -> tuple[Mode, HeldContacts
 def _correction(
     solid: Solid, first: Held, one: Held | None, force: Vector3, pushed: HeldContacts
 ) -> Held | None:
-    """Return how a contact is held in the next round of corrections, or None if it separates.
+    """Return the contact in the next round of corrections, or None if it separates.
 
     Args:
-        solid: The body and the flats.
-        first: How the contact was held at first: whether it slides already.
-        one: How the contact is held, or None if it separates.
-        force: N, the force there, or zero.
-        pushed: The contacts that were held, with the accelerations.
+        solid: The body and the planes.
+        first: The contact in the initial guess, which contains whether it slides already.
+        one: The contact in this round, or None if it separates.
+        force: Force at the contact, N, or zero.
+        pushed: The held contacts of this round, with the accelerations.
     """
     flat = solid.flats[first.flat]
     n = flat.normal
@@ -265,7 +265,7 @@ def _correction(
 
 
 def _read_off(solid: Solid, y: Numbers, guess: list[Held], cones: ConeForces) -> Mode:
-    """Return the mode of pushes and motions that solve the contacts' problem."""
+    """Return the mode that corresponds to a solution of the contact problem."""
     size = max([vec.norm(cones.alone(i)) for i in range(len(guess))])
     most = max([vec.norm(cones.push(i)) for i in range(len(guess))])
     idle: list[Held] = []
@@ -290,7 +290,7 @@ def _read_off(solid: Solid, y: Numbers, guess: list[Held], cones: ConeForces) ->
 
 
 def _all_modes(solid: Solid, y: Numbers, touching: list[Touch]) -> Choice:
-    """Return all modes that are consistent (`contact_modes`), or none."""
+    """Return all consistent modes (`contact_modes`)."""
     answer = spatial_contact_modes(
         SpatialContactProblem(
             body=properties_of(solid),
@@ -326,12 +326,12 @@ def _all_modes(solid: Solid, y: Numbers, touching: list[Touch]) -> Choice:
 
 
 def _turned_along_accelerations(solid: Solid, y: Numbers, mode: tuple[Held, ...]) -> tuple[Held, ...]:
-    """Return a mode whose contacts that begin to slide do so along their accelerations, if that is found.
+    """Return a mode in which contacts begin to slide along their accelerations, if one is found.
 
-    Friction is against the direction, so that the acceleration depends on it. To put the acceleration's
-    direction in the place of the other, again and again, leads there where friction is far exceeded. Where it
-    is hardly exceeded, accelerations are small, a small turn of friction turns them a lot, and that goes in
-    circles. Here Newton's method finds all directions at once.
+    Friction opposes the direction of sliding, so that the acceleration depends on it. A fixed-point iteration
+    of the direction converges if the friction limit is far exceeded. If it is hardly exceeded, accelerations
+    are small and depend strongly on the direction of friction, and the iteration cycles. This function finds
+    all directions together by Newton's method.
     """
     which = [k for k, one in enumerate(mode) if one.begins]
     if not which:

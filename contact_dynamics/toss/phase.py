@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """The motion of a body in one contact mode, integrated until the mode ends.
 
-The mode says which contacts stick and which slide, and so what the accelerations are (`forces`). They are
-integrated in adaptive steps by the pair of Dormand and Prince of the orders 5 and 4 (Hairer, Norsett and
-Wanner, Solving Ordinary Differential Equations I, II.5). The mode ends where a held contact no longer
-presses, where friction no longer holds one that sticks, or where another corner comes down. These times are
-found on the interpolant. The mode ends where sliding stops, too. Steps towards that end before it, because
-friction jumps there, and each of them leaves a tenth of the speed at least.
+The mode determines the accelerations (`forces`), which are integrated in adaptive steps by the Dormand-Prince
+pair of orders 5 and 4 (Hairer, Norsett and Wanner, Solving Ordinary Differential Equations I, II.5). The mode
+ends when the normal force at a held contact vanishes, when the friction of a sticking contact reaches its
+limit, or when another corner arrives. These times are found on the interpolant. The mode also ends when
+sliding stops. Because friction is discontinuous there, steps end before that time, and each of them leaves at
+least a tenth of the speed.
 
 `phase.pxd` gives the C types with which this file compiles.
 """
@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     from contact_dynamics.toss.solid import Numbers, Solid
 
 MAX_PHASE_STEPS: Final = 20_000
-"""Steps after which a phase ends unfinished. A tenth of a second of sliding or tipping takes some twenty."""
+"""Largest number of steps of a phase. A tenth of a second of sliding or tipping takes some twenty."""
 
 _MAX_SHORT_STEPS: Final = 60
 """Such steps after which a phase ends. Sliding that stops takes some ten."""
@@ -99,22 +99,22 @@ _NONE: Final = -1
 
 
 class PhaseEnd(NamedInt):
-    """Why a phase in one contact mode ends."""
+    """Reason for the end of a phase in one contact mode."""
 
     FORCES = 0
     """A held contact no longer presses, or friction no longer holds a contact that sticks."""
     SLIDING_STOPS = 1
     """A contact stops sliding, or one that begins to slide would do so along its friction."""
     COMES_DOWN = 2
-    """Another corner comes down."""
+    """Another corner arrives at a plane."""
     SLOW = 3
-    """The kinetic energy has fallen to the bound that was asked for."""
+    """The kinetic energy has fallen to the requested bound."""
     TIME = 4
-    """The time that was asked for is over."""
+    """The requested time was reached."""
     STEPS = 5
-    """The bound on the number of steps was reached."""
+    """The largest number of steps was reached."""
     CREEPS = 6
-    """Steps have become too short to go on in the mode, since its forces jump."""
+    """The steps have become too short, because the forces are discontinuous."""
 
 
 _FORCES, _SLIDING_STOPS, _COMES_DOWN = PhaseEnd.FORCES, PhaseEnd.SLIDING_STOPS, PhaseEnd.COMES_DOWN
@@ -187,11 +187,11 @@ class Phase(NamedTuple):
     """The motion in one contact mode.
 
     Attributes:
-        end: Why it ends.
-        seconds: s, when it ends.
-        y: The state then.
-        steps: The steps of the integrator, if they were asked for.
-        step_count: How many there were.
+        end: Reason for the end.
+        seconds: Time of the end, s.
+        y: State at that time.
+        steps: Steps of the integrator; empty unless requested.
+        step_count: Number of steps.
     """
 
     end: PhaseEnd
@@ -215,14 +215,14 @@ def phase(
     """Return the motion in a mode, from a state to the end of the mode.
 
     Args:
-        solid: The body and the flats.
-        y: The state.
-        mode: The contacts that stick and slide.
-        start: s, the time of the state.
-        until: s, the time at which to end at the latest.
-        slow: J, > 0. The phase ends where the kinetic energy falls below it. If it is 0, it never does.
-        error: m, m/s, and radians times the body's reach: the error that a step may have.
-        has_steps: Whether steps are returned.
+        solid: The body and the planes.
+        y: Initial state.
+        mode: The sticking and sliding contacts.
+        start: Time of the initial state, s.
+        until: Latest time of the end, s.
+        slow: Kinetic energy, J, below which the phase ends, or 0 for no bound.
+        error: Largest error of a step, in m, m/s, and radians times the body's reach.
+        has_steps: True to return the steps.
     """
     run = _Run(solid, out_of_flats(solid, y), mode, error)
     end = run.go(start, until, slow, has_steps)
@@ -230,7 +230,7 @@ def phase(
 
 
 class _Run:
-    """An integration, as far as it has come."""
+    """The integration of a phase."""
 
     def __init__(self, solid: Solid, y: Numbers, mode: tuple[Held, ...], error: float) -> None:
         self.solid, self.error = solid, error
@@ -265,7 +265,7 @@ class _Run:
             self.scales[k] = 2.0 * reach if 3 <= k < 7 else reach if k >= 10 else 1.0
 
     def go(self, start: float, until: float, slow: float, has_steps: bool) -> int:  # noqa: FBT001
-        """Integrate to the end of the mode, and return why it ends."""
+        """Integrate to the end of the mode, and return the reason for the end."""
         y = self.y  # C copies arrays that are assigned in parallel
         trial = self.trial
         held = self.held
@@ -318,7 +318,7 @@ class _Run:
         return _STEPS
 
     def _end_here(self, until: float, slow: float) -> int:
-        """Return why the mode ends at the end of a step, or -1."""
+        """Return the reason why the mode ends at the end of this step, or -1."""
         if self.stopped:
             self._stop()
             return _SLIDING_STOPS
@@ -382,9 +382,9 @@ class _Run:
     def _look_at_sliding(self) -> None:
         """Find the longest step before which no contact stops sliding, and the contacts that have stopped.
 
-        Below the speed that is ``resolved``, m/s, the direction of a contact that stops turns by more in a
-        step than the error of the step allows to follow. There it would slide on and on, in steps of a
-        microsecond, so it has stopped if friction holds it then.
+        Below the speed ``resolved``, m/s, the direction of a stopping contact turns too fast for the allowed
+        error. The contact would slide on in steps of a microsecond, and counts as stopped if friction can
+        hold it.
         """
         longest = _INFINITE
         self.stopped.clear()
@@ -405,7 +405,7 @@ class _Run:
         self.before_stop = max(longest, PHASE_LEAST_STEP)
 
     def _friction_holds(self, i: int) -> bool:
-        """Tell whether friction holds a contact, if it sticks and the others do as the mode says."""
+        """Return whether friction holds a contact if it sticks and the others remain in their mode."""
         mode = list(self.held.mode)
         mode[i] = Held(mode[i].touch)
         still = HeldContacts(self.solid, tuple(mode))
@@ -424,7 +424,7 @@ class _Run:
         still.hold(self.y)
 
     def _turn_beginning(self) -> None:
-        """Turn the directions in which contacts that have just begun to slide slide by now."""
+        """Update the directions of contacts that have just begun to slide."""
         before = self.held
         mode = before.mode
         if not before.begins:
@@ -455,7 +455,7 @@ class _Run:
                 self.depths[k] = 0.0
 
     def _first_end(self) -> tuple[int, float]:
-        """Return why and where, as a share of the step, the mode ends within a step, or -1 and 1.
+        """Return the reason and the place, as a share of the step, of the mode's end, or -1 and 1.
 
         Corners that come down are those below a flat at the end of the step, and those that fall at its
         beginning and are below one in between.
