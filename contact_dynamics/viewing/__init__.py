@@ -1,21 +1,21 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Draws results in rerun. Nothing comes back from a picture. `view` is the call for what Python computed.
+"""Draws results in rerun. `view` draws what Python computed. No results are returned.
 
-It draws the answers of `contact_dynamics.questions` and their parts. They may come from a question asked in
-Python, from a live server, or from its log.
+It draws the answers of `contact_dynamics.questions` and their parts, whether computed in Python, received
+from a live server, or read from its log.
 
-In reading order: how diagrams are drawn (`drawing`), names of what is drawn (`entities`), bodies and surfaces
-(`scenery`), what was measured (`measured`) at many times (`columns`), what is in view of answers, also
-lecture 25's picture of rotations (`in_view`), the diagrams of answers (`diagrams_in_view`), answers and
-colours in words (`words`), the arrangement of the views and where they look (`blueprint`), all of it together
-(`picture`), what Python computed (`from_python`), states that wait (`states_in_turn`), events beside each
-other (`side_by_side`), and where it goes (`sinks`): files, a viewer (`viewer_process`), a browser. All of
-these are places of one recording (`kept_recording`). The diagrams come from `contact_dynamics.diagrams`.
+In reading order: drawing of diagrams (`drawing`), entity names (`entities`), bodies and surfaces (`scenery`),
+measurements (`measured`) as columns over many times (`columns`), the lifetime of predictions in the scene,
+including lecture 25's picture of rotations (`in_view`), the diagrams of answers (`diagrams_in_view`), answers
+and colours in words (`words`), the layout of the views and the eye (`blueprint`), the whole picture
+(`picture`), results from Python (`from_python`), the queue of states (`states_in_turn`), events side by side
+(`side_by_side`), and the sinks (`sinks`): files, a viewer (`viewer_process`), a browser. All sinks share one
+recording (`kept_recording`). The diagrams come from `contact_dynamics.diagrams`.
 
-Everything is drawn on the timeline `stamp`: the stamps of the states, to the nanosecond. `kept_recording` has
-two more, the time since the start and the order of events. An answer appears at the stamp of the state that
-it was computed from, never later, so that a live view that follows the newest data is not pulled into the
-future. Poses are stored as float32: this is a picture, not a record.
+Everything is drawn on the timeline `stamp`: the stamps of the states, to the nanosecond. `kept_recording`
+adds two timelines, the time since the start and the order of events. An answer appears at the stamp of the
+state that it was computed from, never later, so that a live view that follows the newest data does not jump
+into the future. Poses are stored as float32: the picture does not replace a log.
 """
 
 import os

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Arranges the views: the scene with its eye, impulse space, curves over time, and answers in words."""
+"""Lays out the views: the scene with its eye, impulse space, curves over time, and answers in words."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ if TYPE_CHECKING:
 
     from contact_dynamics.validation import FloatArray
 
-LOWEST_DISTANCE: Final = 0.3  # m. The eye stays at least this far from what it looks at.
+LOWEST_DISTANCE: Final = 0.3  # m, minimum distance of the eye from its target
 
 NO_TRAVEL: Final = 1e-3
 """m. A path that is shorter than this, seen from above, has no sides to choose between."""
@@ -94,23 +94,23 @@ _EYES: Final[dict[str, tuple[ArrayLike, ArrayLike]]] = {
     POINSOT: ((1.35, -1.65, 0.55), (0.0, 0.0, -0.25)),
     IMPULSE_SPACE_IN_3D: (EYE, TARGET),
 }
-_OF_ANSWERS: Final = (PREDICTED, IMPACTS, CONTACTS, TOSSES, MANY)  # what scenes have of them
+_OF_ANSWERS: Final = (PREDICTED, IMPACTS, CONTACTS, TOSSES, MANY)  # the entities of answers in the scenes
 BACKGROUND: Final = rrb.Background(color=palette.BACKGROUND, kind=rrb.BackgroundKind.SolidColor)
 
 
 class _Page(NamedTuple):
-    """What a page has beside its scene."""
+    """The contents of a page beside its scene."""
 
     name: str
-    diagrams: tuple[tuple[str, ...], ...] = ()  # some are tabs of one panel
+    diagrams: tuple[tuple[str, ...], ...] = ()  # tuples become tabs of one panel
     below: tuple[str, ...] = ()
     words: tuple[str, ...] = ()
     scene: str = ""  # its name, by default the page's
-    drawn: tuple[str, ...] = ()  # what the scene has of answers, by default of the page's own
+    drawn: tuple[str, ...] = ()  # the answers in the scene, by default the page's own
     below_scene: str = ""
 
 
-_PAGES: Final = {  # the page of each question, by what there is to see
+_PAGES: Final = {  # the page of each kind of request, by its contents
     PREDICTED: _Page("Flight", ((POINSOT,),), (HEIGHT, SPEED, ERROR)),
     IMPACTS: _Page(
         "Impact",
@@ -142,7 +142,7 @@ _ELEVATION: Final = 0.33  # height of the eye above what it looks at, relative t
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Eye:
-    """The place from which the viewer looks at the scene."""
+    """The viewpoint of the scene."""
 
     position_W: FloatArray  # (3,), m, world
     target_W: FloatArray  # (3,), m, world
@@ -150,9 +150,9 @@ class Eye:
 
 
 def eye_on(path_W: FloatArray, *, about_W: FloatArray, up_W: FloatArray, margin: float) -> Eye:
-    """Return an eye that sees points, (k, 3), m, world, and ``margin``, m, about them.
+    """Return an eye that sees points, (k, 3), m, world, with a ``margin``, m.
 
-    It looks across a path, (n, 3), m, from the side that the path bulges to.
+    It looks across a path, (n, 3), m, from its convex side.
     """
     low, high = about_W.min(axis=0), about_W.max(axis=0)
     target = 0.5 * (low + high)
@@ -170,11 +170,11 @@ def eye_on(path_W: FloatArray, *, about_W: FloatArray, up_W: FloatArray, margin:
 def make_blueprint(
     body_names: Sequence[str], *, eye: Eye | None, shown: Collection[str] = ()
 ) -> rrb.Blueprint:
-    """Return the arrangement of the views: a page for each question that was asked, and an overview.
+    """Return the layout of the views: a page for each kind of request that was made, and an overview.
 
-    Without an eye, the viewer looks at all that there is. What is not ``shown``, of `DIAGRAMS`, `ERROR`,
-    `ENERGY`, and the entities `PREDICTED`, `IMPACTS`, `CONTACTS`, `TOSSES`, `MANY` and `ANSWERS`, has no
-    panel.
+    Without an eye, the viewer frames the whole scene. There are panels only for those of `DIAGRAMS`, `ERROR`,
+    `ENERGY`, and the entities `PREDICTED`, `IMPACTS`, `CONTACTS`, `TOSSES`, `MANY` and `ANSWERS` that are
+    ``shown``.
     """
     pages = [_overview(_scene("Scene", body_names, eye), shown)]
     for kind, page in _PAGES.items():
@@ -204,9 +204,9 @@ def _overview(scene: rrb.Spatial3DView, shown: Collection[str]) -> rrb.Horizonta
 
 
 def _page(page: _Page, scene: rrb.Spatial3DView, shown: Collection[str]) -> rrb.Horizontal:
-    """Return a page: the scene on the left, on the right a few words, diagrams and what stands below them.
+    """Return a page: the scene on the left; on the right words, diagrams, and other panels below them.
 
-    Two diagrams need all of the height, so that their words are apart. Then the rest is below the scene.
+    Two diagrams need the full height to keep their labels apart; the other panels are then below the scene.
     """
     left: rrb.Spatial3DView | rrb.Vertical = scene
     if page.below_scene in shown:
@@ -225,7 +225,7 @@ def _page(page: _Page, scene: rrb.Spatial3DView, shown: Collection[str]) -> rrb.
 def _scene(
     name: str, body_names: Sequence[str], eye: Eye | None, *, drawn: Sequence[str] = _OF_ANSWERS
 ) -> rrb.Spatial3DView:
-    """Return a view of the scene with what is drawn of some answers."""
+    """Return a view of the scene with the drawings of some answers."""
     without = [part for part in _OF_ANSWERS if part not in drawn]
     return rrb.Spatial3DView(
         origin="/",
@@ -240,7 +240,7 @@ def _scene(
                 f"{entity(CONTACTS, name)}/{mode}": rrb.EntityBehavior(visible=False)
                 for name in body_names
                 for mode in mode_names()[1:]
-                if CONTACTS in drawn  # each costs 3 kB, in every arrangement that is sent
+                if CONTACTS in drawn  # each takes 3 kB, in every layout that is sent
             },
         },
     )
@@ -249,7 +249,8 @@ def _scene(
 def _view(origin: str) -> rrb.View:
     """Return the view of curves, words or a diagram."""
     if origin in _CURVES:
-        # A legend would hide curves. The name says what is thin, and bodies have their colours in the scene.
+        # A legend would hide curves. The name explains thin curves, and bodies have their colours from the
+        # scene.
         legend = rrb.PlotLegend(visible=False)
         name = _CURVES[origin]
         return rrb.TimeSeriesView(origin=origin, name=name, plot_legend=legend, time_ranges=_window())
@@ -298,7 +299,7 @@ farther from it is not looked at, because nothing else could be made out any mor
 
 
 def near_most(points_W: FloatArray) -> FloatArray:
-    """Return those of some points, (n, 3), m, that are not far from most of them."""
+    """Return the points, (n, 3), m, without those far from most others."""
     with np.errstate(over="ignore"):  # a distance that overflows is far
         distances = np.linalg.norm(points_W - np.median(points_W, axis=0), axis=1)
     reach = FAR * max(LOWEST_DISTANCE, float(np.median(distances)))
@@ -308,11 +309,11 @@ def near_most(points_W: FloatArray) -> FloatArray:
 class Framing:
     """Turns the eye to the first predicted path and the bodies that are not far from it.
 
-    It turns again only when a neighbour comes that is out of sight.
+    It turns again only when a neighbour appears out of sight.
     """
 
     def __init__(self, up_W: FloatArray) -> None:
-        """Look at nothing yet. ``up_W`` is (3,), unit, world axes."""
+        """Begin without a target. ``up_W`` is (3,), unit, world axes."""
         self._up_W = up_W
         self._first_W: dict[str, FloatArray] = {}  # where each body was first seen, (3,), m
         self._path_W: FloatArray | None = None
@@ -321,16 +322,16 @@ class Framing:
 
     @property
     def center_W(self) -> FloatArray:
-        """The middle of what is in sight, (3,), m."""
+        """The centre of the points in sight, (3,), m."""
         return 0.5 * (self._low_W + self._high_W)
 
     @property
     def extent(self) -> float:
-        """The extent of what is in sight with its margin, m."""
+        """The extent of the points in sight with the margin, m."""
         return float(np.linalg.norm(self._high_W - self._low_W)) + self._margin
 
     def turn_to(self, path_W: FloatArray, *, margin: float) -> Eye:
-        """Return the eye that looks at a path, (n, 3), m, and the bodies about it, and has a margin, m."""
+        """Return the eye for a path, (n, 3), m, and the bodies near it, with a margin, m."""
         self._path_W, self._margin = path_W, margin
         low, high = path_W.min(axis=0), path_W.max(axis=0)
         reach = FAR * max(LOWEST_DISTANCE, float(np.linalg.norm(high - low + margin)))

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is drawn of a thing at many times, made ready for rerun once, for all places that get it.
+"""Columns of an entity's values over many times, converted once for all sinks.
 
-To convert it costs most of what drawing costs: rerun's own way takes strips one by one. And a chunk, which is
-what rerun takes and writes, costs about the same whether it has one time or a hundred.
+The conversion takes most of the time of drawing, since rerun converts strips one by one. A chunk, the unit
+that rerun transfers and writes, costs about the same for one time as for a hundred.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 class _Made(NamedTuple):
-    """Times on one timeline, or values of one component, as rerun takes them."""
+    """Times on one timeline, or values of one component, in rerun's form."""
 
     of: Any  # the timeline's name, or the component's descriptor
     array: pa.Array
@@ -39,14 +39,14 @@ class _Made(NamedTuple):
 
 
 class Columns(NamedTuple):
-    """The values of a thing's components at many times."""
+    """The values of an entity's components at many times."""
 
     times: tuple[_Made, ...]
     values: tuple[_Made, ...]
 
     @classmethod
     def made_of(cls, times: Iterable[rr.TimeColumn], values: Iterable[rr.ComponentColumn]) -> Columns:
-        """Make them ready."""
+        """Convert them."""
         return cls(
             tuple(_Made(each.timeline_name(), each.as_arrow_array()) for each in times),
             tuple(_Made(each.component_descriptor(), each.as_arrow_array()) for each in values),
@@ -54,7 +54,7 @@ class Columns(NamedTuple):
 
     @property
     def kind(self) -> tuple[str, ...]:
-        """What is the same in columns that can be joined."""
+        """Key that is equal for columns that can be joined."""
         return tuple(str(each.of) for each in (*self.times, *self.values))
 
     def joined(self, others: Iterable[Columns]) -> Columns:
@@ -63,7 +63,7 @@ class Columns(NamedTuple):
         return Columns(_joined([each.times for each in every]), _joined([each.values for each in every]))
 
     def chunk(self, path: str) -> Chunk:
-        """Return what rerun draws at a path. It may be sent to several places."""
+        """Return a chunk for rerun at a path, which may be sent to several sinks."""
         return Chunk.from_columns(path, self.times, self.values)  # type: ignore[arg-type]
 
 
@@ -75,12 +75,12 @@ def _joined(parts: Sequence[tuple[_Made, ...]]) -> tuple[_Made, ...]:
 
 
 def scalar_columns(values: FloatArray) -> list[rr.ComponentColumn]:
-    """Return what `rr.Scalars.columns` does of values, (n,), in less time."""
+    """Like `rr.Scalars.columns`, but faster, for values, (n,)."""
     return [_column(rr.Scalars.descriptor_scalars(), pa.array(values, pa.float64()))]
 
 
 def pose_columns(p_WB_W: FloatArray, q_WB: FloatArray) -> list[rr.ComponentColumn]:
-    """Return what `rr.Transform3D.columns` does of positions, (n, 3), m, and turns, (n, 4), in less time."""
+    """Like `rr.Transform3D.columns`, but faster, for positions, (n, 3), m, and quaternions, (n, 4)."""
     return [
         _column(rr.Transform3D.descriptor_translation(), _vectors(p_WB_W, rr.components.Translation3D)),
         _column(rr.Transform3D.descriptor_quaternion(), _vectors(q_WB, rr.components.RotationQuat)),
@@ -88,7 +88,7 @@ def pose_columns(p_WB_W: FloatArray, q_WB: FloatArray) -> list[rr.ComponentColum
 
 
 def strip_columns(strips: FloatArray) -> list[rr.ComponentColumn]:
-    """Return what `rr.LineStrips3D.columns` does of strips, (n, k, 3), m, in less time."""
+    """Like `rr.LineStrips3D.columns`, but faster, for strips, (n, k, 3), m."""
     return [_column(rr.LineStrips3D.descriptor_strips(), strips_3d(strips))]
 
 

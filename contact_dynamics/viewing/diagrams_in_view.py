@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Draws the diagrams of answers beside the scene, and remembers which of them are in view.
+"""Draws the diagrams of answers beside the scene, and keeps track of those in view.
 
-A planar answer about contact modes has its consistent modes side by side, seen against the plane's normal. If
-wrench sets were asked for, it has the map of modes over applied wrenches, and lecture 26's construction for
-the first mode. Both take long to draw: while they look the same, only the wrench in question moves in them.
+A planar answer about contact modes has its consistent modes side by side, seen against the plane's normal.
+With wrench sets, it has the map of modes over applied wrenches, and lecture 26's construction for the first
+mode. Both take long to draw; while they look the same, only the applied wrench is redrawn in them.
 """
 
 from __future__ import annotations
@@ -76,9 +76,9 @@ class DiagramsInView:
     def draw_impact(
         self, answer: ImpactAnswer, *, body: MassProperties | None, other: MassProperties | None
     ) -> list[str]:
-        """Draw an impact in impulse space, in 3-D too if it is not planar, and return what there is to see.
+        """Draw an impact in impulse space, also in 3-D if it is not planar, and return the drawn diagrams.
 
-        ``body`` and ``other``, which is struck, are None if they are not known.
+        ``body`` and ``other``, which is struck, are None if unknown.
         """
         if len(answer.impact.path_W) == 0:
             return []
@@ -88,7 +88,7 @@ class DiagramsInView:
             in_3d = impulse_space_in_3d(body, answer, other=other)
             draw_diagram(self._recording, in_3d, IMPULSE_SPACE_IN_3D)
             return [IMPULSE_SPACE, IMPULSE_SPACE_IN_3D]
-        if self._in_3d:  # that of an impact before
+        if self._in_3d:  # that of an earlier impact
             self._in_3d = False
             self._recording.log(IMPULSE_SPACE_IN_3D, rr.Clear(recursive=True))
         return [IMPULSE_SPACE]
@@ -101,7 +101,7 @@ class DiagramsInView:
         outline: FloatArray,
         body: MassProperties | None,
     ) -> list[str]:
-        """Draw the modes of a planar answer, their map and the force dual, and return what there is to see.
+        """Draw the modes of a planar answer, their map and the force dual, and return the drawn diagrams.
 
         The ``outline`` of the body is a closed strip, (k, 2), m from the centre of mass. It may be empty.
         """
@@ -132,7 +132,7 @@ class DiagramsInView:
             draw_diagram(self._recording, diagram, MODE_MAP)
 
     def _draw_dual(self, view: ModesSideBySide, applied: PlanarWrench | None) -> None:
-        """Draw the construction for the first mode, if the map has wrenches of it."""
+        """Draw the construction for the first mode, if the map contains its wrenches."""
         before, self._dual = self._dual, None
         shown = None if self._map is None else self._map.shown
         chart = None if shown is None else dual_chart_of(view, shown, resolution=LIVE_RESOLUTION)
@@ -157,6 +157,6 @@ class DiagramsInView:
 
 
 def _replaced(diagram: Diagram, part: str, marks: list[Mark]) -> Diagram:
-    """Return a diagram with other marks in place of those whose names begin so."""
+    """Return a diagram with the marks whose names have a prefix replaced."""
     kept = [mark for mark in diagram.marks if not mark.name.startswith(part)]
     return replace(diagram, marks=[*kept, *marks])

@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Draws diagrams and their marks in rerun, at the recording's current time.
 
-rerun has neither axes nor legends for spatial views. So axes with numbers are drawn with the diagram, the
-legend stands in a column on its left, and words about points in a column on its right, at lines to the
-points. Columns keep words apart. The room that words need is estimated, since the viewer does not fit a view
-to words: it is right for a panel that is 300 points high with its title, and more than enough for a larger
-one.
+rerun has neither axes nor legends for spatial views, so the axes with their numbers are drawn with the
+diagram. The legend is a column on the left; labels of points are a column on the right, with lines to the
+points, so that they do not overlap. The room for text is estimated, since the viewer does not fit a view to
+text; it suits a panel that is 300 points high with its title, and is more than enough for a larger one.
 """
 
 from __future__ import annotations
@@ -30,14 +29,14 @@ _THICK: Final = 0.8  # radius of a line of width 1, in points of the screen
 _LARGE: Final = 0.6  # radius of a point of size 1, in points of the screen
 _FRAME_WIDTH: Final = 1.0
 _LEADER_WIDTH: Final = 0.8
-_TICKS: Final = 4  # numbers of an axis, at most
+_TICKS: Final = 4  # maximum number of ticks on an axis
 _NO_COLOR: Final = (0, 0, 0, 0)
 
 _PANEL: Final = (400.0, 275.0)  # points: the width of the axes, and the height of the axes with their words
 _LETTER: Final = 6.4  # points, width of a letter
-_LINE: Final = 23.0  # points, from one word to the one below
-_DROP: Final = 12.0  # points that the middle of a word is below its place
-_FURTHER: Final = 7.5  # the same, for each further line of it
+_LINE: Final = 23.0  # points, line spacing
+_DROP: Final = 12.0  # points from the anchor of a text down to its middle
+_FURTHER: Final = 7.5  # the same, for each further line
 _BELOW: Final = 2.8  # lines below the axes, with numbers and a name
 
 EYE: Final = np.array([0.8, -1.7, 1.07])
@@ -45,11 +44,11 @@ EYE: Final = np.array([0.8, -1.7, 1.07])
 TARGET: Final = np.array([0.0, 0.0, 0.32])
 """The place of the eye that sees a diagram in three dimensions with its words, and where it looks."""
 _SPACE: Final = 115.0  # points, the height of a diagram in three dimensions
-_RIGHT: Final = np.array([0.906, 0.423, 0.0])  # on the screen, as seen from there
+_RIGHT: Final = np.array([0.906, 0.423, 0.0])  # screen axes of the eye there
 
 
 def draw_diagram(recording: rr.RecordingStream, diagram: Diagram, entity: str) -> None:
-    """Draw a diagram at an entity in place of what was there."""
+    """Draw a diagram at an entity, in place of its earlier contents."""
     recording.log(entity, rr.Clear(recursive=True))
     _draw_all(recording, diagram.marks, diagram, entity)
 
@@ -72,17 +71,17 @@ def draw_side_by_side(
 
 
 def redraw(recording: rr.RecordingStream, diagram: Diagram, entity: str, part: str) -> None:
-    """Draw a part of a flat diagram anew, the marks whose names begin so, with what is about the diagram."""
+    """Redraw the marks of a flat diagram whose names have a prefix, with the axes and labels."""
     for cleared in (f"{entity}/{part}", f"{entity}/frame"):
         recording.log(cleared, rr.Clear(recursive=True))
     _draw_all(recording, [mark for mark in diagram.marks if mark.name.startswith(part)], diagram, entity)
 
 
 def _draw_all(recording: rr.RecordingStream, marks: Sequence[Mark], diagram: Diagram, entity: str) -> None:
-    """Draw marks of a diagram, and what is about it.
+    """Draw marks of a diagram, with its axes and labels.
 
     In three dimensions, the upright axis is drawn with length 1, so that the same eye suits every diagram.
-    rerun's viewer would not take a transform at the time at which the one before it is cleared.
+    rerun's viewer ignores a transform at the time at which the previous one is cleared.
     """
     page = _page_of(diagram)
     frame, point = _frame_of(diagram, page), page.point
@@ -101,10 +100,10 @@ def draw_marks(
     shift: float = 0.0,
     point: float = 0.0,
 ) -> None:
-    """Draw marks, each below ``entity`` at its name, and clear what is at the names of empty ones.
+    """Draw each mark at its name below ``entity``, and clear the entities of empty ones.
 
-    In the plane, they are drawn ``shift`` to the right. The viewer writes words below their places. If
-    ``point``, the size of a point of the screen, is given, labels are put that much higher.
+    In the plane, they are shifted to the right by ``shift``. The viewer writes text below its anchor; if
+    ``point``, the size of a point of the screen, is given, labels are raised accordingly.
     """
     for mark in marks:
         if mark.in_viewer:
@@ -113,7 +112,7 @@ def draw_marks(
 
 
 def parts_of(marks: Iterable[Mark]) -> dict[str, Any]:
-    """Return what rerun draws of marks, by their names."""
+    """Return rerun's archetypes for marks, by their names."""
     return {mark.name: drawn for mark in marks if (drawn := _drawn(mark, 0.0)) is not None}
 
 
@@ -126,7 +125,7 @@ def _lifted(mark: Mark, point: float) -> Mark:
 
 
 def _drawn(mark: Mark, shift: float) -> rr.AsComponents | None:  # noqa: PLR0911  one for each kind
-    """Return what rerun draws, or None for nothing."""
+    """Return rerun's archetype, or None for an empty mark."""
     color = palette.translucent(mark.paint.dark, mark.opacity)
     paints = mark.paints if isinstance(mark, Points | Arrows | Labels) else ()
     colors = [palette.translucent(paint.dark, mark.opacity) for paint in paints] or color
@@ -193,10 +192,9 @@ def _strips(strips: Sequence[FloatArray], color: palette.Color, radius: float) -
 
 
 def words(places: FloatArray, texts: Sequence[str], colors: Sequence[palette.Color]) -> rr.AsComponents:
-    """Return words at places, (n, d), as rerun's views have them.
+    """Return texts at places, (n, d), in the coordinates of rerun's views.
 
-    In the plane they stand at lines without length. The viewer allows for more room about points, which would
-    make the picture small.
+    In the plane they are labels of lines of zero length; the viewer would leave more room around points.
     """
     readable = [palette.readable(color) for color in colors]
     if places.shape[1] == 3:
@@ -206,7 +204,7 @@ def words(places: FloatArray, texts: Sequence[str], colors: Sequence[palette.Col
 
 
 def _on_screen(places: FloatArray, shift: float = 0.0) -> FloatArray:
-    """Return places as rerun's views have them: in the plane, the second coordinate goes down."""
+    """Return places in the coordinates of rerun's views: in the plane, the second coordinate points down."""
     if places.shape[1] == 3:
         return places
     flipped: FloatArray = (places + np.array([shift, 0.0])) * (1.0, -1.0)
@@ -214,22 +212,22 @@ def _on_screen(places: FloatArray, shift: float = 0.0) -> FloatArray:
 
 
 class _Page(NamedTuple):
-    """The screen as the words of a diagram see it."""
+    """Screen coordinates for the labels of a diagram."""
 
     point: float  # one point of the screen, in the units of the diagram
     right: FloatArray  # (d,), unit, to the right on the screen
     up: FloatArray  # (d,), unit
-    low: FloatArray  # (d,), the lower left corner of what is between the axes, as seen
+    low: FloatArray  # (d,), the lower left corner of the area between the axes, as seen
     width: float  # to the right of this corner
     height: float  # above it
 
     def at(self, right: float, up: float) -> FloatArray:
-        """Return the place that is so many points to the right of the lower left corner, and above it."""
+        """Return the place at an offset, in points, to the right of the lower left corner and above it."""
         place: FloatArray = self.low + self.point * (right * self.right + up * self.up)
         return place
 
     def height_of(self, place: FloatArray) -> float:
-        """Return how many points a place is above the lower left corner."""
+        """Return the height of a place above the lower left corner, in points."""
         return float((place - self.low) @ self.up) / self.point
 
 
@@ -249,7 +247,7 @@ def _page_of(diagram: Diagram) -> _Page:
 
 
 def _frame_of(diagram: Diagram, page: _Page, *, has_legend: bool = True) -> list[Mark]:
-    """Return the axes with their numbers and names, the title, the legend, and the words about points."""
+    """Return the axes with their numbers and names, the title, the legend, and the labels of points."""
     marks = _axes_of(diagram.axes, page)
     top, across = page.height / page.point, page.width / page.point
     name = diagram.axes[-1].name
@@ -288,13 +286,13 @@ def _widest(marks: Sequence[Mark]) -> float:
 
 
 def _room(places: Sequence[FloatArray]) -> Mark:
-    """Return what keeps room for words in the view: lines without length or colour."""
+    """Return invisible lines of zero length that reserve room for text in the view."""
     strips = [np.array([place, place]) for place in places]
     return Lines("room", palette.Paint(_NO_COLOR, ""), strips, opacity=0.0, width=0.0)
 
 
 def _notes_of(noted: list[Points], page: _Page, room: list[FloatArray]) -> list[Mark]:
-    """Return the legends of points on the right, each at the height of its point as far as they are apart."""
+    """Return the labels of points on the right, each near the height of its point, without overlap."""
     noted.sort(key=lambda mark: page.height_of(mark.places[0]))
     across = page.width / page.point
     left = across + 14.0 + (0.1 * across if len(page.low) == 3 else 0.0)
@@ -331,9 +329,9 @@ def _axes_of(axes: tuple[Axis, ...], page: _Page) -> list[Mark]:
     strips, places, texts = [], [], []
     for i, (axis, corner) in enumerate(zip(axes, corners, strict=True)):
         along = np.eye(len(axes))[i]
-        if axis.ticks is None:  # others have a picture with a frame of its own
+        if axis.ticks is None:  # others are pictures with their own frame
             strips.append(np.array([corner, corner + (axis.high - axis.low) * along]))
-        # Words are below the first axis, right of one that recedes, and left of the upright one.
+        # Names are below the first axis, right of one that recedes, and left of the upright one.
         side = (0.0, 1.0, -1.0)[i] if len(axes) == 3 else (0.0, -1.0)[i]
         tick = side * page.right if side else -page.up
         ticks = _round_numbers(axis.low, axis.high) if axis.ticks is None else axis.ticks
@@ -356,7 +354,7 @@ def _axes_of(axes: tuple[Axis, ...], page: _Page) -> list[Mark]:
 
 
 def _round_numbers(low: float, high: float) -> list[tuple[float, str]]:
-    """Return round numbers between two limits, `_TICKS` or fewer, with their words."""
+    """Return at most `_TICKS` round numbers between two limits, with their texts."""
     rough = (high - low) / _TICKS
     power = 10.0 ** np.floor(np.log10(rough))
     step = next(power * each for each in (1.0, 2.0, 2.5, 5.0, 10.0) if power * each >= rough)

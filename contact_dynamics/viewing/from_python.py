@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Draws what was computed in Python: one call, with the bodies' motion and answers."""
+"""Draws results computed in Python, the bodies' motions and answers, in one call."""
 
 from __future__ import annotations
 
@@ -41,10 +41,10 @@ def view(
             stamps.
         motions: States of each body by its name, in the order of their stamps.
         path: The file to write (.rrd), or None to open the viewer.
-        surface_side: m, side of the squares that are drawn for surfaces.
+        surface_side: m, side of the squares that represent surfaces.
 
     Raises:
-        UnknownBodyError: a motion is not that of a body in the world.
+        UnknownBodyError: a motion has a name that is no body's.
         NowhereToDrawError: the viewer cannot be opened.
         OSError: the file cannot be written.
     """

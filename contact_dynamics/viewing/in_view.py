@@ -1,16 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is in view of answers, beside the states that are measured, and what only hides the bodies and goes.
+"""Manages which predictions are in view beside the measured states, and removes those that hide the bodies.
 
-States may come before the answer that predicted them. So the newest states of a body are kept, and are
-compared when the answer comes. Of several bodies, the one that the newest answer is about has labels. An
-impact loses its labels some time after it, and is gone then if another body's is newer.
+States may arrive before the answer that predicted them, so the newest states of a body are kept and compared
+when the answer arrives. Of several bodies, the one with the newest answer has labels. An impact loses its
+labels some time after it, and is then removed if another body's impact is newer.
 
 Poinsot's picture is that of one flight (lecture 25): the inertia ellipsoid w^T I w = 2 T turns with the body
 in the space of angular velocities, and rolls on the invariable plane, which it touches at w. Its traces are
-the polhode and the herpolhode. The angular momentum points down here, so that the plane lies below, and the
-largest semi-axis has length 1. An impact or a contact changes the angular momentum, which leaves all of it
-without meaning: it is cleared at the first state that does not have the flight's any more. Of several bodies,
-the one that was asked about last is in the picture.
+the polhode and the herpolhode. The angular momentum points down here, so that the plane is below, and the
+largest semi-axis has length 1. An impact or a contact changes the angular momentum and invalidates the
+picture, which is cleared at the first state without the flight's angular momentum. Of several bodies, the
+picture shows the one of the last request.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ if TYPE_CHECKING:
     from contact_dynamics.viewing.scenery import BodiesInWorld
 
 
-LABELS_S: Final = 0.5  # s. The labels of an impact go this long after it, since they would cover the body.
+LABELS_S: Final = 0.5  # s. The labels of an impact, which cover the body, are removed this long after it.
 
 
 class ImpactsInView:
@@ -63,7 +63,7 @@ class ImpactsInView:
         self._labelled = ""
 
     def come(self, body_name: str, *, stamp_ns: int, strike_ns: int) -> None:
-        """Note the impact that is drawn at a stamp, ns, and happens at another. It is the newest."""
+        """Register the newest impact, which is drawn at one stamp, ns, and happens at another."""
         if self._newest != body_name:
             self._clear_labels(stamp_ns)
             if self._until_ns.get(self._newest, stamp_ns) < stamp_ns:
@@ -72,7 +72,7 @@ class ImpactsInView:
         self._until_ns[body_name] = ns_after(strike_ns, LABELS_S)
 
     def pass_by(self, body_name: str, stamp_ns: int) -> None:
-        """Clear what is in the way of a body that was measured at a stamp, ns."""
+        """Clear expired labels and impacts of a body that was measured at a stamp, ns."""
         if stamp_ns <= self._until_ns.get(body_name, stamp_ns):
             return
         if body_name != self._newest:
@@ -96,8 +96,8 @@ class ImpactsInView:
 class ConservedInView:
     """The body whose energy and momenta are drawn as curves.
 
-    Of several bodies it is the one that was asked about, until its predicted motion is over and another is
-    asked about. Curves of many bodies could not be told apart, and would cost what all else costs.
+    Of several bodies it is the one of a request, until its predicted motion is over and a request about
+    another arrives. Curves of many bodies could not be distinguished, and would double the cost of drawing.
     """
 
     def __init__(self, recording: rr.RecordingStream) -> None:
@@ -107,7 +107,7 @@ class ConservedInView:
         self.body_name: str | None = None
 
     def come(self, body_name: str, *, stamp_ns: int, end_ns: int) -> bool:
-        """Note a prediction that begins and ends at these stamps, ns, and return if a turn begins."""
+        """Register a prediction from one stamp to another, ns, and return whether the body changes."""
         begins = self.body_name != body_name
         if self.body_name not in {None, body_name}:
             if stamp_ns < self._until_ns:
@@ -141,7 +141,7 @@ MAX_KEPT: Final = 500
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Prediction:
-    """Where a body was predicted to be."""
+    """The predicted motion of a body."""
 
     begin_ns: int  # when it begins, ns
     trajectory: Trajectory  # the motion
@@ -150,7 +150,7 @@ class Prediction:
 
 
 class PredictionsInView:
-    """The newest predictions, and what is measured beside them."""
+    """The newest predictions, and the measured states beside them."""
 
     def __init__(self, recording: rr.RecordingStream, bodies: BodiesInWorld, *, up_W: FloatArray) -> None:
         """Begin without any, for bodies of a world in which this direction is up."""
@@ -175,7 +175,7 @@ class PredictionsInView:
     def add_states(
         self, body_name: str, states: Sequence[BodyState], *, before: BodyState | None, gravity_W: FloatArray
     ) -> bool:
-        """Draw measured states after the one before; return whether a prediction is drawn beside one."""
+        """Draw measured states that follow ``before``; return whether a prediction is drawn beside any."""
         has_energy = body_name == self._conserved.body_name
         draw_states(
             self._recording,
@@ -195,10 +195,10 @@ class PredictionsInView:
     def come(
         self, body_name: str, trajectory: Trajectory, *, begin_ns: int, gravity_W: FloatArray
     ) -> tuple[bool, bool]:
-        """Note a prediction, from which curves are drawn until the next.
+        """Register a prediction, from which curves are drawn until the next one.
 
         Returns:
-            Whether there are curves of energy now, and whether the prediction is drawn beside a state.
+            Whether there are curves of energy, and whether the prediction is drawn beside any state.
         """
         earlier = self._predictions.get(body_name)
         body = self._bodies.mass_properties(body_name)
@@ -223,7 +223,7 @@ class PredictionsInView:
         return [state for state in self._kept.get(body_name, ()) if state.stamp_ns > stamp_ns]
 
     def _compare(self, body_name: str, states: Sequence[BodyState]) -> bool:
-        """Draw the newest prediction of a body beside states, as far as it reaches; return if it does."""
+        """Draw the newest prediction of a body beside the states that it covers; return if there are any."""
         prediction = self._predictions.get(body_name)
         if prediction is None or not states:
             return False
@@ -248,11 +248,11 @@ SAME_MOMENTUM: Final = 0.2
 """Relative. If the angular momentum is off by more, the flight is over. In the demo's toss the noise of
 motion capture makes up to 0.08 of it, and impacts make more than 1."""
 
-_ABOVE: Final = (0.0, 0.0, 0.75)  # where words stand: the largest semi-axis has length 1
+_ABOVE: Final = (0.0, 0.0, 0.75)  # places of texts; the largest semi-axis has length 1
 
 
 def count_of_flight(picture: Poinsot, states: Sequence[BodyState]) -> int:
-    """Return how many states, from the first on, have the flight's angular momentum."""
+    """Return the number of leading states with the flight's angular momentum."""
     allowed = SAME_MOMENTUM * float(np.linalg.norm(picture.L_W))
     for i, state in enumerate(states):
         R_WB = rotation_matrix(state.q_WB)
@@ -267,7 +267,7 @@ def draw_poinsot(
 ) -> None:
     """Draw ellipsoid, plane and curves at the recording's current time. `draw_rolling` turns the ellipsoid.
 
-    The body must rotate, because there is no plane at rest.
+    The body must rotate, because there is no invariable plane at rest.
     """
     path = entity(POINSOT_BODIES, body_name)
     _tell(recording, body_name or "the body")
@@ -284,7 +284,7 @@ def draw_poinsot(
 
 
 def _tell(recording: rr.RecordingStream, words: str) -> None:
-    """Write words above the picture, or where it was."""
+    """Write text above the picture, or at its former place."""
     told = rr.Points3D([_ABOVE], colors=palette.NORMAL, radii=0.0, labels=[words], show_labels=True)
     recording.log(POINSOT_WORDS, told)
 
@@ -303,7 +303,7 @@ def draw_rolling(recording: rr.RecordingStream, body_name: str, states: Sequence
 
 
 class PoinsotInView:
-    """Keeps the picture of the body that was asked about last, for as long as its flight lasts."""
+    """The picture of the body of the last request, for the duration of its flight."""
 
     def __init__(self, recording: rr.RecordingStream) -> None:
         """Begin without any."""
@@ -318,7 +318,7 @@ class PoinsotInView:
     def come(
         self, body_name: str, picture: Poinsot, curves: RollingCurves, state: BodyState, *, stamp_ns: int
     ) -> None:
-        """Draw the picture of a body in a state, at a stamp, ns, in place of another body's."""
+        """Draw the picture of a body in a state at a stamp, ns, and remove another body's."""
         if self._rolling is not None and self._rolling[0] != body_name:
             self._recording.log(entity(POINSOT_BODIES, self._rolling[0]), rr.Clear(recursive=True))
         draw_poinsot(self._recording, body_name, picture, curves)
@@ -326,7 +326,7 @@ class PoinsotInView:
         self._rolling = (body_name, picture)
 
     def add_states(self, body_name: str, states: Sequence[BodyState]) -> None:
-        """Let the ellipsoid roll as a body was measured, and clear the picture when its flight is over."""
+        """Roll the ellipsoid with the measured states of a body; clear the picture after its flight."""
         if self._rolling is None or self._rolling[0] != body_name:
             return
         count = count_of_flight(self._rolling[1], states)

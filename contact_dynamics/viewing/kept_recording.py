@@ -1,13 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A recording that remembers what stands in it, so that a place that is opened later gets it too.
+"""A recording that keeps its current contents, so that sinks opened later receive them too.
 
-A viewer that dies and comes back and the next of several files begin with the picture as it is then: with
-all that keeps its form, the newest drawing of each thing, the last moments of trails and curves, and the
-newest words. What is sent to one place as to another has the same recording's id, so that several files
-opened together are one picture.
+A restarted viewer and the next of several files begin with the current picture: everything static, the newest
+drawing of each entity, the last moments of trails and curves, and the newest words. All sinks receive the
+same recording id, so that several files opened together form one picture.
 
 Two timelines are added to that of the stamps. On `SINCE_START` the first stamp is zero. On `ORDER` each step
-is one drawing, in the order in which states and answers came.
+is one drawing, in the order in which states and answers arrived.
 """
 
 from __future__ import annotations
@@ -33,9 +32,9 @@ if TYPE_CHECKING:
 
 APPLICATION: Final = "contact_dynamics"
 
-LAST_S: Final = 2.0  # s. The newest part of each trail and curve that stays in memory, by the stamps.
-LAST_BATCHES: Final = 100  # the most batches of states that this can be. Stamps may stand still or go back.
-LAST_WORDS: Final = 200  # lines of the list of all answers that stay in memory
+LAST_S: Final = 2.0  # s, by the stamps, of each trail and curve that is kept in memory
+LAST_BATCHES: Final = 100  # maximum number of batches in it, since stamps can repeat or decrease
+LAST_WORDS: Final = 200  # lines of the list of all answers that are kept in memory
 
 
 class _Timed(NamedTuple):
@@ -48,7 +47,7 @@ class _Timed(NamedTuple):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Row:
-    """One thing that was drawn at a time."""
+    """An entity drawn at one time."""
 
     step: int
     stamp_ns: int | None
@@ -59,7 +58,7 @@ class _Row:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Batch:
-    """One thing that was drawn at many times."""
+    """An entity drawn at many times."""
 
     step: int
     stamp_ns: int | None  # the last one
@@ -68,13 +67,13 @@ class _Batch:
 
 
 class KeptRecording(rr.RecordingStream):
-    """Hands on what is drawn to its places, which are recordings with its id.
+    """Forwards drawings to its sinks, which are recordings with its id.
 
-    It is a `rr.RecordingStream`, so that whatever draws into one draws into it. Itself it has no sink.
+    It is a `rr.RecordingStream` without a sink of its own, so that all drawing functions accept it.
     """
 
     def __init__(self) -> None:
-        """Begin with an empty picture and no places."""
+        """Begin with an empty picture and no sinks."""
         self.id = uuid4().hex
         super().__init__(APPLICATION, recording_id=self.id, send_properties=False)
         super().set_sinks()
@@ -83,24 +82,24 @@ class KeptRecording(rr.RecordingStream):
         self._arrangement = Arrangement()
         self._static: dict[tuple[str, type], Sequence[rr.DescribedComponentBatch]] = {}
         self._rows: dict[str, dict[type, _Row]] = {}  # by path and kind
-        self._batches: dict[str, deque[_Row | _Batch]] = {}  # columns with the gaps between them, and words
-        self._cleared: dict[str, _Row] = {}  # the paths where nothing was drawn since
+        self._batches: dict[str, deque[_Row | _Batch]] = {}  # columns with the gaps between them, and texts
+        self._cleared: dict[str, _Row] = {}  # cleared paths without a later drawing
         self._timed: _Timed | None = None
         self._start_ns: int | None = None
         self._stamp_ns: int | None = None
         self._step = 0
 
     def open(self, *sinks: rr.sinks.LogSinkLike) -> rr.RecordingStream:
-        """Open a further place, which gets what stands now and what is drawn from now on. Return it."""
+        """Open and return a further sink, which receives the current picture and all later drawings."""
         place = rr.RecordingStream(APPLICATION, recording_id=self.id)
         self._places.append(place)
         self.reopen(place, *sinks)
         return place
 
     def reopen(self, place: rr.RecordingStream, *sinks: rr.sinks.LogSinkLike) -> None:
-        """Open a place anew, with other sinks and what stands now. Without sinks nothing is drawn there.
+        """Reopen a recording with other sinks and the current picture, or disable it without sinks.
 
-        A recording of rerun keeps threads and memory after its end, so a place is not thrown away.
+        rerun keeps a recording's threads and memory after its end, so recordings are reused.
         """
         place.set_sinks(*sinks)
         if place in self._left:
@@ -125,15 +124,15 @@ class KeptRecording(rr.RecordingStream):
         _set_time(place, self._stamp_ns, start_ns=self._start_ns, step=self._step)
 
     def leave(self, place: rr.RecordingStream) -> None:
-        """Draw nothing more into a place that takes nothing, unless it is opened anew.
+        """Stop drawing into a blocked sink until it is reopened.
 
-        It is kept, since rerun could wait for ever to close it.
+        It is kept, since closing it could block in rerun for ever.
         """
         self._places.remove(place)
         self._left.append(place)
 
     def set_time(self, timeline: str, **time: Any) -> None:
-        """Set the time of what is logged next. If it is a stamp, it is so on all three timelines."""
+        """Set the time of the following drawings; a stamp sets all three timelines."""
         if timeline != TIMELINE:
             for place in self._places:
                 place.set_time(timeline, **time)
@@ -152,7 +151,7 @@ class KeptRecording(rr.RecordingStream):
         static: bool = False,
         strict: bool | None = None,
     ) -> None:
-        """Draw a thing, as `rr.RecordingStream.log` does."""
+        """Draw an entity, as `rr.RecordingStream.log` does."""
         path = (
             rr.new_entity_path(entity_path) if isinstance(entity_path, list) else f"/{entity_path.strip('/')}"
         )
@@ -182,9 +181,9 @@ class KeptRecording(rr.RecordingStream):
         *,
         strict: bool | None = None,  # noqa: ARG002  what is wrong always raises
     ) -> None:
-        """Draw a thing at many times, as `rr.RecordingStream.send_columns` does, at the stamps of one column.
+        """Draw an entity at many times, as `rr.RecordingStream.send_columns` does, with one column of stamps.
 
-        Things that are drawn one after the other at the same stamps, given as one object, are one drawing.
+        Consecutive entities whose stamps are the same object count as one drawing.
         """
         (index,) = indexes
         timed = self._at_times(index)
@@ -200,29 +199,29 @@ class KeptRecording(rr.RecordingStream):
             kept.popleft()
 
     def send_blueprint(self, blueprint: Any, **_as_always: bool) -> None:
-        """Arrange the views, as `rr.RecordingStream.send_blueprint` does by default."""
+        """Set the layout of the views, as `rr.RecordingStream.send_blueprint` does by default."""
         self._arrangement.newest = blueprint
         for place in self._places:
             self._arrangement.send_to(place)
 
     def flush(self, *, timeout_sec: float = 1e38) -> None:
-        """Wait until all places have what was drawn, each for at most ``timeout_sec``, s."""
+        """Wait until all sinks have received all drawings, each for at most ``timeout_sec``, s."""
         for place in self._places:
             place.flush(timeout_sec=timeout_sec)
 
     def disconnect(self) -> None:
-        """Close all places."""
+        """Close all sinks."""
         for place in self._places:
             place.disconnect()
 
     def _begin(self, stamp_ns: int) -> int:
-        """Return the first stamp, ns, which this one is if there was none before."""
+        """Return the first stamp, ns, which is this one if there was none before."""
         if self._start_ns is None:
             self._start_ns = stamp_ns
         return self._start_ns
 
     def _at_times(self, index: rr.TimeColumn) -> _Timed:
-        """Return a column of stamps with those of the other timelines."""
+        """Return a column of stamps with the columns of the other timelines."""
         if self._timed is None or index is not self._timed.columns[0]:
             stamps = index.as_arrow_array().to_numpy(zero_copy_only=False).astype(np.int64)
             self._step += 1
@@ -237,14 +236,14 @@ class KeptRecording(rr.RecordingStream):
         return self._timed
 
     def _is_clear(self, path: str, clear: rr.Clear) -> bool:
-        """Tell whether nothing was drawn at a path since it was cleared, at this stamp or before."""
+        """Return whether a path was cleared, at this stamp or before, and nothing was drawn there since."""
         before = self._cleared.get(path)
         if before is None or (before.stamp_ns or 0) > (self._stamp_ns or 0):
             return False
         return _is_recursive(before.parts) or not _is_recursive(clear.as_component_batches())
 
     def _note_drawn(self, path: str) -> None:
-        """Note that neither a path nor those that it lies below are clear."""
+        """Mark a path and its parents as drawn."""
         while path and self._cleared:
             self._cleared.pop(path, None)
             path = path.rpartition("/")[0]
@@ -268,7 +267,7 @@ def _is_recursive(parts: Sequence[rr.DescribedComponentBatch]) -> bool:
 
 
 def _joined(kept: Iterable[_Row | _Batch]) -> Iterator[_Row | _Batch]:
-    """Join batches that follow each other, since many small ones cost many times as much."""
+    """Join consecutive batches, since many small ones take much longer."""
     for kind, group in groupby(
         kept, key=lambda each: each.columns.kind if isinstance(each, _Batch) else None
     ):
@@ -289,15 +288,15 @@ def _set_time(place: rr.RecordingStream, stamp_ns: int | None, *, start_ns: int 
 
 
 class Arrangement:
-    """The arrangement of the views of one picture, sent again and again at no lasting cost.
+    """The layout of the views of one picture, which can be sent repeatedly without accumulating memory.
 
     `rr.send_blueprint` makes a recording for each blueprint that it sends, which rerun keeps to the end of
     the process: two threads and 2 MB each time, and pictures in rolling files send one with each file. Here
-    all blueprints go through one recording. It uses what `rr.send_blueprint` uses itself; a test with the
-    real rerun counts the threads.
+    all blueprints go through one recording. It uses the same functions as `rr.send_blueprint`; a test with
+    the real rerun counts the threads.
 
     Attributes:
-        newest: The newest one, or None while there is none.
+        newest: The newest layout, or None before the first.
     """
 
     def __init__(self) -> None:
@@ -313,10 +312,10 @@ class Arrangement:
         self._stream.set_time("blueprint", sequence=0)
 
     def send_to(self, place: rr.RecordingStream) -> None:
-        """Send the newest arrangement to a place, if there is one."""
+        """Send the newest layout to a sink, if there is one."""
         if self.newest is None:
             return
-        for path in ("view", "container"):  # those before have other names, and would stay unseen
+        for path in ("view", "container"):  # earlier ones have other names, and would remain hidden
             self._stream.log(path, rr.Clear(recursive=True))
         self.newest._log_to_stream(self._stream)  # noqa: SLF001
         storage = self._stream.memory_recording().storage

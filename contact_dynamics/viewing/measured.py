@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Draws what was measured: a body's pose, its trail and its curves over time, for many states in one call.
+"""Draws measured states: a body's pose, its trail and its curves over time, for many states in one call.
 
-The curves are height and speed. If the mass properties are known, they are energy and momenta too, which do
-not change in free flight, apart from the momentum that gravity gives, and the angular velocity, which does.
-After an impact, the measured velocity is drawn beside the predicted one: as curves over the time from which
-it is found, and as an arrow in the scene.
+The curves are height and speed and, if the mass properties are known, energy and angular momentum, which are
+conserved in free flight, momentum and angular velocity. After an impact, the measured velocity is drawn
+beside the predicted one: as curves over the time from which it is estimated, and as an arrow in the scene.
 """
 
 from __future__ import annotations
@@ -61,9 +60,9 @@ OF_ONE_BODY: Final = (ENERGY, MOMENTUM, ANGULAR_MOMENTUM, ANGULAR_VELOCITY)
 _MAX_ACCELERATION: Final = 20.0
 """m/s^2. A body that was struck or lost from view for a while is not taken for one that was put elsewhere."""
 
-_SLACK: Final = 0.05  # m. The same for one whose measured velocities are off.
+_SLACK: Final = 0.05  # m, the same for a body with inaccurate measured velocities
 
-_GAP_S: Final = 1e-3  # s after a curve, where it ends, so that nothing joins it to the next
+_GAP_S: Final = 1e-3  # s after a curve, where a gap separates it from the next
 
 SET_BACK_S: Final = 0.5
 """s. Where the stamps of a body fall by more than this, its clock was set back, as by a simulation that
@@ -125,7 +124,7 @@ def draw_states(
 ) -> None:
     """Draw states in the order of their stamps. The trail continues from the state ``before``, if any.
 
-    It has a gap where the body was put elsewhere, as a simulation does that begins anew.
+    It has a gap where the body was moved elsewhere, as by the reset of a simulation.
 
     The other arguments are those of `curves_of`.
     """
@@ -145,9 +144,9 @@ def draw_states(
 
 
 def _put_elsewhere(way: Trajectory) -> NDArray[np.bool_]:
-    """Tell which states after the first cannot be where velocities took the body from the state before."""
+    """Return which states after the first are out of reach of the previous one at the measured velocities."""
     seconds, speeds = np.diff(way.seconds), np.linalg.norm(way.v_WB_W, axis=1)
-    onwards = np.maximum(seconds, 0.0)  # where a clock is set back, no way leads from one state to the next
+    onwards = np.maximum(seconds, 0.0)  # after a clock was set back, nothing is within reach
     reach = (speeds[:-1] + speeds[1:]) * onwards + _MAX_ACCELERATION * onwards**2 + _SLACK
     return np.asarray(np.linalg.norm(np.diff(way.p_WB_W, axis=0), axis=1) > reach)
 
@@ -160,7 +159,7 @@ def draw_curves_of_one(
     body: MassProperties,
     gravity_W: FloatArray,
 ) -> None:
-    """Draw the curves that one body has at a time, of states whose other curves are drawn already."""
+    """Draw the curves that only one body has at a time, of states whose other curves are already drawn."""
     if not states:
         return
     stamps = time_column([state.stamp_ns for state in states])
@@ -177,11 +176,12 @@ def draw_prediction_at(
     curves: Mapping[str, FloatArray],
     begin_ns: int,
 ) -> int | None:
-    """Draw a trajectory, which began at ``begin_ns``, beside measured states, as far as it reaches.
+    """Draw a trajectory that began at ``begin_ns`` beside the measured states that it covers.
 
-    These are its ``curves`` of `curves_of` at their stamps, and how far the measured centre of mass is from
-    it. So the curves of measured and predicted values share their times, and many predictions make one curve,
-    which has a gap where a trajectory has ended. Return the stamp of the last state that it reaches, if any.
+    Its ``curves`` of `curves_of` are drawn at the stamps of the states, with the distance of the measured
+    centre of mass from it. The curves of measured and predicted values thus share their times, and many
+    predictions form one curve, with a gap at the end of each trajectory. Return the stamp of the last state
+    that it covers, if any.
     """
     if len(trajectory) == 0:
         return None
@@ -214,12 +214,12 @@ def draw_prediction_at(
 
 
 def time_column(stamps_ns: ArrayLike) -> rr.TimeColumn:
-    """Return stamps as rerun takes them, to the nanosecond."""
+    """Return stamps in rerun's form, to the nanosecond."""
     return rr.TimeColumn(TIMELINE, timestamp=np.array(stamps_ns, dtype="datetime64[ns]"))
 
 
 def set_time(recording: rr.RecordingStream, stamp_ns: int) -> None:
-    """Set the stamp at which everything that is logged next appears."""
+    """Set the stamp of all following drawings."""
     recording.set_time(TIMELINE, timestamp=np.datetime64(stamp_ns, "ns"))
 
 
@@ -243,7 +243,7 @@ def draw_after_impact(
     *,
     color: palette.Color = palette.MEASURED,
 ) -> None:
-    """Draw what was measured after an impact at the newest of its stamps, with the curves at all of them."""
+    """Draw the measured motion after an impact at its newest stamp, with the curves at all stamps."""
     name, end_ns = found.answer.body_name, found.stamps_ns[-1]
     stamps = time_column(found.stamps_ns)
     for kind, speeds in ((PREDICTED, found.predicted_speeds), (MEASURED, found.measured_speeds)):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The whole picture of a world and of what is asked about it, drawn into one recording as it happens."""
+"""The whole picture of a world, its states and answers, drawn into one recording as they arrive."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ if TYPE_CHECKING:
 class Picture:
     """Draws states and answers into a recording. An unknown body is drawn without shape.
 
-    Answers may come from a live server, from its log, or from a question asked in Python.
+    Answers may come from a live server, from its log, or from a call in Python.
 
     Attributes:
         recording: The recording that it is drawn into.
@@ -81,14 +81,14 @@ class Picture:
     ) -> None:
         """Draw the surfaces, as squares of ``surface_side``, m, and the bodies.
 
-        The paths of this many newest ``predictions`` of a body are in view, at least one.
+        ``predictions`` is the number of newest predicted paths of a body in view, at least one.
         """
         self._earlier = predictions - 1
         self.recording = recording
         self._world = WorldInView(recording, world, surface_side=surface_side)
         self._bodies = self._world.bodies
         self._newest: dict[str, BodyState] = {}
-        self._stamps_ns: dict[str, int] = {}  # the newest, since a clock was last set back
+        self._stamps_ns: dict[str, int] = {}  # the newest since a clock was last set back
         self._impacts = ImpactsInView(recording)
         self._lettered = ""  # the body whose contacts have letters
         self._answers = AnswersInWords(recording)
@@ -99,8 +99,8 @@ class Picture:
         self._predictions = PredictionsInView(recording, self._bodies, up_W=self._world.up_W)
         self._framing = Framing(self._world.up_W)
         self._eye: Eye | None = None
-        self._sees_path = False  # after that the view belongs to the user
-        self._shown: set[str] = set()  # what the arrangement has views of
+        self._sees_path = False  # from then on, only the user moves the view
+        self._shown: set[str] = set()  # contents of the layout's views
         # Stamps, ns, and positions, m, of the last `WINDOW_S`.
         self._recent: deque[tuple[int, FloatArray]] = deque()
         legend = rr.TextDocument(LEGEND_TEXT, media_type=rr.MediaType.MARKDOWN)
@@ -108,7 +108,7 @@ class Picture:
         self._arrange()
 
     def change_world(self, world: World, *, stamp_ns: int) -> None:
-        """Draw other surfaces and shapes of bodies from a time on, ns."""
+        """Replace the surfaces and shapes of bodies from a time on, ns."""
         self._world.change(world, stamp_ns=stamp_ns)
 
     def add_states(self, body_name: str, states: Sequence[BodyState]) -> None:
@@ -116,7 +116,7 @@ class Picture:
         if not states:
             return
         before = self._newest.get(body_name)
-        if before is None:  # it was not in the picture before
+        if before is None:  # a new body
             self._world.add_body(body_name, stamp_ns=states[0].stamp_ns)
             self._look(self._framing.add_body(body_name, states[0].p_WB_W))
         gravity_W = self._world.world.gravity_W
@@ -137,10 +137,10 @@ class Picture:
     def show(
         self, answer: Answer, *, now_ns: int = 0, remark: str = "", computation_time: float | None = None
     ) -> None:
-        """Draw an answer at the stamp of the state that it was predicted from, and put it into words.
+        """Draw an answer at the stamp of the state that it was predicted from, and describe it in words.
 
-        Where its state has no stamp, the time of the picture is ``now_ns``, ns. The words end with the
-        remark, and with the computation time, s, if that is known.
+        If its state has no stamp, the time of the picture is ``now_ns``, ns. The words end with the remark,
+        and with the computation time, s, if known.
         """
         service, stamp_ns = service_of(answer), answer.stamp_ns or now_ns
         set_time(self.recording, stamp_ns)
@@ -151,11 +151,11 @@ class Picture:
         words = [*service.in_words(answer), *remarks]
         said = sentence(answer.body_name, words, remark=remark, computation_time=computation_time)
         self.tell(service.kind, said, stamp_ns=stamp_ns)
-        for found in self._awaited.see(answer.body_name, ()):  # an impact may have been seen already
+        for found in self._awaited.see(answer.body_name, ()):  # an impact may have been measured already
             self._show_after_impact(found)
 
     def show_bodies(self, answer: BodiesModeAnswer, contacts: ContactSet, *, now_ns: int) -> None:
-        """Draw contact modes of several bodies at a time, ns, and put them into words."""
+        """Draw contact modes of several bodies at a time, ns, and describe them in words."""
         set_time(self.recording, now_ns)
         name = next(iter(self._bodies.names), "")  # which switches modes on and off
         marks = bodies_contact_marks(contacts, answer.modes, size=self._bodies.largest_size)
@@ -164,10 +164,10 @@ class Picture:
         self.tell("contact modes", answer.in_short().partition(": ")[2], stamp_ns=now_ns)
 
     def draw_tumbling(self, answer: TumblingAnswer, stamp_ns: int) -> tuple[list[str], list[str]]:
-        """Draw where a body will be, with what certainty, and Poinsot's picture if the answer has curves.
+        """Draw a predicted motion with its uncertainty, and Poinsot's picture if the answer has curves.
 
         Returns:
-            What is in view by then, and remarks for the words, as from all that draw an answer.
+            What is in view, and remarks for the words, as from all methods that draw an answer.
         """
         name, rotation = answer.body_name, answer.poinsot
         shape = self._bodies.shape(name)
@@ -221,7 +221,7 @@ class Picture:
         return [CONTACTS, *self._diagrams.draw_planar_modes(answer, plane, outline=outline, body=body)], []
 
     def draw_toss(self, answer: TossAnswer, stamp_ns: int) -> tuple[list[str], list[str]]:
-        """Draw a whole toss with its other ways, and the fan of samples with the tree of their strikes."""
+        """Draw a whole toss with its alternatives, and the fan of samples with the tree of their strikes."""
         shape = self._bodies.shape(answer.body_name)
         self._draw_anew(TOSSES, answer.body_name, toss_marks(shape, answer, up_W=self._world.up_W))
         curves = self._predict(answer.body_name, answer.toss.trajectory, begin_ns=stamp_ns)
@@ -239,14 +239,14 @@ class Picture:
         return [MANY], []
 
     def _draw_contacts(self, body_name: str, marks: list[Mark]) -> None:
-        """Draw contacts of a body, and clear the letters of another, which the newest answer is not about."""
+        """Draw contacts of a body, and clear the letters of another body's earlier answer."""
         if self._lettered not in {"", body_name}:
             self.recording.log(f"{entity(CONTACTS, self._lettered)}/{LETTERS}", rr.Clear(recursive=False))
         self._lettered = body_name
         self._draw_anew(CONTACTS, body_name, marks)
 
     def _draw_anew(self, kind: str, body_name: str, marks: list[Mark]) -> None:
-        """Draw an answer in the scene in place of the one before about its body."""
+        """Draw an answer in the scene in place of the previous one about its body."""
         path = entity(kind, body_name)
         self.recording.log(path, rr.Clear(recursive=True))
         draw_marks(self.recording, marks, path)
@@ -259,25 +259,25 @@ class Picture:
         self._answers.tell(kind, text, is_error=is_error)
 
     def frame_all(self) -> None:
-        """Make the view show all that is there at the end, for the user who opens the file."""
+        """Frame everything at the end, for the user who opens the file."""
         if self._recent:
-            self._framing = Framing(self._world.up_W)  # where bodies were first seen is long ago
+            self._framing = Framing(self._world.up_W)  # the first positions of the bodies are outdated
             self._look_at(near_most(np.array([p_WB_W for _, p_WB_W in self._recent])))
 
     @property
     def shown(self) -> frozenset[str]:
-        """Return what there is to see so far, as `make_blueprint` takes it."""
+        """Return the contents so far, as `make_blueprint` takes them."""
         return frozenset(self._shown)
 
     @property
     def bodies_with_curves(self) -> set[str]:
-        """The bodies whose energy and momenta or whose rolling ellipsoid are drawn, as of one at a time."""
+        """The body whose energy and momenta are drawn, and the one whose ellipsoid rolls, if any."""
         return {name for name in (self._predictions.conserved, self._poinsot.rolling) if name is not None}
 
     def newest_stamp_ns(self, waiting_ns: dict[str, int] | None = None) -> int | None:
         """Return the stamp of the newest measured state, or else of the last answer, if there is either.
 
-        ``waiting_ns`` are the newest stamps of bodies that have states which are not drawn yet.
+        ``waiting_ns`` are the newest stamps of bodies with states that are not drawn yet.
         """
         stamps_ns = self._stamps_ns | (waiting_ns or {})
         return max(stamps_ns.values(), default=self._told_ns)
@@ -288,7 +288,7 @@ class Picture:
         self.tell(AFTER_IMPACT, sentence(name, after_impact_in_words(found)), stamp_ns=end_ns)
 
     def _predict(self, body_name: str, trajectory: Trajectory, *, begin_ns: int) -> list[str]:
-        """Note what curves are drawn from until the next prediction, and return what there is to see."""
+        """Register a prediction, from which curves are drawn until the next one; return what is in view."""
         has_energy, is_compared = self._predictions.come(
             body_name, trajectory, begin_ns=begin_ns, gravity_W=self._world.world.gravity_W
         )
@@ -297,13 +297,13 @@ class Picture:
         return [ENERGY] if has_energy else []
 
     def _look_along(self, trajectory: Trajectory) -> None:
-        """Turn the view towards the first trajectory that is predicted."""
+        """Turn the view towards the first predicted trajectory."""
         if len(trajectory) > 0 and not self._sees_path:
             self._sees_path = True
             self._look_at(trajectory.p_WB_W)
 
     def _across_from(self, answer: ContactModeAnswer) -> FloatArray:
-        """Return a short path, (2, 3), m, world, across which one sees a body and the walls behind it."""
+        """Return a short path, (2, 3), m, world; the view across it shows a body and the walls behind it."""
         up_W = self._world.up_W
         side_W = answer.contacts.normals_W.mean(axis=0) - tangents_near_x(up_W)[1]
         along_W = np.cross(up_W, side_W)
@@ -312,11 +312,11 @@ class Picture:
         return path_W
 
     def _look_at(self, points_W: FloatArray) -> None:
-        """Turn the view towards a path and the bodies about it."""
+        """Turn the view towards a path and the bodies near it."""
         self._look(self._framing.turn_to(points_W, margin=self._bodies.largest_size))
 
     def _look(self, eye: Eye | None) -> None:
-        """Look from another place, if there is one, and put the ground below what is in sight."""
+        """Move the eye, if one is given, and centre the ground below the points in sight."""
         if eye is None:
             return
         self._eye = eye
@@ -324,7 +324,7 @@ class Picture:
         self._arrange()
 
     def _bring_up(self, *shown: str) -> None:
-        """Add the views of what is drawn for the first time."""
+        """Add the views of contents that are drawn for the first time."""
         if not self._shown.issuperset(shown):
             self._shown.update(shown)
             self._arrange()

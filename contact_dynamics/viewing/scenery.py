@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Draws what keeps its form: surfaces as patches of ground, and the shapes of the bodies.
+"""Draws the shapes of bodies, and surfaces as patches of ground, which seldom change.
 
-It can have another form from a time on. What never changes is drawn without a time, so that it is there from
-the beginning. rerun shows such a drawing at every time, whatever else is drawn in its place. So what changes
-is moved to places of its own, one for each form, from the time when it came until it goes.
+Shapes that never change are drawn without a time (static), so that they are visible from the beginning. rerun
+shows static drawings at every time, whatever else is drawn at their path, so a shape that changes is moved to
+paths of its own, one for each version, for the time in which it is valid.
 """
 
 from __future__ import annotations
@@ -31,26 +31,26 @@ if TYPE_CHECKING:
     from contact_dynamics.world import World
 
 
-Part: TypeAlias = Any  # something that rerun draws
+Part: TypeAlias = Any  # an archetype of rerun
 
 
 class Scenery:
-    """Things, each drawn at a path in some parts."""
+    """Entities, each drawn at a path in some parts."""
 
     def __init__(self, recording: rr.RecordingStream) -> None:
         """Begin without any."""
         self._recording = recording
         self._parts: dict[str, Mapping[str, Part]] = {}
-        self._forms: dict[str, int] = {}  # which form a thing has, from 1 on, once it has changed
-        self._since_ns: dict[str, int] = {}  # the stamp from which on it has this form
+        self._forms: dict[str, int] = {}  # version of each entity that has changed, from 1
+        self._since_ns: dict[str, int] = {}  # stamp from which its version is valid
 
     @property
     def paths(self) -> frozenset[str]:
-        """The paths of the things that are drawn now."""
+        """The paths of the entities that are currently drawn."""
         return frozenset(path for path, parts in self._parts.items() if parts)
 
     def draw(self, path: str, parts: Mapping[str, Part]) -> None:
-        """Draw a thing by the names of its parts: for all times, or for those of its present form."""
+        """Draw an entity by the names of its parts: for all times, or for those of its current version."""
         self._parts[path] = parts
         if path in self._forms:
             self._draw_form(path, parts, self._forms[path], stamp_ns=self._since_ns[path])
@@ -59,7 +59,7 @@ class Scenery:
             self._recording.log(f"{path}/{name}", part, static=True)
 
     def change(self, path: str, parts: Mapping[str, Part], *, first_ns: int, stamp_ns: int) -> None:
-        """Draw a thing anew from a stamp on, ns, or nothing without parts; the picture begins at first_ns."""
+        """Redraw an entity from a stamp on, ns; without parts, remove it. The picture begins at first_ns."""
         before = self._parts.get(path, {})
         form = self._forms.get(path, 0)
         if form == 0:
@@ -84,7 +84,7 @@ _TRAIL_WIDTH: Final = -1.5  # a negative size is in points of the screen
 
 
 def draw_axes(recording: rr.RecordingStream, up_W: FloatArray) -> None:
-    """Tell the viewer which of the world's axes is nearest to up."""
+    """Set the viewer's up axis to the world's axis that is nearest to up."""
     axis = int(np.abs(up_W).argmax())
     names = ("RIGHT_HAND_X", "RIGHT_HAND_Y", "RIGHT_HAND_Z")
     sign = "UP" if up_W[axis] > 0.0 else "DOWN"
@@ -94,26 +94,26 @@ def draw_axes(recording: rr.RecordingStream, up_W: FloatArray) -> None:
 def draw_trail_style(
     recording: rr.RecordingStream, body_name: str, color: palette.Color = palette.MEASURED
 ) -> None:
-    """Tell the viewer how the trail of a body looks."""
+    """Set the style of a body's trail."""
     trail = rr.LineStrips3D.from_fields(colors=palette.translucent(color, 0.9), radii=_TRAIL_WIDTH)
     recording.log(entity(TRAILS, body_name), trail, static=True)
 
 
 class BodiesInWorld:
-    """How the bodies of a world look, and others that were asked about. An unknown one has no shape."""
+    """The appearance of the bodies of a world and of requests. An unknown body has no shape."""
 
     def __init__(self, world: World) -> None:
-        """Take the bodies of a world."""
+        """Use the bodies of a world."""
         self.change(world)
 
     def change(self, world: World) -> None:
-        """Take those of another world."""
+        """Use those of another world."""
         self._world = world
         self._shapes: dict[str, Shape] = {body.name: drawn_shape(body.shape) for body in world.bodies}
 
     @property
     def names(self) -> list[str]:
-        """The names of all bodies that were drawn or asked about."""
+        """The names of all bodies that were drawn or requested."""
         return list(self._shapes)
 
     @property
@@ -122,7 +122,7 @@ class BodiesInWorld:
         return max((shape.size for shape in self._shapes.values()), default=0.0)
 
     def mass_properties(self, name: str) -> MassProperties | None:
-        """Return the mass properties of a body of the world, or None if the body is not known."""
+        """Return the mass properties of a body of the world, or None if the body is unknown."""
         known = (body.mass_properties for body in self._world.bodies if body.name == name)
         return next(known, None)
 
@@ -149,24 +149,24 @@ that is much larger than a body hides it."""
 
 
 class WorldInView:
-    """Surfaces and bodies in the scene. Both can have other forms from a time on.
+    """Surfaces and bodies in the scene. The shapes of both can change over time.
 
     Attributes:
-        world: The world as it is now.
-        bodies: How the bodies look.
+        world: The current world.
+        bodies: The appearance of the bodies.
         up_W: (3,), the unit vector against gravity, or the third axis without gravity.
     """
 
     def __init__(self, recording: rr.RecordingStream, world: World, *, surface_side: float) -> None:
-        """Draw the surfaces of a world, as squares of ``surface_side``, m, and set how its bodies look."""
+        """Draw the surfaces of a world, as squares of ``surface_side``, m."""
         self._recording = recording
         self.world = world
         self._surface_side = surface_side
         self._scenery = Scenery(recording)
         self._in_scene: list[str] = []  # the bodies that are drawn
         self._first_ns: int | None = None  # stamp of the first state
-        self._center_W: FloatArray | None = None  # the middle of what is looked at
-        self._extent = surface_side  # m, of what is looked at
+        self._center_W: FloatArray | None = None  # centre of the region in view
+        self._extent = surface_side  # m, of the region in view
         self.bodies = BodiesInWorld(world)
         self.up_W = up_of(world.gravity_W)
         draw_axes(recording, self.up_W)
@@ -183,12 +183,12 @@ class WorldInView:
             self._first_ns = stamp_ns
 
     def center_at(self, center_W: FloatArray, *, extent: float) -> None:
-        """Put the ground below a point, (3,), m, where what is looked at has an extent, m."""
+        """Centre the ground below a point, (3,), m, with the extent of the region in view, m."""
         self._center_W, self._extent = center_W, extent
         self._draw_surfaces()
 
     def change(self, world: World, *, stamp_ns: int) -> None:
-        """Draw other surfaces and shapes of bodies from a time on, ns."""
+        """Replace the surfaces and shapes of bodies from a time on, ns."""
         self.world = world
         self.bodies.change(world)
         wanted = self._surfaces()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Events side by side: each has a place of its own in one scene, row after row, with a table beside them."""
+"""Arranges events in rows within one scene, with a table beside them."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from contact_dynamics.viewing.blueprint import BACKGROUND, orbit, up_of
 if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
 
-MAX_DRAWN: Final = 48  # events that are drawn: more could not be told apart
+MAX_DRAWN: Final = 48  # maximum number of drawn events; more could not be distinguished
 COLUMN_COUNT: Final = 6  # events in one row
 EVENTS: Final = "events"
 TABLE: Final = "table"
 
-_APART: Final = 2.6  # sizes of the largest body from place to place
+_APART: Final = 2.6  # spacing, in sizes of the largest body
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -30,7 +30,7 @@ class SideBySide(Record):
 
     count: int  # number of events
     size: float  # m, of the largest body
-    gravity_W: FloatArray  # (3,), m/s^2, which tells what is up
+    gravity_W: FloatArray  # (3,), m/s^2, which defines up
 
     @property
     def up_W(self) -> FloatArray:

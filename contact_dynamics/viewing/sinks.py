@@ -1,21 +1,20 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Opens the places where the picture goes: a file, a viewer that is started, served or connected to, or both.
+"""Opens the sinks of the picture: a file, a viewer (started, served or connected to), or both.
 
-All network addresses are of this machine (127.0.0.1) unless a URL names another. If a viewer dies or hangs
-later, the picture still goes into the file, and closing waits for the viewer a few seconds at most. A viewer
-that is opened again at the same place gets what stands in the picture. What is served stays in a memory of
-limited size, for viewers that come later.
+All network addresses are on this machine (127.0.0.1) unless a URL names another. If a viewer dies or hangs
+later, the file is still written, and closing waits for the viewer a few seconds at most. A viewer that is
+restarted at the same address receives the current picture. Served data are kept in a buffer of limited size,
+for viewers that connect later.
 
-rerun's web viewer is served to browsers on this machine by rerun's executable, as a process of its own.
+rerun's web viewer is served to browsers on this machine by rerun's executable, in a separate process, because
 rerun's library would serve it to the whole network.
 
-A viewer that is drawn to may die and come back, or hang and go on. rerun itself draws no more to a viewer
-that has gone, also when one listens there again. And it keeps in memory, without bound, what a viewer that
-hangs does not take.
+A connected viewer may die and return, or hang and recover. rerun itself does not reconnect to a viewer that
+died, and buffers without bound the data that a hanging viewer does not accept.
 
-Files follow one after the other, and each begins with the picture as it is then. rerun writes no more into a
-file after one failure, such as a full disk, and says so only on the console. Then the next file begins as
-soon as there is room for it.
+A full file is followed by the next one, which begins with the current picture. After one failure, such as a
+full disk, rerun stops writing a file and reports it only on the console. The next file then begins as soon as
+there is room for it.
 """
 
 from __future__ import annotations
@@ -57,11 +56,11 @@ NO_WEB_PORT: Final = 0
 
 _MEMORY: Final = re.compile(r"(\d+(\.\d+)?)(%|B|[kKMGT]B|[KMGT]iB)")
 
-_TEND_S: Final = 1.0  # between two looks at a file's size, and at whether a viewer is back
+_TEND_S: Final = 1.0  # between two checks of a file's size, or for a viewer's return
 
 
 class ViewerMode(Enum):
-    """The way in which a viewer gets the picture."""
+    """How a viewer receives the picture."""
 
     NONE = "none"
     SPAWN = "spawn"
@@ -71,44 +70,43 @@ class ViewerMode(Enum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Sinks:
-    """The places to draw to.
+    """The sinks to draw to.
 
     Raises:
         InvalidFieldError: the memory is not a size.
     """
 
     rrd_path: str = ""  # file to write, which is replaced. If it is empty, no file is written.
-    # Bytes. When a file is larger, the next one begins, with _1, _2 and so on in its name. 0 means that there
-    # is one file.
+    # Bytes. Above this size the next file begins, with _1, _2 and so on in its name. 0 means a single file.
     rrd_size: int = 0
-    rrd_files: int = 0  # the newest files that stay, where there are several. 0 means all.
+    rrd_files: int = 0  # number of newest files to keep. 0 means all.
     viewer: ViewerMode = ViewerMode.NONE
     port: int = DEFAULT_PORT  # port of the viewer that is started, or that is served
     url: str = ""  # URL of the viewer to connect to, such as rerun+http://127.0.0.1:9876/proxy
-    # memory of the viewer that is started, or of what is served, as rerun takes it: `2GB`, `50%`.
+    # memory of the started viewer, or of the server, in rerun's format: `2GB`, `50%`.
     memory: str = "1GiB"
-    # Port of the web viewer beside what is served. `NO_WEB_PORT` means that there is none.
+    # port of the web viewer beside the server. `NO_WEB_PORT` means none.
     web_port: int = NO_WEB_PORT
 
     def __post_init__(self) -> None:
-        """Check what rerun would refuse too late."""
+        """Check values that rerun would reject too late."""
         if not _MEMORY.fullmatch(self.memory):
             raise InvalidFieldError("viewer_memory", repr(self.memory), "a size such as 500MB, 2GiB or 25%")
 
 
 class NowhereToDrawError(ContactDynamicsError):
-    """A viewer was asked for without a file, and cannot be reached. The message says why."""
+    """A viewer was requested without a file, and cannot be reached. The message contains the reason."""
 
 
 class OpenRecording:
-    """A recording that is open to its sinks."""
+    """A recording with its open sinks."""
 
     def __init__(self, sinks: Sinks, *, on_problem: Callable[[str], object]) -> None:
-        """Open the sinks. If a viewer cannot be reached, a message says so, and the file is still written.
+        """Open the sinks. If a viewer cannot be reached, report it, and still write the file.
 
         Raises:
             OSError: the file cannot be written.
-            NowhereToDrawError: a viewer was asked for without a file, and there is none.
+            NowhereToDrawError: a viewer was requested without a file, and there is none.
         """
         self.stream = KeptRecording()
         self._sinks = sinks
@@ -128,13 +126,13 @@ class OpenRecording:
 
     @property
     def viewer_failed(self) -> bool:
-        """Whether the viewer that was asked for could not be reached, or has failed since."""
+        """Whether the requested viewer could not be reached, or has failed since."""
         return bool(self._problem) or (self._process is not None and self._process.failed)
 
     def tend(self) -> None:
-        """Begin the next file if this one is full, and give the picture to a viewer that is back.
+        """Begin the next file if this one is full, and send the picture to a viewer that has returned.
 
-        It is to be called now and then, by who draws.
+        The drawing code calls it regularly.
         """
         now = time.monotonic()
         if now < self._tended + _TEND_S:
@@ -146,10 +144,10 @@ class OpenRecording:
             self._viewer.look()
 
     def close(self, *, timeout: float = 5.0) -> bool:
-        """Write what is left and leave the viewer, which stays open. Return whether it took everything.
+        """Write pending data and leave the viewer, which stays open; return whether all were accepted.
 
-        If it did not within ``timeout``, s, or if a file could not be written, rerun would wait for ever when
-        the process exits.
+        If they were not within ``timeout``, s, or if a file could not be written, rerun would block for ever
+        when the process exits.
         """
         if self._web is not None:
             self._web.close()
@@ -185,7 +183,7 @@ class OpenRecording:
         return names
 
     def _serve(self) -> list[str]:
-        """Serve the picture, and return where."""
+        """Serve the picture, and return its address."""
         sinks, url = self._sinks, local_url(self._sinks.port)
         problem = serving_problem(sinks.port)
         if problem:
@@ -199,7 +197,7 @@ class OpenRecording:
         return names
 
     def _viewer_url(self) -> str:
-        """Return the URL of a viewer that listens, or an empty string after noting why there is none."""
+        """Return the URL of a listening viewer, or an empty string after reporting why there is none."""
         sinks = self._sinks
         if sinks.viewer is ViewerMode.CONNECT:
             problem = connection_problem(*host_and_port(sinks.url))
@@ -215,7 +213,7 @@ class OpenRecording:
 
 
 def raise_errors() -> None:
-    """Make rerun raise an error for what it cannot draw, instead of a warning."""
+    """Make rerun raise errors instead of warnings."""
     rr.set_strict_mode(True)
 
 
@@ -223,10 +221,10 @@ _END_S: Final = 2.0
 
 
 class WebViewer:
-    """A web viewer at a port of this machine, that looks at what is served at a URL."""
+    """A web viewer at a port of this machine, which shows the data served at a URL."""
 
     def __init__(self, port: int, url: str, *, on_problem: Callable[[str], object]) -> None:
-        """Serve it. If that is not possible, a message says so, and ``address`` is empty."""
+        """Serve it. If that fails, report it and leave ``address`` empty."""
         self.address = ""
         self._process: subprocess.Popen[bytes] | None = None
         problem = serving_problem(port)
@@ -252,11 +250,11 @@ class WebViewer:
         if problem:
             on_problem(f"the web viewer is not served at port {port}: {problem}")
         else:
-            # Words are chosen for rerun's dark look, which the native viewer has.
+            # The colours suit rerun's dark theme, which the native viewer has.
             self.address = f"http://{LOCAL}:{port}/?url={quote(url, safe='')}&theme=dark"
 
     def close(self) -> None:
-        """Serve it no longer."""
+        """Stop serving it."""
         if self._process is not None:
             self._process.terminate()
             try:
@@ -268,29 +266,29 @@ class WebViewer:
 MAX_BEHIND: Final = 30
 """Looks at a viewer, of which each finds that it has not taken all that was drawn. Then it hangs."""
 
-_VIEWER_PATIENCE_S: Final = 0.01  # a viewer that takes what is drawn has taken it within a millisecond
+_VIEWER_PATIENCE_S: Final = 0.01  # a live viewer accepts data within a millisecond
 
 
 class LiveViewer:
     """A viewer at a URL.
 
     Attributes:
-        hangs: Whether nothing is drawn to it, because it has not taken what was drawn before.
+        hangs: Whether drawing to it is suspended, because it has not accepted earlier data.
     """
 
     def __init__(self, picture: KeptRecording, url: str, *, on_problem: Callable[[str], object]) -> None:
-        """Draw a picture to the viewer that listens at a URL."""
+        """Draw a picture to the viewer listening at a URL."""
         self._picture = picture
         self._url = url
         self._on_problem = on_problem
         self._place = picture.open(rr.GrpcSink(url))
         self._is_gone = self.hangs = False
-        self._behind = 0  # the looks since it has taken all
+        self._behind = 0  # number of checks since it has accepted all data
 
     def look(self) -> None:
-        """Find out whether the viewer lives and keeps up, and give the picture to one that is back."""
+        """Check whether the viewer is alive and keeps up, and send the picture to one that has returned."""
         if self._is_gone or self.hangs:
-            if speaks_http2(*host_and_port(self._url)):  # one that hangs does not greet
+            if speaks_http2(*host_and_port(self._url)):  # a hanging viewer does not respond
                 self._picture.reopen(self._place, rr.GrpcSink(self._url))
                 back = (
                     "a viewer listens at {} again, and"
@@ -302,7 +300,7 @@ class LiveViewer:
             return
         problem = self._problem()
         self._behind = self._behind + 1 if problem else 0
-        # Other errors are that not all was taken in time.
+        # Other errors mean that not all data were accepted in time.
         self._is_gone = "severed" in problem or bool(
             problem and connection_problem(*host_and_port(self._url))
         )
@@ -318,7 +316,7 @@ class LiveViewer:
             )
 
     def _problem(self) -> str:
-        """Return rerun's reason why the viewer has not taken all, or an empty string if it has."""
+        """Return rerun's reason why the viewer has not accepted all data, or an empty string if it has."""
         try:
             self._place.flush(timeout_sec=_VIEWER_PATIENCE_S)
         except RuntimeError as error:
@@ -326,15 +324,15 @@ class LiveViewer:
         return ""
 
 
-_ROOM: Final = 10**6  # bytes that there must be room for where a file begins
+_ROOM: Final = 10**6  # bytes of free space required to begin a file
 _FILE_PATIENCE_S: Final = 1.0  # with a file that has not grown
 
 
 class RrdFiles:
-    """The files of one picture: picture.rrd, and once that is full picture_1.rrd, picture_2.rrd and so on.
+    """The files of one picture: picture.rrd and, once it is full, picture_1.rrd, picture_2.rrd and so on.
 
     Attributes:
-        hold_all: Whether all that was drawn was written.
+        hold_all: Whether all drawings were written.
     """
 
     def __init__(
@@ -348,9 +346,9 @@ class RrdFiles:
     ) -> None:
         """Draw a picture into a file, which is replaced, or raise `OSError`.
 
-        A file that is larger than ``size``, bytes, is followed by the next one, and the newest ``most`` files
-        stay; 0 means that there is one file, and that all stay. ``on_problem`` is told, in words, when a file
-        cannot be written any more, and when the picture continues.
+        A file larger than ``size``, bytes, is followed by the next one, and the newest ``most`` files are
+        kept; 0 means a single file, and all files. ``on_problem`` is called with a description when writing a
+        file fails, and when the picture continues.
         """
         self._picture = picture
         self._first = Path(path)
@@ -359,13 +357,13 @@ class RrdFiles:
         self._on_problem = on_problem
         self.hold_all = True
         self._told = False
-        self._bytes = -1  # the newest file had when it was last looked at
+        self._bytes = -1  # size of the newest file at the last check
         self._count = 0
         self._written: deque[Path] = deque()
         self._place: rr.RecordingStream | None = picture.open(self._next())
 
     def roll(self) -> None:
-        """Begin the next file if this one is full, or cannot be written any more."""
+        """Begin the next file if this one is full, or if writing to it failed."""
         self.check()
         if self._place is not None and not self._is_full():
             return
@@ -386,7 +384,7 @@ class RrdFiles:
             self._written.popleft().unlink(missing_ok=True)
 
     def check(self) -> None:
-        """Find out whether the newest file is still written."""
+        """Check whether the newest file is still written."""
         if self._place is None or self._is_written(self._place):
             return
         self._picture.leave(self._place)
@@ -407,7 +405,7 @@ class RrdFiles:
         return self._size > 0 and not 0 <= self._length() < self._size
 
     def _length(self) -> int:
-        """Return the bytes of the newest file, or -1 if it is gone."""
+        """Return the size of the newest file, bytes, or -1 if it was removed."""
         try:
             return self._written[-1].stat().st_size
         except OSError:
@@ -417,7 +415,7 @@ class RrdFiles:
         path = self._first
         if self._count:
             path = path.with_name(f"{path.stem}_{self._count}{path.suffix}")
-        with path.open("wb", buffering=0) as file:  # rerun itself only logs that it cannot write
+        with path.open("wb", buffering=0) as file:  # rerun itself only logs a failed write
             if path.is_file():
                 try:
                     _write_zeros(file)
@@ -425,12 +423,12 @@ class RrdFiles:
                     file.truncate(0)
         self._count += 1
         self._written.append(path)
-        # The footer, an index of all that was drawn, stays in memory until the end: 50 KB an answer.
+        # The footer, an index of all drawings, would be kept in memory until the end: 50 KB per answer.
         return rr.FileSink(path, write_footer=False)
 
 
 def _write_zeros(file: FileIO) -> None:
-    """Write into a file as much as there must be room for, or raise an `OSError`."""
+    """Write as many zeros as there must be room for, or raise an `OSError`."""
     left = _ROOM
-    while left > 0:  # what is nearly full takes a part
+    while left > 0:  # a nearly full disk accepts only a part
         left -= file.write(bytes(left))

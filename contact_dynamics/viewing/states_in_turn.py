@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Keeps states until it is their turn to be drawn: at a pace, or before an answer that needs them."""
+"""Queues states until they are drawn: at a pace, or before an answer that needs them."""
 
 from __future__ import annotations
 
@@ -18,36 +18,36 @@ if TYPE_CHECKING:
     from contact_dynamics.rigid_body.body import BodyState
     from contact_dynamics.viewing.picture import Picture
 
-SHORTEST_S: Final = 0.05  # s. The time between two drawings of states while they are cheap.
-LONGEST_S: Final = 0.5  # s. The time between two drawings of states however dear they are.
+SHORTEST_S: Final = 0.05  # s, minimum time between two drawings of states
+LONGEST_S: Final = 0.5  # s, maximum time between two drawings of states
 
 SHARE: Final = 0.2
 """The share of one processor that the drawing of states takes, unless the longest time is too short."""
 
 
 class Pace:
-    """When the states that have come are to be drawn: often while that is cheap, else less often.
+    """Pace of drawing queued states: the slower drawing is, the less often it happens.
 
-    A batch of states costs about what a single state does. So fewer and larger batches show the same states
-    for less, only later.
+    A batch of states takes about as long as a single state, so fewer and larger batches draw the same states
+    in less time, only later.
 
     Attributes:
-        wait_s: How long after the last drawing the next one is due, s.
+        wait_s: Time from the last drawing until the next one is due, s.
     """
 
     def __init__(self) -> None:
-        """Begin with a drawing that is due."""
+        """Begin with a drawing due."""
         self.wait_s = SHORTEST_S
         self._drawn = float("-inf")
 
     @property
     def is_due(self) -> bool:
-        """Whether states are to be drawn now, by who asks this once in each shortest time."""
+        """Whether states are to be drawn now. To be called once per minimum time."""
         return time.monotonic() >= self._drawn + self.wait_s - 0.5 * SHORTEST_S
 
     @contextmanager
     def drawing(self) -> Iterator[None]:
-        """Draw in the block, whose processor time says when the next drawing is due."""
+        """Return a context for drawing, whose processor time determines when the next drawing is due."""
         self._drawn = time.monotonic()
         began = time.thread_time()
         try:
@@ -57,29 +57,29 @@ class Pace:
 
 
 def wait_after(seconds: float) -> float:
-    """Return the time from one drawing to the next, s, if each takes so much processor time, s."""
+    """Return the time from one drawing to the next, s, given the processor time of each, s."""
     return min(max(seconds / SHARE, SHORTEST_S), LONGEST_S)
 
 
 class StatesInTurn:
-    """The states that have come and are not drawn yet.
+    """The received states that are not drawn yet.
 
     Attributes:
-        count: How many there are.
+        count: Their number.
         pace: The pace at which all of them are drawn.
     """
 
     def __init__(self, picture: Picture, *, guarded: Callable[[str, Callable[[], None]], None]) -> None:
-        """Begin without any. ``guarded`` is given what is drawn, in words, and what draws it."""
+        """Begin without any. ``guarded`` is called with a description and the drawing function."""
         self.count = 0
         self.pace = Pace()
         self._picture = picture
         self._guarded = guarded
-        self._waiting: dict[str, list[tuple[int, BodyState]]] = {}  # with when they came, ns
+        self._waiting: dict[str, list[tuple[int, BodyState]]] = {}  # with their arrival times, ns
         self._newest_ns: dict[str, int] = {}
 
     def add(self, body_name: str, state: BodyState, *, came_ns: int = 0) -> None:
-        """Keep a state of a body, which came at that time, ns, by the clock that tells it of answers."""
+        """Queue a state of a body with its arrival time, ns, on the same clock as those of answers."""
         self.count += 1
         self._waiting.setdefault(body_name, []).append((came_ns, state))
         self._newest_ns[body_name] = max(state.stamp_ns, self._newest_ns.get(body_name, state.stamp_ns))
@@ -93,8 +93,8 @@ class StatesInTurn:
     def draw_before(self, answer: Answer, *, came_ns: int | None = None) -> None:
         """Draw the states of a body before an answer about it, and those of bodies whose curves it may end.
 
-        If each answer had those of all bodies drawn, there would be no pace where many questions are asked.
-        If the answer itself waited, only those are drawn that came before it, which was at ``came_ns``.
+        Drawing all bodies' states before each answer would defeat the pace when there are many requests. If
+        the answer was queued itself, only states that arrived before it, at ``came_ns``, are drawn.
         """
         others = set() if answer.predicted_motion is None else self._picture.bodies_with_curves
         for each in {answer.body_name, *others}:
@@ -105,7 +105,7 @@ class StatesInTurn:
         return self._picture.newest_stamp_ns(self._newest_ns)
 
     def _draw_of(self, body_name: str, *, came_ns: int | None = None) -> None:
-        """Draw the states of one body, if a time is given those that came up to then."""
+        """Draw the states of one body; if a time is given, those that arrived up to then."""
         waiting = self._waiting.pop(body_name, [])
         states = [state for each_ns, state in waiting if came_ns is None or each_ns <= came_ns]
         if came_ns is not None and len(states) < len(waiting):
@@ -119,7 +119,7 @@ class StatesInTurn:
 
 
 def _by_stamps(states: list[BodyState]) -> Iterator[list[BodyState]]:
-    """Yield states by their stamps, and those since the clock was last set back after the others."""
+    """Yield states by their stamps, but those since the clock was last set back after the others."""
     falls = (i for i in range(len(states) - 1, 0, -1) if _is_set_back(states[i - 1], states[i]))
     begin = next(falls, 0)
     for part in (states[:begin], states[begin:]):

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Runs rerun's viewer as its own process, reports what it says when it fails, and looks at ports of viewers.
+"""Runs rerun's viewer in a separate process, reports its output when it fails, and probes ports of viewers.
 
-The executable of rerun's wheel is started itself. `python -m rerun` would fail with an ImportError where
+The executable in rerun's wheel is started directly. `python -m rerun` would fail with an ImportError if
 `RERUN_APP_ONLY` is set (rerun 0.39 to 0.41), and `rerun` need not be on the PATH.
 
-The viewer listens before it has a window, so it counts as open once it draws. What it prints goes to a file
-without a name, because it stays open when this process ends.
+The viewer listens before it has a window, so it counts as open once it draws. Its output goes to an unnamed
+file, because the viewer outlives this process.
 """
 
 from __future__ import annotations
@@ -42,13 +42,13 @@ def local_url(port: int) -> str:
 
 
 def host_and_port(url: str) -> tuple[str, int]:
-    """Return what a viewer's URL names, or the defaults of rerun."""
+    """Return host and port of a viewer's URL, or the defaults of rerun."""
     parts = urlsplit(url)
     return parts.hostname or LOCAL, parts.port or DEFAULT_PORT
 
 
 def connection_problem(host: str, port: int) -> str:
-    """Return the system's reason why nothing is reached at a port, or an empty string if something is."""
+    """Return the system's reason why a connection to a port fails, or an empty string if it succeeds."""
     try:
         with socket.create_connection((host, port), timeout=_CONNECT_S):
             return ""
@@ -57,7 +57,7 @@ def connection_problem(host: str, port: int) -> str:
 
 
 def serving_problem(port: int) -> str:
-    """Return the system's reason why a port cannot be served at, or an empty string if it can."""
+    """Return the system's reason why a port cannot be bound, or an empty string if it can."""
     try:
         with socket.socket() as probe:
             probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)  # as rerun does
@@ -68,7 +68,7 @@ def serving_problem(port: int) -> str:
 
 
 def speaks_http2(host: str, port: int) -> bool:
-    """Return whether what listens there greets as gRPC's servers do. rerun's viewer is one."""
+    """Return whether a gRPC server, such as rerun's viewer, listens there."""
     with (
         contextlib.suppress(OSError),
         socket.create_connection((host, port), timeout=_CONNECT_S) as connection,
@@ -83,7 +83,7 @@ _START_S: Final = 15.0
 _WINDOW_S: Final = 5.0  # s, after which a viewer that listens and still lives counts as open
 _POLL_S: Final = 0.05
 _DRAWS: Final = "wgpu adapter"  # the viewer logs this once it has a window and a graphics adapter
-_MAX_WORDS: Final = 4  # number of the viewer's lines that are shown
+_MAX_WORDS: Final = 4  # number of the viewer's output lines that are reported
 _COLORS: Final = re.compile(r"\x1b\[[0-9;]*m")
 _NO_SCREEN: Final = re.compile(r"\bDISPLAY\b.* (?:is|are) (?:not )?set")
 _ADVICE_WITHOUT_SCREEN: Final = (
@@ -94,14 +94,14 @@ _LOGGED: Final = re.compile(r"^\S+ +(?:TRACE|DEBUG|INFO|WARN|ERROR) ")
 
 
 class ViewerProcess:
-    """A viewer that was started, or that listened already."""
+    """A viewer that was started, or was already listening."""
 
     def __init__(self, port: int, *, memory: str, on_problem: Callable[[str], object]) -> None:
         """Start a viewer, unless one listens at the port, and wait until it is open.
 
-        It drops the oldest data beyond a limit of its ``memory``, as rerun takes it: `2GB`, `50%`. Afterwards
-        ``problem`` says why there is none, and is empty if there is one. ``on_problem`` is called with what
-        happens to the viewer later.
+        It drops the oldest data beyond the limit ``memory``, in rerun's format: `2GB`, `50%`. If it is not
+        open, ``problem`` contains the reason; otherwise it is empty. ``on_problem`` is called with
+        descriptions of later problems.
         """
         self._port = port
         self._memory = memory
@@ -131,7 +131,7 @@ class ViewerProcess:
                 stdout=output,
                 stderr=subprocess.STDOUT,
                 start_new_session=True,
-                # The line that we wait for has the level info.
+                # The awaited line has the level info.
                 env={**os.environ, "RERUN_APP_ONLY": "true", "RUST_LOG": "info"},
             )
         except OSError as error:
@@ -162,7 +162,7 @@ class ViewerProcess:
 
     def _watch(self, process: subprocess.Popen[bytes], output: IO[bytes]) -> None:
         with output:
-            if process.wait() != 0:  # with 0 the user has closed it
+            if process.wait() != 0:  # 0 means closed by the user
                 self._failed = True
                 self._on_problem(_how_it_ended(process, output))
 
@@ -181,7 +181,7 @@ def _printed(output: IO[bytes]) -> str:
 
 
 def _words(output: IO[bytes]) -> str:
-    """Return the last lines of the viewer, which say why it ended."""
+    """Return the viewer's last output lines, which contain the reason of its end."""
     lines = [line.strip() for line in _printed(output).splitlines() if line.strip()]
     begins = [i for i, line in enumerate(lines) if line.startswith(("Error:", "thread '"))]
     if begins:

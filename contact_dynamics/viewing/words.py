@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 class AnswersInWords:
-    """What was told, in the order in which it came."""
+    """The reported answers, in the order of their arrival."""
 
     def __init__(self, recording: rr.RecordingStream) -> None:
         """Begin without any."""
@@ -22,7 +22,7 @@ class AnswersInWords:
         self._newest: dict[str, str] = {}  # by kind
 
     def tell(self, kind: str, text: str, *, is_error: bool = False) -> None:
-        """Write an answer into both, and its first words into the summary, at the time that was set."""
+        """Write an answer into both lists, and its first words into the summary, at the time that is set."""
         level = rr.TextLogLevel.WARN if is_error else rr.TextLogLevel.INFO
         self._recording.log(ANSWER_LOG, rr.TextLog(f"{kind}: {text}", level=level))
         self._newest[kind] = text
@@ -35,14 +35,14 @@ class AnswersInWords:
 def sentence(
     body_name: str, words: Sequence[str], *, remark: str = "", computation_time: float | None = None
 ) -> str:
-    """Return what an answer about a body says, with a remark, and how long it took, s, if that is known."""
+    """Return an answer about a body in words, with a remark, and its computation time, s, if known."""
     said = [*words, remark] if remark else words
     took = "" if computation_time is None else f" ({_in_ms(computation_time)})"
     return f"{body_name or 'a body'} {'; '.join(said)}{took}"
 
 
 def _in_ms(seconds: float) -> str:
-    """Return a time in ms with two digits or more, and without a power of ten."""
+    """Return a time in ms with at least two digits, without an exponent."""
     ms = seconds * 1e3
     return f"{ms:.0f} ms" if ms >= 10.0 else f"{ms:.2g} ms"
 
