@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""From recorded states to parameters: what a body and its surfaces are, with how well the data say it."""
+"""Estimates the parameters of a body and its surfaces, with their uncertainty, from recorded states."""
 
 from contact_dynamics.calibration.calibrate import calibrate, calibrate_observed
 from contact_dynamics.calibration.free import Free

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""From measured motions to parameters: the library's call, which `contact-dynamics calibrate` makes too."""
+"""Estimates parameters from measured motions; `contact-dynamics calibrate` calls `calibrate` too."""
 
 from __future__ import annotations
 
@@ -61,14 +61,15 @@ def calibrate(
     with_paths: bool = True,
     tell: Callable[[str, int, int], None] | None = None,
 ) -> Calibration:
-    """Return what measured motions of one body say of its parameters and of those of the surfaces.
+    """Return estimates of a body's and the surfaces' parameters from measured motions of the body.
 
     Args:
         motions: Measured states of one body in one world.
         names: How the motions are named in the result; the default is their numbers.
-        free: What may change; the default is `Model.standard`. The rest keeps its configured value.
-        with_paths: Whether the second way, by whole trajectories, is gone too. It takes most of the time.
-        tell: Is told what is done, how much of it, and how much there is.
+        free: The free parameters; the default is `Model.standard`. The others keep their configured values.
+        with_paths: Whether to estimate by whole trajectories as well (the second way), which takes most of
+            the time.
+        tell: Progress callback: called with the current step, the amount done, and the total.
 
     Raises:
         InvalidFieldError: there is no motion, they are of several bodies, or the body never flies.
@@ -96,7 +97,7 @@ def calibrate_observed(
     with_paths: bool = True,
     tell: Callable[[str, int, int], None] | None = None,
 ) -> Calibration:
-    """Return what tosses say whose events have been found. Arguments and errors are those of `calibrate`."""
+    """Return estimates from tosses whose events have been found. Arguments and errors as in `calibrate`."""
     check_that_it_flies(observed)
     free = model.standard if free is None else free
     data = _data(model, observed, free)
@@ -159,7 +160,7 @@ def _first_way(
     observed: Sequence[Observed],
     covariances: FloatArray,
 ) -> tuple[Fitting, Estimation]:
-    """Return the estimate from velocities, repeated where ratios of moments end far from where they began."""
+    """Return the estimate from velocities, repeated if ratios of moments end far from their start."""
     ratios, start = model.configured[4:6], None
     for _ in range(MAX_RATIOS):
         fitting = Fitting(model, data, free)
@@ -191,10 +192,10 @@ def _data(model: Model, observed: Sequence[Observed], free: Sequence[Free]) -> D
 def _estimates(
     fitting: Fitting, first: Estimation, second: Estimation | None, choice: FloatArray
 ) -> tuple[tuple[Estimate, ...], FloatArray, FloatArray | None]:
-    """Return the estimates as they are reported, and the covariances of both ways.
+    """Return the reported estimates, and the covariances of both ways.
 
-    ``choice``, (f,), is by how much another choice of free parameters moves them, in standard units. It
-    counts as one standard deviation.
+    ``choice``, (f,), is the change of the estimates with another choice of free parameters, in standard
+    units. It is added as one standard deviation.
     """
     model, fit = fitting.model, first.fit
     vague = np.abs(fit.undetermined).max(axis=0, initial=0.0) > DIRECTION_SHARE
@@ -220,7 +221,7 @@ def _estimates(
             value_there = shown(float(second.values[number]))
             spread_there = scale[k] * math.sqrt(covariance_there[k, k])
             moved = fit.influences[:, k] - second.fit.influences[:, k]
-            if len(moved) > 1:  # one toss has no scatter that would tell by how much the ways may differ
+            if len(moved) > 1:  # a single toss has no scatter to compare the ways' difference with
                 apart = scale[k] * math.sqrt(float(moved @ moved))
         estimates.append(
             Estimate(
@@ -245,8 +246,8 @@ def _estimates(
 def _covariance(fit: ClusteredFit) -> FloatArray:
     """Return the covariance, (f, f), of few tosses.
 
-    Student's t takes the place of the normal distribution: the 90 % interval by each parameter's degrees of
-    freedom becomes that of the stated deviation.
+    Student's t replaces the normal distribution: each standard deviation is enlarged until its normal 90 %
+    interval is that of Student's t with the parameter's degrees of freedom.
     """
     from scipy.stats import norm, t
 
@@ -256,7 +257,7 @@ def _covariance(fit: ClusteredFit) -> FloatArray:
 
 
 def _undetermined(fitting: Fitting, found: Estimation) -> tuple[str, ...]:
-    """Return the undetermined directions in words, each as what may change together."""
+    """Describe the undetermined directions, each by the parameters that may change together."""
     texts = []
     for direction in found.fit.undetermined:
         largest = float(np.abs(direction).max())
@@ -311,7 +312,7 @@ def _body(model: Model, values: FloatArray) -> Body:
 
 
 def _surfaces(model: Model, values: FloatArray, lasting: Sequence[LastingFriction]) -> tuple[Surface, ...]:
-    """Return the surfaces. Where no slides are seen, the friction that lasts keeps its configured factor."""
+    """Return the surfaces. Without observed slides, the friction of sustained contact keeps its factor."""
     described = model.describe(values)
     slid = {each.surface: each.friction for each in lasting}
     return tuple(
@@ -330,7 +331,7 @@ def _surfaces(model: Model, values: FloatArray, lasting: Sequence[LastingFrictio
 
 
 def _outliers(data: Data, observed: Sequence[Observed], found: Estimation) -> tuple[Outlier, ...]:
-    """Return what was left out, the farthest first."""
+    """Return the outliers, the largest first."""
     from contact_dynamics.numerics.clustered_fit import REJECTED
 
     rows = {

@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The fit of one way of using the strikes, together with what first flights and rests say.
+"""Fits the parameters to the strikes in one of two ways, together with first flights and rests.
 
-Each kind of residual has a spread of its own beside the noise of measurement, since the law of impact, the
-surface and the body are not what the model says to the last digit. It is the spread at which the median of
-the residuals is that of normal ones. It is estimated twice, each time before a fit, so that a poor start does
-no harm.
+Each kind of residual has a spread of its own in addition to the measurement noise, since the impact law, the
+surface and the body deviate from the model. It is the spread at which the residuals have the median of a
+normal distribution. It is estimated twice, each time before a fit, so that a poor start does no harm.
 """
 
 from __future__ import annotations
@@ -45,15 +44,15 @@ FRICTIONS: Final = (1.0, 0.4)  # shares of the configured friction from which th
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Spread(Record):
-    """How far residuals scatter beyond the noise of measurement.
+    """Scatter of the residuals beyond the measurement noise.
 
     Attributes:
         velocity: m/s, of each component of a velocity after a strike: the law's own spread.
         spin: rad/s, of each component of an angular velocity after a strike.
         strike_height: m, of the height of a corner that strikes.
         rest_height: m, of the height of a corner at rest.
-        flight: Factor on the noise of positions, for what first flights say of the mass centre.
-        turn: Factor on the noise of orientations, for what first flights say of the ratios of moments.
+        flight: Factor on the noise of positions, for the mass centre from first flights.
+        turn: Factor on the noise of orientations, for the ratios of moments from first flights.
     """
 
     velocity: float = 0.0
@@ -66,13 +65,13 @@ class Spread(Record):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class Data(Record):
-    """All that is fitted."""
+    """The data of the fit."""
 
     clusters: int  # number of recordings
     strikes: Strikes  # the strikes
     gravity: Gravity  # gravity of each recording
-    center: Straightness  # what first flights say of the mass centre
-    ratios: Straightness | None  # what they say of the ratios of moments, or None where these are not free
+    center: Straightness  # residuals of first flights in the mass centre
+    ratios: Straightness | None  # their residuals in the ratios of moments, or None if these are not free
     resting: Touching  # the corners at rests
 
 
@@ -82,7 +81,7 @@ class Estimation(Record):
 
     fit: ClusteredFit  # the fit, in standard units, of the free parameters
     values: FloatArray  # (p,), all parameters
-    spread: Spread  # the spreads that the residuals were weighed by
+    spread: Spread  # the spreads in the weights of the residuals
     kinds: tuple[str, ...]  # names of the groups of residuals, in the order of the fit's sizes
 
 
@@ -133,9 +132,9 @@ class Fitting:
 
         Args:
             strikes_at: The residuals of the strikes at free parameters, and their names.
-            spread: The spreads, if they are known. If it is None, they are estimated.
-            start: (f,), where to start, in standard units; the default is what is configured.
-            rounds: Number of fits, each from where the one before ended. The last one rejects outliers.
+            spread: The spreads, or None to estimate them.
+            start: (f,), the start, in standard units; the default is the configured values.
+            rounds: Number of fits, each from the result of the previous one. The last one rejects outliers.
         """
         x = self.start() if start is None else start
         kinds: list[str] = []
@@ -164,11 +163,11 @@ class Fitting:
         return Estimation(fit=fit, values=self.values(x), spread=weighed, kinds=tuple(kinds))
 
     def choice(self, found: Estimation, covariances: FloatArray) -> FloatArray:
-        """Return by how much the estimate moves, (f,), with another choice of what explains the heights.
+        """Return the change of the estimate, (f,), with other free parameters that explain the heights.
 
-        A body that is a little smaller, a surface that is a little lower and corners that are a little
-        rounder explain the same heights. If the rounding with the other one of size and surface height fits
-        nearly as well (`ALIKE`), or better, nothing in the data says that this choice is right.
+        A slightly smaller body, a slightly lower surface and slightly rounder corners explain the same
+        heights. If the rounding with the other one of size and surface height fits nearly as well (`ALIKE`),
+        or better, the data do not support this choice.
         """
         moved: FloatArray = np.zeros(len(self.at))
         heights = {Free.ROUNDING, Free.SIZE, Free.SURFACE_HEIGHT} & set(self.free)
@@ -190,9 +189,9 @@ class Fitting:
         return moved
 
     def _starts(self, x: FloatArray) -> list[FloatArray]:
-        """Return where to start: as configured, and with less friction.
+        """Return the starts: the configured values, and less friction.
 
-        Where friction is so large that every corner sticks, the data do not say in which direction it is off.
+        If friction is so large that every corner sticks, the residuals do not depend on it.
         """
         frictions = [self.model.parameters[number].group is Free.FRICTION for number in self.at]
         return [np.where(frictions, share * x, x) for share in (FRICTIONS if any(frictions) else (1.0,))]
@@ -267,7 +266,7 @@ class Fitting:
         return found
 
     def _straight(self, given: Straightness, x: FloatArray, first: int, factor: float) -> Group:
-        """Return the residuals of what is linear in the parameters from number ``first`` on."""
+        """Return the residuals of a `Straightness`, linear in the parameters from number ``first`` on."""
         derivatives = np.zeros((*given.at_zero.shape, len(self.at)))
         for k in range(given.slopes.shape[2]):
             column = np.flatnonzero(self.at == first + k)
@@ -287,10 +286,10 @@ def _factor_of(given: Straightness, x: FloatArray) -> float:
 
 
 def extra_spread(residuals: FloatArray, covariances: FloatArray) -> float:
-    """Return the standard deviation that normal residuals, (n, k), have beside covariances, (n, k, k).
+    """Return the extra standard deviation of normal residuals, (n, k), with covariances, (n, k, k).
 
-    With it, their median distance is that of chi squared with k degrees of freedom. It is 0 where the
-    covariances are enough.
+    With it, their median squared distance is that of chi squared with k degrees of freedom. It is 0 if the
+    covariances suffice.
     """
     if len(residuals) == 0:
         return 0.0

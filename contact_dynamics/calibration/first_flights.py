@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What first flights tell: gravity for each recording, the mass centre, and the ratios of the moments.
+"""Estimates gravity for each recording, the mass centre and the ratios of the moments from first flights.
 
 With c = p + R d the path of the mass centre, d its offset in body axes and R as measured, c is a parabola.
 This is linear in its start, its velocity, gravity g and d. All but d are projected out, recording by
-recording, so that three residuals are left that hold d alone, and g follows for any d. First flights alone
-are used: what follows a strike still shakes, and pulls gravity and mass centre off.
+recording, which leaves three residuals that depend on d alone, and g follows for any d. Only first flights
+are used: vibrations after a strike would bias gravity and mass centre.
 
 The rotation is fitted by `fit_free_motion` for inertias near the present one. The change of its residuals is
 projected the same way.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Which parameters a calibration may change. This file imports nothing, since help needs it."""
+"""Names the parameters that a calibration may change. It imports nothing, since `--help` needs it."""
 
 from __future__ import annotations
 
@@ -49,9 +49,9 @@ STANDARD: Final = (
 frame of the tracking is seldom known to a millimetre: if they are not free, both end up in the inertia and
 the centre of mass. The rounding of a shape without faces is its radius, and keeps its configured value."""
 
-BY_STRIKES: Final = frozenset({Free.FRICTION, Free.RESTITUTION, Free.INERTIA})  # what strikes alone tell
+BY_STRIKES: Final = frozenset({Free.FRICTION, Free.RESTITUTION, Free.INERTIA})  # observable from strikes only
 
-GEOMETRY: Final = (  # what the heights of corners at strikes and rests tell
+GEOMETRY: Final = (  # observable from the heights of corners at strikes and rests
     Free.ROUNDING,
     Free.SIZE,
     Free.SHAPE_POSITION,

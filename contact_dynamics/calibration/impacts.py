@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the law of impact says of many strikes at once, for one or several descriptions of body and surfaces.
+"""Predicts many strikes at once by the impact law, for one or several descriptions of body and surfaces.
 
-One batch answers all of them. A derivative takes a dozen variations of each strike, and a large batch costs
-a tenth of small ones for each.
+They are computed in one batch: a derivative takes a dozen variations of each strike, and a strike in a large
+batch takes a tenth of its time in a small one.
 
 The first way of calibration compares the velocities after each strike, as fitted and as predicted (`jumps`).
-Its residuals are whitened by the covariance of both sides' velocities, of which that before is carried
+Its residuals are whitened by the covariance of both sides' velocities, that before the strike propagated
 through the impact, and by the law's own spread.
 """
 
@@ -39,10 +39,10 @@ def velocities_after(
 ) -> FloatArray:
     """Return the velocities after k variations of n strikes, (k, n, 6), m/s and rad/s.
 
-    They are those of the true mass centre. The law is Poisson's. A corner that moves away from its surface is
-    left as it is. ``described``, and the attitudes, (k, n, 4), and velocities, (k, n, 3), before the strikes,
-    may have one row for all variations. ``corners`` and ``surfaces``, (n,), are the numbers of what strikes
-    and is struck.
+    They are those of the true mass centre, by Poisson's law. A corner that moves away from its surface has no
+    impact. ``described``, and the attitudes, (k, n, 4), and velocities, (k, n, 3), before the strikes, may
+    have one row for all variations. ``corners`` and ``surfaces``, (n,), are the numbers of what strikes and
+    is struck.
     """
     count = len(corners)
     variations = max(len(described), len(q_WB), len(velocities_W), len(spins_W))

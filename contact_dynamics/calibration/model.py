@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The parameters as one vector, and the body and surfaces that such a vector describes.
+"""Maps a vector of parameters to a body and surfaces.
 
 All lengths are in body axes B at the *configured* centre of mass, so that poses need no conversion while the
 centre moves. Moments of inertia are about the true centre of mass. They change as E I E, with E diagonal, so
@@ -39,13 +39,13 @@ PLAUSIBLE_SHARE: Final = 0.2
 PLAUSIBLE_COEFFICIENT: Final = 0.5  # the standard unit of friction and restitution
 PLAUSIBLE_LOGARITHM: Final = 0.3  # the standard unit of factors: a third more or less
 PLAUSIBLE_ANGLE: Final = 0.2  # rad. The standard unit of turns and tilts.
-LARGEST_RATIO: Final = 1.0  # logarithm. No ratio of moments is looked for farther off.
+LARGEST_RATIO: Final = 1.0  # logarithm, largest change of a ratio of moments
 
 RATIO_STEP: Final = 0.05
 """Logarithm. Step of the numerical derivative by a ratio of moments, over which residuals are nearly
 straight. An estimate that is farther away is repeated there."""
 
-RATIO_GROWTH: Final = 0.02  # logarithm by which the range of the ratios grows at a time
+RATIO_GROWTH: Final = 0.02  # logarithm, step by which the range of the ratios grows
 
 ROUND: Final = 0.5
 """Share of the ball that fits into the shape. Corners that are rounder belong to a body that is described as
@@ -59,8 +59,8 @@ class Parameter(Record):
     """One number that may be free."""
 
     name: str  # as reports have it, such as ``friction.floor``
-    group: Free  # the group with which it is left free
-    configured: float  # its value before, in ``unit``; factors are logarithms
+    group: Free  # its group in `Free`
+    configured: float  # its configured value, in ``unit``; factors are logarithms
     step: float  # the standard unit: the size of what is plausible
     lower: float = -math.inf  # least value
     upper: float = math.inf  # largest value
@@ -70,7 +70,7 @@ class Parameter(Record):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class Described(Record):
-    """What a vector of parameters says of body and surfaces. Row s belongs to surface s."""
+    """Body and surfaces described by a vector of parameters. Row s belongs to surface s."""
 
     center: FloatArray  # (3,), m, the true centre of mass, in B
     I_B: FloatArray  # (3, 3), kg m^2, about it
@@ -162,7 +162,7 @@ class Model:
         return moves
 
     def _largest_rounding(self) -> float:
-        """Return the largest radius that is looked for, m: `ROUND` of that of the ball that fits in."""
+        """Return the upper limit of the radius, m: `ROUND` times that of the inscribed ball."""
         if not self._planes.size:
             return 0.9 * self.half_size
         inside = self.body.shape.rounding - float(
@@ -177,7 +177,7 @@ class Model:
         return np.clip(near, [[each.lower] for each in both], [[each.upper] for each in both])
 
     def describe(self, values: FloatArray) -> Described:
-        """Return what a vector of all parameters, (p,), says."""
+        """Return body and surfaces for a vector of all parameters, (p,)."""
         ratios = np.array([0.0, *values[4:6]])
         E = np.diag(np.exp(0.5 * (values[3] + ratios)))
         rounding = float(values[6])
@@ -223,7 +223,7 @@ def _factor(name: str, group: Free, *, lower: float = -math.inf, upper: float = 
 
 
 def _bounds_of_ratios(I_B: FloatArray) -> FloatArray:
-    """Return the least and largest logarithms of both ratios of moments, (2, 2), that bodies have.
+    """Return the smallest and largest physical logarithms of both ratios of moments, (2, 2).
 
     No moment may exceed the sum of the other two. Each side of the range grows as far as all its corners are
     moments of a body, so that a body that is nearly flat can become thicker, but not flatter.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a calibration uses of one toss: its first flight, its strikes of single corners, and its rest.
+"""Finds the events of a toss that a calibration uses: its first flight, single-corner strikes, and rest.
 
 Flights are found with the configured body and gravity, which need not be exact (`measured.flights`). A strike
 lies between two flights with at most one frame between. It counts if one corner was lower than all others by
@@ -37,12 +37,12 @@ NEAR: Final = 1.0
 """Largest distance of a striking corner from a surface, in half sizes. Beyond it, something else was
 struck."""
 
-FEWEST_IN_FIRST: Final = 8  # frames. A shorter first flight says next to nothing of gravity and mass centre.
+FEWEST_IN_FIRST: Final = 8  # frames. A shorter first flight hardly constrains gravity and mass centre.
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class Observed(Record):
-    """What was found in one toss, which is a recording or a part of one."""
+    """The events of one toss, which is a recording or a part of one."""
 
     name: str  # the recording's name, with the number of the toss where there are several
     motion: MeasuredMotion  # the measured states
@@ -55,7 +55,7 @@ class Observed(Record):
 
 
 def observe(name: str, motion: MeasuredMotion) -> list[Observed]:
-    """Return what is found in one recording, toss by toss. Of several tosses, the names have numbers."""
+    """Return the events of one recording, toss by toss. The names of several tosses have numbers."""
     tosses = tosses_in(motion)
     return [
         _observed(name if len(tosses) == 1 else f"{name}, toss {number}", part, flights)
@@ -102,7 +102,7 @@ LIFTED: Final = 0.1
 """Share of the body's largest half size by which all corners are above the surfaces when it is lifted. The
 corners of the published cubes, as configured, go 1 to 6 % into the board when they touch it."""
 
-LONGEST_REST: Final = 4  # spans of rest that are kept at the end of a toss. More would say little more.
+LONGEST_REST: Final = 4  # spans of rest kept at the end of a toss; more would add little information
 
 
 def tosses_in(motion: MeasuredMotion) -> list[tuple[MeasuredMotion, tuple[slice, ...]]]:
@@ -141,7 +141,7 @@ def _thrown_again(motion: MeasuredMotion, last: slice, flight: slice) -> bool:
 
 
 def _rests_by(motion: MeasuredMotion, begin: int, end: int) -> int:
-    """Return the frame up to which a toss goes that may come to rest before it is picked up."""
+    """Return the end frame of a toss that may come to rest before it is picked up."""
     count = LONGEST_REST * max(FEWEST_FRAMES, round(REST_SPAN * motion.rate))
     for stop in np.arange(begin + count, end + 1, max(1, count // 4)).tolist():
         if find_rest(motion.part(stop - count, stop)) is not None:

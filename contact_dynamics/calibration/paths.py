@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The second way: whole trajectories through strikes, the flights before and after fitted in one.
+"""The second way: fits whole trajectories through strikes, with the flights before and after in one fit.
 
-Each strike has 19 unknowns of its own: time, place, attitude and both velocities just before it, and by how
-much the velocities after it differ from the law of impact. The latter are held by the law's spread. Residuals
+Each strike has 19 unknowns of its own: time, place, attitude and both velocities just before it, and the
+deviations of the velocities after it from the impact law, which are weighted by the law's spread. Residuals
 are the measured poses on both sides. Attitudes follow torque-free motion in closed form. A strike's unknowns
 are solved for at each set of parameters, and then projected out (Golub and Pereyra, SIAM Journal on Numerical
 Analysis 1973), so that what is left depends on the parameters alone.
 
-Velocities are never fitted to one side here. So both ways fail differently where a flight is not free, or
-where poses do not meet at the strike.
+Velocities are never fitted to one side alone here, so the two ways fail differently if a flight is not free,
+or if the poses of both sides do not agree at the strike.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ OWN_ROUNDS: Final = 2
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Windows:
-    """The poses on one side of n strikes, padded to m each: where ``used`` is false, a row says nothing."""
+    """The poses on one side of n strikes, padded to m each; rows with ``used`` 0 are ignored."""
 
     since: FloatArray  # (n, m), s after the strike as found
     p_W: FloatArray  # (n, m, 3)
@@ -63,7 +63,7 @@ class _Windows:
 
 
 class Paths:
-    """The trajectories through all strikes, with their own unknowns as they were found last."""
+    """The trajectories through all strikes, with the last solution for their own unknowns."""
 
     def __init__(self, fitting: Fitting, observed: Sequence[Observed]) -> None:
         """Start from the flights as fitted to each side."""
@@ -102,8 +102,8 @@ class Paths:
         present = self._own[None]
         slopes = self._fitting.derivatives(x, lambda values: self._residuals(values, present, spread))[1]
         together = np.concatenate([own[:, :, :OWN], slopes, base[:, :, None]], axis=2)
-        # What both flights can follow, with nothing that holds them together. Another time of the strike is
-        # then another state on each side, so that its column is left out.
+        # Motions of both flights without the coupling by the impact. Another time of the strike then only
+        # changes the states of both sides, so its column is left out.
         span = np.linalg.qr(own[:, LAW:, 1:])[0]
         near = np.concatenate([together[:, :LAW], span.transpose(0, 2, 1) @ together[:, LAW:]], axis=1)
         small = triangle_of(_without(near[:, :, OWN:], near[:, :, :OWN]))
@@ -186,7 +186,7 @@ def _distinct(*arrays: FloatArray) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
 
 
 def _without(columns: FloatArray, taken: FloatArray) -> FloatArray:
-    """Return columns, (n, k, c), less what those of ``taken``, (n, k, j), can make."""
+    """Return columns, (n, k, c), without their projection onto the columns of ``taken``, (n, k, j)."""
     basis = np.linalg.qr(taken)[0]
     left: FloatArray = columns - basis @ (basis.transpose(0, 2, 1) @ columns)
     return left

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The strikes of a calibration side by side in rerun, those that the law explains worst first.
+"""Draws the strikes of a calibration side by side in rerun, those with the largest residuals first.
 
 Blue grey is the body at the strike, with its measured path on both sides. Two arrows begin at its mass
 centre: the velocity afterwards, blue as measured and yellow as the calibrated body and surface predict it.
@@ -41,14 +41,14 @@ _WIDTH: Final = -1.8  # negative: points of the screen
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class DrawnStrike(Record):
-    """A strike as it is drawn."""
+    """A strike and its drawn data."""
 
-    toss: Observed  # what was found in its toss
+    toss: Observed  # the events of its toss
     strike: Strike  # the strike
     measured: FloatArray  # (6,), m/s and rad/s, of the calibrated mass centre after it
     predicted: FloatArray  # (6,), the same as predicted
-    # (2,), how large the residuals of velocity and spin are, in standard deviations of noise and the law's
-    # own spread together.
+    # (2,), sizes of the residuals of velocity and spin, in standard deviations of noise and the law's spread
+    # together.
     deviations: FloatArray
     rejected: bool  # whether it was left out
 
@@ -110,7 +110,7 @@ def write_picture(path: Path, found: Calibration) -> int:
 
 
 def table_of(rows: list[DrawnStrike]) -> str:
-    """Return a row for each strike in Markdown: how far the velocities afterwards are off."""
+    """Return a Markdown table with the errors of the velocities after each strike."""
     lines = [
         "| | toss | at | velocity off | sigma | spin off | sigma | |",
         "| --- | --- | --- | --- | --- | --- | --- | --- |",

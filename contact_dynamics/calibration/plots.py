@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A calibration as pictures on paper: residuals against noise, and configured values against estimates."""
+"""Plots a calibration: residuals against noise, and configured values against estimates."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def write_plots(folder: Path, found: Calibration) -> list[Path]:
 
 
 def _estimates(path: Path, figure_type: type, found: Calibration) -> Path:
-    """Draw by how many standard deviations configured values and the second way are off."""
+    """Draw the deviations of configured values and of the second way, in standard deviations."""
     known = [each for each in found.estimates if each.determined and each.std > 0.0]
     figure = figure_type(figsize=(7.5, 0.4 * len(known) + 1.6), layout="constrained")
     axes = figure.add_subplot()

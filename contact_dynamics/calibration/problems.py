@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is wrong with the data, or doubtful in the result, in plain sentences.
+"""Describes faults of the data, and doubtful results, in plain sentences.
 
-A cube whose markers were named anew looks the same: its corners are where they were, and each of its flights
-is as free. Only its mass centre is elsewhere in the new axes. So the flights and strikes of each recording
-are compared with what the estimate says for the body as it is, and for the body turned onto itself
-(`relabelled`).
+A cube whose markers were relabelled looks the same: its corners and its free flights are unchanged, and only
+its mass centre is elsewhere in the new axes. The flights and strikes of each recording are therefore compared
+with the predictions for the body as it is, and for the body rotated onto itself (`relabelled`).
 """
 
 from __future__ import annotations
@@ -45,9 +44,9 @@ UNEVEN: Final = 0.05
 """Half sizes. Corners that touch at heights that scatter by more are not where the shape says."""
 
 NOISIER: Final = 5.0  # factor on the stated noise. It is 1.7 for the published tosses.
-APART: Final = 0.05  # share of the tosses. If more of them have outliers, they are no accidents.
-MAX_NAMED: Final = 10  # tosses that a sentence names
-FEWEST_COMPARED: Final = 3  # strikes from which medians say something
+APART: Final = 0.05  # share of the tosses with outliers above which these are systematic
+MAX_NAMED: Final = 10  # maximum number of tosses named in a sentence
+FEWEST_COMPARED: Final = 3  # minimum number of strikes for medians
 
 UNEXPLAINED: Final = 0.3
 """Share of a strike's change of spin. If more of it is unexplained in the median, other corners struck."""
@@ -62,14 +61,14 @@ WRONG_TURN: Final = 0.17
 WRONG_SIZE: Final = 0.15
 """Share. Gravity that is farther from the configured size comes from wrong units or a wrong clock."""
 
-PLACES: Final = 10  # least number of places at which heights are compared, to tell whether a surface is flat
+PLACES: Final = 10  # minimum number of places at which heights are compared, to check flatness
 
 BENT: Final = 15.0
 """F ratio of three bending terms. Of 15 normal heights on a plane, one set in several thousand exceeds it."""
 
 
 def check_that_it_flies(observed: Sequence[Observed]) -> None:
-    """Refuse recordings in which the body never flies.
+    """Reject recordings in which the body never flies.
 
     Raises:
         InvalidFieldError: there is no flight in any of them, or no recording at all.
@@ -96,7 +95,7 @@ def problems_of(
     """Return what prevents an answer.
 
     ``left`` is the predicted velocities after the strikes less the measured ones, (n, 6), m/s and rad/s.
-    ``by_strikes`` says whether anything is free that strikes alone determine.
+    ``by_strikes`` means that some free parameter is determined by strikes alone.
     """
     found = []
     strikes, several = len(data.strikes), sum(each.several for each in observed)
@@ -254,7 +253,7 @@ def bent_surfaces(data: Data, described: Described, names: Sequence[str], half_s
 
 
 def _bent(places: FloatArray, normal: FloatArray, half_size: float) -> str:
-    """Return how heights bend over places, (n, 4) with the height last; empty where a plane will do."""
+    """Describe how heights bend over places, (n, 4) with the height last; empty if a plane suffices."""
     if len(places) < PLACES:
         return ""
     across = np.linalg.svd(normal[None])[2][1:]
@@ -276,8 +275,8 @@ def _bent(places: FloatArray, normal: FloatArray, half_size: float) -> str:
 def disagreement_limit(count: int, clusters: int) -> float:
     """Return the standard deviations beyond which the ways disagree in one of ``count`` parameters.
 
-    One parameter of six is two standard deviations off in a quarter of all calibrations, though nothing is
-    wrong. So the limit grows with their number (Sidak), and it grows where few tosses tell the deviation.
+    In a quarter of all faultless calibrations, one parameter of six is off by two standard deviations. The
+    limit therefore grows with their number (Sidak), and with the uncertainty of deviations from few tosses.
     """
     from scipy.stats import t
 
@@ -286,7 +285,7 @@ def disagreement_limit(count: int, clusters: int) -> float:
 
 
 def warnings_of(estimates: Sequence[Estimate], *, clusters: int, by_cluster: bool, free: int) -> list[str]:
-    """Return what is doubtful in the estimates."""
+    """Describe doubtful estimates."""
     found = []
     for each in estimates:
         if each.contradiction > CONTRADICTED:

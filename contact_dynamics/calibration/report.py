@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A calibration for the terminal, as plain data for JSON, and as the server's parameters in YAML."""
+"""Formats a calibration for the terminal, as plain data for JSON, and as the server's parameters in YAML."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ if TYPE_CHECKING:
 
     from contact_dynamics.calibration.result import Calibration, Estimate
 
-CORRELATED: Final = 0.7  # correlations that are told
-MAX_OUTLIERS: Final = 10  # outliers that are listed on the terminal. The JSON has all.
+CORRELATED: Final = 0.7  # correlations above this size are reported
+MAX_OUTLIERS: Final = 10  # number of outliers listed on the terminal; the JSON contains all
 
 
 def report(found: Calibration) -> str:
-    """Return what a calibration found, in lines for the terminal."""
+    """Return a calibration's results as lines for the terminal."""
     return "\n".join(
         [
             *_used(found),
@@ -144,7 +144,7 @@ def _doubts(found: Calibration) -> Iterator[str]:
 
 
 def content_of(found: Calibration) -> dict[str, Any]:
-    """Return everything but the motions as plain data that JSON takes. What is not known is ``nan``."""
+    """Return everything but the motions as plain data for JSON. Unknown values are ``nan``."""
     return {
         "body": found.body.to_dict(),
         "surfaces": [surface.to_dict() for surface in found.surfaces],
@@ -176,7 +176,7 @@ def content_of(found: Calibration) -> dict[str, Any]:
 
 
 def server_parameters(found: Calibration) -> str:
-    """Return a file of parameters that the server takes as it is. Topics are left to whoever adds them."""
+    """Return a parameter file for the server, to which the user adds the topics."""
     body = found.body
     name = body.name
     I_B = body.mass_properties.I_B

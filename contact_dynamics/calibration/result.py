@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a calibration found: estimates with covariance, what they rest on, and what is doubtful."""
+"""The result of a calibration: estimates with covariance, their data, and warnings."""
 
 from __future__ import annotations
 
@@ -39,14 +39,14 @@ class Estimate(Record):
         std: Its standard deviation, by the scatter between tosses and by the choice between free size and
             free surface height where they explain the data alike; NaN where the data say too little, and at
             a bound.
-        by_paths: The estimate from whole trajectories through strikes; NaN if that was not asked for.
+        by_paths: The estimate from whole trajectories through strikes; NaN if that was not requested.
         by_paths_std: Its standard deviation.
         difference_std: Standard deviation of the difference of both estimates, which come from the same data;
             NaN for a single toss.
-        determined: Whether the data say it, alone and not only together with others. If not, the value is
-            what was configured, or one of many that fit alike.
-        at_bound: Whether it lies at the end of what is possible, such as friction 0. It is then no estimate,
-            unless it was configured so.
+        determined: Whether the data determine it alone, not only in combination with others. If not, the
+            value is the configured one, or one of many that fit equally well.
+        at_bound: Whether it lies at a bound, such as friction 0. It is then no estimate, unless it was
+            configured so.
     """
 
     name: str
@@ -62,14 +62,14 @@ class Estimate(Record):
 
     @property
     def contradiction(self) -> float:
-        """Return by how many standard deviations the configured value is off; 0 where nothing is known."""
+        """Return the deviation of the configured value, in standard deviations; 0 if unknown."""
         if not self.determined or self.at_bound or not self.std > 0.0:
             return 0.0
         return abs(self.value - self.configured) / self.std
 
     @property
     def disagreement(self) -> float:
-        """Return by how many standard deviations both ways differ; 0 where that is not known."""
+        """Return the difference of both ways, in standard deviations; 0 if unknown."""
         if math.isnan(self.by_paths) or not self.difference_std > 0.0:
             return 0.0
         return abs(self.value - self.by_paths) / self.difference_std
@@ -77,12 +77,12 @@ class Estimate(Record):
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Outlier(Record):
-    """An observation that was left out.
+    """An observation that was rejected.
 
     Attributes:
         recording: Name of the toss.
         kind: What was observed, such as "velocities after impacts".
-        time: s, when it happened, on the recording's clock; NaN for what has no one time.
+        time: s, on the recording's clock; NaN for observations without a single time.
         size: How large its residuals are, in standard deviations.
     """
 
@@ -104,7 +104,7 @@ class MeasuredGravity(Record):
         size_std: m/s^2, its standard deviation; NaN for a single toss.
         tilt: rad, median angle between a toss's gravity and the mean.
         expected_tilt: rad, the same as the noise of positions alone would make it.
-        count: Number of tosses whose first flight tells gravity.
+        count: Number of tosses whose first flight determines gravity.
         turning: m/s^2, by how much it differs from toss to toss without the noise of positions: the standard
             deviation of each component across the mean. Gravity does so where recordings are tilted.
         changing: m/s^2, the same along the mean.
@@ -133,10 +133,10 @@ class MeasuredGravity(Record):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class Calibration(Record):
-    """What was found.
+    """The result of a calibration.
 
     Attributes:
-        body: The body as calibrated. Its mass is what was configured: no motion tells it.
+        body: The body as calibrated. Its mass is the configured one, since motion does not determine it.
         surfaces: The surfaces as calibrated.
         gravity_W: (3,), m/s^2, as calibrated, or as configured where it is not free.
         estimates: The free parameters.
@@ -146,14 +146,14 @@ class Calibration(Record):
         undetermined: Directions in parameter space that the data do not determine, in words.
         gravity: Gravity as measured, or None without first flights.
         spread: How far residuals scatter beyond the noise of measurement.
-        lasting_frictions: The friction where contact lasts, of each surface on which enough slides are seen.
+        lasting_frictions: The friction of sustained contact, for each surface with enough observed slides.
         residuals: (n, 6), m/s and rad/s, predicted less measured velocities after each strike.
         residual_stds: (n, 6), the standard deviations that they should have by the noise of measurement.
         strike_recordings: (n,), number of each strike's toss.
         observed: The tosses and what was found in them.
         outliers: What was left out.
-        warnings: What is doubtful, in sentences.
-        problems: What prevents an answer, in sentences.
+        warnings: Doubtful results, in sentences.
+        problems: Problems that prevent a result, in sentences.
         clusters: Number of tosses that the estimates rest on.
         by_cluster: Whether errors are those by the scatter between tosses.
     """

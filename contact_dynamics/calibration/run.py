@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`contact-dynamics calibrate`: recordings are read and calibrated, and the result is printed and written."""
+"""The command `contact-dynamics calibrate`, which reads recordings, and prints and writes the result."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from contact_dynamics.evaluation.sources import Source
     from contact_dynamics.measured.motion import MeasuredMotion
 
-SOMETHING_OPEN: Final = 1  # exit code: the data leave something open, or a recording could not be read
+SOMETHING_OPEN: Final = 1  # exit code if the result is incomplete, or a recording could not be read
 
 
 def main(arguments: list[str]) -> int:
@@ -56,7 +56,7 @@ def _calibrate(given: argparse.Namespace) -> int:
 def _motions(
     given: argparse.Namespace,
 ) -> tuple[list[MeasuredMotion], list[str], list[tuple[str, str]]]:
-    """Return the motions of one body, the names of their recordings, and what could not be read."""
+    """Return the motions of one body, the names of their recordings, and a list of unreadable ones."""
     sources, refused = find_sources(given.recordings)
     _check_config(given.config, sources)
     motions: list[MeasuredMotion] = []
@@ -83,7 +83,7 @@ def _motions(
 
 
 def _check_config(config: Path | None, sources: list[Source]) -> None:
-    """Refuse a file that is not there, and tell that tosses have their own body and surface all the same."""
+    """Reject a missing file, and report that tosses have their own body and surface anyway."""
     if config is None:
         return
     if not config.is_file():

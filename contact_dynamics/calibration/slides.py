@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Friction where contact lasts: how fast bodies lose speed that slide on a face before they rest.
+"""Estimates the friction of sustained contact from bodies that slide on a face before they rest.
 
-A body that slides flush on a surface without turning is slowed by mu times what presses it down, whatever
-its mass and its face. So the path of its mass centre is a parabola, whose curvature tells mu. Strikes need
-not have the same friction: a corner that strikes touches for a millisecond, and with another pressure.
+A body that slides flush on a surface without turning is decelerated by mu times the normal force per mass,
+whatever its mass and its face. The path of its mass centre is therefore a parabola, whose curvature
+determines mu. Strikes need not have the same friction: a striking corner touches for a millisecond, and with
+another pressure.
 """
 
 from __future__ import annotations
@@ -27,8 +28,8 @@ if TYPE_CHECKING:
 FLUSH: Final = 0.03
 """Share of the body's half size within which three corners are on the surface, so that the body is flush."""
 
-FEWEST_SLIDING: Final = 8  # frames. A shorter slide says next to nothing of its deceleration.
-FEWEST_SLIDES: Final = 5  # slides on a surface, below which their scatter says too little
+FEWEST_SLIDING: Final = 8  # frames. The deceleration of a shorter slide is too uncertain.
+FEWEST_SLIDES: Final = 5  # minimum number of slides on a surface to estimate their scatter
 
 MAX_TURNING: Final = 0.3
 """How far corners of the face may turn, relative to the length of the slide. Friction of a body that turns is
@@ -43,14 +44,14 @@ _MEDIAN: Final = 1.2533  # the standard deviation of a median, relative to that 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class LastingFriction(Record):
-    """Friction of one surface where contact lasts.
+    """Friction of sustained contact with one surface.
 
     Attributes:
         surface: Its name.
         friction: Coulomb's mu, the median of all slides.
         std: Its standard deviation, by the scatter between slides.
         scatter: Standard deviation from slide to slide, without the noise of measurement.
-        slides: How many slides tell it.
+        slides: Number of slides.
     """
 
     surface: str
@@ -71,7 +72,7 @@ class _Slide(NamedTuple):
 def lasting_frictions(
     observed: Sequence[Observed], described: Described, gravity_W: FloatArray, names: Sequence[str]
 ) -> tuple[LastingFriction, ...]:
-    """Return the friction where contact lasts, of each surface on which enough slides are seen.
+    """Return the friction of sustained contact, for each surface with enough observed slides.
 
     The body and the surfaces, whose names follow, are as calibrated, as is gravity, (3,), m/s^2.
     """
@@ -98,7 +99,7 @@ def lasting_frictions(
 
 
 def _slide_of(each: Observed, described: Described, gravity_W: FloatArray) -> _Slide | None:
-    """Return the friction of the slide that ends at rest, or None if there is none that tells it."""
+    """Return the friction of the slide that ends at rest, or None if no slide determines it."""
     rest = each.rest
     if rest is None or len(described.points) == 0:
         return None

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What touches in many recordings as arrays: corners at rest, and strikes with the velocities on both sides.
+"""Collects contacts of many recordings as arrays: corners at rest, strikes with both sides' velocities.
 
 The flight on each side of a strike is fitted over its last or first part. The velocity of the mass centre is
 linear in the centre's offset and in gravity, so its slopes are kept. The angular velocity depends on the
@@ -37,7 +37,7 @@ SAME_HEIGHT: Final = 0.15
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class Touching(Record):
-    """Corners that touch at n moments: those at rest, and those that strike."""
+    """Corners in contact at n times, at rest or at strikes."""
 
     recordings: IntArray  # (n,), numbers of the recordings
     surfaces: IntArray  # (n,), of the surfaces
@@ -162,7 +162,7 @@ def _side(rows: Sequence[tuple[Any, ...]]) -> Side:
 
 
 def _with_ratio(motion: MeasuredMotion, ratio: int, logarithm: float) -> MeasuredMotion:
-    """Return the motion of a body one of whose ratios of moments is another."""
+    """Return the motion of a body with one ratio of moments changed."""
     E = np.diag(np.exp(0.5 * logarithm * np.eye(3)[ratio + 1]))
     properties = motion.body.mass_properties
     changed = MassProperties(mass=properties.mass, I_B=E @ properties.I_B @ E)

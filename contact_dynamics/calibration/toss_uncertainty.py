@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a calibration leaves uncertain about tosses, as samples of them take it."""
+"""The uncertainty of calibrated parameters, in the form that sampled tosses take."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ if TYPE_CHECKING:
 
 
 def toss_uncertainty(found: Calibration) -> TossUncertainty:
-    """Return the covariance of what a toss depends on, and the spreads, of calibrated parameters.
+    """Return the covariance of the parameters of a toss, and the spreads, from a calibration.
 
-    What was not free, or not determined, counts as exact. The friction where contact lasts has the standard
-    deviation from slide to slide, and is exact on surfaces on which no slides are seen. Gravity, where it is
-    free, is as uncertain as it differs from toss to toss.
+    Parameters that were not free, or not determined, count as exact. The friction of sustained contact has
+    the standard deviation from slide to slide, and is exact on surfaces without observed slides. Gravity, if
+    free, has the scatter from toss to toss.
     """
     names = [
         *(f"friction.{surface.name}" for surface in found.surfaces),
@@ -54,7 +54,7 @@ def toss_uncertainty(found: Calibration) -> TossUncertainty:
 
 
 def _lasting_stds(found: Calibration) -> list[float]:
-    """Return standard deviations of the friction where contact lasts, relative to that of strikes."""
+    """Return standard deviations of the friction of sustained contact, relative to that of strikes."""
     stds = [0.0] * len(found.surfaces)
     seen = {each.surface: each for each in found.lasting_frictions}
     for k, surface in enumerate(found.surfaces):
