@@ -42,8 +42,8 @@ UNKNOWN_SCATTER: Final = 2.0
 """Factor on the standard deviations along both coefficients before that. On the published cube tosses it is
 1.7 along restitution and 2.1 along friction."""
 
-_MEDIAN_CHANGES: Final = {True: 1.208, False: 0.9539}
-"""Median absolute difference of two variables: Student's t with `FREEDOM`, and standard normal."""
+_MEDIAN_CHANGES: Final = {True: 0.8542, False: 0.6745}
+"""Median of |x - y| / sqrt(2) for two variables: Student's t with `FREEDOM`, and standard normal."""
 
 LARGEST_RATIO: Final = 2.0
 """Upper limit of one impact's log-likelihood ratio, so that a detection needs at least three impacts. A
@@ -85,7 +85,7 @@ class SurfaceChanges:
     def __init__(self) -> None:
         """Start without impacts."""
         self._impacts: list[ImpactEvidence] = []
-        self._deviations: list[FloatArray] = []
+        self._alone: list[FloatArray] = []
         self._sums: list[FloatArray] = []  # limited ratios, for detection
         self._whole: list[FloatArray] = []  # unlimited ratios, which select the value
         self._lengths: list[FloatArray] = []
@@ -95,7 +95,7 @@ class SurfaceChanges:
     def add(self, impact: ImpactEvidence) -> SurfaceReport:
         """Add an impact, and return the estimates and detected changes."""
         scatter = self._scatter(is_heavy=math.isfinite(impact.freedom))
-        self._deviations = [*self._deviations[1 - REMEMBERED :], impact.deviations()]
+        self._alone = [*self._alone[1 - REMEMBERED :], impact.each_alone()]
         impact = impact.widened(scatter)
         if self._impacts and not np.array_equal(impact.configured, self._impacts[-1].configured):
             self._sums, self._changed = [], None  # the reference values have changed
@@ -133,17 +133,17 @@ class SurfaceChanges:
         )
 
     def _scatter(self, *, is_heavy: bool) -> FloatArray:
-        """Return the factor, (2,), by which earlier deviations scatter more than expected.
+        """Return the factor, (2,), by which coefficients of single impacts scatter more than expected.
 
-        It is estimated from differences of successive deviations, because a change of a coefficient affects
-        only one of them.
+        It is estimated from differences of successive impacts, because a change of a coefficient affects only
+        one of them, and a wrong configured one affects none.
         """
         factors = np.full(2, UNKNOWN_SCATTER)
-        rows = np.array(self._deviations).reshape(-1, 2)
-        for k in range(2):
-            known = rows[~np.isnan(rows[:, k]), k]
-            if len(known) >= LEARNED:
-                factors[k] = max(1.0, float(np.median(np.abs(np.diff(known)))) / _MEDIAN_CHANGES[is_heavy])
+        for k, rows in enumerate(np.array(self._alone).reshape(-1, 2, 2).transpose(2, 0, 1)):
+            values, stds = rows[~np.isnan(rows[:, 0])].T
+            if len(values) >= LEARNED:
+                ratios = np.abs(np.diff(values)) / np.hypot(stds[1:], stds[:-1])
+                factors[k] = max(1.0, float(np.median(ratios)) / _MEDIAN_CHANGES[is_heavy])
         return factors
 
     def _add_ratios(self, impact: ImpactEvidence) -> None:

@@ -151,14 +151,16 @@ class ImpactEvidence(Record):
             ]
         )
 
-    def deviations(self) -> FloatArray:
-        """Return by how many standard deviations the impact is off along each coefficient, (2,), or NaN."""
+    def each_alone(self) -> FloatArray:
+        """Return what each coefficient alone would be, and its standard deviation, (2, 2), or NaN.
+
+        The first row is the difference from the configured coefficients, to first order.
+        """
         slopes = self.slopes(self.configured)
-        known = is_known(slopes.T @ self.inverse @ slopes)
+        information = np.diag(slopes.T @ self.inverse @ slopes).copy()
+        information[~is_known(np.diag(information))] = math.nan
         along = slopes.T @ self.inverse @ self.differences(self.configured[None])[0]
-        sizes = np.sqrt(np.einsum("ik,ij,jk->k", slopes, self.inverse, slopes))
-        found: FloatArray = np.divide(along, sizes, out=np.full(2, math.nan), where=known)
-        return found
+        return np.array([along / information, 1.0 / np.sqrt(information)])
 
     def widened(self, factors: FloatArray) -> ImpactEvidence:
         """Return the impact with larger standard deviations along both coefficients, by factors, (2,)."""
@@ -171,10 +173,11 @@ class ImpactEvidence(Record):
         return replace(self, inverse=np.linalg.inv(covariance))
 
     def weight(self, at: FloatArray) -> float:
-        """Return the weight of this impact in an estimate, which is small for an outlier of Student's t."""
+        """Return the weight of this impact in an estimate, which is small for an outlier."""
+        square = float(self.squares(at[None])[0])
         if math.isinf(self.freedom):
-            return 1.0
-        return (self.freedom + COMPONENTS) / (self.freedom + float(self.squares(at[None])[0]))
+            return min(1.0, OUTLIER / square) if square > 0.0 else 1.0
+        return (self.freedom + COMPONENTS) / (self.freedom + square)
 
     def estimates(self) -> tuple[FloatArray, FloatArray]:
         """Return restitution and friction that explain this impact alone, and standard deviations, (2,) each.
@@ -206,8 +209,16 @@ class ImpactEvidence(Record):
         """Return the coefficient whose change brings this impact into the 99 % region best, if one does."""
         best = []
         for k in range(len(Parameter)):
-            values = alternatives(self.configured, k)
-            best.append(float(self.squares(values).min()) if len(values) else math.inf)
+            values, width = alternatives(self.configured, k), math.log(STEP)
+            least = math.inf
+            while len(values) and width > SAME_COEFFICIENT:
+                squares = self.squares(values)
+                least, nearest = float(squares.min()), values[squares.argmin()]
+                values = np.tile(nearest, (2 * STEPS + 1, 1))
+                values[:, k] *= np.exp(width * np.linspace(-1.0, 1.0, len(values)))
+                values[:, 0] = np.minimum(values[:, 0], 1.0)
+                width /= STEPS
+            best.append(least)
         k = int(np.argmin(best))
         if (
             math.isinf(best[k])
@@ -216,6 +227,13 @@ class ImpactEvidence(Record):
             return None
         return tuple(Parameter)[k]
 
+
+OUTLIER: Final = 16.8
+"""Squared distance beyond which an impact counts less in an estimate although differences are normal: of 100
+such impacts, one is farther away. An outlier may be two strikes that were detected as one."""
+
+SAME_COEFFICIENT: Final = 1e-5
+"""Relative: coefficients that differ by less are the same in the search for one that explains an impact."""
 
 LEAST_KNOWN: Final = 1.0
 """A coefficient with a larger standard deviation is not known."""

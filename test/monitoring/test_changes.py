@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from contact_dynamics.monitoring.changes import SurfaceChanges
-from contact_dynamics.monitoring.evidence import REGIONS, Parameter
+from contact_dynamics.monitoring.evidence import REGIONS, ImpactEvidence, Parameter
 from monitoring.made_impacts import CONFIGURED, made_impact
 
 BEFORE = 30
@@ -84,3 +84,34 @@ def test_the_friction_of_a_contact_that_sticks_is_unknown() -> None:
     values, stds = replace(impact, configured=sticks).estimates()
     assert np.isfinite([values[0], stds[0]]).all()
     assert np.isnan([values[1], stds[1]]).all()
+
+
+def precise_impact(random: np.random.Generator, restitution: float, friction: float) -> ImpactEvidence:
+    """An impact without model error, whose normal errors are 10 to 100 times smaller from case to case."""
+    one = made_impact(random, restitution, friction)
+    exact = -replace(one, measured=np.zeros(6)).differences(np.array([[restitution, friction]]))[0]
+    scale = 10.0 ** random.uniform(-2.0, -1.0)
+    off = scale * np.linalg.cholesky(np.linalg.inv(one.inverse)) @ random.standard_normal(6)
+    return replace(one, measured=exact + off, inverse=one.inverse / scale**2, freedom=math.inf)
+
+
+def test_precise_impacts_far_from_the_configured_restitution_are_not_hidden_by_their_scatter() -> None:
+    """Each is far outside of its region, and another restitution explains it, from the first to the last."""
+    random, surface = np.random.default_rng(5), SurfaceChanges()
+    reports = [surface.add(precise_impact(random, 0.6, CONFIGURED[1])) for _ in range(40)]
+    assert all(report.impact.probability() < 1.0 - REGIONS[-1] for report in reports)
+    explained = [report.impact.explained_by() for report in reports]
+    assert sum(one is Parameter.RESTITUTION for one in explained) >= 38  # of 40, one in 100 by chance
+    assert reports[-1].changed is Parameter.RESTITUTION
+    assert reports[-1].scatter[0] < 3.0  # first-order estimates from far away scatter a little more
+    assert abs(reports[-1].values[0] - 0.6) < 4.0 * reports[-1].stds[0]
+
+
+def test_an_outlier_among_precise_impacts_hardly_moves_the_estimate() -> None:
+    random, surface = np.random.default_rng(6), SurfaceChanges()
+    for _ in range(20):
+        surface.add(precise_impact(random, *CONFIGURED))
+    before = surface.add(precise_impact(random, *CONFIGURED))
+    after = surface.add(precise_impact(random, 0.15, CONFIGURED[1]))
+    assert abs(after.values[0] - CONFIGURED[0]) < 4.0 * after.stds[0]
+    assert after.stds[0] < 1.5 * before.stds[0]
