@@ -146,7 +146,7 @@ NOT_MEASURED: dict[
         "0.1 rad",
     ],
     "docs/monitor.md": [
-        "the states up to 20 ms before it",
+        "states at least 20 ms before it",
         "0.5 mm and 5 mrad for errors",
         "the smallest of the 50, 90 and 99 % regions",
         "from 0.26 to 3.8 times the configured",
@@ -157,7 +157,7 @@ NOT_MEASURED: dict[
         "40 % below it",
         "0.25 to 0.45 s after its event",
         "1.2 s without a new state",
-        "0.25 to 0.45 s after it occurred",
+        "0.25 to 0.45 s after they occurred",
     ],
 }
 
