@@ -117,6 +117,10 @@ TOUCHING_GAP: Final = 0.003
 """m. A point of a resting or sliding body that is this close to a surface touches it. This is the combined
 error of tracked pose, shape and surface."""
 
+SAME_COEFFICIENT: Final = 1e-5
+"""Relative: coefficients of restitution or friction that differ by less are one, where one is sought that
+explains a measured impact."""
+
 IMPACT_SPAN: Final = 0.04
 """s. A flight that begins this soon after the end of the previous one is separated from it by one impact, at
 one or several corners. Longer intervals without flight are mostly sliding or rocking."""

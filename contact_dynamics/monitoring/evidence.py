@@ -19,6 +19,7 @@ import numpy as np
 from contact_dynamics.evaluation.comparison import velocity_difference
 from contact_dynamics.impact.spatial.batch import StrikingBodies, spatial_impacts
 from contact_dynamics.records import Record
+from contact_dynamics.tolerances import SAME_COEFFICIENT
 from contact_dynamics.tumbling import free_motion
 from contact_dynamics.validation import check_not_negative
 
@@ -231,9 +232,6 @@ class ImpactEvidence(Record):
 OUTLIER: Final = 16.8
 """Squared distance beyond which an impact counts less in an estimate although differences are normal: of 100
 such impacts, one is farther away. An outlier may be two strikes that were detected as one."""
-
-SAME_COEFFICIENT: Final = 1e-5
-"""Relative: coefficients that differ by less are the same in the search for one that explains an impact."""
 
 LEAST_KNOWN: Final = 1.0
 """A coefficient with a larger standard deviation is not known."""
