@@ -34,7 +34,7 @@ from msg_adapters.geometry import vector_from_msg, vector_to_msg
 
 QOS: Final = QoSProfile(depth=1000)  # deep queues, since replies can get lost otherwise when many ask at once
 PERIOD_S: Final = 0.25  # s between two questions
-SOON_S: Final = 0.02  # a landing that is nearer than this, s, is told as what touches
+SOON_S: Final = 0.02  # s; a landing sooner than this is described by the bodies that touch
 DEADLINE_S: Final = 1.0  # s for an answer. Without one, the next question is asked.
 
 

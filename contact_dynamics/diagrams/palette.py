@@ -16,7 +16,7 @@ from typing import Final, NamedTuple, TypeAlias
 Color: TypeAlias = tuple[int, int, int, int]
 
 LEAST_DIFFERENCE: Final = 20.0
-"""Difference of two colours, CIE 1976 ΔE*ab. Patches side by side are told apart from about 2 on, and thin
+"""Difference of two colours, CIE 1976 ΔE*ab. Adjacent patches are distinguishable from about 2, and thin
 lines far apart need about ten times that."""
 
 WORD_CONTRAST: Final = 7.0

@@ -2,7 +2,8 @@
 """The monitor as a node: published states in, a message for each event out, and both in a log.
 
 It is a managed node with the server's parameters (`nodes.managed_node`). While it is active, the states go
-to the same `Monitor` as those of a recording, so that its log yields the same events.
+to the same `Monitor` as those of a recording. `contact-dynamics monitor` therefore reports the same events
+for its log.
 """
 
 from __future__ import annotations
@@ -185,7 +186,7 @@ class LiveMonitor(ManagedNode):
 
 
 def main(arguments: list[str]) -> int:
-    """Run the monitor until it is told to stop; return the exit code."""
+    """Run the monitor until a signal or a shutdown ends it; return the exit code."""
     return run_node(
         lambda ros_arguments: LiveMonitor(ros_arguments=ros_arguments),
         verb="live_monitor",

@@ -113,8 +113,8 @@ def _newest_is_off(t: FloatArray, x: FloatArray) -> bool:
 def _is_far_better(n: int, smooth: float, broken: float, free: int) -> bool:
     """Return whether n positions fit another model far better than one parabola.
 
-    Sums of squares, m^2, are those of the parabola and of the other model, which has so many degrees of
-    freedom.
+    ``smooth`` and ``broken``, m^2, are the sums of squared residuals of the parabola and of the other model,
+    and ``free`` is the number of degrees of freedom of the other model.
     """
     least = n * LEAST_NOISE**2
     ratio = (smooth + least) / (broken + least)

@@ -8,6 +8,7 @@ it receives states and writes the log; active, it does what it is for.
 from __future__ import annotations
 
 import warnings
+from abc import ABC, abstractmethod
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
@@ -33,7 +34,7 @@ if TYPE_CHECKING:
     from contact_dynamics.nodes.receiving import Receiving
 
 
-class ManagedNode(InboxNode, LifecycleNode):
+class ManagedNode(InboxNode, LifecycleNode, ABC):
     """A node that receives states."""
 
     def __init__(
@@ -89,14 +90,14 @@ class ManagedNode(InboxNode, LifecycleNode):
             self.get_logger().warning(str(each.message))
         return parameters
 
+    @abstractmethod
     def make_work(self, configuration: ServerParameters, run: Mapping[str, str]) -> Receiving:
-        """Return what the node has while it is configured, of which the log says that the run is made so.
+        """Return the work of the configured node. The log states that the run was made so.
 
         Raises:
             ContactDynamicsError: it cannot be made with these parameters.
             OSError: a file cannot be read or written.
         """
-        raise NotImplementedError
 
     def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:  # noqa: ARG002  it is known
         """Receive states, begin the log, and make what the node is for."""

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import time
+from abc import ABC, abstractmethod
 from typing import TYPE_CHECKING, Final
 
 from rclpy.clock import JumpThreshold
@@ -42,7 +43,7 @@ STOOD_STILL_S: Final = 2.0
 """s. A process that has not looked for so long was stopped or starved, and heard nothing for that reason."""
 
 
-class Receiving:
+class Receiving(ABC):
     """Receives states and writes the log, for a node."""
 
     def __init__(
@@ -106,9 +107,9 @@ class Receiving:
     def _begin(self) -> None:
         """Begin to record, once all topics of the log are declared."""
         self._log.start()
-        # A simulation or a log that is played again: without this its new states would count as old ones.
-        # It comes last, since the clock goes on to call what is not unregistered, and ends the process if
-        # that is not there any more.
+        # If a simulation or a log starts again, its states would otherwise be rejected as old. This comes
+        # last, because the clock calls the function until it is removed, even if this object no longer
+        # exists, which ends the process.
         set_back = JumpThreshold(min_forward=None, min_backward=Duration(nanoseconds=-1))
         self._jumps = self._node.get_clock().create_jump_callback(
             set_back, post_callback=lambda _: self._forget_states()
@@ -130,21 +131,21 @@ class Receiving:
         """In words, what is still made ready."""
         return ""
 
+    @abstractmethod
     def activate(self, *, is_active: bool) -> None:
-        """Do what the node is for from now on, or no more."""
-        raise NotImplementedError
+        """Start or stop the work of the active node."""
 
     def change(self, parameters: ServerParameters, *, event: bytes, run: Mapping[str, str]) -> None:
-        """Go on with another configuration, and log it.
+        """Continue with another configuration, and log it.
 
         Args:
             parameters: the configuration, which `check_change` allows.
             event: the change as a serialised event.
             run: what the log says of the run from now on.
         """
-        self._node.take_messages()  # what came before is of the configuration before
+        self._node.take_messages()  # these arrived under the previous configuration
         now_ns = time.time_ns()
-        self._node.note_question(now_ns)  # and what is taken from here on counts as later
+        self._node.note_question(now_ns)  # messages from here on arrived after the change
         self._log.record(CHANGES, event, log_time_ns=now_ns)
         self._log.change_run(run)
         self._core.change(parameters)
@@ -175,10 +176,10 @@ class Receiving:
         self._node.unsubscribe()
         self._diagnostics.remove()
 
-    def end(self) -> None:
+    def end(self) -> None:  # noqa: B027  a monitor has no requests
         """End what is under way, before the node takes no more requests."""
 
-    def end_workers(self) -> None:
+    def end_workers(self) -> None:  # noqa: B027  nor workers
         """End further processes."""
 
     def _forget_states(self) -> None:

@@ -34,7 +34,7 @@ class Server(ManagedNode):
 
 
 def main(arguments: list[str]) -> int:
-    """Run the server until it is told to stop; return the exit code."""
+    """Run the server until a signal or a shutdown ends it; return the exit code."""
     return run_node(
         lambda ros_arguments: Server(ros_arguments=ros_arguments),
         verb="server",

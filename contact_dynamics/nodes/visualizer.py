@@ -301,7 +301,7 @@ class _HandedOn(StateStore):
 
 
 def main(arguments: list[str]) -> int:
-    """Run the visualizer until it is told to stop; return the exit code."""
+    """Run the visualizer until a signal or a shutdown ends it; return the exit code."""
     os.nice(_NICER)  # before other threads, which inherit it
     exit_code = run_node(
         lambda ros_arguments: Visualizer(ros_arguments=ros_arguments, server_wait=SERVER_WAIT_S),

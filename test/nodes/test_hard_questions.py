@@ -104,7 +104,7 @@ def test_a_client_that_leaves_with_requests_pending_freezes_nobody(client: Clien
 def test_a_server_that_a_busy_machine_stops_answers_all_the_same_and_ends_well() -> None:
     """Stopped for 0.07 s while it sends, it once took its client for gone. Here a stop meets each moment.
 
-    Then it is told to end while requests wait, which are answered or refused.
+    Then it is stopped while requests wait, which are answered or rejected.
     """
     with apart() as (server, client):
         long = quick()
