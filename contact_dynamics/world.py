@@ -181,7 +181,7 @@ class Body(HasMassProperties):
 
         Args:
             vertices_F: (n, 3), m, or a file: STL, OBJ, PLY or glTF, which requires trimesh
-                (`pip install 'contact-dynamics[mesh]'`).
+                (`pip install trimesh`).
             triangles: (m, 3), three indices of vertices each, counterclockwise seen from outside. None for a
                 file.
             mass: kg, or None if a density is given.

@@ -89,7 +89,7 @@ def read_mesh(file: str | Path, scale: Sequence[float] = (1.0, 1.0, 1.0)) -> tup
         import trimesh
     except ImportError:
         allowed = "arrays of vertices and triangles, unless trimesh is installed"
-        raise InvalidFieldError("file", file, allowed, "pip install 'contact-dynamics[mesh]'") from None
+        raise InvalidFieldError("file", file, allowed, "pip install trimesh") from None
     try:
         found: Any = trimesh.load(file, force="mesh")
     except (ValueError, OSError, KeyError, NotImplementedError, IndexError) as error:
