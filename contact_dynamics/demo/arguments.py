@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The arguments of the demo's verbs. They are in a file of their own, so that `--help` needs no ROS."""
+"""The arguments of the demo's verbs, in a separate file because `--help` must not require ROS."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from contact_dynamics.measured.read_toss import DEFAULT_RECORDING
 THROWN_BOX: Final = "thrown_box"
 PUSHED_BLOCK: Final = "pushed_block"
 TRAY: Final = "tray"
-"""The situations that the examples show. Each has a launch file of its name."""
+"""The scenarios of the examples. Each has a launch file of the same name."""
 
 _RECORDING = "recording: a .csv file, or a measured cube toss as .npz#INDEX (default: the package's own toss)"
 

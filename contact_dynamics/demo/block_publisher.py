@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Publishes the states of a block that is pushed, or whose tray tilts, and what a sensor measures there.
+"""Publishes the states of a block that is pushed or lies on a tilting tray, and the measurements of a sensor.
 
-It takes the server's parameters: the block is the first body, its topic is that body's, and it moves among
-the configured surfaces.
+It receives the server's parameters: the block is the first body, its states are published on that body's
+topic, and it touches the configured surfaces.
 """
 
 from __future__ import annotations
@@ -38,25 +38,24 @@ if TYPE_CHECKING:
 QOS: Final = QoSProfile(depth=1000)
 
 PERIOD_S: Final = 0.005  # s between two states
-_DISCOVERY_S: Final = 30.0  # how long to wait for somebody who listens
-
+_DISCOVERY_S: Final = 30.0  # longest time to wait for subscribers
 
 _GRAVITY: Final = -STANDARD_GRAVITY_W[2]
 
-BEGINS_S: Final = 1.0  # s for which nothing happens at first, so that one sees the block at rest
-MAX_PUSHED: Final = 0.1  # m after which the finger stops
-MAX_TIPPED: Final = 0.3  # rad after which the finger stops: the block falls over by itself
+BEGINS_S: Final = 1.0  # s at the beginning during which the block rests
+MAX_PUSHED: Final = 0.1  # m, displacement at which the finger stops pushing
+MAX_TIPPED: Final = 0.3  # rad, tilt at which the finger stops: the block then falls over by itself
 
 
 @dataclass(slots=True, kw_only=True)
 class PushedBlock:
-    """A finger pushes a block towards x, harder and harder, until the block slides or falls over.
+    """A finger pushes a block along x with increasing force until the block slides or falls over.
 
-    The finger is smooth, and stays at its height. Its sensor measures the wrench on the block in world axes
-    and about the world's origin.
+    The finger is frictionless and stays at its height. Its sensor measures the wrench on the block in world
+    axes, about the world's origin.
     """
 
-    height: float  # m over the floor. Above half the block's depth over the friction, the block tips.
+    height: float  # m above the floor; above half the depth divided by the friction, the block tips
     rate: float  # N/s
     topic: str = "/finger/wrench"
     msg_type: type = WrenchStamped
@@ -83,13 +82,14 @@ class PushedBlock:
 
 @dataclass(slots=True, kw_only=True)
 class TiltingTray:
-    """A tray tilts about its axis y, so slowly that it does not throw what stands on it.
+    """A tray tilts slowly about its y axis.
 
-    All is in the axes of the tray, in which gravity turns. What the tray's rotation adds is left out: at 0.05
-    rad/s it is 0.05 m/s^2 on a block that slides with 0.5 m/s. The sensor is the tray's accelerometer.
+    All quantities are in the axes of the tray, in which gravity rotates. Inertial forces are neglected: at
+    0.05 rad/s, the Coriolis acceleration of a block that slides at 0.5 m/s is 0.05 m/s^2. The sensor is the
+    tray's accelerometer.
     """
 
-    max_tilt: float  # rad, where the tray stops
+    max_tilt: float  # rad, at which the tray stops
     rate: float  # rad/s
     topic: str = "/tray/gravity"
     msg_type: type = Vector3Stamped
@@ -109,7 +109,7 @@ class TiltingTray:
 
 
 Situation: TypeAlias = PushedBlock | TiltingTray
-"""Something that happens to the block, and what a sensor measures of it."""
+"""A scenario: the load on the block, and the measurement of a sensor."""
 
 
 class BlockPublisher(Node):
@@ -134,9 +134,9 @@ class BlockPublisher(Node):
         self._sensor = self.create_publisher(situation.msg_type, situation.topic, QOS)
 
     def play(self, seconds: float, stop: threading.Event) -> None:
-        """Publish for so many s, or until told to stop.
+        """Publish for this duration, s, or until ``stop`` is set.
 
-        It begins when somebody listens to the states and to the sensor, or after some time.
+        It waits for subscribers of the states and of the sensor first, up to a maximum time.
         """
         deadline = time.monotonic() + _DISCOVERY_S
         while self._lacks_listeners() and time.monotonic() < deadline:
@@ -162,14 +162,14 @@ class BlockPublisher(Node):
                 p_FB_F=self._body.p_FB_F,
             )
         )
-        # After the state, which the server then has when somebody asks about what the sensor measured.
+        # Published after the state, so that the server has the state when a client uses the measurement.
         measured = self._situation.measured()
         measured.header.stamp, measured.header.frame_id = stamp_to_msg(stamp_ns), self._frame
         self._sensor.publish(measured)
 
 
 def main(arguments: list[str]) -> int:
-    """Publish one situation until it ends or the process is told to stop, and return the exit code."""
+    """Publish one scenario until it ends or the process is interrupted, and return the exit code."""
     given = block_publisher_parser().parse_args(remove_ros_args(arguments))
     with ros_until_stopped(arguments) as stop:
         try:

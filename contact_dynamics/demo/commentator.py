@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Asks a running server about the body of an example, and prints each new answer in words.
+"""Sends requests about the body of an example to a running server, and prints each new response in words.
 
-It asks four times a second. It takes the server's parameters too, and asks about the first body.
+It sends four requests per second, about the first body of the server's parameters, which it receives as well.
 """
 
 from __future__ import annotations
@@ -32,20 +32,19 @@ from contact_dynamics.nodes.running import ros_until_stopped
 from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact
 from msg_adapters.geometry import vector_from_msg, vector_to_msg
 
-QOS: Final = QoSProfile(depth=1000)  # deep queues, since replies can get lost otherwise when many ask at once
-PERIOD_S: Final = 0.25  # s between two questions
-SOON_S: Final = 0.02  # s; a landing sooner than this is described by the bodies that touch
-DEADLINE_S: Final = 1.0  # s for an answer. Without one, the next question is asked.
+QOS: Final = QoSProfile(depth=1000)  # with many clients, responses overflow shorter queues
+PERIOD_S: Final = 0.25  # s between two requests
+SOON_S: Final = 0.02  # s; before an earlier landing, it requests the contact mode instead
+DEADLINE_S: Final = 1.0  # s; a request without a response is abandoned after this time
 
-
-SILENCE_S: Final = 1.5  # s without a state after which a situation is over
+SILENCE_S: Final = 1.5  # s without a state after which the scenario is over
 
 
 class Commentator(Node):
     """The node `commentator`."""
 
     def __init__(self, situation: str, server: str) -> None:
-        """Read the configuration, and look for the server.
+        """Read the configuration, and create the clients.
 
         Raises:
             ContactDynamicsError: the configuration is not allowed, or it has no body with an odometry_topic.
@@ -76,9 +75,9 @@ class Commentator(Node):
         self._told = ""
 
     def get_ready(self) -> bool:
-        """Ask whether the server answers; if so, listen to what a robot would measure, and return True.
+        """Return whether the server responds, and then subscribe to the measurements.
 
-        The publishers begin when somebody listens. So this listens no sooner than it can ask.
+        The publishers start when they have subscribers, so it subscribes only when the server is ready.
         """
         if self._ask(self._mode, PredictContactMode.Request(body_name=self._body.name)) is None:
             self._spin()
@@ -120,7 +119,7 @@ class Commentator(Node):
         )
 
     def _comment_on_the_push(self) -> str:
-        """Tell what the block does under the finger's wrench, which is about the world's origin."""
+        """Return the contact mode under the finger's wrench, which refers to the world's origin."""
         if len(self._newest) < 2:
             return ""
         measured = self._newest[WrenchStamped]
@@ -134,7 +133,7 @@ class Commentator(Node):
         return self._words_of_modes(request, f"pushed with {np.linalg.norm(force):4.2f} N")
 
     def _comment_on_the_tray(self) -> str:
-        """Tell what the block does under its weight, as the tray's accelerometer gives it."""
+        """Return the contact mode under gravity as measured by the tray's accelerometer."""
         if len(self._newest) < 2:
             return ""
         measured = self._newest[Vector3Stamped]
@@ -147,7 +146,7 @@ class Commentator(Node):
         return self._words_of_modes(request, f"tilted by {tilt:4.1f} degrees")
 
     def _request_at(self, stamp: Any) -> PredictContactMode.Request:
-        """Return the question about the state at the time at which something was measured."""
+        """Return a request about the state at the time of a measurement."""
         request = PredictContactMode.Request(body_name=self._body.name, include_margins=True)
         request.state_source, request.stamp = request.STATE_AT_STAMP, stamp
         return request
@@ -169,12 +168,12 @@ class Commentator(Node):
         return words
 
     def _ask(self, client: Any, request: Any) -> Any:
-        """Return the response, or None where none came in time."""
+        """Return the response, or None after the deadline."""
         if not client.service_is_ready():
             return None
         future = client.call_async(request)
         patience = Patience(DEADLINE_S)
-        # Not spin_until_future_complete: in rclpy 7.1 each call makes the next one slower.
+        # In rclpy 7.1, each call of spin_until_future_complete makes the next one slower.
         while not (future.done() or patience.is_over):
             self._spin()
             patience.look()
@@ -197,7 +196,7 @@ class Commentator(Node):
 
 
 def main(arguments: list[str]) -> int:
-    """Comment until the states end or the process is told to stop, and return the exit code."""
+    """Print responses until the states end or the process is interrupted, and return the exit code."""
     given = commentator_parser().parse_args(remove_ros_args(arguments))
     with ros_until_stopped(arguments) as stop:
         try:

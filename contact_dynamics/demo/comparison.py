@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The demo's table of predictions beside what was then measured."""
+"""The demo's table of predictions and subsequent measurements."""
 
 from __future__ import annotations
 
@@ -22,26 +22,26 @@ if TYPE_CHECKING:
     from contact_dynamics.measured.recorded_toss import Toss
     from contact_dynamics.validation import FloatArray
 
-SAME_STRIKE: Final = 0.03  # s. A predicted strike and a measured one that are closer than this are the same.
+SAME_STRIKE: Final = 0.03  # s, largest difference in time between a predicted strike and its measurement
 
-_AVERAGED: Final = 12  # number of frames at each end of the rest, whose means show whether the body moved
+_AVERAGED: Final = 12  # frames at the beginning and end of the rest whose mean positions are compared
 
 _UNKNOWN: Final = "no clean strike"
 
 Row: TypeAlias = tuple[str, str, str, str]
-"""A line of the table: the quantity, what was predicted, what was measured, and the difference."""
+"""A line of the table: the quantity, its predicted and measured values, and their difference."""
 
 
 class Section(NamedTuple):
-    """A question, and the rows of its answer."""
+    """A request, and the rows of its response."""
 
-    time: float  # when it was asked, s, on the recording's clock
+    time: float  # time of the request, s, on the recording's clock
     title: str
     rows: list[Row]
 
 
 def sections(toss: Toss, strikes: Sequence[Strike], questioner: Questioner) -> list[Section]:
-    """Return the questions in the order of time."""
+    """Return the requests in the order of time."""
     found = [
         *(_flight_section(asked, strikes, questioner) for asked in questioner.flights),
         *(_impact_section(asked, strikes, questioner) for asked in questioner.impacts),
@@ -111,7 +111,7 @@ def _impact_section(asked: Asked, strikes: Sequence[Strike], questioner: Questio
 
 
 def _measured(predicted: FloatArray, before: FloatArray, after: FloatArray) -> tuple[str, str]:
-    """Return what was measured, and the error of the prediction beside the jump."""
+    """Return the measured value, and the error of the prediction with the measured change."""
     return _vector(after), f"{_length(predicted - after):.2f} of {_length(after - before):.2f}"
 
 

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A limit of the time that is spent waiting, in which a process that stood still has not waited.
+"""A time limit for waiting that does not expire while the process itself is suspended.
 
-After a stall the clock has gone on, and what is waited for lies unread in a queue. So each look counts for a
-moment at most.
+After a suspension, the awaited message may be in a queue, not yet read. Therefore the time between two calls
+of `look` counts only up to a maximum.
 """
 
 from __future__ import annotations
@@ -11,24 +11,24 @@ import time
 from typing import Final
 
 MAX_OF_A_LOOK_S: Final = 0.2
-"""s. One look counts no longer; between two looks there is at most the time of a wait for messages, 0.1 s."""
+"""Longest time counted between two calls, s. While running, they are at most 0.1 s apart."""
 
 
 class Patience:
-    """Time that is left to wait, which each look lessens."""
+    """The remaining time to wait."""
 
     def __init__(self, seconds: float) -> None:
-        """Begin to wait for at most this time, s."""
+        """Start waiting for at most this time, s."""
         self._left = seconds
         self._looked = time.monotonic()
 
     @property
     def is_over(self) -> bool:
-        """Whether the whole time was spent waiting."""
+        """Whether the time is over."""
         return self._left <= 0.0
 
     def look(self) -> None:
-        """Note that nothing has come yet."""
+        """Count the time since the last call, because the awaited event has not happened."""
         now = time.monotonic()
         self._left -= min(now - self._looked, MAX_OF_A_LOOK_S)
         self._looked = now

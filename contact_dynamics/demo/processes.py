@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The demo's processes. They run in a ROS domain of their own, and are all stopped whatever happens.
+"""The demo's child processes, which share an unused ROS domain and are always stopped at the end.
 
-The domain of one's own keeps demos and tests which run side by side from hearing each other. It works on
-Linux only. The claim is a socket in the abstract namespace, which vanishes with its process.
+With a domain for each run, demos and tests that run simultaneously do not receive each other's messages. A
+domain is claimed by a socket in Linux's abstract namespace, which disappears with its process.
 """
 
 from __future__ import annotations
@@ -24,20 +24,20 @@ if TYPE_CHECKING:
 
 
 STOP_PATIENCE_S: Final = 10.0
-"""Time that a process has to finish its files after SIGINT before it is killed, s."""
+"""Time between SIGINT, after which a process completes its files, and SIGKILL, s."""
 
 _COMPLAINT: Final = re.compile(r"\b(?:WARN|ERROR|FATAL)\b|^Traceback")
-_LEVEL: Final = re.compile(r"^\[")  # what begins a message of ROS's or rerun's log
+_LEVEL: Final = re.compile(r"^\[")  # the beginning of a log message of ROS or rerun
 
 
 class Processes(contextlib.AbstractContextManager["Processes"]):
-    """The child processes of one run. Leaving the context stops all of them, the newest first."""
+    """The child processes of one run. Leaving the context stops all of them."""
 
     def __init__(self, log_folder: Path) -> None:
-        """Give every child the same ROS domain on this machine alone, and a file for what it prints."""
+        """Choose the ROS domain of all children, on this machine only, and the folder of their output."""
         self._log_folder = log_folder
         self._running: list[tuple[str, subprocess.Popen[bytes]]] = []
-        self._heard: dict[str, int] = {}  # bytes of what each has printed that were looked at for complaints
+        self._heard: dict[str, int] = {}  # bytes of the output of each that were searched for warnings
         self.ros_environment = {
             "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
             "ROS_DOMAIN_ID": str(claim_domain()),
@@ -49,11 +49,11 @@ class Processes(contextlib.AbstractContextManager["Processes"]):
         self.close()
 
     def start(self, verb: str, arguments: Sequence[str]) -> subprocess.Popen[bytes]:
-        """Start a verb of the command line. Its output goes to a file."""
+        """Start a verb of the command line, and write its output to a file."""
         command = [sys.executable, "-m", "contact_dynamics", verb, *arguments]
         with (self._log_folder / f"{verb}.txt").open("wb") as output:
-            # A session of its own: Ctrl-C reaches the children through us alone, and each closes its files in
-            # order.
+            # In a separate session, the child does not receive Ctrl-C directly, so `close` can stop all
+            # children in order.
             process = subprocess.Popen(
                 command,
                 env=self._environment,
@@ -75,13 +75,13 @@ class Processes(contextlib.AbstractContextManager["Processes"]):
         return True
 
     def printed_by(self, verb: str) -> str:
-        """Return what a process that is not shown has printed so far."""
+        """Return the output of a process so far."""
         return (self._log_folder / f"{verb}.txt").read_text(encoding="utf-8", errors="replace")
 
     def new_complaints(self) -> list[str]:
-        """Return the warnings of the processes since the last call, as whole lines, each with its verb.
+        """Return the lines of new warnings, each preceded by the verb of its process.
 
-        A warning may have several lines. It goes on up to the next message.
+        A warning may have several lines; it ends at the next log message.
         """
         found = []
         for verb, heard in self._heard.items():
@@ -91,7 +91,7 @@ class Processes(contextlib.AbstractContextManager["Processes"]):
             with path.open("rb") as printed:
                 printed.seek(heard)
                 new = printed.read()
-            new = new[: new.rfind(b"\n") + 1]  # the rest is still being written
+            new = new[: new.rfind(b"\n") + 1]  # the last line may be incomplete
             self._heard[verb] = heard + len(new)
             complains = False
             for line in new.decode(errors="replace").splitlines():
@@ -101,9 +101,9 @@ class Processes(contextlib.AbstractContextManager["Processes"]):
         return found
 
     def close(self) -> None:
-        """Ask all processes to finish, wait for each, and kill the one that does not.
+        """Interrupt all processes, wait for each, and kill those that do not end in time.
 
-        All are asked at once. A server that waited for the visualizer to end would find the states silent.
+        All are interrupted at once: otherwise a server that outlives the publisher reports missing states.
         """
         for _, process in reversed(self._running):
             if process.poll() is None:
@@ -119,11 +119,11 @@ class Processes(contextlib.AbstractContextManager["Processes"]):
 
 
 _DOMAINS: Final = 100
-"""Number of ROS domains to choose from. Domains 1 to 100 use ports below the ephemeral ones of Linux."""
+"""Number of ROS domains to choose from: domains 1 to 100 use ports below Linux's ephemeral ports."""
 
 
 def claim_domain() -> int:
-    """Return a ROS_DOMAIN_ID that no other process here uses or has claimed. It is kept until this one ends.
+    """Return a ROS_DOMAIN_ID that no other process on this machine uses, and claim it for this process.
 
     Raises:
         RuntimeError: all domains are in use.
@@ -148,5 +148,5 @@ def _claim(domain: int) -> bool:
 
 
 def _domains_in_use() -> set[int]:
-    """Return the domains on whose ports any process listens."""
+    """Return the domains whose ports are in use."""
     return {(port - FIRST_PORT) // PORTS_OF_DOMAIN for port in ports_in_use()}

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Asks the server about a toss while it happens, as a robot would.
+"""Sends requests about a toss to the server while the states are published, as a robot would.
 
-It asks at meaningful moments, and uses only what was published so far.
+Each request uses only the states published before it.
 """
 
 from __future__ import annotations
@@ -31,20 +31,20 @@ if TYPE_CHECKING:
     from contact_dynamics.rigid_body.body import BodyState
 
 ANSWER_S: Final = 10.0
-"""Longest time for an answer, s, also on a busy machine."""
+"""Longest time to wait for a response, s, even on a busy machine."""
 
 LAST_MOMENT: Final = 0.025
-"""Time before the predicted landing at which it asks for the impact, s: late, but early enough to act."""
+"""Time before the predicted landing at which the impact is requested, s: late, but early enough to act."""
 
 SILENCE_S: Final = 1.0
-"""If states are missing, the toss is over when its publisher has ended and none has come for this time, s."""
+"""The toss is also over if its publisher has ended and no state has arrived for this time, s."""
 
-REST_FRAMES: Final = 2  # number of frames for which a body must be slow before it asks for the contact mode
+REST_FRAMES: Final = 2  # frames for which the body must be slow before the contact mode is requested
 
 REST_DEVIATIONS: Final = 3.0
-"""A body is slow if its velocities are within this many standard deviations of their noise."""
+"""A body is slow if all velocity components are within this many standard deviations of the noise."""
 
-CURVE_POINTS: Final = 120  # number of points of polhode and herpolhode, for the picture
+CURVE_POINTS: Final = 120  # number of points of the polhode and herpolhode in the picture
 
 _START_S: Final = 30.0
 _POLL_S: Final = 0.1
@@ -52,24 +52,24 @@ _POLL_S: Final = 0.1
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Asked:
-    """One question with its answer."""
+    """One request with its response."""
 
-    time: float  # time of the newest state when it was asked, s, on the recording's clock
-    response: Any  # the service's response
-    round_trip: float  # time until the answer came, s
+    time: float  # time of the latest state at the request, s, on the recording's clock
+    response: Any  # response of the service
+    round_trip: float  # time until the response, s
 
 
 class Questioner(Node):
-    """The node `demo`, which listens to a body's states and asks."""
+    """The node `demo`, which receives a body's states and sends the requests."""
 
     def __init__(self, toss: Toss) -> None:
-        """Look for the services."""
+        """Create the clients."""
         super().__init__("demo")
         self._toss = toss
         self._epoch_ns: int | None = None
         self._now = 0.0
-        self._flying_since = 0.0  # s on the recording's clock, as predicted
-        self._silence = Patience(_START_S)  # until the first state, as long as a start may take
+        self._flying_since = 0.0  # predicted, s on the recording's clock
+        self._silence = Patience(_START_S)  # until the first state, the start of the processes counts
         self._recent: deque[BodyState] = deque(maxlen=REST_FRAMES)
         self._executor = SingleThreadedExecutor()
         self._executor.add_node(self)
@@ -82,30 +82,33 @@ class Questioner(Node):
             )
         }
         self.received = 0
-        self.latest = 0.0  # s, the longest that a state was on its way
+        self.latest = 0.0  # s, longest time between the stamp and the arrival of a state
         self.flights: list[Asked] = []
         self.impacts: list[Asked] = []
         self.modes: list[Asked] = []
 
-    def get_ready(self, go_on: Callable[[], object]) -> None:
-        """Wait until all services are there, and only then subscribe, as the publisher waits for that.
+    def get_ready(self, check: Callable[[], object]) -> None:
+        """Wait for all services, and then subscribe to the states, which makes the publisher start.
 
-        Waiting ends where ``go_on`` raises because it is useless, or with a `TimeoutError`.
+        It calls ``check`` repeatedly, which raises an error when waiting has become useless.
+
+        Raises:
+            TimeoutError: the server does not provide the services in time.
         """
         deadline = time.monotonic() + _START_S
         for client in self._askers.values():
             while not client.wait_for_service(_POLL_S):
-                go_on()
+                check()
                 if time.monotonic() > deadline:
                     message = f"the server does not serve {client.srv_name}"
                     raise TimeoutError(message)
         self.create_subscription(Odometry, topic_of(self._toss), self._receive, QOS)
 
     def watch(self, playing: Callable[[], bool]) -> None:
-        """Listen and ask until the toss is over."""
+        """Receive states and send requests until the toss is over."""
         self._silence = Patience(_START_S)
         landing: float | None = None  # predicted, s on the recording's clock
-        # velocities look back over WINDOW, so it must have seen that much flight before it asks
+        # Velocities are estimated over WINDOW, so the flight must have lasted that long before a request.
         blind_until = 0.0
         while self.received < len(self._toss) and (playing() or not self._silence.is_over):
             if not self._spin():
@@ -121,11 +124,11 @@ class Questioner(Node):
                 landing = self._ask_landing()
                 if landing is None:
                     blind_until = self._now + WINDOW
-        if self.received and not self.modes:  # recordings may end as soon as the body does not move
+        if self.received and not self.modes:  # a recording may end when the body stops
             self._ask_contact_mode()
 
     def _flight_seen(self) -> float:
-        """Return how long the body has been flying, s, less one frame, in which it may have touched."""
+        """Return the duration of the flight, s, without its first frame, which may contain the contact."""
         return max(0.0, self._now - self._flying_since - 1.0 / self._toss.rate)
 
     def _receive(self, msg: Odometry) -> None:
@@ -140,7 +143,7 @@ class Questioner(Node):
         self.received += 1
 
     def _spin(self) -> bool:
-        """Return whether a state has come."""
+        """Wait for a state, and return whether one has arrived."""
         before = self.received
         self._executor.spin_once(timeout_sec=0.1)
         self._silence.look()
@@ -161,9 +164,9 @@ class Questioner(Node):
         request.curve_points = CURVE_POINTS
         asked = self._ask(request)
         landing = self.seconds_of(asked.response.state.header.stamp) + float(asked.response.event_time)
-        if landing - self._now <= LAST_MOMENT:  # it touches, or soon will, so no flight is left to fit
+        if landing - self._now <= LAST_MOMENT:  # too close to the contact for a fit of the flight
             self._flying_since = self._now
-        if not landing - self._now > LAST_MOMENT:  # it does not land (NaN), or it is too late to ask
+        if not landing - self._now > LAST_MOMENT:  # no landing (NaN), or too late for a request
             return None
         self.flights.append(asked)
         return landing
@@ -181,7 +184,7 @@ class Questioner(Node):
 
     def _ask(self, request: Any) -> Asked:
         request.state_source = request.STATE_AT_STAMP
-        request.stamp = stamp_to_msg(self._recent[-1].stamp_ns)  # however far the toss has gone
+        request.stamp = stamp_to_msg(self._recent[-1].stamp_ns)  # although newer states may have arrived
         client = next(
             self._askers[service] for service in self._askers if isinstance(request, service.Request)
         )

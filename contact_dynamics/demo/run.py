@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The demo plays a toss as published states, asks the server, and prints how good its answers were.
+"""`contact-dynamics demo`: plays a recorded toss and compares predictions with the measurements.
 
-The server, the visualizer and the publisher are three processes. This process asks. At the end it stops all
-of them, also after a failure. The server gets the body and the surface that the recording describes.
+The server, the visualizer and the publisher of the states are separate processes. This process starts them,
+sends the requests, and stops them at the end, even after a failure. The recording describes the body and the
+surface.
 """
 
 from __future__ import annotations
@@ -44,7 +45,7 @@ LISTENERS: Final = 3
 
 PICTURE: Final = "toss.rrd"
 
-_DRAIN_S: Final = 0.5  # for what is still on its way to log and picture when the toss is over
+_DRAIN_S: Final = 0.5  # time for the last messages to reach the log and the picture
 
 
 def main(arguments: list[str]) -> int:
@@ -101,8 +102,8 @@ def _play(
     try:
         questioner.get_ready(go_on)
         questioner.watch(lambda: go_on() and publisher.poll() is None)
-        # The publisher may still wait for acknowledgements, up to the 3 s between two heartbeats of Fast DDS.
-        # A server that went on meanwhile would warn that the states have stopped coming.
+        # The publisher may wait up to 3 s (a heartbeat of Fast DDS) for acknowledgements. It is not awaited,
+        # because meanwhile the server would warn that no more states arrive.
         if publisher.poll() not in {None, 0} or not questioner.received:
             raise RuntimeError(f"the toss was not played: {processes.printed_by('toss_publisher')}")
         time.sleep(_DRAIN_S)
@@ -142,11 +143,11 @@ def _new_folder(output: str) -> Path:
 
 
 TOUCHING: Final = 0.003
-"""m. Corners this near the surface touch it. Tracked frame, shape and surface together have this error."""
+"""Distance tolerance, m: the combined error of the tracked pose, the shape and the surface."""
 
 
 def write_parameters(path: Path, toss: Toss, *, log_directory: Path) -> None:
-    """Write the file that configures server and visualizer, as JSON, which is also YAML."""
+    """Write the parameter file of the server and the visualizer, as JSON, which is valid YAML."""
     name, surface = toss.body.name, toss.surface
     (ixx, ixy, ixz), (_, iyy, iyz), (_, _, izz) = toss.body.mass_properties.I_B.tolist()
     parameters: dict[str, Any] = {
@@ -162,7 +163,7 @@ def write_parameters(path: Path, toss: Toss, *, log_directory: Path) -> None:
         f"surface.{surface.name}.normal": surface.normal_W.tolist(),
         f"surface.{surface.name}.friction": surface.friction,
         f"surface.{surface.name}.restitution": surface.restitution,
-        # Measured states: what lies within their noise counts as none.
+        # Velocities within the noise of the measurement count as zero.
         "velocity_tolerance": 5.0 * toss.contact_speed_noise,
         "distance_tolerance": TOUCHING,
         "out_of_plane_tolerance": 5.0 * toss.contact_speed_noise,

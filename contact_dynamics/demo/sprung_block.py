@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The physics of the examples: a body whose corners press on flats like stiff springs, in the plane x, z.
+"""The physics of the examples: a body in the plane x, z with stiff spring-damper contacts at its corners.
 
-It shares nothing with the laws that the package predicts with, so that an example can show whether they are
-right: no mode is chosen here. A corner that is below a flat is pushed out by a spring and a damper. Along the
-flat a second spring holds it, until Coulomb's friction is exceeded and the corner slides.
+It is independent of the laws with which the package predicts, so the examples test them: no contact mode is
+chosen here. A spring and a damper push a penetrating corner out of a flat, and a tangential spring holds it
+until its force reaches the limit of Coulomb friction and the corner slides.
 """
 
 from __future__ import annotations
@@ -22,13 +22,13 @@ if TYPE_CHECKING:
     from contact_dynamics.world import Body, World
 
 STEP: Final = 1e-4  # s. The stiffest oscillation, of 1 kg on two corners, takes 140 such steps.
-STIFFNESS: Final = 1e5  # N/m of each corner: a block of 1 kg sinks in by 0.05 mm, less than a robot measures
-DAMPING: Final = 200.0  # N s/m of each corner, somewhat less than what damps 1 kg on two corners critically
+STIFFNESS: Final = 1e5  # N/m of each corner: a block of 1 kg penetrates by 0.05 mm
+DAMPING: Final = 200.0  # N s/m of each corner, slightly below critical damping of 1 kg on two corners
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Load:
-    """The force and moment that act on the block, besides its corners."""
+    """The applied force and moment on the block."""
 
     force_x: float  # N
     force_z: float  # N
@@ -37,7 +37,7 @@ class Load:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Flat:
-    """A flat that stands on the plane: its point, unit normal and unit tangent, x and z of each."""
+    """A flat perpendicular to the plane: its point and unit normal, x and z of each, and its friction."""
 
     point: tuple[float, float]
     normal: tuple[float, float]
@@ -50,7 +50,7 @@ class _Flat:
 
 @dataclass(slots=True, kw_only=True)
 class _Contact:
-    """A corner and a flat, and where the corner is held along the flat, m; None while it is in the air."""
+    """A corner and a flat; ``held_at`` is the end of the tangential spring, m, or None without contact."""
 
     corner: tuple[float, float]
     flat: _Flat
@@ -59,13 +59,13 @@ class _Contact:
 
 @dataclass(slots=True, kw_only=True)
 class SprungBlock:
-    """A body between flats, which moves in the plane x, z."""
+    """A body that moves in the plane x, z in contact with flats."""
 
     mass: float  # kg
     inertia: float  # kg m^2, about the axis y
     x: float  # m, of the centre of mass
     z: float  # m
-    angle: float = 0.0  # rad, about the axis y: positive tips the block towards x
+    angle: float = 0.0  # rad, about the y axis: positive tips the block toward x
     vx: float = 0.0  # m/s
     vz: float = 0.0  # m/s
     spin: float = 0.0  # rad/s
@@ -73,11 +73,11 @@ class SprungBlock:
 
     @classmethod
     def resting(cls, body: Body, world: World) -> SprungBlock:
-        """Return the body at rest on the first of the world's surfaces, over the origin.
+        """Return the body at rest on the first surface of the world, above the origin.
 
         Raises:
-            NotSupportedError: the shape has no corners, or a surface is no flat that stands upright on the
-                plane x, z.
+            NotSupportedError: the shape has no corners, or a surface is not a flat perpendicular to the plane
+                x, z.
         """
         corners = sorted({(float(x), float(z)) for x, _, z in body.shape.vertices.tolist()})
         if len(corners) < 3 or body.shape.rounding > 0.0:
@@ -95,7 +95,7 @@ class SprungBlock:
         )
 
     def move(self, load: Load, seconds: float) -> None:
-        """Let time pass under a load."""
+        """Advance by this time, s, under a constant load."""
         for _ in range(round(seconds / STEP)):
             self._step(load)
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Publishes a recorded toss as `nav_msgs/Odometry`, at the pace at which it was measured."""
+"""Publishes a recorded toss as `nav_msgs/Odometry`, in real time."""
 
 from __future__ import annotations
 
@@ -27,12 +27,12 @@ if TYPE_CHECKING:
 WORLD_FRAME: Final = "world"
 QOS: Final = QoSProfile(depth=1000)
 
-_DISCOVERY_S: Final = 30.0  # how long to wait for the listeners that were asked for
-_LEAD_S: Final = 1.0  # between the last listener's arrival and the toss
+_DISCOVERY_S: Final = 30.0  # longest time to wait for subscribers
+_LEAD_S: Final = 1.0  # s between the last subscription and the toss
 
 
 def topic_of(toss: Toss) -> str:
-    """Return the topic that a toss is published on."""
+    """Return the topic of a toss."""
     return f"/{toss.body.name}/odometry"
 
 
@@ -46,7 +46,7 @@ class TossPublisher(Node):
         self._publisher = self.create_publisher(Odometry, topic_of(toss), QOS)
 
     def wait_for_listeners(self, count: int, stop: threading.Event) -> bool:
-        """Return whether this many subscriptions have matched in time."""
+        """Wait for this number of subscriptions, and return whether they matched in time."""
         deadline = time.monotonic() + _DISCOVERY_S
         while self._publisher.get_subscription_count() < count:
             if stop.wait(0.02) or time.monotonic() > deadline:
@@ -54,10 +54,10 @@ class TossPublisher(Node):
         return True
 
     def play(self, stop: threading.Event) -> None:
-        """Publish every sample at its time, which is its stamp.
+        """Publish each sample at its time, which is its stamp.
 
-        A listener that this process has found may take some tenths of a second longer to find this process.
-        The toss begins after that time.
+        The toss begins later, because a subscriber may need some tenths of a second longer to discover this
+        publisher than the reverse.
         """
         toss = self._toss
         lead_ns = to_ns(_LEAD_S - float(toss.times[0]))
@@ -72,7 +72,7 @@ class TossPublisher(Node):
             self._publisher.publish(msg)
 
     def drain(self) -> None:
-        """Wait until every listener has acknowledged every sample."""
+        """Wait until all subscribers have acknowledged all samples."""
         self._publisher.wait_for_all_acked(Duration(seconds=5))
 
 
