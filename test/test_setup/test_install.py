@@ -60,10 +60,10 @@ def test_a_full_disk_is_named(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("line", "said"),
     [
-        ("Collecting numpy>=1.26", "1 packages fetched, now numpy>=1.26"),
+        ("Collecting numpy>=1.26", "1 packages downloaded, now numpy>=1.26"),
         ("  Building editable for contact_dynamics: started", "building the package and its compiled core"),
         ("Looking in indexes: https://example.org/simple", "starting pip"),
-        ("WARNING: Retrying (Retry(total=4)) after connection broken", "the network does not answer"),
+        ("WARNING: Retrying (Retry(total=4)) after connection broken", "no response from the network"),
         ("Installing collected packages: numpy", "unpacking: "),
     ],
 )
