@@ -6,18 +6,22 @@ The message has the pose of the published frame and the velocity of the centre o
 
 from __future__ import annotations
 
+import math
+from functools import lru_cache
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.questions.uncertain_state import KnownState, UncertainState
+from contact_dynamics.records import made
 from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.rigid_body.published_frame import origin_of_published_frame, turned
+from contact_dynamics.tolerances import LENGTH_ROUNDING
 from contact_dynamics.validation import check_unit
 from contact_dynamics_interfaces.msg import BodyState as BodyStateMsg
 from msg_adapters.field_names import renamed
-from msg_adapters.geometry import quaternion_from_msg, vector_from_msg
+from msg_adapters.rejected_fields import Read, values_of
 from msg_adapters.stamps import stamp_ns_from_msg, stamp_to_msg
 from msg_adapters.transforms import check_frame
 
@@ -47,24 +51,32 @@ def body_state_from_msg(
         InvalidFieldError: a number is not finite, or the quaternion is not unit.
     """
     check_frame(f"{field}.header.frame_id", msg.header.frame_id or world_frame, world_frame)
-    p_WB_W, q_WB = vector_from_msg(msg.pose.position), quaternion_from_msg(msg.pose.orientation)
-    if not any(q_WB.tolist()):  # left out by a client whose messages begin with zeros
+    kind: type = type(msg)
+    numbers, stamp_ns = np.array(_reader(kind)(msg)[:13]), stamp_ns_from_msg(msg.header.stamp)
+    p_WB_W, q_WB, v_WB_W, w_WB_W = numbers[:3], numbers[3:7], numbers[7:10], numbers[10:]
+    x, y, z, w = q_WB.tolist()
+    if not any((x, y, z, w)):  # left out by a client whose messages begin with zeros
         raise InvalidFieldError(
             f"{field}.pose.orientation", "zeros", "a unit quaternion (w: 1 is no rotation)"
         )
     if any(p_FB_F.tolist()):
         q_WB = check_unit(f"{field}.pose.orientation", q_WB, 4)
-        p_WB_W = p_WB_W + turned(q_WB, p_FB_F)
+        p_WB_W += turned(q_WB, p_FB_F)
+    is_unit = abs(math.sqrt(x * x + y * y + z * z + w * w) - 1.0) <= LENGTH_ROUNDING
+    if is_unit and math.isfinite(sum(numbers.tolist())):  # the constructor would check it in vain
+        numbers.flags.writeable = False
+        return made(BodyState, numbers[:3], numbers[3:7], numbers[7:10], numbers[10:], stamp_ns)
     try:
-        return BodyState(
-            p_WB_W=p_WB_W,
-            q_WB=q_WB,
-            v_WB_W=vector_from_msg(msg.linear_velocity),
-            w_WB_W=vector_from_msg(msg.angular_velocity),
-            stamp_ns=stamp_ns_from_msg(msg.header.stamp),
-        )
+        return BodyState(p_WB_W=p_WB_W, q_WB=q_WB, v_WB_W=v_WB_W, w_WB_W=w_WB_W, stamp_ns=stamp_ns)
     except InvalidFieldError as error:
         raise renamed(error, {ours: f"{field}.{name}" for ours, name in _FIELDS.items()}) from None
+
+
+@lru_cache
+def _reader(message: type) -> Read:
+    """Return a function that reads the numbers of a state."""
+    xyz = {"p_WB_W": "xyz", "q_WB": "xyzw", "v_WB_W": "xyz", "w_WB_W": "xyz"}
+    return values_of(message, [f"{field}.{x}" for name, field in _FIELDS.items() for x in xyz[name]])
 
 
 def body_state_to_msg(

@@ -48,7 +48,7 @@ from msg_adapters.impact import RESOLVED_IMPACT
 from msg_adapters.rejected_fields import CONTACT_MODE, check_unread
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Sequence
 
     from contact_dynamics.contact.uncertainty import Uncertain
     from contact_dynamics.world import World
@@ -90,7 +90,7 @@ def asked_contact_modes(
     world: World,
     world_frame: str,
     *,
-    read_if: Iterable[ReadIf],
+    read_if: tuple[ReadIf, ...],
     **own: object,
 ) -> ContactModeQuestion:
     """Return the question of what requests about one candidate and about many have in common.

@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import re
 from operator import attrgetter
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import TYPE_CHECKING, Any, Final, NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -24,9 +24,13 @@ from contact_dynamics.tolerances import MANGLED
 from msg_adapters.field_names import FIELDS, renamed
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator, Sequence
+    from collections.abc import Callable, Iterator, Sequence
 
     from msg_adapters.field_names import Refused
+
+
+Read: TypeAlias = "Callable[[object], tuple[Any, ...]]"
+"""A function that returns the values of some fields of a message (`values_of`)."""
 
 
 class When(NamedTuple):
@@ -78,20 +82,35 @@ class ReadIf(NamedTuple):
     conditions: tuple[When, ...]
 
 
-def check_unread(request: object, table: Iterable[ReadIf]) -> None:
+def check_unread(request: object, table: tuple[ReadIf, ...]) -> None:
     """Raise `InvalidFieldError` for a value in a field that is not read, and name the field."""
-    for fields, conditions in table:
-        if any(condition.is_met(request) for condition in conditions):
+    _, rows = _ROWS.get((type(request), id(table))) or _rows(type(request), table)
+    for read, defaults, fields, conditions in rows:
+        if read(request) == defaults or any(condition.is_met(request) for condition in conditions):
             continue
-        for field in fields:
-            for leaf in _leaves(request, field):
-                found = leaf.read(request)
-                if found != leaf.default and not _is_empty(found):
-                    known = _either([condition.words(request) for condition in conditions])
-                    allowed = f"left out unless {known}"
-                    shown = found if isinstance(found, str) or not hasattr(found, "__iter__") else list(found)
-                    hint = conditions[0].remedy(request)
-                    raise InvalidFieldError(leaf.path, shown, allowed, hint)
+        for leaf in _leaves(request, *fields):
+            found = leaf.read(request)
+            if found != leaf.default and not _is_empty(found):
+                known = _either([condition.words(request) for condition in conditions])
+                allowed = f"left out unless {known}"
+                shown = found if isinstance(found, str) or not hasattr(found, "__iter__") else list(found)
+                hint = conditions[0].remedy(request)
+                raise InvalidFieldError(leaf.path, shown, allowed, hint)
+
+
+_Row: TypeAlias = tuple[Read, tuple[Any, ...], tuple[str, ...], tuple[When, ...]]
+
+_ROWS: Final[dict[tuple[type, int], tuple[tuple[ReadIf, ...], list[_Row]]]] = {}
+"""The rows of tables for types of requests, with a function that reads all fields of a row, and what it
+returns of an empty request. The table is kept because its `id` is part of the key."""
+
+
+def _rows(request_type: type, table: tuple[ReadIf, ...]) -> tuple[tuple[ReadIf, ...], list[_Row]]:
+    empty, rows = request_type(), list[_Row]()
+    for fields, conditions in table:
+        read = values_of(request_type, [leaf.path for leaf in _leaves(empty, *fields)])
+        rows.append((read, read(empty), fields, conditions))
+    return _ROWS.setdefault((request_type, id(table)), (table, rows))
 
 
 class _Leaf(NamedTuple):
@@ -102,15 +121,27 @@ class _Leaf(NamedTuple):
     default: object
 
 
-_KNOWN: Final[dict[tuple[type, str], tuple[_Leaf, ...]]] = {}
+_KNOWN: Final[dict[tuple[type, tuple[str, ...]], tuple[_Leaf, ...]]] = {}
 
 
-def _leaves(request: object, field: str) -> tuple[_Leaf, ...]:
-    """Return the leaves of a field of a request, whose type has the defaults."""
-    key = (type(request), field)
+def _leaves(request: object, *fields: str) -> tuple[_Leaf, ...]:
+    """Return the leaves of some fields of a request, whose type has the defaults."""
+    key = (type(request), fields)
     if key not in _KNOWN:
-        _KNOWN[key] = tuple(leaves_of(field, attrgetter(field)(type(request)())))
+        empty = type(request)()
+        _KNOWN[key] = tuple(leaf for each in fields for leaf in leaves_of(each, attrgetter(each)(empty)))
     return _KNOWN[key]
+
+
+def values_of(message: type, paths: Sequence[str]) -> Read:
+    """Return a function that returns the values of fields of a message, and then its class twice.
+
+    It reads the slots of messages made by ROS, whose properties take five times as long. The class is there
+    since a getter of one value would return no tuple.
+    """
+    is_ros = hasattr(message, "get_fields_and_field_types")
+    slots = ["_" + path.replace(".", "._") for path in paths] if is_ros else paths
+    return attrgetter(*slots, "__class__", "__class__")
 
 
 def leaves_of(path: str, default: object) -> Iterator[_Leaf]:
@@ -256,36 +287,39 @@ def in_fields(error: Refused) -> Refused:
 def _mangled(message: object) -> Iterator[tuple[str, float]]:
     """Yield the numbers of a message that are mangled, by their fields."""
     plan = _plan(type(message))
-    for path, number in zip(plan.number_paths, plan.numbers(message), strict=False):
-        if 0.0 < number < MANGLED:
-            yield path, number
+    numbers = plan.numbers(message)
+    for index in _mangled_among(numbers[: len(plan.number_paths)]):
+        yield plan.number_paths[index], numbers[index]
     for path, values in zip(plan.list_paths, plan.lists(message), strict=False):
-        if len(values):
-            yield from ((f"{path}{place}", number) for place, number in _mangled_in_list(values))
+        if len(values) == 0:
+            continue
+        if isinstance(values[0], float):
+            for index in _mangled_among(values):
+                yield f"{path}[{index}]", float(values[index])
+        elif field_names(values[0]):
+            for index, value in enumerate(values):
+                yield from ((f"{path}[{index}].{inner}", number) for inner, number in _mangled(value))
 
 
-def _mangled_in_list(values: Sequence[object]) -> Iterator[tuple[str, float]]:
-    if isinstance(values[0], float):
-        places: Iterable[int] = range(len(values))
-        if len(values) > _FEW:
-            numbers = np.asarray(values)
-            places = ((numbers > 0.0) & (numbers < MANGLED)).nonzero()[0].tolist()
-        for index in places:
-            number = values[index]
-            if isinstance(number, float) and 0.0 < number < MANGLED:
-                yield f"[{index}]", float(number)
-    elif field_names(values[0]):
-        for index, value in enumerate(values):
-            yield from ((f"[{index}].{path}", number) for path, number in _mangled(value))
+def _mangled_among(numbers: Sequence[float]) -> Sequence[int]:
+    """Return the indices of the mangled numbers."""
+    if len(numbers) > _FEW and not isinstance(numbers, tuple):
+        array = np.asarray(numbers)
+        found: list[int] = ((array > 0.0) & (array < MANGLED)).nonzero()[0].tolist()
+        return found
+    # There are hardly ever any, and without their indices the search takes half the time.
+    if not [number for number in numbers if 0.0 < number < MANGLED]:
+        return ()
+    return [index for index, number in enumerate(numbers) if 0.0 < number < MANGLED]
 
 
 class _Plan(NamedTuple):
     """The fields of a type of messages that are looked at, and functions that return all of their values."""
 
     number_paths: tuple[str, ...]
-    numbers: Callable[[object], tuple[float, ...]]
+    numbers: Read
     list_paths: tuple[str, ...]
-    lists: Callable[[object], tuple[Sequence[object], ...]]
+    lists: Read
 
 
 _PLANS: Final[dict[type, _Plan]] = {}
@@ -302,10 +336,4 @@ def _planned(message: object) -> _Plan:
     others = (bool, int, float, str, bytes)
     numbers = tuple(leaf.path for leaf in found if isinstance(leaf.default, float))
     lists = tuple(leaf.path for leaf in found if not isinstance(leaf.default, others))
-    # Two more values, because a getter of one returns no tuple.
-    is_ros = hasattr(message, "get_fields_and_field_types")  # whose properties take five times as long
-    read, read_lists = (
-        attrgetter(*["_" + path.replace(".", "._") if is_ros else path for path in paths], *["__class__"] * 2)
-        for paths in (numbers, lists)
-    )
-    return _Plan(numbers, read, lists, read_lists)
+    return _Plan(numbers, values_of(type(message), numbers), lists, values_of(type(message), lists))
