@@ -21,11 +21,13 @@ from contact_dynamics.tolerances import LENGTH_ROUNDING
 from contact_dynamics.validation import check_unit
 from contact_dynamics_interfaces.msg import BodyState as BodyStateMsg
 from msg_adapters.field_names import renamed
-from msg_adapters.rejected_fields import Read, values_of
+from msg_adapters.rejected_fields import values_of
 from msg_adapters.stamps import stamp_ns_from_msg, stamp_to_msg
 from msg_adapters.transforms import check_frame
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from contact_dynamics.validation import FloatArray
     from contact_dynamics.world import World
 
@@ -73,7 +75,7 @@ def body_state_from_msg(
 
 
 @lru_cache
-def _reader(message: type) -> Read:
+def _reader(message: type) -> Callable[[object], tuple[float, ...]]:
     """Return a function that reads the numbers of a state."""
     xyz = {"p_WB_W": "xyz", "q_WB": "xyzw", "v_WB_W": "xyz", "w_WB_W": "xyz"}
     return values_of(message, [f"{field}.{x}" for name, field in _FIELDS.items() for x in xyz[name]])

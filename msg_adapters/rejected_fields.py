@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import re
 from operator import attrgetter
-from typing import TYPE_CHECKING, Any, Final, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, Final, NamedTuple, TypeAlias, TypeVar, cast
 
 import numpy as np
 
@@ -29,8 +29,7 @@ if TYPE_CHECKING:
     from msg_adapters.field_names import Refused
 
 
-Read: TypeAlias = "Callable[[object], tuple[Any, ...]]"
-"""A function that returns the values of some fields of a message (`values_of`)."""
+Value = TypeVar("Value")
 
 
 class When(NamedTuple):
@@ -98,7 +97,9 @@ def check_unread(request: object, table: tuple[ReadIf, ...]) -> None:
                 raise InvalidFieldError(leaf.path, shown, allowed, hint)
 
 
-_Row: TypeAlias = tuple[Read, tuple[Any, ...], tuple[str, ...], tuple[When, ...]]
+_Row: TypeAlias = tuple[
+    "Callable[[object], tuple[object, ...]]", tuple[object, ...], tuple[str, ...], tuple[When, ...]
+]
 
 _ROWS: Final[dict[tuple[type, int], tuple[tuple[ReadIf, ...], list[_Row]]]] = {}
 """The rows of tables for types of requests, with a function that reads all fields of a row, and what it
@@ -133,7 +134,7 @@ def _leaves(request: object, *fields: str) -> tuple[_Leaf, ...]:
     return _KNOWN[key]
 
 
-def values_of(message: type, paths: Sequence[str]) -> Read:
+def values_of(message: type, paths: Sequence[str]) -> Callable[[object], tuple[Value, ...]]:
     """Return a function that returns the values of fields of a message, and then its class twice.
 
     It reads the slots of messages made by ROS, whose properties take five times as long. The class is there
@@ -294,8 +295,8 @@ def _mangled(message: object) -> Iterator[tuple[str, float]]:
         if len(values) == 0:
             continue
         if isinstance(values[0], float):
-            for index in _mangled_among(values):
-                yield f"{path}[{index}]", float(values[index])
+            floats = cast("Sequence[float]", values)
+            yield from ((f"{path}[{index}]", float(floats[index])) for index in _mangled_among(floats))
         elif field_names(values[0]):
             for index, value in enumerate(values):
                 yield from ((f"{path}[{index}].{inner}", number) for inner, number in _mangled(value))
@@ -317,9 +318,9 @@ class _Plan(NamedTuple):
     """The fields of a type of messages that are looked at, and functions that return all of their values."""
 
     number_paths: tuple[str, ...]
-    numbers: Read
+    numbers: Callable[[object], tuple[float, ...]]
     list_paths: tuple[str, ...]
-    lists: Read
+    lists: Callable[[object], tuple[Sequence[object], ...]]
 
 
 _PLANS: Final[dict[type, _Plan]] = {}
