@@ -5,16 +5,10 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
-from typing import Final
+from typing import TYPE_CHECKING
 
-LAWS: Final = ("poisson", "newton", "energetic", "in time")
-"""The names of the laws; a test compares them with `settings.Law`."""
-
-HORIZONS: Final = (0.02, 0.05, 0.1, 0.2)
-"""s, equal to `settings.HORIZONS`, as a test checks."""
-
-FIT_WINDOW: Final = 0.1
-"""s, equal to `settings.FIT_WINDOW`, as the same test checks."""
+if TYPE_CHECKING:
+    from contact_dynamics.evaluation.settings import Law
 
 
 def evaluate_parser() -> argparse.ArgumentParser:
@@ -62,21 +56,18 @@ def _add_what_is_asked(parser: argparse.ArgumentParser) -> None:
     asked.add_argument(
         "--horizons",
         type=_list_of_seconds,
-        default=HORIZONS,
         metavar="MS,MS",
         help="look-ahead times of the predictions, ms (default: 20,50,100,200)",
     )
     asked.add_argument(
         "--laws",
         type=_laws,
-        default=LAWS,
         metavar="LAW,LAW",
-        help=f"impact laws: {', '.join(LAWS)} (default: all)",
+        help="impact laws: poisson, newton, energetic, in time (default: all)",
     )
     asked.add_argument(
         "--fit-window",
         type=_seconds,
-        default=FIT_WINDOW,
         metavar="MS",
         help="length of the window of states to which a flight is fitted, ms (default: 100)",
     )
@@ -94,9 +85,9 @@ def _add_who_does_it(parser: argparse.ArgumentParser) -> None:
     work.add_argument(
         "--jobs",
         type=_count,
-        default=1,
         metavar="N",
-        help="number of processes on this machine, which share recordings, or bodies and events (default: 1)",
+        help="number of processes on this machine, which share recordings, or bodies and events (default: "
+        "one per processor, and fewer for short recordings)",
     )
     work.add_argument(
         "--dask",
@@ -144,12 +135,15 @@ def _seconds(text: str) -> float:
     return value
 
 
-def _laws(text: str) -> tuple[str, ...]:
-    laws = tuple(each.strip() for each in text.split(","))
+def _laws(text: str) -> tuple[Law, ...]:
+    from contact_dynamics.evaluation.settings import Law  # not needed for --help
+
+    known = {law.value: law for law in Law}
+    laws = [each.strip() for each in text.split(",")]
     for law in laws:
-        if law not in LAWS:
-            raise argparse.ArgumentTypeError(f"must be one of {', '.join(LAWS)}, got {law!r}")
-    return laws
+        if law not in known:
+            raise argparse.ArgumentTypeError(f"must be one of {', '.join(known)}, got {law!r}")
+    return tuple(known[law] for law in laws)
 
 
 def _count(text: str) -> int:

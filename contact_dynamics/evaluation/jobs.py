@@ -18,6 +18,7 @@ import os
 import re
 from concurrent.futures import FIRST_COMPLETED, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
@@ -171,7 +172,24 @@ class ResultsFolder:
 LOCAL: Final = "local:"
 """Prefix of a Dask address for workers on this machine, such as ``local:2``."""
 
+PROCESS_BYTES: Final = 1 << 20
+PROCESS_TOSSES: Final = 8
+"""Bytes of logs, or number of tosses, whose evaluation takes several times as long as to start a process."""
+
 Done = tuple[int, dict[str, Any]]
+
+
+def processes_for(jobs: Sequence[Job]) -> int:
+    """Return the default number of processes: one per processor, and fewer if there is little work."""
+    work = 0.0
+    for source in (job.source for job in jobs):
+        if source.is_toss:
+            work += 1.0 / PROCESS_TOSSES
+        else:
+            with suppress(OSError):  # `run_job` reports it
+                files = source.path.iterdir() if source.path.is_dir() else [source.path]
+                work += sum(file.stat().st_size for file in files) / PROCESS_BYTES
+    return min(os.cpu_count() or 1, 1 + int(work))
 
 
 def run_jobs(jobs: Sequence[Job], *, processes: int = 1, dask: str = "") -> Iterator[Done]:

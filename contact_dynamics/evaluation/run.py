@@ -9,7 +9,14 @@ from typing import TYPE_CHECKING, Any, Final
 
 from contact_dynamics.evaluation.arguments import evaluate_parser
 from contact_dynamics.evaluation.command import NOTHING, check_writable, run_on_recordings
-from contact_dynamics.evaluation.jobs import Job, ResultsFolder, code_versions, failed, run_jobs
+from contact_dynamics.evaluation.jobs import (
+    Job,
+    ResultsFolder,
+    code_versions,
+    failed,
+    processes_for,
+    run_jobs,
+)
 from contact_dynamics.evaluation.log_states import parameters_of
 from contact_dynamics.evaluation.plots import write_plots
 from contact_dynamics.evaluation.report import report, report_changes
@@ -21,7 +28,7 @@ from contact_dynamics.evaluation.result import (
     write_csv,
     write_parquet,
 )
-from contact_dynamics.evaluation.settings import Law, Settings
+from contact_dynamics.evaluation.settings import Settings
 from contact_dynamics.evaluation.significance import changes
 from contact_dynamics.evaluation.sources import find_sources
 from contact_dynamics.nodes.parameter_file import ParameterFile
@@ -43,11 +50,8 @@ def main(arguments: list[str]) -> int:
 
 
 def _evaluate(given: argparse.Namespace) -> int:
-    settings = Settings(
-        horizons=given.horizons,
-        laws=tuple(Law(name) for name in given.laws),
-        fit_window=given.fit_window,
-    )
+    chosen = {name: getattr(given, name) for name in ("horizons", "laws", "fit_window")}
+    settings = Settings(**{name: value for name, value in chosen.items() if value is not None})
     _check_writable(given)
     against = _against(given.against)
     if given.config is not None:
@@ -118,9 +122,12 @@ def _all(
     before = len(found)
     if found:
         print(f"{len(found)} of {len(jobs)} recordings were evaluated before", file=sys.stderr)
+    waiting = [jobs[i] for i in left]
     progress = Progress("evaluating", end=len(left))
     try:
-        for done, content in run_jobs([jobs[i] for i in left], processes=given.jobs, dask=given.dask):
+        for done, content in run_jobs(
+            waiting, processes=given.jobs or processes_for(waiting), dask=given.dask
+        ):
             job = jobs[left[done]]
             if folder is not None:
                 folder.put(job, content)

@@ -38,12 +38,11 @@ COPIES = 8  # of a recording that is evaluated in a third of a second
 COUNT = 5  # recordings that are evaluated in turn, each in a small part of a second
 
 
-def test_the_arguments_name_what_the_settings_have() -> None:
-    given, default = evaluate_parser().parse_args([]), Settings()
-    assert given.laws == tuple(law.value for law in default.laws)
-    assert given.horizons == default.horizons
-    assert given.fit_window == default.fit_window
-    assert evaluate_parser().parse_args(["--horizons", "20,50,100,200"]).horizons == default.horizons
+def test_help_names_the_defaults() -> None:
+    text, default = " ".join(evaluate_parser().format_help().split()), Settings()
+    assert f"impact laws: {', '.join(law.value for law in default.laws)} (default: all)" in text
+    assert f"(default: {','.join(f'{1e3 * each:g}' for each in default.horizons)})" in text
+    assert f"(default: {1e3 * default.fit_window:g})" in text
 
 
 @pytest.fixture(scope="module")
