@@ -124,6 +124,7 @@ NOT_MEASURED: dict[
         "last 0.1 s",
     ],
     "docs/toss.md": [
+        "default 1e-7 m and m/s",  # PHASE_ERROR
         "contain 50 % or 90 % of the outcomes",
         "at most 0.2 ms",
         "by less than 1 nm",
