@@ -3,8 +3,10 @@
 
 from __future__ import annotations
 
+import inspect
 import math
-from collections.abc import Callable
+import re
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
@@ -15,9 +17,11 @@ from contact_dynamics.contact import linearised_cone
 from contact_dynamics.errors import InvalidFieldError, TooLargeError
 from contact_dynamics.questions import UncertainState
 from contact_dynamics.tumbling import rolling_curves
+from contact_dynamics.validation_types import _meaning
 from hostile_values import CALLS
 from hostile_values.motions import FREE
 from hostile_values.shared import STATE
+from test_hostile_values import numeric
 
 NAN = math.nan
 
@@ -45,7 +49,9 @@ RANGES: list[tuple[str, str, Any]] = [
     *[("planar_in_space", "axes_W", value) for value in ([[1, 0, 0], [1, 0, 0]], [[2, 0, 0], [0, 1, 0]])],
     *[("BodyState", "stamp_ns", value) for value in (NAN, 0.5, "now", 10**400)],
     ("forced_motion", "max_steps", 0.5),
-    ("spatial_sliding_modes", "planes", 2.5),
+    *[("spatial_sliding_modes", "planes", value) for value in (2.5, 1)],
+    *[("spatial_impact_distribution", "samples", value) for value in (101, 0)],
+    ("linearised_cone", "facets", 2),
     *[("SpatialContactProblem", "friction_facets", value) for value in (2, 8.5, 1_000_000)],
 ]
 
@@ -55,6 +61,60 @@ def test_a_number_out_of_its_range_is_named(name: str, argument: str, value: Any
     with pytest.raises(InvalidFieldError) as raised:
         call(name, **{argument: value})
     assert str(raised.value).startswith(argument)
+
+
+OUTSIDE = {">= 0": (-1.0,), "> 0": (0.0, -1.0), "in [0, 1]": (-0.5, 1.5), ">= 1": (0.0,), "> 2": (2.0,)}
+"""Values outside of each range that the descriptions of arguments state."""
+
+IGNORED = {("covariance_along", "samples"), ("covariance_along", "seed")}
+"""Arguments that the call in `CALLS` does not use."""
+
+MAY_BE_INFINITE = {"body_curvature", "surface_curvature", "along", "across", "max_normal_forces"}
+
+
+def wrong_values(call: Callable[..., Any], arguments: dict[str, Any]) -> Iterator[tuple[str, Any]]:
+    """Each numeric argument: not finite, outside of the range in its description, or of another shape."""
+    for argument, parameter in inspect.signature(call).parameters.items():
+        stated = _meaning(call, argument)
+        good = arguments.get(argument, parameter.default)
+        numbers = [NAN] if argument in MAY_BE_INFINITE else [NAN, math.inf]
+        for words, outside in OUTSIDE.items():
+            if re.search(rf"{re.escape(words)}(?!\.?\d)", stated):
+                numbers += outside
+                good = 1.0 if good is None else good
+        if isinstance(good, bool) or not (isinstance(good, (int, float)) or numeric(good)):
+            continue
+        right = np.array(good, dtype=np.float64)
+        yield argument, "text"
+        for number in numbers if right.size else ():
+            wrong = right.copy()
+            wrong.ravel()[-1:] = number
+            yield argument, wrong if right.ndim else number
+        if re.search(r"\bunit\b(?! tangents)", stated):
+            yield argument, 2.0 * right
+            yield argument, 0.0 * right
+        if right.ndim and re.match(r" \(\(.*?[34],?\)", stated):
+            yield argument, np.concatenate([right, right[..., -1:]], axis=-1)
+
+
+@pytest.mark.filterwarnings("ignore::contact_dynamics.errors.FarContactWarning")
+def test_a_number_outside_of_the_stated_range_is_an_error_that_names_its_argument() -> None:
+    """For every public call. Numbers that are not finite and arrays of another shape are errors too."""
+    tried, wrong = 0, []
+    for name, (function, arguments) in CALLS.items():
+        for argument, value in wrong_values(function, arguments):
+            tried += 1
+            named = "samples" if (name, argument) == ("TossSampling", "count") else argument
+            try:
+                function(**{**arguments, argument: value})
+            except InvalidFieldError as error:
+                if not (named in str(error).partition(" must")[0] and ", got " in str(error)):
+                    wrong.append((name, argument, value, str(error)))
+            else:
+                if (name, argument) not in IGNORED:
+                    wrong.append((name, argument, value, "no error"))
+    assert wrong == []
+    assert tried > 1000
 
 
 BATCH = {

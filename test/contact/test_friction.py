@@ -11,7 +11,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from contact_dynamics.contact.friction import linearised_cone
-from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.numerics.vectors import tangents_towards
 from contact_dynamics.plane.types import (
     OrientedPoint,
@@ -77,8 +76,3 @@ def test_the_pyramid_is_inside_the_round_cone(
     # Evenly spread: neighbours are all the same angle apart, and the first differs from the last.
     turns = np.sum(across * np.roll(across, 1, axis=0), axis=1)
     np.testing.assert_allclose(turns, friction**2 * math.cos(2.0 * math.pi / facets), atol=1e-12)
-
-
-def test_two_facets_are_no_cone() -> None:
-    with pytest.raises(InvalidFieldError, match=r"^facets must be .*, got 2"):
-        linearised_cone(np.array([0.0, 0.0, 1.0]), 0.5, 2)

@@ -89,22 +89,6 @@ def test_an_answer_belongs_to_its_problem() -> None:
         refused_modes(PLANAR, flat, margin_length=1.0)  # type: ignore[call-overload]
 
 
-@pytest.mark.parametrize(
-    ("problem", "changes", "words"),
-    [
-        (PLANAR, {"velocity_tolerance": -1.0}, "velocity_tolerance"),
-        (PLANAR, {"acceleration_tolerance": float("nan")}, "acceleration_tolerance"),
-        (SPATIAL, {"force_W": [0.0, 1.0]}, "force_W"),
-        (SPATIAL, {"torque_W": [0.0, 0.0, float("inf")]}, "torque_W"),
-        (SPATIAL, {"friction_facets": 2}, "friction_facets"),
-        (SPATIAL, {"velocity_tolerance": -1.0}, "velocity_tolerance"),
-    ],
-)
-def test_a_problem_checks_itself_once(problem: object, changes: dict[str, object], words: str) -> None:
-    with pytest.raises(InvalidFieldError, match=words):
-        dataclasses.replace(problem, **changes)  # type: ignore[type-var]
-
-
 def test_too_many_planar_contacts_are_refused() -> None:
     with pytest.raises(TooLargeError, match="at most 1000"):
         dataclasses.replace(PLANAR, contacts=FEET * 501)

@@ -11,7 +11,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from contact_dynamics.contact.contact import Contact
-from contact_dynamics.errors import InvalidFieldError, SeparatingContactError
+from contact_dynamics.errors import SeparatingContactError
 from contact_dynamics.impact import (
     ImpactDistribution,
     ImpactOutcome,
@@ -149,19 +149,3 @@ def compare(answer: ImpactDistribution, after: np.ndarray, whole: np.ndarray, co
     errors = np.sqrt(np.maximum(shares * (1.0 - shares), 1.0 / count) / count)
     assert (abs(answer.probabilities - shares) <= 5.0 * errors).all()
     assert answer.missed == pytest.approx(1.0 - shares.sum(), abs=5.0 * 0.5 / math.sqrt(count))
-
-
-@pytest.mark.parametrize(
-    ("covariance", "samples", "text"),
-    [
-        (np.diag([1.0, -1.0, *np.ones(10)]), 100, "covariance"),
-        (np.eye(12) + 0.5 * np.eye(12, k=1), 100, "covariance"),
-        (np.eye(2), 100, "covariance"),
-        (np.eye(12), 101, "samples"),
-        (np.eye(12), 0, "samples"),
-    ],
-)
-def test_bad_input_is_refused(covariance: np.ndarray, samples: int, text: str) -> None:
-    state = BodyState(p_WB_W=[0.0, 0.0, 1.0], q_WB=IDENTITY, v_WB_W=[0.0, 0.0, -1.0])
-    with pytest.raises(InvalidFieldError, match=text):
-        spatial_impact_distribution(BODY, state, FOOT, covariance=covariance, samples=samples)

@@ -154,8 +154,6 @@ def test_a_body_without_corners_is_refused() -> None:
     ("field", "arguments"),
     [
         ("shape_B", (CUBE_B[0], FLOOR, UP, 1.0)),
-        ("p_WS_W", (CUBE_B, (0.0, 0.0), UP, 1.0)),
-        ("normal_W", (CUBE_B, FLOOR, (0.0, 0.0, 0.0), 1.0)),
         ("horizon", (CUBE_B, FLOOR, UP, -1.0)),
         ("horizon", (CUBE_B, FLOOR, UP, math.inf)),
     ],

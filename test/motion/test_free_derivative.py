@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.motion.free_derivative import state_derivatives
 from contact_dynamics.rigid_body.body import BodyState, MassProperties, angular_momentum
 from contact_dynamics.tumbling import FreeMotion, free_motion
@@ -171,8 +170,3 @@ def test_what_no_double_holds_is_nan() -> None:
 
 def test_no_times_no_derivatives() -> None:
     assert state_derivatives(motion_of("flat"), []).shape == (0, 12, 12)
-
-
-def test_times_are_finite() -> None:
-    with pytest.raises(InvalidFieldError, match="seconds"):
-        state_derivatives(motion_of("flat"), [math.nan])

@@ -285,14 +285,6 @@ def test_a_window_beyond_prediction() -> None:
         fit(motion, published(motion, np.linspace(0.0, 3000.0, 2000), None))
 
 
-@pytest.mark.parametrize("field", ["position", "orientation", "linear_velocity", "angular_velocity"])
-@pytest.mark.parametrize("value", [0.0, -1.0, math.nan])
-def test_noise_is_positive(field: str, value: float) -> None:
-    good = {"position": 1.0, "orientation": 1.0}
-    with pytest.raises(InvalidFieldError, match=f"{field}_noise"):
-        StateNoise(**{**good, field: value})
-
-
 @seeds(range(6))
 def test_needles_are_found_whose_spin_is_lost_in_their_momentum(seed: int) -> None:
     rng = np.random.default_rng(seed)

@@ -328,12 +328,6 @@ def test_endless_work_is_refused() -> None:
         forced_motion(BODY, state(), max_steps=10).state_at(1e9)
 
 
-@pytest.mark.parametrize("times", [[math.nan], [[0.0]], ["soon"]])
-def test_times_are_a_flat_list_of_numbers(times: object) -> None:
-    with pytest.raises(InvalidFieldError, match="seconds"):
-        forced_motion(BODY, state()).at(times)
-
-
 def test_importing_it_does_not_import_scipy() -> None:
     import subprocess
     import sys

@@ -281,15 +281,8 @@ def test_automatic_says_why_it_went_to_space() -> None:
 
 
 def test_numbers_without_sense_are_refused() -> None:
-    with pytest.raises(InvalidFieldError, match="force_W"):
-        ContactModeQuestion(body=CUBE, force_W=[math.nan, 0, 0])
     with pytest.raises(InvalidFieldError, match=r"problem must be Problem\.AUTOMATIC .* got 1"):
         ContactModeQuestion(body=CUBE, problem=1)  # type: ignore[arg-type]
-    with pytest.raises(InvalidFieldError, match=r"friction_facets must be .*, got 2"):
-        ContactModeQuestion(body=CUBE, friction_facets=2)
-    for name in ("margin_length", "velocity_tolerance", "distance_tolerance", "out_of_plane_tolerance"):
-        with pytest.raises(InvalidFieldError, match=f"{name} must be .*, got -1"):
-            ContactModeQuestion(body=CUBE, **{name: -1.0})  # type: ignore[arg-type]
     n = 1001
     many = ContactSet(
         p_WC_W=np.zeros((n, 3)),

@@ -13,14 +13,6 @@ from hypothesis import strategies as st
 
 from contact_dynamics.errors import ContactDynamicsError
 from contact_dynamics.questions import TossQuestion, ask
-from contact_dynamics.questions.many import (
-    ManyImpactsQuestion,
-    ManyTumblingsQuestion,
-    answer_impacts,
-    answer_tumblings,
-)
-from contact_dynamics.questions.many_contact_modes import ManyContactModesQuestion
-from contact_dynamics.questions.many_contact_modes import answer as answer_contact_modes
 from questions import fuzzed
 
 CONTEXT = fuzzed.context()
@@ -53,16 +45,7 @@ def check_answered(question: Any) -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)  # numbers that overflow are not hidden in an answer
         with contextlib.suppress(ContactDynamicsError):
-            if isinstance(question, ManyTumblingsQuestion):
-                answer_tumblings(question, CONTEXT)
-            elif isinstance(question, ManyImpactsQuestion):
-                answer_impacts(question, CONTEXT)
-            elif isinstance(question, ManyContactModesQuestion):
-                answer_contact_modes(question, CONTEXT)
-            elif isinstance(question, TossQuestion):
-                ask(question, FLATS)
-            else:
-                ask(question, CONTEXT)
+            ask(question, FLATS if isinstance(question, TossQuestion) else CONTEXT)
 
 
 HASTE = settings(

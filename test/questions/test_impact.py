@@ -244,15 +244,6 @@ def test_what_cannot_be_answered_is_named(
 
 
 def test_numbers_without_sense_are_refused() -> None:
-    for name in ("horizon", "out_of_plane_tolerance", "velocity_tolerance", "distance_tolerance"):
-        with pytest.raises(InvalidFieldError, match=f"{name} must be .*, got -1"):
-            ImpactQuestion(body=CUBE, **{name: -1.0})  # type: ignore[arg-type]
     for name in ("problem", "restitution_law", "several_contacts_law"):
         with pytest.raises(InvalidFieldError, match=rf"^{name} must be .*, got 'newton'"):
             ImpactQuestion(body=CUBE, **{name: "newton"})  # type: ignore[arg-type]
-    for name in ("strike_window", "hold_step"):
-        with pytest.raises(InvalidFieldError, match=f"{name} must be .*, got nan"):
-            InTime(**{name: math.nan})  # type: ignore[arg-type]
-    for name in ("strike_window", "max_strikes", "hold_step"):
-        with pytest.raises(InvalidFieldError, match=f"{name} must be .*, got 0"):
-            InTime(**{name: 0})  # type: ignore[arg-type]

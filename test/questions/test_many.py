@@ -18,8 +18,6 @@ from contact_dynamics.questions.many import (
     ManyImpactsQuestion,
     ManyStates,
     ManyTumblingsQuestion,
-    answer_impacts,
-    answer_tumblings,
 )
 from contact_dynamics.rigid_body.body import BodyState
 from questions.known_world import CUBE, WORLD
@@ -49,13 +47,11 @@ def single(states: ManyStates, i: int) -> BodyState:
 
 def test_many_tumblings_are_as_many_single_ones() -> None:
     states, seconds = drawn(), np.linspace(0.0, 2.0, COUNT)
-    found = answer_tumblings(ManyTumblingsQuestion(body="cube", states=states, seconds=seconds), KNOWN)
+    found = ask(ManyTumblingsQuestion(body="cube", states=states, seconds=seconds), KNOWN)
     for i in range(COUNT):
         question = TumblingQuestion(
-            body="cube", state=single(states, i), sampling=AtTimes(times=[abs(seconds[i])])
+            body="cube", state=single(states, i), sampling=AtTimes(times=[seconds[i]])
         )
-        if seconds[i] < 0.0:
-            continue
         alone = ask(question, KNOWN).trajectory
         np.testing.assert_allclose(found.states.p_WB_W[i], alone.p_WB_W[0], rtol=0.0, atol=1e-14)
         assert abs(found.states.q_WB[i] @ alone.q_WB[0]) == pytest.approx(1.0, abs=1e-14)
@@ -71,7 +67,7 @@ def test_many_impacts_are_as_many_single_ones(law: RestitutionLaw) -> None:
         body="cube", states=states, p_WC_W=points, normals_W=np.array([[0.0, 0.0, 1.0]]),
         frictions=np.array([0.4]), restitutions=np.linspace(0.0, 1.0, COUNT), restitution_law=law,
     )  # fmt: skip
-    found = answer_impacts(question, KNOWN)
+    found = ask(question, KNOWN)
     assert 5 < found.separates.sum() < COUNT - 5
     for i in range(COUNT):
         if found.separates[i]:
@@ -94,30 +90,26 @@ def test_many_impacts_are_as_many_single_ones(law: RestitutionLaw) -> None:
 def test_no_state_and_no_impact_are_answered() -> None:
     none = ManyStates(p_WB_W=NOTHING, q_WB=np.zeros((0, 4)), v_WB_W=NOTHING, w_WB_W=NOTHING)
     asked = ManyTumblingsQuestion(body=CUBE, states=none, seconds=np.array([0.5]))
-    assert len(answer_tumblings(asked).states) == 0
+    assert len(ask(asked).states) == 0
     up = drawn()
     up = replace(up, v_WB_W=np.tile([0.0, 0.0, 9.0], (COUNT, 1)), w_WB_W=np.zeros((COUNT, 3)))
     question = ManyImpactsQuestion(
         body=CUBE, states=up, p_WC_W=up.p_WB_W, normals_W=np.array([[0.0, 0.0, 1.0]]),
         frictions=np.array([0.4]), restitutions=np.array([0.0]),
     )  # fmt: skip
-    assert answer_impacts(question).separates.all()
+    assert ask(question).separates.all()
 
 
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
         ({"frictions": np.ones(3)}, "frictions must be 40, or one for all.*, got 3 rows"),
-        ({"frictions": np.array([-1.0])}, r"frictions\[0\] must be .*, got -1"),
-        ({"restitutions": np.full(COUNT, 2.0)}, r"restitutions\[0\] must be .*, got 2"),
-        ({"normals_W": np.ones((1, 3))}, r"normals_W\[0\] must be a unit.*, got \[1.0, 1.0, 1.0\]"),
         (
             {"normals_W": np.tile([0.0, 0.0, 1.0], (2, 1))},
             "normals_W must be 40, or one for all.*, got 2 rows",
         ),
         ({"p_WC_W": np.ones((2, 3))}, "p_WC_W must be .*, got shape"),
         ({"restitution_law": "newton"}, "restitution_law must be .* got 'newton'"),
-        ({"velocity_tolerance": -1.0}, "velocity_tolerance must be .*, got -1"),
     ],
 )
 def test_what_is_not_allowed_is_named(changes: dict[str, Any], words: str) -> None:

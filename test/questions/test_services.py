@@ -11,7 +11,8 @@ from typing import Any
 
 import pytest
 
-from contact_dynamics.errors import NotSupportedError
+from contact_dynamics.errors import InvalidFieldError, NotSupportedError
+from contact_dynamics.questions import ask
 from contact_dynamics.questions.services import (
     SERVICES,
     Answer,
@@ -81,3 +82,8 @@ def test_another_type_is_rejected_by_name() -> None:
 def test_a_question_of_no_service_is_rejected_by_name() -> None:
     with pytest.raises(NotSupportedError, match=r"kinds: .*Toss.*, got .*services:Question"):
         service_of(Question())
+
+
+def test_what_is_no_question_is_refused() -> None:
+    with pytest.raises(InvalidFieldError, match="question must be a TumblingQuestion or an Imp"):
+        ask("where?")  # type: ignore[call-overload]

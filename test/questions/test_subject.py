@@ -21,7 +21,6 @@ from contact_dynamics.motion.integrated import Method
 from contact_dynamics.questions import (
     AtTimes,
     Context,
-    Defaults,
     PublishedState,
     StateStore,
     TumblingQuestion,
@@ -281,17 +280,6 @@ def test_what_is_not_known_is_named() -> None:
         subject_of("dog", state(), known)
     with pytest.raises(InvalidFieldError, match=r"body_name must be .*, got nothing"):
         subject_of(Body(name="", mass_properties=CUBE.mass_properties), PublishedState(), known)
-
-
-def test_constructors_refuse_what_makes_no_sense() -> None:
-    with pytest.raises(InvalidFieldError, match=r"fit_window must be .*, got -1"):
-        PublishedState(fit_window=-1.0)
-    with pytest.raises(InvalidFieldError, match=r"state\.covariance must be .*, got variances"):
-        UncertainState(state=state(), covariance=-np.eye(12))
-    with pytest.raises(InvalidFieldError, match=r"horizon must be .*, got -1"):
-        Defaults(horizon=-1.0)
-    with pytest.raises(InvalidFieldError, match=r"rate must be .*, got 0"):
-        Defaults(rate=0.0)
 
 
 def test_a_state_from_the_future_never_becomes_the_newest() -> None:

@@ -70,21 +70,15 @@ def test_a_distribution_comes_with_samples() -> None:
 @pytest.mark.parametrize(
     ("make", "message"),
     [
-        (lambda: TossQuestion(body="cube", horizon=0.0), "horizon must be .*, got 0"),
-        (lambda: TossQuestion(body="cube", rate=float("nan")), "rate must be .*, got nan"),
         (lambda: TossQuestion(body="cube", max_alternatives=-1), "max_alternatives must be .*, got -1"),
         (lambda: TossSampling(count=0), "samples must be .*, got 0"),
         (lambda: TossSampling(count=2001), "samples must be at most 2000.*, got 2001"),
         (lambda: TossSampling(count=1, strikes=11), "strikes must be .*, got 11"),
-        (lambda: TossSampling(count=1, seed=-1), "seed must be .*, got -1"),
-        (lambda: TossUncertainty(velocity=-1.0), "velocity must be .*, got -1"),
         (
             lambda: TossUncertainty(covariance=np.zeros((101, 101))),
             "covariance must be at most 100.*, got 101",
         ),
-        (lambda: TossUncertainty(covariance=-np.eye(6)), "covariance must be .*, got variances"),
         (lambda: TossUncertainty(covariance=np.zeros((5, 6))), "covariance must be .*, got"),
-        (lambda: TossUncertainty(lasting_factors=[-1.0]), "lasting_factors must be .*, got"),
         (
             lambda: TossUncertainty(lasting_factor_stds=[0.1]),
             "lasting_factor_stds must be 0.*, got 1 numbers",

@@ -33,12 +33,6 @@ vectors = st.tuples(*[st.floats(-5.0, 5.0)] * 3).map(np.array)
 quaternions = st.integers(0, 2**32 - 1).map(lambda seed: Rotation.random(random_state=seed).as_quat())
 
 
-@pytest.mark.parametrize("mass", [0.0, -1.0, math.nan, math.inf, "heavy", None])
-def test_mass_that_is_not_a_positive_number_is_refused(mass: object) -> None:
-    with pytest.raises(InvalidFieldError, match=r"mass must be .*, got "):
-        MassProperties(mass=mass, I_B=np.eye(3))  # type: ignore[arg-type]
-
-
 @pytest.mark.parametrize(
     ("inertia", "words"),
     [
@@ -46,9 +40,6 @@ def test_mass_that_is_not_a_positive_number_is_refused(mass: object) -> None:
         (np.diag([1.0, -1.0, 1.0]), "positive definite"),
         (np.diag([0.0, 1.0, 1.0]), "positive definite"),
         (np.array([[1.0, 0.1, 0.0], [0.2, 1.0, 0.0], [0.0, 0.0, 1.0]]), "symmetric"),
-        (np.full((3, 3), math.nan), "finite"),
-        (np.eye(2), r"of shape \(3, 3\), got shape \(2, 2\)"),
-        ("round", "numbers of shape"),
     ],
 )
 def test_an_inertia_that_no_body_has_is_refused(inertia: np.ndarray, words: str) -> None:
@@ -69,22 +60,6 @@ def test_what_was_given_stays_the_callers_and_what_is_kept_cannot_change() -> No
     assert body.I_B[0, 0] == 1.0
     with pytest.raises(ValueError, match="read-only"):
         body.I_B[0, 0] = 2.0
-
-
-@pytest.mark.parametrize(
-    ("field", "value", "words"),
-    [
-        ("q_WB", np.array([0.0, 0.0, 0.0, 0.99]), "q_WB must be .* norm 0.99"),
-        ("q_WB", np.zeros(4), "q_WB must be .* norm 0"),
-        ("q_WB", np.array([0.0, 0.0, 1.0]), "q_WB must be .*shape"),
-        ("p_WB_W", np.array([0.0, math.nan, 0.0]), "p_WB_W"),
-        ("v_WB_W", np.array([math.inf, 0.0, 0.0]), "v_WB_W"),
-        ("w_WB_W", np.zeros(2), r"w_WB_W must be .*, got shape \(2,\)"),
-    ],
-)
-def test_a_state_that_makes_no_sense_is_refused(field: str, value: np.ndarray, words: str) -> None:
-    with pytest.raises(InvalidFieldError, match=words):
-        BodyState(**{**REST, field: value})
 
 
 def test_a_quaternion_of_four_decimals_is_taken_and_made_unit() -> None:

@@ -148,11 +148,8 @@ def test_one_body_in_many_states() -> None:
         ("^I_B ", {"I_B": np.diag([1.0, 1.0, -1.0])}),
         ("^I_B ", {"I_B": np.eye(3) + np.eye(3, k=1)}),
         ("^I_B ", {"I_B": np.ones((2, 3, 3))}),
-        (r"^q_WB\[1\] must be .*, got norm 2", {"q_WB": [[0, 0, 0, 1], [0, 0, 0, 2], [0, 0, 0, 1]]}),
         ("^p_WB_W must be .*, got 2 rows", {"p_WB_W": np.zeros((2, 3))}),
-        (r"^v_WB_W\[2\] must be .*, got", {"v_WB_W": np.outer([0.0, 0.0, np.nan], np.ones(3))}),
         ("^seconds must be .*, got 2 rows", {"seconds": np.zeros(2)}),
-        (r"^seconds\[1\] must be .*, got nan", {"seconds": [0.0, np.nan, 0.0]}),
         ("^I_B must be .*, got principal moments", {"I_B": np.diag([1.0, 1.0, 3.0])}),
     ],
 )
@@ -183,10 +180,7 @@ def test_none_at_all() -> None:
         ("moments", ((1.0, 1.4), np.ones((2, 3)), 1.0)),
         ("moments", (np.ones((3, 3)), np.ones((2, 3)), 1.0)),
         ("moments", ((1.0, 1.4, 0.0), np.ones((2, 3)), 1.0)),
-        ("w_P", ((1.0, 1.4, 1.9), np.ones(3), 1.0)),
-        ("w_P", ((1.0, 1.4, 1.9), [[0.0, np.nan, 1.0]], 1.0)),
         ("seconds", ((1.0, 1.4, 1.9), np.ones((2, 3)), np.ones(3))),
-        ("seconds", ((1.0, 1.4, 1.9), np.ones((2, 3)), np.inf)),
     ],
 )
 def test_bad_input_is_refused_by_name(field: str, arguments: tuple[object, object, object]) -> None:

@@ -6,7 +6,6 @@ from __future__ import annotations
 import pytest
 
 from contact_dynamics.contact_modes import ModeVerdict, PlanarModeAnswer, Refusal, contact_modes
-from contact_dynamics.errors import InvalidFieldError, TooLargeError
 from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
 from contact_modes.evidence import planar_problem
 
@@ -75,13 +74,3 @@ def test_velocity_within_the_tolerance_counts_as_zero() -> None:
     assert letters(measured) == ["f"]
     assert measured.contact_velocities == ((0.0, 0.0),)
     assert measured.velocity_tolerance == 0.01
-
-
-def test_misuse_is_refused_by_name() -> None:
-    wrench = PlanarWrench(f=(0.0, 0.0))
-    with pytest.raises(InvalidFieldError, match="velocity_tolerance"):
-        contact_modes(planar_problem(BODY, AT_REST, [BELOW], wrench, velocity_tolerance=-1.0))
-    with pytest.raises(InvalidFieldError, match="acceleration_tolerance"):
-        contact_modes(planar_problem(BODY, AT_REST, [BELOW], wrench, acceleration_tolerance=float("nan")))
-    with pytest.raises(TooLargeError, match="contacts"):
-        contact_modes(planar_problem(BODY, AT_REST, [BELOW] * 1001, wrench))

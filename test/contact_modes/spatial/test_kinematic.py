@@ -14,7 +14,7 @@ from scipy.optimize import linprog
 from contact_dynamics.contact.contact import ContactSet
 from contact_dynamics.contact.curvature import Curvatures
 from contact_dynamics.contact_modes import spatial_kinematic_modes
-from contact_dynamics.errors import InvalidFieldError, TooLargeError
+from contact_dynamics.errors import TooLargeError
 from contact_dynamics.rigid_body.body import BodyState
 from sweeps import seeds
 
@@ -176,8 +176,6 @@ def test_approaching_and_leaving_contacts() -> None:
 def test_misuse_is_refused_by_name() -> None:
     with pytest.raises(TooLargeError, match="contacts"):
         spatial_kinematic_modes(state(), contact_set(polygon_on_table(65)))
-    with pytest.raises(InvalidFieldError, match="velocity_tolerance"):
-        spatial_kinematic_modes(state(), contact_set(TABLE), velocity_tolerance=-1.0)
 
 
 def test_a_few_contacts_do_not_import_scipy() -> None:

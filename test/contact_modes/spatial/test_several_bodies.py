@@ -431,7 +431,6 @@ def test_bodies_that_approach_are_an_impact() -> None:
         ({"pairs": [(2, None)] * 8}, r"pairs\[0\] must be two different indices below 2"),
         ({"states": []}, r"states must be 2, one for each body, got 0 states"),
         ({"forces_W": np.zeros((3, 3))}, r"forces_W must be of shape \(2, 3\)"),
-        ({"velocity_tolerance": -1.0}, r"velocity_tolerance must be >= 0"),
     ],
 )
 def test_errors_name_the_argument(change: dict[str, Any], error: str) -> None:

@@ -262,8 +262,6 @@ def test_without_contacts_only_nothing_is_held() -> None:
 def test_misuse_is_refused_by_name() -> None:
     with pytest.raises(InvalidFieldError, match="margin_length"):
         pushed(length=-1.0)
-    with pytest.raises(InvalidFieldError, match="friction_facets"):
-        pushed(facets=2)
     with pytest.raises(TooLargeError, match="edges"):
         pushed(facets=64)
 

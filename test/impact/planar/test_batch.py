@@ -101,12 +101,7 @@ def test_single_values_stand_for_all_rows() -> None:
     [
         ("masses", [1.0, 0.0], r"masses\[1\]"),
         ("inertias", -1.0, r"inertias\[0\]"),
-        ("frictions", [0.1, -0.1], r"frictions\[1\]"),
-        ("restitutions", [0.1, 1.5], r"restitutions\[1\]"),
-        ("normals", [[0.0, 1.0], [0.0, 2.0]], r"normals\[1\]"),
-        ("w", [0.0, math.nan], "w"),
         ("v", [[0.0, -1.0]] * 3, "lengths"),
-        ("velocity_tolerance", -1.0, "velocity_tolerance"),
     ],
 )
 def test_bad_rows_are_refused_by_name(field: str, value: object, text: str) -> None:

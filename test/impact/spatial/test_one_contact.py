@@ -364,22 +364,6 @@ def test_path_runs_from_nothing_to_the_total() -> None:
     assert answer.path_W[compression] == pytest.approx(answer.compression_W, rel=1e-14)
 
 
-@pytest.mark.parametrize(
-    ("field", "value", "text"),
-    [
-        ("friction", -0.1, "friction"),
-        ("friction", math.nan, "friction"),
-        ("restitution", 1.1, "restitution"),
-        ("n_W", [0.0, 0.0, 0.0], "normal_W"),
-        ("p_WC_W", [0.0, math.inf, 0.0], "p_WC_W"),
-        ("velocity_tolerance", -1.0, "velocity_tolerance"),
-    ],
-)
-def test_bad_input_is_refused_by_name(field: str, value: object, text: str) -> None:
-    with pytest.raises(InvalidFieldError, match=text):
-        solve({**random_problem(0), field: value})
-
-
 def test_separating_contact_is_refused() -> None:
     problem = random_problem(0)
     with pytest.raises(SeparatingContactError, match="v_n = "):

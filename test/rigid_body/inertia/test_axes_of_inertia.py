@@ -176,8 +176,6 @@ def test_the_ellipsoid_of_a_rod_is_a_cylinder() -> None:
 def test_what_has_no_principal_axes_or_no_ellipsoid_is_refused() -> None:
     with pytest.raises(InvalidFieldError, match=r"I_B must be .*symmetric"):
         principal_axes([[1.0, 0.1, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
-    with pytest.raises(InvalidFieldError, match=r"I_B must be .*finite"):
-        principal_axes(np.full((3, 3), math.nan))
     with pytest.raises(InvalidFieldError, match=r"I_B must be .*moments >= 0"):
         inertia_ellipsoid(np.diag([-1.0, 1.0, 1.0]))
     with pytest.raises(InvalidFieldError, match=r"level must be .*, got 0.0"):

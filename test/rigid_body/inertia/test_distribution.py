@@ -172,13 +172,10 @@ def test_a_line_or_a_point_is_no_body_for_dynamics() -> None:
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        ({"mass": -1.0}, "mass must be .*, got -1.0"),
-        ({"p_FB_F": np.array([0.0, math.nan, 0.0])}, "p_FB_F must be .*finite"),
         ({"I_B": np.diag([1.0, 1.0, 2.1])}, r"I_B must be .*I1 \+ I2 >= I3"),
         ({"I_B": np.diag([-1.0, 1.0, 1.0])}, r"I_B must be .*I1 \+ I2 >= I3"),
         ({"I_B": -np.eye(3)}, r"I_B must be .*I1 \+ I2 >= I3"),
         ({"I_B": np.array([[1.0, 0.1, 0.0], [0.2, 1.0, 0.0], [0.0, 0.0, 1.0]])}, "I_B must be .*symmetric"),
-        ({"I_B": np.eye(2)}, "I_B must be .*, got shape"),
     ],
 )
 def test_a_distribution_that_no_mass_has_is_refused(arguments: dict[str, object], words: str) -> None:
@@ -196,16 +193,12 @@ def test_other_misuse_is_refused_by_name() -> None:
         inertia.without(ball, inertia.sphere(radius=3.0, mass=0.5))
     with pytest.raises(InvalidFieldError, match=r"I_Q must be .*, got .*principal moments"):
         MassDistribution.from_inertia_about((0.0, 0.0, 2.0), np.eye(3), mass=1.0, p_FB_F=(0.0, 0.0, 0.0))
-    with pytest.raises(InvalidFieldError, match=r"q_GF must be .*unit"):
-        ball.placed(q_GF=(0.0, 0.0, 0.0, 2.0))
     with pytest.raises(InvalidFieldError, match=r"normal_F must be .*unit"):
         ball.mirrored((0.0, 0.0, 0.0))
     with pytest.raises(InvalidFieldError, match=r"axis_F must be .*unit"):
         ball.radius_of_gyration((0.0, 0.0, 2.0))
     with pytest.raises(TooLargeError, match=r"vertices"):
         Body.of("ball", ball, vertices_F=np.zeros((MAX_VERTICES + 1, 3)))
-    with pytest.raises(InvalidFieldError, match=r"masses must be .*, got -1.0"):
-        inertia.particles([1.0, -1.0], np.zeros((2, 3)))
     with pytest.raises(InvalidFieldError, match=r"masses must be .*at least one"):
         inertia.particles([0.0], np.zeros((1, 3)))
     with pytest.raises(InvalidFieldError, match=r"p_FP_F must be of shape .*, got shape \(2, 3\)"):
