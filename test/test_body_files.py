@@ -4,16 +4,13 @@
 from __future__ import annotations
 
 import warnings
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from contact_dynamics import Body, BodyState, Surface, World, next_landing, shapes
 from contact_dynamics.errors import ConcaveShapeWarning, ImplausibleBodyWarning, InvalidFieldError
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 SIZE = (0.15, 0.09, 0.05)
 UNIFORM = Body.box(SIZE, 0.4)

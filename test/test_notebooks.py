@@ -3,14 +3,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import Any
 
 import pytest
 
 from running_server import ROOT
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 nbformat = pytest.importorskip(
     "nbformat", reason="NOT RUN: nbclient of requirements/test.txt is not installed"

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import warnings
-from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
@@ -15,14 +14,12 @@ from contact_dynamics.nodes.parameter_reader import ParameterSource
 from contact_dynamics.nodes.parameters import read_server_parameters
 from contact_dynamics.rigid_body import inertia
 from contact_dynamics.rigid_body.body import BodyState
+from contact_dynamics.rigid_body.inertia import MassDistribution
 from contact_dynamics.shapes.convex import box, polyhedron
 from contact_dynamics.shapes.obstacle import Obstacle
 from contact_dynamics.tumbling import free_motion
 from contact_dynamics.world import Body, box_vertices
 from sweeps import seeds
-
-if TYPE_CHECKING:
-    from contact_dynamics.rigid_body.inertia import MassDistribution
 
 # Cross sections in the x, y plane, and the boxes that they consist of: sizes and middles.
 OUTLINES = {

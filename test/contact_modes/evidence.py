@@ -3,19 +3,20 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from collections.abc import Sequence
+from typing import Any
 
-from contact_dynamics.contact_modes import PlanarContactProblem, SpatialContactProblem
+from numpy.typing import ArrayLike
 
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from numpy.typing import ArrayLike
-
-    from contact_dynamics.contact.contact import ContactSet
-    from contact_dynamics.contact_modes import PlanarMode, PlanarModeAnswer
-    from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
-    from contact_dynamics.rigid_body.body import BodyState, MassProperties
+from contact_dynamics.contact.contact import ContactSet
+from contact_dynamics.contact_modes import (
+    PlanarContactProblem,
+    PlanarMode,
+    PlanarModeAnswer,
+    SpatialContactProblem,
+)
+from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
+from contact_dynamics.rigid_body.body import BodyState, MassProperties
 
 
 def planar_problem(

@@ -3,14 +3,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from collections.abc import Iterable
+from typing import Any
 
-from contact_dynamics.diagrams.marks import Diagram
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable
-
-    from contact_dynamics.diagrams.marks import Mark
+from contact_dynamics.diagrams.marks import Diagram, Mark
 
 
 def marks_of(diagram: Diagram | Iterable[Mark]) -> dict[str, Any]:

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
@@ -20,6 +19,8 @@ from contact_dynamics.diagrams.impulse_space import (
     main_contact,
     part_in_box,
 )
+from contact_dynamics.diagrams.marks import Diagram
+from contact_dynamics.impact import SpatialImpact
 from contact_dynamics.impact.law import ImpactOutcome, PathEvent
 from contact_dynamics.impact.several.orders import several_impact
 from contact_dynamics.impact.spatial.one_contact import spatial_impact, spatial_pair_impact
@@ -29,10 +30,6 @@ from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.world import Body
 from diagrams.marks_of import marks_of
 from viewing.answers import impact_answer, of_two
-
-if TYPE_CHECKING:
-    from contact_dynamics.diagrams.marks import Diagram
-    from contact_dynamics.impact import SpatialImpact
 
 MU = math.tan(math.radians(30.0))
 STICKS = (MU * 0.1719704, 0.1719704)

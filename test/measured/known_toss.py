@@ -3,17 +3,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from contact_dynamics.measured.recorded_toss import Toss
 from contact_dynamics.rigid_body.body import MassProperties
 from contact_dynamics.world import Body, Surface
-from oracles.bouncing_toss import MOMENTS, RATE
-
-if TYPE_CHECKING:
-    from oracles.bouncing_toss import KnownToss
+from oracles.bouncing_toss import MOMENTS, RATE, KnownToss
 
 P_NOISE = 2e-4
 Q_NOISE = 1.75e-3

@@ -4,8 +4,8 @@
 from __future__ import annotations
 
 import itertools
+from collections.abc import Callable
 from functools import partial
-from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
@@ -18,9 +18,6 @@ from contact_dynamics.questions import Context, ImpactQuestion, PublishedState, 
 from contact_dynamics.questions.state_store import StateStore
 from contact_dynamics.tumbling import FreeMotion, free_motion
 from sweeps import seeds
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
 
 BALL = Body.sphere(name="ball", radius=0.03, mass=0.1)
 BRICK = Body.box(name="brick", size=[0.2, 0.1, 0.05], mass=1.0)

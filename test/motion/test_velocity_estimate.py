@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
 
 import numpy as np
 import pytest
@@ -14,9 +14,6 @@ from contact_dynamics.motion.velocity_estimate import (
 )
 from contact_dynamics.rotations.many import turned
 from oracles.rigid_flight import Motion, about, fly
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
 
 TIMES = np.arange(24) / 240.0
 Q_0 = about([0.6, 0.0, 0.8], 1.1)

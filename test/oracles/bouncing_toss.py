@@ -3,15 +3,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import cache
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from oracles.rigid_flight import about, fly, matrix, multiply
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
 
 MOMENTS = np.array([0.000353333, 0.000833333, 0.00102])
 RATE = 240.0

@@ -8,12 +8,9 @@ exactly, so that the sums are the integrals to rounding. Shares nothing with the
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from collections.abc import Callable
 
 import numpy as np
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
 
 Particle = tuple[float, tuple[float, float, float]]
 

@@ -7,12 +7,10 @@ Slow, obvious, and sharing nothing with the package. Quaternions are w, x, y, z 
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike
 
 
 class Motion(NamedTuple):

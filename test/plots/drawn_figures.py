@@ -4,10 +4,12 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from functools import cache
-from typing import TYPE_CHECKING
+from xml.etree import ElementTree as ET
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from contact_dynamics.contact.contact import ContactSet
@@ -36,12 +38,16 @@ from contact_dynamics.plots import (
     draw_velocity,
 )
 from contact_dynamics.questions import (
+    ContactModeAnswer,
     ContactModeQuestion,
     Context,
+    ImpactAnswer,
     ImpactQuestion,
     Problem,
+    TossAnswer,
     TossQuestion,
     TossSampling,
+    TumblingAnswer,
     TumblingQuestion,
     ask,
 )
@@ -57,14 +63,6 @@ from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.shapes.convex import box
 from contact_dynamics.toss import TossUncertainty
 from contact_dynamics.world import Body, Surface, World
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-    from xml.etree import ElementTree as ET
-
-    from matplotlib.axes import Axes
-
-    from contact_dynamics.questions import ContactModeAnswer, ImpactAnswer, TossAnswer, TumblingAnswer
 
 GRAVITY_W = np.array([0.0, 0.0, -9.81])
 BRICK = MassProperties(mass=0.4, I_B=np.diag([3.5e-4, 8.3e-4, 1.02e-3]))

@@ -5,13 +5,14 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from typing import TYPE_CHECKING
 from xml.etree import ElementTree as ET
 
 import numpy as np
 import pytest
 
 pytest.importorskip("matplotlib", reason="matplotlib of requirements/test.txt is not installed")
+
+from pathlib import Path
 
 from matplotlib.figure import Figure
 
@@ -22,9 +23,6 @@ from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.toss import TossDistribution, sampled_toss
 from contact_dynamics.world import Surface, World
 from plots.drawn_figures import CUBE, SVG_DIGITS, points_in_svg
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 
 @pytest.fixture(scope="module")

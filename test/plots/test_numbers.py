@@ -3,13 +3,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 from xml.etree import ElementTree as ET
 
 import numpy as np
 import pytest
 
 pytest.importorskip("matplotlib", reason="matplotlib of requirements/test.txt is not installed")
+
+from pathlib import Path
 
 from matplotlib.collections import PolyCollection
 from matplotlib.colors import to_rgb
@@ -41,9 +43,6 @@ from plots.drawn_figures import (
     resting,
     tumbling,
 )
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 ROUNDING = 1e-12  # relative; a sum in another order
 

@@ -5,27 +5,25 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from contact_dynamics.contact.contact import ContactSet
 from contact_dynamics.contact_modes import ModeVerdict, SpatialMode
 from contact_dynamics.impact import PathEvent, ResolvedImpact, RestitutionLaw, SeveralContactsLaw
 from contact_dynamics.motion.integrated import Method
+from contact_dynamics.plane.projection import PlaneOfMotion
 from contact_dynamics.questions import (
     ContactModeAnswer,
     ImpactAnswer,
     Problem,
+    StruckBody,
     TumblingAnswer,
 )
-
-if TYPE_CHECKING:
-    from contact_dynamics.contact.contact import ContactSet
-    from contact_dynamics.plane.projection import PlaneOfMotion
-    from contact_dynamics.questions import StruckBody
-    from contact_dynamics.rigid_body.body import BodyState
-    from contact_dynamics.tumbling import Trajectory
-    from contact_dynamics.validation import FloatArray
+from contact_dynamics.rigid_body.body import BodyState
+from contact_dynamics.tumbling import Trajectory
+from contact_dynamics.validation import FloatArray
 
 
 def tumbling_answer(

@@ -5,7 +5,8 @@ from __future__ import annotations
 
 import socket
 import warnings
-from typing import TYPE_CHECKING
+from collections.abc import Iterator
+from pathlib import Path
 
 import pytest
 
@@ -15,10 +16,6 @@ with warnings.catch_warnings():
 
 from contact_dynamics.viewing.viewer_process import LOCAL
 from viewing.drawn import Canvas
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-    from pathlib import Path
 
 
 @pytest.fixture(autouse=True)

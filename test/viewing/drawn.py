@@ -5,19 +5,15 @@ from __future__ import annotations
 
 import warnings
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import rerun as rr
+from numpy.typing import NDArray
 from rerun.chunk import RrdReader
 
 from contact_dynamics.viewing.measured import set_time
-
-if TYPE_CHECKING:
-    from pathlib import Path
-
-    from numpy.typing import NDArray
-
 
 STAMP_NS = 1_760_000_000_123_456_789
 """When the tests draw, ns: a stamp that needs all of its digits."""

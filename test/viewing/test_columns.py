@@ -3,16 +3,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 import pytest
 import rerun as rr
 
+from contact_dynamics.validation import FloatArray
 from contact_dynamics.viewing.columns import pose_columns, scalar_columns, strip_columns, strips_2d, strips_3d
-
-if TYPE_CHECKING:
-    from contact_dynamics.validation import FloatArray
 
 RNG = np.random.default_rng(5)
 POINTS, TURNS, PAIRS = RNG.random((5, 3)), RNG.random((5, 4)), RNG.random((5, 2, 3))

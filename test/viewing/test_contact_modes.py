@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 import pytest
+import rerun as rr
 
 from contact_dynamics.contact_modes import SpatialMode
 from contact_dynamics.diagrams import palette
@@ -16,21 +15,15 @@ from contact_dynamics.diagrams.contact_scene import (
     mode_names,
     paint_of_letters,
 )
-from contact_dynamics.diagrams.shape import convex_shape
+from contact_dynamics.diagrams.shape import Shape, convex_shape
 from contact_dynamics.plane.projection import PlaneOfMotion
-from contact_dynamics.rigid_body.body import BodyState
+from contact_dynamics.questions import ContactModeAnswer
+from contact_dynamics.rigid_body.body import BodyState, MassProperties
+from contact_dynamics.validation import FloatArray
 from contact_dynamics.viewing.drawing import draw_marks
 from viewing.answers import contact_mode_answer
 from viewing.drawn import Canvas
 from viewing.known import BODY, TWO_CONTACTS
-
-if TYPE_CHECKING:
-    import rerun as rr
-
-    from contact_dynamics.diagrams.shape import Shape
-    from contact_dynamics.questions import ContactModeAnswer
-    from contact_dynamics.rigid_body.body import MassProperties
-    from contact_dynamics.validation import FloatArray
 
 CONTACTS = "/world/contacts/brick"
 

@@ -3,7 +3,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -11,7 +10,7 @@ from contact_dynamics.contact.contact import ContactSet
 from contact_dynamics.diagrams.planar_scene import MAX_SETS, silhouette
 from contact_dynamics.diagrams.shape import convex_shape
 from contact_dynamics.plane.projection import PlaneOfMotion
-from contact_dynamics.questions import ContactModeQuestion, Context, Problem
+from contact_dynamics.questions import ContactModeAnswer, ContactModeQuestion, Context, Problem
 from contact_dynamics.questions.contact_modes import answer
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.viewing.diagrams_in_view import DiagramsInView
@@ -20,9 +19,6 @@ from contact_dynamics.viewing.picture import Picture
 from contact_dynamics.world import Body, box_vertices
 from viewing.drawn import STAMP_NS, Canvas
 from viewing.known import WORLD
-
-if TYPE_CHECKING:
-    from contact_dynamics.questions import ContactModeAnswer
 
 ROD = MassProperties(mass=1.0, I_B=np.eye(3))
 TIP = np.array([-4.0 * math.cos(math.radians(75.0)), 0.0, -4.0 * math.sin(math.radians(75.0))])

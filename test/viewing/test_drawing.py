@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from itertools import combinations
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import pytest
@@ -18,17 +18,13 @@ from contact_dynamics.diagrams.mode_map import mode_map
 from contact_dynamics.diagrams.planar_scene import ModesSideBySide
 from contact_dynamics.plane.projection import PlaneOfMotion
 from contact_dynamics.plane.types import PlanarWrench
-from contact_dynamics.questions import ImpactQuestion, Problem, ask
+from contact_dynamics.questions import ImpactAnswer, ImpactQuestion, Problem, ask
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.viewing.drawing import EYE, TARGET, draw_diagram, draw_side_by_side
 from contact_dynamics.viewing.picture import Picture
 from contact_dynamics.world import Body, World
 from plots.drawn_figures import APPLIED, DIRECTIONS, IN_TRAY, OUTLINE, TRAY
-from viewing.drawn import STAMP_NS, Canvas
-
-if TYPE_CHECKING:
-    from contact_dynamics.questions import ImpactAnswer
-    from viewing.drawn import Drawn
+from viewing.drawn import STAMP_NS, Canvas, Drawn
 
 ROD = Body(name="rod", mass_properties=MassProperties(mass=1.0, I_B=np.diag([0.2, 0.5, 0.6])))
 ORIGIN = "/impulse_space_in_3d"

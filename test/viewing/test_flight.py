@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
@@ -12,17 +10,14 @@ from contact_dynamics.diagrams.flight import DEVIATIONS, MAX_OUTLINES, MAX_PATH_
 from contact_dynamics.diagrams.shape import convex_shape
 from contact_dynamics.motion.covariance import CarriedCovariance, PropagationMethod, orientation_deviations
 from contact_dynamics.rigid_body.body import BodyState
-from contact_dynamics.tumbling import free_motion
+from contact_dynamics.tumbling import Trajectory, free_motion
+from contact_dynamics.validation import FloatArray
 from contact_dynamics.viewing.drawing import draw_marks
 from contact_dynamics.viewing.picture import Picture
 from diagrams.marks_of import marks_of
 from viewing.answers import tumbling_answer
 from viewing.drawn import Canvas
 from viewing.known import BODY, STATE, TRAJECTORY, WORLD
-
-if TYPE_CHECKING:
-    from contact_dynamics.tumbling import Trajectory
-    from contact_dynamics.validation import FloatArray
 
 PREDICTED = "/world/predicted/brick"
 

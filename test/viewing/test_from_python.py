@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -15,9 +15,6 @@ from contact_dynamics.errors import UnknownBodyError
 from contact_dynamics.questions import Context, TossQuestion, ask
 from contact_dynamics.viewing import view
 from viewing.drawn import read_drawn
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 BRICK = cd.Body.box((0.15, 0.09, 0.05), mass=0.4, name="brick")
 FLOOR = cd.Surface(name="floor", p_WS_W=[0, 0, 0], normal_W=[0, 0, 1], friction=0.3, restitution=0.2)

@@ -3,30 +3,24 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
+import rerun as rr
 
+from contact_dynamics.contact.contact import ContactSet
 from contact_dynamics.diagrams.contact_scene import friction_cones
 from contact_dynamics.diagrams.impact_scene import LABEL_DEPTH, impact_marks, main_strikes
 from contact_dynamics.diagrams.impulse_space import main_contact
-from contact_dynamics.diagrams.shape import convex_shape
+from contact_dynamics.diagrams.shape import Shape, convex_shape
 from contact_dynamics.impact import ImpactOutcome, PathEvent, SequenceStrike
-from contact_dynamics.questions import StruckBody
+from contact_dynamics.questions import ImpactAnswer, StruckBody
+from contact_dynamics.rigid_body.body import BodyState
+from contact_dynamics.validation import FloatArray
 from contact_dynamics.viewing.drawing import draw_marks
 from viewing.answers import impact_answer, of_two
 from viewing.drawn import Canvas
 from viewing.known import BODY, STATE, TWO_CONTACTS
-
-if TYPE_CHECKING:
-    import rerun as rr
-
-    from contact_dynamics.contact.contact import ContactSet
-    from contact_dynamics.diagrams.shape import Shape
-    from contact_dynamics.questions import ImpactAnswer
-    from contact_dynamics.rigid_body.body import BodyState
-    from contact_dynamics.validation import FloatArray
 
 IMPACT = "/world/impact/brick"
 

@@ -3,14 +3,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from contact_dynamics.constants import to_ns
 from contact_dynamics.viewing.in_view import LABELS_S, ConservedInView, ImpactsInView
-from viewing.drawn import STAMP_NS, Canvas
-
-if TYPE_CHECKING:
-    from viewing.drawn import Drawn
+from viewing.drawn import STAMP_NS, Canvas, Drawn
 
 AFTER_NS = STAMP_NS + to_ns(LABELS_S) + 1
 

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -14,14 +14,9 @@ from contact_dynamics.viewing.kept_recording import LAST_BATCHES, LAST_S, LAST_W
 from contact_dynamics.viewing.measured import set_time, time_column
 from contact_dynamics.viewing.picture import Picture
 from viewing.answers import contact_mode_answer, tumbling_answer
-from viewing.drawn import STAMP_NS, read_drawn
+from viewing.drawn import STAMP_NS, Drawn, read_drawn
 from viewing.known import STATE, TRAJECTORY, TWO_CONTACTS, WORLD
 from viewing.test_picture import an_impact, moved
-
-if TYPE_CHECKING:
-    from pathlib import Path
-
-    from viewing.drawn import Drawn
 
 
 class Places:

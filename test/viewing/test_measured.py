@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
@@ -15,14 +14,11 @@ from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.tumbling import free_motion
 from contact_dynamics.viewing.measured import curves_of, draw_prediction_at, draw_states, style_series
 from contact_dynamics.viewing.picture import Picture
+from contact_dynamics.world import Body
 from diagrams.test_after_impact import STRIKE_NS, prediction
 from diagrams.test_after_impact import flight as struck_flight
 from viewing.drawn import STAMP_NS, Canvas
 from viewing.known import BODY, STATE, TRAJECTORY, WORLD
-
-if TYPE_CHECKING:
-    from contact_dynamics.world import Body
-
 
 UP = np.array([0.0, 0.0, 1.0])
 ODD_NS = 4_166_667  # 240 Hz, to a whole ns

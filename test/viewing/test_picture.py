@@ -2,14 +2,15 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
 
 from contact_dynamics.constants import to_ns
+from contact_dynamics.contact.contact import ContactSet
 from contact_dynamics.diagrams.impact_scene import LABELS
 from contact_dynamics.impact import PathEvent
+from contact_dynamics.questions import ImpactAnswer
 from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.tumbling import free_motion
 from contact_dynamics.viewing.entities import ERROR
@@ -20,10 +21,6 @@ from contact_dynamics.world import World
 from viewing.answers import contact_mode_answer, impact_answer, tumbling_answer
 from viewing.drawn import STAMP_NS, Canvas
 from viewing.known import STATE, TRAJECTORY, TWO_CONTACTS, WORLD
-
-if TYPE_CHECKING:
-    from contact_dynamics.contact.contact import ContactSet
-    from contact_dynamics.questions import ImpactAnswer
 
 LATER_NS = STAMP_NS + 100_000_000
 

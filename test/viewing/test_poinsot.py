@@ -2,14 +2,16 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from contact_dynamics.diagrams.poinsot import ellipsoid_net
+from contact_dynamics.questions import TumblingAnswer
+from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.rotations.one import rotation_matrix
-from contact_dynamics.tumbling import free_motion
+from contact_dynamics.tumbling import FreeMotion, free_motion
 from contact_dynamics.tumbling.poinsot_construction import poinsot, rolling_curves
 from contact_dynamics.viewing.in_view import (
     count_of_flight,
@@ -17,17 +19,10 @@ from contact_dynamics.viewing.in_view import (
     draw_rolling,
 )
 from contact_dynamics.viewing.picture import Picture
+from contact_dynamics.world import Body
 from viewing.answers import tumbling_answer
 from viewing.drawn import Canvas, read_drawn
 from viewing.known import BODY, STATE, WORLD
-
-if TYPE_CHECKING:
-    from pathlib import Path
-
-    from contact_dynamics.questions import TumblingAnswer
-    from contact_dynamics.rigid_body.body import BodyState
-    from contact_dynamics.tumbling import FreeMotion
-    from contact_dynamics.world import Body
 
 PATH = "/poinsot/bodies/brick"
 

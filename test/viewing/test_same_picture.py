@@ -3,7 +3,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -28,18 +30,13 @@ from contact_dynamics.questions import (
 )
 from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.viewing.picture import Picture
+from contact_dynamics.world import World
 from msg_adapters.contact_mode import contact_mode_answer_from_msg, contact_mode_answer_to_msg
 from msg_adapters.impact import impact_answer_from_msg, impact_answer_to_msg
 from msg_adapters.toss import toss_answer_from_msg, toss_answer_to_msg
 from msg_adapters.tumbling import tumbling_answer_from_msg, tumbling_answer_to_msg
 from viewing.drawn import STAMP_NS, Drawn, read_drawn
 from viewing.known import WORLD
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
-    from pathlib import Path
-
-    from contact_dynamics.world import World
 
 FALLING = BodyState(
     p_WB_W=[0.1, -0.2, 0.5],

@@ -3,8 +3,6 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 import pytest
 import rerun as rr
@@ -23,10 +21,6 @@ from contact_dynamics.viewing.scenery import Scenery, draw_axes
 from contact_dynamics.world import Body, Surface, World, box_vertices
 from viewing.drawn import STAMP_NS, Canvas
 from viewing.known import BODY, FLOOR
-
-if TYPE_CHECKING:
-    pass
-
 
 TILTED = Surface(
     name="ramp",

@@ -5,10 +5,10 @@ from __future__ import annotations
 
 import time
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import pytest
 
+from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.tumbling import free_motion
 from contact_dynamics.viewing.picture import Picture
 from contact_dynamics.viewing.states_in_turn import (
@@ -24,9 +24,6 @@ from viewing.answers import tumbling_answer
 from viewing.drawn import STAMP_NS, Canvas
 from viewing.known import BODY, STATE, TWO_CONTACTS
 from viewing.test_picture import an_impact
-
-if TYPE_CHECKING:
-    from contact_dynamics.rigid_body.body import BodyState
 
 NAMES = ("brick", "ball", "rod")
 POSE = "Transform3D:translation"

@@ -8,8 +8,8 @@ import shutil
 import signal
 import socket
 import subprocess
+from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import pytest
 import rerun as rr
@@ -19,9 +19,6 @@ from contact_dynamics.viewing.sinks import OpenRecording, Sinks, ViewerMode
 from contact_dynamics.viewing.viewer_process import LOCAL, viewer_executable
 from viewing.drawn import read_drawn
 from viewing.viewers import wait_until
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
 
 NO_DISPLAY = "neither DISPLAY nor WAYLAND_DISPLAY is set; draw into a file"
 DISPLAYS = ("DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET")

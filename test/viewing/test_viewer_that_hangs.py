@@ -7,8 +7,8 @@ import os
 import signal
 import subprocess
 import time
+from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
@@ -20,9 +20,6 @@ from contact_dynamics.viewing.sinks import MAX_BEHIND, LiveViewer
 from contact_dynamics.viewing.viewer_process import local_url
 from viewing.drawn import STAMP_NS
 from viewing.viewers import listens, rerun_at, wait_until
-
-if TYPE_CHECKING:
-    from collections.abc import Iterator
 
 FILL = rr.Points3D(np.random.default_rng(1).normal(size=(20_000, 3)))  # 240 kB
 

@@ -6,7 +6,7 @@ from __future__ import annotations
 import contextlib
 import socket
 import subprocess
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Iterator
 
 import numpy as np
 import pytest
@@ -19,9 +19,6 @@ from contact_dynamics.viewing.sinks import OpenRecording, Sinks, ViewerMode
 from contact_dynamics.viewing.viewer_process import LOCAL, local_url
 from viewing.drawn import STAMP_NS
 from viewing.viewers import listens, rerun_at, wait_until
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
 
 
 @contextlib.contextmanager

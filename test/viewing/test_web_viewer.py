@@ -4,14 +4,10 @@
 from __future__ import annotations
 
 import http.client
-from typing import TYPE_CHECKING
 
 from contact_dynamics.viewing.sinks import OpenRecording, Sinks, ViewerMode, WebViewer
 from contact_dynamics.viewing.viewer_process import LOCAL, serving_problem
 from viewing.viewers import PATIENCE_S, listeners, listens, wait_until
-
-if TYPE_CHECKING:
-    pass
 
 
 def page(port: int) -> bytes:

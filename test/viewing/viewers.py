@@ -7,13 +7,10 @@ import contextlib
 import os
 import subprocess
 import time
+from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from contact_dynamics.viewing.viewer_process import LOCAL, connection_problem, viewer_executable
-
-if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
 
 PATIENCE_S = 120.0
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
+from numpy.typing import ArrayLike
 from scipy.optimize import linprog
 
 from contact_dynamics import (
@@ -24,6 +24,7 @@ from contact_dynamics import (
 )
 from contact_dynamics.contact.friction import linearised_cone
 from contact_dynamics.contact_modes.spatial.largest_load import (
+    LargestLoad,
     largest_acceleration,
     largest_spin,
     largest_tilt,
@@ -32,11 +33,6 @@ from contact_dynamics.contact_modes.spatial.largest_load import (
 from contact_dynamics.errors import InvalidFieldError
 from contact_modes.evidence import spatial_problem
 from sweeps import seeds
-
-if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
-
-    from contact_dynamics.contact_modes.spatial.largest_load import LargestLoad
 
 WEIGHT = 20.0 * 10.0
 CRATE = Body.box((0.4, 0.3, 0.6), mass=20.0, name="crate")
