@@ -221,8 +221,8 @@ class Body(HasMassProperties):
             name: Name by which questions refer to the body. The default is that of the link.
 
         Raises:
-            InvalidFieldError: the file cannot be read, it has no such link with a mass, an element is missing
-                or not supported, a number is invalid, or no distribution of mass has the inertia.
+            InvalidFieldError: the file cannot be read, it has no such link with a mass or several, an element
+                is missing or not supported, a number is invalid, or no distribution of mass has the inertia.
             TooLargeError: the shape has too many vertices.
 
         Warns:

@@ -203,3 +203,11 @@ def test_the_link_is_named_where_there_are_several() -> None:
     with pytest.raises(InvalidFieldError, match="no <inertia>"):
         Body.from_urdf(two, "other")
     assert Body.from_urdf(two, "brick").name == "brick"
+
+
+def test_a_name_of_several_links_is_an_error() -> None:
+    """As in a world of several models that all name their link so."""
+    two = urdf(BOX).replace("</robot>", "") + urdf(BOX).partition(">")[2].replace('"0.4"', '"0.7"')
+    for name, found in (("brick", "'brick', which 2 of them have"), (None, "none")):
+        with pytest.raises(InvalidFieldError, match=f"'brick', 'brick', got {found}"):
+            Body.from_urdf(two, name)

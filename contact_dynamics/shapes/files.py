@@ -119,15 +119,18 @@ def _read(source: str | Path) -> tuple[Element, Path]:
 
 
 def _link(root: Element, name: str | None) -> Element:
-    links = {link.get("name", ""): link for link in root.iter("link")}
-    heavy = {key: link for key, link in links.items() if link.find("inertial") is not None}
-    if name is None and len(heavy) == 1:
-        return next(iter(heavy.values()))
-    if name in heavy:
-        return heavy[name]
-    found = "none" if name is None else f"{name!r}, which has no <inertial>" if name in links else repr(name)
+    links = [(link.get("name", ""), link) for link in root.iter("link")]
+    heavy = [(key, link) for key, link in links if link.find("inertial") is not None]
+    chosen = [link for key, link in heavy if name in {key, None}]
+    if len(chosen) == 1:
+        return chosen[0]
+    found = "none" if name is None else repr(name)
+    if name is not None and chosen:
+        found += f", which {len(chosen)} of them have"
+    elif name in dict(links):
+        found += ", which has no <inertial>"
     raise InvalidFieldError(
-        "link", found, f"one of those with a mass: {', '.join(map(repr, heavy)) or 'none'}"
+        "link", found, f"one of those with a mass: {', '.join(repr(key) for key, _ in heavy) or 'none'}"
     )
 
 
