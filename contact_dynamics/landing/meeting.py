@@ -222,9 +222,11 @@ class _Pair:
                 if len(along) and not (along > (leaves if now == 0.0 else 0.0)).all():
                     closing = -float(along.min())
                     if now > 0.0 and closing > 0.0:  # a step of Newton's method leaves rounding
-                        now += apart.gap / closing
-                        apart = self.at(now)
-                        points, velocities = self._touching(apart, tolerance)
+                        later = self.at(now + apart.gap / closing)
+                        there = self._touching(later, tolerance)
+                        # Bodies that graze each other leave before that.
+                        if (there[1] @ later.normal <= 0.0).any():
+                            return now + apart.gap / closing, there[0], later.normal, there[1]
                     return now, points, apart.normal, velocities
                 fastest = float(along.max(initial=0.0))
             if now >= horizon:

@@ -133,6 +133,21 @@ def test_bodies_that_touch_meet_at_once_unless_they_part() -> None:
     assert up.seconds == pytest.approx(6.0 / G, rel=1e-12)
 
 
+@pytest.mark.parametrize("depth", np.geomspace(1e-15, 1e-8, 15))
+@pytest.mark.parametrize("speed", [0.01, 30.0])
+def test_balls_that_graze_each_other_meet_in_a_contact_or_not_at_all(depth: float, speed: float) -> None:
+    """They are in contact for about sqrt(depth) s. A touch is found within 2 nm, and no deeper is missed."""
+    for y in (0.3 - depth, 0.3 + depth):
+        thrown, still = at([0, 0, 0], [speed, 0, 0]), at([1, y, 0], [0, 0, 0])
+        meeting = cd.next_meeting(SMALL, thrown, LARGE, still, horizon=2.0 / speed, **PAIR)
+        if meeting is None:
+            assert y > 0.3 - 2e-9
+        else:
+            assert len(meeting.contacts) == len(meeting.velocities_W) == 1
+            apart = np.linalg.norm(meeting.state.p_WB_W - meeting.other_state.p_WB_W)
+            assert apart == pytest.approx(0.3, abs=2e-9)
+
+
 def test_what_cannot_meet_is_refused_by_name() -> None:
     here, there = at([0, 0, 0], [0, 0, 0]), at([0.25, 0, 0], [0, 0, 0])
     with pytest.raises(
