@@ -245,6 +245,7 @@ _ANSWER: Final = fields.AnswerTable(
     fields.Row("alternatives", "alternatives", PATH.listed()),
     fields.Row("all_followed", "all_followed"),
     fields.Row("distribution", "distribution", DISTRIBUTION.at_most_one()),
+    fields.Row("warnings", "message", fields.WARNINGS),
 )
 toss_answer_to_msg: Final = _ANSWER.response_of
 toss_answer_from_msg: Final = _ANSWER.answer_of

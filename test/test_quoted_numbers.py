@@ -47,6 +47,8 @@ NOT_MEASURED: dict[
     "docs/cases.md": ["distance after 10 s", "half of (10 s)²"],  # what is asked
     "docs/contact-modes.md": [
         "−90°",
+        "last 50 ms",  # ACCELERATION_WINDOW
+        "most 0.1 s",  # Defaults.max_extrapolation
         "1e60 m or below 1e-60 m",  # LARGEST_NUMBER and its inverse
         "1e-9 m/s",
         "1e-6 m",

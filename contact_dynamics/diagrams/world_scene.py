@@ -58,7 +58,7 @@ def surface_marks(
     spacing = GRID_SPACING
     while side / spacing > MAX_GRID_LINES:
         spacing *= 10.0
-    places = np.arange(-1.0, 1.0 + spacing / side, 2.0 * spacing / side)
+    places = np.minimum(np.arange(-1.0, 1.0 + spacing / side, 2.0 * spacing / side), 1.0)
     whole = [
         p_W + np.array([a * s - b, a * s + b]) for a, b in ((u_W, v_W), (v_W, u_W)) for s in places.tolist()
     ]

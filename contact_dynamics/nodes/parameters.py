@@ -18,6 +18,7 @@ from contact_dynamics.constants import STANDARD_GRAVITY_W
 from contact_dynamics.nodes.parameter_reader import ConfigurationError, ParameterSource
 from contact_dynamics.nodes.situations import FaultLimits
 from contact_dynamics.nodes.world_parameters import read_body, read_surface
+from contact_dynamics.questions.carried_surface import CarriedSurface
 from contact_dynamics.questions.context import Defaults
 from contact_dynamics.questions.extent import check_vector
 from contact_dynamics.questions.state_store import FUTURE_TOLERANCE, MAX_STATES
@@ -46,6 +47,7 @@ class ServerParameters:
     """The whole configuration of the server.
 
     Attributes:
+        carried: The surfaces that move with a body.
         sources: The sources of states, for each body.
         static_topic: The topic of the transforms between frames that stand still, or None.
         state_timeout: s.
@@ -62,6 +64,7 @@ class ServerParameters:
     """
 
     world: World
+    carried: tuple[CarriedSurface, ...]
     sources: tuple[BodySources, ...]
     static_topic: ConfiguredTopic | None
     world_frame: str
@@ -142,10 +145,12 @@ def _read_parameters(
         "log", default=True, description="Log every state, request and response to MCAP."
     )
 
+    surfaces = [read_surface(source, name, among=body_names) for name in surface_names]
+
     def build_world() -> World:
         world = World(
             bodies=tuple(body for body, _ in bodies),
-            surfaces=tuple(read_surface(source, name) for name in surface_names),
+            surfaces=tuple(each for each in surfaces if not isinstance(each, CarriedSurface)),
             gravity_W=gravity,
         )
         check_vector("gravity", world.gravity_W)
@@ -153,6 +158,7 @@ def _read_parameters(
 
     return ServerParameters(
         world=source.build("", build_world),
+        carried=tuple(each for each in surfaces if isinstance(each, CarriedSurface)),
         sources=tuple(sources for _, sources in bodies),
         static_topic=source.topic(
             "tf_static_topic",
@@ -191,6 +197,10 @@ def _read_parameters(
             ),
             horizon=("Look-ahead time for a first contact, s.", (0.0, 1e4)),
             rate=("Sample rate of trajectories, Hz.", (1e-6, 1e6)),
+            max_extrapolation=(
+                "Longest time by which the motion of a carried surface is extrapolated, s.",
+                (0.0, 1e3),
+            ),
         ),
         worker_limits=source.filled(
             WorkerLimits(),

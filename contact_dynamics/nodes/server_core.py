@@ -51,6 +51,7 @@ class ServerCore:
             states=self.states,
             defaults=parameters.defaults,
             now_ns=lambda: self.asked_ns or None,
+            carried=parameters.carried,
         )
         self._static = TransformTree()
         self.sources: dict[str, StateSource] = {}
@@ -71,7 +72,12 @@ class ServerCore:
             self.states.forget(name, "the body was configured anew")
         if changed:
             self._find_sources()
-        self.context = replace(self.context, world=parameters.world, defaults=parameters.defaults)
+        self.context = replace(
+            self.context,
+            world=parameters.world,
+            defaults=parameters.defaults,
+            carried=parameters.carried,
+        )
 
     def expect(self, publishers: Mapping[str, int] | None = None) -> None:
         """Note, for whoever asks before the first state, where states are expected.

@@ -22,6 +22,7 @@ from rclpy.service_introspection import ServiceIntrospectionState
 from contact_dynamics.errors import BusyError, ContactDynamicsError
 from contact_dynamics.nodes.calls import CallTimes, GoneClients
 from contact_dynamics.questions.effort import excerpt
+from contact_dynamics.questions.services import at_instant
 from contact_dynamics.recording.cdr import EventType, cut_to_its_end
 from contact_dynamics.recording.definitions import find_definition
 from contact_dynamics.recording.message_types import message_class
@@ -192,7 +193,8 @@ class ServiceFront:
             if not self.is_active:
                 message = "the server is not active, which its lifecycle manager decides"
                 raise BusyError(message)
-            question, context = core.question_of(served, request), core.context
+            question = core.question_of(served, request)
+            context = at_instant(question, core.context)
             if self._workers is None or served.is_answered_at_once(question, context):
                 fill(served.answer(question, context))
                 return

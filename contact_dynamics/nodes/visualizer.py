@@ -52,6 +52,7 @@ if TYPE_CHECKING:
     from rclpy.subscription import Subscription
 
     from contact_dynamics.nodes.inbox import Taken
+    from contact_dynamics.nodes.parameters import ServerParameters
     from contact_dynamics.questions.services import Service
     from contact_dynamics.questions.uncertain_state import KnownState
 
@@ -123,6 +124,7 @@ class Visualizer(InboxNode):
             core.world,
             surface_side=own.surface_side,
             predictions=own.predictions,
+            carried=core.parameters.carried,
         )
         self._states = StatesInTurn(self._picture, guarded=self._guarded)
         self._answers: deque[_Waiting] = deque()
@@ -252,9 +254,14 @@ class Visualizer(InboxNode):
         self._core.change(after)
         for topic in self._topics:
             topic.source = self._core.sources[topic.name]
-        if after.world.to_dict() == before.world.to_dict():
+        if _scenery(after) == _scenery(before):
             return  # each parameter of a change is told by an event, and many do not belong to the world
-        change = partial(self._picture.change_world, after.world, stamp_ns=stamp_ns_from_msg(event.stamp))
+        change = partial(
+            self._picture.change_world,
+            after.world,
+            stamp_ns=stamp_ns_from_msg(event.stamp),
+            carried=after.carried,
+        )
         self._guarded("a change of the world", change)
         names = ", ".join(each.name for each in (*after.world.bodies, *after.world.surfaces))
         self.get_logger().info(f"draws what {self._server} is configured with now: {names}")
@@ -298,6 +305,11 @@ class _HandedOn(StateStore):
         state = read()
         if state is not None:
             self.add(body_name, state)
+
+
+def _scenery(parameters: ServerParameters) -> object:
+    """Return all that is drawn of a configuration, to compare it with another one."""
+    return parameters.world.to_dict(), [each.to_dict() for each in parameters.carried]
 
 
 def main(arguments: list[str]) -> int:

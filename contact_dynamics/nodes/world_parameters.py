@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Final, TypeAlias
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.nodes.links import LINK, URDF
 from contact_dynamics.nodes.parameter_reader import ConfigurationError
+from contact_dynamics.questions.carried_surface import ACCELERATION_WINDOW, CarriedSurface
 from contact_dynamics.questions.extent import (
     MAX_IN_CONTACT,
     check_friction,
@@ -29,7 +30,7 @@ from contact_dynamics.validation import check_array, check_not_negative, check_p
 from contact_dynamics.world import Body, Surface
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
     from contact_dynamics.nodes.parameter_reader import ConfiguredTopic, ParameterSource
     from contact_dynamics.rigid_body.inertia import MassDistribution
@@ -215,8 +216,40 @@ def _read_shape(source: ParameterSource, key: str) -> ShapeParameters:
     )
 
 
-def read_surface(source: ParameterSource, name: str) -> Surface | Obstacle:
-    """Return a flat, or an obstacle with corners; it raises as `read_body` does."""
+def read_surface(
+    source: ParameterSource, name: str, *, among: Sequence[str]
+) -> Surface | Obstacle | CarriedSurface:
+    """Return a plane, an obstacle, or a plane that one of the configured bodies carries.
+
+    Raises:
+        ConfigurationError: a parameter is missing or not allowed.
+    """
+    key, surface = f"surface.{name}", _read_surface(source, name)
+    carrier = source.value(
+        f"{key}.body",
+        "",
+        "Body that carries the plane. Point and normal are then in that body's frame. Empty means none.",
+    )
+    window = source.value(
+        f"{key}.acceleration_window",
+        ACCELERATION_WINDOW,
+        "Time over which the acceleration of the body that carries the plane is estimated, s.",
+        (0.0, 10.0),
+    )
+
+    def build() -> Surface | Obstacle | CarriedSurface:
+        if not carrier:
+            return surface
+        if carrier not in among:
+            raise InvalidFieldError("body", carrier, f"one of the bodies {list(among)}, or empty")
+        if not isinstance(surface, Surface) or surface.moves:
+            raise InvalidFieldError("body", carrier, "empty for an obstacle, a belt or a turntable")
+        return CarriedSurface(body_name=carrier, surface=surface, acceleration_window=window)
+
+    return source.build(key, build)
+
+
+def _read_surface(source: ParameterSource, name: str) -> Surface | Obstacle:
     key = f"surface.{name}"
     point = source.value(
         f"{key}.point", [0.0, 0.0, 0.0], "A point of the plane, or the centre of the box, m, world: x, y, z."

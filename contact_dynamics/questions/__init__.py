@@ -12,6 +12,7 @@ after an impact (lecture 27; `impact_question` contains its question and its ans
 contacts that separate, slide or stick (lecture 26), and `toss` the motion to rest.
 
 The kinds share these files: `context` (the world, defaults, and the published states in a `state_store`),
+`carried_surface` (planes that move with bodies),
 `subject` (the body and its state, which may be an `uncertain_state`), `twist_axes` (the check of the axes of
 published velocities), `sample_times` (times of samples), `touching` (contacts), `extent` (limits of numbers)
 and `plane_of_motion` (the choice between plane and space, and the modes and impacts of a plane in world
@@ -22,6 +23,7 @@ many states at once, and `many_contact_modes` about many wrenches or sets of con
 ones.
 """
 
+from contact_dynamics.questions.carried_surface import CarriedSurface
 from contact_dynamics.questions.contact_modes import ContactModeAnswer, ContactModeQuestion
 from contact_dynamics.questions.context import Context, Defaults
 from contact_dynamics.questions.impact_question import (
@@ -53,6 +55,7 @@ __all__ = [
     "AtRate",
     "AtStamps",
     "AtTimes",
+    "CarriedSurface",
     "ContactModeAnswer",
     "ContactModeQuestion",
     "Context",

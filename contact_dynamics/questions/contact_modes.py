@@ -197,6 +197,11 @@ class ContactModeQuestion(Question["ContactModeAnswer"]):
             facets = check_whole("friction_facets", self.friction_facets, 3, MAX_FRICTION_FACETS)
             object.__setattr__(self, "friction_facets", facets)
 
+    @property
+    def detects_contacts(self) -> bool:
+        """Whether the contacts are not given."""
+        return self.contacts is None
+
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class ContactModeAnswer(Answer):
@@ -306,6 +311,7 @@ def answer(question: ContactModeQuestion, context: Context | None = None) -> Con
         at_rest = [mode.mode for mode in found.modes] == [STICKS * len(contacts)]
         has_loads = question.include_margins or question.include_statics or question.include_wrenches
         doubts = () if at_rest and not has_loads else flush_rim(body, contacts)
+    doubts = (*(known.notes or ()), *doubts)
     found = replace(found, warnings=(*found.warnings, *doubts)) if doubts else found
     if not question.include_probabilities:
         return found

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from contact_dynamics.errors import NotSupportedError
+from contact_dynamics.questions.carried_surface import CarriedSurface
 from contact_dynamics.questions.state_store import StateStore
 from contact_dynamics.records import Record
 from contact_dynamics.tolerances import DISTANCE_TOLERANCE, OUT_OF_PLANE_SPEED, VELOCITY_TOLERANCE
@@ -23,6 +24,7 @@ class Defaults(Record):
         distance_tolerance: m, >= 0. Gap to a surface below which a body counts as touching.
         out_of_plane_tolerance: m/s, >= 0. Largest motion out of a plane that counts as planar.
         horizon: s, >= 0. Look-ahead time for a first contact, and duration of a trajectory.
+        max_extrapolation: s, >= 0. Longest time by which the motion of a carried surface is extrapolated.
         rate: Sample rate of a trajectory, Hz, > 0.
 
     Raises:
@@ -33,11 +35,18 @@ class Defaults(Record):
     distance_tolerance: float = DISTANCE_TOLERANCE
     out_of_plane_tolerance: float = OUT_OF_PLANE_SPEED
     horizon: float = 2.0
+    max_extrapolation: float = 0.1
     rate: float = 100.0
 
     def __post_init__(self) -> None:
         """Check all fields."""
-        for name in ("velocity_tolerance", "distance_tolerance", "out_of_plane_tolerance", "horizon"):
+        for name in (
+            "velocity_tolerance",
+            "distance_tolerance",
+            "out_of_plane_tolerance",
+            "horizon",
+            "max_extrapolation",
+        ):
             object.__setattr__(self, name, check_not_negative(name, getattr(self, name)))
         object.__setattr__(self, "rate", check_positive("rate", self.rate))
 
@@ -54,23 +63,31 @@ class Context(Record):
         now_ns: Function that returns the present time, ns, on the clock of the states' stamps, so that old
             states are rejected. If it is None or returns None, there is no clock, and the latest state is
             accepted at any age.
+        carried: Further surfaces, which move with bodies of the world.
+        notes: Warnings about carried surfaces in the context of one question, whose world contains them
+            (`at_instant`), and None otherwise.
 
     Raises:
-        NotSupportedError: the motion of a surface is not steady.
+        NotSupportedError: the motion of a surface of the world is not steady.
+        UnknownBodyError: the world has no body of a name in ``carried``.
     """
 
     world: World = field(default_factory=World)
     states: StateStore = field(default_factory=lambda: StateStore(history=5.0, timeout=0.5))
     defaults: Defaults = field(default_factory=Defaults)
     now_ns: Callable[[], int | None] | None = None
+    carried: tuple[CarriedSurface, ...] = ()
+    notes: tuple[str, ...] | None = None
 
     def __post_init__(self) -> None:
-        """Refuse surfaces whose places or velocities depend on the time."""
-        for surface in self.world.surfaces:
+        """Reject surfaces whose poses or velocities depend on the time, unless it is for one question."""
+        for carried in self.carried:
+            self.world.body(carried.body_name)
+        for surface in self.world.surfaces if self.notes is None else ():
             if isinstance(surface, Surface) and not surface.is_steady:
                 message = (
                     "world must have surfaces that are at rest or move steadily in their own plane in "
-                    f"questions, such as belts and turntables, got {surface.name!r}"
+                    f"questions, such as belts and turntables (others can be `carried`), got {surface.name!r}"
                 )
                 raise NotSupportedError(message)
 

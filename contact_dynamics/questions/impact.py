@@ -83,7 +83,7 @@ def answer(question: ImpactQuestion, context: Context | None = None) -> ImpactAn
     strike = _strike_of(question, known)
     problem: PlanarProblem | None = None
     resolved: ResolvedImpact
-    warnings = _outside(question, strike)
+    warnings = (*(known.notes or ()), *_outside(question, strike))
     law = question.several_contacts_law
     ordered = strike.subject.body.mass_properties, strike.state, strike.contacts
     if isinstance(law, InTime):
@@ -175,7 +175,7 @@ def _order_warning(question: ImpactQuestion, strike: _Strike, ordered: _InSpace)
 
 def _in_time(question: ImpactQuestion, law: InTime, strike: _Strike, context: Context) -> ImpactSequence:
     """Return the strikes from a state on. Without any, raise `SeparatingContactError` or `NoContactError`."""
-    world = context.world
+    world = context.world.after(strike.seconds)
     sequence = impact_sequence(
         strike.subject.body,
         strike.state,

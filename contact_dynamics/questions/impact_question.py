@@ -168,3 +168,8 @@ class ImpactQuestion(Question[ImpactAnswer]):
         """Check the numbers and the choices."""
         for name in ("horizon", "out_of_plane_tolerance", "velocity_tolerance", "distance_tolerance"):
             object.__setattr__(self, name, check_optional(name, getattr(self, name)))
+
+    @property
+    def detects_contacts(self) -> bool:
+        """Whether the contacts are not given."""
+        return self.contacts is None

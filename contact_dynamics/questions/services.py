@@ -10,13 +10,14 @@ imports no viewer, a table no server, and this file none of them.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from importlib import import_module
 from typing import TYPE_CHECKING, Final, Generic, Protocol, TypeVar
 
 from contact_dynamics.constants import ns_after
 from contact_dynamics.errors import ContactDynamicsError, NotSupportedError
+from contact_dynamics.questions.carried_surface import with_carried
 from contact_dynamics.records import Record
 from contact_dynamics.rigid_body.body import BodyState
 
@@ -92,6 +93,11 @@ class Question(Record, Generic[Answer_co]):
     def about(self) -> Question[Answer]:
         """The question that names the body and its state, which may be part of this one."""
         return self
+
+    @property
+    def detects_contacts(self) -> bool:
+        """Whether contacts with the surfaces of the world are detected."""
+        return False
 
 
 class ServiceType(Protocol):
@@ -342,6 +348,37 @@ def service_of(what: Question[Answer] | Answer) -> Service:
     raise NotSupportedError(f"a question or an answer must be of one of these kinds: {known}, got {path}")
 
 
+def at_instant(question: Question[Answer], context: Context) -> Context:
+    """Return the context of one question, with the carried surfaces as they are at its instant.
+
+    The instant is the stamp of the body's state, or the present if it has none. Surfaces carried by the body
+    itself are left out, and so are all carried surfaces if no contacts are detected.
+
+    Raises:
+        NoStateError: a carrying body has no state at that time.
+        StaleStateError: its latest state is too old.
+    """
+    if not context.carried:
+        return context
+    about = question.about
+    if not about.detects_contacts:
+        return replace(context, carried=())
+    name = about.body if isinstance(about.body, str) else about.body.name
+    now_ns = None if context.now_ns is None else context.now_ns()
+    stamp_ns = getattr(getattr(about, "state", None), "stamp_ns", 0)
+    if stamp_ns is None:  # the latest published state
+        stamp_ns = context.states.newest(name, now_ns=now_ns).stamp_ns
+    world, warnings = with_carried(
+        context.world,
+        [each for each in context.carried if each.body_name != name],
+        context.states,
+        stamp_ns=stamp_ns or now_ns,
+        now_ns=now_ns,
+        max_extrapolation=context.defaults.max_extrapolation,
+    )
+    return replace(context, world=world, carried=(), notes=warnings)
+
+
 def ask(question: Question[Answer_co], context: Context | None = None) -> Answer_co:
     """Answer a question, as the service of its kind does.
 
@@ -354,4 +391,5 @@ def ask(question: Question[Answer_co], context: Context | None = None) -> Answer
         ContactDynamicsError: the question refers to something unknown, is invalid, or is not supported. The
             message names it.
     """
-    return service_of(question).answer(question, context)  # type: ignore[return-value]  # of this question
+    known = None if context is None else at_instant(question, context)
+    return service_of(question).answer(question, known)  # type: ignore[return-value]  # of this question

@@ -118,6 +118,11 @@ class TossQuestion(Question["TossAnswer"]):
             factors = sampled
         object.__setattr__(self, "lasting_factors", factors)
 
+    @property
+    def detects_contacts(self) -> bool:
+        """All contacts of a toss are detected."""
+        return True
+
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class TossPath(TossOutcome):
@@ -144,6 +149,7 @@ class TossAnswer(Answer):
         all_followed: Whether ``alternatives`` contains all other branches.
         distribution: Distribution of the outcomes under uncertain state, parameters and impacts, or None
             without samples.
+        warnings: Uncertain motions of carried surfaces.
     """
 
     body_name: str
@@ -154,6 +160,7 @@ class TossAnswer(Answer):
     alternatives: tuple[TossPath, ...]
     all_followed: bool
     distribution: TossDistribution | None
+    warnings: tuple[str, ...] = ()
 
     @property
     def paths(self) -> tuple[TossPath, ...]:
@@ -217,6 +224,7 @@ def answer(question: TossQuestion, context: Context | None = None) -> TossAnswer
         alternatives=tuple(_path(other, rate) for other in went.alternatives),
         all_followed=went.all_followed,
         distribution=distribution,
+        warnings=known.notes or (),
     )
 
 

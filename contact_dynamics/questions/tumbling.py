@@ -18,6 +18,7 @@ from contact_dynamics.questions.sample_times import (
     AtRate,
     Event,
     Sampling,
+    UntilContact,
     check_turns,
     times_of,
 )
@@ -115,6 +116,11 @@ class TumblingQuestion(Question["TumblingAnswer"]):
             raise TooLargeError("curve_points", points, f"at most {MAX_CURVE_POINTS}")
         object.__setattr__(self, "curve_points", points)
 
+    @property
+    def detects_contacts(self) -> bool:
+        """Whether the motion ends at the first contact."""
+        return isinstance(self.sampling, UntilContact)
+
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class TumblingAnswer(Answer):
@@ -133,7 +139,7 @@ class TumblingAnswer(Answer):
         flips: Next flips about the intermediate axis, or None if a torque acts.
         curves: Polhode and herpolhode, or None if not requested or if a torque acts.
         warnings: Planes that the body would penetrate at some of the times, since the motion is not stopped
-            by contacts.
+            by contacts, and uncertain motions of carried surfaces.
     """
 
     body_name: str
@@ -184,7 +190,7 @@ def answer(question: TumblingQuestion, context: Context | None = None) -> Tumbli
         poinsot=picture,
         flips=flips,
         curves=curves,
-        warnings=_passed(subject.body, trajectory, known),
+        warnings=(*(known.notes or ()), *_passed(subject.body, trajectory, known)),
     )
 
 
@@ -194,7 +200,7 @@ def _passed(body: Body, trajectory: Trajectory, known: Context) -> tuple[str, ..
         return ()
     found, R_WB = [], matrices_of(trajectory.q_WB)
     for surface in known.world.surfaces:
-        if isinstance(surface, Surface):
+        if isinstance(surface, Surface) and surface.is_steady:
             normal_W = surface.normal_W
             gaps = lowest_along(body.shape, trajectory.p_WB_W, R_WB, normal_W) - normal_W @ surface.p_WS_W
             deep = gaps < -known.defaults.distance_tolerance

@@ -14,7 +14,7 @@ from contact_dynamics.nodes.parameters import read_server_parameters
 from contact_dynamics.nodes.run_record import CHANGES, LoggedParameters, changed_values
 from contact_dynamics.nodes.server_core import ServerCore
 from contact_dynamics.nodes.state_sources import no_message
-from contact_dynamics.questions.services import service_of_type
+from contact_dynamics.questions.services import at_instant, service_of_type
 from contact_dynamics.questions.uncertain_state import state_of
 from contact_dynamics.recording.cdr import decode_without_ros, leading_stamp_ns
 from contact_dynamics.replay.timeline import CLOCK
@@ -125,7 +125,8 @@ class ServerAgain(ServerCore):
         service = service_of_type(service_type)
         response = make_response()
         try:
-            self.fill(service, service.answer(self.question_of(service, request), self.context), response)
+            question = self.question_of(service, request)
+            self.fill(service, service.answer(question, at_instant(question, self.context)), response)
         except Exception as error:  # noqa: BLE001  the server reports a fault of its own too, and goes on
             response = make_response()
             report_error(response, error)

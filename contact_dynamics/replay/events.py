@@ -39,6 +39,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from contact_dynamics.nodes.parameter_reader import ParameterSource
+    from contact_dynamics.questions.carried_surface import CarriedSurface
     from contact_dynamics.questions.services import Answer, Question, Service
     from contact_dynamics.recording.bag_reader import LoggedMessage
     from contact_dynamics.recording.file_messages import Span
@@ -63,6 +64,7 @@ class WorldChanged:
     """The configuration of bodies or surfaces changed."""
 
     world: World  # the bodies and surfaces from now on
+    carried: Sequence[CarriedSurface]  # the surfaces carried by bodies
     stamp_ns: int  # ns, the time of the change by the clock of the states' stamps
 
 
@@ -118,6 +120,7 @@ class Events(ABC):
 
     Attributes:
         world: The bodies and surfaces, as configured at the beginning.
+        carried: The surfaces carried by bodies, as configured at the beginning.
     """
 
     def __init__(self, reader: BagReader, server: ServerAgain) -> None:
@@ -125,6 +128,7 @@ class Events(ABC):
         self._reader = reader
         self._server = server
         self.world = server.world
+        self.carried = server.parameters.carried
 
     @abstractmethod
     def __iter__(self) -> Iterator[Event]:
@@ -195,7 +199,11 @@ class LoggedEvents(Events):
                 for body_name, state in self._server.receive(each):
                     yield StateCame(body_name=body_name, state=state)
                 if self._server.world is not before:
-                    yield WorldChanged(world=self._server.world, stamp_ns=each.publish_time_ns)
+                    yield WorldChanged(
+                        world=self._server.world,
+                        carried=self._server.parameters.carried,
+                        stamp_ns=each.publish_time_ns,
+                    )
 
     def _answered(self, call: ServiceCall) -> Answered | None:
         if call.request_event is None or call.response_event is None:

@@ -45,7 +45,8 @@ def draw(name: str, events: Events, sinks: Sinks, *, surface_side: float, progre
     """
     raise_errors()
     recording = OpenRecording(sinks, on_problem=_tell_problem)
-    drawing = _Drawing(Picture(recording.stream, events.world, surface_side=surface_side))
+    picture = Picture(recording.stream, events.world, surface_side=surface_side, carried=events.carried)
+    drawing = _Drawing(picture)
     is_served = sinks.viewer is ViewerMode.SERVE
     if is_served:
         _tell_server(name, recording.description)
@@ -100,7 +101,9 @@ class _Drawing:
             return
         if isinstance(event, WorldChanged):
             self._waiting.draw()
-            change = partial(self._picture.change_world, event.world, stamp_ns=event.stamp_ns)
+            change = partial(
+                self._picture.change_world, event.world, stamp_ns=event.stamp_ns, carried=event.carried
+            )
             self._guarded("a change of the world", change)
             return
         if isinstance(event, Monitored):

@@ -49,6 +49,7 @@ if TYPE_CHECKING:
     from contact_dynamics.contact_modes import BodiesModeAnswer
     from contact_dynamics.diagrams.after_impact import AfterImpact
     from contact_dynamics.diagrams.marks import Mark
+    from contact_dynamics.questions.carried_surface import CarriedSurface
     from contact_dynamics.questions.contact_modes import ContactModeAnswer
     from contact_dynamics.questions.impact_question import ImpactAnswer
     from contact_dynamics.questions.many import ManyImpactsAnswer, ManyTumblingsAnswer
@@ -78,14 +79,15 @@ class Picture:
         *,
         surface_side: float,
         predictions: int = DEFAULT_PREDICTIONS,
+        carried: Sequence[CarriedSurface] = (),
     ) -> None:
-        """Draw the surfaces, as squares of ``surface_side``, m, and the bodies.
+        """Draw the surfaces, as squares of ``surface_side``, m, those carried by bodies, and the bodies.
 
         ``predictions`` is the number of newest predicted paths of a body in view, at least one.
         """
         self._earlier = predictions - 1
         self.recording = recording
-        self._world = WorldInView(recording, world, surface_side=surface_side)
+        self._world = WorldInView(recording, world, surface_side=surface_side, carried=carried)
         self._bodies = self._world.bodies
         self._newest: dict[str, BodyState] = {}
         self._stamps_ns: dict[str, int] = {}  # the newest since a clock was last set back
@@ -107,9 +109,9 @@ class Picture:
         recording.log(LEGEND, legend, static=True)
         self._arrange()
 
-    def change_world(self, world: World, *, stamp_ns: int) -> None:
+    def change_world(self, world: World, *, stamp_ns: int, carried: Sequence[CarriedSurface] = ()) -> None:
         """Replace the surfaces and shapes of bodies from a time on, ns."""
-        self._world.change(world, stamp_ns=stamp_ns)
+        self._world.change(world, stamp_ns=stamp_ns, carried=carried)
 
     def add_states(self, body_name: str, states: Sequence[BodyState]) -> None:
         """Draw measured states, in the order of their stamps."""

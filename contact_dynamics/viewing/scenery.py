@@ -8,6 +8,7 @@ paths of its own, one for each version, for the time in which it is valid.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 import numpy as np
@@ -24,8 +25,9 @@ from contact_dynamics.viewing.measured import set_time, style_series
 from contact_dynamics.world import Surface
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
+    from contact_dynamics.questions.carried_surface import CarriedSurface
     from contact_dynamics.rigid_body.body import MassProperties
     from contact_dynamics.validation import FloatArray
     from contact_dynamics.world import World
@@ -157,10 +159,18 @@ class WorldInView:
         up_W: (3,), the unit vector against gravity, or the third axis without gravity.
     """
 
-    def __init__(self, recording: rr.RecordingStream, world: World, *, surface_side: float) -> None:
-        """Draw the surfaces of a world, as squares of ``surface_side``, m."""
+    def __init__(
+        self,
+        recording: rr.RecordingStream,
+        world: World,
+        *,
+        surface_side: float,
+        carried: Sequence[CarriedSurface] = (),
+    ) -> None:
+        """Draw the surfaces of a world, as squares of ``surface_side``, m, and those carried by bodies."""
         self._recording = recording
         self.world = world
+        self._carried = carried
         self._surface_side = surface_side
         self._scenery = Scenery(recording)
         self._in_scene: list[str] = []  # the bodies that are drawn
@@ -187,9 +197,10 @@ class WorldInView:
         self._center_W, self._extent = center_W, extent
         self._draw_surfaces()
 
-    def change(self, world: World, *, stamp_ns: int) -> None:
+    def change(self, world: World, *, stamp_ns: int, carried: Sequence[CarriedSurface] = ()) -> None:
         """Replace the surfaces and shapes of bodies from a time on, ns."""
         self.world = world
+        self._carried = carried
         self.bodies.change(world)
         wanted = self._surfaces()
         gone = self._scenery.paths - wanted.keys()
@@ -218,4 +229,9 @@ class WorldInView:
             else:
                 marks = obstacle_marks(surface)
             parts[entity(SURFACES, surface.name)] = parts_of(marks)
+        for each in self._carried:
+            carrier = self.world.body(each.body_name)
+            plane = replace(each.surface, p_WS_W=each.surface.p_WS_W - carrier.p_FB_F)
+            marks = surface_marks(plane, center_W=plane.p_WS_W, side=self.bodies.shape(carrier.name).size)
+            parts[entity(BODIES, carrier.name, plane.name)] = parts_of(marks)
         return parts
