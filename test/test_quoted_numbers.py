@@ -153,7 +153,9 @@ NOT_MEASURED: dict[
     "docs/monitor.md": [
         "states at least 20 ms before it",
         "0.5 mm and 5 mrad for errors",
-        "the smallest of the 50, 90 and 99 % regions",
+        "inside the 99 % prediction region",
+        "outside the 90 % region",
+        "(50, 90 and 99 %)",
         "from 0.26 to 3.8 times the configured",
         "is outside the 99 % region",
         "restitution to 12 % and friction to 11 %",  # of simulated impacts, as are the rows of the table
