@@ -93,7 +93,7 @@ NOT_MEASURED: dict[
     ],
     "docs/lectures.md": ["a floor at 75°"],  # the lecture's rod
     "docs/log.md": [
-        "room again (1 MB)",
+        "at least 1 MB is free",
         "longer than 1 s",
         "next 10 s",
         "30 minutes or 1000 MB",
