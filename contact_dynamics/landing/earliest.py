@@ -91,14 +91,14 @@ def next_landing(
         horizon: s, >= 0. Look-ahead time.
         distance_tolerance: m, >= 0. A point within this distance of a surface touches it.
         velocity_tolerance: m/s, >= 0.
-        motion: The flight, in closed form or under forces. The default is free flight from ``state`` under
+        motion: The flight from ``state``, in closed form or under forces. The default is free flight under
             the world's gravity.
         work: Count of search steps that this search shares with others. By default, it has its own.
 
     Raises:
         NoContactError: the body has no shape that could touch anything.
-        InvalidFieldError: the body penetrates a surface by more than ``distance_tolerance``, or the horizon
-            or a tolerance is negative or not finite.
+        InvalidFieldError: the body penetrates a surface by more than ``distance_tolerance``, the horizon or a
+            tolerance is negative or not finite, or the motion begins in another state.
         NotSupportedError: a surface tilts, or rotates about an axis that moves sideways, or moves along its
             normal while the body moves under forces; or as in `first_touch`.
         TooLargeError: the search takes too many steps, because the body spins too fast for the horizon.
@@ -116,6 +116,8 @@ def next_landing(
     """
     check_not_negative("horizon", horizon)
     check_not_negative("velocity_tolerance", velocity_tolerance)
+    if motion is not None and motion.state.to_dict() != state.to_dict():
+        raise InvalidFieldError("motion", "one that begins in another", "one that begins in the given state")
     check_not_inside(body, state, world.surfaces, distance_tolerance=distance_tolerance)
     return landing_from(
         body,

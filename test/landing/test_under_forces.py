@@ -214,3 +214,12 @@ def test_a_motion_that_grows_without_bounds_is_refused_only_where_the_search_get
     assert first_contact(driven(0.0), CUBE_B, FLOOR, UP, horizon=100.0) is not None
     with pytest.raises(InvalidFieldError, match="seconds"):
         first_contact(driven(50.0), CUBE_B, FLOOR, UP, horizon=1.0)
+
+
+def test_a_motion_from_another_state_is_an_error() -> None:
+    """It would land, and not the body in the stated state."""
+    floor = Surface(name="floor", p_WS_W=np.zeros(3), normal_W=np.array(UP), friction=0.5, restitution=0.5)
+    cube = Body(name="cube", mass_properties=BODY, vertices_B=CUBE_B)
+    motion = forced_motion(BODY, start(0.6), drag=Drag(linear=0.3))
+    with pytest.raises(InvalidFieldError, match="motion must be one that begins in the given state"):
+        next_landing(cube, start(0.7), World(surfaces=(floor,)), motion=motion)
