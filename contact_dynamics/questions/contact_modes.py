@@ -39,7 +39,7 @@ from contact_dynamics.contact_modes.spatial.wrench_sets import WRENCH_FACETS
 from contact_dynamics.errors import OutOfPlaneError, TooLargeError
 from contact_dynamics.plane.lifting import check_mirrored, mirror_partners
 from contact_dynamics.plane.projection import PlaneOfMotion
-from contact_dynamics.questions.context import Context, check_optional, or_default
+from contact_dynamics.questions.context import Context, check_optional, check_read, or_default
 from contact_dynamics.questions.extent import check_contacts, check_extent, check_margin_length, check_wrench
 from contact_dynamics.questions.plane_of_motion import (
     Problem,
@@ -131,7 +131,8 @@ class ContactModeQuestion(Question["ContactModeAnswer"]):
             state, which must have a covariance.
 
     Raises:
-        InvalidFieldError: a number is out of range or not finite, or the problem is not a `Problem`.
+        InvalidFieldError: a number is out of range or not finite, the problem is not a `Problem`, or a value
+            would be ignored.
     """
 
     body: Body | str
@@ -196,6 +197,17 @@ class ContactModeQuestion(Question["ContactModeAnswer"]):
         if self.friction_facets is not None:
             facets = check_whole("friction_facets", self.friction_facets, 3, MAX_FRICTION_FACETS)
             object.__setattr__(self, "friction_facets", facets)
+        self._check_all_are_read()
+
+    def _check_all_are_read(self) -> None:
+        """Raise `InvalidFieldError` for a value that would be ignored."""
+        is_planar, is_spatial = self.problem is Problem.PLANAR, self.problem is Problem.SPATIAL
+        is_measured = self.include_margins or self.include_statics
+        in_plane = {"plane": self.plane, "out_of_plane_tolerance": self.out_of_plane_tolerance}
+        check_read("problem is PLANAR", is_met=not is_spatial, **in_plane)
+        check_read("problem is SPATIAL", is_met=not is_planar, friction_facets=self.friction_facets)
+        flags = "include_margins or include_statics is true"
+        check_read(flags, is_met=is_measured, margin_length=self.margin_length)
 
     @property
     def detects_contacts(self) -> bool:

@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
-from contact_dynamics.errors import NotSupportedError
+from contact_dynamics.errors import InvalidFieldError, NotSupportedError
 from contact_dynamics.questions.carried_surface import CarriedSurface
 from contact_dynamics.questions.state_store import StateStore
 from contact_dynamics.records import Record
@@ -95,6 +95,13 @@ class Context(Record):
 def or_default(asked: float | None, default: float) -> float:
     """Return the value of a question's field, or the default if the field is None."""
     return default if asked is None else asked
+
+
+def check_read(condition: str, *, is_met: bool, **values: object) -> None:
+    """Raise `InvalidFieldError` for a value that is not None, unless the condition for reading it is met."""
+    for name, value in values.items():
+        if value is not None and not is_met:
+            raise InvalidFieldError(name, value, f"left out unless {condition}")
 
 
 def check_optional(field_name: str, value: float | None) -> float | None:

@@ -10,7 +10,7 @@ from contact_dynamics.contact.contact import ContactSet
 from contact_dynamics.impact import ResolvedImpact, RestitutionLaw, SeveralContactsLaw
 from contact_dynamics.impact.in_time.sequence import MAX_STRIKES, STRIKE_WINDOW
 from contact_dynamics.plane.projection import PlaneOfMotion
-from contact_dynamics.questions.context import check_optional
+from contact_dynamics.questions.context import check_optional, check_read
 from contact_dynamics.questions.plane_of_motion import Problem
 from contact_dynamics.questions.services import Answer, Question
 from contact_dynamics.questions.subject import NEWEST, FitQuality, StateSource
@@ -145,7 +145,8 @@ class ImpactQuestion(Question[ImpactAnswer]):
         distance_tolerance: m, >= 0. Largest gap at which a body counts as touching. None means the default.
 
     Raises:
-        InvalidFieldError: a number is negative or not finite, or a choice is not a member of its enumeration.
+        InvalidFieldError: a number is negative or not finite, a choice is not a member of its enumeration, or
+            a value would be ignored.
     """
 
     body: Body | str
@@ -165,9 +166,14 @@ class ImpactQuestion(Question[ImpactAnswer]):
     distance_tolerance: float | None = None
 
     def __post_init__(self) -> None:
-        """Check the numbers and the choices."""
+        """Check the numbers and the choices, and that no field is ignored."""
         for name in ("horizon", "out_of_plane_tolerance", "velocity_tolerance", "distance_tolerance"):
             object.__setattr__(self, name, check_optional(name, getattr(self, name)))
+        stated = None if self.other_state is NEWEST else self.other_state
+        check_read("other is given", is_met=self.other is not None, other_state=stated)
+        check_read("contacts are detected", is_met=self.contacts is None, horizon=self.horizon)
+        in_plane = {"plane": self.plane, "out_of_plane_tolerance": self.out_of_plane_tolerance}
+        check_read("problem is PLANAR", is_met=self.problem is Problem.PLANAR, **in_plane)
 
     @property
     def detects_contacts(self) -> bool:

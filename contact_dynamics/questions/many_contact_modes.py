@@ -127,8 +127,6 @@ def _check_supported(asked: ContactModeQuestion) -> None:
         value = getattr(asked, name)
         if value is not getattr(_PLAIN, name) and value:
             raise InvalidFieldError(f"asked.{name}", value, "its default: it is for single questions only")
-    if asked.margin_length is not None and not asked.include_margins:
-        raise InvalidFieldError("asked.margin_length", asked.margin_length, "None without include_margins")
 
 
 def _counts(value: Sequence[int]) -> tuple[int, ...]:

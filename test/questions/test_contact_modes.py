@@ -61,7 +61,8 @@ def test_contacts_are_found_from_the_shape() -> None:
 def test_a_weight_of_any_size_is_answered(problem: Problem, exponent: int) -> None:
     """Squares of such a force are zero, and it is not."""
     gravity_W = np.array([0.0, 0.0, -float(f"1e{exponent}")])
-    found = answer(replace(AT_REST, gravity_W=gravity_W, problem=problem, plane=FROM_THE_SIDE), CONTEXT)
+    plane = None if problem is Problem.SPATIAL else FROM_THE_SIDE
+    found = answer(replace(AT_REST, gravity_W=gravity_W, problem=problem, plane=plane), CONTEXT)
     assert [mode.mode for mode in found.modes] == ["ffff"]
 
 
@@ -69,8 +70,9 @@ def test_a_weight_of_any_size_is_answered(problem: Problem, exponent: int) -> No
 def test_a_push_beyond_friction_makes_it_slide(problem: Problem) -> None:
     """In the plane of motion it slides right, in space along x, with (F - mu m g) / m."""
     push = 1.5 * HOLDS
-    question = replace(AT_REST, force_W=np.array([push, 0.0, 0.0]), problem=problem)
-    found = answer(replace(question, plane=FROM_THE_SIDE), CONTEXT)
+    plane = FROM_THE_SIDE if problem is Problem.PLANAR else None
+    question = replace(AT_REST, force_W=np.array([push, 0.0, 0.0]), problem=problem, plane=plane)
+    found = answer(question, CONTEXT)
     (mode,) = found.modes
     np.testing.assert_allclose(mode.acceleration_W, [(push - HOLDS) / MASS, 0, 0], rtol=0.0, atol=1e-9)
     if problem is Problem.PLANAR:
@@ -278,6 +280,22 @@ def test_automatic_says_why_it_went_to_space() -> None:
     assert math.isnan(found.out_of_plane)
     with pytest.raises(OutOfPlaneError, match="out of the plane"):
         answer(replace(pushed, problem=Problem.PLANAR), CONTEXT)
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "problem", "condition"),
+    [
+        ("plane", FROM_THE_SIDE, Problem.SPATIAL, "problem is PLANAR"),
+        ("out_of_plane_tolerance", 1e-3, Problem.SPATIAL, "problem is PLANAR"),
+        ("friction_facets", 16, Problem.PLANAR, "problem is SPATIAL"),
+        ("margin_length", 0.1, Problem.AUTOMATIC, "include_margins or include_statics is true"),
+    ],
+)
+def test_a_value_that_would_be_ignored_is_an_error(
+    name: str, value: Any, problem: Problem, condition: str
+) -> None:
+    with pytest.raises(InvalidFieldError, match=f"^{name} must be left out unless {condition}, got"):
+        replace(AT_REST, problem=problem, **{name: value})
 
 
 def test_numbers_without_sense_are_refused() -> None:

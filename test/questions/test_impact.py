@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -241,6 +242,21 @@ def test_what_cannot_be_answered_is_named(
     question = replace(ImpactQuestion(body=CUBE, state=SLIDING, contacts=below()), **change)  # type: ignore[arg-type]
     with pytest.raises(error, match=words):
         answer(question, Context())
+
+
+@pytest.mark.parametrize(
+    ("fields", "condition"),
+    [
+        ({"other_state": SLIDING}, "other is given"),
+        ({"horizon": 1.0, "contacts": below()}, "contacts are detected"),
+        ({"plane": PlaneOfMotion(normal_W=[0, -1, 0])}, "problem is PLANAR"),
+        ({"out_of_plane_tolerance": 1e-3, "problem": Problem.SPATIAL}, "problem is PLANAR"),
+    ],
+)
+def test_a_value_that_would_be_ignored_is_an_error(fields: dict[str, Any], condition: str) -> None:
+    name = next(iter(fields))
+    with pytest.raises(InvalidFieldError, match=f"^{name} must be left out unless {condition}, got"):
+        ImpactQuestion(body=CUBE, state=SLIDING, **fields)
 
 
 def test_numbers_without_sense_are_refused() -> None:

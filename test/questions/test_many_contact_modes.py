@@ -138,7 +138,6 @@ def test_counts_that_do_not_fit_are_refused(counts: tuple[int, ...], rows: int, 
         {"include_probabilities": True},
         {"include_geometry_margins": True},
         {"uncertainty": ContactUncertainty(points=1e-3)},
-        {"margin_length": 0.1},
     ],
     ids=lambda option: next(iter(option)),
 )
