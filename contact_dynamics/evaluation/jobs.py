@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Evaluates recordings in this process, in several processes, or on a Dask cluster, and stores the results.
 
-Jobs and their results are plain data. One process, several processes and a cluster return the same numbers
-to the last bit. An interrupted evaluation continues from its folder of results.
+One process, several processes and a cluster return the same numbers to the last bit. An interrupted
+evaluation continues from its folder of results.
 
 A process that dies (out of memory, a crash in a library) breaks its pool. The remaining jobs then run one by
 one, each in its own process, which identifies the job that crashes. Dask does the same: it marks a job as
@@ -74,8 +74,8 @@ class Job(Record):
         return hashlib.sha256(json.dumps(parts, sort_keys=True).encode()).hexdigest()
 
 
-def run_job(job: Job) -> dict[str, Any]:
-    """Return the `SourceResult` of a recording as a dict for JSON.
+def run_job(job: Job) -> SourceResult:
+    """Return the result of a recording.
 
     Every error becomes its ``problem``, so that one bad recording does not stop the others.
     """
@@ -85,9 +85,9 @@ def run_job(job: Job) -> dict[str, Any]:
         other = job.asked_with or job.config
         informed = None if other is None else parameters_of(ParameterFile(other))[1]
         evaluated = evaluate_recording(recording, job.settings, informed=informed, share=job.source.share)
-        return replace(evaluated, source=job.source.name, digest=digest).to_dict()
+        return replace(evaluated, source=job.source.name, digest=digest)
     except Exception as error:  # noqa: BLE001  not even a bug here may stop the others
-        return failed(job, error).to_dict()
+        return failed(job, error)
 
 
 def failed(job: Job, error: BaseException) -> SourceResult:
@@ -138,7 +138,7 @@ class ResultsFolder:
         self._path = path
         self._there = {file.stem.rpartition("-")[2]: file for file in path.glob("*.json")}
 
-    def find(self, job: Job) -> dict[str, Any] | None:
+    def find(self, job: Job) -> SourceResult | None:
         """Return the stored result of a job, whatever its recording was named, or None without one.
 
         Raises:
@@ -148,24 +148,23 @@ class ResultsFolder:
         if path is None:
             return None
         try:
-            content: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
-            source_result(content)
+            result = source_result(json.loads(path.read_text(encoding="utf-8")))
         except (ValueError, KeyError, TypeError):  # a damaged file is replaced
             return None
-        return {**content, "source": job.source.name}
+        return replace(result, source=job.source.name)
 
-    def put(self, job: Job, content: dict[str, Any]) -> None:
+    def put(self, job: Job, result: SourceResult) -> None:
         """Store the result of a job. Failures are not stored, and are tried again next time.
 
         Raises:
             OSError: the file cannot be written.
         """
-        if content["problem"]:
+        if result.problem:
             return
         name = _UNUSUAL.sub("_", job.source.name)[-_LONGEST_NAME:].lstrip("_.-")
         path = self._path / f"{name}-{job.key()[:_KEY_DIGITS]}.json"
         partial = path.with_suffix(f".{os.getpid()}.partial")
-        partial.write_text(json.dumps(content), encoding="utf-8")
+        partial.write_text(json.dumps(result.to_dict()), encoding="utf-8")
         partial.replace(path)
 
 
@@ -176,7 +175,7 @@ PROCESS_BYTES: Final = 1 << 20
 PROCESS_TOSSES: Final = 8
 """Bytes of logs, or number of tosses, whose evaluation takes several times as long as to start a process."""
 
-Done = tuple[int, dict[str, Any]]
+Done = tuple[int, SourceResult]
 
 
 def processes_for(jobs: Sequence[Job]) -> int:
@@ -222,17 +221,17 @@ def _in_parts(jobs: Sequence[Job], processes: int) -> Iterator[Done]:
     ]
     places = [(number, place) for number, each in enumerate(parts) for place in range(len(each))]
     tasks = [part for each in parts for part in each]
-    found: list[list[dict[str, Any]]] = [[{}] * len(each) for each in parts]
+    found: list[list[SourceResult]] = [[SourceResult()] * len(each) for each in parts]
     left = [len(each) for each in parts]
     done = _in_processes(tasks, processes) if len(tasks) > 1 else run_jobs(tasks)
-    for task, content in done:
+    for task, result in done:
         number, place = places[task]
-        found[number][place] = content
+        found[number][place] = result
         left[number] -= 1
         if left[number] == 0:
             whole = joined(found[number], [part.source.share[0] for part in parts[number]])
             found[number] = []
-            if len(parts[number]) > 1 and (whole["problem"] or not whole["states"]):  # for its error
+            if len(parts[number]) > 1 and (whole.problem or not whole.states):  # for its error
                 ((_, whole),) = _in_processes([jobs[number]], 1)
             yield number, whole
 
@@ -240,15 +239,15 @@ def _in_parts(jobs: Sequence[Job], processes: int) -> Iterator[Done]:
 def _in_processes(jobs: Sequence[Job], processes: int) -> Iterator[Done]:
     left = dict(enumerate(jobs))
     try:
-        for number, content in _in_one_pool(left, min(processes, len(jobs))):
+        for number, result in _in_one_pool(left, min(processes, len(jobs))):
             del left[number]
-            yield number, content
+            yield number, result
     except BrokenProcessPool:
         for number, job in list(left.items()):
             try:
                 yield from _in_one_pool({number: job}, 1)
             except BrokenProcessPool as error:  # noqa: PERF203  one job, one process
-                yield number, failed(job, error).to_dict()
+                yield number, failed(job, error)
 
 
 def _in_one_pool(jobs: dict[int, Job], processes: int) -> Iterator[Done]:
@@ -288,7 +287,7 @@ def _on_dask(jobs: Sequence[Job], address: str) -> Iterator[Done]:
         for future in as_completed(futures):
             number = numbers[future.key]
             error = future.exception()
-            yield number, future.result() if error is None else failed(jobs[number], error).to_dict()
+            yield number, future.result() if error is None else failed(jobs[number], error)
             future.release()
 
 

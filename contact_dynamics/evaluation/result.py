@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import csv
 import json
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from enum import Enum
 from typing import TYPE_CHECKING, Any, Final
 
@@ -109,29 +109,28 @@ def source_result(content: dict[str, Any]) -> SourceResult:
     return SourceResult(**plain)
 
 
-def joined(parts: Sequence[dict[str, Any]], shares: Sequence[int]) -> dict[str, Any]:
-    """Join the results of parts of a recording, each from `SourceResult.to_dict`.
+def joined(parts: Sequence[SourceResult], shares: Sequence[int]) -> SourceResult:
+    """Join the results of parts of a recording.
 
     A part with share 0 begins a group of bodies; the parts after it, with shares 1, 2, ..., contain the other
     shares of the same bodies' events.
     """
-    events: list[Any] = []
-    rows: list[Any] = []
+    events: list[FoundEvent] = []
+    rows: list[Comparison] = []
     first, wholes = 0, [part for part, share in zip(parts, shares, strict=True) if share == 0]
     for part, share in zip(parts, shares, strict=True):
         if share == 0:
             first = len(events)
-            events += part["events"]
-        rows += ({**row, "event": row["event"] + first} for row in part["comparisons"])
-    rows.sort(key=lambda row: row["event"])  # each share has events of all stretches
-    return {
-        **parts[0],
-        "problem": next((part["problem"] for part in parts if part["problem"]), ""),
-        "states": sum(part["states"] for part in wholes),
-        "seconds": sum(part["seconds"] for part in wholes),
-        "events": events,
-        "comparisons": rows,
-    }
+            events += part.events
+        rows += (replace(row, event=row.event + first) if first else row for row in part.comparisons)
+    return replace(
+        parts[0],
+        problem=next((part.problem for part in parts if part.problem), ""),
+        states=sum(part.states for part in wholes),
+        seconds=sum(part.seconds for part in wholes),
+        events=tuple(events),
+        comparisons=tuple(sorted(rows, key=lambda row: row.event)),  # each share has events of all stretches
+    )
 
 
 def _typed(kind: type[FoundEvent | Comparison], content: dict[str, Any]) -> dict[str, Any]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 from contact_dynamics.evaluation.arguments import evaluate_parser
 from contact_dynamics.evaluation.command import NOTHING, check_writable, run_on_recordings
@@ -24,7 +24,6 @@ from contact_dynamics.evaluation.result import (
     Evaluation,
     SourceResult,
     read_evaluation,
-    source_result,
     write_csv,
     write_parquet,
 )
@@ -108,30 +107,30 @@ def _all(
         for source in sources
     ]
     folder = None if given.results is None else ResultsFolder(given.results)
-    found: dict[int, dict[str, Any]] = {}
+    found: dict[int, SourceResult] = {}
     left = []
     for number, job in enumerate(jobs):
         try:
-            content = None if folder is None else folder.find(job)
+            result = None if folder is None else folder.find(job)
         except OSError as error:
-            content = failed(job, error).to_dict()
-        if content is None:
+            result = failed(job, error)
+        if result is None:
             left.append(number)
         else:
-            found[number] = content
+            found[number] = result
     before = len(found)
     if found:
         print(f"{len(found)} of {len(jobs)} recordings were evaluated before", file=sys.stderr)
     waiting = [jobs[i] for i in left]
     progress = Progress("evaluating", end=len(left))
     try:
-        for done, content in run_jobs(
+        for done, result in run_jobs(
             waiting, processes=given.jobs or processes_for(waiting), dask=given.dask
         ):
             job = jobs[left[done]]
             if folder is not None:
-                folder.put(job, content)
-            found[left[done]] = content
+                folder.put(job, result)
+            found[left[done]] = result
             count = len(found) - before
             progress.tell(count, f"{count} of {len(left)}: {job.source.name[-60:]}")
     finally:
@@ -139,7 +138,7 @@ def _all(
     return Evaluation(
         versions=code_versions(),
         configuration=f"described by {_name(given)}",
-        results=(*(source_result(found[number]) for number in range(len(jobs))), *nameless),
+        results=(*(found[number] for number in range(len(jobs))), *nameless),
     )
 
 

@@ -115,10 +115,10 @@ class _Fits:
         longest = LONGEST * max(-float(seconds[0]) for *_, seconds in windows)
         steps = math.ceil(math.log(longest / shortest) / math.log(STEP))
         self.times = [0.0, *(shortest * STEP**k for k in range(steps + 1))]
-        fits = [[fit_whitened(*window, time) for window in windows] for time in self.times]
-        self.costs = np.array([[fit.cost for fit in row] for row in fits])
-        self.logs = np.array([[fit.log_weight for fit in row] for row in fits])
-        self.free = np.array([fit.free for fit in fits[0]])
+        fits = [fit_whitened(*window, np.array(self.times)) for window in windows]
+        self.costs = np.array([fit.cost for fit in fits]).T
+        self.logs = np.array([fit.log_weight for fit in fits]).T
+        self.free = np.array([fit.free for fit in fits])
 
     def best(self, used: NDArray[np.bool_], degrees: float) -> tuple[float, float, float, NDArray[np.bool_]]:
         """Return the log likelihood under Student's distribution, and where it is the largest.

@@ -97,49 +97,54 @@ def scaled(noise: StateNoise, position: float, orientation: float) -> StateNoise
     )
 
 
-def whitened(rows: FloatArray, seconds: FloatArray, time: float) -> FloatArray:
+def whitened(rows: FloatArray, seconds: FloatArray, time: float | FloatArray) -> FloatArray:
     """Return rows at times (n,), (n, ...), without the correlation of ``time`` (s) from row to row.
 
     Each row after the first becomes its innovation (prediction error) over the standard deviation of that.
+    For several correlation times, (t,), the result is (t, n, ...).
     """
-    if time == 0.0:
+    if isinstance(time, float) and time == 0.0:
         return rows
-    share, scale = _steps(seconds, time)
-    shape = (-1,) + (1,) * (rows.ndim - 1)
-    later = (rows[1:] - share.reshape(shape) * rows[:-1]) / scale.reshape(shape)
-    return np.concatenate([rows[:1], later])
+    share, scale = (each.reshape(*each.shape, *(1,) * (rows.ndim - 1)) for each in _steps(seconds, time))
+    later = (rows[1:] - share * rows[:-1]) / scale
+    first = np.broadcast_to(rows[:1], (*later.shape[: -rows.ndim], *rows[:1].shape))
+    return np.concatenate([first, later], axis=-rows.ndim)
 
 
-def _steps(seconds: FloatArray, time: float) -> tuple[FloatArray, FloatArray]:
-    between = np.diff(seconds) / time
+def _steps(seconds: FloatArray, time: float | FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return correlations from row to row, and standard deviations of innovations, (n - 1,) or (t, n - 1)."""
+    time = np.asarray(time, dtype=np.float64)[..., None]
+    shape = np.broadcast_shapes(time.shape, (len(seconds) - 1,))
+    between = np.divide(np.diff(seconds), time, out=np.full(shape, np.inf), where=time > 0.0)
     return np.exp(-between), np.sqrt(-np.expm1(-2.0 * between))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Whitened:
-    """A linear fit to whitened rows."""
+    """Linear fits to rows that were whitened for t correlation times."""
 
-    cost: float  # sum of squares of the residuals, for unit variance
+    cost: FloatArray  # (t,), sums of squares of the residuals, for unit variance
     free: int  # number of residuals less that of the unknowns
-    log_weight: float  # logarithm of the restricted likelihood, but for cost and variance
-    inverse: FloatArray  # (k, k); inverse @ inverse^T is the covariance of the unknowns for unit variance
-    step: FloatArray  # (k, b), the fitted unknowns
+    log_weight: FloatArray  # (t,), logarithms of the restricted likelihood, but for cost and variance
+    inverse: FloatArray  # (t, k, k); inverse @ inverse^T is the covariance of the unknowns for unit variance
+    step: FloatArray  # (t, k, b), the fitted unknowns
 
 
-def fit_whitened(design: FloatArray, values: FloatArray, seconds: FloatArray, time: float) -> Whitened:
-    """Fit design (n, a, k) to values (n, a, b) at times (n,), whose noise has a correlation time, s."""
+def fit_whitened(design: FloatArray, values: FloatArray, seconds: FloatArray, times: FloatArray) -> Whitened:
+    """Fit design (n, a, k) to values (n, a, b) at times (n,), for each correlation time of noise, (t,), s."""
     n, a, k = design.shape
     b = values.shape[2]
-    rows = whitened(design, seconds, time).reshape(n * a, k)
-    sizes = np.sqrt(np.einsum("mk,mk->k", rows, rows))
-    orthogonal, triangle = np.linalg.qr(rows / sizes)
-    seen = whitened(values, seconds, time).reshape(n * a, b)
-    explained = orthogonal.T @ seen
-    inverse = np.linalg.inv(triangle) / sizes[:, None]
-    determinant = float(np.log(np.abs(triangle.diagonal())).sum() + np.log(sizes).sum())
-    scales = 0.0 if time == 0.0 else float(np.log(_steps(seconds, time)[1]).sum())
+    rows = whitened(design, seconds, times).reshape(-1, n * a, k)
+    sizes = np.sqrt(np.square(rows).sum(axis=1))
+    orthogonal, triangle = np.linalg.qr(rows / sizes[:, None])
+    seen = whitened(values, seconds, times).reshape(-1, n * a, b)
+    explained = orthogonal.transpose(0, 2, 1) @ seen
+    inverse = np.linalg.inv(triangle) / sizes[:, :, None]
+    diagonal = np.abs(np.diagonal(triangle, axis1=1, axis2=2))
+    determinant = (np.log(diagonal) + np.log(sizes)).sum(axis=1)
+    scales = np.log(_steps(seconds, times)[1]).sum(axis=1)
     return Whitened(
-        cost=float(np.square(seen - orthogonal @ explained).sum()),
+        cost=np.square(seen - orthogonal @ explained).sum(axis=(1, 2)),
         free=(n * a - k) * b,
         log_weight=-a * b * scales - b * determinant,
         inverse=inverse,
@@ -158,14 +163,12 @@ def average_covariance(design: FloatArray, misses: FloatArray, seconds: FloatArr
     Each correlation time has its own best fit, and its distance from the given one counts as an error.
     """
     interval = float(np.median(np.diff(seconds)))
-    fits = [fit_whitened(design, misses, seconds, frames * interval) for frames in FRAMES]
-    free, least = fits[0].free, LEAST_NOISE**2 * misses.size
-    logs = np.array([each.log_weight - 0.5 * free * math.log(each.cost + least) for each in fits])
+    fits = fit_whitened(design, misses, seconds, interval * np.array(FRAMES))
+    least = LEAST_NOISE**2 * misses.size
+    logs = fits.log_weight - 0.5 * fits.free * np.log(fits.cost + least)
     weights = np.exp(logs - logs.max())
-    covariances = [
-        each.cost / (free - LEAST_DEGREES) * each.inverse @ each.inverse.T
-        + each.step @ each.step.T / each.step.shape[1]
-        for each in fits
-    ]
+    variances = (fits.cost / (fits.free - LEAST_DEGREES))[:, None, None]
+    steps = fits.step @ fits.step.transpose(0, 2, 1) / misses.shape[2]
+    covariances = variances * fits.inverse @ fits.inverse.transpose(0, 2, 1) + steps
     average: FloatArray = np.tensordot(weights / weights.sum(), covariances, 1)
     return average

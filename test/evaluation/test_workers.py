@@ -6,6 +6,7 @@ from __future__ import annotations
 import json
 import os
 import signal
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -15,7 +16,7 @@ import pytest
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.evaluation.jobs import Job, run_job, run_jobs
 from contact_dynamics.evaluation.recording import Recording
-from contact_dynamics.evaluation.result import source_result
+from contact_dynamics.evaluation.result import SourceResult, source_result
 from contact_dynamics.evaluation.settings import Law, Settings
 from contact_dynamics.evaluation.sources import Source
 from contact_dynamics.measured.read_toss import DEFAULT_RECORDING
@@ -44,9 +45,14 @@ def jobs(tmp_path_factory: pytest.TempPathFactory) -> list[Job]:
     return [Job(source=source, settings=QUICK) for source in sources]
 
 
+def results(done: Iterable[tuple[int, SourceResult]]) -> dict[int, dict[str, Any]]:
+    """Every value of the results, by the numbers of their jobs."""
+    return {number: result.to_dict() for number, result in done}
+
+
 @pytest.fixture(scope="module")
 def alone(jobs: list[Job]) -> list[dict[str, Any]]:
-    return [run_job(job) for job in jobs]
+    return [run_job(job).to_dict() for job in jobs]
 
 
 def test_a_bad_recording_is_named_and_the_rest_are_done(jobs: list[Job], alone: list[dict[str, Any]]) -> None:
@@ -68,13 +74,13 @@ def test_processes_share_logs_bodies_and_events_and_give_the_numbers_of_one(
     several = write_log(tmp_path / "several", names=("one", "silent", "two"), until=BRIEF)
     empty = write_log(tmp_path / "empty", names=("one", "two"), until=-1.0)
     shared_jobs = [*(Job(source=Source(path=path), settings=QUICK) for path in (several, empty)), jobs[1]]
-    shared = dict(run_jobs(shared_jobs, processes=6))
-    assert [shared[i] for i in range(3)] == [*(run_job(job) for job in shared_jobs[:2]), alone[1]]
+    shared = results(run_jobs(shared_jobs, processes=6))
+    assert [shared[i] for i in range(3)] == [*(run_job(job).to_dict() for job in shared_jobs[:2]), alone[1]]
     bodies = [event["body"] for event in shared[0]["events"]]
     assert bodies == ["one"] * (len(bodies) // 2) + ["two"] * (len(bodies) // 2)
     assert "no state of a configured body" in shared[1]["problem"]
     halves = [run_job(Job(source=part, settings=QUICK)) for part in jobs[1].source.parts(2)]
-    asked = [{row["event"] for row in half["comparisons"]} for half in halves]
+    asked = [{row.event for row in half.comparisons} for half in halves]
     assert all(asked)
     assert not asked[0] & asked[1]
 
@@ -83,7 +89,7 @@ def test_a_recording_that_kills_its_process_is_named_and_the_rest_are_done(
     jobs: list[Job], alone: list[dict[str, Any]]
 ) -> None:
     deadly = Job(source=DeadlySource(path=jobs[0].source.path), settings=QUICK)
-    done = dict(run_jobs([jobs[0], deadly, jobs[3]], processes=2))
+    done = results(run_jobs([jobs[0], deadly, jobs[3]], processes=2))
     assert done[0] == alone[0]
     assert done[2] == alone[3]
     assert done[1]["problem"].startswith("BrokenProcessPool")
@@ -92,7 +98,7 @@ def test_a_recording_that_kills_its_process_is_named_and_the_rest_are_done(
 @pytest.mark.filterwarnings("ignore::DeprecationWarning", "ignore::ResourceWarning")
 def test_dask_gives_the_numbers_of_one_process(jobs: list[Job], alone: list[dict[str, Any]]) -> None:
     pytest.importorskip("distributed", reason="dask[distributed] of requirements/test.txt is not installed")
-    shared = dict(run_jobs(jobs[2:], dask="local:1"))
+    shared = results(run_jobs(jobs[2:], dask="local:1"))
     assert [shared[i] for i in range(2)] == alone[2:]
 
 

@@ -137,18 +137,19 @@ def test_whitened_fits_are_those_of_the_whole_matrix(time: float) -> None:
     rng = np.random.default_rng(1)
     seconds = np.sort(rng.uniform(0.0, 0.1, 9))
     design, values = rng.normal(size=(9, 3, 4)), rng.normal(size=(9, 3, 1))
-    fit = fit_whitened(design, values, seconds, time)
+    fits = fit_whitened(design, values, seconds, np.array([0.01, time]))
     apart = np.abs(seconds[:, None] - seconds)
     matrix = np.kron(np.exp(-apart / time) if time else np.eye(9), np.eye(3))
     flat, seen = design.reshape(27, 4), values.ravel()
     covariance = np.linalg.inv(flat.T @ np.linalg.solve(matrix, flat))
-    np.testing.assert_allclose(fit.inverse @ fit.inverse.T, covariance, rtol=1e-9, atol=1e-12)
+    np.testing.assert_allclose(fits.inverse[1] @ fits.inverse[1].T, covariance, rtol=1e-9, atol=1e-12)
     step = covariance @ flat.T @ np.linalg.solve(matrix, seen)
-    np.testing.assert_allclose(fit.step[:, 0], step, rtol=1e-9)
+    np.testing.assert_allclose(fits.step[1, :, 0], step, rtol=1e-9)
     contrasts = np.linalg.svd(flat)[0][:, 4:]
     log = multivariate_normal.logpdf(contrasts.T @ seen, cov=contrasts.T @ matrix @ contrasts)
     size = 0.5 * np.linalg.slogdet(flat.T @ flat)[1]
-    assert fit.log_weight - 0.5 * fit.cost - 0.5 * 23 * math.log(2 * math.pi) + size == pytest.approx(log)
+    found = fits.log_weight[1] - 0.5 * fits.cost[1]
+    assert found - 0.5 * 23 * math.log(2 * math.pi) + size == pytest.approx(log)
 
 
 def test_noise_is_measured_from_flights() -> None:
