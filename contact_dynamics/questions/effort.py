@@ -9,15 +9,17 @@ functions.
 from __future__ import annotations
 
 import math
+from contextlib import suppress
 from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Final
 
+from contact_dynamics.errors import ContactDynamicsError
 from contact_dynamics.impact.several.result import SeveralContactsLaw
 from contact_dynamics.motion.forces import NO_DRAG, NO_WRENCH
 from contact_dynamics.questions.plane_of_motion import Problem
 from contact_dynamics.questions.sample_times import UntilContact, UntilPlane
-from contact_dynamics.questions.subject import PublishedState, subject_of
+from contact_dynamics.questions.subject import PublishedState, at_stamp, subject_of
 
 if TYPE_CHECKING:
     from contact_dynamics.contact.contact import ContactSet
@@ -55,15 +57,29 @@ _CORNERS_OF_A_RIM: Final = 8  # in which the base of a cylinder touches
 
 def excerpt(question: Question[Answer], context: Context) -> Context:
     """Return what another process must know to answer a question as this one would now."""
-    wanted = []
+    wanted, first = [], None
     for role, source_name in (("body", "state"), ("other", "other_state")):
         body, source = getattr(question.about, role, None), getattr(question.about, source_name, None)
         name = body if isinstance(body, str) else getattr(body, "name", "")
+        if body is None or source is None:
+            continue
         if name and isinstance(source, PublishedState):
-            wanted.append((name, source.stamp_ns, source.fit_window))
+            stamp_ns = 0 if first is None else _stamp_of(*first, context)
+            wanted.append((name, at_stamp(source, stamp_ns).stamp_ns, source.fit_window))
+        first = body, source
     now_ns = None if context.now_ns is None else context.now_ns()
     states = context.states.excerpt(wanted, now_ns=now_ns)
     return replace(context, states=states, now_ns=partial(_same, now_ns))
+
+
+def _stamp_of(body: Body | str, source: StateSource, context: Context) -> int:
+    """Return the time of a body's state, ns, or 0 if there is none, which the answer will say."""
+    if isinstance(source, PublishedState):
+        source = replace(source, fit_window=0.0)
+    stamp_ns = 0
+    with suppress(ContactDynamicsError):
+        stamp_ns = subject_of(body, source, context).state.stamp_ns
+    return stamp_ns
 
 
 def _same(now_ns: int | None) -> int | None:

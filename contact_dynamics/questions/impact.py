@@ -47,7 +47,7 @@ from contact_dynamics.questions.plane_of_motion import (
     planar_problem_of,
     several_in_plane,
 )
-from contact_dynamics.questions.subject import Subject, covariance_of, subject_of
+from contact_dynamics.questions.subject import Subject, at_stamp, covariance_of, subject_of
 from contact_dynamics.questions.touching import check_has_shape, contacts_of, outside_shape
 from contact_dynamics.records import Record
 from contact_dynamics.rigid_body.body import BodyState
@@ -359,7 +359,10 @@ def _strike_of(question: ImpactQuestion, context: Context) -> _Strike:
         ContactDynamicsError: nothing strikes, or a part of the question is not known or not supported.
     """
     subject = subject_of(question.body, question.state, context)
-    other = None if question.other is None else subject_of(question.other, question.other_state, context)
+    other = None
+    if question.other is not None:
+        source = at_stamp(question.other_state, subject.state.stamp_ns)
+        other = subject_of(question.other, source, context)
     for one in (subject, other):
         if one is not None:
             check_extent(one.body.mass_properties, one.state)

@@ -126,7 +126,8 @@ class ImpactQuestion(Question[ImpactAnswer]):
         body: The body, or the name of a body of the context's world.
         state: State of the body, with or without a covariance, or a reference to a published state.
         other: Second moving body that the first one hits, or None if it hits the world.
-        other_state: State of the second body.
+        other_state: State of the second body, at the time of the first one's. The newest published state is
+            moved to that time.
         contacts: Contacts in the given state. If it is None, the flight to the first contact with the
             context's world is predicted, and the impact there.
         horizon: s, >= 0. Look-ahead time for the first contact. None means the default.

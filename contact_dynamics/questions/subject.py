@@ -106,6 +106,18 @@ class Subject(Record):
     by_gravity: tuple[float, float] = (0.0, 0.0)
 
 
+def at_stamp(source: StateSource, stamp_ns: int) -> StateSource:
+    """Return where the state of a second body comes from: the newest one is that at the first body's time.
+
+    Args:
+        source: Where it comes from.
+        stamp_ns: ns, the time of the first body's state, or 0 if it is not known.
+    """
+    if isinstance(source, PublishedState) and source.stamp_ns is None and stamp_ns:
+        return replace(source, stamp_ns=stamp_ns)
+    return source
+
+
 def subject_of(
     body: Body | str, source: StateSource, context: Context, *, fit: Fitting | None = None
 ) -> Subject:

@@ -25,9 +25,13 @@ from contact_dynamics.questions import (
     ImpactQuestion,
     InTime,
     Problem,
+    PublishedState,
+    StateStore,
     UncertainState,
 )
+from contact_dynamics.questions.effort import excerpt
 from contact_dynamics.questions.impact import answer
+from contact_dynamics.tumbling import free_motion
 from questions.known_world import (
     CONTEXT,
     CUBE,
@@ -37,6 +41,7 @@ from questions.known_world import (
     MOMENT,
     RESTITUTION,
     SIDE,
+    WORLD,
     below,
     state,
 )
@@ -123,6 +128,28 @@ def test_equal_bodies_without_friction_exchange_their_velocities() -> None:
     assert found.impact.other_state.v_WB_W[2] == pytest.approx(-2.0, abs=ROUNDING)
     assert found.other.state.v_WB_W[2] == 1.0
     assert found.impact.kinetic_energy_after == pytest.approx(found.impact.kinetic_energy_before, rel=1e-13)
+
+
+@pytest.mark.parametrize("times", [(40, 50), (30, 36, 50), (20, 30)], ids=["at", "between", "before"])
+def test_the_newest_state_of_a_second_body_is_that_at_the_time_of_the_first(
+    times: tuple[int, ...],
+) -> None:
+    """It falls freely. A worker, which has only an excerpt of the states, uses the same."""
+    lid, thrown = replace(CUBE, name="lid"), state(1.0 - SIDE, v=(0.0, 0.0, 1.0))
+    store, motion = StateStore(history=1.0, timeout=0.5), free_motion(CUBE, thrown)
+    for ms in times:
+        store.add("lid", replace(motion.state_at(1e-3 * ms), stamp_ns=ms * 10**6))
+    first = state(v=(0.0, 0.0, -2.0), stamp_ns=40 * 10**6)
+    store.add("cube", first)
+    known = Context(world=replace(WORLD, bodies=(CUBE, lid)), states=store)
+    question = ImpactQuestion(body="cube", state=first, other="lid", contacts=below())
+    published = replace(question, state=PublishedState())
+    for asked, context in ((question, known), (published, known), (published, excerpt(published, known))):
+        other = answer(asked, context).other
+        assert other is not None
+        assert other.state.stamp_ns == 40 * 10**6
+        np.testing.assert_allclose(other.state.p_WB_W, motion.state_at(0.04).p_WB_W, rtol=0.0, atol=1e-12)
+        np.testing.assert_allclose(other.state.v_WB_W, motion.state_at(0.04).v_WB_W, rtol=0.0, atol=1e-12)
 
 
 def test_two_feet_at_once_or_in_turn() -> None:
