@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from contact_dynamics.constants import to_ns
-from contact_dynamics.errors import ContactDynamicsError, InvalidFieldError
+from contact_dynamics.errors import ContactDynamicsError, InvalidFieldError, NotSupportedError
 from contact_dynamics.evaluation.asking import Informed
 from contact_dynamics.evaluation.recording import Recording
 from contact_dynamics.measured.motion import StateColumns, motions_of
@@ -47,13 +47,22 @@ def parameters_of(source: ParameterSource) -> tuple[ServerParameters, Informed]:
 
     Raises:
         ConfigurationError: a parameter is missing, or has a value that is not allowed.
+        NotSupportedError: a surface moves with a body.
     """
     parameters = read_server_parameters(source)
     return parameters, informed_by(parameters)
 
 
 def informed_by(parameters: ServerParameters) -> Informed:
-    """Return the part of a server's parameters with which predictions are made."""
+    """Return the part of a server's parameters with which predictions are made.
+
+    Raises:
+        NotSupportedError: a surface moves with a body, which the search for events does not follow.
+    """
+    if parameters.carried:
+        names = ", ".join(f"{each.surface.name!r} on {each.body_name!r}" for each in parameters.carried)
+        message = f"surfaces must be at rest where predictions are compared with measurements, got {names}"
+        raise NotSupportedError(message)
     return Informed(
         world=parameters.world, defaults=parameters.defaults, state_timeout=parameters.state_timeout
     )

@@ -40,6 +40,7 @@ if TYPE_CHECKING:
 
     from contact_dynamics.monitoring.monitor import MonitoredEvent
     from contact_dynamics.nodes.inbox import InboxNode, Taken
+    from contact_dynamics.nodes.parameter_reader import ParameterSource
     from contact_dynamics.nodes.parameters import ServerParameters
     from contact_dynamics.questions.state_store import ReadState
     from contact_dynamics.questions.uncertain_state import KnownState
@@ -174,6 +175,12 @@ class LiveMonitor(ManagedNode):
     def __init__(self, *, ros_arguments: Sequence[str] = (), **node_options: Any) -> None:
         """Read the parameters, and begin where ``autostart`` says so (see `ManagedNode`)."""
         super().__init__(MONITOR_NAME, own=MONITOR_PARAMETERS, ros_arguments=ros_arguments, **node_options)
+
+    def _read(self, source: ParameterSource) -> ServerParameters:
+        """Read every parameter, and reject surfaces that move with a body."""
+        parameters = super()._read(source)
+        informed_by(parameters)
+        return parameters
 
     def make_work(self, configuration: ServerParameters, run: Mapping[str, str]) -> Monitoring:
         """Return what monitors while the node is active."""

@@ -10,6 +10,8 @@ from typing import Any
 import pytest
 from nav_msgs.msg import Odometry
 
+from contact_dynamics.errors import NotSupportedError
+from contact_dynamics.evaluation.log_states import parameters_of
 from contact_dynamics.nodes.parameter_file import ParameterFile
 from contact_dynamics.nodes.parameter_reader import ConfigurationError
 from contact_dynamics.nodes.parameters import read_server_parameters
@@ -96,3 +98,8 @@ def test_what_is_wrong_with_a_carried_surface_is_named(
 ) -> None:
     with pytest.raises(ConfigurationError, match=words):
         read_server_parameters(ParameterFile(parameters_file(tmp_path, PARAMETERS | values)))
+
+
+def test_events_on_a_carried_surface_are_not_evaluated(tmp_path: Path) -> None:
+    with pytest.raises(NotSupportedError, match="surfaces must be at rest .* got 'top' on 'tray'"):
+        parameters_of(ParameterFile(parameters_file(tmp_path, PARAMETERS)))
