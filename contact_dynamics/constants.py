@@ -23,6 +23,9 @@ HORIZON: Final = 10.0
 """s, how far a motion is followed if no other time is asked for. A body that is tossed by hand rests within
 two."""
 
+DEFAULT_PREDICTIONS: Final = 4
+"""Number of latest predictions of a body whose paths are drawn."""
+
 NS_PER_S: Final = 1_000_000_000
 """Nanoseconds in a second."""
 

@@ -14,10 +14,8 @@ from typing import TYPE_CHECKING, Final, Protocol, TypeVar
 import numpy as np
 
 from contact_dynamics.errors import InvalidFieldError, TooLargeError
-from contact_dynamics.impact.law import RestitutionLaw
-from contact_dynamics.impact.several.result import SeveralContactsLaw
 from contact_dynamics.plane.projection import PlaneOfMotion
-from contact_dynamics.questions.plane_of_motion import Problem
+from contact_dynamics.questions.context import Problem
 from contact_dynamics.questions.subject import NEWEST, PublishedState, changed_body
 from contact_dynamics.world import LONGEST_NAME, Body
 from msg_adapters.body_state import known_state_from_msg
@@ -111,16 +109,6 @@ def asked_plane(normal: Vector3) -> PlaneOfMotion | None:
         return PlaneOfMotion(normal_W=vector_from_msg(normal))
     except InvalidFieldError as error:
         raise renamed(error, {"normal_W": "plane_normal"}) from None
-
-
-def asked_restitution_law(value: int) -> RestitutionLaw:
-    """Return the law of a request's number, or raise `InvalidFieldError`."""
-    return asked_member("restitution_law", RestitutionLaw, value)
-
-
-def asked_instant_law(value: int) -> SeveralContactsLaw:
-    """Return the law for contacts at one instant of a request's number, or raise `InvalidFieldError`."""
-    return asked_member("several_contacts_law", SeveralContactsLaw, value)
 
 
 def asked_member(field: str, kind: type[Member], value: int, *others: str) -> Member:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from contact_dynamics.errors import InvalidFieldError
-from contact_dynamics.impact import ImpactOutcome
+from contact_dynamics.impact import ImpactOutcome, RestitutionLaw
 from contact_dynamics.questions.many import (
     ManyImpactsAnswer,
     ManyImpactsQuestion,
@@ -28,7 +28,7 @@ from msg_adapters import fields
 from msg_adapters.asked_fields import (
     asked_body,
     asked_gravity,
-    asked_restitution_law,
+    asked_member,
     optional,
 )
 from msg_adapters.contact_mode import asked_contact_modes
@@ -116,7 +116,7 @@ def impacts_question_from_msg(
             normals_W=flat_rows("contact_normals", request.contact_normals, 3),
             frictions=np.array(request.frictions),
             restitutions=np.array(request.restitutions),
-            restitution_law=asked_restitution_law(request.restitution_law),
+            restitution_law=asked_member("restitution_law", RestitutionLaw, request.restitution_law),
             velocity_tolerance=optional(request.velocity_tolerance),
         )
     except InvalidFieldError as error:

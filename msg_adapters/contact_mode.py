@@ -28,7 +28,7 @@ from contact_dynamics.contact_modes.spatial.margins import SpatialModeMargin
 from contact_dynamics.contact_modes.spatial.wrench_sets import SpatialWrenchSet
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.questions.contact_modes import ContactModeAnswer, ContactModeQuestion
-from contact_dynamics.questions.plane_of_motion import Problem
+from contact_dynamics.questions.context import Problem
 from contact_dynamics.questions.settled_impact import SettledImpact
 from contact_dynamics_interfaces.msg import ContactMode, ModeWrenches
 from contact_dynamics_interfaces.msg import GeometryMargin as GeometryMarginMsg

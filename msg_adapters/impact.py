@@ -21,13 +21,13 @@ from contact_dynamics.impact.several.result import (
     SequenceStrike,
     SeveralContactsLaw,
 )
+from contact_dynamics.questions.context import Problem
 from contact_dynamics.questions.impact_question import (
     ImpactAnswer,
     ImpactQuestion,
     InTime,
     StruckBody,
 )
-from contact_dynamics.questions.plane_of_motion import Problem
 from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.rigid_body.published_frame import centers_of_mass, origin_of_published_frame
 from contact_dynamics.world import World
@@ -40,7 +40,6 @@ from msg_adapters.asked_fields import (
     asked_other,
     asked_plane,
     asked_problem,
-    asked_restitution_law,
     asked_subject,
     optional,
 )
@@ -75,7 +74,7 @@ def impact_question_from_msg(
         other_state=other_state,
         contacts=contacts,
         horizon=optional(request.horizon),
-        restitution_law=asked_restitution_law(request.restitution_law),
+        restitution_law=asked_member("restitution_law", RestitutionLaw, request.restitution_law),
         several_contacts_law=law,
         include_orders=request.include_orders,
         include_covariance=request.include_covariance,

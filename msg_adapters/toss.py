@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from contact_dynamics.errors import InvalidFieldError
-from contact_dynamics.impact import ImpactOutcome
+from contact_dynamics.impact import ImpactOutcome, RestitutionLaw, SeveralContactsLaw
 from contact_dynamics.questions.many import ManyStates
 from contact_dynamics.questions.toss import TossAnswer, TossPath, TossQuestion, TossSampling
 from contact_dynamics.toss import (
@@ -39,12 +39,7 @@ from contact_dynamics_interfaces.msg import TossEvent as TossEventMsg
 from contact_dynamics_interfaces.msg import TossPath as TossPathMsg
 from contact_dynamics_interfaces.srv import PredictToss
 from msg_adapters import fields
-from msg_adapters.asked_fields import (
-    asked_instant_law,
-    asked_restitution_law,
-    asked_subject,
-    optional,
-)
+from msg_adapters.asked_fields import asked_member, asked_subject, optional
 from msg_adapters.batches import body_states_from_msg, body_states_to_msg
 from msg_adapters.field_names import renamed
 from msg_adapters.rejected_fields import TOSS, check_unread
@@ -145,8 +140,10 @@ def toss_question_from_msg(request: PredictToss.Request, *, world: World, world_
     return TossQuestion(
         body=body,
         state=state,
-        restitution_law=asked_restitution_law(request.restitution_law),
-        several_contacts_law=asked_instant_law(request.several_contacts_law),
+        restitution_law=asked_member("restitution_law", RestitutionLaw, request.restitution_law),
+        several_contacts_law=asked_member(
+            "several_contacts_law", SeveralContactsLaw, request.several_contacts_law
+        ),
         horizon=optional(request.horizon),
         rate=optional(request.rate),
         max_alternatives=optional(request.max_alternatives),

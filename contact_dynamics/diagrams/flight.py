@@ -43,7 +43,6 @@ the body."""
 DEVIATIONS: Final = 2.0
 """Half axes of the ellipsoids of uncertainty, in standard deviations: 74 % of a normal distribution."""
 
-DEFAULT_PREDICTIONS: Final = 4  # the paths of this many newest predictions of a body are in view
 _PATH_WIDTH: Final = 2.5
 EARLIER: Final = {"opacity": 0.4, "width": 1.25}  # how the paths of earlier predictions look
 _PAINT: Final = Paint(palette.PREDICTED, paper.ORANGE)

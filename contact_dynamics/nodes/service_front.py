@@ -21,8 +21,7 @@ from rclpy.service_introspection import ServiceIntrospectionState
 
 from contact_dynamics.errors import BusyError, ContactDynamicsError
 from contact_dynamics.nodes.calls import CallTimes, GoneClients
-from contact_dynamics.questions.effort import excerpt
-from contact_dynamics.questions.services import at_instant
+from contact_dynamics.questions.services import ImportedOnUse, at_instant
 from contact_dynamics.recording.cdr import EventType, cut_to_its_end
 from contact_dynamics.recording.definitions import find_definition
 from contact_dynamics.recording.message_types import message_class
@@ -36,6 +35,7 @@ if TYPE_CHECKING:
     from contact_dynamics.nodes.inbox import InboxNode, Taken
     from contact_dynamics.nodes.log import Log
     from contact_dynamics.nodes.server_core import ServerCore
+    from contact_dynamics.questions.context import Context
     from contact_dynamics.questions.services import Answer, Service
     from contact_dynamics.questions.workers import Workers
     from msg_adapters.status import Response
@@ -50,6 +50,8 @@ are answered, each with two events, before the first of these events is taken.""
 _EVENT_PATIENCE_S: Final = 0.1
 """s for which the event of a request is waited for, where the answer is logged before it leaves. DDS hands it
 over with the request, and another DDS may be later."""
+
+_EXCERPT: Final[ImportedOnUse[Context]] = ImportedOnUse("contact_dynamics.questions.effort:excerpt")
 
 _TELL_EVERY_S: Final = 5.0  # an answer that did not reach its client
 
@@ -114,7 +116,6 @@ class ServiceFront:
         self._times = CallTimes(lambda: node.get_clock().now().nanoseconds)
         self.is_active = False
         self.gone = GoneClients(core.parameters.client_gone_for)
-        served.prepare()
         self._service = service = node.create_service(
             served.service_type, f"~/{served.name}", self._take, qos_profile=SERVICE_QOS
         )
@@ -198,7 +199,7 @@ class ServiceFront:
             if self._workers is None or served.is_answered_at_once(question, context):
                 fill(served.answer(question, context))
                 return
-            self._workers.ask(served.answer.function, question, excerpt(question, context), done)
+            self._workers.ask(served.answer.function, question, _EXCERPT(question, context), done)
             self._under_way.add(answering)
             answering.is_done = False
 

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import gc
 import time
 from typing import TYPE_CHECKING, Final
 
@@ -63,6 +64,7 @@ class Serving(Receiving):
         self._answer_times = AnswerTimes()
         self._took_events = 0.0
         self._fronts = [self._serve(service) for service in SERVICES]
+        self._unprepared = list(SERVICES)
         self._begin()
 
     @property
@@ -73,7 +75,8 @@ class Serving(Receiving):
     @property
     def is_ready(self) -> bool:
         """Whether all kinds of questions can be answered, for some of which workers have to be ready."""
-        return self._workers is None or self._workers.ready == self._workers.count
+        are_workers_ready = self._workers is None or self._workers.ready == self._workers.count
+        return are_workers_ready and not self._unprepared
 
     @property
     def preparations(self) -> str:
@@ -98,6 +101,9 @@ class Serving(Receiving):
         """Take the events that wait, unless that was done a moment ago, and look around once a second."""
         if time.monotonic() - self._took_events >= EVENTS_EVERY_S:
             self._take_events()
+        if self._unprepared:  # one at a time, so that a first request waits for one of them at most
+            self._unprepared.pop(0).prepare()
+            gc.freeze()  # see `running`
         super().attend()
 
     def end(self) -> None:

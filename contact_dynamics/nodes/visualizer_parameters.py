@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final, NamedTuple
 
-from contact_dynamics.diagrams.flight import DEFAULT_PREDICTIONS
+from contact_dynamics.constants import DEFAULT_PREDICTIONS
 from contact_dynamics.errors import ContactDynamicsError
 from contact_dynamics.nodes.parameter_reader import ConfigurationError, DeclaredParameter
 

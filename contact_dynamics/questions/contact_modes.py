@@ -39,10 +39,9 @@ from contact_dynamics.contact_modes.spatial.wrench_sets import WRENCH_FACETS
 from contact_dynamics.errors import OutOfPlaneError, TooLargeError
 from contact_dynamics.plane.lifting import check_mirrored, mirror_partners
 from contact_dynamics.plane.projection import PlaneOfMotion
-from contact_dynamics.questions.context import Context, check_optional, check_read, or_default
+from contact_dynamics.questions.context import Context, Problem, check_optional, check_read, or_default
 from contact_dynamics.questions.extent import check_contacts, check_extent, check_margin_length, check_wrench
 from contact_dynamics.questions.plane_of_motion import (
-    Problem,
     lifted_margin,
     lifted_mode,
     lifted_vectors,

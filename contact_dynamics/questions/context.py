@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The context that questions are answered with: the world, the published states, and defaults."""
+"""The context that questions are answered with, and the choice between plane and space."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from contact_dynamics.errors import InvalidFieldError, NotSupportedError
 from contact_dynamics.questions.carried_surface import CarriedSurface
 from contact_dynamics.questions.state_store import StateStore
-from contact_dynamics.records import Record
+from contact_dynamics.records import NamedInt, Record
 from contact_dynamics.tolerances import DISTANCE_TOLERANCE, OUT_OF_PLANE_SPEED, VELOCITY_TOLERANCE
 from contact_dynamics.validation import check_not_negative, check_positive
 from contact_dynamics.world import Surface, World
@@ -90,6 +90,17 @@ class Context(Record):
                     f"questions, such as belts and turntables (others can be `carried`), got {surface.name!r}"
                 )
                 raise NotSupportedError(message)
+
+
+class Problem(NamedInt):
+    """Whether a contact question is solved as planar or spatial. Messages have the same numbers."""
+
+    AUTOMATIC = 0
+    """The server chooses, and the answer contains the choice. It solves impacts as spatial."""
+    PLANAR = 1
+    """The question is solved in a plane of motion through the centre of mass. A motion or load out of the
+    plane is rejected."""
+    SPATIAL = 2
 
 
 def or_default(asked: float | None, default: float) -> float:

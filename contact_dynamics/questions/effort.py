@@ -15,9 +15,8 @@ from functools import partial
 from typing import TYPE_CHECKING, Final
 
 from contact_dynamics.errors import ContactDynamicsError
-from contact_dynamics.impact.several.result import SeveralContactsLaw
 from contact_dynamics.motion.forces import NO_DRAG, NO_WRENCH
-from contact_dynamics.questions.plane_of_motion import Problem
+from contact_dynamics.questions.context import Problem
 from contact_dynamics.questions.sample_times import UntilContact, UntilPlane
 from contact_dynamics.questions.subject import PublishedState, at_stamp, subject_of
 
@@ -107,7 +106,7 @@ def is_quick_impact(question: ImpactQuestion, context: Context) -> bool:
         return False
     if question.other is not None and not _is_quick_fit(question.other, question.other_state, context):
         return False
-    if not isinstance(question.several_contacts_law, SeveralContactsLaw):
+    if hasattr(question.several_contacts_law, "strike_window"):  # `InTime`, whose import loads all impacts
         return False
     if question.contacts is not None:
         return len(question.contacts) <= MAX_QUICK_CONTACTS

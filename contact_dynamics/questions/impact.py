@@ -33,7 +33,7 @@ from contact_dynamics.plane.lifting import (
     mirror_partners,
     planar_in_space,
 )
-from contact_dynamics.questions.context import Context, or_default
+from contact_dynamics.questions.context import Context, Problem, or_default
 from contact_dynamics.questions.extent import check_contacts, check_extent
 from contact_dynamics.questions.impact_question import (
     ImpactAnswer,
@@ -42,7 +42,6 @@ from contact_dynamics.questions.impact_question import (
     StruckBody,
 )
 from contact_dynamics.questions.plane_of_motion import (
-    Problem,
     lifted_impact,
     planar_problem_of,
     several_in_plane,

@@ -10,8 +10,7 @@ from contact_dynamics.contact.contact import ContactSet
 from contact_dynamics.impact import ResolvedImpact, RestitutionLaw, SeveralContactsLaw
 from contact_dynamics.impact.in_time.sequence import MAX_STRIKES, STRIKE_WINDOW
 from contact_dynamics.plane.projection import PlaneOfMotion
-from contact_dynamics.questions.context import check_optional, check_read
-from contact_dynamics.questions.plane_of_motion import Problem
+from contact_dynamics.questions.context import Problem, check_optional, check_read
 from contact_dynamics.questions.services import Answer, Question
 from contact_dynamics.questions.subject import NEWEST, FitQuality, StateSource
 from contact_dynamics.records import Record

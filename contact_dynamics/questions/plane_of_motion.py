@@ -20,7 +20,6 @@ from contact_dynamics.plane.lifting import equal_shares, planar_velocity, with_p
 from contact_dynamics.plane.plane_search import project_onto_best_plane
 from contact_dynamics.plane.projection import PlanarProblem, PlaneOfMotion, project_onto_plane
 from contact_dynamics.plane.types import PlanarWrench
-from contact_dynamics.records import NamedInt
 from contact_dynamics.rigid_body.body import kinetic_energy
 
 if TYPE_CHECKING:
@@ -32,17 +31,6 @@ if TYPE_CHECKING:
     from contact_dynamics.plane.types import Vector2
     from contact_dynamics.rigid_body.body import BodyState, MassProperties
     from contact_dynamics.validation import FloatArray
-
-
-class Problem(NamedInt):
-    """Whether a contact question is solved as planar or spatial. Messages have the same numbers."""
-
-    AUTOMATIC = 0
-    """The server chooses, and the answer contains the choice. It solves impacts as spatial."""
-    PLANAR = 1
-    """The question is solved in a plane of motion through the centre of mass. A motion or load out of the
-    plane is rejected."""
-    SPATIAL = 2
 
 
 def planar_problem_of(

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 import rerun as rr
 
-from contact_dynamics.constants import ns_after, to_ns
+from contact_dynamics.constants import DEFAULT_PREDICTIONS, ns_after, to_ns
 from contact_dynamics.diagrams.after_impact import AwaitedImpacts
 from contact_dynamics.diagrams.contact_scene import LETTERS, bodies_contact_marks, contact_marks
-from contact_dynamics.diagrams.flight import DEFAULT_PREDICTIONS, EARLIER, flight_marks, outside, path_mark
+from contact_dynamics.diagrams.flight import EARLIER, flight_marks, outside, path_mark
 from contact_dynamics.diagrams.impact_scene import impact_marks
 from contact_dynamics.diagrams.many_states import many_states_marks
 from contact_dynamics.diagrams.planar_scene import silhouette

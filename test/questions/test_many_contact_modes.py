@@ -14,12 +14,12 @@ from contact_dynamics.contact.uncertainty import ContactUncertainty
 from contact_dynamics.contact_modes import ModeVerdict
 from contact_dynamics.errors import ContactDynamicsError, InvalidFieldError, NoContactError, TooLargeError
 from contact_dynamics.questions import ContactModeQuestion, Context, ask
+from contact_dynamics.questions.context import Problem
 from contact_dynamics.questions.many_contact_modes import (
     MAX_CANDIDATES,
     ManyContactModesAnswer,
     ManyContactModesQuestion,
 )
-from contact_dynamics.questions.plane_of_motion import Problem
 from questions.known_world import CUBE, WORLD
 
 KNOWN = Context(world=WORLD)

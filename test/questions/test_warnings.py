@@ -16,11 +16,10 @@ from contact_dynamics.questions import contact_modes as modes_questions
 from contact_dynamics.questions import impact as impact_questions
 from contact_dynamics.questions import many, many_contact_modes
 from contact_dynamics.questions.contact_modes import ContactModeQuestion
-from contact_dynamics.questions.context import Context
+from contact_dynamics.questions.context import Context, Problem
 from contact_dynamics.questions.impact_question import ImpactQuestion, InTime
 from contact_dynamics.questions.many import ManyImpactsQuestion, ManyStates
 from contact_dynamics.questions.many_contact_modes import ManyContactModesQuestion
-from contact_dynamics.questions.plane_of_motion import Problem
 from contact_dynamics.shapes import box, capsule, cylinder, sphere
 from contact_dynamics.shapes.convex import ConvexShape
 from msg_adapters.batches import contact_modes_answer_to_msg, impacts_answer_to_msg
