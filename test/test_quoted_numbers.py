@@ -53,9 +53,7 @@ NOT_MEASURED: dict[
         "1e-9 m/s",
         "1e-6 m",
         "than 1e-3 rad",  # which modes count as one
-        "above 1e-5 rad",  # CLEAR_ROWS, CLEAR_ROWS_OF_MANY and SAME_ROWS
-        "(1e-6 rad if",
-        "down to 1e-11 rad",
+        "down to angles of 1e-11 rad",  # SAME_ROWS
         "within 1e-11 rad",
         "(5 s by default)",
         "too small by up to 8 %",  # test_contacts_of_shapes
