@@ -159,6 +159,9 @@ def content_of(found: Calibration) -> dict[str, Any]:
         else found.by_paths_covariance.tolist(),
         "undetermined": list(found.undetermined),
         "gravity": None if found.gravity is None else found.gravity.to_dict(),
+        "gravity_covariance_W": None
+        if found.gravity is None or found.gravity.count < 2
+        else found.gravity.covariance_W.tolist(),
         "spread": found.spread.to_dict(),
         "lasting_frictions": [each.to_dict() for each in found.lasting_frictions],
         "strikes": [

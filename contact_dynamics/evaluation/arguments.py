@@ -50,9 +50,20 @@ def add_config(parser: argparse._ActionsContainer) -> None:
     )
 
 
+def add_calibration(parser: argparse._ActionsContainer) -> None:
+    """Add the option for a calibration, which `model_error.model_error_of` reads."""
+    parser.add_argument(
+        "--calibration",
+        type=Path,
+        metavar="FILE",
+        help="--json file of calibrate, whose model errors widen the prediction regions",
+    )
+
+
 def _add_what_is_asked(parser: argparse.ArgumentParser) -> None:
     asked = parser.add_argument_group("predictions")
     add_config(asked)
+    add_calibration(asked)
     asked.add_argument(
         "--horizons",
         type=_list_of_seconds,

@@ -21,6 +21,7 @@ from contact_dynamics.errors import (
 from contact_dynamics.evaluation.comparison import (
     Comparison,
     arrival_std,
+    as_normal,
     in_deviations,
     pose_difference,
     velocity_difference,
@@ -33,7 +34,7 @@ from contact_dynamics.questions.impact_question import ImpactQuestion, InTime
 from contact_dynamics.questions.sample_times import AtStamps, UntilContact
 from contact_dynamics.questions.services import ask
 from contact_dynamics.questions.state_store import StateStore
-from contact_dynamics.questions.subject import PublishedState, carried_over
+from contact_dynamics.questions.subject import PublishedState, carried_over, subject_of
 from contact_dynamics.questions.tumbling import TumblingQuestion
 from contact_dynamics.questions.uncertain_state import UncertainState, state_of
 from contact_dynamics.records import Record
@@ -116,6 +117,7 @@ def compare_event(
     number: int, event: FoundEvent, asked: Mapping[float, Context], settings: Settings
 ) -> Iterator[Comparison]:
     """Yield a row for each prediction of an event, from the context at each horizon before it."""
+    event = next((settings.error.of_event(event, known.world) for known in asked.values()), event)
     for horizon, known in asked.items():
         for method, law in _ways(event.kind, settings):
             row = Comparison(
@@ -175,7 +177,12 @@ def _flight(row: Comparison, event: FoundEvent, known: Context, settings: Settin
     pose, distance = pose_difference(state, event.state), None
     if answer.covariance is not None:
         stds = np.array([*[event.position_std] * 3, *event.orientation_std])
-        distance = in_deviations(pose, answer.covariance.covariances[0, :6, :6], stds)
+        covariance = answer.covariance.covariances[0, :6, :6].copy()
+        subject = subject_of(row.body, _source(row, settings), known)
+        place, rate = subject.by_gravity
+        ahead = seconds_between(subject.state.stamp_ns, event.time_ns)
+        covariance[:3, :3] += (place + ahead * (rate + 0.5 * ahead)) ** 2 * settings.error.gravity_W
+        distance = in_deviations(pose, covariance, stds)
     return _with_state(row, state, event, distance=distance, degrees=6)
 
 
@@ -243,7 +250,11 @@ def _impact(row: Comparison, event: FoundEvent, known: Context, settings: Settin
     distance = None
     if covariance is not None:
         stds = np.array([*[event.velocity_std] * 3, *event.angular_velocity_std])
-        distance = in_deviations(velocity_difference(state, event.state), covariance[6:, 6:], stds)
+        of_law = settings.error.of_law(body, answer.state, answer.contacts.p_WC_W[0])
+        off = velocity_difference(state, event.state)
+        distance = in_deviations(off, covariance[6:, 6:] + of_law, stds)
+        if distance is not None:
+            distance = as_normal(distance, len(stds), settings.error.freedom)
     return _with_state(row, state, event, distance=distance, degrees=6)
 
 

@@ -44,7 +44,8 @@ class Comparison(Record):
         predicted_mode: All consistent modes, or the verdict if there is none.
         measured_mode: Letters of the measured contacts.
         mode_is_right: True if a consistent mode is of the measured kind, rest or sliding.
-        distance: Mahalanobis distance of the prediction from the measurement, with the covariances of both.
+        distance: Mahalanobis distance of the prediction from the measurement, with the covariances of both;
+            with the model error of a law, the normal distance of the same probability.
         degrees: Number of components in ``distance``.
         several: True if several corners may have struck (`FoundEvent.several`).
         predicted: (13,), predicted position, quaternion, linear and angular velocity.
@@ -100,6 +101,21 @@ def in_deviations(difference: FloatArray, covariance: FloatArray, stds: FloatArr
     scaled = covariance / np.outer(stds, stds) + np.eye(len(stds))  # regular: at least the identity
     ratios = difference / stds
     return math.sqrt(max(0.0, float(ratios @ np.linalg.solve(scaled, ratios))))
+
+
+def as_normal(distance: float, degrees: int, freedom: float) -> float:
+    """Return the distance that a normal difference exceeds as often as Student's t exceeds a given distance.
+
+    Args:
+        distance: By the covariance of the t distribution's scale.
+        degrees: Number of components.
+        freedom: Degrees of freedom of the t distribution, or infinity.
+    """
+    if math.isinf(freedom):
+        return distance
+    from scipy.special import chdtri, fdtrc
+
+    return math.sqrt(float(chdtri(degrees, fdtrc(degrees, freedom, distance**2 / degrees))))
 
 
 def arrival_std(event: Event, state: BodyState, covariance: FloatArray, world: World) -> float | None:

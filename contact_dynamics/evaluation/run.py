@@ -18,6 +18,7 @@ from contact_dynamics.evaluation.jobs import (
     run_jobs,
 )
 from contact_dynamics.evaluation.log_states import parameters_of
+from contact_dynamics.evaluation.model_error import model_error_of
 from contact_dynamics.evaluation.plots import write_plots
 from contact_dynamics.evaluation.report import report, report_changes
 from contact_dynamics.evaluation.result import (
@@ -50,6 +51,7 @@ def main(arguments: list[str]) -> int:
 
 def _evaluate(given: argparse.Namespace) -> int:
     chosen = {name: getattr(given, name) for name in ("horizons", "laws", "fit_window")}
+    chosen["error"] = None if given.calibration is None else model_error_of(given.calibration)
     settings = Settings(**{name: value for name, value in chosen.items() if value is not None})
     _check_writable(given)
     against = _against(given.against)

@@ -3,11 +3,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import Enum
 from typing import Final
 
 from contact_dynamics.errors import InvalidFieldError
+from contact_dynamics.evaluation.model_error import ModelError
 from contact_dynamics.impact import RestitutionLaw, SeveralContactsLaw
 from contact_dynamics.questions.impact_question import InTime
 from contact_dynamics.records import Record
@@ -69,6 +70,7 @@ class Settings(Record):
         horizons: s, > 0, look-ahead times.
         laws: Impact laws. The first one is also applied to the newest state, without a fit.
         fit_window: s, > 0, duration of the states to which a flight is fitted.
+        error: Model errors in addition to measurement noise.
 
     Raises:
         InvalidFieldError: ``horizons`` or ``laws`` is empty, or a number is not > 0.
@@ -77,6 +79,7 @@ class Settings(Record):
     horizons: tuple[float, ...] = HORIZONS
     laws: tuple[Law, ...] = tuple(Law)
     fit_window: float = FIT_WINDOW
+    error: ModelError = field(default_factory=ModelError)
 
     def __post_init__(self) -> None:
         """Check the fields, and sort the horizons."""

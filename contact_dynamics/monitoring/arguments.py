@@ -6,7 +6,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from contact_dynamics.evaluation.arguments import add_config, add_recordings
+from contact_dynamics.evaluation.arguments import add_calibration, add_config, add_recordings
 
 
 def monitor_parser() -> argparse.ArgumentParser:
@@ -22,11 +22,6 @@ def monitor_parser() -> argparse.ArgumentParser:
     )
     add_recordings(parser)
     add_config(parser)
-    parser.add_argument(
-        "--calibration",
-        type=Path,
-        metavar="FILE",
-        help="--json file of calibrate, whose model errors widen the prediction regions",
-    )
+    add_calibration(parser)
     parser.add_argument("--json", type=Path, metavar="FILE", help="one JSON object per line for each event")
     return parser

@@ -3,8 +3,8 @@
 
 The measured velocities after the impact are compared with those predicted for given coefficients. The
 difference has the covariance of the prediction, of the measurement, and of the model error of the impact law.
-The model error is that of `toss.law_spread`: mostly an impulse through the contact, with the tails of
-Student's t for `FREEDOM` degrees of freedom. Without a model error, differences are normal.
+With a model error of the law, differences have the tails of Student's t (`ModelError.freedom`). Without it,
+they are normal.
 """
 
 from __future__ import annotations
@@ -21,11 +21,11 @@ from contact_dynamics.impact.spatial.batch import StrikingBodies, spatial_impact
 from contact_dynamics.records import Record
 from contact_dynamics.tolerances import SAME_COEFFICIENT
 from contact_dynamics.tumbling import free_motion
-from contact_dynamics.validation import check_not_negative
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from contact_dynamics.evaluation.model_error import ModelError
     from contact_dynamics.measured.events import FoundEvent
     from contact_dynamics.questions.impact_question import ImpactAnswer
     from contact_dynamics.validation import FloatArray
@@ -34,16 +34,6 @@ if TYPE_CHECKING:
     BoolArray = NDArray[np.bool_]
 
 COMPONENTS: Final = 6  # linear and angular velocity
-
-FREEDOM: Final = 3.0
-"""Degrees of freedom of Student's t, as in `toss.law_spread`, whose compiled constants cannot be imported."""
-
-_BY_IMPULSE: Final = 0.9
-"""Share of the variance that an impulse through the contact causes, from there as well."""
-
-_SAME_MEDIAN: Final = 0.7887
-"""Ratio of the medians of the squared distance in three dimensions, chi squared's and by t, as `law_spread`
-has it: the model error is stated as that of normal residuals with the same median."""
 
 STEP: Final = 1.1
 """Ratio of neighbouring values of a coefficient that changes are detected with."""
@@ -57,34 +47,6 @@ class Parameter(Enum):
 
     RESTITUTION = "restitution"
     FRICTION = "friction"
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
-class ModelError(Record):
-    """Model errors of predictions, in addition to measurement noise, as `calibrate` reports them.
-
-    Attributes:
-        velocity: m/s, >= 0, of each component of the velocity after an impact.
-        spin: rad/s, >= 0, of each component of the angular velocity after an impact.
-        height: m, >= 0, of the height of a corner at a first contact.
-
-    Raises:
-        InvalidFieldError: a number is negative or not finite.
-    """
-
-    velocity: float = 0.0
-    spin: float = 0.0
-    height: float = 0.0
-
-    def __post_init__(self) -> None:
-        """Check all fields."""
-        for name in ("velocity", "spin", "height"):
-            object.__setattr__(self, name, check_not_negative(name, getattr(self, name)))
-
-    @property
-    def freedom(self) -> float:
-        """Degrees of freedom of Student's t for impacts; infinite if differences are normal."""
-        return FREEDOM if max(self.velocity, self.spin) > 0.0 else math.inf
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -290,10 +252,8 @@ def evidence_of(
     properties = world.body(event.body).mass_properties
     before, after = answer.state, answer.impact.state
     flown = free_motion(properties, after, gravity_W=world.gravity_W).state_at(event.duration)
-    arm = contacts.p_WC_W[0] - before.p_WB_W
-    inertia_W = before.R_WB @ properties.I_B @ before.R_WB.T
     noise = np.diag(np.square([*[event.velocity_std] * 3, *event.angular_velocity_std]))
-    whole = covariance[6:, 6:] + noise + _law_covariance(error, properties.mass, inertia_W, arm)
+    whole = covariance[6:, 6:] + noise + error.of_law(properties, before, contacts.p_WC_W[0])
     return ImpactEvidence(
         struck=StrikingBodies.of(
             properties,
@@ -309,15 +269,3 @@ def evidence_of(
         configured=np.array([contacts.restitutions[0], contacts.frictions[0]]),
         freedom=error.freedom,
     )
-
-
-def _law_covariance(error: ModelError, mass: float, inertia_W: FloatArray, arm_W: FloatArray) -> FloatArray:
-    """Return the covariance of velocities by the model error of the law, (6, 6), as `law_spread` has it."""
-    turns = mass * np.linalg.solve(inertia_W, np.cross(arm_W, np.eye(3)).T)  # spins by unit velocities
-    square = float(np.square(turns).sum()) / 3.0
-    velocity, spin = error.velocity**2, error.spin**2
-    pushed = _BY_IMPULSE * (min(velocity, spin / square) if square > 0.0 else velocity)
-    through = np.vstack([np.eye(3), turns])
-    left = np.repeat([velocity - pushed, max(spin - pushed * square, 0.0)], 3)
-    covariance: FloatArray = _SAME_MEDIAN * (pushed * through @ through.T + np.diag(left))
-    return covariance

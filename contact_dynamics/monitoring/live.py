@@ -16,11 +16,10 @@ from typing import TYPE_CHECKING, Any
 from rclpy.serialization import serialize_message
 
 from contact_dynamics.evaluation.log_states import informed_by
+from contact_dynamics.evaluation.model_error import ModelError, model_error_of
 from contact_dynamics.monitoring.event_message import TYPE, event_to_msg
-from contact_dynamics.monitoring.evidence import ModelError
 from contact_dynamics.monitoring.monitor import LOOK_EVERY, SILENT, Monitor, MonitorSettings
 from contact_dynamics.monitoring.report import Summary, estimates_in_words
-from contact_dynamics.monitoring.run import model_error_of
 from contact_dynamics.nodes.arguments import live_monitor_parser
 from contact_dynamics.nodes.managed_node import ManagedNode
 from contact_dynamics.nodes.monitor_parameters import CALIBRATION, MONITOR_NAME, MONITOR_PARAMETERS

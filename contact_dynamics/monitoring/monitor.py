@@ -22,16 +22,16 @@ from contact_dynamics.contact_modes.result import ModeVerdict
 from contact_dynamics.errors import ContactDynamicsError
 from contact_dynamics.evaluation.asking import asked_before, compare_event, first_answer
 from contact_dynamics.evaluation.log_states import ONE_CLOCK_S
+from contact_dynamics.evaluation.model_error import ModelError
 from contact_dynamics.evaluation.settings import Law, Method, Settings
 from contact_dynamics.measured.events import EventKind, find_events
 from contact_dynamics.measured.flights import ORIENTATION_SLACK, POSITION_SLACK
 from contact_dynamics.measured.motion import StateColumns, motions_of
 from contact_dynamics.monitoring.changes import SurfaceChanges
-from contact_dynamics.monitoring.evidence import REGIONS, ModelError, evidence_of
+from contact_dynamics.monitoring.evidence import REGIONS, evidence_of
 from contact_dynamics.records import Record
 from contact_dynamics.tolerances import SAME_EVENT
 from contact_dynamics.validation import check_positive
-from contact_dynamics.world import Surface
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -152,7 +152,9 @@ class Monitor:
         """
         self.informed = informed
         self._settings = settings or MonitorSettings()
-        self._asking = Settings(horizons=(self._settings.horizon,), laws=(Law.POISSON,))
+        self._asking = Settings(
+            horizons=(self._settings.horizon,), laws=(Law.POISSON,), error=self._settings.error
+        )
         self._tracks: defaultdict[str, _Track] = defaultdict(_Track)
         self._changes: defaultdict[str, SurfaceChanges] = defaultdict(SurfaceChanges)
 
@@ -207,7 +209,13 @@ class Monitor:
             measured=np.concatenate([state.p_WB_W, state.q_WB, state.v_WB_W, state.w_WB_W]),
             measured_mode=event.mode,
         )
-        rows = list(compare_event(0, self._with_model_error(event), known, self._asking))
+        if event.kind is EventKind.FLIGHT:
+            event = replace(
+                event,
+                position_std=math.hypot(event.position_std, POSITION_SLACK),
+                orientation_std=np.hypot(event.orientation_std, ORIENTATION_SLACK),
+            )
+        rows = list(compare_event(0, event, known, self._asking))
         wanted = Method.NEWEST if event.mode else Method.FIT
         row = next((row for row in rows if row.method is wanted), None)
         if row is None:
@@ -226,22 +234,6 @@ class Monitor:
         if event.kind is EventKind.IMPACT:
             return self._impact(told, event, known[self._settings.horizon])
         return _with_region(told, row)
-
-    def _with_model_error(self, event: FoundEvent) -> FoundEvent:
-        """Return an event whose measurement is as uncertain as measurement and model are together."""
-        height = self._settings.error.height
-        if event.kind is EventKind.LANDING and height > 0.0:
-            surface = next(each for each in self.informed.world.surfaces if each.name == event.surface)
-            if isinstance(surface, Surface):
-                speed = abs(float(event.state.v_WB_W @ surface.normal_W))
-                return replace(event, time_std=math.hypot(event.time_std, height / max(speed, _SLOWEST)))
-        if event.kind is EventKind.FLIGHT:
-            return replace(
-                event,
-                position_std=math.hypot(event.position_std, POSITION_SLACK),
-                orientation_std=np.hypot(event.orientation_std, ORIENTATION_SLACK),
-            )
-        return event
 
     def _impact(self, told: MonitoredEvent, event: FoundEvent, known: Context) -> MonitoredEvent:
         """Return an impact with its region, and with what it shows about the surface."""
@@ -268,10 +260,6 @@ class Monitor:
             explained_by=None if regions[-1] else evidence.explained_by(),
             surface_report=report,
         )
-
-
-_SLOWEST: Final = 0.05
-"""m/s. Slower approaches of a centre of mass do not make the time of a first contact any more uncertain."""
 
 
 def _with_region(told: MonitoredEvent, row: Comparison) -> MonitoredEvent:

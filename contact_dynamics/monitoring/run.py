@@ -11,12 +11,12 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from contact_dynamics.errors import ContactDynamicsError, InvalidFieldError
+from contact_dynamics.errors import ContactDynamicsError
 from contact_dynamics.evaluation.command import NOTHING, check_writable, run_on_recordings
 from contact_dynamics.evaluation.log_states import parameters_of
+from contact_dynamics.evaluation.model_error import ModelError, model_error_of
 from contact_dynamics.evaluation.sources import find_sources
 from contact_dynamics.monitoring.arguments import monitor_parser
-from contact_dynamics.monitoring.evidence import ModelError
 from contact_dynamics.monitoring.monitor import Monitor, MonitorSettings
 from contact_dynamics.monitoring.report import Summary, line_of
 from contact_dynamics.nodes.parameter_file import ParameterFile
@@ -85,20 +85,6 @@ def monitored(monitor: Monitor, recording: Recording) -> Iterator[MonitoredEvent
     for arrival_ns, name, state in sorted(states, key=lambda each: each[0]):
         yield from monitor.add(name, state, arrival_ns)
     yield from monitor.finish()
-
-
-def model_error_of(path: Path, name: str = "--calibration") -> ModelError:
-    """Return the model errors in a JSON file of `calibrate`.
-
-    Raises:
-        InvalidFieldError: it cannot be read, or is no such file. The message names ``name``.
-    """
-    try:
-        spread = json.loads(path.read_text(encoding="utf-8"))["spread"]
-        return ModelError(velocity=spread["velocity"], spin=spread["spin"], height=spread["strike_height"])
-    except (OSError, ValueError, KeyError, TypeError):
-        expected = "a readable file that calibrate --json has written"
-        raise InvalidFieldError(name, str(path), expected) from None
 
 
 def _read(source: Source, config: Path | None) -> Recording:

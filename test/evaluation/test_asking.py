@@ -3,13 +3,17 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.evaluation.asking import asked_before, compare_event, of_known_center
 from contact_dynamics.evaluation.comparison import Comparison
+from contact_dynamics.evaluation.model_error import model_error_of
 from contact_dynamics.evaluation.recording import Recording, evaluate_recording, recording_of_toss
 from contact_dynamics.evaluation.settings import Law, Method, Settings
 from contact_dynamics.evaluation.summary import is_inside
@@ -201,3 +205,31 @@ def test_shares_inside_the_regions_are_those_stated() -> None:
             share = sum(bool(is_inside(row, level)) for row in rows) / n
             # four deviations; flights of one ball share nothing but the ball
             assert share == pytest.approx(level, abs=4.0 * np.sqrt(level * (1.0 - level) / n))
+
+
+def test_model_errors_of_a_calibration_widen_the_regions(brick: Recording, tmp_path: Path) -> None:
+    """The variance of a landing's time grows by that of the height over the speed of approach squared."""
+    file = tmp_path / "calibrated.json"
+    spread = {"velocity": 0.02, "spin": 0.3, "strike_height": 1e-3}
+    file.write_text(json.dumps({"spread": spread, "gravity_covariance_W": (0.02 * np.eye(3)).tolist()}))
+    plain = evaluate_recording(brick, QUICK)
+    wide = evaluate_recording(brick, replace(QUICK, error=model_error_of(file)))
+    kinds = set()
+    for narrow, widened in zip(plain.comparisons, wide.comparisons, strict=True):
+        if narrow.distance is None or widened.distance is None:
+            assert narrow.distance is widened.distance
+            continue
+        kinds.add(narrow.kind)
+        assert widened.distance < narrow.distance
+        if narrow.time_error is not None:
+            speed = abs(plain.events[narrow.event].state.v_WB_W[2])
+            variances = [np.square(narrow.time_error / row.distance) for row in (narrow, widened)]
+            assert variances[1] - variances[0] == pytest.approx(np.square(1e-3 / speed), rel=1e-9)
+    assert kinds == {EventKind.FLIGHT, EventKind.LANDING, EventKind.IMPACT}
+
+
+def test_a_file_that_is_no_calibration_is_rejected(tmp_path: Path) -> None:
+    file = tmp_path / "other.json"
+    file.write_text("{}", encoding="utf-8")
+    with pytest.raises(InvalidFieldError, match=r"calibrate --json"):
+        model_error_of(file)

@@ -5,8 +5,15 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy.stats import chi2, f
 
-from contact_dynamics.evaluation.comparison import Comparison, arrival_std, in_deviations, pose_difference
+from contact_dynamics.evaluation.comparison import (
+    Comparison,
+    arrival_std,
+    as_normal,
+    in_deviations,
+    pose_difference,
+)
 from contact_dynamics.evaluation.report import report
 from contact_dynamics.evaluation.result import Evaluation, SourceResult
 from contact_dynamics.evaluation.settings import Method
@@ -34,6 +41,13 @@ def row(**values: object) -> Comparison:
             **values,
         }
     )
+
+
+def test_a_distance_with_long_tails_becomes_the_normal_one_of_the_same_probability() -> None:
+    assert as_normal(2.0, 6, np.inf) == 2.0
+    for distance in (0.5, 2.0, 10.0):
+        probability = f.sf(distance**2 / 6, 6, 3)
+        assert chi2.sf(as_normal(distance, 6, 3.0) ** 2, 6) == pytest.approx(probability, rel=1e-9)
 
 
 def test_the_time_of_arrival_spreads_as_drawn_poses_arrive() -> None:

@@ -9,8 +9,9 @@ from dataclasses import replace
 import numpy as np
 
 from calibration.made_tosses import BRICK
+from contact_dynamics.evaluation.model_error import FREEDOM
 from contact_dynamics.impact.spatial.batch import StrikingBodies
-from contact_dynamics.monitoring.evidence import FREEDOM, ImpactEvidence
+from contact_dynamics.monitoring.evidence import ImpactEvidence
 from contact_dynamics.rigid_body.body import BodyState
 
 CONFIGURED = np.array([0.4, 0.3])

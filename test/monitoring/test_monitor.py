@@ -15,10 +15,11 @@ from benchmarks.flights import cube_tosses
 from calibration.made_tosses import WORLD, Truth, made_tosses
 from contact_dynamics.command_line import main
 from contact_dynamics.evaluation.asking import Informed
+from contact_dynamics.evaluation.model_error import ModelError
 from contact_dynamics.evaluation.recording import Recording, recording_of_toss
 from contact_dynamics.measured.events import EventKind, find_events
 from contact_dynamics.measured.read_toss import read_toss
-from contact_dynamics.monitoring.evidence import ModelError, Parameter
+from contact_dynamics.monitoring.evidence import Parameter
 from contact_dynamics.monitoring.monitor import Monitor, MonitoredEvent, MonitorSettings
 from contact_dynamics.monitoring.report import line_of
 from contact_dynamics.monitoring.run import monitored
