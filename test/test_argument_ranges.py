@@ -52,6 +52,9 @@ RANGES: list[tuple[str, str, Any]] = [
     *[("spatial_sliding_modes", "planes", value) for value in (2.5, 1)],
     *[("spatial_impact_distribution", "samples", value) for value in (101, 0)],
     ("linearised_cone", "facets", 2),
+    *[("mode_margins in the plane", "margin_length", value) for value in (1e61, 1e-61, 1e300)],
+    *[("statics in the plane", "margin_length", value) for value in (0.0, -1.0, 1e61, 1e-61, NAN)],
+    *[("statics", "margin_length", value) for value in (0.0, -1.0, NAN)],
     *[("SpatialContactProblem", "friction_facets", value) for value in (2, 8.5, 1_000_000)],
 ]
 

@@ -6,6 +6,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+import numpy as np
 from numpy.typing import ArrayLike
 
 from contact_dynamics.contact.contact import ContactSet
@@ -14,6 +15,7 @@ from contact_dynamics.contact_modes import (
     PlanarMode,
     PlanarModeAnswer,
     SpatialContactProblem,
+    SpatialMode,
 )
 from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
@@ -128,3 +130,44 @@ def _check_acceleration(mode: PlanarMode, i: int, contact: PlanarContact, w: flo
     scale += sum(abs(f_t) + f_n for f_t, f_n in mode.contact_forces)
     assert abs(a_x - got_x) <= 1e-8 * scale
     assert abs(a_y - got_y) <= 1e-8 * scale
+
+
+SMALL = 1e-8  # relative to the forces, and to the accelerations that they would cause alone
+
+
+def check_laws(problem: SpatialContactProblem, mode: SpatialMode, flush_within: float) -> None:
+    """Check a mode of a body in world axes against the equations, from scratch.
+
+    Modes of contacts that are taken as flush miss those of the given contacts by as much as these differ.
+    """
+    small = max(SMALL, flush_within)
+    body, contacts, state = problem.body, problem.contacts, problem.state
+    forces, arms, w = mode.contact_forces_W, contacts.p_WC_W - state.p_WB_W, state.w_WB_W
+    size = float(np.abs(forces).max(initial=0.0)) + float(np.abs(problem.wrench_W).max())
+    reach = float(np.linalg.norm(arms, axis=1).max())
+    fast = size * (1.0 / body.mass + (reach + reach**2) / float(np.diag(body.I_B).min()))
+    force = problem.force_W + forces.sum(axis=0)
+    torque = problem.torque_W + np.cross(arms, forces).sum(axis=0) - np.cross(w, body.I_B @ w)
+    assert np.abs(body.mass * mode.acceleration_W - force).max() <= small * size
+    assert np.abs(body.I_B @ mode.angular_acceleration_W - torque).max() <= small * size * (1.0 + reach)
+    accelerations = mode.acceleration_W + np.cross(mode.angular_acceleration_W, arms)
+    accelerations += np.cross(w, np.cross(w, arms))
+    velocities = state.velocity_of_point(contacts.p_WC_W)
+    for i, letter in enumerate(mode.mode):
+        normal, friction = contacts.normals_W[i], float(contacts.frictions[i])
+        pressing, rising = float(forces[i] @ normal), float(accelerations[i] @ normal)
+        across = forces[i] - pressing * normal
+        speed = velocities[i] - float(velocities[i] @ normal) * normal
+        way = speed if np.linalg.norm(speed) > 1e-9 else accelerations[i] - rising * normal
+        if letter == "s":
+            assert np.abs(forces[i]).max() == 0.0
+            assert rising > 0.0 or velocities[i] @ normal > 0.0
+            continue
+        assert pressing >= -small * size
+        assert abs(rising) <= small * fast
+        assert np.linalg.norm(across) <= friction * pressing + small * size
+        if letter == "f":
+            assert np.linalg.norm(way) <= small * fast
+        else:
+            straight = -friction * pressing * way / np.linalg.norm(way)
+            assert np.abs(across - straight).max() <= small * size * max(1.0, friction)

@@ -128,12 +128,13 @@ def check(problem: PlanarContactProblem, *, long_arms: bool = False) -> PlanarMo
     return answer
 
 
-@seeds(range(48), slow=range(10_000, 16_000))
+# In 12155 a force that counts as zero pulls by 1e-8 N, and was left out without a look at the motion.
+@seeds([*range(48), 12155], slow=range(10_000, 16_000))
 def test_a_load_that_contacts_hold_is_held(seed: int) -> None:
     check(drawn(seed))
 
 
-@seeds(range(40), slow=range(5_000, 6_500))
+@seeds([*range(40), 5944, 6344], slow=range(5_000, 6_500))
 def test_friction_up_to_a_million_and_arms_up_to_ten_thousand_hold_their_load(seed: int) -> None:
     check(gripping(seed), long_arms=True)
 
@@ -187,21 +188,6 @@ def test_many_sets_of_up_to_a_thousand_contacts(seed: int, monkeypatch: pytest.M
     compare_with_decimals(many(seed, 1000), monkeypatch)
 
 
-@seeds(range(60))
-def test_the_order_of_contacts_does_not_matter(seed: int) -> None:
-    problem = drawn(seed)
-    order = list(range(len(problem.contacts)))
-    random.Random(seed).shuffle(order)
-    shuffled = PlanarContactProblem(
-        body=problem.body, contacts=[problem.contacts[i] for i in order], wrench=problem.wrench
-    )
-    answer, other = contact_modes(problem), contact_modes(shuffled)
-    assert {"".join(mode[i] for i in order) for mode in answer.kinematic_modes} == set(other.kinematic_modes)
-    assert {"".join(mode.mode[i] for i in order) for mode in answer.modes} == {
-        one.mode for one in other.modes
-    }
-
-
 @pytest.mark.parametrize("offset", [1e-10, 1e-9, 1e-8, 1e-7, 1e-6, 1e-5, 1e-4])
 @pytest.mark.parametrize("friction", [0.0, 0.5])
 def test_what_differs_by_more_than_the_tolerance_is_told_apart_exactly(
@@ -237,22 +223,6 @@ def test_what_differs_by_more_than_the_tolerance_is_told_apart_exactly(
     assert {mode.mode for mode in answer.modes} == consistent_modes(exact, kinematic)
 
 
-def test_two_detections_of_one_corner() -> None:
-    contacts = [PlanarContact(r=(x, -0.5), normal=(0.6, 0.8), friction=0.5) for x in (0.2, 0.200000002)]
-    answer = contact_modes(
-        PlanarContactProblem(
-            body=PlanarBody(mass=1.0, inertia=0.5), contacts=contacts, wrench=PlanarWrench(f=(0.0, -9.8))
-        )
-    )
-    single = contact_modes(
-        PlanarContactProblem(
-            body=PlanarBody(mass=1.0, inertia=0.5), contacts=contacts[:1], wrench=PlanarWrench(f=(0.0, -9.8))
-        )
-    )
-    assert answer.verdict == single.verdict == ModeVerdict.UNIQUE
-    assert answer.modes[0].acceleration == pytest.approx(single.modes[0].acceleration, rel=1e-6)
-
-
 @pytest.mark.parametrize("friction", [1e3, 1e6, 1e9, 1e10, 1e300])
 def test_a_box_that_never_slips_rests(friction: float) -> None:
     feet = [PlanarContact(r=(x, -0.05), normal=(0.0, 1.0), friction=friction) for x in (-0.1, 0.0, 0.1)]
@@ -261,17 +231,6 @@ def test_a_box_that_never_slips_rests(friction: float) -> None:
     )
     assert "fff" in {mode.mode for mode in contact_modes(problem).modes}
     assert statics(problem).equilibrium != Certainty.NO
-
-
-@pytest.mark.parametrize("seed", [2, 12155])
-def test_forces_of_every_listed_mode_bring_it_about(seed: int) -> None:
-    """In 12155 a force that counts as zero pulls by 1e-8 N, and was left out without a look at the motion."""
-    check(drawn(seed))
-
-
-@pytest.mark.parametrize("seed", [5944, 6344])
-def test_one_contact_ten_thousand_radii_away_holds_its_load(seed: int) -> None:
-    check(gripping(seed), long_arms=True)
 
 
 def test_rays_that_are_almost_opposite_do_not_merge_what_lies_between_them() -> None:
@@ -309,17 +268,6 @@ def test_more_friction_than_can_be_told_apart_is_undecided_and_never_refused(see
         assert statics(problem).equilibrium != Certainty.NO
     except UndecidedError:
         assert resting in answer.undecided_modes
-
-
-def test_more_friction_than_can_be_told_from_less_is_not_called_inconsistent() -> None:
-    """Forces of 1e-14 along the normal hold 1 N along the tangent, by friction of 1e14."""
-    feet = [PlanarContact(r=(x, -1e4), normal=(0.0, 1.0), friction=1e14) for x in (-1e4, 1e4)]
-    wrench = PlanarWrench(f=(-1.0, -1e-14), moment=-1e4)
-    problem = PlanarContactProblem(
-        body=PlanarBody(mass=1.0, inertia=1.0), contacts=feet, wrench=wrench, acceleration_tolerance=1e-16
-    )
-    answer = contact_modes(problem)
-    assert answer.verdict != ModeVerdict.INCONSISTENT
 
 
 def test_where_everything_separates_no_wrench_changes_that() -> None:

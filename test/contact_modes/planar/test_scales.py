@@ -53,15 +53,9 @@ def compare(seed: int, power: int, most_contacts: int) -> None:
 
 
 @pytest.mark.parametrize("power", [-5, -3, -1, 1, 3])
-@seeds(range(10), slow=range(10, 25))
+@seeds(range(10), slow=range(10, 300))
 def test_long_and_short_arms(seed: int, power: int) -> None:
     compare(seed, power, most_contacts=4)
-
-
-@pytest.mark.parametrize("power", [-5, -4, -3, -2, 2, 3])
-@seeds((), slow=range(5000, 5300))
-def test_many_long_and_short_arms(seed: int, power: int) -> None:
-    compare(seed, power, most_contacts=5)
 
 
 @pytest.mark.parametrize("power", [6, 7, 8, 9, 10])
@@ -153,17 +147,6 @@ def test_arms_beyond_the_domain_are_undecided_by_name(arm: float) -> None:
     assert mode_margins(problem) == ()
     with pytest.raises(UndecidedError, match="radii of gyration"):
         statics(problem)
-
-
-@pytest.mark.parametrize("length", [0.0, -1.0, 1e61, 1e-61, 1e300, math.nan])
-def test_lengths_that_leave_the_range_of_doubles_are_refused(length: float) -> None:
-    feet = [PlanarContact(r=(x, -1.0), normal=(0.0, 1.0), friction=0.5) for x in (-1.0, 1.0)]
-    problem = PlanarContactProblem(
-        body=PlanarBody(mass=1.0, inertia=1.0), contacts=feet, wrench=PlanarWrench(f=(0.0, -9.8))
-    )
-    for question in (mode_margins, statics):
-        with pytest.raises(InvalidFieldError, match="margin_length"):
-            question(problem, margin_length=length)
 
 
 @pytest.mark.parametrize("friction", [0.0, 1e-6, 1.0, 1e3, 1e6])

@@ -14,7 +14,6 @@ from contact_dynamics.contact_modes import (
     contact_modes,
     statics,
 )
-from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
 from contact_modes.evidence import planar_problem
 
@@ -81,5 +80,3 @@ def test_disturbance_of_a_block_in_both_metrics() -> None:
         == BODY.radius_of_gyration
     )
     assert long.jammed == Certainty.NO, "a block on a level floor needs no friction"
-    with pytest.raises(InvalidFieldError, match="margin_length"):
-        statics(PlanarContactProblem(body=BODY, contacts=feet, wrench=weight), margin_length=-1.0)

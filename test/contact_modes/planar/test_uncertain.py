@@ -11,7 +11,6 @@ import pytest
 
 from contact_dynamics.contact import ContactUncertainty
 from contact_dynamics.contact_modes import ModeVerdict, PlanarContactProblem, contact_modes, geometry_margins
-from contact_dynamics.contact_modes.planar.uncertain import holds_everywhere, no_other_mode
 from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
 
 BLOCK = PlanarBody(mass=2.0, inertia=0.033)
@@ -188,12 +187,3 @@ def test_feet_in_a_row_may_slide_in_many_ways_if_the_row_is_not_exact() -> None:
     assert not within.certain
     assert "rrr" in within.modes
     assert len(within.modes) > 1
-
-
-def test_a_proof_fails_where_the_mode_fails_in_the_box() -> None:
-    problem = on_feet(9.0, -0.2, 0.2)
-    mode = contact_modes(problem).modes[0].mode
-    assert holds_everywhere(problem, mode, ContactUncertainty(frictions=0.039))
-    assert not holds_everywhere(problem, mode, ContactUncertainty(frictions=0.042))
-    assert no_other_mode(problem, mode, ContactUncertainty(frictions=0.039))
-    assert not no_other_mode(problem, mode, ContactUncertainty(frictions=0.042))

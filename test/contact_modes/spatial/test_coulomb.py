@@ -12,12 +12,11 @@ from contact_dynamics.contact.contact import ContactSet
 from contact_dynamics.contact_modes import (
     ModeVerdict,
     SpatialContactProblem,
-    SpatialMode,
     SpatialModeAnswer,
     contact_modes,
 )
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
-from contact_modes.evidence import spatial_problem
+from contact_modes.evidence import check_laws, spatial_problem
 from oracles.equilibria_in_space import resting
 from sweeps import seeds
 
@@ -25,45 +24,6 @@ AT_REST = BodyState(p_WB_W=np.zeros(3), q_WB=[0.0, 0.0, 0.0, 1.0])
 BODY = MassProperties(mass=2.0, I_B=np.diag([0.3, 0.4, 0.5]))
 BOX = MassProperties(mass=1.0, I_B=np.diag([0.0043, 0.0043, 0.0053]))
 STRAIGHT = 1e-8  # rad, of friction to the way against sliding
-SMALL = 1e-8  # relative to the forces, and to the accelerations that they would cause alone
-
-
-def check_laws(problem: SpatialContactProblem, mode: SpatialMode, flush_within: float) -> None:
-    """Check a mode of a body in world axes against the equations, from scratch.
-
-    Modes of contacts that are taken as flush miss those of the given contacts by as much as these differ.
-    """
-    small = max(SMALL, flush_within)
-    body, contacts, state = problem.body, problem.contacts, problem.state
-    forces, arms, w = mode.contact_forces_W, contacts.p_WC_W - state.p_WB_W, state.w_WB_W
-    size = float(np.abs(forces).max(initial=0.0)) + float(np.abs(problem.wrench_W).max())
-    reach = float(np.linalg.norm(arms, axis=1).max())
-    fast = size * (1.0 / body.mass + (reach + reach**2) / float(np.diag(body.I_B).min()))
-    force = problem.force_W + forces.sum(axis=0)
-    torque = problem.torque_W + np.cross(arms, forces).sum(axis=0) - np.cross(w, body.I_B @ w)
-    assert np.abs(body.mass * mode.acceleration_W - force).max() <= small * size
-    assert np.abs(body.I_B @ mode.angular_acceleration_W - torque).max() <= small * size * (1.0 + reach)
-    accelerations = mode.acceleration_W + np.cross(mode.angular_acceleration_W, arms)
-    accelerations += np.cross(w, np.cross(w, arms))
-    velocities = state.velocity_of_point(contacts.p_WC_W)
-    for i, letter in enumerate(mode.mode):
-        normal, friction = contacts.normals_W[i], float(contacts.frictions[i])
-        pressing, rising = float(forces[i] @ normal), float(accelerations[i] @ normal)
-        across = forces[i] - pressing * normal
-        speed = velocities[i] - float(velocities[i] @ normal) * normal
-        way = speed if np.linalg.norm(speed) > 1e-9 else accelerations[i] - rising * normal
-        if letter == "s":
-            assert np.abs(forces[i]).max() == 0.0
-            assert rising > 0.0 or velocities[i] @ normal > 0.0
-            continue
-        assert pressing >= -small * size
-        assert abs(rising) <= small * fast
-        assert np.linalg.norm(across) <= friction * pressing + small * size
-        if letter == "f":
-            assert np.linalg.norm(way) <= small * fast
-        else:
-            straight = -friction * pressing * way / np.linalg.norm(way)
-            assert np.abs(across - straight).max() <= small * size * max(1.0, friction)
 
 
 def check(problem: SpatialContactProblem) -> SpatialModeAnswer:

@@ -85,16 +85,6 @@ def test_a_peg_fills_its_hole(around: int) -> None:
     assert spatial_kinematic_modes(AT_REST, contact_set(points, normals)) == ("c" * (2 * around),)
 
 
-@pytest.mark.parametrize("n", [1, 2, 3, 4, 5, 6])
-def test_contacts_in_general_position_leave_freely(n: int) -> None:
-    # Up to six independent conditions: a simplicial cone has all 2^n faces.
-    chance = np.random.default_rng(n)
-    points = chance.normal(size=(n, 3))
-    normals = chance.normal(size=(n, 3))
-    normals /= np.linalg.norm(normals, axis=1)[:, None]
-    assert len(spatial_kinematic_modes(AT_REST, contact_set(list(points), list(normals)))) == 2**n
-
-
 @pytest.mark.parametrize("n", [7, 8, 9])
 def test_a_cyclic_polytope_has_the_most_modes(n: int) -> None:
     # Rows on the moment curve are the facets of the dual of a cyclic polytope, neighbourly, whose faces are

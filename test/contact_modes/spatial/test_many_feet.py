@@ -9,11 +9,9 @@ import numpy as np
 import pytest
 
 from contact_dynamics.contact.contact import ContactSet
-from contact_dynamics.contact.friction import linearised_cone
 from contact_dynamics.contact_modes import ModeVerdict, SpatialContactProblem, contact_modes
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_modes.evidence import spatial_problem
-from oracles.pressed_feet import drawn_loads, motion_under
 from sweeps import seeds
 
 MASS, WEIGHT, FRICTION = 2.0, 20.0, 0.4
@@ -92,53 +90,3 @@ def test_one_mode_stands_for_all_with_its_letters(seed: int) -> None:
     letters = [mode.mode for mode in few.modes if not mode.motion_unique]
     assert all(letters.count(one) == 1 for one in letters)
     assert [one for one in every.modes if one.mode not in letters and not one.motion_unique] == []
-
-
-@pytest.mark.parametrize(
-    ("push", "twist"), [((7.0, 3.0), 5.0), ((12.0, 0.1), 0.5), ((10.0, 1.0), 4.0), ((4.0, 1.0), 8.0)]
-)
-def test_every_distribution_of_the_load_has_its_mode(push: tuple[float, float], twist: float) -> None:
-    # At the height of the centre of mass friction does not move the load. Each load has one motion.
-    facets, contacts = 8, ring(8, height=0.0)
-    force = np.array([*push, -WEIGHT])
-    answer = contact_modes(
-        spatial_problem(
-            BODY, AT_REST, contacts, force, (0.0, 0.0, twist), friction_facets=facets, sharpen=False
-        )
-    )
-    corners = contacts.p_WC_W[:, :2]
-    # Without contact forces each foot would begin its own way: its pyramid's first edge is against it.
-    free = force / MASS + np.cross([0.0, 0.0, twist / BODY.I_B[2, 2]], contacts.p_WC_W)
-    edges = np.array([linearised_cone(np.array([0.0, 0.0, 1.0]), FRICTION, facets, towards=-a) for a in free])
-
-    def along(ways: np.ndarray) -> np.ndarray:
-        """Return how much each edge, (n, K), opposes: the largest one or two act."""
-        return -np.einsum("ijk,ik->ij", edges[:, :, :2], ways) / FRICTION
-
-    sliding = [mode for mode in answer.modes if mode.mode == "c" * 8]
-    opposed = [along(mode.tangential_directions_W[:, :2]) for mode in sliding]
-    told = set()
-    for seed in range(60):
-        loads = drawn_loads(corners, WEIGHT, np.zeros(2), seed)
-        a = motion_under(
-            MASS,
-            BODY.I_B[2, 2],
-            corners=corners,
-            edges=edges[:, :, :2],
-            loads=loads,
-            wrench=np.array([*push, twist]),
-        )
-        ways = a[:2] + a[2] * np.column_stack([-corners[:, 1], corners[:, 0]])
-        speeds = np.linalg.norm(ways, axis=1)
-        if speeds.min() < 1e-3:
-            continue  # it turns about a foot
-        own = along(ways / speeds[:, None])
-        # The edge that acts in a mode is one that opposes this motion as much as any, but for rounding.
-        fits = [
-            k
-            for k, mode in enumerate(opposed)
-            if (own.max(axis=1) - own[np.arange(8), mode.argmax(axis=1)]).max() <= 1e-5
-        ]
-        assert fits, f"no mode for the loads {loads}"
-        told.add(fits[0])
-    assert len(told) >= 3

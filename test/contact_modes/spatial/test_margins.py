@@ -292,13 +292,6 @@ def ring(feet: int) -> SpatialContactProblem:
     return spatial_problem(BODY, state(), contacts, (10.0, 0.0, -WEIGHT))
 
 
-def test_six_feet_that_begin_to_slide_stop_as_one_does() -> None:
-    (margin,) = mode_margins(ring(6))
-    assert margin.mode == "cccccc"
-    assert margin.margin == pytest.approx((10.0 - 0.4 * WEIGHT) / math.hypot(1.0, 0.4), rel=1e-9)
-    assert margin.modes_beyond == ("ffffff",)
-
-
 def on_two(
     second: tuple[float, ...],
     normal: tuple[float, ...],

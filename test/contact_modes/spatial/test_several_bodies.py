@@ -110,19 +110,6 @@ def test_the_upper_block_slips_on_a_tray_that_accelerates_faster_than_its_fricti
     )
 
 
-@pytest.mark.parametrize("slope", [0.29, 0.31, 0.45, 0.51])
-def test_on_a_tilted_tray_the_interface_with_the_least_friction_slips_first(slope: float) -> None:
-    """The tray stands still, and gravity leans: the lower block slides too once the slope exceeds 0.5."""
-    angle = np.arctan(slope)
-    weights = np.outer([2.0, 1.0], [G * np.sin(angle), 0.0, -G * np.cos(angle)])
-    flat = stack([2.0, 1.0], [0.5, 0.3], [[0, 0, 0]] * 2)
-    mode = only(contact_modes(replace(flat, forces_W=weights)))
-    upper = max(0.0, np.sin(angle) - 0.3 * np.cos(angle)) * G
-    lower = (2.0 * G * np.sin(angle) + 0.3 * G * np.cos(angle) - 0.5 * 3.0 * G * np.cos(angle)) / 2.0
-    assert mode.mode == ("ffff" if lower <= 0.0 else "cccc") + ("ffff" if slope < 0.3 else "cccc")
-    assert mode.accelerations_W[:, 0] == pytest.approx([max(0.0, lower), upper], abs=ROUNDING)
-
-
 @pytest.mark.parametrize("share", [0.999, 1.001])
 def test_a_block_on_a_block_on_a_turntable_slips_when_friction_holds_it_no_longer(share: float) -> None:
     radius, friction = 0.4, 0.3

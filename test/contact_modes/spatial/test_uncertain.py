@@ -11,7 +11,7 @@ import pytest
 
 from contact_dynamics.contact import ContactSet, ContactUncertainty
 from contact_dynamics.contact_modes import ModeVerdict, SpatialContactProblem, contact_modes, geometry_margins
-from contact_dynamics.contact_modes.spatial.uncertain import holds_everywhere, no_other_mode
+from contact_dynamics.contact_modes.spatial.uncertain import no_other_mode
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_modes.evidence import spatial_problem
@@ -123,24 +123,6 @@ def test_a_tripod_is_sure_of_its_mode_within_a_tenth_of_a_milliradian(push: tupl
     assert answer.within.certain
     assert answer.within.verdicts == (ModeVerdict.UNIQUE,)
     assert answer.within.modes == (answer.modes[0].mode,)
-
-
-def test_a_box_on_four_feet_is_sure_to_rest() -> None:
-    problem = on_feet(SQUARE)
-    assert no_other_mode(problem, "ffff", ContactUncertainty(points=1e-5, normals=1e-4, frictions=1e-3))
-    assert not no_other_mode(problem, "cccc", ContactUncertainty(points=1e-5, normals=1e-4))
-
-
-def test_a_proof_fails_where_the_mode_fails_in_the_box() -> None:
-    """A tripod slips if friction falls to push / weight, or if the floor turns by the rest of that angle."""
-    problem = on_feet(TRIPOD, (3.0, 0.0))
-    lost = FRICTION - 3.0 / WEIGHT
-    angle = math.atan(FRICTION) - math.atan(3.0 / WEIGHT)
-    assert no_other_mode(problem, "fff", ContactUncertainty(frictions=0.6 * lost))
-    assert not no_other_mode(problem, "fff", ContactUncertainty(frictions=1.001 * lost))
-    assert not no_other_mode(problem, "fff", ContactUncertainty(normals=1.001 * angle))
-    assert holds_everywhere(problem, "fff", ContactUncertainty(frictions=0.6 * lost))
-    assert not holds_everywhere(problem, "fff", ContactUncertainty(frictions=1.001 * lost))
 
 
 def test_a_pushed_box_holds_where_an_eighth_of_friction_is_not_known() -> None:
