@@ -114,23 +114,6 @@ def striking(state: BodyState, point: np.ndarray, rng: np.random.Generator) -> C
     )
 
 
-@pytest.mark.parametrize("restitution", [0.0, 0.5, 1.0])
-def test_balls_in_line(restitution: float) -> None:
-    """The textbook's two balls: v1' = (m1 - e m2) v / (m1 + m2), v2' = (1 + e) m1 v / (m1 + m2)."""
-    light = MassProperties(mass=1.0, I_B=0.4 * np.eye(3))
-    heavy = MassProperties(mass=3.0, I_B=1.2 * np.eye(3))
-    answer = spatial_pair_impact(
-        light,
-        BodyState(p_WB_W=[-1, 0, 0], q_WB=IDENTITY, v_WB_W=[2, 0, 0]),
-        heavy,
-        BodyState(p_WB_W=[1, 0, 0], q_WB=IDENTITY),
-        Contact(p_WC_W=[0, 0, 0], normal_W=[-1, 0, 0], friction=0.3, restitution=restitution),
-    )
-    assert answer.state.v_WB_W[0] == pytest.approx((1.0 - 3.0 * restitution) * 2.0 / 4.0, abs=2e-15)
-    assert answer.other_state is not None
-    assert answer.other_state.v_WB_W[0] == pytest.approx((1.0 + restitution) * 2.0 / 4.0, rel=1e-15)
-
-
 def test_bodies_that_separate_are_refused() -> None:
     rng = np.random.default_rng(3)
     body, state = random_body(rng)
@@ -139,15 +122,3 @@ def test_bodies_that_separate_are_refused() -> None:
     rest = BodyState(p_WB_W=rng.normal(size=3), q_WB=IDENTITY)
     with pytest.raises(SeparatingContactError, match="v_n = "):
         spatial_pair_impact(body, state, body, rest, away)
-
-
-def test_the_fixed_world_has_no_state_afterwards() -> None:
-    body, state = random_body(np.random.default_rng(0))
-    point = state.p_WB_W + 0.1
-    normal = -state.velocity_of_point(point)
-    answer = spatial_impact(
-        body,
-        state,
-        Contact(p_WC_W=point, normal_W=normal / np.linalg.norm(normal), friction=0.1, restitution=0.1),
-    )
-    assert answer.other_state is None
