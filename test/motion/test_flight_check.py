@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -40,15 +41,21 @@ def bouncing(
         height = velocity * since - 0.5 * G * since**2
         states.append(
             BodyState(
-                p_WB_W=np.array([0.3 * t, 0.0, height]) + rng.normal(0.0, noise, 3)
-                if noise
-                else [0.3 * t, 0, height],
+                p_WB_W=np.array([0.3 * t, 0.0, height]) + noise * rng.standard_normal(3),
                 q_WB=[0, 0, 0, 1],
                 v_WB_W=[0.3, 0.0, velocity - G * since],
                 stamp_ns=round(1e9 * t),
             )
         )
     return states
+
+
+def watching(body: Body, states: list[BodyState], *surfaces: Surface) -> Context:
+    """What a server knows that was sent these states of a body."""
+    store = StateStore(history=1.0, timeout=1e9)
+    for state in states:
+        store.add(body.name, state)
+    return Context(world=World(bodies=[body], surfaces=surfaces), states=store)
 
 
 @pytest.mark.parametrize("noise", [0.0, 1e-6, 1e-4, 1e-3])
@@ -67,10 +74,7 @@ def test_a_fit_across_an_impact_has_not_converged(noise: float) -> None:
 
 def test_the_first_state_after_a_bounce_is_an_error_and_not_a_landing_now() -> None:
     """The fitted flight was in the floor at that state, and was said to land in 0 s."""
-    store = StateStore(history=1.0, timeout=1e9)
-    for state in bouncing(20, 18.5, noise=1e-4):
-        store.add("ball", state)
-    context = Context(world=World(bodies=[BALL], surfaces=[FLOOR]), states=store)
+    context = watching(BALL, bouncing(20, 18.5, noise=1e-4), FLOOR)
     question = ImpactQuestion(body="ball", state=PublishedState(fit_window=0.5))
     with pytest.raises(NotInFlightError, match=r"fit_window must be a window that begins after the impact"):
         ask(question, context)
@@ -81,11 +85,9 @@ def test_of_several_impacts_the_latest_is_found() -> None:
     again = bouncing(20, 10.5, noise=1e-4, seed=1, fall=-1.0)
     start = first[-1]
     later = [
-        BodyState(
+        replace(
+            state,
             p_WB_W=state.p_WB_W - again[0].p_WB_W + start.p_WB_W,
-            q_WB=state.q_WB,
-            v_WB_W=state.v_WB_W,
-            w_WB_W=state.w_WB_W,
             stamp_ns=start.stamp_ns + state.stamp_ns,
         )
         for state in again[1:]
@@ -97,19 +99,8 @@ def test_of_several_impacts_the_latest_is_found() -> None:
 def noisy(
     motion: FreeMotion | ForcedMotion, times: np.ndarray, rng: np.random.Generator, noise: float
 ) -> list[BodyState]:
-    states = []
-    for t in times:
-        state = motion.state_at(t)
-        states.append(
-            BodyState(
-                p_WB_W=state.p_WB_W + noise * rng.standard_normal(3),
-                q_WB=state.q_WB,
-                v_WB_W=state.v_WB_W,
-                w_WB_W=state.w_WB_W,
-                stamp_ns=round(1e9 * t),
-            )
-        )
-    return states
+    states = map(motion.state_at, times)
+    return [replace(state, p_WB_W=state.p_WB_W + noise * rng.standard_normal(3)) for state in states]
 
 
 @pytest.mark.parametrize("tilt", [0.0, 0.3])
@@ -131,10 +122,7 @@ def test_a_fit_to_a_body_that_lies_or_slides_has_not_converged(noise: float, cou
         )
     for fit in (fit_free_motion(BRICK, states), fit_motion(BRICK, states, drag=Drag(linear=0.05))):
         assert (fit.falls, fit.converged) == (False, False)
-    store = StateStore(history=1.0, timeout=1e9)
-    for state in states:
-        store.add("brick", state)
-    context = Context(world=World(bodies=[BRICK]), states=store)
+    context = watching(BRICK, states)
     question = TumblingQuestion(body="brick", state=PublishedState(fit_window=0.2))
     with pytest.raises(
         NotInFlightError, match=f"got {count} states of a body that does not fall: it rests, slides"
@@ -176,30 +164,17 @@ def test_a_tumbling_body_that_bounces_names_the_impact_too(fit: Callable[..., Fi
         BRICK, BodyState(p_WB_W=[0, 0, 0.1], q_WB=[0, 0, 0, 1], v_WB_W=[0.5, 0, -2], w_WB_W=[3, 4, 1])
     )
     struck = before.state_at(0.1)
-    bounced = free_motion(
-        BRICK, BodyState(p_WB_W=struck.p_WB_W, q_WB=struck.q_WB, v_WB_W=[0.3, 0.1, 1.2], w_WB_W=[-5, 2, 6])
-    )
+    bounced = free_motion(BRICK, replace(struck, v_WB_W=[0.3, 0.1, 1.2], w_WB_W=[-5, 2, 6], stamp_ns=0))
     states = noisy(before, np.arange(0.004, 0.1, 1 / RATE), rng, 1e-4)
     for state in noisy(bounced, np.arange(0.004, 0.1, 1 / RATE), rng, 1e-4):
-        states.append(
-            BodyState(
-                p_WB_W=state.p_WB_W,
-                q_WB=state.q_WB,
-                v_WB_W=state.v_WB_W,
-                w_WB_W=state.w_WB_W,
-                stamp_ns=state.stamp_ns + 100_000_000,
-            )
-        )
+        states.append(replace(state, stamp_ns=state.stamp_ns + 100_000_000))
     found = fit(BRICK, states)
     assert not found.converged
     assert found.velocity_jump == pytest.approx(0.1 - 1e-9 * states[-1].stamp_ns, abs=1.01 / RATE)
 
 
 def test_a_question_with_a_window_across_an_impact_is_an_error_that_says_when_it_was() -> None:
-    store = StateStore(history=1.0, timeout=1e9)
-    for state in bouncing(20, 14.5, noise=1e-4):
-        store.add("ball", state)
-    context = Context(world=World(bodies=[BALL]), states=store)
+    context = watching(BALL, bouncing(20, 14.5, noise=1e-4))
     question = TumblingQuestion(body="ball", state=PublishedState(fit_window=0.5))
     with pytest.raises(
         NotInFlightError, match=r"fit_window must be a window that begins after the impact.*0\.03"

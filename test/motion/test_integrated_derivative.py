@@ -148,7 +148,3 @@ def test_a_function_that_breaks_off_beside_the_motion_is_refused() -> None:
     )
     with pytest.raises(InvalidFieldError, match=r"wrench_of must be .*, got a slope that is not finite"):
         forced_state_derivatives(motion, [1.0])
-
-
-def test_no_times() -> None:
-    assert forced_state_derivatives(forced_motion(BODY, state()), []).shape == (0, 12, 12)

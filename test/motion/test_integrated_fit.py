@@ -3,18 +3,20 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.motion.forces import ConstantWrench, Drag, WrenchAxes
-from contact_dynamics.motion.free_fit import FitResult, fit_free_motion
+from contact_dynamics.motion.free_fit import fit_free_motion
 from contact_dynamics.motion.integrated import forced_motion
 from contact_dynamics.motion.integrated_fit import fit_motion
 from contact_dynamics.motion.state_noise import StateNoise
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
-from contact_dynamics.rotations.many import rotation_vectors
+from motion.evidence import error, published
 
 BODY = MassProperties(mass=0.4, I_B=np.diag([3.5e-4, 8.3e-4, 1.02e-3]))
 NEWEST = BodyState(
@@ -39,44 +41,10 @@ def window(forces: dict, *, noise: StateNoise | None = None, seed: int = 0) -> l
     """24 states over 0.1 s that end with `NEWEST`; without noise their velocities are useless."""
     rng = np.random.default_rng(seed)
     motion = forced_motion(BODY, NEWEST, **forces)
-
-    def off(deviation: float | None) -> np.ndarray:
-        return rng.normal(scale=deviation or 0.0, size=3)
-
-    states = []
-    for seconds in np.arange(-23, 1) / 240.0:
-        exact = motion.state_at(float(seconds))
-        if noise is None:
-            states.append(
-                BodyState(
-                    p_WB_W=exact.p_WB_W, q_WB=exact.q_WB, v_WB_W=[9.0, 9.0, 9.0], stamp_ns=exact.stamp_ns
-                )
-            )
-            continue
-        states.append(
-            BodyState(
-                p_WB_W=exact.p_WB_W + off(noise.position),
-                q_WB=(
-                    Rotation.from_rotvec(off(noise.orientation)) * Rotation.from_quat(exact.q_WB)
-                ).as_quat(),
-                v_WB_W=exact.v_WB_W + off(noise.linear_velocity),
-                w_WB_W=exact.w_WB_W + off(noise.angular_velocity),
-                stamp_ns=exact.stamp_ns,
-            )
-        )
-    return states
-
-
-def errors(fit: FitResult) -> np.ndarray:
-    turn = rotation_vectors(fit.state.q_WB[None], NEWEST.q_WB[None])[0]
-    return np.concatenate(
-        [
-            fit.state.p_WB_W - NEWEST.p_WB_W,
-            turn,
-            fit.state.v_WB_W - NEWEST.v_WB_W,
-            fit.state.w_WB_W - NEWEST.w_WB_W,
-        ]
-    )
+    states = [motion.state_at(float(seconds)) for seconds in np.arange(-23, 1) / 240.0]
+    if noise is None:
+        return [replace(state, v_WB_W=[9.0, 9.0, 9.0], w_WB_W=np.zeros(3)) for state in states]
+    return [published(state, rng, noise) for state in states]
 
 
 @pytest.mark.parametrize(("name", "noise"), [*((name, None) for name in FORCES), (next(iter(FORCES)), POSE)])
@@ -84,8 +52,8 @@ def test_exact_poses_are_found_again(name: str, noise: StateNoise | None) -> Non
     """Stamps are whole nanoseconds, of 5 m/s and 9 rad/s."""
     fit = fit_motion(BODY, window(FORCES[name]), noise=noise, **FORCES[name])
     assert fit.converged
-    assert np.abs(errors(fit)[:6]).max() < 2e-8
-    assert np.abs(errors(fit)[6:]).max() < 1e-6
+    assert np.abs(error(fit.state, NEWEST)[:6]).max() < 2e-8
+    assert np.abs(error(fit.state, NEWEST)[6:]).max() < 1e-6
     assert fit.position_residual < 1e-8
     assert fit.orientation_residual < 2e-8
     assert (fit.count, fit.state.stamp_ns) == (24, NEWEST.stamp_ns)
@@ -94,8 +62,8 @@ def test_exact_poses_are_found_again(name: str, noise: StateNoise | None) -> Non
 def test_a_free_fit_is_wrong_where_drag_acts() -> None:
     states = window(FORCES["drag"])
     free = fit_free_motion(BODY, states)
-    assert np.abs(errors(free)[6:9]).max() > 0.05
-    assert np.abs(errors(fit_motion(BODY, states, **FORCES["drag"]))[6:9]).max() < 1e-6
+    assert np.abs(error(free.state, NEWEST)[6:9]).max() > 0.05
+    assert np.abs(error(fit_motion(BODY, states, **FORCES["drag"]).state, NEWEST)[6:9]).max() < 1e-6
 
 
 @pytest.mark.parametrize(("name", "assumed"), [("drag", ALL), ("body wrench", None)])
@@ -108,7 +76,7 @@ def test_errors_are_as_large_as_the_covariance_says(name: str, assumed: StateNoi
     for seed in range(12):
         fit = fit_motion(BODY, window(FORCES[name], noise=ALL, seed=seed), noise=assumed, **FORCES[name])
         assert fit.converged
-        off = errors(fit)
+        off = error(fit.state, NEWEST)
         squares.append(float(off @ np.linalg.solve(fit.covariance, off)))
     assert 12.0 - 4.0 < np.mean(squares) < 12.0 + 5.0
 

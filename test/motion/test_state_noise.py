@@ -8,7 +8,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.spatial.transform import Rotation
 from scipy.stats import chi2, multivariate_normal
 
 from contact_dynamics.errors import InvalidFieldError
@@ -18,6 +17,7 @@ from contact_dynamics.motion.integrated import forced_motion
 from contact_dynamics.motion.state_noise import fit_whitened
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.tumbling import free_motion
+from motion.evidence import error, turned
 
 BODY = MassProperties(mass=0.4, I_B=np.diag([3.5e-4, 8.3e-4, 1.02e-3]))
 NEWEST = BodyState(
@@ -50,14 +50,8 @@ def flight(noise: StateNoise, seed: int, *, count: int = 12, drag: Drag | None =
     states = []
     for second, place, turn in zip(seconds.tolist(), places, turns, strict=True):
         true = motion.state_at(second)
-        states.append(
-            BodyState(
-                p_WB_W=true.p_WB_W + place,
-                q_WB=(Rotation.from_rotvec(turn) * Rotation.from_quat(true.q_WB)).as_quat(),
-                w_WB_W=true.w_WB_W,  # tells the whole turns, and does not enter the fit
-                stamp_ns=round(second * 1e9),
-            )
-        )
+        # the angular velocity tells the whole turns, and does not enter the fit
+        states.append(turned(true, turn, p_WB_W=true.p_WB_W + place, v_WB_W=np.zeros(3)))
     return states
 
 
@@ -66,15 +60,7 @@ def inside(found: FitResult, drag: Drag | None = None) -> np.ndarray:
     ahead = found.state.stamp_ns * 1e-9
     motion = free_motion(BODY, NEWEST) if drag is None else forced_motion(BODY, NEWEST, drag=drag)
     true = motion.state_at(ahead)
-    turn = (Rotation.from_quat(true.q_WB) * Rotation.from_quat(found.state.q_WB).inv()).as_rotvec()
-    off = np.concatenate(
-        [
-            true.p_WB_W - found.state.p_WB_W,
-            turn,
-            true.v_WB_W - found.state.v_WB_W,
-            true.w_WB_W - found.state.w_WB_W,
-        ]
-    )
+    off = error(found.state, true)
     parts = [np.r_[0:3, 6:9], np.r_[3:6, 9:12]]
     squares = [off[at] @ np.linalg.solve(found.covariance[np.ix_(at, at)], off[at]) for at in parts]
     probabilities: np.ndarray = chi2.cdf(squares, 6)

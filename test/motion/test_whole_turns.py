@@ -7,6 +7,7 @@ True motions are integrated (`oracles.tumbling_stepped`).
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -17,6 +18,7 @@ from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.motion import ConstantWrench, Drag, StateNoise, fit_free_motion, fit_motion
 from contact_dynamics.motion.between_states import state_between
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
+from motion.evidence import turned
 from oracles.tumbling_stepped import stepped
 from sweeps import seeds
 
@@ -118,7 +120,7 @@ def spinning(rate: float, per_second: float, count: int = 10) -> list[BodyState]
 
 
 def poses_of(states: list[BodyState]) -> list[BodyState]:
-    return [BodyState(p_WB_W=s.p_WB_W, q_WB=s.q_WB, stamp_ns=s.stamp_ns) for s in states]
+    return [replace(s, w_WB_W=np.zeros(3)) for s in states]
 
 
 @pytest.mark.parametrize(
@@ -161,10 +163,7 @@ def test_without_velocities_the_other_motions_are_alternatives(noise: StateNoise
 
 
 def test_velocities_that_are_as_far_from_one_motion_as_from_another_decide_nothing() -> None:
-    halfway = [
-        BodyState(p_WB_W=s.p_WB_W, q_WB=s.q_WB, v_WB_W=s.v_WB_W, w_WB_W=[0.0, 0.0, 5.0], stamp_ns=s.stamp_ns)
-        for s in spinning(100.0, 30.0)
-    ]
+    halfway = [replace(s, w_WB_W=[0.0, 0.0, 5.0]) for s in spinning(100.0, 30.0)]
     fit = fit_free_motion(BALL, halfway, gravity_W=np.zeros(3))
     assert not fit.turns_known
     assert fit.alternatives
@@ -172,14 +171,7 @@ def test_velocities_that_are_as_far_from_one_motion_as_from_another_decide_nothi
 
 def test_a_body_that_rests_needs_no_velocities() -> None:
     rng = np.random.default_rng(0)
-    resting = [
-        BodyState(
-            p_WB_W=s.p_WB_W,
-            q_WB=Rotation.from_rotvec(rng.normal(scale=2e-3, size=3)).as_quat(),
-            stamp_ns=s.stamp_ns,
-        )
-        for s in spinning(0.0, 240.0, 24)
-    ]
+    resting = [turned(s, rng.normal(scale=2e-3, size=3)) for s in spinning(0.0, 240.0, 24)]
     fit = fit_free_motion(BALL, resting, gravity_W=np.zeros(3))
     assert fit.converged
     assert fit.turns_known
@@ -191,12 +183,11 @@ def test_residuals_that_do_not_fit_the_noise_are_not_converged(wrong: str) -> No
     noise = {"position": 1e-3, "orientation": 2e-3, "angular_velocity": 0.05}
     jump = {name: 20.0 * size * (name == wrong) * np.ones(3) for name, size in noise.items()}
     states = [
-        BodyState(
+        turned(
+            s,
+            (k % 2) * jump["orientation"],
             p_WB_W=s.p_WB_W + (k % 2) * jump["position"],
-            q_WB=(Rotation.from_rotvec((k % 2) * jump["orientation"]) * Rotation.from_quat(s.q_WB)).as_quat(),
-            v_WB_W=s.v_WB_W,
             w_WB_W=s.w_WB_W + (k % 2) * jump["angular_velocity"],
-            stamp_ns=s.stamp_ns,
         )
         for k, s in enumerate(spinning(9.0, 240.0, 24))
     ]
@@ -212,13 +203,7 @@ def test_residuals_of_half_a_radian_are_no_noise() -> None:
     """A body that is turned back and forth."""
     states = spinning(9.0, 240.0, 24)
     swapped = [
-        BodyState(
-            p_WB_W=s.p_WB_W,
-            q_WB=Rotation.from_rotvec([0.5 * (-1.0) ** k, 0.0, 0.0]).as_quat(),
-            v_WB_W=s.v_WB_W,
-            w_WB_W=s.w_WB_W,
-            stamp_ns=s.stamp_ns,
-        )
+        replace(s, q_WB=Rotation.from_rotvec([0.5 * (-1.0) ** k, 0.0, 0.0]).as_quat())
         for k, s in enumerate(states)
     ]
     assert not fit_free_motion(BALL, swapped, gravity_W=np.zeros(3)).converged
