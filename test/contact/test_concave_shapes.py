@@ -3,8 +3,6 @@
 
 from __future__ import annotations
 
-import warnings
-
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
@@ -128,15 +126,3 @@ def test_a_configured_bracket_warns() -> None:
             ConcaveShapeWarning, match=r"body\.bracket\.vertices: 2 of 12 corners are in faces"
         ):
             read_server_parameters(source)
-
-
-@pytest.mark.filterwarnings("error")
-def test_a_configured_box_does_not_warn() -> None:
-    values = {
-        "bodies": ["box"],
-        "body.box.mass": 1.0,
-        "body.box.inertia": [0.0],
-        "body.box.vertices": box_vertices((0.1, 0.2, 0.3)).ravel().tolist(),
-    }
-    with warnings.catch_warnings():
-        read_server_parameters(ParameterSource(values, also_known=(), resolve=lambda _, topic: topic))

@@ -14,7 +14,6 @@ from scipy.spatial.transform import Rotation
 from contact_dynamics.contact.found import find_contacts, nearest_surface
 from contact_dynamics.contact.touches import RIM_POINTS
 from contact_dynamics.errors import InvalidFieldError, TooLargeError
-from contact_dynamics.landing.earliest import next_landing
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.shapes.convex import (
     MAX_RIMS,
@@ -227,18 +226,3 @@ def test_too_many_rims() -> None:
     rim = Rim((0.0, 0.0, 0.0), (0.0, 0.0, 1.0), 1.0)
     with pytest.raises(TooLargeError, match="rims"):
         ConvexShape(rims=(rim,) * (MAX_RIMS + 1))
-
-
-def test_a_ball_lands_and_a_can_lands_on_its_side() -> None:
-    ball = body(sphere(radius=0.1))
-    world = World(bodies=(ball,), surfaces=(FLOOR, WALL), gravity_W=[0.0, 0.0, -10.0])
-    landing = next_landing(ball, at((0.0, 0.0, 0.55)), world, horizon=1.0)
-    assert landing is not None
-    assert landing.seconds == pytest.approx(0.3, abs=1e-15)  # 0.45 = g t^2 / 2
-    assert (len(landing.contacts), landing.strikes) == (1, True)
-    can = body(cylinder(radius=0.1, length=0.3))
-    landing = next_landing(can, at((0.0, 0.0, 0.55), ON_SIDE), world, horizon=1.0)
-    assert landing is not None
-    assert landing.seconds == pytest.approx(0.3, abs=1e-14)
-    assert len(landing.contacts) == 2
-    assert next_landing(can, at((0.0, 0.0, 0.1), ON_SIDE), world, horizon=1.0).seconds == 0.0  # type: ignore[union-attr]

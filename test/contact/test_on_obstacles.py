@@ -324,14 +324,6 @@ def test_a_can_and_a_pill_on_their_sides_reach_over_the_edge_with_their_line(sha
     assert abs(over.body_curvatures.directions_W[at_edge, 0]) == pytest.approx(1.0)
 
 
-@pytest.mark.parametrize("shape", [CAN, PILL])
-def test_when_they_land_on_it(shape: ConvexShape) -> None:
-    fall = math.sqrt(2.0 * 0.45 / 10.0)
-    assert drop(at((0.0, 0.0, 0.55), ON_SIDE), shape) == pytest.approx(fall, abs=1e-9)
-    assert drop(at((1.1, 0.0, 0.55), ON_SIDE), shape) == pytest.approx(fall, abs=1e-9)
-    assert drop(at((1.5, 0.0, 0.55), ON_SIDE), shape) is None
-
-
 ALONG = Rotation.from_euler("x", 90.0, degrees=True)  # the edge of the table at x = 1
 
 
