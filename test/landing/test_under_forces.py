@@ -10,18 +10,15 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from scipy.optimize import brentq
 from scipy.spatial.transform import Rotation
 
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.landing.acceleration_bounds import bounds_of
-from contact_dynamics.landing.earliest import next_landing
 from contact_dynamics.landing.plane_arrival import first_contact
 from contact_dynamics.motion.forces import ConstantWrench, Drag, WrenchAxes
 from contact_dynamics.motion.integrated import ForcedMotion, forced_motion
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.tumbling import free_motion
-from contact_dynamics.world import Body, Surface, World
 from oracles.forced_stepped import stepped
 
 CUBE_B = 0.05 * np.array(list(itertools.product([-1.0, 1.0], repeat=3)))
@@ -100,21 +97,6 @@ def test_agrees_with_dense_sampling(
         assert abs(found.p_WC_W[2]) < 1e-12
 
 
-def test_falling_against_linear_drag() -> None:
-    """Height z_0 - v_e (t - tau (1 - exp(-t / tau))) with tau = m / c and v_e = g tau."""
-    drag = Drag(linear=0.8)
-    tau = BODY.mass / drag.linear
-    motion = forced_motion(BODY, start(3.05), gravity_W=DOWN_W, drag=drag)
-    found = first_contact(motion, CUBE_B, FLOOR, UP, horizon=5.0)
-    expected = brentq(
-        lambda t: 3.0 - 9.81 * tau * (t + tau * math.expm1(-t / tau)), 0.1, 5.0, xtol=1e-15, rtol=1e-14
-    )
-    assert found is not None
-    assert found.seconds == pytest.approx(expected, rel=1e-12)
-    assert found.v_WC_W[2] == pytest.approx(9.81 * tau * math.expm1(-expected / tau), rel=1e-12)
-    assert sorted(found.vertices) == [0, 2, 4, 6]
-
-
 @pytest.mark.parametrize("depth", [1e-7, 1e-3])
 def test_no_graze_is_missed_while_a_torque_spins_up(depth: float) -> None:
     """Weightless, about x from rest: an edge is lowest at pi / 4, at the time sqrt(2 angle I / N)."""
@@ -187,19 +169,6 @@ def test_bounds_hold_along_their_steps() -> None:
             tightest = max(tightest, max(pulls) / allowed)
         now = bound.until
     assert tightest > 0.3  # of use: not larger than it need be by much
-
-
-def test_a_landing_under_drag_and_one_that_is_out_of_reach() -> None:
-    floor = Surface(name="floor", p_WS_W=np.zeros(3), normal_W=np.array(UP), friction=0.5, restitution=0.5)
-    cube = Body(name="cube", mass_properties=BODY, vertices_B=CUBE_B)
-    world = World(bodies=(cube,), surfaces=(floor,), gravity_W=DOWN_W)
-    state = start(0.6, w=(0.0, 0.0, 4.0))
-    motion = forced_motion(BODY, state, gravity_W=DOWN_W, drag=Drag(linear=0.3, linear_angular=1e-4))
-    landing = next_landing(cube, state, world, horizon=2.0, motion=motion)
-    assert landing is not None
-    assert len(landing.contacts) == 4
-    assert landing.seconds > math.sqrt(2.0 * 0.55 / 9.81)
-    assert landing.strikes
 
 
 def test_a_motion_that_grows_without_bounds_is_refused_only_where_the_search_gets_there() -> None:

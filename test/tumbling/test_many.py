@@ -166,23 +166,3 @@ def test_more_than_a_chunk() -> None:
         few, few_then = rotations_of_many((1.0, 1.4, 1.9), w[part], 1.5)
         assert q[part] == pytest.approx(few, abs=1e-14)
         assert w_then[part] == pytest.approx(few_then, abs=1e-14)
-
-
-def test_none_at_all() -> None:
-    q, w_then = rotations_of_many((1.0, 1.4, 1.9), np.zeros((0, 3)), 1.0)
-    assert q.shape == (0, 4)
-    assert w_then.shape == (0, 3)
-
-
-@pytest.mark.parametrize(
-    ("field", "arguments"),
-    [
-        ("moments", ((1.0, 1.4), np.ones((2, 3)), 1.0)),
-        ("moments", (np.ones((3, 3)), np.ones((2, 3)), 1.0)),
-        ("moments", ((1.0, 1.4, 0.0), np.ones((2, 3)), 1.0)),
-        ("seconds", ((1.0, 1.4, 1.9), np.ones((2, 3)), np.ones(3))),
-    ],
-)
-def test_bad_input_is_refused_by_name(field: str, arguments: tuple[object, object, object]) -> None:
-    with pytest.raises(InvalidFieldError, match=field):
-        rotations_of_many(*arguments)  # type: ignore[arg-type]

@@ -56,12 +56,6 @@ def test_quaternions_are_continuous_along_the_list_in_any_order() -> None:
         assert (np.einsum("ij,ij->i", q_WB[1:], q_WB[:-1]) > 0.99).all()  # 0.02 s at 1.3 rad/s
 
 
-def test_no_times_give_no_samples() -> None:
-    trajectory = motion_of("sphere").at([])
-    assert len(trajectory) == 0
-    assert trajectory.q_WB.shape == (0, 4)
-
-
 def test_a_state_seen_before_is_answered_alike_and_no_other_is_taken_for_it() -> None:
     body = MassProperties(mass=1.0, I_B=np.diag([1.0, 1.4, 1.9]))
 

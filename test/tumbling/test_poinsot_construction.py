@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -155,17 +156,6 @@ def test_principal_axes_are_those_of_mass_properties(name: str) -> None:
     np.testing.assert_allclose(picture.I_B, motion.body.I_B, rtol=0.0, atol=1e-15)
 
 
-@pytest.mark.parametrize("name", MOTIONS)
-def test_herpolhode_lies_in_the_invariable_plane(name: str) -> None:
-    motion = motion_of(name)
-    picture, rates_W = poinsot(motion), motion.at(np.linspace(-5.0, 50.0, 300)).w_WB_W
-    if motion.regime is Regime.AT_REST:
-        assert not rates_W.any()
-        return
-    heights = rates_W @ (picture.L_W / np.linalg.norm(picture.L_W))
-    assert heights == pytest.approx(picture.invariable_plane_distance, rel=1e-13)
-
-
 def by_trying(motion: FreeMotion, relative: float, turned: float) -> float:
     """Return the sensitivity from three slightly different motions, at all phases of one late period."""
     state = motion.state
@@ -174,9 +164,7 @@ def by_trying(motion: FreeMotion, relative: float, turned: float) -> float:
     base = Rotation.from_quat(motion.at(times).q_WB)
     changes = []
     for step in relative * size * np.eye(3):
-        other = BodyState(
-            p_WB_W=state.p_WB_W, q_WB=state.q_WB, v_WB_W=state.v_WB_W, w_WB_W=state.w_WB_W + step
-        )
+        other = replace(state, w_WB_W=state.w_WB_W + step)
         attitudes = Rotation.from_quat(free_motion(motion.body, other).at(times).q_WB)
         changes.append((attitudes * base.inv()).as_rotvec())
     jacobians = np.array(changes).transpose(1, 2, 0) / relative  # rad per relative error
