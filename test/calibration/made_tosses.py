@@ -58,7 +58,7 @@ def made_toss(truth: Truth, random: np.random.Generator) -> MeasuredMotion:
     center = np.array(truth.center)
     while True:
         q = _unit(random.standard_normal(4))
-        R = BodyState(p_WB_W=[0, 0, 0], q_WB=q, v_WB_W=[0, 0, 0], w_WB_W=[0, 0, 0]).R_WB
+        R = BodyState(p_WB_W=[0, 0, 0], q_WB=q).R_WB
         heights = np.sort((BRICK.vertices_B @ R.T)[:, 2])
         if heights[1] - heights[0] < 0.02:
             continue
@@ -109,13 +109,7 @@ def _measured(
         return None
     shaken = places + truth.p_noise * random.standard_normal(p.shape)
     states = [
-        BodyState(
-            p_WB_W=shaken[i],
-            q_WB=q_shaken[i],
-            v_WB_W=np.zeros(3),
-            w_WB_W=np.zeros(3),
-            stamp_ns=round(1e9 * (times[i] + 1.0)),
-        )
+        BodyState(p_WB_W=shaken[i], q_WB=q_shaken[i], stamp_ns=round(1e9 * (times[i] + 1.0)))
         for i in range(len(times))
     ]
     (motion,) = motions_of(
@@ -150,4 +144,4 @@ def _unit(vector: np.ndarray) -> np.ndarray:
 
 
 def _matrix(q: np.ndarray) -> np.ndarray:
-    return BodyState(p_WB_W=[0, 0, 0], q_WB=q, v_WB_W=[0, 0, 0], w_WB_W=[0, 0, 0]).R_WB
+    return BodyState(p_WB_W=[0, 0, 0], q_WB=q).R_WB

@@ -16,6 +16,7 @@ import pytest
 
 from calibration.made_tosses import BRICK, Truth, made_tosses, true_standard
 from contact_dynamics.calibration import Calibration, calibrate
+from contact_dynamics.calibration.estimation import extra_spread
 from contact_dynamics.calibration.plots import write_plots
 from contact_dynamics.calibration.report import content_of, report, server_parameters
 from contact_dynamics.calibration.result import Outlier
@@ -196,3 +197,18 @@ def test_the_file_has_each_strike_with_both_velocities_and_marks_what_was_left_o
         for name in ("measured", "predicted"):
             assert sum(each.endswith(f"/{kind}/{name}") for each in entities) == len(found.residuals)
     assert picture.table_of(picture.drawn_strikes(marked)).count("excluded") == 1
+
+
+def test_the_spread_beside_the_noise_is_found_though_a_tenth_is_far_off() -> None:
+    random = np.random.default_rng(0)
+    residuals = np.hypot(0.2, 0.3) * random.standard_normal((2000, 3))
+    residuals[:200] *= 100.0
+    # a tenth far off moves the median to the 55th of 100, by 8 % of the size
+    found = extra_spread(residuals, np.broadcast_to(0.04 * np.eye(3), (2000, 3, 3)))
+    assert found == pytest.approx(0.3, rel=0.15)
+
+
+def test_there_is_none_where_the_noise_explains_all() -> None:
+    residuals = 0.1 * np.random.default_rng(1).standard_normal((50, 3))
+    assert extra_spread(residuals, np.broadcast_to(0.04 * np.eye(3), (50, 3, 3))) == 0.0
+    assert extra_spread(np.zeros((0, 3)), np.zeros((0, 3, 3))) == 0.0

@@ -45,9 +45,7 @@ def whole_toss(
     p = path.p_WB_W + noise[0] * random.standard_normal(path.p_WB_W.shape)
     q_shaken = turned(path.q_WB, noise[1] * random.standard_normal(p.shape))
     states = [
-        BodyState(
-            p_WB_W=p[i], q_WB=q_shaken[i], v_WB_W=[0, 0, 0], w_WB_W=[0, 0, 0], stamp_ns=round(1e9 * (t + 1.0))
-        )
+        BodyState(p_WB_W=p[i], q_WB=q_shaken[i], stamp_ns=round(1e9 * (t + 1.0)))
         for i, t in enumerate(times.tolist())
     ]
     stamps = [each.stamp_ns for each in states]

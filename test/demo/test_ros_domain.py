@@ -5,10 +5,12 @@ import os
 import socket
 import subprocess
 import sys
+import time
 
 import pytest
 
 from contact_dynamics.demo import processes as ros_domain
+from contact_dynamics.demo.patience import MAX_OF_A_LOOK_S, Patience
 from contact_dynamics.demo.processes import claim_domain
 
 
@@ -43,3 +45,19 @@ def test_it_says_when_none_is_free(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(ros_domain, "_domains_in_use", lambda: set(range(1, 101)))
     with pytest.raises(RuntimeError, match="got all in use"):
         claim_domain()
+
+
+def test_a_stall_counts_as_one_look() -> None:
+    patience = Patience(2.0 * MAX_OF_A_LOOK_S)
+    time.sleep(5.0 * MAX_OF_A_LOOK_S)
+    patience.look()
+    assert not patience.is_over
+
+
+def test_looks_that_find_nothing_end_it_in_its_time() -> None:
+    seconds = 2.0 * MAX_OF_A_LOOK_S
+    patience, begun = Patience(seconds), time.monotonic()
+    while not patience.is_over:
+        time.sleep(0.1 * MAX_OF_A_LOOK_S)
+        patience.look()
+    assert time.monotonic() - begun >= seconds

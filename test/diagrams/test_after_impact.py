@@ -53,9 +53,7 @@ def flight(begin: float = -0.1, end: float = 0.1, rate: float = 240.0) -> list[B
     times = np.arange(begin, end, 1.0 / rate)
     path = free_motion(BRICK, AFTER, gravity_W=GRAVITY).at(times)
     return [
-        BodyState(
-            p_WB_W=p_W, q_WB=q, v_WB_W=np.zeros(3), w_WB_W=np.zeros(3), stamp_ns=STRIKE_NS + round(1e9 * t)
-        )
+        BodyState(p_WB_W=p_W, q_WB=q, stamp_ns=STRIKE_NS + round(1e9 * t))
         for t, p_W, q in zip(times.tolist(), path.p_WB_W, path.q_WB, strict=True)
     ]
 

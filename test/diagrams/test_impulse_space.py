@@ -38,25 +38,15 @@ ENDS = (0.1372549, 0.3333333)
 DIGITS = 1e-6  # the lecture's numbers have seven
 
 # Seen from -y, the plane of motion has x to the right and z up.
-PLANE = PlaneOfMotion(normal_W=np.array([0.0, -1.0, 0.0]))
+PLANE = PlaneOfMotion(normal_W=[0.0, -1.0, 0.0])
 ROD = MassProperties(mass=1.0, I_B=np.eye(3))
 
 
 def sliding_rod(*, in_plane: bool = True) -> ImpactAnswer:
     path = np.array([[t, 0.0, n] for t, n in ((0.0, 0.0), STICKS, COMPRESSED, ENDS)])
     return impact_answer(
-        BodyState(
-            p_WB_W=np.array([1.0, 0.0, 4.0]),
-            q_WB=np.array([0.0, 0.0, 0.0, 1.0]),
-            v_WB_W=np.array([-1.0, 0.0, 0.0]),
-            w_WB_W=np.zeros(3),
-        ),
-        ContactSet(
-            p_WC_W=np.zeros((1, 3)),
-            normals_W=np.array([[0.0, 0.0, 1.0]]),
-            frictions=np.array([MU]),
-            restitutions=np.array([0.5]),
-        ),
+        BodyState(p_WB_W=[1.0, 0.0, 4.0], q_WB=[0.0, 0.0, 0.0, 1.0], v_WB_W=[-1.0, 0.0, 0.0]),
+        ContactSet(p_WC_W=np.zeros((1, 3)), normals_W=[[0.0, 0.0, 1.0]], frictions=[MU], restitutions=[0.5]),
         impulses_W=path[-1:],
         path_W=path,
         path_events=(
@@ -159,10 +149,10 @@ def test_a_contact_that_strikes_after_another_has_its_dots_on_its_lines() -> Non
         w_WB_W=np.array([-0.9, -0.1, 1.9]),
     )
     contacts = ContactSet(
-        p_WC_W=np.array([[0.3, 0.1, 0.0], [-0.3, 0.0, 0.0]]),
+        p_WC_W=[[0.3, 0.1, 0.0], [-0.3, 0.0, 0.0]],
         normals_W=np.array([[0.0, 0.0, 1.0]] * 2),
-        frictions=np.array([0.3, 0.3]),
-        restitutions=np.array([0.5, 0.5]),
+        frictions=[0.3, 0.3],
+        restitutions=[0.5, 0.5],
     )
     impact = several_impact(body, state, contacts)
     assert impact.order[:2] == (0, 1)
@@ -194,17 +184,14 @@ def test_between_two_bodies_the_lines_are_those_of_their_relative_motion() -> No
     rod = sliding_rod()
     bat = MassProperties(mass=3.0, I_B=2.0 * np.eye(3))
     bat_state = BodyState(
-        p_WB_W=np.array([0.5, 0.0, -2.0]),
-        q_WB=np.array([0.0, 0.0, 0.0, 1.0]),
-        v_WB_W=np.array([0.2, 0.0, 1.0]),
-        w_WB_W=np.array([0.0, 0.1, 0.0]),
+        p_WB_W=[0.5, 0.0, -2.0], q_WB=[0.0, 0.0, 0.0, 1.0], v_WB_W=[0.2, 0.0, 1.0], w_WB_W=[0.0, 0.1, 0.0]
     )
     impact = spatial_pair_impact(
         ROD,
         rod.state,
         bat,
         bat_state,
-        Contact(p_WC_W=np.zeros(3), normal_W=np.array([0.0, 0.0, 1.0]), friction=2.0, restitution=0.5),
+        Contact(p_WC_W=np.zeros(3), normal_W=[0.0, 0.0, 1.0], friction=2.0, restitution=0.5),
     )
     assert impact.outcome is ImpactOutcome.STICKS_IN_COMPRESSION
     struck = StruckBody(name="bat", p_FB_F=np.zeros(3), state=bat_state)
@@ -252,7 +239,7 @@ def test_what_is_drawn_of_a_line_is_all_that_lies_in_the_diagram(
 
 def in_space_answer() -> ImpactAnswer:
     """A rod that strikes the ground, whose path swerves."""
-    falling = BodyState(p_WB_W=[0, 0, 0], q_WB=[0, 0, 0, 1], v_WB_W=[-1, 0.4, -1], w_WB_W=[0, 0, 0])
+    falling = BodyState(p_WB_W=[0, 0, 0], q_WB=[0, 0, 0, 1], v_WB_W=[-1, 0.4, -1])
     ground = ContactSet(p_WC_W=[ARM], normals_W=[0, 0, 1], frictions=FRICTION, restitutions=0.5)
     return ask(ImpactQuestion(body=THIN_ROD, state=falling, contacts=ground))
 

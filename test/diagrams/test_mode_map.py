@@ -35,6 +35,7 @@ TURNING = PlanarVelocity(v=(0.0, 0.0), w=3.0)
 ON_FLOOR = [PlanarContact(r=(x, -0.4), normal=(0.0, 1.0), friction=0.8) for x in (-0.9, 0.3)]
 ON_WALL = [PlanarContact(r=(0.6, y), normal=(-1.0, 0.0), friction=0.8) for y in (-0.1, 0.5)]
 TRAY = [*ON_FLOOR, *ON_WALL]
+SETS = wrench_sets(PlanarContactProblem(body=BODY, contacts=TRAY, wrench=PlanarWrench(f=(0.0, 0.0))))
 PIVOT = [PlanarContact(r=(0.0, -0.5), normal=(0.0, 1.0), friction=0.5)]
 
 
@@ -85,9 +86,7 @@ def test_each_point_has_the_modes_of_its_wrench(
 
 def test_the_tray_has_regions_with_several_modes_and_a_sliding_rod_one_with_none() -> None:
     chart = DirectionChart(length=RHO, resolution=64)
-    regions = mode_regions(
-        wrench_sets(PlanarContactProblem(body=BODY, contacts=TRAY, wrench=PlanarWrench(f=(0.0, 0.0)))), chart
-    )
+    regions = mode_regions(SETS, chart)
     assert ("ffff", "rsrs") in {tuple(sorted(modes)) for modes in regions.modes}
     assert not (regions.classes == NO_MODE).any()
     rod = PlanarBody(mass=1.0, inertia=1.0)
@@ -106,9 +105,8 @@ def test_the_tray_has_regions_with_several_modes_and_a_sliding_rod_one_with_none
 
 def test_borders_lie_between_regions() -> None:
     chart = DirectionChart(length=RHO, resolution=200)
-    sets = wrench_sets(PlanarContactProblem(body=BODY, contacts=TRAY, wrench=PlanarWrench(f=(0.0, 0.0))))
-    classes = mode_regions(sets, chart).classes
-    for one in sets:
+    classes = mode_regions(SETS, chart).classes
+    for one in SETS:
         strips = borders_of(one, chart)
         assert strips
         for x, y in (np.vstack(strips)[::50] * (1.0, -1.0)).round().astype(int):
@@ -117,9 +115,7 @@ def test_borders_lie_between_regions() -> None:
 
 def test_a_name_stands_inside_its_region() -> None:
     chart = DirectionChart(length=RHO, resolution=200)
-    regions = mode_regions(
-        wrench_sets(PlanarContactProblem(body=BODY, contacts=TRAY, wrench=PlanarWrench(f=(0.0, 0.0)))), chart
-    )
+    regions = mode_regions(SETS, chart)
     widest = widest_places(regions, chart)
     assert {one.region for one in widest} == set(np.unique(regions.classes).tolist()) - {OUTSIDE}
     for one in widest:
@@ -143,7 +139,7 @@ def test_the_chart_suits_the_motion() -> None:
     wrench = PlanarWrench(f=(3.0, -4.0), moment=0.2)
     assert isinstance(
         chart_for(
-            wrench_sets(PlanarContactProblem(body=BODY, contacts=TRAY, wrench=PlanarWrench(f=(0.0, 0.0)))),
+            SETS,
             length=RHO,
             applied=wrench,
         ),
@@ -164,10 +160,9 @@ def test_the_chart_suits_the_motion() -> None:
 
 
 def test_the_map_has_the_wrench_and_its_way_out() -> None:
-    sets = wrench_sets(PlanarContactProblem(body=BODY, contacts=TRAY, wrench=PlanarWrench(f=(0.0, 0.0))))
     chart = DirectionChart(length=RHO, resolution=160)
     applied, change = PlanarWrench(f=(1.0, -3.0), moment=0.1), PlanarWrench(f=(-3.0, 0.5), moment=0.2)
-    diagram = mode_map(sets, chart, applied=applied, change=change)
+    diagram = mode_map(SETS, chart, applied=applied, change=change)
     marks = marks_of(diagram)
     assert {"ffff", "ssss", "lsss"} <= {*marks["names"].texts, *marks["names_on_dark"].texts}
     assert [text for _, text in diagram.axes[0].ticks] == ["torque anticlockwise", "torque clockwise"]
@@ -191,13 +186,7 @@ def test_numbers_on_the_axes_of_a_square_are_where_they_belong() -> None:
 
 
 def test_the_construction_of_rsrs() -> None:
-    rsrs = next(
-        one
-        for one in wrench_sets(
-            PlanarContactProblem(body=BODY, contacts=TRAY, wrench=PlanarWrench(f=(0.0, 0.0)))
-        )
-        if one.mode == "rsrs"
-    )
+    rsrs = next(one for one in SETS if one.mode == "rsrs")
     forces, motions = split_generators(rsrs, TRAY)
     assert sorted(number for number, _ in forces) == [1, 3]
     (motion,) = motions

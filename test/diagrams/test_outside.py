@@ -20,7 +20,7 @@ TIMES = np.linspace(0.0, 1.0, 1001)
 
 @pytest.mark.parametrize("shape", [box(size=(0.1, 0.1, 0.1)), sphere(radius=HALF)], ids=["box", "ball"])
 def test_a_body_at_rest_does_not_fall_through_the_floor(shape: object) -> None:
-    resting = BodyState(p_WB_W=[0, 0, HALF - 1e-4], q_WB=[0, 0, 0, 1], v_WB_W=[0, 0, 0], w_WB_W=[0, 0, 0])
+    resting = BodyState(p_WB_W=[0, 0, HALF - 1e-4], q_WB=[0, 0, 0, 1])
     drawn = drawn_shape(shape)
     shown, name = outside(free_motion(BODY, resting).at(TIMES), drawn, (WALL, FLOOR))
     assert name == "floor"
@@ -31,10 +31,10 @@ def test_a_body_at_rest_does_not_fall_through_the_floor(shape: object) -> None:
 
 def test_a_flight_past_all_surfaces_is_shown_to_its_end_and_the_first_surface_in_the_way_counts() -> None:
     shape = drawn_shape(box(size=(0.1, 0.1, 0.1)))
-    rises = BodyState(p_WB_W=[0, 0, 0.1], q_WB=[0, 0, 0, 1], v_WB_W=[0, 0, 9.0], w_WB_W=[0, 0, 0])
+    rises = BodyState(p_WB_W=[0, 0, 0.1], q_WB=[0, 0, 0, 1], v_WB_W=[0, 0, 9.0])
     motion = free_motion(BODY, rises).at(TIMES)
     assert outside(motion, shape, (FLOOR, WALL)) == (motion, "")
-    strikes = BodyState(p_WB_W=[0, 0, 0.1], q_WB=[0, 0, 0, 1], v_WB_W=[4.0, 0, 4.0], w_WB_W=[0, 0, 0])
+    strikes = BodyState(p_WB_W=[0, 0, 0.1], q_WB=[0, 0, 0, 1], v_WB_W=[4.0, 0, 4.0])
     shown, name = outside(free_motion(BODY, strikes).at(TIMES), shape, (FLOOR, WALL))
     assert name == "wall"
     assert shown.p_WB_W[-1, 0] < 0.5

@@ -9,7 +9,7 @@ import pytest
 from contact_dynamics.contact_modes import PlanarContactProblem, contact_modes
 from contact_dynamics.diagrams.marks import Diagram
 from contact_dynamics.diagrams.planar_scene import cone_edges, planar_scene_of
-from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
+from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarWrench
 from diagrams.marks_of import marks_of
 
 BLOCK = [PlanarContact(r=(x, -0.5), normal=(0.0, 1.0), friction=0.5) for x in (-1.0, 1.0)]
@@ -36,11 +36,7 @@ def labels_of(diagram: Diagram) -> dict[str, np.ndarray]:
 def test_letters_forces_and_accelerations_of_a_mode() -> None:
     body = PlanarBody(mass=1.0, inertia=0.5)
     wrench = PlanarWrench(f=(8.0, -10.0))  # more than friction holds
-    (mode,) = contact_modes(
-        PlanarContactProblem(
-            body=body, velocity=PlanarVelocity(v=(0.0, 0.0), w=0.0), contacts=BLOCK, wrench=wrench
-        )
-    ).modes
+    (mode,) = contact_modes(PlanarContactProblem(body=body, contacts=BLOCK, wrench=wrench)).modes
     scene = planar_scene_of(OUTLINE, BLOCK, mode=mode)
     assert set(labels_of(scene)) == {f"1 {mode.mode[0]}", f"2 {mode.mode[1]}"}
     marks = marks_of(scene)

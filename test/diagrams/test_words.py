@@ -80,7 +80,7 @@ def test_a_mode_says_what_the_body_does(mode: str, words: str) -> None:
 def test_what_holds_within_the_errors_of_contacts_has_words() -> None:
     """A ball rests on one point, or slips if its friction may be too little for the push."""
     properties = MassProperties(mass=1.0, I_B=0.004 * np.eye(3))
-    state = BodyState(p_WB_W=(0, 0, 0.1), q_WB=(0, 0, 0, 1), v_WB_W=np.zeros(3), w_WB_W=np.zeros(3))
+    state = BodyState(p_WB_W=(0, 0, 0.1), q_WB=(0, 0, 0, 1))
     contacts = ContactSet(p_WC_W=[(0.0, 0.0, 0.0)], normals_W=(0.0, 0.0, 1.0), frictions=0.3)
 
     def words(frictions: float, *, margins: bool = False) -> str:

@@ -54,7 +54,7 @@ def test_the_time_of_arrival_spreads_as_drawn_poses_arrive() -> None:
     """A corner at a lever of decimetres falls onto the floor; its pose is uncertain in six ways at once."""
     root = RANDOM.standard_normal((6, 6)) * np.repeat([3e-4, 2e-3], 3)[:, None]
     covariance = root @ root.T
-    state = BodyState(p_WB_W=[0.1, 0.2, 0.09], q_WB=[0, 0, 0, 1], v_WB_W=[0, 0, -1.5], w_WB_W=[0, 0, 0])
+    state = BodyState(p_WB_W=[0.1, 0.2, 0.09], q_WB=[0, 0, 0, 1], v_WB_W=[0, 0, -1.5])
     corner = np.array([0.25, 0.28, 0.0])
     event = Event(
         kind=Ending.CONTACT,

@@ -17,9 +17,7 @@ from evaluation.made_motion import BRICK, P_NOISE, Q_NOISE, bounces, only_motion
 
 def states_at(stamps_ns: list[int]) -> list[BodyState]:
     return [
-        BodyState(
-            p_WB_W=[1e-9 * stamp, 0, 0], q_WB=[0, 0, 0, 1], v_WB_W=[1, 0, 0], w_WB_W=[0, 0, 0], stamp_ns=stamp
-        )
+        BodyState(p_WB_W=[1e-9 * stamp, 0, 0], q_WB=[0, 0, 0, 1], v_WB_W=[1, 0, 0], stamp_ns=stamp)
         for stamp in stamps_ns
     ]
 

@@ -24,11 +24,7 @@ def as_toss(known: KnownToss, *, p_noise: float = P_NOISE, q_noise: float = Q_NO
         ),
         box_size=np.array([0.15, 0.09, 0.05]),
         surface=Surface(
-            name="floor",
-            p_WS_W=np.array([0.0, 0.0, 0.3]),
-            normal_W=np.array([0.0, 0.0, 1.0]),
-            friction=0.3,
-            restitution=0.45,
+            name="floor", p_WS_W=[0.0, 0.0, 0.3], normal_W=[0.0, 0.0, 1.0], friction=0.3, restitution=0.45
         ),
         gravity_W=np.array([0.0, 0.0, -9.81]),
         rate=RATE,

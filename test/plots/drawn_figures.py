@@ -107,10 +107,7 @@ def impact(*, in_plane: bool) -> ImpactAnswer:
         ImpactQuestion(
             body=Body(name="rod", mass_properties=ROD),
             state=BodyState(
-                p_WB_W=np.zeros(3),
-                q_WB=[0.0, 0.0, 0.0, 1.0],
-                v_WB_W=[-1.0, 0.0 if in_plane else 0.4, -1.0],
-                w_WB_W=np.zeros(3),
+                p_WB_W=np.zeros(3), q_WB=[0.0, 0.0, 0.0, 1.0], v_WB_W=[-1.0, 0.0 if in_plane else 0.4, -1.0]
             ),
             contacts=ContactSet(
                 p_WC_W=[[0.3, 0.0 if in_plane else 0.2, -0.9]],
@@ -131,9 +128,7 @@ def resting(*, in_plane: bool) -> ContactModeAnswer:
     return ask(
         ContactModeQuestion(
             body=Body(name="brick", mass_properties=BRICK, shape=box(size=(0.2, 0.1, 0.06))),
-            state=BodyState(
-                p_WB_W=[0.0, 0.0, 0.03], q_WB=[0.0, 0.0, 0.0, 1.0], v_WB_W=np.zeros(3), w_WB_W=np.zeros(3)
-            ),
+            state=BodyState(p_WB_W=[0.0, 0.0, 0.03], q_WB=[0.0, 0.0, 0.0, 1.0]),
             contacts=ContactSet(
                 p_WC_W=corners,
                 normals_W=np.tile([0.0, 0.0, 1.0], (len(corners), 1)),

@@ -16,7 +16,7 @@ from contact_dynamics.toss import Toss
 CUBE = cd.Body.box((0.1, 0.1, 0.1), 0.37)
 FLOOR = cd.Surface(name="floor", p_WS_W=[0, 0, 0], normal_W=[0, 0, 1], friction=0.3, restitution=0.45)
 WORLD = cd.World(bodies=(CUBE,), surfaces=(FLOOR,))
-RESTING = cd.BodyState(p_WB_W=[0, 0, 0.05], q_WB=[0, 0, 0, 1], v_WB_W=[0, 0, 0], w_WB_W=[0, 0, 0])
+RESTING = cd.BodyState(p_WB_W=[0, 0, 0.05], q_WB=[0, 0, 0, 1])
 PROBLEM = cd.SpatialContactProblem(
     body=CUBE, state=RESTING, contacts=cd.find_contacts(CUBE, RESTING, WORLD), force_W=[0.5, 0, -3.6]
 )
@@ -27,7 +27,7 @@ FLAT = cd.PlanarContactProblem(
 
 
 def tossed(max_alternatives: int) -> Toss:
-    state = cd.BodyState(p_WB_W=[0, 0, 0.3], q_WB=[0, 0, 0, 1], v_WB_W=[0.3, 0, 0], w_WB_W=[0, 0, 0])
+    state = cd.BodyState(p_WB_W=[0, 0, 0.3], q_WB=[0, 0, 0, 1], v_WB_W=[0.3, 0, 0])
     return cd.toss(CUBE, state, WORLD, max_alternatives=max_alternatives)
 
 

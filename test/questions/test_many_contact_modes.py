@@ -23,7 +23,7 @@ from contact_dynamics.questions.many_contact_modes import (
 from questions.known_world import CUBE, WORLD
 
 KNOWN = Context(world=WORLD)
-LYING = BodyState(p_WB_W=[0, 0, 0.1], q_WB=[0, 0, 0, 1], v_WB_W=[0, 0, 0], w_WB_W=[0, 0, 0])
+LYING = BodyState(p_WB_W=[0, 0, 0.1], q_WB=[0, 0, 0, 1])
 ON_FLOOR = ContactModeQuestion(body="cube", state=LYING, distance_tolerance=1e-6)
 
 

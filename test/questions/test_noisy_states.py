@@ -108,9 +108,7 @@ def test_the_answer_has_the_state_that_it_is_about() -> None:
 def test_the_probability_of_rest_is_that_of_chi_squared(deviations_off: float) -> None:
     """For a velocity that is off by so many deviations the squared size of a repeat is noncentral."""
     deviations = np.repeat(MOTION_CAPTURE, 3)
-    state = BodyState(
-        p_WB_W=[0.1, 0.2, 0.025], q_WB=[0, 0, 0, 1], v_WB_W=[deviations_off * 0.02, 0, 0], w_WB_W=[0, 0, 0]
-    )
+    state = BodyState(p_WB_W=[0.1, 0.2, 0.025], q_WB=[0, 0, 0, 1], v_WB_W=[deviations_off * 0.02, 0, 0])
     noisy = UncertainState(state=state, covariance=np.diag(deviations**2))
     found = ask(ContactModeQuestion(body="brick", state=noisy, include_probabilities=True), CONTEXT)
     assert found.probabilities is not None

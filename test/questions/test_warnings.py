@@ -31,7 +31,7 @@ MASS = MassProperties(mass=0.37, I_B=8.1e-4 * np.eye(3))
 CUBE = Body(name="cube", mass_properties=MASS, shape=box(size=(0.1, 0.1, 0.1)))
 FLOOR = Surface(name="floor", p_WS_W=[0, 0, 0], normal_W=[0, 0, 1], friction=0.3, restitution=0.5)
 KNOWN = Context(world=World(bodies=(CUBE,), surfaces=(FLOOR,)))
-FLAT = BodyState(p_WB_W=[0, 0, 0.05], q_WB=[0, 0, 0, 1], v_WB_W=[0, 0, -1], w_WB_W=[0, 0, 0])
+FLAT = BodyState(p_WB_W=[0, 0, 0.05], q_WB=[0, 0, 0, 1], v_WB_W=[0, 0, -1])
 DECIDES = re.compile(r"differ by up to ([\d.e-]+) m/s and ([\d.e-]+) rad/s \(include_orders\)$")
 
 
@@ -67,7 +67,7 @@ def test_two_feet_in_a_plane_two_bodies_and_strikes_in_time_warn_too() -> None:
     stated = ImpactQuestion(body="cube", state=FLAT, contacts=feet)
     plane = PlaneOfMotion(normal_W=[0, -1, 0])
     in_plane = replace(stated, problem=Problem.PLANAR, plane=plane)
-    under = BodyState(p_WB_W=[0, 0, -0.05], q_WB=[0, 0, 0, 1], v_WB_W=[0, 0, 0], w_WB_W=[0, 0, 0])
+    under = BodyState(p_WB_W=[0, 0, -0.05], q_WB=[0, 0, 0, 1])
     on_another = replace(stated, other=CUBE, other_state=under)
     for question in (stated, in_plane, on_another):
         (warning,) = impact_questions.answer(question, KNOWN).warnings
@@ -108,7 +108,7 @@ def test_a_flush_rim_counts_as_points_where_that_matters() -> None:
     """A cup of radius r bears m g r / h at height h. Eight points bear cos 22.5 degrees of it, or all."""
     radius, height, lightly = 0.03, 0.1, 0.1
     cup = Body.cylinder(radius=radius, length=height, mass=0.2, name="cup")
-    standing = BodyState(p_WB_W=[0, 0, height / 2], q_WB=[0, 0, 0, 1], v_WB_W=[0, 0, 0], w_WB_W=[0, 0, 0])
+    standing = BodyState(p_WB_W=[0, 0, height / 2], q_WB=[0, 0, 0, 1])
     known = Context(world=World(bodies=(cup,), surfaces=(replace(FLOOR, friction=2.0),)))
     pushed = ContactModeQuestion(body="cup", state=standing, force_W=[lightly, 0, 0], problem=Problem.SPATIAL)
     assert modes_questions.answer(pushed, known).warnings == ()
@@ -128,7 +128,7 @@ def test_orders_that_lead_to_one_outcome_are_no_warning() -> None:
     """A level elastic rod on its two ends rises level in every order (`test_level_rod_on_two_supports`)."""
     rod = Body(name="rod", mass_properties=MassProperties(mass=2.0, I_B=np.diag([1e-4, 2 / 3, 2 / 3])))
     ends = ContactSet(p_WC_W=[[1, 0, 0], [-1, 0, 0]], normals_W=[0, 0, 1], frictions=0, restitutions=1)
-    state = BodyState(p_WB_W=[0, 0, 0], q_WB=[0, 0, 0, 1], v_WB_W=[0, 0, -1], w_WB_W=[0, 0, 0])
+    state = BodyState(p_WB_W=[0, 0, 0], q_WB=[0, 0, 0, 1], v_WB_W=[0, 0, -1])
     assert impact_questions.answer(ImpactQuestion(body=rod, state=state, contacts=ends)).warnings == ()
 
 
@@ -146,7 +146,7 @@ def test_a_contact_outside_or_inside_the_shape_is_a_warning(
     shape: ConvexShape, on: list[float], off: list[float], gap: float, turn: list[float]
 ) -> None:
     body = Body(name="it", mass_properties=MASS, shape=shape)
-    state = BodyState(p_WB_W=[1, 2, 3], q_WB=turn, v_WB_W=[0, 0, 0], w_WB_W=[0, 0, 0])
+    state = BodyState(p_WB_W=[1, 2, 3], q_WB=turn)
     depth = min(on[0] or 0.1, 0.1)  # of the centre
     for point, where, size in ((on, "", 0.0), (off, "outside of", gap), ([0.0] * 3, "inside", depth)):
         place = state.p_WB_W + state.R_WB @ np.array(point)
@@ -170,7 +170,7 @@ def test_a_contact_outside_or_inside_the_shape_is_a_warning(
 def test_a_body_without_a_shape_has_no_outside() -> None:
     body = Body(name="it", mass_properties=MASS)
     contacts = ContactSet(p_WC_W=[[9, 9, 9]], normals_W=[0, 0, 1], frictions=0.3)
-    rest = BodyState(p_WB_W=[0, 0, 0], q_WB=[0, 0, 0, 1], v_WB_W=[0, 0, 0], w_WB_W=[0, 0, 0])
+    rest = BodyState(p_WB_W=[0, 0, 0], q_WB=[0, 0, 0, 1])
     assert (
         modes_questions.answer(ContactModeQuestion(body=body, state=rest, contacts=contacts)).warnings == ()
     )
@@ -183,7 +183,7 @@ def test_contacts_that_are_taken_as_flush_warn_where_the_verdict_is_undecided_ot
         answer = modes_questions.answer(
             ContactModeQuestion(
                 body="peg",
-                state=BodyState(p_WB_W=[0, 0, 0], q_WB=[0, 0, 0, 1], v_WB_W=[0, 0, 0], w_WB_W=[0, 0, 0]),
+                state=BodyState(p_WB_W=[0, 0, 0], q_WB=[0, 0, 0, 1]),
                 contacts=ContactSet(p_WC_W=box.points, normals_W=box.normals, frictions=box.frictions),
                 force_W=box.wrench[:3],
                 torque_W=box.wrench[3:],
@@ -224,7 +224,7 @@ def test_a_batch_of_impacts_warns_of_contacts_outside_of_the_shape() -> None:
 
 
 def test_a_batch_of_contact_modes_says_which_candidates_have_a_warning() -> None:
-    rest = BodyState(p_WB_W=[0, 0, 0], q_WB=[0, 0, 0, 1], v_WB_W=[0, 0, 0], w_WB_W=[0, 0, 0])
+    rest = BodyState(p_WB_W=[0, 0, 0], q_WB=[0, 0, 0, 1])
     on, off = [0.05, 0.0, -0.05], [0.05, 0.0, -0.07]
     outside = "contact 0 is 0.02 m outside of the shape of 'cube'"
     for points, expected in (

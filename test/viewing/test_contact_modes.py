@@ -53,12 +53,7 @@ def test_every_letter_has_a_colour_and_a_doubtful_contact_its_own() -> None:
     assert paint_of_letters("l|f").dark == paint_of_letters("?").dark == palette.UNDECIDED
 
 
-AT_REST = BodyState(
-    p_WB_W=np.array([0.0, 0.0, 0.1]),
-    q_WB=np.array([0.0, 0.0, 0.0, 1.0]),
-    v_WB_W=np.zeros(3),
-    w_WB_W=np.zeros(3),
-)
+AT_REST = BodyState(p_WB_W=[0.0, 0.0, 0.1], q_WB=[0.0, 0.0, 0.0, 1.0])
 
 
 def draw(
@@ -152,7 +147,7 @@ def test_no_consistent_mode_is_drawn_as_a_question(canvas: Canvas) -> None:
 
 def test_in_a_plane_the_letters_say_which_way_a_contact_slides(canvas: Canvas) -> None:
     """Seen from -y, x is to the right: r slides along it, l against it."""
-    plane = PlaneOfMotion(normal_W=np.array([0.0, -1.0, 0.0]))
+    plane = PlaneOfMotion(normal_W=[0.0, -1.0, 0.0])
     mode = mode_of("lr", np.zeros((2, 3)), slides=np.zeros((0, 3)))
     answer = contact_mode_answer(AT_REST, TWO_CONTACTS, mode, plane=plane)
     draw(canvas.stream, convex_shape(BODY.vertices_B), answer)

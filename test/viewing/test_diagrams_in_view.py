@@ -23,7 +23,7 @@ from viewing.known import WORLD
 ROD = MassProperties(mass=1.0, I_B=np.eye(3))
 TIP = np.array([-4.0 * math.cos(math.radians(75.0)), 0.0, -4.0 * math.sin(math.radians(75.0))])
 FRICTION = math.tan(math.radians(30.0))
-PLANE = PlaneOfMotion(normal_W=np.array([0.0, -1.0, 0.0]))  # x to the right, z up
+PLANE = PlaneOfMotion(normal_W=[0.0, -1.0, 0.0])  # x to the right, z up
 ALONG = (-1.0, 0.0, 0.0)
 DOWN = (0.0, 0.0, -1.0)
 
@@ -36,9 +36,7 @@ def answer_of(
     friction: float = FRICTION,
 ) -> ContactModeAnswer:
     """What the lecture's rod does in its plane, with margins and the map."""
-    state = BodyState(
-        p_WB_W=np.zeros(3), q_WB=np.array([0.0, 0.0, 0.0, 1.0]), v_WB_W=(speed, 0.0, 0.0), w_WB_W=np.zeros(3)
-    )
+    state = BodyState(p_WB_W=np.zeros(3), q_WB=[0.0, 0.0, 0.0, 1.0], v_WB_W=(speed, 0.0, 0.0))
     contacts = ContactSet(
         p_WC_W=tip[None], normals_W=[[0.0, 0.0, 1.0]], frictions=[friction], restitutions=[0.0]
     )
@@ -159,7 +157,7 @@ def test_the_force_dual_shows_the_wrench_in_question_and_the_acceleration_centre
     weight = known.mass * 9.80665
     question = ContactModeQuestion(
         body="brick",
-        state=BodyState(p_WB_W=[0, 0, 0.025], q_WB=[0, 0, 0, 1], v_WB_W=[0, 0, 0], w_WB_W=[0, 0, 0]),
+        state=BodyState(p_WB_W=[0, 0, 0.025], q_WB=[0, 0, 0, 1]),
         contacts=ContactSet(p_WC_W=feet, normals_W=[[0.0, 0.0, 1.0]] * 2, frictions=2.0, restitutions=0.0),
         torque_W=[0.0, 0.1 * weight, 0.0],
         problem=Problem.PLANAR,

@@ -33,7 +33,7 @@ FIELD_OF_VIEW = np.radians(55.0)
 
 
 def an_impact(speed: float = -1.0, friction: float = 0.6) -> ImpactAnswer:
-    falling = BodyState(p_WB_W=[0, 0, 0], q_WB=[0, 0, 0, 1], v_WB_W=[speed, 0.4, -1], w_WB_W=[0, 0, 0])
+    falling = BodyState(p_WB_W=[0, 0, 0], q_WB=[0, 0, 0, 1], v_WB_W=[speed, 0.4, -1])
     ground = ContactSet(p_WC_W=[[0.3, 0.2, -0.9]], normals_W=[0, 0, 1], frictions=friction, restitutions=0.5)
     return ask(ImpactQuestion(body=ROD, state=falling, contacts=ground))
 
@@ -141,7 +141,7 @@ def test_a_diagram_is_drawn_with_its_numbers_in_place_of_the_one_before(canvas: 
 def test_a_planar_impact_takes_away_the_picture_in_3d(canvas: Canvas, *, first_in_space: bool) -> None:
     picture = Picture(canvas.stream, World(bodies=(ROD,), surfaces=()), surface_side=1.0)
     side = PlaneOfMotion(normal_W=[0.0, -1.0, 0.0])
-    flat = BodyState(p_WB_W=[0, 0, 0], q_WB=[0, 0, 0, 1], v_WB_W=[-1, 0, -1], w_WB_W=[0, 0, 0])
+    flat = BodyState(p_WB_W=[0, 0, 0], q_WB=[0, 0, 0, 1], v_WB_W=[-1, 0, -1])
     ground = ContactSet(p_WC_W=[[0.3, 0, -0.9]], normals_W=[0, 0, 1], frictions=0.6, restitutions=0.5)
     planar = ImpactQuestion(body=ROD, state=flat, contacts=ground, problem=Problem.PLANAR, plane=side)
     if first_in_space:

@@ -108,12 +108,7 @@ def test_a_body_without_shape_has_a_path_all_the_same() -> None:
 @pytest.mark.parametrize(("speed", "count"), [(0.0, 0), (1.0, 0), (10.0, 2), (1000.0, MAX_OUTLINES)])
 def test_a_longer_path_has_more_outlines(speed: float, count: int) -> None:
     """The time is 0.05 s, and the box is 0.182 m from corner to corner."""
-    start = BodyState(
-        p_WB_W=np.zeros(3),
-        q_WB=np.array([0.0, 0.0, 0.0, 1.0]),
-        v_WB_W=np.array([speed, 0, 0]),
-        w_WB_W=np.zeros(3),
-    )
+    start = BodyState(p_WB_W=np.zeros(3), q_WB=[0.0, 0.0, 0.0, 1.0], v_WB_W=[speed, 0, 0])
     flight = free_motion(BODY.mass_properties, start, gravity_W=np.zeros(3)).at(np.linspace(0.0, 0.05, 50))
     marks = marks_of(flight_marks(convex_shape(BODY.vertices_B), flight))
     assert len(marks["outlines"].strips) == 12 * count

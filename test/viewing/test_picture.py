@@ -152,13 +152,7 @@ def test_the_last_look_is_at_what_is_in_view_then(canvas: Canvas) -> None:
     picture = Picture(canvas.stream, WORLD, surface_side=0.5)
     picture.frame_all()  # nothing to look at yet
     picture.add_states("brick", [STATE])
-    long_after = BodyState(
-        p_WB_W=np.array([70.0, 80.0, 9.0]),
-        q_WB=STATE.q_WB,
-        v_WB_W=np.zeros(3),
-        w_WB_W=np.zeros(3),
-        stamp_ns=STAMP_NS + 60_000_000_000,
-    )
+    long_after = BodyState(p_WB_W=[70.0, 80.0, 9.0], q_WB=STATE.q_WB, stamp_ns=STAMP_NS + 60_000_000_000)
     picture.add_states("brick", [long_after])
     picture.frame_all()
     drawn = canvas.read()

@@ -62,9 +62,7 @@ def draw_impact(picture: Picture, world: World, read_back: Callable[[Any], Any])
 
 
 def draw_modes(picture: Picture, world: World, read_back: Callable[[Any], Any]) -> None:
-    resting = BodyState(
-        p_WB_W=[0.0, 0.0, 0.025], q_WB=[0, 0, 0, 1], v_WB_W=[0, 0, 0], w_WB_W=[0, 0, 0], stamp_ns=STAMP_NS
-    )
+    resting = BodyState(p_WB_W=[0.0, 0.0, 0.025], q_WB=[0, 0, 0, 1], stamp_ns=STAMP_NS)
     question = ContactModeQuestion(
         body="brick",
         state=resting,

@@ -22,13 +22,7 @@ from contact_dynamics.world import Body, Surface, World, box_vertices
 from viewing.drawn import STAMP_NS, Canvas
 from viewing.known import BODY, FLOOR
 
-TILTED = Surface(
-    name="ramp",
-    p_WS_W=np.array([0.0, 0.0, 0.5]),
-    normal_W=np.array([0.6, 0.0, 0.8]),
-    friction=0.3,
-    restitution=0.5,
-)
+TILTED = Surface(name="ramp", p_WS_W=[0.0, 0.0, 0.5], normal_W=[0.6, 0.0, 0.8], friction=0.3, restitution=0.5)
 
 
 @pytest.mark.parametrize("side", [0.05, 2.0, 25.0, 3000.0])
@@ -145,9 +139,7 @@ def raised(floor: Surface, height: float) -> Surface:
 
 
 def state(stamp_ns: int) -> BodyState:
-    return BodyState(
-        p_WB_W=[0, 0, 1], q_WB=[0, 0, 0, 1], v_WB_W=[0, 0, 0], w_WB_W=[0, 0, 0], stamp_ns=stamp_ns
-    )
+    return BodyState(p_WB_W=[0, 0, 1], q_WB=[0, 0, 0, 1], stamp_ns=stamp_ns)
 
 
 def test_each_form_is_drawn_from_when_it_came(canvas: Canvas) -> None:
