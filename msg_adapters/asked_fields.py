@@ -8,10 +8,12 @@ horizon if the contacts are given, is an error (`rejected_fields`).
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import lru_cache
 from typing import TYPE_CHECKING, Final, Protocol, TypeVar
 
 import numpy as np
+from geometry_msgs.msg import Inertia
 
 from contact_dynamics.errors import InvalidFieldError, TooLargeError
 from contact_dynamics.plane.projection import PlaneOfMotion
@@ -31,7 +33,7 @@ if TYPE_CHECKING:
     from enum import IntEnum
 
     from builtin_interfaces.msg import Time
-    from geometry_msgs.msg import Inertia, Vector3
+    from geometry_msgs.msg import Vector3
 
     from contact_dynamics.contact.contact import ContactSet
     from contact_dynamics.numerics.vectors import Vector3 as Vector
@@ -42,7 +44,7 @@ if TYPE_CHECKING:
     from contact_dynamics.world import World
     from contact_dynamics_interfaces.msg import BodyState as BodyStateMsg
     from contact_dynamics_interfaces.msg import ContactSet as ContactSetMsg
-    from contact_dynamics_interfaces.srv import PredictImpact
+    from contact_dynamics_interfaces.srv import PredictBodiesContactMode, PredictImpact
 
 LEFT_OUT: Final = -1
 """The default of a number that a request may leave out. No such number may be negative, and zero is zero."""
@@ -151,6 +153,36 @@ def asked_subject(
     return body, _published(stamp_ns, fit_window)
 
 
+def asked_subjects(
+    request: PredictBodiesContactMode.Request, world: World, world_frame: str
+) -> tuple[tuple[Body, ...], tuple[StateSource, ...]]:
+    """Return the bodies that a request names or describes, and where the state of each comes from.
+
+    Raises:
+        ContactDynamicsError: as in `asked_subject`, or names or lists do not suit each other.
+    """
+    names, stamp_ns = list(request.body_names), _stamp_ns(request)
+    is_explicit = request.state_source == request.STATE_EXPLICIT
+    for field, needed in (("states", is_explicit), ("inertias", False), ("applied_wrenches", False)):
+        if len(found := getattr(request, field)) not in ({len(names)} if needed else {0, len(names)}):
+            allowed = f"{len(names)}, one for each of body_names{'' if needed else ', or none'}"
+            raise InvalidFieldError(field, f"{len(found)} elements", allowed)
+    known, bodies = {body.name for body in world.bodies}, []
+    for i, (name, inertia) in enumerate(
+        zip(names, request.inertias or [Inertia()] * len(names), strict=True)
+    ):
+        field = f"body_names[{i}]"
+        if not name or name in names[:i]:
+            raise InvalidFieldError(field, repr(name), "a name that no other body has")
+        is_new = name not in known and _is_described(inertia)
+        body = asked_body("" if is_new else name, inertia, world, field=field)
+        bodies.append(replace(body, name=name) if is_new else body)
+    if not is_explicit:
+        return tuple(bodies), (_published(stamp_ns),) * len(bodies)
+    explicit = enumerate(zip(request.states, bodies, strict=True))
+    return tuple(bodies), tuple(_explicit(f"states[{i}]", *each, world_frame) for i, each in explicit)
+
+
 def asked_other(
     request: PredictImpact.Request, world: World, world_frame: str
 ) -> tuple[Body | None, StateSource]:
@@ -180,7 +212,7 @@ def asked_body(name: str, inertia: Inertia, world: World, *, field: str = "body_
     if len(name) > LONGEST_NAME:
         raise TooLargeError(field, f"{len(name)} characters", f"at most {LONGEST_NAME}")
     is_described = _is_described(inertia)
-    described = field.replace("body_name", "inertia")
+    described = field.replace("body_names", "inertias").replace("body_name", "inertia")
     if not name and not is_described:
         raise InvalidFieldError(field, name, f"the name of a configured body, unless {described}.m is > 0")
     # The body is looked up here, because an explicit state is that of the body's published frame.

@@ -163,18 +163,23 @@ def _unlisted(numbers: Sequence[float]) -> float | Sequence[float]:
     return numbers[0] if len(numbers) == 1 else numbers
 
 
-MODE: Final = fields.Table(
-    SpatialMode,
-    partial(ContactMode, margin=math.nan),
+OF_CONTACTS: Final = (
     fields.Row("mode", "mode"),
-    fields.Row("acceleration_W", "linear_acceleration", fields.FIXED),
-    fields.Row("angular_acceleration_W", "angular_acceleration", fields.FIXED),
     fields.Row("contact_forces_W", "contact_forces", fields.rows_of(3)),
     fields.Row("contact_accelerations_W", "contact_accelerations", fields.rows_of(3)),
     fields.Row("tangential_directions_W", "tangential_directions", fields.rows_of(3)),
     fields.Row("misdirection", "misdirection"),
     fields.Row("forces_unique", "forces_unique"),
     fields.Row("motion_unique", "motion_unique"),
+)
+"""What a mode says of the contacts, of one body or of several."""
+
+MODE: Final = fields.Table(
+    SpatialMode,
+    partial(ContactMode, margin=math.nan),
+    fields.Row("acceleration_W", "linear_acceleration", fields.FIXED),
+    fields.Row("angular_acceleration_W", "angular_acceleration", fields.FIXED),
+    *OF_CONTACTS,
 )
 """A mode, without its margin."""
 

@@ -16,7 +16,9 @@ from typing import TYPE_CHECKING, Final, Generic, NamedTuple, Protocol, TypeVar
 import numpy as np
 
 from contact_dynamics.plane.projection import PlaneOfMotion
-from contact_dynamics.questions.subject import FitQuality
+from contact_dynamics.questions.subject import FitQuality, NamedState
+from contact_dynamics.world import World
+from contact_dynamics_interfaces.msg import BodyState as BodyStateMsg
 from contact_dynamics_interfaces.srv import PredictImpact
 from msg_adapters.body_state import body_state_from_msg, body_state_to_msg, center_of_mass
 from msg_adapters.contacts import contacts_from_msg, contacts_to_msg, flat, rows
@@ -29,7 +31,6 @@ if TYPE_CHECKING:
 
     from contact_dynamics.rigid_body.body import BodyState
     from contact_dynamics.validation import FloatArray
-    from contact_dynamics.world import World
 
 
 class Frame(NamedTuple):
@@ -315,6 +316,34 @@ class Table(Generic[Rec, Msg]):
         return Kind(write, read)
 
 
+class _NamedStates(Table[NamedState, BodyStateMsg]):
+    """A state with the name of its body, whose pose depends on the centre of mass of that body."""
+
+    def to_msg(
+        self,
+        record: NamedState,
+        frame: Frame = Frame(),  # noqa: B008
+        *,
+        into: BodyStateMsg | None = None,
+    ) -> BodyStateMsg:
+        return body_state_to_msg(
+            record.state,
+            body_name=record.name,
+            world_frame=frame.world_frame,
+            p_FB_F=record.p_FB_F,
+            into=into,
+        )
+
+    def from_msg(self, msg: BodyStateMsg, frame: Frame = Frame()) -> NamedState:  # noqa: B008
+        p_FB_F = center_of_mass(msg.body_name, frame.world or World())
+        state = body_state_from_msg(msg, world_frame=msg.header.frame_id, p_FB_F=p_FB_F)
+        return NamedState(name=msg.body_name, p_FB_F=p_FB_F, state=state)
+
+
+NAMED_STATE: Final = _NamedStates(NamedState, BodyStateMsg)
+"""The state of one of the bodies in an answer about several."""
+
+
 def _in_frame(name: str) -> Row:
     """Return the row of an attribute that is not in the message."""
     return Row(name, "", Kind(lambda *_: None, lambda _, __, frame: getattr(frame, name)))
@@ -330,8 +359,6 @@ class _OfBody(Protocol):
     @property
     def body_name(self) -> str: ...
     @property
-    def p_FB_F(self) -> FloatArray: ...
-    @property
     def stamp_ns(self) -> int: ...
 
 
@@ -346,16 +373,20 @@ class AnswerTable(Table[AnswerOfBody, Msg]):
         answer: Callable[..., AnswerOfBody],
         response_type: Callable[[], Msg],
         *rows: Row,
-        body_name: str = "state.body_name",
+        body_name: str | None = "state.body_name",
     ) -> None:
-        """Take what makes the answer, an empty response, the rows, and the field with the body's name."""
-        super().__init__(answer, response_type, _BODY_NAME, _CENTER, *rows)
-        self._body_name = attrgetter(body_name)
+        """Take what makes the answer, an empty response, the rows, and the field with the body's name.
+
+        If there is no such field, the rows have the bodies and their centres of mass.
+        """
+        of_body = () if body_name is None else (_BODY_NAME, _CENTER)
+        super().__init__(answer, response_type, *of_body, *rows)
+        self._body_name = (lambda _: "") if body_name is None else attrgetter(body_name)
 
     def response_of(self, answer: AnswerOfBody, *, world_frame: str, into: Msg | None = None) -> Msg:
         """Return an answer as a response, which is new unless an empty one to fill is given."""
         frame = Frame(
-            p_FB_F=answer.p_FB_F,
+            p_FB_F=getattr(answer, "p_FB_F", Frame().p_FB_F),
             world_frame=world_frame,
             body_name=answer.body_name,
             stamp_ns=answer.stamp_ns,

@@ -22,15 +22,9 @@ from contact_dynamics.impact.several.result import (
     SeveralContactsLaw,
 )
 from contact_dynamics.questions.context import Problem
-from contact_dynamics.questions.impact_question import (
-    ImpactAnswer,
-    ImpactQuestion,
-    InTime,
-    StruckBody,
-)
+from contact_dynamics.questions.impact_question import ImpactAnswer, ImpactQuestion, InTime
 from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.rigid_body.published_frame import centers_of_mass, origin_of_published_frame
-from contact_dynamics.world import World
 from contact_dynamics_interfaces.msg import Impact as ImpactMsg
 from contact_dynamics_interfaces.srv import PredictImpact
 from msg_adapters import fields
@@ -43,7 +37,6 @@ from msg_adapters.asked_fields import (
     asked_subject,
     optional,
 )
-from msg_adapters.body_state import body_state_from_msg, body_state_to_msg, center_of_mass
 from msg_adapters.contacts import flat, rows
 from msg_adapters.rejected_fields import IMPACT, check_unread
 from msg_adapters.stamps import stamp_ns_from_msg
@@ -52,7 +45,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from contact_dynamics.validation import FloatArray
-    from contact_dynamics_interfaces.msg import BodyState as BodyStateMsg
+    from contact_dynamics.world import World
 
 _NO_END: Final = ImpactMsg().sequence_end
 """Why there is no further strike, of an impact at one instant."""
@@ -113,24 +106,12 @@ def _write_states(msg: ImpactMsg, _: str, states: tuple[BodyState, ...], frame: 
     fields.STATE.write(msg, "state_after", states[0], frame)
     if isinstance(frame.answer, ImpactAnswer) and frame.answer.other is not None:
         struck = [replace(frame.answer.other, state=state) for state in states[1:]]
-        msg.other_state_after = [_struck_to_msg(each, frame) for each in struck]
+        msg.other_state_after = [fields.NAMED_STATE.to_msg(each, frame) for each in struck]
 
 
 def _read_states(msg: ImpactMsg, _: str, frame: fields.Frame) -> tuple[BodyState, ...]:
     state: BodyState = fields.STATE.read(msg, "state_after", frame)  # type: ignore[assignment]
-    return state, *(_struck_from_msg(each, frame).state for each in msg.other_state_after)
-
-
-def _struck_to_msg(other: StruckBody, frame: fields.Frame) -> BodyStateMsg:
-    return body_state_to_msg(
-        other.state, body_name=other.name, world_frame=frame.world_frame, p_FB_F=other.p_FB_F
-    )
-
-
-def _struck_from_msg(msg: BodyStateMsg, frame: fields.Frame) -> StruckBody:
-    p_FB_F = center_of_mass(msg.body_name, World() if frame.world is None else frame.world)
-    state = body_state_from_msg(msg, world_frame=msg.header.frame_id, p_FB_F=p_FB_F)
-    return StruckBody(name=msg.body_name, p_FB_F=p_FB_F, state=state)
+    return state, *(fields.NAMED_STATE.from_msg(each, frame).state for each in msg.other_state_after)
 
 
 def _write_strikes(msg: ImpactMsg, _: str, strikes: tuple[SequenceStrike, ...], frame: fields.Frame) -> None:
@@ -245,18 +226,7 @@ _ANSWER: Final = fields.AnswerTable(
     fields.Row("warnings", "message", fields.WARNINGS),
     fields.Row("state", "state_before", fields.STATE),
     fields.Row("fit", "", fields.FIT),
-    fields.Row(
-        "other",
-        "other_state_before",
-        fields.Kind(
-            lambda msg, field, other, frame: setattr(
-                msg, field, [] if other is None else [_struck_to_msg(other, frame)]
-            ),
-            lambda msg, field, frame: next(
-                (_struck_from_msg(each, frame) for each in getattr(msg, field)), None
-            ),
-        ),
-    ),
+    fields.Row("other", "other_state_before", fields.NAMED_STATE.at_most_one()),
     fields.Row("seconds_to_contact", "time_to_contact"),
     fields.Row("contacts", "contacts", fields.CONTACTS),
     fields.Row("impact", "impact", RESOLVED_IMPACT.nested()),

@@ -182,10 +182,8 @@ _MAY_BE_PLANAR: Final = When("problem", ("AUTOMATIC", "PLANAR"))
 _IN_TIME: Final = When("several_contacts_law", ("SEQUENTIAL_IN_TIME",))
 _PLANE: Final = ("plane_normal", "out_of_plane_tolerance")
 
-_STATE: Final = (
-    ReadIf(("state",), (_EXPLICIT,)),
-    ReadIf(("stamp",), (When("state_source", ("STATE_AT_STAMP",)),)),
-)
+_STAMP: Final = ReadIf(("stamp",), (When("state_source", ("STATE_AT_STAMP",)),))
+_STATE: Final = (ReadIf(("state",), (_EXPLICIT,)), _STAMP)
 _FITTED_STATE: Final = (*_STATE, ReadIf(("fit_window",), (_PUBLISHED,)))
 _CONTACTS: Final = ReadIf(("contacts",), (When("contact_source", ("CONTACTS_EXPLICIT",)),))
 _CONTACT_MODES: Final = (
@@ -208,6 +206,9 @@ CONTACT_MODE: Final = (
 
 CONTACT_MODE_BATCH: Final = (*_CONTACT_MODES, ReadIf(("margin_length",), (When("include_margins"),)))
 """The fields of `PredictContactModeBatch`."""
+
+BODIES_CONTACT_MODE: Final = (ReadIf(("states",), (_EXPLICIT,)), _STAMP)
+"""The fields of `PredictBodiesContactMode`."""
 
 IMPACT: Final = (
     *_FITTED_STATE,

@@ -129,6 +129,14 @@ LISTS: dict[str, dict[str, Any]] = {
         "torque_W": [0, 0, 1],
         "gravity_W": [0, 0, -1],
     },
+    "BodiesContactModeQuestion": {
+        "bodies": ("brick",),
+        "contacts": ContactSet(**ONE_CONTACT),
+        "pairs": ((0, None),),
+        "forces_W": [[0, 0, 1]],
+        "torques_W": [[0, 0, 1]],
+        "gravity_W": [0, 0, -1],
+    },
     "ManyContactModesQuestion": {
         "asked": ContactModeQuestion(body="brick"),
         "forces_W": [[0, 0, 1]],

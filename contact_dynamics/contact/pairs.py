@@ -23,7 +23,7 @@ Pairs: TypeAlias = "Sequence[tuple[int, int | None]]"
 """For each contact, the body into which its normal points, and the other body, or None for the world."""
 
 
-def check_pairs(bodies: int, states: Sequence[BodyState], contacts: ContactSet, pairs: Pairs) -> None:
+def check_pairs(bodies: int, states: Sequence[object], contacts: ContactSet, pairs: Pairs) -> None:
     """Refuse lists of different length, pairs of other bodies, and surfaces of bodies that move.
 
     Raises:

@@ -241,7 +241,7 @@ _MARGIN: Final = 1.15  # how far the axes reach, relative to the largest force
 _DASHES: Final = ("-", "--", "-.", ":")
 
 
-def contact_forces(contacts: ContactSet, mode: SpatialMode, *, title: str = "") -> Diagram:
+def contact_forces(contacts: ContactSet, mode: ResponseMode, *, title: str = "") -> Diagram:
     """Return the contact forces of a mode, N, with the friction cone of each different friction coefficient.
 
     Args:

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from contact_dynamics.contact_modes import BodyStatics, GeometryMargin, SpatialModeMargin, VerdictsWithin
     from contact_dynamics.diagrams.after_impact import AfterImpact
     from contact_dynamics.impact import ResolvedImpact
+    from contact_dynamics.questions.bodies_contact_modes import BodiesContactModeAnswer
     from contact_dynamics.questions.contact_modes import ContactModeAnswer
     from contact_dynamics.questions.impact_question import ImpactAnswer
     from contact_dynamics.questions.many import ManyImpactsAnswer, ManyTumblingsAnswer
@@ -156,6 +157,13 @@ def contact_modes_in_words(answer: ContactModeAnswer) -> list[str]:
         more = f" and {len(refused) - MAX_LISTED} more" if len(refused) > MAX_LISTED else ""
         words.append(f"inconsistent: {', '.join(refused[:MAX_LISTED])}{more}")
     return [*words, *_statics_in_words(answer.statics), *_settled_in_words(answer.settled)]
+
+
+def bodies_contact_modes_in_words(answer: BodiesContactModeAnswer) -> list[str]:
+    """Return words for the verdict with every mode, and for the contacts that approach."""
+    words = [_verdict_in_words(answer.verdict, [mode.mode for mode in answer.modes])]
+    words += shared_forces(answer.modes)
+    return [*words, *(f"contact {i + 1} approaches" for i in answer.approaching)]
 
 
 def contacts_in_words(letters: str, count: int) -> str:

@@ -50,6 +50,7 @@ if TYPE_CHECKING:
 
     from contact_dynamics.diagrams.marks import Diagram
     from contact_dynamics.diagrams.shape import Shape
+    from contact_dynamics.questions.bodies_contact_modes import BodiesContactModeAnswer
     from contact_dynamics.questions.contact_modes import ContactModeAnswer
     from contact_dynamics.questions.impact_question import ImpactAnswer
     from contact_dynamics.questions.many import ManyImpactsAnswer, ManyTumblingsAnswer
@@ -154,13 +155,20 @@ def figures_of_tumbling(
         yield NamedFigure("poinsot", _figure_of(poinsot_diagram(rotation, rolling, answer.state), 8.0, 6.0))
 
 
+def figures_of_bodies_modes(
+    answer: BodiesContactModeAnswer | ContactModeAnswer, **_: object
+) -> Iterator[NamedFigure]:
+    """Yield the contact forces of each mode."""
+    for i, mode in enumerate(answer.modes[:MAX_MODES], start=1):
+        forces = contact_forces(answer.contacts, mode, title=f"contact forces in {mode.mode}")
+        yield NamedFigure(f"contact-forces-{i}", _figure_of(forces, 7.0))
+
+
 def figures_of_modes(
     answer: ContactModeAnswer, *, body: HasMassProperties | None, shape: ConvexShape, **_: object
 ) -> Iterator[NamedFigure]:
     """Yield the contact forces of each mode and, in the plane, the body, the map of modes and force duals."""
-    for i, mode in enumerate(answer.modes[:MAX_MODES], start=1):
-        forces = contact_forces(answer.contacts, mode, title=f"contact forces in {mode.mode}")
-        yield NamedFigure(f"contact-forces-{i}", _figure_of(forces, 7.0))
+    yield from figures_of_bodies_modes(answer)
     plane = answer.plane
     if plane is None:
         return

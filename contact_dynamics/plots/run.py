@@ -69,7 +69,7 @@ def _write(number: int, logged: Answered, world: World, folder: Path, suffix: st
     if logged.asked is None or logged.answer is None:
         return []
     about = logged.asked.about
-    body, other = _body(about.body, world), _body(getattr(about, "other", None), world)
+    body, other = (_body(getattr(about, role, None), world) for role in ("body", "other"))
     gravity_W = getattr(about, "gravity_W", None)  # an impact needs none
     figures = figures_of(
         logged.answer,

@@ -9,7 +9,8 @@ The modules of this package are internal. `services` contains `ask`, and a recor
 from which all programs derive their behaviour. Each kind has a file with its question, its answer and a
 function ``answer``: `tumbling` predicts the motion of a free body (lectures 24, 25), `impact` the velocities
 after an impact (lecture 27; `impact_question` contains its question and its answer), `contact_modes` the
-contacts that separate, slide or stick (lecture 26), and `toss` the motion to rest.
+contacts that separate, slide or stick (lecture 26), `bodies_contact_modes` those of several bodies, and
+`toss` the motion to rest.
 
 The kinds share these files: `context` (the world, defaults, and the published states in a `state_store`),
 `carried_surface` (planes that move with bodies),
@@ -30,15 +31,14 @@ from contact_dynamics.questions import services
 from contact_dynamics.validation_types import checks_types
 
 if TYPE_CHECKING:  # the same as `_HOMES`
+    from contact_dynamics.questions.bodies_contact_modes import (
+        BodiesContactModeAnswer,
+        BodiesContactModeQuestion,
+    )
     from contact_dynamics.questions.carried_surface import CarriedSurface
     from contact_dynamics.questions.contact_modes import ContactModeAnswer, ContactModeQuestion
     from contact_dynamics.questions.context import Context, Defaults, Problem
-    from contact_dynamics.questions.impact_question import (
-        ImpactAnswer,
-        ImpactQuestion,
-        InTime,
-        StruckBody,
-    )
+    from contact_dynamics.questions.impact_question import ImpactAnswer, ImpactQuestion, InTime
     from contact_dynamics.questions.sample_times import (
         AtRate,
         AtStamps,
@@ -50,20 +50,21 @@ if TYPE_CHECKING:  # the same as `_HOMES`
     )
     from contact_dynamics.questions.settled_impact import SettledImpact
     from contact_dynamics.questions.state_store import StateStore
-    from contact_dynamics.questions.subject import FitQuality, PublishedState
+    from contact_dynamics.questions.subject import FitQuality, NamedState, PublishedState
     from contact_dynamics.questions.toss import TossAnswer, TossPath, TossQuestion, TossSampling
     from contact_dynamics.questions.tumbling import TumblingAnswer, TumblingQuestion
     from contact_dynamics.questions.uncertain_state import UncertainState
 
 _HOMES: Final = {
+    "bodies_contact_modes": ("BodiesContactModeAnswer", "BodiesContactModeQuestion"),
     "carried_surface": ("CarriedSurface",),
     "contact_modes": ("ContactModeAnswer", "ContactModeQuestion"),
     "context": ("Context", "Defaults", "Problem"),
-    "impact_question": ("ImpactAnswer", "ImpactQuestion", "InTime", "StruckBody"),
+    "impact_question": ("ImpactAnswer", "ImpactQuestion", "InTime"),
     "sample_times": ("AtRate", "AtStamps", "AtTimes", "Event", "EventKind", "UntilContact", "UntilPlane"),
     "settled_impact": ("SettledImpact",),
     "state_store": ("StateStore",),
-    "subject": ("FitQuality", "PublishedState"),
+    "subject": ("FitQuality", "NamedState", "PublishedState"),
     "toss": ("TossAnswer", "TossPath", "TossQuestion", "TossSampling"),
     "tumbling": ("TumblingAnswer", "TumblingQuestion"),
     "uncertain_state": ("UncertainState",),
@@ -87,6 +88,8 @@ __all__ = [
     "AtRate",
     "AtStamps",
     "AtTimes",
+    "BodiesContactModeAnswer",
+    "BodiesContactModeQuestion",
     "CarriedSurface",
     "ContactModeAnswer",
     "ContactModeQuestion",
@@ -98,11 +101,11 @@ __all__ = [
     "ImpactAnswer",
     "ImpactQuestion",
     "InTime",
+    "NamedState",
     "Problem",
     "PublishedState",
     "SettledImpact",
     "StateStore",
-    "StruckBody",
     "TossAnswer",
     "TossPath",
     "TossQuestion",

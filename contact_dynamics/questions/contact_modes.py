@@ -87,7 +87,7 @@ _UNCERTAIN: Final = (
     "contacts must be exact to be in a plane, got uncertain points or normals, whose errors may leave it"
 )
 
-_TAKEN_AS_FLUSH: Final = (
+TAKEN_AS_FLUSH: Final = (
     f"contacts are taken as flush to within {FLUSH_ROUGHLY:g} (rad, or parts of the reach): "
     "for the stated contacts the verdict is undecided"
 )
@@ -521,7 +521,7 @@ def _spatial_answer(question: ContactModeQuestion, case: ModeCase, reason: str) 
         undecided=found.undecided,
         undecided_modes=found.undecided_modes,
         warnings=(
-            *([_TAKEN_AS_FLUSH] if found.flush_within > FLUSH else []),
+            *([TAKEN_AS_FLUSH] if found.flush_within > FLUSH else []),
             *(f"the margin of {one.mode} is unknown: {one.unknown}" for one in margins or () if one.unknown),
         ),
         within=found.within,

@@ -18,7 +18,7 @@ from contact_dynamics.errors import ContactDynamicsError
 from contact_dynamics.motion.forces import NO_DRAG, NO_WRENCH
 from contact_dynamics.questions.context import Problem
 from contact_dynamics.questions.sample_times import UntilContact, UntilPlane
-from contact_dynamics.questions.subject import PublishedState, at_stamp, subject_of
+from contact_dynamics.questions.subject import NEWEST, PublishedState, at_stamp, subject_of
 
 if TYPE_CHECKING:
     from contact_dynamics.contact.contact import ContactSet
@@ -56,16 +56,20 @@ _CORNERS_OF_A_RIM: Final = 8  # in which the base of a cylinder touches
 
 def excerpt(question: Question[Answer], context: Context) -> Context:
     """Return what another process must know to answer a question as this one would now."""
-    wanted, first = [], None
-    for role, source_name in (("body", "state"), ("other", "other_state")):
-        body, source = getattr(question.about, role, None), getattr(question.about, source_name, None)
-        name = body if isinstance(body, str) else getattr(body, "name", "")
-        if body is None or source is None:
-            continue
-        if name and isinstance(source, PublishedState):
-            stamp_ns = 0 if first is None else _stamp_of(*first, context)
-            wanted.append((name, at_stamp(source, stamp_ns).stamp_ns, source.fit_window))
-        first = body, source
+    about = question.about
+    sources = list(zip(getattr(about, "bodies", ()), getattr(about, "states", ()), strict=False))
+    body, source = getattr(about, "body", None), getattr(about, "state", None)
+    if body is not None and source is not None:
+        sources.append((body, source))
+        other = getattr(about, "other", None)
+        if other is not None:
+            stamp_ns = _stamp_of(body, source, context)
+            sources.append((other, at_stamp(getattr(about, "other_state", NEWEST), stamp_ns)))
+    wanted = [
+        (body if isinstance(body, str) else body.name, source.stamp_ns, source.fit_window)
+        for body, source in sources
+        if isinstance(source, PublishedState)
+    ]
     now_ns = None if context.now_ns is None else context.now_ns()
     states = context.states.excerpt(wanted, now_ns=now_ns)
     return replace(context, states=states, now_ns=partial(_same, now_ns))

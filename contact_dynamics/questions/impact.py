@@ -35,18 +35,13 @@ from contact_dynamics.plane.lifting import (
 )
 from contact_dynamics.questions.context import Context, Problem, or_default
 from contact_dynamics.questions.extent import check_contacts, check_extent
-from contact_dynamics.questions.impact_question import (
-    ImpactAnswer,
-    ImpactQuestion,
-    InTime,
-    StruckBody,
-)
+from contact_dynamics.questions.impact_question import ImpactAnswer, ImpactQuestion, InTime
 from contact_dynamics.questions.plane_of_motion import (
     lifted_impact,
     planar_problem_of,
     several_in_plane,
 )
-from contact_dynamics.questions.subject import Subject, at_stamp, covariance_of, subject_of
+from contact_dynamics.questions.subject import NamedState, Subject, at_stamp, covariance_of, subject_of
 from contact_dynamics.questions.touching import check_has_shape, contacts_of, outside_shape
 from contact_dynamics.records import Record
 from contact_dynamics.rigid_body.body import BodyState
@@ -125,7 +120,7 @@ def answer(question: ImpactQuestion, context: Context | None = None) -> ImpactAn
         fit=strike.subject.fit,
         other=None
         if other is None
-        else StruckBody(name=other.body.name, p_FB_F=other.body.p_FB_F, state=other.state),
+        else NamedState(name=other.body.name, p_FB_F=other.body.p_FB_F, state=other.state),
         seconds_to_contact=strike.seconds,
         contacts=strike.contacts,
         impact=resolved,

@@ -12,26 +12,11 @@ from contact_dynamics.impact.in_time.sequence import MAX_STRIKES, STRIKE_WINDOW
 from contact_dynamics.plane.projection import PlaneOfMotion
 from contact_dynamics.questions.context import Problem, check_optional, check_read
 from contact_dynamics.questions.services import Answer, Question
-from contact_dynamics.questions.subject import NEWEST, FitQuality, StateSource
+from contact_dynamics.questions.subject import NEWEST, FitQuality, NamedState, StateSource
 from contact_dynamics.records import Record
 from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.validation import FloatArray, check_positive, check_whole
 from contact_dynamics.world import Body
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class StruckBody(Record):
-    """Second body of an impact, just before it.
-
-    Attributes:
-        name: Name of the body, which may be empty.
-        p_FB_F: (3,), m, centre of mass in the published frame F.
-        state: State just before the impact.
-    """
-
-    name: str
-    p_FB_F: FloatArray
-    state: BodyState
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -63,7 +48,7 @@ class ImpactAnswer(Answer):
     p_FB_F: FloatArray
     state: BodyState
     fit: FitQuality | None
-    other: StruckBody | None
+    other: NamedState | None
     seconds_to_contact: float
     contacts: ContactSet
     impact: ResolvedImpact

@@ -317,6 +317,20 @@ SERVICES: Final = (
         words=ImportedOnUse("contact_dynamics.diagrams.words:many_contact_modes_in_words"),
         cells=ImportedOnUse("contact_dynamics.replay.rows:cells_of_many_contact_modes"),
     ),
+    Service(
+        name="predict_bodies_contact_mode",
+        type_name="PredictBodiesContactMode",
+        kind="Contact modes of bodies",
+        digest="f8ab588bbae57cf6",
+        question_type="contact_dynamics.questions.bodies_contact_modes:BodiesContactModeQuestion",
+        answer_type="contact_dynamics.questions.bodies_contact_modes:BodiesContactModeAnswer",
+        adapters="msg_adapters.bodies_contact_mode:bodies_contact_mode",
+        answer=ImportedOnUse("contact_dynamics.questions.bodies_contact_modes:answer"),
+        words=ImportedOnUse("contact_dynamics.diagrams.words:bodies_contact_modes_in_words"),
+        draw=ImportedOnUse("contact_dynamics.viewing.picture:Picture.draw_bodies_contact_modes"),
+        figures=ImportedOnUse("contact_dynamics.plots.figures:figures_of_bodies_modes"),
+        cells=ImportedOnUse("contact_dynamics.replay.rows:cells_of_contact_modes"),
+    ),
 )
 """All services."""
 

@@ -86,6 +86,21 @@ class FitQuality(Record):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class NamedState(Record):
+    """State of one of the bodies in an answer about several.
+
+    Attributes:
+        name: Name of the body, which may be empty.
+        p_FB_F: (3,), m, centre of mass in the published frame F.
+        state: Its state.
+    """
+
+    name: str
+    p_FB_F: FloatArray
+    state: BodyState
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class Subject(Record):
     """The body that a question is about, and its state.
 

@@ -20,6 +20,8 @@ from contact_dynamics.shapes.obstacle import closest_points
 from contact_dynamics.tolerances import DISTANCE_TOLERANCE
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from contact_dynamics.contact.contact import ContactSet
     from contact_dynamics.questions.subject import Subject
     from contact_dynamics.validation import FloatArray
@@ -96,6 +98,7 @@ def outside_shape(
     p_WB_W: FloatArray,
     R_WB: FloatArray,
     distance_tolerance: float = DISTANCE_TOLERANCE,
+    numbers: Sequence[int] | None = None,
 ) -> tuple[str, ...]:
     """Return warnings of explicit contact points that are outside of the body's shape, or inside it.
 
@@ -107,10 +110,12 @@ def outside_shape(
         p_WB_W: (n, 3), or (3,) for all: m, positions of the centre of mass.
         R_WB: (n, 3, 3), or (3, 3) for all: rotations, body to world.
         distance_tolerance: m, >= 0.
+        numbers: Numbers of the contacts in the warnings. By default, they begin with 0.
     """
     shape = body.shape
     if shape.is_empty:
         return ()
+    numbers = range(len(points_W)) if numbers is None else numbers
     features = features_of(shape)
     points_B = np.einsum("...j,...jk->...k", points_W - p_WB_W, R_WB)
     away = np.arange(len(points_B))
@@ -136,12 +141,14 @@ def outside_shape(
         found = np.flatnonzero(off > tolerance).tolist()
         if len(found) > _MOST_TOLD:
             farthest = int(off.argmax())
-            most = f"the farthest by {off[farthest]:.6g} m: contact {farthest}"
+            most = f"the farthest by {off[farthest]:.6g} m: contact {numbers[farthest]}"
             warnings.append(
                 f"{len(found)} of {len(off)} contacts are {where} the shape of {body.name!r}, {most}"
             )
         else:
-            warnings += (f"contact {i} is {off[i]:.6g} m {where} the shape of {body.name!r}" for i in found)
+            warnings += (
+                f"contact {numbers[i]} is {off[i]:.6g} m {where} the shape of {body.name!r}" for i in found
+            )
     return tuple(warnings)
 
 

@@ -39,6 +39,7 @@ from contact_dynamics.tumbling.motion import free_motion
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Sequence
 
+    from contact_dynamics.questions.bodies_contact_modes import BodiesContactModeAnswer
     from contact_dynamics.questions.contact_modes import ContactModeAnswer
     from contact_dynamics.questions.impact_question import ImpactAnswer
     from contact_dynamics.questions.many import ManyImpactsAnswer, ManyTumblingsAnswer
@@ -185,14 +186,14 @@ class Rows:
 
     def _row(self, answered: Answered) -> _Waiting:
         row: dict[str, Cell] = dict.fromkeys(COLUMNS)
-        body = answered.question.get("body_name", "")
+        body, names = answered.question.get("body_name", ""), answered.question.get("body_names")
         row |= {
             "log": self._log,
             "service": answered.service_name,
             "number": answered.number,
             "log_time_ns": answered.log_time_ns,
             "asked_ns": answered.asked_ns,
-            "body": body if isinstance(body, str) else "",
+            "body": ", ".join(names) if isinstance(names, list) else str(body),
             "question": json.dumps(dict(answered.question)),
             "status": answered.status,
             "message": answered.message,
@@ -282,13 +283,13 @@ def cells_of_toss(answer: TossAnswer) -> Iterator[Cells]:
     yield _cells(f"{end} on {corners}" if corners else end, surfaces)
 
 
-def cells_of_contact_modes(answer: ContactModeAnswer) -> Iterator[Cells]:
+def cells_of_contact_modes(answer: ContactModeAnswer | BodiesContactModeAnswer) -> Iterator[Cells]:
     """Yield the verdict with its modes, and their distinguishing quantities."""
-    modes = answer.modes
+    modes, margins = answer.modes, getattr(answer, "margins", None)
     yield {
         **_cells(_verdict(answer.verdict, [mode.mode for mode in modes]), answer.contacts.surfaces),
         "mode_count": len(modes),
-        "margins": None if answer.margins is None else json.dumps([one.margin for one in answer.margins]),
+        "margins": None if margins is None else json.dumps([one.margin for one in margins]),
         "contact_forces": json.dumps([mode.contact_forces_W.tolist() for mode in modes]),
         "contact_accelerations": json.dumps([mode.contact_accelerations_W.tolist() for mode in modes]),
     }

@@ -43,12 +43,14 @@ from contact_dynamics.viewing.scenery import WorldInView
 from contact_dynamics.viewing.words import LEGEND_TEXT, AnswersInWords, sentence
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Sequence
 
     from contact_dynamics.contact.contact import ContactSet
     from contact_dynamics.contact_modes import BodiesModeAnswer
+    from contact_dynamics.contact_modes.result import ResponseMode
     from contact_dynamics.diagrams.after_impact import AfterImpact
     from contact_dynamics.diagrams.marks import Mark
+    from contact_dynamics.questions.bodies_contact_modes import BodiesContactModeAnswer
     from contact_dynamics.questions.carried_surface import CarriedSurface
     from contact_dynamics.questions.contact_modes import ContactModeAnswer
     from contact_dynamics.questions.impact_question import ImpactAnswer
@@ -159,9 +161,7 @@ class Picture:
     def show_bodies(self, answer: BodiesModeAnswer, contacts: ContactSet, *, now_ns: int) -> None:
         """Draw contact modes of several bodies at a time, ns, and describe them in words."""
         set_time(self.recording, now_ns)
-        name = next(iter(self._bodies.names), "")  # which switches modes on and off
-        marks = bodies_contact_marks(contacts, answer.modes, size=self._bodies.largest_size)
-        self._draw_contacts(name, marks)
+        self._draw_bodies_contacts(self._bodies.names, contacts, answer.modes)
         self._bring_up(CONTACTS)
         self.tell("contact modes", answer.in_short().partition(": ")[2], stamp_ns=now_ns)
 
@@ -222,6 +222,15 @@ class Picture:
         outline = silhouette(shape, plane.axes_W @ answer.state.R_WB)
         return [CONTACTS, *self._diagrams.draw_planar_modes(answer, plane, outline=outline, body=body)], []
 
+    def draw_bodies_contact_modes(
+        self,
+        answer: BodiesContactModeAnswer,
+        stamp_ns: int,  # noqa: ARG002  as all
+    ) -> tuple[list[str], list[str]]:
+        """Draw contact modes of several bodies in the scene."""
+        self._draw_bodies_contacts((body.name for body in answer.bodies), answer.contacts, answer.modes)
+        return [CONTACTS], []
+
     def draw_toss(self, answer: TossAnswer, stamp_ns: int) -> tuple[list[str], list[str]]:
         """Draw a whole toss with its alternatives, and the fan of samples with the tree of their strikes."""
         shape = self._bodies.shape(answer.body_name)
@@ -239,6 +248,13 @@ class Picture:
         name = answer.body_name
         self._draw_anew(MANY, name, many_states_marks(self._bodies.shape(name), answer))
         return [MANY], []
+
+    def _draw_bodies_contacts(
+        self, body_names: Iterable[str], contacts: ContactSet, modes: Sequence[ResponseMode]
+    ) -> None:
+        """Draw contacts of several bodies. The first of them in view switches modes on and off."""
+        name = next((name for name in body_names if name in self._bodies.names), "")
+        self._draw_contacts(name, bodies_contact_marks(contacts, modes, size=self._bodies.largest_size))
 
     def _draw_contacts(self, body_name: str, marks: list[Mark]) -> None:
         """Draw contacts of a body, and clear the letters of another body's earlier answer."""

@@ -91,13 +91,14 @@ class StatesInTurn:
                 self._draw_of(body_name)
 
     def draw_before(self, answer: Answer, *, came_ns: int | None = None) -> None:
-        """Draw the states of a body before an answer about it, and those of bodies whose curves it may end.
+        """Draw the states of bodies before an answer about them, and those of bodies whose curves it may end.
 
         Drawing all bodies' states before each answer would defeat the pace when there are many requests. If
         the answer was queued itself, only states that arrived before it, at ``came_ns``, are drawn.
         """
         others = set() if answer.predicted_motion is None else self._picture.bodies_with_curves
-        for each in {answer.body_name, *others}:
+        about = {body.name for body in getattr(answer, "bodies", ())} or {answer.body_name}
+        for each in about | others:
             self._draw_of(each, came_ns=came_ns)
 
     def newest_stamp_ns(self) -> int | None:

@@ -17,6 +17,7 @@ from contact_dynamics.measured.events import EventKind as MonitoredKind
 from contact_dynamics.monitoring.evidence import REGIONS, Parameter
 from contact_dynamics.motion.integrated import Method
 from contact_dynamics.questions import EventKind, Problem
+from contact_dynamics.questions.bodies_contact_modes import MAX_BODIES
 from contact_dynamics.questions.many import MAX_STATES
 from contact_dynamics.questions.many_contact_modes import MAX_CANDIDATES
 from contact_dynamics.questions.sample_times import MAX_SAMPLES
@@ -36,6 +37,7 @@ from contact_dynamics_interfaces.msg import (
     Trajectory,
 )
 from contact_dynamics_interfaces.srv import (
+    PredictBodiesContactMode,
     PredictContactMode,
     PredictContactModeBatch,
     PredictImpact,
@@ -106,6 +108,7 @@ def constants(message: type, names: list[str]) -> dict[str, int]:
         (EventKind, PredictTumbling.Response),
         (Method, PredictTumbling.Response),
         (ModeVerdict, PredictContactMode.Response),
+        (ModeVerdict, PredictBodiesContactMode.Response),
         (Refusal, PredictContactMode.Response),
     ],
     ids=lambda value: value.__name__,
@@ -136,6 +139,7 @@ def test_status_codes_are_the_same_in_all_services() -> None:
         PredictTumbling,
         PredictToss,
         PredictContactModeBatch,
+        PredictBodiesContactMode,
         PredictImpactBatch,
         PredictTumblingBatch,
     ):
@@ -169,6 +173,9 @@ def test_status_codes_are_the_same_in_all_services() -> None:
         (PredictImpactBatch.Response, "outcomes", MAX_STATES),
         (PredictContactModeBatch.Request, "contact_counts", MAX_CANDIDATES),
         (PredictContactModeBatch.Request, "torques", 3 * MAX_CANDIDATES),
+        (PredictBodiesContactMode.Request, "body_names", MAX_BODIES),
+        (PredictBodiesContactMode.Request, "applied_wrenches", MAX_BODIES),
+        (PredictBodiesContactMode.Request, "other_bodies", MAX_CONTACTS),
         (PredictToss.Request, "parameter_covariance", MAX_PARAMETERS**2),
         (Impact, "outcome_probabilities", len(ImpactOutcome)),
     ],

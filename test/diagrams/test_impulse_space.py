@@ -25,7 +25,7 @@ from contact_dynamics.impact.law import ImpactOutcome, PathEvent
 from contact_dynamics.impact.several.orders import several_impact
 from contact_dynamics.impact.spatial.one_contact import spatial_impact, spatial_pair_impact
 from contact_dynamics.plane.projection import PlaneOfMotion
-from contact_dynamics.questions import ImpactAnswer, ImpactQuestion, StruckBody, ask
+from contact_dynamics.questions import ImpactAnswer, ImpactQuestion, NamedState, ask
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.world import Body
 from diagrams.marks_of import marks_of
@@ -171,7 +171,7 @@ def test_a_contact_that_strikes_after_another_has_its_dots_on_its_lines() -> Non
 
 
 def test_without_mass_properties_the_lines_are_left_out() -> None:
-    struck = StruckBody(name="", p_FB_F=np.zeros(3), state=sliding_rod().state)
+    struck = NamedState(name="", p_FB_F=np.zeros(3), state=sliding_rod().state)
     of_both = of_two(sliding_rod(), struck, other_after=sliding_rod().state)
     for body, answer in ((None, sliding_rod()), (ROD, of_both)):
         assert set(marks_of(impulse_space(body, answer))) & {"path", "sticking_line"} == {"path"}
@@ -194,7 +194,7 @@ def test_between_two_bodies_the_lines_are_those_of_their_relative_motion() -> No
         Contact(p_WC_W=np.zeros(3), normal_W=[0.0, 0.0, 1.0], friction=2.0, restitution=0.5),
     )
     assert impact.outcome is ImpactOutcome.STICKS_IN_COMPRESSION
-    struck = StruckBody(name="bat", p_FB_F=np.zeros(3), state=bat_state)
+    struck = NamedState(name="bat", p_FB_F=np.zeros(3), state=bat_state)
     sticking_rod = replace(rod, contacts=replace(rod.contacts, frictions=np.array([2.0])))
     answer = of_two(of_one(sticking_rod, impact), struck, other_after=bat_state)
     marks = marks_of(impulse_space(ROD, answer, other=bat))

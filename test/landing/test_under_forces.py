@@ -13,12 +13,14 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from contact_dynamics.errors import InvalidFieldError
+from contact_dynamics.landing import next_landing
 from contact_dynamics.landing.acceleration_bounds import bounds_of
 from contact_dynamics.landing.plane_arrival import first_contact
 from contact_dynamics.motion.forces import ConstantWrench, Drag, WrenchAxes
 from contact_dynamics.motion.integrated import ForcedMotion, forced_motion
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
 from contact_dynamics.tumbling import free_motion
+from contact_dynamics.world import Body, Surface, World
 from oracles.forced_stepped import stepped
 
 CUBE_B = 0.05 * np.array(list(itertools.product([-1.0, 1.0], repeat=3)))

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 
 import numpy as np
@@ -10,6 +11,7 @@ from hypothesis import strategies as st
 
 from contact_dynamics.contact.uncertainty import ContactUncertainty
 from contact_dynamics.contact_modes.result import (
+    BodiesMode,
     BodyStatics,
     Certainty,
     GeometryMargin,
@@ -17,14 +19,17 @@ from contact_dynamics.contact_modes.result import (
     ModeVerdict,
     Refusal,
     RefusedMode,
+    ResponseMode,
     SpatialMode,
     VerdictsWithin,
 )
 from contact_dynamics.contact_modes.spatial.margins import SpatialModeMargin
 from contact_dynamics.contact_modes.spatial.wrench_sets import SpatialWrenchSet
 from contact_dynamics.questions import (
+    BodiesContactModeAnswer,
     ContactModeAnswer,
     ContactModeQuestion,
+    NamedState,
     Problem,
     PublishedState,
     SettledImpact,
@@ -202,6 +207,37 @@ def contact_mode_answers(draw: st.DrawFn, p_FB_F: np.ndarray = NO_OFFSET) -> Con
         within=draw(some(verdicts_within())),
         geometry_margins=draw(st.lists(geometry_margins, max_size=3).map(tuple)) or None,
         probabilities=draw(st.lists(probabilities, max_size=3).map(tuple)) or None,
+    )
+
+
+@st.composite
+def bodies_modes(draw: st.DrawFn, bodies: int, contacts: int) -> BodiesMode:
+    """A mode of so many bodies and contacts."""
+    of_contacts = draw(modes_of(contacts))
+    return BodiesMode(
+        accelerations_W=draw(arrays(bodies, 3)),
+        angular_accelerations_W=draw(arrays(bodies, 3)),
+        **{field.name: getattr(of_contacts, field.name) for field in dataclasses.fields(ResponseMode)},
+    )
+
+
+@st.composite
+def bodies_contact_mode_answers(draw: st.DrawFn) -> BodiesContactModeAnswer:
+    """Of up to three bodies with different names, which touch each other and the world."""
+    names = draw(st.lists(st.sampled_from(["brick", "bat", "ü"]), min_size=1, max_size=3, unique=True))
+    contacts, k = draw(contact_sets()), len(names)
+    others = st.one_of(st.none(), st.integers(1, k - 1)) if k > 1 else st.none()
+    pairs = draw(tuples_of(st.tuples(st.integers(0, k - 1), others), len(contacts)))
+    return BodiesContactModeAnswer(
+        bodies=tuple(NamedState(name=name, p_FB_F=NO_OFFSET, state=draw(states)) for name in names),
+        contacts=contacts,
+        pairs=tuple((first, None if ahead is None else (first + ahead) % k) for first, ahead in pairs),
+        verdict=draw(st.sampled_from(ModeVerdict)),
+        modes=draw(st.lists(bodies_modes(k, len(contacts)), max_size=2).map(tuple)),
+        approaching=draw(st.lists(indices, max_size=2).map(tuple)),
+        undecided_modes=draw(st.lists(texts, max_size=2).map(tuple)),
+        velocity_tolerance=draw(positive),
+        warnings=draw(warnings),
     )
 
 

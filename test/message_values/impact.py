@@ -23,8 +23,8 @@ from contact_dynamics.questions import (
     ImpactAnswer,
     ImpactQuestion,
     InTime,
+    NamedState,
     Problem,
-    StruckBody,
 )
 from contact_dynamics.questions.subject import NEWEST
 from message_values.shared import (
@@ -122,7 +122,7 @@ def impact_answers(draw: st.DrawFn, p_FB_F: np.ndarray = NO_OFFSET) -> ImpactAns
     """With one body and with two, in a plane and in space."""
     contacts = draw(contact_sets())
     name = draw(st.sampled_from(NAMES)) if not p_FB_F.any() else "brick"
-    struck = draw(some(st.builds(StruckBody, name=st.just(name), p_FB_F=st.just(p_FB_F), state=states)))
+    struck = draw(some(st.builds(NamedState, name=st.just(name), p_FB_F=st.just(p_FB_F), state=states)))
     plane = draw(planes)
     return ImpactAnswer(
         warnings=draw(warnings),

@@ -21,6 +21,8 @@ from contact_dynamics_interfaces.msg import BodyStates as BodyStatesMsg
 from contact_dynamics_interfaces.msg import Poinsot as PoinsotMsg
 from contact_dynamics_interfaces.msg import Trajectory as TrajectoryMsg
 from message_values.contact_modes import (
+    bodies_contact_mode_answers,
+    bodies_modes,
     contact_mode_answers,
     geometry_margins,
     modes_and_margins,
@@ -52,6 +54,7 @@ from message_values.toss import (
 )
 from message_values.tumbling import carried, rotations, tumbling_answers
 from msg_adapters.batches import STATES
+from msg_adapters.bodies_contact_mode import MODE_OF_BODIES
 from msg_adapters.body_state import body_state_from_msg, body_state_to_msg
 from msg_adapters.contact_mode import (
     GEOMETRY_MARGIN,
@@ -122,6 +125,7 @@ def _mode_to_msg(value: Any) -> Any:
 
 
 PAIRS: dict[str, Pair] = {
+    "BodiesContactMode": _of_table(MODE_OF_BODIES, bodies_modes(2, 3)),
     "BodyState": Pair(
         states,
         lambda value: body_state_to_msg(value, body_name="brick", **BODY),
@@ -155,6 +159,7 @@ ANSWERS = {
     "PredictImpactBatch": many_impacts_answers,
     "PredictTumblingBatch": many_tumblings_answers,
     "PredictContactModeBatch": many_contact_modes_answers,
+    "PredictBodiesContactMode": bodies_contact_mode_answers,
 }
 """Answers from each service."""
 

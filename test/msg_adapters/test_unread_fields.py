@@ -9,10 +9,12 @@ from collections.abc import Iterator
 from typing import Any
 
 import pytest
+from geometry_msgs.msg import Inertia, Vector3, Wrench
 
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics_interfaces.msg import BodyState
 from contact_dynamics_interfaces.srv import (
+    PredictBodiesContactMode,
     PredictContactMode,
     PredictContactModeBatch,
     PredictImpact,
@@ -27,6 +29,7 @@ from msg_adapters.batches import (
     impacts_question_from_msg,
     tumblings_question_from_msg,
 )
+from msg_adapters.bodies_contact_mode import bodies_contact_mode_question_from_msg
 from msg_adapters.contact_mode import contact_mode_question_from_msg
 from msg_adapters.impact import impact_question_from_msg
 from msg_adapters.toss import toss_question_from_msg
@@ -34,6 +37,7 @@ from msg_adapters.tumbling import tumbling_question_from_msg
 from questions.known_world import WORLD
 
 FROM_MSG = {
+    PredictBodiesContactMode: bodies_contact_mode_question_from_msg,
     PredictContactMode: contact_mode_question_from_msg,
     PredictContactModeBatch: contact_modes_question_from_msg,
     PredictImpact: impact_question_from_msg,
@@ -61,8 +65,8 @@ def _values(field: str, request: Any) -> Any:
     message = copy.deepcopy(getattr(request, field))
     if field == "state":
         message.linear_velocity.x = 1.0
-    elif field == "other_state":
-        message = [_explicit()]
+    elif field in MESSAGES and isinstance(message, list):
+        message = MESSAGES[field]
     elif field == "stamp":
         message.sec = 3
     elif field in {"inertia", "other_inertia"}:
@@ -81,6 +85,13 @@ def _values(field: str, request: Any) -> Any:
     return message
 
 
+SLAB = Inertia(m=1.0, ixx=1.0, iyy=1.0, izz=1.0)
+MESSAGES: dict[str, Any] = {
+    "other_state": [_explicit()],
+    "states": [_explicit(), BodyState()],
+    "inertias": [Inertia(m=3.0, ixx=3.0, iyy=3.0, izz=3.0), SLAB],
+    "applied_wrenches": [Wrench(torque=Vector3(y=2.0)), Wrench()],
+}
 FLAT: dict[type, Any] = {bool: True, int: 1, float: 0.25, str: "cube"}
 LISTED: dict[str, Any] = {
     "friction_facets": 12,
@@ -92,6 +103,9 @@ LISTED: dict[str, Any] = {
     "forces": [1.0, 0.0, 0.0],
     "torques": [1.0, 0.0, 0.0],
     "contact_counts": [1],
+    "body_names": ["cube", "plate"],
+    "contact_bodies": ["slab"],
+    "other_bodies": ["slab"],
     "contact_positions": [0.0, 0.0, 0.1],
     "contact_normals": [0.0, 0.6, 0.8],
 }
@@ -139,6 +153,16 @@ def requests_of(service: Any) -> Iterator[Any]:
         yield request
 
 
+def _requests_about_two() -> Iterator[PredictBodiesContactMode.Request]:
+    """The cube, and a slab that is not configured, with a contact of the cube with the world."""
+    for source in CHOICES["state_source"]:
+        request = PredictBodiesContactMode.Request(body_names=["cube", "slab"], state_source=source)
+        request.inertias, request.contact_bodies = [Inertia(), SLAB], ["cube"]
+        request.states = [BodyState(), BodyState()] if source == request.STATE_EXPLICIT else []
+        _one_contact(request.contacts).frictions = [0.7]
+        yield request
+
+
 def question_or_error(service: Any, request: Any) -> Any:
     try:
         return FROM_MSG[service](request, world=WORLD, world_frame="world")
@@ -150,7 +174,8 @@ def question_or_error(service: Any, request: Any) -> Any:
 def test_a_value_in_any_field_counts_or_is_refused_by_the_fields_name(service: Any) -> None:
     """Under every combination of the flags. A question is another one if any part of it differs."""
     read, refused = set(), set()
-    for request in requests_of(service):
+    of_two = service is PredictBodiesContactMode
+    for request in _requests_about_two() if of_two else requests_of(service):
         question = FROM_MSG[service](request, world=WORLD, world_frame="world")
         for field in request.get_fields_and_field_types():
             value = _values(field, request)

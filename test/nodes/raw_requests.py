@@ -124,13 +124,20 @@ def drawn(draw: random.Random, request: bytes) -> bytes:
     return bytes(changed[: draw.choice((len(changed), draw.randrange(4, len(changed))))])
 
 
+def about_the_brick(service: Any) -> Any:
+    """A request that names the brick."""
+    if hasattr(service.Request, "body_names"):
+        return service.Request(body_names=["brick"])
+    return service.Request(body_name="brick")
+
+
 def main(count: int, seed: int) -> None:
     """Send so many messages to each service."""
     rclpy.init()
     node = Node("raw_requests")
     draw = random.Random(seed)
     # It also loads the libraries that a writer looks for.
-    requests = {service: bytes(serialize_message(service.Request(body_name="brick"))) for service in SERVICES}
+    requests = {service: bytes(serialize_message(about_the_brick(service))) for service in SERVICES}
     writers = {service: Writer(node, service, name) for service, name in SERVICES.items()}
     deadline = time.monotonic() + PATIENCE_S
     while not all(writer.listeners() for writer in writers.values()):

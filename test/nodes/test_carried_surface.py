@@ -101,5 +101,5 @@ def test_what_is_wrong_with_a_carried_surface_is_named(
 
 
 def test_events_on_a_carried_surface_are_not_evaluated(tmp_path: Path) -> None:
-    with pytest.raises(NotSupportedError, match="surfaces must be at rest .* got 'top' on 'tray'"):
+    with pytest.raises(NotSupportedError, match=r"surfaces must be at rest .* got 'top' on 'tray'"):
         parameters_of(ParameterFile(parameters_file(tmp_path, PARAMETERS)))

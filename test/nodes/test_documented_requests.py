@@ -18,6 +18,7 @@ from contact_dynamics.toss import TossEnd
 from contact_dynamics.tumbling import Regime
 from contact_dynamics_interfaces.msg import Impact
 from contact_dynamics_interfaces.srv import (
+    PredictBodiesContactMode,
     PredictContactMode,
     PredictContactModeBatch,
     PredictImpact,
@@ -42,6 +43,7 @@ COUNTS = {
     PredictImpactBatch: 0,
     PredictTumblingBatch: 1,
     PredictContactModeBatch: 1,
+    PredictBodiesContactMode: 1,
 }
 
 
@@ -173,6 +175,7 @@ TOLD = {
     PredictTumbling: tumbling_told,
     PredictTumblingBatch: lambda _request, answer: numbers(answer.states.positions),
     PredictContactModeBatch: lambda _request, answer: " ".join(answer.modes),
+    PredictBodiesContactMode: lambda _request, answer: modes_told(answer.verdict, answer.modes),
 }
 
 

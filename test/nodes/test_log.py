@@ -34,6 +34,7 @@ from contact_dynamics.recording import BagReader, decode, service_calls
 from contact_dynamics.replay.verify import verify_log
 from contact_dynamics_interfaces.msg import BodyStates
 from contact_dynamics_interfaces.srv import (
+    PredictBodiesContactMode,
     PredictContactMode,
     PredictContactModeBatch,
     PredictImpact,
@@ -117,6 +118,9 @@ def questions(number: int) -> list[Any]:
     modes.state, modes.forces = mode.state, [0.1 * number, 0.0, 0.0, 0.0, 0.0, 9.0]
     toss = PredictToss.Request(body_name="brick", max_alternatives=0, samples=5, seed=number)
     toss.state_source, toss.state.pose.position.z = toss.STATE_EXPLICIT, 0.2
+    held = PredictBodiesContactMode.Request(body_names=["brick"], velocity_tolerance=100.0)
+    held.contacts.positions, held.contacts.normals = [0.0, 0.0, 1.0], [0.0, 0.0, 1.0]
+    held.contacts.frictions, held.contact_bodies = [0.1 * number], ["brick"]
     return [
         modes,
         tumbling,
@@ -132,6 +136,8 @@ def questions(number: int) -> list[Any]:
         PredictContactModeBatch.Request(body_name="brick"),  # in the air
         toss,
         PredictToss.Request(body_name="brick", rate=0.0),
+        held,
+        PredictBodiesContactMode.Request(body_names=["brick"]),  # no contact is given
     ]
 
 

@@ -8,6 +8,8 @@ right is shown where it is computed.
 from __future__ import annotations
 
 import math
+import re
+from importlib import import_module
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -18,8 +20,8 @@ from contact_dynamics.nodes.parameter_file import ParameterFile
 from contact_dynamics.nodes.parameters import read_server_parameters
 from contact_dynamics.questions import Context, ask
 from contact_dynamics.questions.services import SERVICES
-from contact_dynamics_interfaces.msg import BodyState
 from contact_dynamics_interfaces.srv import (
+    PredictBodiesContactMode,
     PredictContactMode,
     PredictContactModeBatch,
     PredictImpact,
@@ -238,6 +240,27 @@ REQUESTS: dict[str, tuple[Any, Fields]] = {
             "include_margins": True,
         },
     ),
+    "contact modes of bodies": (
+        PredictBodiesContactMode,
+        {
+            "body_names": ["rod", "brick"],
+            "state_source": 1,
+            "states": [
+                {"pose": {"position": {"z": 0.06}}, "header": {"stamp": {"sec": 3}}},
+                {"pose": {"position": {"z": 0.025}}, "body_name": "brick"},
+            ],
+            "inertias": [ROD["inertia"], {}],
+            "contacts": {
+                "positions": [0.05, 0.0, 0.0, -0.05, 0.03, 0.0, -0.05, -0.03, 0.0, 0.01, 0.0, 0.05],
+                "normals": [0.0, 0.0, 1.0] * 4,
+                "frictions": [0.5, 0.4, 0.3, 0.2],
+            },
+            "contact_bodies": ["brick", "brick", "brick", "rod"],
+            "other_bodies": ["", "", "", "brick"],
+            "applied_wrenches": [{"force": {"x": 4.0}}, {"torque": {"z": 0.01}}],
+            "velocity_tolerance": 1e-6,
+        },
+    ),
 }
 
 
@@ -247,8 +270,10 @@ def filled(msg: Any, fields: Fields) -> Any:
     for name, value in fields.items():
         if isinstance(value, dict):
             filled(getattr(msg, name), value)
-        elif types[name].startswith("sequence<contact_dynamics_interfaces/BodyState"):
-            setattr(msg, name, [filled(BodyState(), each) for each in value])
+        elif types[name].startswith("sequence<") and "/" in types[name]:
+            package, _, kind = re.split(r"[<>,]", types[name])[1].partition("/")
+            made = getattr(import_module(f"{package}.msg"), kind)
+            setattr(msg, name, [filled(made(), each) for each in value])
         else:
             setattr(msg, name, value)
     return msg

@@ -19,8 +19,14 @@ from contact_dynamics.impact.law import PathEvent
 from contact_dynamics.plots.run import NO_LOG, NOTHING_DRAWN, main
 from contact_dynamics.questions.impact_question import ImpactAnswer
 from contact_dynamics.replay.events import Answered, LoggedEvents
-from contact_dynamics_interfaces.srv import PredictContactMode, PredictImpact, PredictTumbling
+from contact_dynamics_interfaces.srv import (
+    PredictBodiesContactMode,
+    PredictContactMode,
+    PredictImpact,
+    PredictTumbling,
+)
 from message_words import says
+from nodes.test_same_question import REQUESTS, filled
 from replay.asked_log import about_many
 from running_server import ROOT, server_and_client
 
@@ -64,6 +70,10 @@ def log(tmp_path_factory: pytest.TempPathFactory) -> Path:
         for request in several:
             answer = client.ask(request)
             assert (answer.status == answer.OK) == (request.body_name == "brick"), answer.message
+        answer = client.ask(
+            filled(PredictBodiesContactMode.Request(), REQUESTS["contact modes of bodies"][1])
+        )
+        assert answer.status == answer.OK, answer.message
     (found,) = folder.iterdir()
     return found
 
@@ -86,6 +96,7 @@ def test_each_answer_has_its_diagrams_without_ros(log: Path, tmp_path: Path) -> 
         "001-contact-modes-brick-contact-forces-1.svg",
         "005-impacts-of-many-brick-states.svg",
         "006-tumbling-of-many-brick-states.svg",
+        "009-contact-modes-of-bodies-rod_brick-contact-forces-1.svg",
     } <= files
     assert set(run.stdout.split()) == {str(tmp_path / "out" / name) for name in files}
     answers = [event.answer for event in LoggedEvents(log) if isinstance(event, Answered)]

@@ -17,6 +17,7 @@ from contact_dynamics.questions import (
     AtRate,
     AtStamps,
     AtTimes,
+    BodiesContactModeQuestion,
     ContactModeQuestion,
     Context,
     ImpactQuestion,
@@ -289,6 +290,23 @@ def contact_mode_questions(draw: st.DrawFn) -> ContactModeQuestion:
         include_wrenches=draw(st.booleans()),
         include_statics=draw(st.booleans()),
         include_impact=draw(st.booleans()),
+    )
+
+
+@st.composite
+def bodies_contact_mode_questions(draw: st.DrawFn) -> BodiesContactModeQuestion:
+    found, k = draw(contact_sets()), draw(st.integers(1, 3))
+    contacts = found or ContactSet(p_WC_W=np.zeros((0, 3)), normals_W=np.zeros((0, 3)), frictions=[])
+    others = st.one_of(st.none(), st.integers(0, k - 1))
+    return BodiesContactModeQuestion(
+        bodies=[draw(asked_bodies()) for _ in range(k)],
+        states=[draw(sources()) for _ in range(k)],
+        contacts=contacts,
+        pairs=[(draw(st.integers(0, k - 1)), draw(others)) for _ in range(len(contacts))],
+        forces_W=draw(rows(k, vectors())),
+        torques_W=draw(nothing),
+        gravity_W=draw(gravities),
+        velocity_tolerance=draw(optional_sizes),
     )
 
 

@@ -21,6 +21,7 @@ KINDS = (
     fuzzed.tumbling_questions,
     fuzzed.impact_questions,
     fuzzed.contact_mode_questions,
+    fuzzed.bodies_contact_mode_questions,
     fuzzed.many_tumblings_questions,
     fuzzed.many_impacts_questions,
     fuzzed.many_contact_modes_questions,

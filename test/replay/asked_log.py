@@ -19,6 +19,7 @@ from nav_msgs.msg import Odometry
 
 from contact_dynamics_interfaces.msg import BodyStates
 from contact_dynamics_interfaces.srv import (
+    PredictBodiesContactMode,
     PredictContactMode,
     PredictContactModeBatch,
     PredictImpact,
@@ -104,6 +105,7 @@ def questions(number: int, now: Time) -> list[Any]:
         *about_tosses(number),
         PredictTumbling.Request(body_name="ball", duration=math.nan if number % 2 else 0.1),
         *about_many(number),
+        about_bodies(),
     ]
 
 
@@ -154,6 +156,15 @@ def about_candidates(number: int) -> list[Any]:
     standing.contacts.surface_names = ["floor", "floor", "table", "ramp"]
     standing.contact_counts = [2, 1, 1]
     return [pushed, standing]
+
+
+def about_bodies() -> PredictBodiesContactMode.Request:
+    """The brick and the ball, from topics of two kinds, which touch somewhere."""
+    touching = PredictBodiesContactMode.Request(body_names=["brick", "ball"])
+    touching.contacts.positions, touching.contacts.normals = [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]
+    touching.contacts.frictions, touching.velocity_tolerance = [0.3], 100.0
+    touching.contact_bodies, touching.other_bodies = ["ball"], ["brick"]
+    return touching
 
 
 def configured(folder: Path) -> Path:

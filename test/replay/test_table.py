@@ -57,7 +57,9 @@ def test_a_row_for_each_question_of_a_log(asked: Asked, tmp_path: Path) -> None:
     assert rows[-1]["status"] == "STALE_STATE"
     for row in rows:
         is_later = row["state"] not in {"", "0"}  # the first one has the question of a batch
-        assert is_later or json.loads(row["question"]).get("body_name", "") == row["body"]
+        asked_about = {} if is_later else json.loads(row["question"])
+        names = asked_about.get("body_names", [asked_about.get("body_name", "")])
+        assert is_later or ", ".join(names) == row["body"]
         assert not row["predicted_qw"] or float(row["predicted_qw"]) >= 0.0
         is_impact = row["service"] == "predict_impact" and row["status"] == "OK"
         assert all((row[f"contact_{axis}"] != "") == is_impact for axis in "xyz")

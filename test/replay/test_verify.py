@@ -97,6 +97,7 @@ def assert_all_equal(found: Verification, asked: Asked) -> None:
         "predict_impact_batch": asked.counts["PredictImpactBatch"],
         "predict_tumbling_batch": asked.counts["PredictTumblingBatch"],
         "predict_contact_mode_batch": asked.counts["PredictContactModeBatch"],
+        "predict_bodies_contact_mode": asked.counts["PredictBodiesContactMode"],
     }
     assert found.damage is None
 

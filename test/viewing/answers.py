@@ -17,8 +17,8 @@ from contact_dynamics.plane.projection import PlaneOfMotion
 from contact_dynamics.questions import (
     ContactModeAnswer,
     ImpactAnswer,
+    NamedState,
     Problem,
-    StruckBody,
     TumblingAnswer,
 )
 from contact_dynamics.rigid_body.body import BodyState
@@ -90,7 +90,7 @@ def impact_answer(
     )
 
 
-def of_two(answer: ImpactAnswer, other: StruckBody, *, other_after: BodyState) -> ImpactAnswer:
+def of_two(answer: ImpactAnswer, other: NamedState, *, other_after: BodyState) -> ImpactAnswer:
     """The impact as one with a second moving body."""
     return replace(
         answer, other=other, impact=replace(answer.impact, states=(answer.impact.state, other_after))

@@ -14,7 +14,7 @@ from contact_dynamics.diagrams.impact_scene import LABEL_DEPTH, impact_marks, ma
 from contact_dynamics.diagrams.impulse_space import main_contact
 from contact_dynamics.diagrams.shape import Shape, convex_shape
 from contact_dynamics.impact import ImpactOutcome, PathEvent, SequenceStrike
-from contact_dynamics.questions import ImpactAnswer, StruckBody
+from contact_dynamics.questions import ImpactAnswer, NamedState
 from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.validation import FloatArray
 from contact_dynamics.viewing.drawing import draw_marks
@@ -84,7 +84,7 @@ def test_the_path_of_the_impulse_rises_from_its_contact_to_the_arrows_tip(canvas
 
 def test_a_body_that_is_struck_is_drawn_with_its_velocities(canvas: Canvas) -> None:
     struck = replace(STATE, p_WB_W=np.array([2.0, 0.0, 0.0]), v_WB_W=np.array([0.0, 0.0, 1.0]))
-    other = StruckBody(name="bat", p_FB_F=np.zeros(3), state=struck)
+    other = NamedState(name="bat", p_FB_F=np.zeros(3), state=struck)
     after = replace(struck, v_WB_W=np.array([0.0, 0.0, 0.5]))
     impulses = np.array([[0.0, 0.0, 0.0], [0.3, 0.0, 0.4]])
     answer = of_two(answer_of(STATE, TWO_CONTACTS, impulses), other, other_after=after)

@@ -15,6 +15,7 @@ from contact_dynamics.contact.contact import ContactSet
 from contact_dynamics.plane.projection import PlaneOfMotion
 from contact_dynamics.questions import (
     AtRate,
+    BodiesContactModeQuestion,
     ContactModeQuestion,
     Context,
     ImpactQuestion,
@@ -23,6 +24,7 @@ from contact_dynamics.questions import (
     TossSampling,
     TumblingQuestion,
     UncertainState,
+    bodies_contact_modes,
     contact_modes,
     impact,
     toss,
@@ -30,7 +32,11 @@ from contact_dynamics.questions import (
 )
 from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.viewing.picture import Picture
-from contact_dynamics.world import World
+from contact_dynamics.world import Body, World
+from msg_adapters.bodies_contact_mode import (
+    bodies_contact_mode_answer_from_msg,
+    bodies_contact_mode_answer_to_msg,
+)
 from msg_adapters.contact_mode import contact_mode_answer_from_msg, contact_mode_answer_to_msg
 from msg_adapters.impact import impact_answer_from_msg, impact_answer_to_msg
 from msg_adapters.toss import toss_answer_from_msg, toss_answer_to_msg
@@ -82,6 +88,23 @@ def draw_modes(picture: Picture, world: World, read_back: Callable[[Any], Any]) 
     picture.show(read_back(contact_modes.answer(question, Context(world=world))))
 
 
+def draw_bodies(picture: Picture, world: World, read_back: Callable[[Any], Any]) -> None:
+    """The brick on the floor, and a box on it that nobody has configured."""
+    box = Body.box((0.05, 0.05, 0.05), mass=0.2, name="box")
+    feet = [[x, y, z] for z in (0.0, 0.05) for x, y in ((0.02, 0.0), (-0.02, 0.02), (-0.02, -0.02))]
+    question = BodiesContactModeQuestion(
+        bodies=["brick", box],
+        states=[
+            BodyState(p_WB_W=[0, 0, z], q_WB=[0, 0, 0, 1], stamp_ns=STAMP_NS + i)
+            for i, z in enumerate((0.025, 0.075))
+        ],
+        contacts=ContactSet(p_WC_W=feet, normals_W=[0, 0, 1], frictions=[0.5] * 3 + [0.2] * 3),
+        pairs=[(0, None)] * 3 + [(1, 0)] * 3,
+        forces_W=[[0, 0, 0], [0.6, 0, 0]],
+    )
+    picture.show(read_back(bodies_contact_modes.answer(question, Context(world=world))))
+
+
 def draw_toss(picture: Picture, world: World, read_back: Callable[[Any], Any]) -> None:
     question = TossQuestion(
         body="brick",
@@ -97,6 +120,7 @@ PAIRS = {
     draw_tumbling: (tumbling_answer_to_msg, tumbling_answer_from_msg),
     draw_impact: (impact_answer_to_msg, impact_answer_from_msg),
     draw_modes: (contact_mode_answer_to_msg, contact_mode_answer_from_msg),
+    draw_bodies: (bodies_contact_mode_answer_to_msg, bodies_contact_mode_answer_from_msg),
 }
 
 

@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import pytest
 
+from contact_dynamics.questions import BodiesContactModeQuestion, ask
 from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.tumbling import free_motion
 from contact_dynamics.viewing.picture import Picture
@@ -72,6 +73,19 @@ def test_before_an_answer_only_what_it_needs_is_drawn(canvas: Canvas, states: St
     states.draw_before(an_impact(STATE, TWO_CONTACTS, name="ball"))
     assert states.count == 4
     assert {name for name in NAMES if f"/world/bodies/{name}" in canvas.read().entities} == {"ball"}
+
+
+def test_an_answer_about_several_bodies_needs_the_states_of_all(canvas: Canvas, states: StatesInTurn) -> None:
+    add(states, STATE, 1, 2)
+    question = BodiesContactModeQuestion(
+        bodies=[replace(BODY, name=name) for name in ("ball", "rod")],
+        states=[STATE, STATE],
+        contacts=TWO_CONTACTS,
+        pairs=[(0, None), (1, 0)],
+    )
+    states.draw_before(ask(question))
+    assert states.count == 2
+    assert {name for name in NAMES if f"/world/bodies/{name}" in canvas.read().entities} == {"ball", "rod"}
 
 
 def test_an_answer_that_waited_has_no_states_before_it_that_came_after(

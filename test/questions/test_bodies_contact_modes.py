@@ -1,0 +1,223 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Questions about several bodies: where the states come from, what is added to the load, what is refused.
+
+That the modes are right is shown in `contact_modes/spatial/test_several_bodies.py`.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+import numpy as np
+import pytest
+
+from contact_dynamics.contact.contact import ContactSet
+from contact_dynamics.contact_modes import BodiesContactProblem, contact_modes
+from contact_dynamics.errors import (
+    ContactDynamicsError,
+    InvalidFieldError,
+    NoContactError,
+    NoStateError,
+    StaleStateError,
+    TooLargeError,
+    UnknownBodyError,
+)
+from contact_dynamics.questions import (
+    BodiesContactModeQuestion,
+    Context,
+    PublishedState,
+    StateStore,
+    UncertainState,
+    ask,
+)
+from contact_dynamics.questions.bodies_contact_modes import MAX_BODIES
+from contact_dynamics.questions.effort import excerpt
+from contact_dynamics.questions.services import service_of
+from contact_dynamics.rigid_body.body import BodyState
+from contact_dynamics.world import Body, World
+from contact_dynamics_interfaces.msg import BodyState as BodyStateMsg
+from contact_dynamics_interfaces.srv import PredictBodiesContactMode
+from message_values.shared import same
+
+LOWER = Body.box((0.3, 0.3, 0.1), mass=2.0, name="lower")
+UPPER = Body.box((0.2, 0.2, 0.1), mass=1.0, name="upper")
+WORLD = World(bodies=(LOWER, UPPER), gravity_W=[0, 0, -10.0])
+STATES = tuple(BodyState(p_WB_W=[0, 0, z], q_WB=[0, 0, 0, 1], stamp_ns=10**9) for z in (0.05, 0.15))
+FEET = [[x, y, z] for s, z in ((0.15, 0.0), (0.1, 0.1)) for x in (-s, s) for y in (-s, s)]
+CONTACTS = ContactSet(p_WC_W=FEET, normals_W=[0, 0, 1], frictions=[0.5] * 4 + [0.3] * 4)
+PAIRS = ((0, None),) * 4 + ((1, 0),) * 4
+STACK: dict[str, Any] = {"bodies": ["lower", "upper"], "contacts": CONTACTS, "pairs": PAIRS}
+PUSHED = BodiesContactModeQuestion(**STACK, states=STATES, forces_W=[[0, 0, 0], [4.0, 0, 0]])
+
+
+def published(*states: tuple[str, BodyState]) -> StateStore:
+    """The states as they are kept after they came over topics."""
+    store = StateStore(history=5.0, timeout=0.5)
+    for name, state in states:
+        store.add(name, state, now_ns=state.stamp_ns)
+    return store
+
+
+def test_a_push_on_the_upper_of_two_makes_it_slide_as_the_physics_says() -> None:
+    """Friction bears 0.3 * 10 N of 4 N, so that the upper body of 1 kg has 1 m/s^2; rounding of sums of N."""
+    found = ask(PUSHED, Context(world=WORLD))
+    assert (found.verdict.name, [mode.mode for mode in found.modes]) == ("UNIQUE", ["ffffcccc"])
+    np.testing.assert_allclose(found.modes[0].accelerations_W, [[0, 0, 0], [1, 0, 0]], atol=1e-12)
+    problem = BodiesContactProblem(
+        bodies=[LOWER, UPPER],
+        states=STATES,
+        contacts=CONTACTS,
+        pairs=PAIRS,
+        forces_W=[[0, 0, -20.0], [4.0, 0, -10.0]],
+    )
+    assert same(found.modes, contact_modes(problem).modes)
+    assert (found.body_name, found.stamp_ns) == ("lower, upper", 10**9)
+    assert service_of(found).in_words(found)[0] == "has one consistent mode: ffffcccc"
+
+
+def test_a_contact_that_approaches_is_told() -> None:
+    falling = BodyState(p_WB_W=[0, 0, 0.15], q_WB=[0, 0, 0, 1], v_WB_W=[0, 0, -0.1])
+    found = ask(BodiesContactModeQuestion(**STACK, states=[STATES[0], falling]), Context(world=WORLD))
+    assert (found.verdict.name, found.approaching) == ("IMPACT", (4, 5, 6, 7))
+    assert service_of(found).in_words(found)[-1] == "contact 8 approaches"
+
+
+def test_states_are_those_that_each_body_published() -> None:
+    states = published(("lower", STATES[0]), ("upper", STATES[1]))
+    newest = BodiesContactModeQuestion(**STACK, forces_W=PUSHED.forces_W)
+    context = Context(world=WORLD, states=states, now_ns=lambda: 10**9)
+    assert same(ask(newest, context), ask(PUSHED, context))
+    assert same(ask(newest, excerpt(newest, context)), ask(PUSHED, context))
+    late = Context(world=WORLD, states=states, now_ns=lambda: 3 * 10**9)
+    with pytest.raises(StaleStateError, match="lower"):
+        ask(newest, late)
+    with pytest.raises(NoStateError, match="upper"):
+        ask(newest, Context(world=WORLD, states=published(("lower", STATES[0])), now_ns=lambda: 10**9))
+
+
+def test_at_a_stamp_all_bodies_are_seen_at_the_same_time() -> None:
+    """The stack is carried along at 0.2 m/s, and the states of the two bodies come in turn."""
+
+    def at(body: int, ms: int) -> BodyState:
+        place = np.add(STATES[body].p_WB_W, [0.2e-3 * ms, 0, 0])
+        return BodyState(p_WB_W=place, q_WB=[0, 0, 0, 1], v_WB_W=[0.2, 0, 0], stamp_ns=ms * 10**6)
+
+    states = published(*((WORLD.bodies[i].name, at(i, ms + 50 * i)) for ms in (100, 200) for i in (0, 1)))
+    source = PublishedState(stamp_ns=180 * 10**6)
+    question = BodiesContactModeQuestion(**STACK, states=[source, source])
+    for i, body in enumerate(ask(question, Context(world=WORLD, states=states)).bodies):
+        # An interpolated place of less than a metre is accurate to rounding.
+        np.testing.assert_allclose(body.state.p_WB_W, at(i, 180).p_WB_W, atol=1e-12)
+        assert body.state.stamp_ns == 180 * 10**6
+
+
+def test_without_gravity_nothing_presses() -> None:
+    found = ask(BodiesContactModeQuestion(**STACK, states=STATES, gravity_W=[0, 0, 0]), Context(world=WORLD))
+    assert not found.modes[0].contact_forces_W.any()
+
+
+def test_a_covariance_has_no_effect() -> None:
+    noisy = [UncertainState(state=state, covariance=1e-6 * np.eye(12)) for state in STATES]
+    found = ask(BodiesContactModeQuestion(**STACK, states=noisy), Context(world=WORLD))
+    assert same(found, ask(BodiesContactModeQuestion(**STACK, states=STATES), Context(world=WORLD)))
+
+
+def test_a_contact_off_the_shape_of_either_body_has_a_warning_with_its_number() -> None:
+    points = [*FEET[:7], [0.1, 0.1, 1.1]]
+    moved = ContactSet(p_WC_W=points, normals_W=[0, 0, 1], frictions=0.5)
+    found = ask(BodiesContactModeQuestion(**STACK | {"contacts": moved}, states=STATES), Context(world=WORLD))
+    assert found.warnings == (
+        "contact 7 is 1 m outside of the shape of 'lower'",
+        "contact 7 is 0.9 m outside of the shape of 'upper'",
+    )
+
+
+@pytest.mark.parametrize(
+    ("changed", "error", "words"),
+    [
+        ({"bodies": ["lower", "cup"]}, UnknownBodyError, "'cup'"),
+        ({"bodies": [LOWER] * (MAX_BODIES + 1)}, TooLargeError, "33 bodies"),
+        ({"states": STATES[:1]}, InvalidFieldError, "states must be 2, one for each body, got 1 states"),
+        ({"pairs": PAIRS[:3]}, InvalidFieldError, "pairs must be 8"),
+        ({"pairs": ((0, 2), *PAIRS[1:])}, InvalidFieldError, "pairs[0] must be two different indices"),
+        ({"forces_W": [[0, 0, 0], [0, 0, 1e30]]}, InvalidFieldError, "body 1: force_W must be at most"),
+        ({"velocity_tolerance": -1.0}, InvalidFieldError, "velocity_tolerance must be >= 0"),
+        (
+            {"contacts": ContactSet(p_WC_W=np.zeros((0, 3)), normals_W=np.zeros((0, 3)), frictions=[])}
+            | {"pairs": ()},
+            NoContactError,
+            "contacts must be at least one",
+        ),
+        (
+            {
+                "states": [
+                    STATES[0],
+                    BodyState(p_WB_W=[0, 0, 1e16], q_WB=[0, 0, 0, 1]),
+                ]
+            },
+            InvalidFieldError,
+            "body 1: p_WB_W must be at most",
+        ),
+    ],
+)
+def test_what_is_not_allowed_is_named(
+    changed: dict[str, Any], error: type[ContactDynamicsError], words: str
+) -> None:
+    with pytest.raises(error, match=re.escape(words)):
+        ask(BodiesContactModeQuestion(**{**STACK, "states": STATES, **changed}), Context(world=WORLD))
+
+
+def asked() -> PredictBodiesContactMode.Request:
+    """The stack, as a client asks about it."""
+    request = PredictBodiesContactMode.Request(body_names=["lower", "upper"], state_source=1)
+    request.states = [BodyStateMsg(), BodyStateMsg()]
+    request.states[0].pose.position.z, request.states[1].pose.position.z = 0.05, 0.15
+    request.contacts.positions = np.ravel(FEET).tolist()
+    request.contacts.normals, request.contacts.frictions = [0.0, 0.0, 1.0] * 8, [0.5] * 8
+    request.contact_bodies = ["lower"] * 4 + ["upper"] * 4
+    request.other_bodies = [""] * 4 + ["lower"] * 4
+    return request
+
+
+def question_of(request: PredictBodiesContactMode.Request) -> Any:
+    service = service_of(PUSHED)
+    return service.question_of(request, world=WORLD, world_frame="world")
+
+
+def test_names_in_a_request_are_the_indices_of_pairs() -> None:
+    assert question_of(asked()).pairs == PAIRS
+
+
+@pytest.mark.parametrize(
+    ("fields", "words"),
+    [
+        ({"body_names": ["lower", "lower"]}, "body_names[1] must be a name that no other body has"),
+        ({"body_names": ["lower", ""]}, "body_names[1] must be a name that no other body has"),
+        ({"states": [BodyStateMsg()]}, "states must be 2, one for each of body_names, got 1 elements"),
+        (
+            {"states": [BodyStateMsg(), BodyStateMsg(body_name="lower")]},
+            "states[1].body_name must be 'upper'",
+        ),
+        ({"contact_bodies": ["lower"] * 7}, "contact_bodies must be 8, one for each contact, got 7 names"),
+        (
+            {"contact_bodies": ["lower"] * 4 + ["upper"] * 3 + ["upp"]},
+            "contact_bodies[7] must be one of body_names",
+        ),
+        ({"other_bodies": [""] * 7 + ["lowr"]}, "other_bodies[7] must be another one of body_names"),
+        ({"other_bodies": [""] * 7 + ["upper"]}, "other_bodies[7] must be another one of body_names"),
+    ],
+)
+def test_what_a_request_may_not_say_is_named(fields: dict[str, Any], words: str) -> None:
+    request = asked()
+    for name, value in fields.items():
+        setattr(request, name, value)
+    with pytest.raises(InvalidFieldError, match=re.escape(words)):
+        question_of(request)
+
+
+def test_the_surface_of_a_body_has_no_motion_of_its_own() -> None:
+    request = asked()
+    request.contacts.surface_velocities = [0.0] * 23 + [0.1]
+    with pytest.raises(InvalidFieldError, match=r"^contacts.surface_velocities\[7\] must be zero between"):
+        question_of(request)
