@@ -153,8 +153,8 @@ class RestSpread(Record):
     `TossDistribution.ghosts` contains single poses of rest.
 
     Attributes:
-        seconds: (5,), s, the 5, 25, 50, 75 and 95 % quantiles of the time of rest. They are early by the time
-            for which a body would only chatter on a face, which samples leave out (docs/toss.md).
+        seconds: (5,), s, the 5, 25, 50, 75 and 95 % quantiles of the time of rest. The duration of chatter on
+            a face is approximate (docs/toss.md).
         positions: (5, 3), m, the same quantiles of each coordinate of the centre of mass, world.
         position: Region of the position of the centre of mass at rest, m (k = 3).
     """

@@ -4,6 +4,7 @@
 cimport cython
 cimport libc.math as math
 
+from contact_dynamics.impact.planar.routh cimport PlanarStrike
 from contact_dynamics.toss cimport vectors as vec
 from contact_dynamics.toss.solid cimport Flat, Pose, Solid, kinetic_energy_of, low_corners, pose_of
 
@@ -12,20 +13,30 @@ cdef extern from *:
     cpdef enum:
         SOURCE_CRC
 
-cdef double FACE_ROUNDING
+cdef double FACE_ROUNDING, _LEAST_REBOUND, _LEFT
+cdef int _MAX_BOUNCES
 
 
 @cython.final
 cdef class Face:
     cdef (double, double, double) up
     cdef double high, tipping
+    cdef list corners
 
 
 @cython.locals(
     flat=Flat, face=Face, pose=Pose, near=list, low=cython.double, rise=cython.double, rattles=cython.double, pressing=cython.double,
     speed=cython.double, share=cython.double, ahead=cython.double, v_n=cython.double, w_n=cython.double,
 )
-cpdef laid_flat(Solid solid, list y, dict faces)
+cpdef laid_flat(Solid solid, list y, dict faces, law)
+@cython.locals(flat=Flat, pull=cython.double, now=cython.double, begun=cython.double, fastest=cython.double,
+               soonest=cython.double, rate=cython.double, landing=cython.double, first=cython.int, k=cython.int,
+               count=cython.int, sinking=cython.double, rise=cython.double, x=cython.double, y=cython.double,
+               z=cython.double, numbers="double[::1]")
+cdef double _chatter(Solid solid, Pose pose, int surface, list corners, PlanarStrike strike) except -1.0
+@cython.locals(flat=Flat, p=cython.double, across=(double, double, double))
+cdef void _bounce(Solid solid, Pose pose, int surface, int corner, PlanarStrike strike, double least) except *
+cdef (double, double, double) _turned_by(Pose pose, (double, double, double) arm, (double, double, double) impulse) noexcept
 @cython.locals(i=cython.int, j=cython.int, k=cython.int, high=cython.double, face=Face)
 cdef Face _face_below(Solid solid, (double, double, double) n_B, (double, double, double) lean, list near, dict faces)
 @cython.locals(i=cython.int, j=cython.int, k=cython.int, each=cython.int, size=cython.double,

@@ -5,7 +5,8 @@ A body that strikes with a face rattles from corner to corner while it slides, u
 of the rattling takes most of a sample's computing time, but hardly affects the place of rest: the total
 normal impulse is that of the weight, plus the momentum of the centre of mass along the normal. The friction
 impulse is mu times that, as long as the body slides in one direction. The sample is therefore laid flat, with
-the speed for which the friction impulse is the same.
+the speed for which the friction impulse is the same. The duration of the rattling follows from bounces on
+parabolas at constant pose (`_chatter`).
 
 The condition is that the energy of the motion out of the plane could raise the centre of mass by only a share
 of the height that tipping over an edge of the face requires.
@@ -14,9 +15,11 @@ of the height that tipping over an edge of the face requires.
 from __future__ import annotations
 
 import math
+from array import array
 from itertools import combinations
 from typing import TYPE_CHECKING, Final, TypeAlias
 
+from contact_dynamics.impact.planar.routh import PlanarStrike
 from contact_dynamics.numerics.vectors import tangents
 from contact_dynamics.rotations.one import normalised, product
 from contact_dynamics.tolerances import FACE_ROUNDING
@@ -24,8 +27,9 @@ from contact_dynamics.toss import vectors as vec
 from contact_dynamics.toss.solid import kinetic_energy_of, low_corners, pose_of
 
 if TYPE_CHECKING:
+    from contact_dynamics.impact.law import RestitutionLaw
     from contact_dynamics.numerics.vectors import Vector3
-    from contact_dynamics.toss.solid import Numbers, Solid
+    from contact_dynamics.toss.solid import Numbers, Pose, Solid
 
 RATTLING: Final = 0.15
 """Largest energy of the motion out of the plane, relative to that for tipping over an edge. The place of rest
@@ -40,6 +44,17 @@ MAX_CORNERS: Final = 10
 SAME_FACE: Final = 0.03
 """Tolerance for corners of one face, relative to the reach. Sampled corners are not exactly in a plane."""
 
+_MAX_BOUNCES: Final = 200
+"""Largest number of bounces of a rattling body that are computed. About 40 are usual."""
+
+_LEFT: Final = 0.05
+"""Speed of the fastest corner after these bounces, relative to that before them. The rest takes this share of
+the time of all bounces, because bounces at all speeds are alike."""
+
+_LEAST_REBOUND: Final = 0.05
+"""Smallest rebound, relative to the speed of the fastest corner, so that a corner that stays on the plane
+strikes a few times instead of infinitely often."""
+
 
 class Face:
     """A face on which a body can stand.
@@ -48,19 +63,21 @@ class Face:
         up: Unit normal into the body, body axes.
         high: m, height of the centre of mass above the face.
         tipping: m, rise of the centre of mass when the body tips over the nearest edge.
+        corners: Indices of its corners.
     """
 
-    def __init__(self, up: Vector3, high: float, tipping: float) -> None:
-        self.up, self.high, self.tipping = up, high, tipping
+    def __init__(self, up: Vector3, high: float, tipping: float, corners: list[int]) -> None:
+        self.up, self.high, self.tipping, self.corners = up, high, tipping, corners
 
 
 Faces: TypeAlias = "dict[tuple[int, ...], Face | None]"
 """The known faces by three corners each, or None for three corners that are not on one face."""
 
 
-def laid_flat(solid: Solid, y: Numbers, faces: Faces) -> Numbers | None:
+def laid_flat(solid: Solid, y: Numbers, faces: Faces, law: RestitutionLaw) -> tuple[Numbers, float] | None:
     """Return the state of the body laid flush on a face, or None if it does more than rattle on one.
 
+    The state is that of the same instant. The second result is the duration of the rattling from then on, s.
     Only a body near a single plane is laid flat, with at most `MAX_CORNERS` corners near it. ``faces`` caches
     the faces of this body, and is extended.
     """
@@ -96,7 +113,7 @@ def laid_flat(solid: Solid, y: Numbers, faces: Faces) -> Numbers | None:
     up = vec.times(rows, face.up)
     x, yy, z = vec.cross(up, n)
     q = product(normalised((x, yy, z, 1.0 + vec.dot(up, n))), normalised(y[3:7]))
-    return [
+    laid = [
         y[0] - rise * n[0],
         y[1] - rise * n[1],
         y[2] - rise * n[2],
@@ -106,6 +123,73 @@ def laid_flat(solid: Solid, y: Numbers, faces: Faces) -> Numbers | None:
         share * along[2],
         *flush[10:],
     ]
+    return laid, _chatter(solid, pose, near[0][0], face.corners, PlanarStrike(law))
+
+
+def _chatter(solid: Solid, pose: Pose, surface: int, corners: list[int], strike: PlanarStrike) -> float:
+    """Return the time, s, until the corners of a face that rattles on a plane have stopped.
+
+    The strikes change the velocities of ``pose``.
+    """
+    flat = solid.flats[surface]
+    n, pull = flat.normal, -vec.dot(solid.gravity, flat.normal)
+    count = len(corners)
+    numbers = array("d", bytes(40 * count))  # moment of the normal, height and normal velocity of each
+    for k in range(count):
+        moment = vec.cross(pose.arm(surface, corners[k]), n)
+        numbers[5 * k], numbers[5 * k + 1], numbers[5 * k + 2] = moment
+        numbers[5 * k + 3] = max(pose.height(surface, corners[k]), 0.0)
+    now, begun = 0.0, 0.0
+    for _ in range(_MAX_BOUNCES):
+        first, soonest, fastest, sinking = 0, math.inf, 0.0, vec.dot(pose.v, n)
+        x, y, z = pose.w
+        for k in range(0, 5 * count, 5):
+            rate = sinking + x * numbers[k] + y * numbers[k + 1] + z * numbers[k + 2]
+            landing = math.sqrt(rate * rate + 2.0 * pull * numbers[k + 3])
+            numbers[k + 4] = rate
+            fastest = max(fastest, landing)
+            if rate + landing < soonest:
+                first, soonest = k, rate + landing
+        begun = max(begun, fastest)
+        if fastest <= _LEFT * begun:
+            break
+        soonest /= pull
+        for k in range(0, 5 * count, 5):
+            rise = (numbers[k + 4] - 0.5 * pull * soonest) * soonest
+            numbers[k + 3] = max(numbers[k + 3] + rise, 0.0)
+        numbers[first + 3] = 0.0
+        pose.v = vec.plus(pose.v, soonest, solid.gravity)
+        now += soonest
+        _bounce(solid, pose, surface, corners[first // 5], strike, _LEAST_REBOUND * fastest)
+    return now / (1.0 - _LEFT)
+
+
+def _bounce(  # noqa: PLR0917
+    solid: Solid, pose: Pose, surface: int, corner: int, strike: PlanarStrike, least: float
+) -> None:
+    """Strike in the plane of sliding, with a rebound of at least ``least``, m/s."""
+    flat, arm = solid.flats[surface], pose.arm(surface, corner)
+    n, velocity = flat.normal, pose.velocity(arm)
+    by_n, across = _turned_by(pose, arm, n), vec.without(velocity, n)
+    if vec.norm(across) <= least:  # it does not slide, and friction acts against the beginning of sliding
+        across = vec.without(vec.cross(by_n, arm), n)
+    d = vec.normalised(across)
+    by_d = _turned_by(pose, arm, d)
+    strike.a = 1.0 / solid.mass + vec.dot(vec.cross(arm, d), by_d)
+    strike.b = vec.dot(vec.cross(arm, d), by_n)
+    strike.c = 1.0 / solid.mass + vec.dot(vec.cross(arm, n), by_n)
+    strike.det = strike.a * strike.c - strike.b * strike.b
+    strike.follow(
+        vec.dot(velocity, d), min(vec.dot(velocity, n), 0.0), flat.strike_friction, flat.restitution
+    )
+    p = strike.p_end + max(least - strike.v_n, 0.0) / strike.c
+    pose.v = vec.plus(pose.v, 1.0 / solid.mass, vec.combined(p, n, strike.t_end, d))
+    pose.w = vec.plus(pose.w, 1.0, vec.combined(p, by_n, strike.t_end, by_d))
+
+
+def _turned_by(pose: Pose, arm: Vector3, impulse: Vector3) -> Vector3:
+    """Return the change of the angular velocity by a unit impulse at an arm."""
+    return vec.times(pose.inverse, vec.cross(arm, impulse))
 
 
 def _face_below(solid: Solid, n_B: Vector3, lean: Vector3, near: list[int], faces: Faces) -> Face | None:
@@ -122,8 +206,9 @@ def _face_below(solid: Solid, n_B: Vector3, lean: Vector3, near: list[int], face
         high = face.high
         shift = (high * lean[0], high * lean[1], high * lean[2])
         i, j, k = three
+        # The projection is vertical, since a neighbouring face may also be below the centre of mass.
         if _stands(
-            face.up,
+            n_B,
             _less(solid.corner(i), shift),
             _less(solid.corner(j), shift),
             _less(solid.corner(k), shift),
@@ -148,15 +233,15 @@ def _face_of(solid: Solid, three: tuple[int, ...]) -> Face | None:
     high = -vec.dot(up, p)
     if high <= 0.0:
         return None
-    face = []
+    corners = []
     for each in range(solid.count):
         corner = solid.corner(each)
         along = vec.dot(up, corner)
         if along < -high - FACE_ROUNDING * solid.reach:
             return None
         if along < SAME_FACE * solid.reach - high:
-            face.append(corner)
-    return Face(up, high, _tipping(up, high, face))
+            corners.append(each)
+    return Face(up, high, _tipping(up, high, [solid.corner(each) for each in corners]), corners)
 
 
 def _stands(up: Vector3, p: Vector3, q: Vector3, r: Vector3) -> bool:

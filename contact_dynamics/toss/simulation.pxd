@@ -30,7 +30,7 @@ cdef int _MAX_LAID, _NEVER, _ROUNDS, _ROUNDS_AT_ONCE, _ROUNDS_WHILE_BUSY
 @cython.final
 cdef class Simulation(History):
     cdef readonly object settings
-    cdef double slow, mark, busy_mark, linger
+    cdef double slow, quiet, mark, busy_mark, linger
     cdef double horizon, error
     cdef int struck, laid, steps, rounds, busy_rounds, max_events, flat_after
     cdef bint thorough, has_pieces
@@ -63,8 +63,9 @@ cdef class Simulation(History):
     @cython.locals(grip=cython.double, flat=Flat)
     cdef double _slow(self, list touching) except -1.0
     cdef double _stopped_within(self, double force) except -1.0
+    @cython.locals(flat=tuple, rattles=cython.double)
     cdef list _laid_flat(self, list touching)
-    @cython.locals(energy=cython.double, still=list, pushed=HeldContacts, placed=list,
+    @cython.locals(energy=cython.double, slowing=cython.double, still=list, pushed=HeldContacts, placed=list,
                    a=cython.double, b=cython.double, c=cython.double, d=cython.double, e=cython.double,
                    f=cython.double, fastest=cython.double)
     cdef bint _rests(self, list touching) except -1

@@ -141,6 +141,7 @@ class Simulation(History):
         self.unsettled = Unsettled()
         self.looked_at: list[Touch] = []  # contacts for which all modes were computed last
         self.faces: Faces = {}  # on which it could be laid
+        self.quiet = 0.0  # s, time at which the omitted motion of a sample ends
         self.way_on: Mode | None = None  # the mode of a branch in which it does not rest
 
     def to_end(self) -> TossEnd:
@@ -160,7 +161,7 @@ class Simulation(History):
                 continue
             touching = [touch for touch, rate in zip(touching, rates, strict=True) if rate <= STILL_TOUCHING]
             if touching and self._rests(touching):
-                return TossEnd.RESTS
+                return TossEnd.RESTS if self.now <= self.horizon else TossEnd.HORIZON
             touching = self._go_on(touching)
         return TossEnd.MAX_EVENTS
 
@@ -397,11 +398,12 @@ class Simulation(History):
         """Lay a sample that only rattles on a face flat on it, and return the touching contacts."""
         if self.struck < self.flat_after or self.laid >= _MAX_LAID:
             return touching
-        flat = laid_flat(self.solid, self.y, self.faces)
+        flat = laid_flat(self.solid, self.y, self.faces, self.settings.law)
         if flat is None:
             return touching
-        self.laid += 1
-        self.y, self.slow = flat, math.inf
+        self.y, rattles = flat
+        self.quiet = max(self.quiet, self.now + rattles)
+        self.laid, self.slow = self.laid + 1, math.inf
         return self.touching_now(STILL_TOUCHING)
 
     def _rests(self, touching: list[Touch]) -> bool:
@@ -424,7 +426,8 @@ class Simulation(History):
             self.slow = _SLOWER * energy
             return False
         # Friction that carries a load, on a slope or accelerated planes, does not slow the body down.
-        self.slow = self._stopped_within(pushed.friction_left())
+        slowing = pushed.friction_left()
+        self.slow = self._stopped_within(slowing)
         if energy > self.slow:
             return False
         if len(modes) > 1:
@@ -432,6 +435,10 @@ class Simulation(History):
             if way > 0:
                 self.way_on = modes[way]
                 return False
+        if self.is_sample:
+            if slowing > 0.0:
+                self.quiet = max(self.quiet, self.now + math.sqrt(2.0 * energy * self.solid.mass) / slowing)
+            self.now = max(self.now, self.quiet)
         self.lost_in_contact += energy
         placed = out_of_flats(self.solid, held_in_place(self.solid, still, modes[0]))
         self.lost_in_contact += energy_of(self.solid, still) - energy_of(self.solid, placed)

@@ -4,8 +4,10 @@
 from __future__ import annotations
 
 import math
+from typing import TYPE_CHECKING
 
 import numpy as np
+import pytest
 
 from contact_dynamics.impact import RestitutionLaw
 from contact_dynamics.rigid_body import inertia
@@ -17,6 +19,9 @@ from contact_dynamics.toss.solid import heights_and_rates, numbers_of, solid_of
 from contact_dynamics.world import Body, Surface, World
 from sweeps import seeds
 
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
 FLOOR = Surface(name="floor", p_WS_W=[0, 0, 0], normal_W=[0, 0, 1], friction=0.2, restitution=0.3)
 GRAVITY = 9.80665
 
@@ -26,7 +31,7 @@ def a_box(*size: float) -> Body:
     return Body(name="box", mass_properties=properties, shape=box(size=size))
 
 
-def unit(numbers: list[float]) -> list[float]:
+def unit(numbers: Sequence[float]) -> list[float]:
     size = math.hypot(*numbers)
     return [x / size for x in numbers]
 
@@ -40,7 +45,9 @@ def tilted(body: Body, tilt: float, v: list[float], w: list[float]) -> BodyState
 
 
 def laid(body: Body, state: BodyState, *surfaces: Surface) -> list[float] | None:
-    return laid_flat(solid_of(body, World(surfaces=surfaces or (FLOOR,))), numbers_of(state), {})
+    solid = solid_of(body, World(surfaces=surfaces or (FLOOR,)))
+    found = laid_flat(solid, numbers_of(state), {}, RestitutionLaw.POISSON)
+    return None if found is None else found[0]
 
 
 def test_it_lies_flush_and_slides_with_the_momentum_that_the_rattling_leaves() -> None:
@@ -113,3 +120,53 @@ def test_a_sample_rests_where_the_toss_does(seed: int) -> None:
     assert told.face_normals_B[0] @ alone.resting_normal_B > 0.999
     off = told.rest.positions[2] - alone.state.p_WB_W
     assert np.linalg.norm(off) < 3e-3
+
+
+FLAT = ([0, 0, 1],)
+SLOPE = ([0.15, 0, 0.9886859967],)
+FLOOR_AND_WALL = ([0, 0, 1], [-1, 0, 0])
+
+
+@pytest.mark.parametrize("normals", [FLAT, SLOPE, FLOOR_AND_WALL])
+@pytest.mark.parametrize("restitution", [0.0, 0.3, 0.7])
+@pytest.mark.parametrize(
+    "size", [(0.1, 0.1, 0.1), (0.15, 0.1, 0.06), (0.2, 0.15, 0.01), (0.3, 0.03, 0.03)], ids=str
+)
+def test_samples_rest_when_and_where_the_toss_does(
+    size: tuple[float, float, float], restitution: float, normals: tuple[list[float], ...]
+) -> None:
+    """A cube, a brick, a thin plate and a stick. A sample that took another course tells nothing.
+
+    The duration of the rattling is approximate: its median error is at most 9 ms in 60 draws of each, and
+    3 ms with a restitution of 0.5 or less. Without it, samples rest up to 170 ms too early.
+    """
+    body, chance = Body.box(size, mass=0.4), np.random.default_rng(1)
+    friction = 0.5 if restitution > 0.5 else 0.3
+    world = World(
+        surfaces=tuple(
+            Surface(
+                name=f"flat {k}",
+                p_WS_W=[0.25 * k, 0, 0],
+                normal_W=normal,
+                friction=friction,
+                restitution=restitution,
+            )
+            for k, normal in enumerate(normals)
+        )
+    )
+    off = []
+    for _ in range(12):
+        state = BodyState(
+            p_WB_W=[0, 0, 0.2],
+            q_WB=unit(chance.normal(size=4)),
+            v_WB_W=[*chance.normal(0.0, 0.7, 2), chance.normal(0.0, 0.3)],
+            w_WB_W=chance.normal(0.0, 4.0, 3),
+        )
+        alone = toss(body, state, world)
+        found = sampled_toss(body, state, world, count=1, to_rest=True)
+        assert found.rest is not None
+        if np.linalg.norm(found.rest.positions[2] - alone.state.p_WB_W) < 5e-3:
+            assert found.face_normals_B[0] @ alone.resting_normal_B > 0.999
+            off.append(found.rest.seconds[2] - alone.seconds)
+    assert len(off) >= 8
+    assert abs(np.median(off)) < (0.02 if restitution > 0.5 else 0.004)
