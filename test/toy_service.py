@@ -14,9 +14,9 @@ import sys
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib.figure import Figure
 
 from contact_dynamics.questions import services
 from contact_dynamics.questions.context import Context
@@ -25,10 +25,14 @@ from contact_dynamics.questions.subject import NEWEST, StateSource, subject_of
 from contact_dynamics.rigid_body.body import BodyState
 from contact_dynamics.tumbling import Trajectory, free_motion
 from contact_dynamics.validation import FloatArray
-from contact_dynamics.viewing.picture import Picture
 from contact_dynamics.world import Body, World
 from contact_dynamics_interfaces.srv import PredictTumbling
 from msg_adapters.fields import AnswerTable
+
+if TYPE_CHECKING:  # the server must not import a viewer
+    from matplotlib.figure import Figure
+
+    from contact_dynamics.viewing.picture import Picture
 
 IMPORTED = "TOY_SERVICE_IMPORTED"
 """The environment variable that names a file for the viewers that a process has imported when it ends."""
