@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The calls of a service: when each came and was answered, and which clients seem gone.
+"""The calls of a service: their times, and the clients that seem to have left.
 
-A service publishes its events while it works, and this process receives them after the answer has left. Their
-own stamps are from the node's clock, which stands still between two ticks of a simulation. So the log takes
-the times that are noted here, from this machine's clock.
+This process receives the events of a service after the response is sent. Their own stamps are from the
+node's clock, which does not advance between two ticks of a simulation. The log therefore has the times that
+are noted here, on the clock of this machine.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from __future__ import annotations
 import time
 from collections import deque
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.recording.cdr import EventType, event_info
@@ -19,17 +19,19 @@ from contact_dynamics.recording.cdr import EventType, event_info
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-_MAX_OPEN: Final = 10_000  # calls whose events may still come, since a lost event leaves its call open
+    from msg_adapters.status import Response
+
+_MAX_OPEN: Final = 10_000  # calls whose events may still arrive, since a call whose event is lost stays open
 
 
 class EventTimes(NamedTuple):
     """The time of what an event reports, ns since the epoch.
 
     Attributes:
-        log_time_ns: The time on this machine's clock.
+        log_time_ns: The time on the clock of this machine.
         publish_time_ns: The time on the node's clock. That of a request is the present time of the question.
-            None takes the event's own.
-        is_logged: Whether the log has it already.
+            If None, the event's own stamp counts.
+        is_logged: Whether the log already has the event.
     """
 
     log_time_ns: int
@@ -37,54 +39,73 @@ class EventTimes(NamedTuple):
     is_logged: bool = False
 
 
-@dataclass(slots=True, kw_only=True)
+@dataclass(slots=True, kw_only=True, eq=False)
 class Call:
     """A call of a service.
 
     Attributes:
-        node_clock_ns: When it came, on the clock that stamps the events, ns.
-        received_ns: When it came, on this machine's clock, ns since the epoch.
-        sent_ns: When its answer left, on the same clock.
-        client: The identity of who called, or nothing while no event told of the request.
-        sequence_number: The number of the request among those of that client, told by the same event.
-        is_logged: Whether the log has the answer already, before an event tells of it.
+        response: The response, which is valid once the call is done.
+        header: The header with which DDS sends the response, once it is known.
+        node_clock_ns: Time of arrival on the clock that stamps the events, ns.
+        received_ns: Time of arrival on the clock of this machine, ns since the epoch.
+        begun: Time of arrival on a clock that measures durations, s.
+        is_done: Whether the response can be sent.
+        sent_ns: Time at which the response was sent, on the clock of this machine.
+        client: The identity of the client, or empty until the event of the request arrives.
+        sequence_number: The number of the request among those of its client, from the same event.
+        is_logged: Whether the log has the response already, before its event.
     """
 
+    response: Response
+    header: Any
     node_clock_ns: int
     received_ns: int
+    begun: float
+    is_done: bool = False
     sent_ns: int = 0
     client: bytes = b""
     sequence_number: int = 0
     is_logged: bool = False
 
+    def finish(self) -> None:
+        """Note that the response can be sent, and how long it took."""
+        self.is_done = True
+        self.response.computation_time = time.perf_counter() - self.begun
+
 
 class CallTimes:
-    """The times of the calls of one service. All of its callbacks run in one thread."""
+    """The times of the calls of one service. All methods are called from one thread."""
 
     def __init__(self, node_clock_ns: Callable[[], int]) -> None:
-        """Take the clock that stamps the events, whose times are noted beside this machine's."""
+        """Set the clock that stamps the events."""
         self._node_clock_ns = node_clock_ns
-        self._unclaimed: deque[Call] = deque(maxlen=_MAX_OPEN)  # no event told of the request yet
-        self._answered: dict[tuple[bytes, int], Call] = {}  # no event told of the answer yet
+        self._unclaimed: deque[Call] = deque(maxlen=_MAX_OPEN)  # without the event of the request yet
+        self._answered: dict[tuple[bytes, int], Call] = {}  # without the event of the response yet
 
-    def begin(self) -> Call:
-        """Note that a request has come."""
-        call = Call(node_clock_ns=self._node_clock_ns(), received_ns=time.time_ns())
+    def begin(self, response: Response, header: Any = None) -> Call:
+        """Return the call of a request that has just arrived."""
+        call = Call(
+            response=response,
+            header=header,
+            node_clock_ns=self._node_clock_ns(),
+            received_ns=time.time_ns(),
+            begun=time.perf_counter(),
+        )
         self._unclaimed.append(call)
         return call
 
     @staticmethod
     def end(call: Call) -> None:
-        """Note that the answer to a call leaves."""
+        """Note that the response to a call is sent now."""
         call.sent_ns = time.time_ns()
 
     def of_event(self, event: bytes, *, received_ns: int) -> EventTimes:
         """Return the time of what an event reports.
 
         Args:
-            event: the event as it came.
-            received_ns: when it came, ns since the epoch by this machine's clock. It is the time of an event
-                of a client, which happened elsewhere, and of bytes that are no event.
+            event: the serialized event.
+            received_ns: its time of reception, ns since the epoch on the clock of this machine. It counts for
+                an event of a client, whose time is unknown, and for bytes that are no event.
         """
         try:
             info = event_info(event)
@@ -94,7 +115,7 @@ class CallTimes:
         if info.event_type is EventType.REQUEST_RECEIVED:
             while self._unclaimed:
                 call = self._unclaimed.popleft()
-                if call.node_clock_ns >= info.stamp_ns:  # otherwise the event of this call got lost
+                if call.node_clock_ns >= info.stamp_ns:  # otherwise the event of this call was lost
                     call.client, call.sequence_number = key
                     self._answered[key] = call
                     while len(self._answered) > _MAX_OPEN:
@@ -107,37 +128,40 @@ class CallTimes:
 
 
 class _Gone(NamedTuple):
-    since_ns: int  # since the epoch by this machine's clock, by which requests are stamped
-    noted: float  # s, by a clock that only goes forward
+    since_ns: int  # since the epoch on the clock of this machine, which stamps requests
+    noted: float  # s, on a monotonic clock
 
 
 class GoneClients:
-    """Clients that seemed gone when an answer was sent to them.
+    """Clients that seemed to have left when a response was sent to them.
 
     Attributes:
-        gone_for: s for which such a client gets no answers to what it asked before.
+        gone_for: Time for which earlier requests of such a client are dropped, s.
     """
 
     def __init__(self, gone_for: float) -> None:
-        """Begin with none."""
+        """Begin without any."""
         self.gone_for = gone_for
         self._gone: dict[bytes, _Gone] = {}
 
     @property
     def are_none(self) -> bool:
-        """Whether no client seemed gone a short time ago."""
+        """Whether no client has seemed to have left recently."""
         if self._gone:
             self._forget_old(time.monotonic())
         return not self._gone
 
     def note(self, client: bytes) -> None:
-        """Note that a client seems gone, and forget those of whom that was noted long ago."""
+        """Note that a client seems to have left."""
         now = time.monotonic()
         self._forget_old(now)
         self._gone[client] = _Gone(time.time_ns(), now)
 
     def has(self, client: bytes, *, asked_ns: int) -> bool:
-        """Tell whether a client asked before it seemed gone, a short time ago. Who asks later is there."""
+        """Return whether a client sent a request before it recently seemed to have left.
+
+        A client whose request is later is still there.
+        """
         gone = self._gone.get(client)
         if gone is None or time.monotonic() >= gone.noted + self.gone_for:
             return False

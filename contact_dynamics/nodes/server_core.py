@@ -2,7 +2,7 @@
 """What a server answers from, live or where its log is replayed, without ROS.
 
 It has the configuration with its changes, the published states and what reads them, and the time of the
-present question. The node (`serving`), the replay of its log (`replay.again`) and the visualizer share it.
+present question. The node (`server`), the replay of its log (`replay.again`) and the visualizer share it.
 """
 
 from __future__ import annotations

@@ -10,6 +10,7 @@ import pytest
 
 from contact_dynamics.nodes.calls import CallTimes, GoneClients
 from contact_dynamics.recording.cdr import EventType
+from contact_dynamics_interfaces.srv import PredictTumbling
 
 GID_A, GID_B = b"a" * 16, b"b" * 16
 SECOND = 1_000_000_000
@@ -33,7 +34,7 @@ class Calls:
         """Take a call and answer it."""
         self._seconds += 1
         before_ns = time.time_ns()
-        call = self.times.begin()
+        call = self.times.begin(PredictTumbling.Response())
         self.began.append((before_ns, time.time_ns()))
         before_ns = time.time_ns()
         self.times.end(call)
