@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Subscriptions that no executor waits for: their node empties them all at once.
+"""Subscriptions that are polled by their node instead of an executor.
 
-An executor wakes for each message and calls a function for each. At 20 000 messages a second that takes 11 µs
-a message; to take all that wait, a hundred times a second and before each answer, takes 2.6. The queues of
-DDS hold what comes meanwhile. So a burst of messages delays no question, and a question sees all messages
-that came before it.
+An executor wakes for each message, which costs 11 µs a message at 20 000 messages per second. To take all
+waiting messages a hundred times per second, and before each request, costs 2.6 µs a message. DDS queues the
+messages meanwhile. A burst of messages therefore delays no request, and each request is answered with all
+messages that arrived before it.
 """
 
 from __future__ import annotations
@@ -31,19 +31,18 @@ if TYPE_CHECKING:
     from rclpy.subscription import Subscription
 
 TAKE_EVERY_S: Final = 0.005
-"""s, the least time between two rounds through all queues."""
+"""s, shortest time between two rounds through all queues."""
 
-
-_TELL_EVERY_S: Final = 5.0
+_WARN_EVERY_S: Final = 5.0
 
 
 class Taken(NamedTuple):
-    """A message as it came.
+    """A received message.
 
     Attributes:
         data: Its bytes.
-        received_ns: When DDS received it, ns since the epoch by this machine's clock.
-        number: Its number among those of its publisher, from 1 on, or None if this DDS tells none.
+        received_ns: Time of reception by DDS, ns since the epoch on the clock of this machine.
+        number: Its number among those of its publisher, from 1, or None if the middleware provides none.
     """
 
     data: bytes
@@ -52,25 +51,25 @@ class Taken(NamedTuple):
 
 
 class InboxNode(Node):
-    """A node that has such subscriptions.
+    """A node with polled subscriptions.
 
     Attributes:
-        inbox: These subscriptions.
+        inbox: The polled subscriptions.
     """
 
     def __init__(self, *arguments: Any, **options: Any) -> None:
-        """Begin without any, and find who is there; the arguments are those of `rclpy.node.Node`."""
+        """Create a node without subscriptions; the arguments are those of `rclpy.node.Node`."""
         self.inbox: list[Subscription] = []
         self._in_rounds: list[Subscription] = []
-        self._takes_time = False  # by a subscription of its own, rather than by that of its time source
-        self._emptied = 0.0  # when, s
+        self._takes_time = False  # by its own subscription instead of that of rclpy's time source
+        self._emptied = 0.0  # s, time of the last round
         self._question_ns = 0
         super().__init__(*arguments, **options)
         refuse_what_ros_cannot_do(self)
 
     @property
     def subscriptions(self) -> Iterator[Subscription]:
-        """The subscriptions that an executor waits for."""
+        """The subscriptions that an executor handles."""
         by_hand = [*self.inbox, self._clock_subscription]
         return (each for each in super().subscriptions if each not in by_hand)
 
@@ -84,21 +83,21 @@ class InboxNode(Node):
         may_override: bool = False,
         in_rounds: bool = True,
     ) -> Subscription:
-        """Subscribe to bytes, which ``receive`` gets when the node takes them.
+        """Subscribe to serialized messages, which are passed to ``receive`` when the node takes them.
 
         Args:
             msg_type: the class of the messages.
             topic: the topic.
-            receive: takes a message. It must not raise.
-            qos: the queue's; its depth is how many messages are taken in one round at most.
+            receive: receives each message. It must not raise.
+            qos: the QoS. Its depth limits the number of messages of one round.
             may_override: whether parameters may override the QoS.
             in_rounds: whether `take_messages` takes its messages. Otherwise the node calls `empty`.
 
         Raises:
-            ConfigurationError: a parameter overrides the QoS by something that is not allowed.
+            ConfigurationError: a parameter overrides the QoS by an invalid value.
         """
         overrides = QoSOverridingOptions.with_default_policies(callback=_allowed) if may_override else None
-        # rclpy writes a parameter's values into the profile that it is given, which other topics share.
+        # rclpy writes overrides into the given profile, which other topics share.
         try:
             subscription = self.create_subscription(
                 msg_type, topic, receive, copy(qos), raw=True, qos_overriding_options=overrides
@@ -106,7 +105,7 @@ class InboxNode(Node):
         except Exception as error:
             if not may_override:
                 raise
-            # rclpy raises several unrelated types for these parameters, as for all others.
+            # rclpy raises several unrelated types for invalid parameters.
             message = f"qos_overrides.{self.resolve_topic_name(topic)}.subscription: {error}"
             raise ConfigurationError(message) from None
         self.inbox.append(subscription)
@@ -115,10 +114,10 @@ class InboxNode(Node):
         return subscription
 
     def subscribe_to_time(self, receive: Callable[[Taken], object], qos: QoSProfile) -> Subscription:
-        """Subscribe to the simulated time. The node's clock goes by the messages that ``receive`` gets.
+        """Subscribe to the simulated time, which sets the node's clock and is passed to ``receive``.
 
-        The subscription of rclpy's time source is left alone from then on: it keeps one message, and what it
-        took, others might not get.
+        The subscription of rclpy's time source is not used any more. It keeps one message only, and messages
+        that it takes would be missing here.
         """
 
         def tick(taken: Taken) -> None:
@@ -126,17 +125,17 @@ class InboxNode(Node):
             self._set_clock(taken.data)
 
         subscription = self.subscribe(Clock, "/clock", tick, qos)
-        self._in_rounds.insert(0, self._in_rounds.pop())  # states that are ahead of the clock are refused
+        self._in_rounds.insert(0, self._in_rounds.pop())  # since states ahead of the clock are rejected
         self._takes_time = True
         return subscription
 
     def end_services(self) -> None:
-        """Take no more requests; see `RunnableNode`."""
+        """Remove all services; see `RunnableNode`."""
         for service in list(self.services):
             self.destroy_service(service)
 
     def unsubscribe(self) -> None:
-        """Give up all these subscriptions."""
+        """Remove all polled subscriptions."""
         for subscription in self.inbox:
             self.destroy_subscription(subscription)
         self.inbox.clear()
@@ -144,12 +143,12 @@ class InboxNode(Node):
         self._takes_time = False
 
     def attend(self) -> None:
-        """Take all messages, unless that was done a moment ago; see `RunnableNode`."""
+        """Take all waiting messages every `TAKE_EVERY_S`; see `RunnableNode`."""
         if time.monotonic() - self._emptied >= TAKE_EVERY_S:
             self.take_messages()
 
     def take_messages(self) -> None:
-        """Take all messages that wait."""
+        """Take all waiting messages."""
         self._emptied = time.monotonic()
         clock = self._clock_subscription
         if clock is not None and not self._takes_time:
@@ -158,11 +157,11 @@ class InboxNode(Node):
             self.empty(subscription)
 
     def note_question(self, received_ns: int) -> None:
-        """Note that a question came at that time, ns since the epoch: what is taken later came after it."""
+        """Set the arrival time of a request, ns since the epoch. Messages taken later count as after it."""
         self._question_ns = received_ns
 
     def empty(self, subscription: Subscription) -> None:
-        """Take the messages of one subscription that wait."""
+        """Take the waiting messages of one subscription."""
         handle, msg_type, receive = subscription.handle, subscription.msg_type, subscription.callback
         with handle:
             take = handle.take_message
@@ -176,8 +175,8 @@ class InboxNode(Node):
 
     @property
     def _clock_subscription(self) -> Subscription | None:
-        """The subscription by which the node takes a simulation's time. rclpy has no public name for it."""
-        source = getattr(self, "_time_source", None)  # there is none while the node is being made
+        """The subscription of rclpy's time source, which has no public name."""
+        source = getattr(self, "_time_source", None)  # it does not exist before the node is complete
         return None if source is None else source._clock_sub  # noqa: SLF001
 
     def _take_time(self, clock: Subscription) -> None:
@@ -189,11 +188,11 @@ class InboxNode(Node):
                 self._set_clock(taken[0])
 
     def _set_clock(self, data: bytes) -> None:
-        """Set the node's clock to what a message says, or say why it cannot be."""
+        """Set the node's clock to the time of a message, or warn if it is invalid."""
         clock = self._clock_subscription
-        if clock is None:  # the parameter `use_sim_time` was changed meanwhile
+        if clock is None:  # the parameter `use_sim_time` has been changed
             return
-        warn = partial(self.get_logger().warning, throttle_duration_sec=_TELL_EVERY_S)
+        warn = partial(self.get_logger().warning, throttle_duration_sec=_WARN_EVERY_S)
         try:
             msg = deserialize_message(data, Clock)
         except RuntimeError as error:  # bytes that are no message
@@ -201,29 +200,29 @@ class InboxNode(Node):
             return
         try:
             clock.callback(msg)
-        except ValueError:  # rclpy has no time before zero; the clock stays where it was
+        except ValueError:  # rclpy has no negative times; the clock keeps its time
             warn(f"{clock.topic_name}: message ignored: clock.sec must be >= 0, got {msg.clock.sec}")
 
     def _after_the_question(self, received_ns: int) -> int:
-        """Return when a message came; one that came while a question was being taken counts as later."""
+        """Return the time of reception. A message received while a request was taken counts as later."""
         question_ns = self._question_ns
-        if question_ns - NS_PER_S < received_ns <= question_ns:  # else the machine's clock was set back
+        if question_ns - NS_PER_S < received_ns <= question_ns:  # otherwise the machine's clock was set back
             return question_ns + 1
-        return received_ns or time.time_ns()  # a DDS that does not tell says 0
+        return received_ns or time.time_ns()  # 0 from middleware that does not provide it
 
 
 def _allowed(qos: QoSProfile) -> SetParametersResult:
-    """Tell whether an overridden QoS can be served: a queue without room would take nothing, silently."""
+    """Reject an overridden QoS with depth 0, with which nothing would be received."""
     reason = "" if qos.depth > 0 else f"depth must be a whole number > 0, got {qos.depth}"
     return SetParametersResult(successful=not reason, reason=reason)
 
 
 def refuse_what_ros_cannot_do(node: Node) -> None:
-    """Let the services that a node has so far answer errors with an empty response and a warning.
+    """Make a node's existing services return an empty response, with a warning, instead of raising an error.
 
-    They are those that ROS gives every node. rclpy raises where it cannot do what is asked, which would end
-    the process: so for a lifecycle transition that the present state does not have. Managers ask for such
-    when they bring up all nodes and one is active already. rclcpp answers that it was no success.
+    These are the services that ROS adds to every node. An error raised by rclpy would end the process, such
+    as for a lifecycle transition that is not available in the current state. Lifecycle managers request such
+    transitions when they start all nodes and one is already active. rclcpp responds that it failed.
     """
     for service in node.services:
         _guard(service, node)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The server's log. It hands the messages of subscriptions and services to a recorder as bytes."""
+"""The log of a node, which passes serialized messages of topics and services to a recorder."""
 
 from __future__ import annotations
 
@@ -28,12 +28,12 @@ _SITUATIONS: Final = {
     LogProblem.DROPPING: Situation.LOG_DROPPING,
     LogProblem.REJECTING: Situation.LOG_REJECTING,
 }
-_SETTLES_IN_S: Final = 1.0  # how long an answer waits for the disk
-_TRUSTS_AFTER_S: Final = 10.0  # how long answers do not wait for a disk that took longer
+_SETTLES_IN_S: Final = 1.0  # longest time that a response waits for the disk
+_TRUSTS_AFTER_S: Final = 10.0  # time for which responses do not wait after the disk took longer
 
 
 class Log:
-    """Records bytes under topics that are declared before the first message, or nothing without directory."""
+    """Records serialized messages of topics that are declared before the first one, or nothing."""
 
     def __init__(
         self,
@@ -44,22 +44,21 @@ class Log:
         on_problem: Callable[[str], object],
         on_notice: Callable[[str], object],
     ) -> None:
-        """Create a folder in ``directory``, where empty means the current folder and None means no log.
+        """Create the folder of the log.
 
-        Without the library mcap, which ROS's package index does not have, no log is written either, and
-        ``on_problem`` and `present` say so.
+        Without the library mcap, which is not in ROS's package index, no log is written. ``on_problem`` and
+        `present` then report that.
 
         Args:
-            directory: where the folder of the log is made.
-            run: how the run is made.
-            limits: what bounds the files of the log.
-            on_problem: told, from the log's thread, what goes wrong.
-            on_notice: told, from the log's thread, of each file that ``limits`` cost, and of what is missing
-                when a log that was interrupted goes on.
+            directory: the parent folder. An empty text means the working directory, and None means no log.
+            run: the record of the run.
+            limits: the limits of the files.
+            on_problem: is called with each problem, from the log's thread.
+            on_notice: is called, from the log's thread, with each file that is deleted because of ``limits``,
+                and with what is missing when an interrupted log resumes.
 
         Raises:
-            ConfigurationError: the folder cannot be made, so that a log that was asked for is never missing
-                silently.
+            ConfigurationError: the folder cannot be created.
         """
         self._lacks_mcap = directory is not None and find_spec("mcap") is None
         if self._lacks_mcap:
@@ -70,15 +69,15 @@ class Log:
         self._recorder: Recorder | None = None
         self._on_problem = on_problem
         self._on_notice = on_notice
-        self._hung = -_TRUSTS_AFTER_S  # when the disk took too long, s
+        self._hung = -_TRUSTS_AFTER_S  # s, last time at which the disk took too long
 
     def add_topic(self, topic: str, type_name: str, qos: QoSProfile | None = None) -> None:
-        """Declare a topic, before `start`. Without ``qos``, what its publishers offer is not known yet."""
+        """Declare a topic, before `start`. Without ``qos``, the QoS of its publishers is not known yet."""
         if self._writer is not None:
             self._writer.add_topic(topic, type_name, [] if qos is None else [qos])
 
     def set_qos(self, topic: str, offers: list[QoSProfile]) -> None:
-        """Tell what the publishers of a topic offer, after `start`."""
+        """Record the QoS that the publishers of a topic offer, after `start`."""
         if self._recorder is not None:
             self._recorder.set_qos(topic, offers)
 
@@ -90,18 +89,18 @@ class Log:
     def record(
         self, topic: str, data: bytes, *, log_time_ns: int | None = None, publish_time_ns: int | None = None
     ) -> None:
-        """Record a message as received at that time, ns since the epoch by this machine's clock, or now.
+        """Record a message that was received at ``log_time_ns``, or now, ns since the epoch.
 
-        The default of ``publish_time_ns`` is the stamp with which the message begins.
+        The default of ``publish_time_ns`` is the leading stamp of the message.
         """
         if self._recorder is not None:
             when_ns = time.time_ns() if log_time_ns is None else log_time_ns
             self._recorder.record(topic, data, log_time_ns=when_ns, publish_time_ns=publish_time_ns)
 
     def settle(self) -> None:
-        """Wait until the disk itself has all that was recorded so far, but for a second at most.
+        """Wait at most a second until all recorded messages are on the disk.
 
-        A disk that takes longer is told of, and is not waited for in the next ten seconds.
+        If the disk takes longer, a warning is issued, and responses do not wait for the next ten seconds.
         """
         if self._recorder is None or time.monotonic() < self._hung + _TRUSTS_AFTER_S:
             return
@@ -114,17 +113,17 @@ class Log:
         )
 
     def change_run(self, run: Mapping[str, str]) -> None:
-        """Let the files of the log that begin from now on say that the run is made so."""
+        """Replace the record of the run in the files that begin from now on."""
         if self._recorder is not None:
             self._recorder.change_run(run)
 
     @property
     def status(self) -> RecorderStatus | None:
-        """The state of the log now, or None if none is written."""
+        """The current state of the log, or None if none is written."""
         return None if self._recorder is None else self._recorder.status
 
     def present(self) -> list[Present]:
-        """Return what is wrong."""
+        """Return the present situations that concern the log."""
         if self._recorder is None:
             return [Situation.NO_MCAP.present()] if self._lacks_mcap else []
         status, now, present = self._recorder.status, time.monotonic(), list[Present]()
@@ -137,7 +136,7 @@ class Log:
         return present
 
     def close(self) -> str:
-        """Finish the file, and return in words where it is and whether messages are missing."""
+        """Finish the file, and return a text with its path and the number of lost messages."""
         if self._recorder is None or self._writer is None:
             return "no log was written"
         status = self._recorder.close()
@@ -148,11 +147,11 @@ class Log:
 def _new_bag(
     directory: str, run: Mapping[str, str], limits: LogLimits, on_notice: Callable[[str], object]
 ) -> BagWriter:
-    """Return a bag in a folder named by the time. Servers that start at one time have different folders."""
+    """Create a bag in a new folder that is named after the present time."""
     name = datetime.now(timezone.utc).astimezone().strftime("contact_dynamics_%Y_%m_%d-%H_%M_%S")
     number = 1
     try:
-        # A link to a disk that is not mounted exists, and yet nothing can be made in it, under any name.
+        # A link to a disk that is not mounted exists, but no folder can be created in it.
         parent = Path(directory).expanduser()
         parent.mkdir(parents=True, exist_ok=True)
         while True:
@@ -161,6 +160,6 @@ def _new_bag(
                 return BagWriter(folder, run=run, limits=limits, on_deleted=on_notice)
             except LogExistsError:
                 number += 1
-    except (OSError, RuntimeError) as error:  # the latter for the home of a user who is not there
+    except (OSError, RuntimeError) as error:  # RuntimeError if there is no such user
         message = f"log_directory must be a folder to write to ({error}), got {directory!r}"
         raise ConfigurationError(message) from None

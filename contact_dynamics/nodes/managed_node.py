@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A node with the server's parameters, managed as those of Nav2 are: the server, and the monitor.
+"""A lifecycle node with the server's parameters: the server or the monitor.
 
-`autostart` configures and activates it at its start. Otherwise it waits for a lifecycle manager. Configured,
-it receives states and writes the log; active, it does what it is for.
+If `autostart` is set, the node configures and activates itself. Otherwise it waits for a lifecycle manager.
+While it is configured, it receives states and writes the log. While it is active, it also does its own work.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
 
 class ManagedNode(InboxNode, LifecycleNode, ABC):
-    """A node that receives states."""
+    """A lifecycle node that receives states."""
 
     def __init__(
         self,
@@ -45,12 +45,12 @@ class ManagedNode(InboxNode, LifecycleNode, ABC):
         ros_arguments: Sequence[str] = (),
         **node_options: Any,
     ) -> None:
-        """Read the parameters, and configure and activate the node where ``autostart`` says so.
+        """Read the parameters, and configure and activate the node if ``autostart`` is set.
 
         Args:
             name: its name.
             own: its parameters besides the server's.
-            ros_arguments: ROS's arguments, as `rclpy.init` was given them.
+            ros_arguments: ROS's arguments, as passed to `rclpy.init`.
             node_options: options of `rclpy.node.Node`.
 
         Raises:
@@ -60,7 +60,7 @@ class ManagedNode(InboxNode, LifecycleNode, ABC):
         self._own = own
         self._problem: ContactDynamicsError | OSError | None = None
         self._configuration: ServerParameters | None = None
-        self._says_ready = False  # once it is
+        self._says_ready = False  # as soon as it is
         super().__init__(name, **node_options)
         refuse_lost_sections(self, ros_arguments)
         source = NodeParameters(
@@ -80,7 +80,7 @@ class ManagedNode(InboxNode, LifecycleNode, ABC):
         self.trigger_activate()
 
     def _read(self, source: ParameterSource) -> ServerParameters:
-        """Read every parameter, and tell in the log of bodies and obstacles that are not convex."""
+        """Read all parameters, and warn of bodies and obstacles that are not convex."""
         with warnings.catch_warnings(record=True) as warned:
             warnings.simplefilter("always", ConcaveShapeWarning)
             for declared in self._own.values():
@@ -92,7 +92,7 @@ class ManagedNode(InboxNode, LifecycleNode, ABC):
 
     @abstractmethod
     def make_work(self, configuration: ServerParameters, run: Mapping[str, str]) -> Receiving:
-        """Return the work of the configured node. The log states that the run was made so.
+        """Return the work of the configured node, with ``run`` as the log's record of the run.
 
         Raises:
             ContactDynamicsError: it cannot be made with these parameters.
@@ -100,10 +100,10 @@ class ManagedNode(InboxNode, LifecycleNode, ABC):
         """
 
     def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:  # noqa: ARG002  it is known
-        """Receive states, begin the log, and make what the node is for."""
+        """Create the work: subscribe, begin the log, and create what the node serves."""
         self._problem = None
         configuration = self._configuration
-        if configuration is None:  # nobody can ask for it before the parameters are read
+        if configuration is None:  # the parameters are not read yet
             return TransitionCallbackReturn.FAILURE
         try:
             self._work = self.make_work(configuration, self._run(self._values()))
@@ -115,7 +115,7 @@ class ManagedNode(InboxNode, LifecycleNode, ABC):
         return TransitionCallbackReturn.SUCCESS
 
     def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Do what the node is for from now on."""
+        """Start the node's own work."""
         if self._work is not None:
             self._work.activate(is_active=True)
             self._says_ready = True
@@ -125,7 +125,7 @@ class ManagedNode(InboxNode, LifecycleNode, ABC):
         return returned
 
     def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Do no more than receive and log from now on."""
+        """Stop the node's own work, but continue to receive and log states."""
         if self._work is not None:
             self._work.activate(is_active=False)
             self._says_ready = False
@@ -133,7 +133,7 @@ class ManagedNode(InboxNode, LifecycleNode, ABC):
         return returned
 
     def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:  # noqa: ARG002  it is known
-        """Finish the log, and take back what configuring made."""
+        """Finish the log, and remove what `on_configure` created."""
         if self._work is not None:
             self.get_logger().info(self._work.close())
             self._work.remove()
@@ -141,13 +141,13 @@ class ManagedNode(InboxNode, LifecycleNode, ABC):
         return TransitionCallbackReturn.SUCCESS
 
     def on_shutdown(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Do as when it is cleaned up; a signal ends the process."""
+        """Clean up. Only a signal ends the process."""
         return self.on_cleanup(state)
 
     def set_parameters_atomically(self, parameter_list: list[Parameter]) -> SetParametersResult:
-        """Set parameters, if the whole configuration is allowed with them; otherwise say why it is not.
+        """Set parameters if the whole configuration is valid with them; otherwise return the reason.
 
-        Parameters of bodies and surfaces that are listed from now on come with them. Those of others go.
+        The parameters of newly listed bodies and surfaces are declared, and those of removed ones undeclared.
         """
         if self._configuration is None or all(is_of_ros(each.name) for each in parameter_list):
             return super().set_parameters_atomically(parameter_list)
@@ -173,7 +173,7 @@ class ManagedNode(InboxNode, LifecycleNode, ABC):
         return result
 
     def _change(self, configuration: ServerParameters, before: Mapping[str, Any]) -> None:
-        """Go on with another configuration."""
+        """Continue with another configuration."""
         after = self._values()
         event = event_of_change(self, before, after)
         if event is None:
@@ -185,14 +185,14 @@ class ManagedNode(InboxNode, LifecycleNode, ABC):
         self.get_logger().info(f"configured anew: {', '.join(names)}")
 
     def _run(self, values: Mapping[str, Any]) -> dict[str, str]:
-        """Return what the log says of the run."""
+        """Return the log's record of the run."""
         return run_record(values, self._source.topics)
 
     def _values(self) -> dict[str, Any]:
         return {name: plain(self._parameters[name].value) for name in sorted(self._parameters)}
 
     def attend(self) -> None:
-        """Take messages and events, and look around once a second."""
+        """Take messages and events, and publish /diagnostics once a second."""
         super().attend()
         if self._work is None:
             return
@@ -202,13 +202,13 @@ class ManagedNode(InboxNode, LifecycleNode, ABC):
             self.get_logger().info(f"ready: {self._work}")
 
     def end_services(self) -> None:
-        """End what is under way, and take no more requests."""
+        """End the processing of requests, and remove the services."""
         if self._work is not None:
             self._work.end()
         super().end_services()
 
     def close(self) -> bool:
-        """Finish the log and say where it is; return True, since a log that fails has been told."""
+        """Finish the log and report its path; return True, since failures of the log are already reported."""
         if self._work is not None:
             self.get_logger().info(self._work.close())
         return True

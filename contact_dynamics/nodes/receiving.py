@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""While it is configured, a node receives the states of bodies, logs them, and reports on both."""
+"""The work of a configured node: it receives and logs the states of bodies, and reports on /diagnostics."""
 
 from __future__ import annotations
 
@@ -34,17 +34,17 @@ if TYPE_CHECKING:
     from contact_dynamics.questions.state_store import StateStore
 
 CLOCK_QOS = QoSProfile(depth=1000, reliability=ReliabilityPolicy.BEST_EFFORT)
-"""Queue of the simulated time. It matches every publisher, like the node's own subscription to the clock."""
+"""Queue of the simulated time. It matches every publisher, as does rclpy's own subscription to the clock."""
 
 LOOK_EVERY_S: Final = 1.0
-"""s. Time between two looks at topics and other nodes, which /diagnostics then tells of."""
+"""s. Interval at which topics and other nodes are checked and /diagnostics is published."""
 
 STOOD_STILL_S: Final = 2.0
-"""s. A process that has not looked for so long was stopped or starved, and heard nothing for that reason."""
+"""s. After a longer interval, the process counts as having been stopped, so topics do not count as silent."""
 
 
 class Receiving(ABC):
-    """Receives states and writes the log, for a node."""
+    """Receives states and writes the log of a node."""
 
     def __init__(
         self,
@@ -54,20 +54,20 @@ class Receiving(ABC):
         run: Mapping[str, str],
         states: StateStore | None = None,
     ) -> None:
-        """Begin the log and subscribe. The log records nothing before `_begin`.
+        """Create the log and subscribe. The log records nothing before `_begin`.
 
         Args:
             node: the node.
-            parameters: how it is configured.
-            run: what the log says of the run.
-            states: keeps the states. By default, they are only kept.
+            parameters: its configuration.
+            run: the log's record of the run.
+            states: the store of the states. The default stores them only.
 
         Raises:
-            ConfigurationError: a source or the log's folder is not there.
+            ConfigurationError: a source or the log's folder does not exist.
         """
         self._node = node
         self._core = core = ServerCore(parameters, states)
-        # The log begins after this, so that a configuration with an unknown source leaves no log.
+        # The log is created after this, so that an unknown source leaves no empty log.
         self._faults = TopicFaults(
             node.get_logger().warning, inform=node.get_logger().info, limits=parameters.fault_limits
         )
@@ -116,19 +116,19 @@ class Receiving(ABC):
         )
 
     def __str__(self) -> str:
-        """Return in words what is received and logged."""
+        """Return the bodies with states, and the folder of the log."""
         names = [body.name for body in self._core.world.bodies]
         bodies = ", ".join(name if name in self._bodies else f"{name} (no state topic)" for name in names)
         return f"bodies {bodies or 'none'}; log {self._log.folder or 'off'}"
 
     @property
     def is_ready(self) -> bool:
-        """Whether all that it does can be done."""
+        """Whether the node can do all its work."""
         return True
 
     @property
     def preparations(self) -> str:
-        """In words, what is still made ready."""
+        """A text about what is not ready yet."""
         return ""
 
     @abstractmethod
@@ -141,7 +141,7 @@ class Receiving(ABC):
         Args:
             parameters: the configuration, which `check_change` allows.
             event: the change as a serialised event.
-            run: what the log says of the run from now on.
+            run: the log's record of the run from now on.
         """
         self._node.take_messages()  # these arrived under the previous configuration
         now_ns = time.time_ns()
@@ -156,7 +156,7 @@ class Receiving(ABC):
         self._faults.limits = parameters.fault_limits
 
     def attend(self) -> None:
-        """Look around once a second."""
+        """Check topics and publish /diagnostics once a second."""
         now = time.monotonic()
         since_look = now - self._looked
         if since_look >= LOOK_EVERY_S:
@@ -166,36 +166,36 @@ class Receiving(ABC):
             self._look()
 
     def close(self) -> str:
-        """Finish the log; return in words where that is."""
+        """Finish the log; return a text about it."""
         self._node.take_messages()
         return self._log.close()
 
     def remove(self) -> None:
-        """Take what this made from the node."""
+        """Remove subscriptions and publishers from the node."""
         self._jumps.unregister()
         self._node.unsubscribe()
         self._diagnostics.remove()
 
     def end(self) -> None:  # noqa: B027  a monitor has no requests
-        """End what is under way, before the node takes no more requests."""
+        """End the processing of requests, before the node removes its services."""
 
     def end_workers(self) -> None:  # noqa: B027  nor workers
-        """End further processes."""
+        """End worker processes."""
 
     def _forget_states(self) -> None:
         """Forget all states, because the clock was set back."""
         self._core.states.clear()
 
     def _values(self) -> Mapping[Part, Mapping[str, str]]:
-        """Return what is reported besides states and log."""
+        """Return the values that are reported besides those of states and log."""
         return {}
 
     def _present(self) -> list[Present]:
-        """Return what is wrong besides states and log."""
+        """Return the present situations besides those of states and log."""
         return []
 
     def _look(self) -> None:
-        """Look at topics and other nodes, and tell how everything is."""
+        """Check topics and other nodes, and publish /diagnostics."""
         self._diagnostics.publish(
             {
                 Part.STATES: values_of_topics([each.traffic for each in self._topics], self._faults.counts),
@@ -227,11 +227,11 @@ class Receiving(ABC):
         return present
 
     def _note_publishers(self) -> None:
-        """Note, for whoever asks before the first state, on which topics how many publish."""
+        """Note the number of publishers of each topic, for errors before the first state."""
         self._core.expect({topic.name: topic.publishers for topic in self._topics})
 
     def _log_clock(self) -> None:
-        """Log the simulated time, which the stamps of states and events are of, where there is one."""
+        """Log the simulated time, if it is used. Stamps of states and events are then of it."""
         if not self._node.get_parameter("use_sim_time").value:
             return
 
@@ -250,7 +250,7 @@ class Receiving(ABC):
 
 
 def _watch_twists(parameters: ServerParameters) -> list[tuple[str, TwistAxes]]:
-    """Return the topics that have a body's only odometry, and a watch on its twists for each."""
+    """Return the topics with the only odometry of a body, and a check of its twist's axes for each."""
     return [
         (body.sources[0].topics[0].full_name, TwistAxes(body.body_name, known.p_FB_F))
         for body, known in zip(parameters.sources, parameters.world.bodies, strict=True)

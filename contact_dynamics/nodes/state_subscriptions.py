@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Subscriptions to published states: each message is logged as it came and kept as a state.
+"""Subscriptions to published states, which log each message and store it as a state.
 
-They are raw: the log takes the bytes, so that it holds what was sent. To make a state of them takes forty
-times as long as to receive them. So of messages that are states by themselves only the stamp is read, until a
-question needs one. The first message of a topic is read at once, and then one each half second and whichever
-differs in its length or its frame, so that what is wrong with a topic is told although nobody asks.
+The log receives the serialized messages unchanged. Decoding a message into a state takes forty times as long
+as receiving it. If each message is a state by itself, only its stamp is therefore read until a question
+requires the state. The first message of a topic is decoded at once, then one every half second, and each
+whose length or frame differs from the last decoded one, so that faults are reported even without questions.
 """
 
 from __future__ import annotations
@@ -38,32 +38,31 @@ if TYPE_CHECKING:
     from contact_dynamics.questions.uncertain_state import KnownState
 
 STATE_QOS = QoSProfile(depth=1000)
-"""The queue is reliable and deep. A second of states at 1 kHz may wait for a stalled process, and the log
-loses none."""
+"""Queue of a topic with states, which holds the states of a second at 1 kHz if the process is stalled."""
 
 LATCHED_QOS = QoSProfile(depth=1000, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-"""The queue of transforms that stand still, which also takes those that were told before."""
+"""Queue of static transforms, which receives earlier ones, too."""
 
 _EXAMINE_EVERY_NS: Final = NS_PER_S // 2
 _FRAME_AT: Final = 12  # bytes before a header's frame: encapsulation and stamp
 
 
 def present_ns(node: Node) -> int | None:
-    """Return the present time, ns, or None if a simulation's clock has not told it yet."""
+    """Return the present time, ns, or None before the first message of a simulation's clock."""
     clock = node.get_clock()
     now_ns: int = clock.now().nanoseconds
     return None if now_ns == 0 and clock.ros_time_is_active else now_ns
 
 
 class StateTopic:
-    """One topic with messages about bodies.
+    """A topic with messages about bodies.
 
     Attributes:
         name: Its full name.
         type_name: The type of its messages.
-        source: What makes states of its messages. It may be replaced by another source of the same topic.
-        traffic: What came on it.
-        publishers: How many publish on it, as of the last look, whose messages can be received.
+        source: Its source, which converts messages to states. Another one of the same topic may replace it.
+        traffic: Its statistics.
+        publishers: Number of publishers, at the last check, whose messages can be received.
     """
 
     def __init__(
@@ -76,18 +75,18 @@ class StateTopic:
         offered: Callable[[str, list[Any]], object],
         faults: TopicFaults,
     ) -> None:
-        """Subscribe, record every message, and keep every state.
+        """Subscribe, record every message, and store every state.
 
-        A message that is no state or no believable one, or whose stamp is in the future, is recorded, and
-        counted in a warning, and not kept.
+        A message without a plausible state, or whose stamp is in the future, is recorded and counted in a
+        warning, but not stored.
 
         Args:
             node: the node.
-            source: what makes states of the messages.
-            states: keeps the states.
-            record: takes the topic and each message.
-            offered: is told the topic, and what its publishers offer.
-            faults: counts what is wrong.
+            source: the source, which converts messages to states.
+            states: the store of the states.
+            record: is called with the topic and each message.
+            offered: is called with the topic and the QoS that its publishers offer.
+            faults: the counter of faults.
 
         Raises:
             InvalidFieldError: the package of the source's messages is not installed.
@@ -114,10 +113,10 @@ class StateTopic:
         )
 
     def look(self, *, awake_for: float) -> list[Present]:
-        """Look, once a second, at who publishes and for how long nothing came; return what is wrong.
+        """Check publishers and silence, once a second; return the present situations.
 
         Args:
-            awake_for: s, for how long this process has run without standing still.
+            awake_for: s, time for which this process has run without being stopped.
         """
         found = self._publishers.look()
         mismatches = [text for text in map(self._mismatch, found) if text]
@@ -132,7 +131,7 @@ class StateTopic:
         return present
 
     def _mismatch(self, publisher: TopicEndpointInfo) -> str:
-        """Return why what a publisher sends cannot be received, or nothing if it can."""
+        """Return why the messages of a publisher cannot be received, or an empty text if they can."""
         if publisher.topic_type != self.type_name:
             return f"they send {publisher.topic_type}, and {self.type_name} is needed"
         offered, asked = publisher.qos_profile, self._subscription.qos_profile
@@ -165,7 +164,7 @@ class StateTopic:
             self._keep(reader, msg, now_ns=now_ns, taken=taken)
 
     def _keep(self, reader: BodyReader, msg: object, *, now_ns: int | None, taken: Taken) -> None:
-        """Keep the state of one body, if a message has or completes one."""
+        """Store the state of one body, if a message contains or completes one."""
         try:
             state = reader.believable(msg)
             if state is not None:
@@ -176,7 +175,7 @@ class StateTopic:
             self._refuse(error, taken.data, reader, now_ns=now_ns)
 
     def _is_as_before(self, taken: Taken) -> bool:
-        """Tell whether a message looks like the one that was examined a moment ago."""
+        """Return whether a message has the length and the frame of a recently decoded one."""
         data = taken.data
         return (
             len(data) == self._length
@@ -185,7 +184,7 @@ class StateTopic:
         )
 
     def _read(self, reader: BodyReader, data: bytes, came_ns: int | None) -> KnownState | None:
-        """Return the state of one body that a message is, or None if it cannot be read."""
+        """Return the state of one body in a message, or None if the message is rejected."""
         try:
             msg = deserialize_message(data, self._msg_type)
             check_numbers(msg)
@@ -202,7 +201,7 @@ class StateTopic:
         now_ns: int | None,
         was_kept: bool = False,
     ) -> None:
-        """Tell of a message that is refused, and note it for those who ask about the bodies."""
+        """Count a rejected message, and note the reason for questions about its bodies."""
         error = in_fields(error)
         self._faults.refuse(self.name, error)
         is_message = isinstance(error, ContactDynamicsError)
@@ -212,27 +211,26 @@ class StateTopic:
 
 
 def _leading_frame(data: bytes) -> bytes:
-    """Return the frame of a header, with the four bytes before it that tell its length."""
+    """Return the serialized frame of a header, with the four bytes of its length."""
     letters = int.from_bytes(data[_FRAME_AT : _FRAME_AT + 4], "little" if data[1] else "big")
     return data[_FRAME_AT : _FRAME_AT + 4 + letters]
 
 
 class OfferedQosWatch:
-    """Tells the log what the publishers of a topic offer, whenever that has changed.
+    """Reports the QoS that the publishers of a topic offer, whenever it has changed.
 
-    DDS does not say how deep the queues of a publisher are. The history is then unknown, as in bags of
-    rosbag2.
+    DDS does not provide the depth of a publisher's queue. The history is then unknown, as in bags of rosbag2.
     """
 
     def __init__(self, node: Node, topic: str, tell: Callable[[str, list[Any]], object]) -> None:
-        """Watch for a node. ``tell`` takes the topic and the ``QoSProfile`` of each publisher."""
+        """Watch a topic. ``tell`` is called with the topic and the ``QoSProfile`` of each publisher."""
         self._node = node
         self._topic = topic
         self._tell = tell
         self._told: list[Any] = []
 
     def look(self) -> list[TopicEndpointInfo]:
-        """Look at who publishes, and return it. Those that left are remembered until others come."""
+        """Return the present publishers. The QoS of former publishers counts until there are others."""
         publishers: list[TopicEndpointInfo] = self._node.get_publishers_info_by_topic(self._topic)
         found = [info.qos_profile for info in publishers]
         if found and found != self._told:
@@ -242,9 +240,9 @@ class OfferedQosWatch:
 
 
 class BodyWatch:
-    """The watch on one body.
+    """Checks the states of one body.
 
-    A topic can be as lively as ever while one of the bodies on it is gone, or while the states of a body are
+    Messages may arrive on a topic while one of its bodies is missing, or while the states of a body are
     rejected.
     """
 
@@ -255,7 +253,7 @@ class BodyWatch:
         *,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
-        """Begin to watch.
+        """Begin to check.
 
         Args:
             sources: the sources of the body's states.
@@ -266,18 +264,18 @@ class BodyWatch:
         self._sources = [[topics[each.full_name] for each in source.topics] for source in sources.sources]
         self._topics = [topic for source in self._sources for topic in source]
         self._clock = clock
-        self._came = self._rejected = self._old = 0  # states, at the last look
-        self._came_at = self._kept_at = clock()  # when that was noticed, s; at the beginning, when this began
+        self._came = self._rejected = self._old = 0  # numbers of states, at the last check
+        self._came_at = self._kept_at = clock()  # s, time of the last check with new ones
         self._rejected_at = -RECENT_S
         self._is_old = False
 
     def look(self, arrivals: Arrivals, *, silent_after: float, awake_for: float) -> list[Present]:
-        """Look, once a second, at what came of the body; return what is wrong.
+        """Check the body's states, once a second; return the present situations.
 
         Args:
-            arrivals: what became of its states.
-            silent_after: s without a state, from which on that is wrong.
-            awake_for: s, for how long this process has run without standing still.
+            arrivals: the numbers of its states.
+            silent_after: s, time without a state after which the body counts as silent.
+            awake_for: s, time for which this process has run without being stopped.
         """
         now = self._clock()
         came, rejected = arrivals.came - self._came, arrivals.rejected - self._rejected

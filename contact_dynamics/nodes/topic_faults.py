@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is wrong with the topics of states: counted by topic and kind, and told from time to time.
+"""Counters of the faults of topics with states, and warnings about them.
 
-It is a message that is refused, messages that got lost on the way, a topic that fell silent, and a body whose
-states come from two publishers.
+Faults are rejected messages, lost messages, silent topics, and several publishers of one body's states.
 """
 
 from __future__ import annotations
@@ -22,13 +21,13 @@ if TYPE_CHECKING:
 
 
 class TopicFaults:
-    """Counts faults by topic and kind, and warns of them.
+    """Counts faults by topic and kind, and issues throttled warnings.
 
-    The throttle of ROS has one clock for each line of code, so one topic's fault would hide all others.
+    The throttle of ROS has one clock for each line of code, so the faults of one topic would hide all others.
 
     Attributes:
-        limits: When faults are told. They may be replaced.
-        clock: Returns seconds. It does not jump when somebody sets the machine's clock.
+        limits: The throttle of warnings, which may be replaced.
+        clock: Returns the time, s, on a clock that does not jump.
     """
 
     def __init__(
@@ -39,13 +38,13 @@ class TopicFaults:
         limits: FaultLimits | None = None,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
-        """Count from zero.
+        """Create counters with the value zero.
 
         Args:
             tell: logs a warning.
-            inform: logs what is not a fault. By default it is not logged.
-            limits: when faults are reported.
-            clock: returns seconds.
+            inform: logs a message that is not a warning. By default it is not logged.
+            limits: the throttle of warnings.
+            clock: returns the time, s.
         """
         self.inform: Callable[[str], object] = inform or (lambda _: None)
         self.limits = limits or FaultLimits()
@@ -56,16 +55,16 @@ class TopicFaults:
 
     @property
     def counts(self) -> Mapping[tuple[str, str], int]:
-        """How many faults there were, by topic and kind."""
+        """The numbers of faults, by topic and kind."""
         return self._counts
 
     def refuse(self, topic: str, error: Exception) -> None:
-        """Count a message that was refused, and warn with the reason, unless it has just warned of it."""
+        """Count a rejected message, and issue a throttled warning with the reason."""
         kind = f"{type(error).__name__} {getattr(error, 'field', '')}".rstrip()
         self.add(topic, kind, 1, f"message ignored: {short(str(error))}")
 
     def add(self, topic: str, kind: str, count: int, text: str) -> None:
-        """Count faults of a kind, and warn of them, unless it has just warned of it."""
+        """Count faults of a kind, and issue a throttled warning."""
         key = (topic, kind)
         self._counts[key] += count
         now = self.clock()
@@ -78,17 +77,17 @@ class TopicFaults:
 
 @dataclass(slots=True, kw_only=True)
 class TopicTraffic:
-    """What came on a topic, and what did not.
+    """Statistics of a topic.
 
     Attributes:
         topic: The topic.
         one_publisher: Whether its messages should come from a single publisher.
-        may_rest: Whether nothing has to come, as where transforms are told once that stand still.
-        received: How many messages came.
-        lost: How many did not, as the numbers of those that came tell.
-        age: s, since the newest message, at the last look. None while none came.
-        rate: Hz, of the messages between the last two looks.
-        is_silent: Whether nothing came for a while at the last look, where something had come before.
+        may_rest: Whether the topic may be silent, as that of static transforms.
+        received: Number of received messages.
+        lost: Number of lost messages, from the sequence numbers of received ones.
+        age: s, age of the latest message at the last check, or None before the first message.
+        rate: Hz, rate of messages between the last two checks.
+        is_silent: Whether the topic had become silent at the last check.
     """
 
     topic: str
@@ -108,14 +107,14 @@ class TopicTraffic:
     _lost_at: float | None = None
 
     def note(self, taken: Taken) -> None:
-        """Note a message, and tell of those that are missing before it."""
+        """Count a message, and the lost messages before it."""
         self.received += 1
         self._newest = self.faults.clock()
         number, before = taken.number, self._number
         self._number = number
         if number is None or before is None or number == before + 1:
             return
-        if number <= before:  # a publisher that was started again, or a second one
+        if number <= before:  # a restarted publisher, or a second one
             self._is_steady = False
         elif self._is_steady and self.one_publisher:
             missing = number - before - 1
@@ -124,11 +123,11 @@ class TopicTraffic:
             self.faults.add(self.topic, "lost", missing, "messages were lost before they were received")
 
     def look(self, publishers: int, *, awake_for: float) -> list[Present]:
-        """Look, once a second, at who publishes and for how long nothing came; return what is wrong.
+        """Check publishers and silence, once a second; return the present situations.
 
         Args:
-            publishers: how many publish on the topic.
-            awake_for: s, for how long this process has run without standing still.
+            publishers: the number of publishers.
+            awake_for: s, time for which this process has run without being stopped.
         """
         present: list[Present] = []
         self._is_steady = publishers <= 1
@@ -144,7 +143,7 @@ class TopicTraffic:
             self.rate = (self.received - self._received_before) / max(now - self._looked, 1e-9)
         self._looked, self._received_before = now, self.received
         self.age = now - self._newest
-        silence = min(self.age, awake_for)  # in which the process could have heard something
+        silence = min(self.age, awake_for)  # during which the process could receive messages
         is_quiet = silence > self.faults.limits.silent_after
         was_silent, self.is_silent = self.is_silent, is_quiet and not self.may_rest
         if self.is_silent and not was_silent:
