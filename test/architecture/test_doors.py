@@ -136,3 +136,10 @@ def test_the_whole_library_is_imported_without_scipy() -> None:
     """Its import takes longer than all of ours."""
     code = "import sys, contact_dynamics; sys.exit('scipy' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+
+
+def test_the_server_begins_without_what_few_of_its_services_need() -> None:
+    """It imports contact modes and tosses when it already answers, which they would delay by a fifth."""
+    code = "import sys, contact_dynamics.nodes.server; "
+    code += "sys.exit(any(f'contact_dynamics.{each}' in sys.modules for each in ('contact_modes', 'toss')))"
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0

@@ -20,8 +20,9 @@ from contact_dynamics.questions.context import Context, Problem
 from contact_dynamics.questions.impact_question import ImpactQuestion, InTime
 from contact_dynamics.questions.many import ManyImpactsQuestion, ManyStates
 from contact_dynamics.questions.many_contact_modes import ManyContactModesQuestion
-from contact_dynamics.shapes import box, capsule, cylinder, sphere
+from contact_dynamics.shapes import box, capsule, cylinder, polyhedron, sphere
 from contact_dynamics.shapes.convex import ConvexShape
+from contact_dynamics.tolerances import DISTANCE_TOLERANCE
 from msg_adapters.batches import contact_modes_answer_to_msg, impacts_answer_to_msg
 from msg_adapters.impact import impact_answer_to_msg
 from oracles.boxes_nearly_flush import MASS as BOX_MASS
@@ -165,6 +166,17 @@ def test_a_contact_outside_or_inside_the_shape_is_a_warning(
             assert found is not None
             inscribed = 5e-3 * size if where == "inside" else 1e-6  # a rim is inside by corners on it
             assert float(found[1]) == pytest.approx(size, abs=inscribed)
+
+
+@pytest.mark.parametrize("apart", [0.0, 1e-17, 1e-9, 9e-7, 1.1e-6, 1e-5, 1e-3])
+def test_the_distance_from_a_sharp_tip_decides(apart: float) -> None:
+    """The planes of a needle's faces are much nearer to a point beyond its tip than the tip is."""
+    needle = polyhedron([[0.1, 0, 0], [0, 1e-3, 0], [0, -5e-4, 8e-4], [0, -5e-4, -8e-4]])
+    body = Body(name="needle", mass_properties=MASS, shape=needle)
+    rest = BodyState(p_WB_W=[0, 0, 0], q_WB=[0, 0, 0, 1])
+    contacts = ContactSet(p_WC_W=[[0.1 + apart, 0, 0]], normals_W=[0, 0, 1], frictions=0.3)
+    answer = modes_questions.answer(ContactModeQuestion(body=body, state=rest, contacts=contacts))
+    assert any("outside of the shape" in each for each in answer.warnings) == (apart > DISTANCE_TOLERANCE)
 
 
 def test_a_body_without_a_shape_has_no_outside() -> None:
