@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Runs a node until its process is told to stop. Every node of this package has this part of `main`.
+"""Runs a node until a signal stops its process. All nodes of this package share this part of `main`.
 
-rclpy's own signal handlers end the context at once, so that messages which have come already cannot be taken
-any more, and Python's raise `KeyboardInterrupt` wherever the process happens to be, also while it closes its
-files. Here the signals that end a process set an event, however often they come. The node then stops serving,
-takes what has come, and closes.
+rclpy's own signal handlers end the context at once, so received messages can no longer be taken. Python's
+handler raises `KeyboardInterrupt` anywhere, even while files are closed. Here, the signals that end a process
+set an event. The node then stops serving, takes the received messages, and closes.
 """
 
 from __future__ import annotations
@@ -39,23 +38,23 @@ if TYPE_CHECKING:
 
 
 _SPIN_S: Final = 0.01
-_DRAIN_S: Final = 0.2  # for messages that have come and are not taken yet when the node is told to stop
+_DRAIN_S: Final = 0.2  # for received messages that are not taken yet when the node stops
 
 
 class RunnableNode(Protocol):
-    """What a node needs to be run."""
+    """The methods that `run_node` requires of a node."""
 
     def end_services(self) -> None:
-        """Take no more requests."""
+        """Remove the services."""
 
     def destroy_node(self) -> None:
-        """End the node."""
+        """Destroy the node."""
 
     def attend(self) -> None:
-        """Do what is due between two callbacks; it is called at least a hundred times a second."""
+        """Do periodic work. It is called between callbacks, at least a hundred times per second."""
 
     def close(self) -> bool:
-        """Finish files and sinks, and return whether all of them are finished."""
+        """Finish files and sinks, and return whether all could be finished."""
 
 
 def run_node(
@@ -65,16 +64,16 @@ def run_node(
     parser: argparse.ArgumentParser,
     arguments: list[str],
 ) -> int:
-    """Run a node until it is told to stop, and return the exit code.
+    """Run a node until a signal stops it, and return the exit code.
 
-    The code is 0, or 1 if something could not be finished, or 2 for a configuration that is refused.
+    The code is 0, or 1 if a file could not be finished, or 2 if the configuration is invalid.
 
     Args:
-        make_node: makes the node, and is given ROS's arguments. It may raise `ContactDynamicsError`,
-            `OSError`, or what rclpy raises for its own parameters, such as `use_sim_time`.
-        verb: the verb of the command line that the node is.
+        make_node: creates the node from ROS's arguments. It may raise `ContactDynamicsError`, `OSError`, or
+            the errors of rclpy for its own parameters, such as `use_sim_time`.
+        verb: the node's verb of the command line.
         parser: the parser of the verb's arguments.
-        arguments: all that follows the verb.
+        arguments: the arguments after the verb.
     """
     args = ros_arguments(parser, arguments)
     never_wait_for_readers()
@@ -83,7 +82,7 @@ def run_node(
     with ExitStack() as stack:
         try:
             stop = stack.enter_context(ros_until_stopped(args))
-        except RuntimeError as error:  # what rclpy raises for arguments and files that it cannot read
+        except RuntimeError as error:  # rclpy cannot read the arguments or a file
             get_logger(verb).fatal(f"configuration: {error}")
             return 2
         return _run(partial(make_node, args), verb, stop)
@@ -91,7 +90,7 @@ def run_node(
 
 @contextmanager
 def ros_until_stopped(arguments: list[str]) -> Iterator[threading.Event]:
-    """Begin ROS with its arguments, and end it when the context is left; yield what `stop_signals` yields.
+    """Initialize ROS with its arguments, and shut it down at the end; yield the event of `stop_signals`.
 
     Raises:
         RuntimeError: rclpy cannot read the arguments, or a file that they name.
@@ -107,19 +106,19 @@ def ros_until_stopped(arguments: list[str]) -> Iterator[threading.Event]:
 
 @contextmanager
 def stop_signals() -> Iterator[threading.Event]:
-    """Yield an event that Ctrl-C, `kill` and a terminal that is closed set, until the context is left.
+    """Yield an event that is set by Ctrl-C, `kill` and a closed terminal.
 
-    For the main thread, and with ``rclpy.init(signal_handler_options=SignalHandlerOptions.NO)``.
+    It must be used in the main thread, with ``rclpy.init(signal_handler_options=SignalHandlerOptions.NO)``.
     """
     stop = threading.Event()
     numbers = [signal.SIGINT, signal.SIGTERM]
-    if signal.getsignal(signal.SIGHUP) is not signal.SIG_IGN:  # which is what nohup makes of it
+    if signal.getsignal(signal.SIGHUP) is not signal.SIG_IGN:  # as nohup sets it
         numbers.append(signal.SIGHUP)
 
     came: list[int] = []
 
     def end(number: int, _frame: object) -> None:
-        if not came:  # otherwise a signal could wait for the event's lock, which the one before has
+        if not came:  # a second signal would wait for the event's lock, which the first one has
             came.append(number)
             stop.set()
 
@@ -147,7 +146,7 @@ def _run(make_node: Callable[[], RunnableNode], verb: str, stop: threading.Event
 
 
 def _fastest_executor() -> Executor:
-    """Return the executor that costs a third of the standard one, or that one where rclpy is too old."""
+    """Return the events executor, which costs a third of the standard one, or that one if it is missing."""
     try:
         from rclpy.experimental import EventsExecutor
     except ImportError:
@@ -156,16 +155,16 @@ def _fastest_executor() -> Executor:
 
 
 def _spin(node: RunnableNode, stop: threading.Event) -> None:
-    """Spin a node until it is to stop, and then take what has come."""
+    """Spin a node until it is stopped, and then take the received messages."""
     executor = _fastest_executor()
     executor.add_node(node)
-    gc.freeze()  # the objects made so far stay, and to search them for garbage stalls an answer for 30 ms
+    gc.freeze()  # to search the objects of all modules for garbage would stall an answer for 30 ms
     while not stop.is_set():
         executor.spin_once(timeout_sec=_SPIN_S)
         node.attend()
     node.end_services()
     drained = time.monotonic() + _DRAIN_S
     while time.monotonic() < drained:
-        with suppress(InvalidHandle):  # a request that came to one of these services before it was destroyed
+        with suppress(InvalidHandle):  # a request to one of the removed services
             executor.spin_once(timeout_sec=0.1 * _DRAIN_S)
         node.attend()

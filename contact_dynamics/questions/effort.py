@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""How much work a question is: whether its answer is sure to come within some 30 ms.
+"""Estimates whether a question is quick: whether it is sure to be answered within about 30 ms.
 
-A server answers such a question at once, and others go to workers (`questions.workers`). What counts here are
-lists and options, since one would have to do the work to know it exactly. The records of services name these
-functions.
+The server answers quick questions itself and sends others to workers (`questions.workers`). The estimate uses
+the sizes of lists and the options, since the exact effort is only known afterwards. The records of services
+refer to these functions.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from contact_dynamics.world import Body
 
 MAX_QUICK_CONTACTS: Final = 4
-"""Contacts of a quick question. Modes and orders grow exponentially with them; a box stands on four."""
+"""Contacts of a quick question. The numbers of modes and orders grow exponentially with it."""
 
 MAX_QUICK_IMPACTS: Final = 2000
 """Impacts of a quick batch. They take 15 to 25 ms, and a worker would add 1 ms to pass them on."""
@@ -45,17 +45,17 @@ MAX_QUICK_CORNERS: Final = 64
 """Corners and rims of a shape, times the surfaces of the world, in a quick search for contacts."""
 
 MAX_QUICK_TURNS: Final = 20.0
-"""Turns of the body in a quick search for a contact, which takes a millisecond a turn close to a surface."""
+"""Turns of the body in a quick search for a contact, which takes a millisecond per turn near a surface."""
 
 MAX_QUICK_FITTED: Final = 400
-"""States that a quick fit takes. A fit of so many takes 5 ms; to read them from their messages takes longer,
-but this process must do that for a worker, too."""
+"""States of a quick fit. Such a fit takes 5 ms. Decoding them takes longer, but the server must also do that
+for a worker."""
 
 _CORNERS_OF_A_RIM: Final = 8  # in which the base of a cylinder touches
 
 
 def excerpt(question: Question[Answer], context: Context) -> Context:
-    """Return what another process must know to answer a question as this one would now."""
+    """Return the part of the context with which another process gives the same answer."""
     about = question.about
     sources = list(zip(getattr(about, "bodies", ()), getattr(about, "states", ()), strict=False))
     body, source = getattr(about, "body", None), getattr(about, "state", None)
@@ -90,7 +90,7 @@ def _same(now_ns: int | None) -> int | None:
 
 
 def is_quick_flight(question: TumblingQuestion, context: Context) -> bool:
-    """Return whether a motion is free, and any search for its end is short."""
+    """Return whether the motion is free, and a search for its end is short."""
     sampling = question.sampling
     if question.wrench is not NO_WRENCH or question.drag is not NO_DRAG:
         return False
@@ -103,7 +103,7 @@ def is_quick_flight(question: TumblingQuestion, context: Context) -> bool:
 
 
 def is_quick_impact(question: ImpactQuestion, context: Context) -> bool:
-    """Return whether an impact is at few contacts, which need no long search."""
+    """Return whether an impact has few contacts that are found quickly."""
     if question.include_orders or question.include_covariance:
         return False
     if not _is_quick_fit(question.body, question.state, context):
@@ -119,7 +119,7 @@ def is_quick_impact(question: ImpactQuestion, context: Context) -> bool:
 
 
 def are_quick_modes(question: ContactModeQuestion, context: Context) -> bool:
-    """Return whether the modes are those of few contacts, without the options that take long."""
+    """Return whether there are few contacts, and no expensive options."""
     if (
         question.include_geometry_margins
         or question.include_probabilities
@@ -141,7 +141,7 @@ def are_quick_modes(question: ContactModeQuestion, context: Context) -> bool:
 
 
 def are_quick_candidates(question: ManyContactModesQuestion, context: Context) -> bool:
-    """Return whether candidates are few, and each is quick."""
+    """Return whether there are few candidates, and each is quick."""
     return len(question) <= MAX_QUICK_CANDIDATES and are_quick_modes(question.asked, context)
 
 
@@ -169,14 +169,14 @@ def _is_quick_search(body: Body | str, source: StateSource, horizon: float, cont
 
 
 def _corners(body: Body | str, context: Context) -> int:
-    """Return how many pairs of a corner, or a rim, of the body and a surface there are."""
+    """Return the number of pairs of a corner of the body and a surface. A rim counts as several corners."""
     known = context.world.body(body) if isinstance(body, str) else body
     shape = known.shape
     return (len(shape.vertices) + _CORNERS_OF_A_RIM * len(shape.rims)) * len(context.world.surfaces)
 
 
 def _is_quick_fit(body: Body | str, source: StateSource, context: Context) -> bool:
-    """Tell whether a state is no fit, or one to few states."""
+    """Return whether a state is not fitted, or fitted to few states."""
     if not isinstance(source, PublishedState) or not source.fit_window > 0.0:
         return True
     name = body if isinstance(body, str) else body.name

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""These processes answer questions, each within a time and a memory that are stated.
+"""Worker processes that answer questions, with limits of time and memory.
 
-A question goes to a worker together with all that is known about it. A worker that is not ready when the time
-is over is killed and replaced. It runs at a lower priority than the process that serves, ends when that one
-ends, and ends by itself if nobody is left to kill it.
+A question is sent to a worker together with the required context. A worker that exceeds the time limit is
+killed and replaced. Workers run at a lower priority than the server. They end with it, or by themselves if it
+was killed.
 """
 
 from __future__ import annotations
@@ -42,28 +42,29 @@ _NEEDED: Final = (
     "scipy.optimize",
     "scipy.spatial",
 )
-"""What a worker has imported before it is asked: an import of SciPy takes longer than most answers."""
+"""Modules that a worker imports before it is ready, since the import of SciPy takes longer than most answers.
+"""
 
 _NICER: Final = 5
-_LOOKS_EVERY_S: Final = 0.05  # whether a worker is ready, and whether there is a question for it
-_TRIES_EVERY_S: Final = 1.0  # to start a worker that ended before it was ready
+_LOOKS_EVERY_S: Final = 0.05  # interval of checks for a ready worker and for a question
+_TRIES_EVERY_S: Final = 1.0  # interval of attempts to start a worker
 _HUNG_AFTER_S: Final = 10.0
-"""Time in which the process that starts the workers uses no processor although a worker waits for it. Then it
-counts as hung, and is replaced. One that imports slowly on a busy machine is left alone."""
+"""s. The process that starts the workers is replaced if it uses no processor time for so long although a
+worker waits for it. One that imports slowly on a busy machine does use some."""
 
-_SPARE_S: Final = 1.0  # that a worker has to send its answer before it ends by itself
+_SPARE_S: Final = 1.0  # for sending the answer, after which a worker ends by itself
 _MEGABYTE: Final = 1_000_000
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class WorkerLimits:
-    """What workers may take.
+    """Limits of workers.
 
     Attributes:
-        count: How many there are. Zero answers every question in the process that asks.
-        deadline: s, from when a question is handed over until it is answered or refused.
-        memory: MB that one may take for an answer.
-        max_waiting: How many questions may wait while all workers are busy.
+        count: Number of workers. With 0, the server answers every question itself.
+        deadline: s, longest time from handing over a question to its answer or rejection.
+        memory: MB, memory limit of a worker for an answer.
+        max_waiting: Largest number of questions that wait while all workers are busy.
     """
 
     count: int = 2
@@ -73,35 +74,35 @@ class WorkerLimits:
 
 
 class _Ready:
-    """What a worker says when it can be asked."""
+    """The message of a worker that is ready."""
 
 
-class WorkerFault(Exception):  # noqa: N818  it is no error of a question
-    """A fault of the code that a worker met; its text is the traceback."""
+class WorkerFault(Exception):  # noqa: N818  it is not caused by the question
+    """An unexpected exception in a worker; its text is the traceback."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Job:
     work: tuple[Callable[..., object], object, Context]
-    seconds: float  # that it may take
+    seconds: float  # time limit
     until: float  # s, monotonic
     done: Callable[..., object]
 
 
 class Workers:
-    """A few processes that answer questions, and threads that wait for them.
+    """Worker processes, and a thread for each that waits for its answers.
 
     Attributes:
-        limits: What they may take. A change counts for the questions that are asked later; the number of
-            processes and their memory stay as they were.
+        limits: The limits. A change applies to later questions; the number of processes and their memory do
+            not change.
     """
 
     def __init__(self, limits: WorkerLimits) -> None:
-        """Have the processes started. They need a second of processor time, and questions wait for that."""
+        """Start the processes in the background. It takes a second of processor time."""
         self.limits = limits
         self._jobs: queue.SimpleQueue[_Job | None] = queue.SimpleQueue()
         self._lock = threading.Lock()
-        self._open = 0  # jobs that are not done yet
+        self._open = 0  # number of unfinished jobs
         self._closing = False
         self._workers = [_Worker(limits.memory) for _ in range(limits.count)]
         self._threads = [
@@ -113,17 +114,17 @@ class Workers:
 
     @property
     def count(self) -> int:
-        """How many workers there are."""
+        """Number of workers."""
         return len(self._workers)
 
     @property
     def ready(self) -> int:
-        """How many of them are ready to be asked, or were so before they were killed."""
+        """Number of workers that are ready, or were ready before they were killed."""
         return sum(worker.is_ready for worker in self._workers)
 
     @property
     def waiting(self) -> int:
-        """How many questions are neither answered nor refused yet."""
+        """Number of questions that are neither answered nor rejected yet."""
         return self._open
 
     def ask(
@@ -133,17 +134,17 @@ class Workers:
         context: Context,
         done: Callable[[Answer | Exception], object],
     ) -> None:
-        """Have a question answered.
+        """Send a question to a worker.
 
         Args:
-            answer: answers it; a function of a module, which a worker imports.
+            answer: the function that answers it, from a module that a worker can import.
             question: the question.
-            context: what is known. It must not change, so ask with an `excerpt`.
-            done: takes the answer, or an exception, in another thread: a `ContactDynamicsError` that the
-                question met, or a `WorkerFault`.
+            context: the context, which must not change (see `excerpt`).
+            done: is called, in another thread, with the answer, with the `ContactDynamicsError` that the
+                question raises, or with a `WorkerFault`.
 
         Raises:
-            BusyError: as many questions as may wait are waiting.
+            BusyError: the queue is full.
         """
         most = len(self._workers) + self.limits.max_waiting
         with self._lock:
@@ -161,7 +162,7 @@ class Workers:
         self._jobs.put(job)
 
     def close(self) -> None:
-        """Kill all workers, whatever they do. Questions that wait get no answer."""
+        """Kill all workers. Waiting questions are not answered."""
         self._closing = True
         for _ in self._threads:
             self._jobs.put(None)
@@ -171,13 +172,13 @@ class Workers:
             thread.join(_SPARE_S)
 
     def _run(self, worker: _Worker) -> None:
-        # Ctrl-C reaches all processes of a terminal. Those that this thread starts inherit what it blocks, so
-        # that they do not end with a traceback while they still import. They end with this process.
-        with contextlib.suppress(OSError):  # the machine has no room for it
+        # Ctrl-C reaches all processes of a terminal. Processes that this thread starts inherit its blocked
+        # signals, so they do not end with a traceback while they import. They end with this process.
+        with contextlib.suppress(OSError):  # out of memory
             resource_tracker.ensure_running()  # first, since its start unblocks the signal again
         signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-        # What starts the workers imports for a second. As each thread of Linux has a priority of its own, and
-        # its processes begin with that, this delays no answer.
+        # The process that starts the workers imports for a second. It inherits the lower priority of its
+        # thread, so this delays no answer.
         starter = threading.Thread(target=_start_fork_server)
         starter.start()
         starter.join()
@@ -186,7 +187,7 @@ class Workers:
         while not asked and not worker.has_begun():
             try:
                 asked.append(self._jobs.get(timeout=_TRIES_EVERY_S if worker.is_killed else _LOOKS_EVERY_S))
-            except queue.Empty:  # noqa: PERF203  it waits anyway
+            except queue.Empty:  # noqa: PERF203  the loop waits anyway
                 if worker.is_killed:  # it ended before it was ready, or could not be started
                     worker.restart_if_dead()
         while not self._closing and (job := asked.pop() if asked else self._jobs.get()) is not None:
@@ -203,14 +204,14 @@ class Workers:
 
 def _start_fork_server() -> None:
     os.nice(_NICER)
-    with contextlib.suppress(OSError):  # the machine has no room for it; the first worker tries again
+    with contextlib.suppress(OSError):  # out of memory; the first worker tries again
         forkserver.ensure_running()
 
 
 def _kill_fork_server_if_it_hangs(done: threading.Event) -> None:
     used = None
     while not done.wait(_HUNG_AFTER_S):
-        server = forkserver._forkserver  # noqa: SLF001  there is no public way to it
+        server = forkserver._forkserver  # noqa: SLF001  it has no public name
         pid: int | None = getattr(server, "_forkserver_pid", None)
         if pid is None:
             continue
@@ -231,11 +232,11 @@ def _processor_time(pid: int) -> int:
 
 
 class _Worker:
-    """A process, and the pipe to it.
+    """A worker process, and the pipe to it.
 
     Attributes:
-        is_ready: Whether it has been ready to be asked.
-        is_killed: Whether its process was killed, or has ended or failed to start before it was ready.
+        is_ready: Whether it has been ready.
+        is_killed: Whether its process was killed, or ended or failed to start before it was ready.
     """
 
     def __init__(self, memory: int) -> None:
@@ -256,7 +257,7 @@ class _Worker:
         threading.Thread(target=_kill_fork_server_if_it_hangs, args=(done,), daemon=True).start()
         try:
             process.start()
-        except (EOFError, OSError):  # the machine has no room for it, or what starts it was killed
+        except (EOFError, OSError):  # out of memory, or the starting process was killed
             self._process, self.is_killed = None, True
             return
         finally:
@@ -267,7 +268,7 @@ class _Worker:
             process.kill()
 
     def close(self) -> None:
-        """Kill the process, also one that is being started in another thread."""
+        """Kill the process, even if another thread is starting it."""
         self._is_closed = True
         self._kill()
 
@@ -276,7 +277,7 @@ class _Worker:
             self._process.kill()
 
     def has_begun(self) -> bool:
-        """Return whether it is ready to be asked."""
+        """Return whether the worker is ready."""
         try:
             if self._pipe.poll():
                 self._received()
@@ -290,7 +291,7 @@ class _Worker:
         return received
 
     def outcome(self, job: _Job) -> object:
-        """Return the answer to a job, or the exception that it ends with. The process may be killed then."""
+        """Return the answer to a job, or an exception. The process may have been killed."""
         try:
             self._pipe.send((*job.work, job.seconds + _SPARE_S))
             while self._pipe.poll(max(0.0, job.until - time.monotonic())):
@@ -304,37 +305,37 @@ class _Worker:
             outcome: Exception = TookTooLongError(message)
         except (EOFError, OSError):
             outcome = WorkerFault("the process that computed the answer ended")
-        except Exception:  # noqa: BLE001  a question that cannot be sent, an answer that cannot be received
+        except Exception:  # noqa: BLE001  such as a question that cannot be pickled
             outcome = WorkerFault(traceback.format_exc())
         self._kill()
         self.is_killed = True
         return outcome
 
     def restart_if_dead(self) -> None:
-        """Have another process started if this one was killed, here or by a machine short of memory."""
+        """Start another process if this one was killed, here or for lack of memory."""
         if not self.is_killed and self._process is not None and self._process.is_alive():
             return
         self.is_killed = True
         self._pipe.close()
-        with contextlib.suppress(OSError):  # the machine has no room for it; the next question tries again
+        with contextlib.suppress(OSError):  # out of memory; the next question tries again
             self._pipe, self._its_end = self._context.Pipe()
             self.is_killed = False
             self.start()
 
 
 def _answer_questions(pipe: Connection, memory: int, priority: int) -> None:
-    """Answer one question after another: what a worker does."""
+    """Answer questions one after the other, in the worker process."""
     signal.signal(signal.SIGALRM, signal.SIG_DFL)
     os.setpriority(os.PRIO_PROCESS, 0, max(priority, os.getpriority(os.PRIO_PROCESS, 0)))
     leave_out_numpy_warnings()
     limit = _address_space() + memory
     resource.setrlimit(resource.RLIMIT_AS, (limit, limit))
-    with contextlib.suppress(OSError):  # who asks is gone
+    with contextlib.suppress(OSError):  # the server has ended
         pipe.send(_Ready())
     while True:
         try:
             answer, question, context, seconds = pipe.recv()
-        except (EOFError, OSError):  # who asks is gone
+        except (EOFError, OSError):  # the server has ended
             return
         signal.setitimer(signal.ITIMER_REAL, seconds)
         outcome: object
@@ -346,7 +347,7 @@ def _answer_questions(pipe: Connection, memory: int, priority: int) -> None:
             most = f"{memory // _MEGABYTE} MB"
             allowed = f"one that needs at most {most} (worker_memory)"
             outcome = TooLargeError("question", f"one that needs more than {most}", allowed)
-        except Exception:  # noqa: BLE001  told by who asked
+        except Exception:  # noqa: BLE001  the server reports it
             outcome = WorkerFault(traceback.format_exc())
         with contextlib.suppress(OSError):
             pipe.send(outcome)
@@ -354,6 +355,6 @@ def _answer_questions(pipe: Connection, memory: int, priority: int) -> None:
 
 
 def _address_space() -> int:
-    """Return how much address space this process has, bytes."""
+    """Return the size of the address space of this process, bytes."""
     pages = int(Path("/proc/self/statm").read_text(encoding="ascii").split()[0])
     return pages * resource.getpagesize()
