@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Tosses are read from files, and velocities, flights, strikes and all other events are found in them.
+"""Reads recorded tosses from files, and finds flights, strikes and all other events in measured poses.
 
-`flights` finds flights and the strikes between them, in poses alone, and `events` whatever else happens:
-landings, impacts, rests and slides. Evaluation, calibration and demo use both.
+`flights` finds flights and the strikes between them from poses alone, and `events` finds landings, impacts,
+rests and slides. Evaluation, calibration and the demo use both.
 """

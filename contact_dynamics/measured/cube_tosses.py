@@ -1,19 +1,19 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Pfrommer, Halm and Posa published measured tosses of an acrylic cube onto a board. This file reads them.
+"""Reads the tosses of an acrylic cube onto a board that Pfrommer, Halm and Posa measured and published.
 
 S. Pfrommer, M. Halm, M. Posa, "ContactNets: Learning discontinuous contact dynamics with smooth, implicit
 representations", Conference on Robot Learning 2020 (arXiv 2009.11193); data from the repository
 DAIRLab/contact-nets, BSD-3-Clause. The file is an `.npz` with `data`, (N, 14); `columns`; and `offsets`: toss
-k is the rows offsets[k] to offsets[k + 1].
+k consists of rows offsets[k] to offsets[k + 1].
 
-Only the columns of time and pose are used. The file's velocities are backward differences, so they belong to
-half a frame before their row, and a median filter over three frames distorts them beside an impact.
-`velocity_estimate` replaces them, as for the package's own recording.
+Only the columns of time and pose are used. The velocities in the file are backward differences, which belong
+to half a frame before their row, and a median filter over three frames distorts them next to an impact. They
+are replaced by those of `velocity_estimate`, as in the package's own recording.
 
-The cube's constants are its authors' nominal values, and the recordings differ from them. At the first strike
-the lowest corner is 2.5 to 5.5 mm below the board (5 to 95 % of the tosses). This is the error of tracked
-frame, half side and board together. In flight the cube falls at 9.6 m/s^2, not 9.81, so lengths or times of
-the recordings are off by 1 or 2 %.
+The constants of the cube are the nominal values of its authors, from which the recordings differ. At the
+first strike, the lowest corner is 2.5 to 5.5 mm below the board (5 to 95 % of the tosses), which is the
+combined error of tracked frame, half side and board. In flight the cube falls at 9.6 m/s^2 instead of 9.81,
+so lengths or times of the recordings are off by 1 or 2 %.
 """
 
 from __future__ import annotations
@@ -52,9 +52,10 @@ BOARD: Final = Surface(
 GRAVITY: Final = 9.81  # acceleration of gravity, m/s^2, also nominal
 
 POSITION_NOISE: Final = 2.5e-5
-"""m. Parabolas fitted to flights of ten frames and more leave a median of 0.020 to 0.024 mm a coordinate."""
+"""m. The residuals of parabolas fitted to flights of at least ten frames are 0.020 to 0.024 mm per coordinate
+(median)."""
 
-ORIENTATION_NOISE: Final = 3.5e-4  # rad. The same fits leave 0.017 to 0.024 degrees in the rotation vectors.
+ORIENTATION_NOISE: Final = 3.5e-4  # rad. Residuals of rotation vectors are 0.017 to 0.024 degrees.
 
 
 def read_cube_toss(path: Path, *, index: int = 0) -> Toss:

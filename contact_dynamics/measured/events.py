@@ -1,20 +1,20 @@
 # SPDX-License-Identifier: Apache-2.0
-"""This file finds all events of a measured body: flights, how each ends, and when it rests or slides.
+"""Finds all events of a measured body: flights, landings, impacts, rests and slides.
 
-Flights and strikes are found in poses alone (`flights`). A landing's time does not use the body's shape: if
-another flight follows with at most one frame between, it is that of the strike; otherwise it is halfway
-between the last frame of the flight and the next one. Shape and surfaces say only whether it was a landing,
-and on what.
+Flights and strikes are found from poses alone (`flights`). The time of a landing is independent of the shape
+of the body: if another flight follows after at most one frame, it is the time of the strike; otherwise it is
+halfway between the last frame of the flight and the next frame. Shape and surfaces only determine whether the
+flight ended with a landing, and on which surface.
 
-In each window (`MODE_SPAN`) outside of flights the poses, as position and rotation vector, are fitted by a
-quadratic function of time, because friction slows a slide evenly. If the poses keep to it as noise allows,
-its slopes in the middle of the window are the velocities there. A contact point that is slower than
-`MODE_SPEED`, plus the slopes' noise, is fixed (`f`) or slides (`c`), as its velocity along the surface says;
-one that is faster across the surface separates or approaches, and then the window holds neither rest nor
-sliding. Neighbouring windows of one kind make one event.
+In each window (`MODE_SPAN`) outside flights, a quadratic function of time is fitted to the poses (position
+and rotation vector), because friction decelerates a slide uniformly. If the residuals are within the noise,
+the slopes in the middle of the window are the velocities there. Contact points whose speed along the surface
+is below `MODE_SPEED`, plus the noise of the slopes, are fixed (`f`), and the others slide (`c`). If a contact
+point moves faster than this along the normal, the window contains neither a rest nor a slide. Adjacent
+windows of the same kind form one event.
 
-At the end of a recording, the body rests from when its pose no longer leaves the mean of its last
-`REST_SPAN`, which needs no surface and gives the pose best.
+At the end of a recording, the rest begins when the pose stays at the mean of its last `REST_SPAN`. This
+requires no surface, and yields the most precise pose.
 
 Not covered: rocking, rolling, tipping and spinning on a point, which are neither rest nor slide; slides
 shorter than a window.
@@ -69,64 +69,65 @@ if TYPE_CHECKING:
     BoolArray = NDArray[np.bool_]
 
 REST_SPAN: Final = 0.05
-"""s. A body that kept its pose for this time is at rest. It is short because the published recordings of
-cubes stop soon after the cube does."""
+"""s. A body whose pose is constant for this time is at rest. The time is short because the published
+recordings of cubes end soon after the cube stops."""
 
 REST_SPEED: Final = 0.02
-"""m/s. Mean speed over `REST_SPAN` below which a body rests: friction of 0.2 ends such a slide in 10 ms."""
+"""m/s. Mean speed over `REST_SPAN` below which a body is at rest: friction of 0.2 ends such a slide in
+10 ms."""
 
 REST_SPIN: Final = 0.2  # rad/s. Mean angular speed over `REST_SPAN` below which a body of a decimetre rests.
 
 
 class EventKind(Enum):
-    """What kinds of events are found; `docs/evaluate.md` has the criteria."""
+    """Kinds of events. `docs/evaluate.md` lists the criteria."""
 
     FLIGHT = "flight"
-    """The body flies: poses that one free flight explains."""
+    """The poses agree with a free flight."""
     LANDING = "landing"
     """First contact: a flight ends at a surface."""
     IMPACT = "impact"
-    """A flight ends at a surface and another begins soon after."""
+    """A flight ends at a surface, and another begins soon after."""
     REST = "rest"
-    """The body touches, and no contact moves."""
+    """The body touches a surface, and no contact moves."""
     SLIDING = "sliding"
-    """The body touches, no contact leaves or approaches, and one slides at least."""
+    """The body touches a surface, no contact separates or approaches, and at least one slides."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class FoundEvent(MeasuredState):
-    """One event of one body, with the state then: of an impact, ``duration`` later.
+    """An event of a body, with the state at its time; for an impact, the state ``duration`` later.
 
-    Its ``time``, s after the epoch, is when it is compared: near the end of a flight, a rest or a slide, and
-    at a landing or an impact.
+    ``time``, s after the epoch, is the time of the comparison with a prediction: near the end of a flight, a
+    rest or a slide, and at a landing or an impact.
     """
 
-    kind: EventKind  # what happened
-    body: str  # the body's name
-    surface: str  # the surface's name; empty for a flight
-    # s after the epoch. For a flight, a rest and a slide its beginning; otherwise that of the flight before.
+    kind: EventKind
+    body: str  # name of the body
+    surface: str  # name of the surface; empty for a flight
+    # s after the epoch, start of the flight, rest or slide; for other events, of the flight before.
     since: float
-    first_sample: int  # the sample at ``since``: no state before it belongs to a question about this event
-    time_ns: int  # the same as a stamp, ns
-    time_std: float  # standard deviation of ``time``, s; zero where it is that of a sample
-    # m, height of the body's lowest point above the surface then, below it negative; None without a flat.
+    first_sample: int  # the sample at ``since``; earlier states are not used to predict this event
+    time_ns: int  # ``time`` as a stamp, ns
+    time_std: float  # standard deviation of ``time``, s; zero if it is the time of a sample
+    # m, height of the lowest point above the surface, negative below it; None without a flat surface.
     gap: float | None = None
     # s, from the first contact of an impact to the beginning of the flight after it; 0 otherwise.
     duration: float = 0.0
-    mode: str = ""  # the letters of the contacts of a rest or a slide, as measured; empty otherwise
-    # Whether an impact may be that of several corners: another one was lower than `ALONE` of the body's size
-    # above the lowest one, or more than one frame lies between both flights.
+    mode: str = ""  # measured letters of the contacts of a rest or a slide; empty otherwise
+    # True if several corners may have struck: another corner is higher than the lowest one by less than
+    # `ALONE` of the size of the body, or more than one frame is between both flights.
     several: bool = False
 
     def asked_ns(self, horizon: float) -> int:
-        """Return when a question is asked that is ``horizon``, s, ahead of the event, ns."""
+        """Return the time of a prediction ``horizon``, s, before the event, ns."""
         return ns_after(self.time_ns, -horizon)
 
 
 def find_events(motion: MeasuredMotion) -> list[FoundEvent]:
-    """Return the flights, landings, impacts, rests and slides of a body; `docs/evaluate.md` has the criteria.
+    """Return the flights, landings, impacts, rests and slides of a body (criteria in `docs/evaluate.md`).
 
-    Neither landings nor modes are found of a body without a shape, or in a world without surfaces.
+    If the body has no shape or the world no surfaces, only flights are found.
     """
     flights = find_flights(motion)
     events = [_flight(motion, flight) for flight in flights]
@@ -142,7 +143,7 @@ def find_events(motion: MeasuredMotion) -> list[FoundEvent]:
 
 
 def _flight(motion: MeasuredMotion, flight: slice) -> FoundEvent:
-    last = flight.stop - 2  # the last one may show the body just past its strike
+    last = flight.stop - 2  # the last frame may show the body just after its strike
     time = float(motion.times[last])
     fitted = fit_flight(motion, last_part(motion, flight, last + 1)).at(time)
     state = BodyState(
@@ -210,7 +211,7 @@ def _end(motion: MeasuredMotion, flight: slice, after: slice | None) -> Iterator
     yield event(EventKind.LANDING, landing)
     if after is None or float(motion.times[after.start] - motion.times[flight.stop - 1]) > IMPACT_SPAN:
         return
-    # flights may meet a little after the first frame of the second one, which may show the body in contact
+    # the flights may meet after the first frame of the second one, which may then show the body in contact
     clear = strike is not None and motion.times[after.start] >= landing.time
     start = after.start if clear else after.start + 1
     fit = fit_flight(motion, first_part(motion, slice(start, after.stop)), reference=start)
@@ -227,17 +228,17 @@ def _is_sharp(motion: MeasuredMotion, found: MeasuredState) -> bool:
 
 
 class _Contacts(NamedTuple):
-    """The places where a body may touch in each of k poses, m at the most."""
+    """The m points at which a body may touch in each of k poses."""
 
     surfaces: tuple[str, ...]  # names of the surfaces
-    numbers: IntArray  # (k, m), the surface of each
+    numbers: IntArray  # (k, m), numbers of the surfaces
     points_W: FloatArray  # (k, m, 3), m
     normals_W: FloatArray  # (k, m, 3)
-    gaps: FloatArray  # (k, m), m, above a flat; infinite at an obstacle, whose contacts tell no height
-    near: BoolArray  # (k, m), whether it touches
+    gaps: FloatArray  # (k, m), m, above a flat surface; infinite at an obstacle
+    near: BoolArray  # (k, m), whether the point touches
 
     def nearest(self, pose: int) -> tuple[str, float | None]:
-        """Return the surface that a body touches in a pose, and its lowest point's height above that, m."""
+        """Return the surface that a body touches in a pose, and the gap of the lowest point, m, or None."""
         near = np.flatnonzero(self.near[pose])
         lowest = near[self.gaps[pose, near].argmin()]
         gap = float(self.gaps[pose, lowest])
@@ -245,10 +246,10 @@ class _Contacts(NamedTuple):
 
 
 def _contacts(motion: MeasuredMotion, p_WB_W: FloatArray, q_WB: FloatArray, *, within: float) -> _Contacts:
-    """Return what a body touches, in k poses, within that gap, m; nothing without a shape or a surface."""
+    """Return the contacts of a body in k poses within a gap, m. There are none without shape or surfaces."""
     shape, surfaces, count = motion.body.shape, motion.world.surfaces, len(p_WB_W)
     names = tuple(surface.name for surface in surfaces)
-    if shape.is_polyhedron and len(motion.surfaces) == len(surfaces):  # so are most, and it takes a tenth
+    if shape.is_polyhedron and len(motion.surfaces) == len(surfaces):  # common, and takes a tenth
         corners = p_WB_W[:, None] + shape.vertices @ matrices_of(q_WB).transpose(0, 2, 1)
         numbers = np.repeat(np.arange(len(surfaces)), len(shape.vertices))
         numbers = np.broadcast_to(numbers, (count, len(numbers)))
@@ -287,20 +288,20 @@ def _contacts(motion: MeasuredMotion, p_WB_W: FloatArray, q_WB: FloatArray, *, w
 
 
 class _Window(NamedTuple):
-    """A window in which a body rests or slides."""
+    """A window of frames in which a body rests or slides."""
 
     kind: EventKind
     samples: IntArray  # (count,)
-    pose: FloatArray  # (6,), from the measured one at the middle, m and rad
+    pose: FloatArray  # (6,), relative to the measured pose in the middle, m and rad
     rates: FloatArray  # (6,), m/s and rad/s
-    stds: FloatArray  # (2,), of rates
+    stds: FloatArray  # (2,), standard deviations of linear and angular rates
     contacts: _Contacts
-    slide: BoolArray  # (k, m), of all windows in turn
-    row: int  # its own among them
+    slide: BoolArray  # (k, m), of all k windows
+    row: int  # number of this window
 
 
 def _modes(motion: MeasuredMotion, firsts: range, count: int) -> Iterator[FoundEvent]:
-    """Yield the rests and slides in windows of ``count`` samples that begin with ``firsts``."""
+    """Yield the rests and slides in windows of ``count`` samples, whose first samples are ``firsts``."""
     first: _Window | None = None
     last: _Window | None = None
     for window in chain(_windows(motion, firsts, count), [None]):
@@ -311,7 +312,7 @@ def _modes(motion: MeasuredMotion, firsts: range, count: int) -> Iterator[FoundE
 
 
 def _windows(motion: MeasuredMotion, firsts: range, count: int) -> Iterator[_Window | None]:
-    """Yield what each window of ``count`` samples shows: a rest or a slide at its middle, or neither."""
+    """Yield for each window of ``count`` samples a rest or a slide at its middle, or None."""
     noise = np.repeat([motion.position_noise, motion.orientation_noise], 3)
     allowed = DEVIATIONS * noise + np.repeat([POSITION_SLACK, ORIENTATION_SLACK], 3)
     reach = _reach(motion.body.shape)
@@ -345,7 +346,7 @@ def _windows(motion: MeasuredMotion, firsts: range, count: int) -> Iterator[_Win
         speeds = np.maximum(np.linalg.norm(v, axis=1), reach * np.linalg.norm(w, axis=1))
         slow = speeds <= MODE_SPEED + DEVIATIONS * (stds @ [1.0, reach])
         slides = slide.any(axis=1)
-        # a contact that separates or approaches is neither; no more a body that rolls, or spins on a point
+        # a window with a separating or approaching contact, rolling, or spinning on a point does not count
         counts = fits & contacts.near.any(axis=1) & ~leave.any(axis=1) & (slides | slow)
         for k in range(len(samples)):
             kind = EventKind.SLIDING if slides[k] else EventKind.REST
@@ -357,7 +358,7 @@ def _windows(motion: MeasuredMotion, firsts: range, count: int) -> Iterator[_Win
 
 
 def _reach(shape: ConvexShape) -> float:
-    """Return how far from the mass centre a shape goes at most, m."""
+    """Return the distance of the farthest point of a shape from the mass centre, m."""
     rims = [float(np.linalg.norm(rim.center)) + rim.radius for rim in shape.rims]
     corners = np.linalg.norm(shape.vertices, axis=1).tolist()
     return max([*corners, *rims], default=0.0) + shape.rounding
@@ -396,7 +397,7 @@ def _mode_event(motion: MeasuredMotion, first: _Window, last: _Window) -> FoundE
 def find_rest(poses: MeasuredPoses) -> MeasuredState | None:
     """Return the mean pose in which a body rests at the end of a recording, or None if it still moves.
 
-    Its time is that of the first frame from which on the pose stayed; the velocities are zero.
+    Its time is that of the first frame from which the pose is constant. The velocities are zero.
     """
     n = max(FEWEST_FRAMES, round(REST_SPAN * poses.rate))
     rows = np.hstack([poses.p_WB_W, rotation_vectors(poses.q_WB, poses.q_WB[-1])])
@@ -428,7 +429,7 @@ def find_rest(poses: MeasuredPoses) -> MeasuredState | None:
 
 
 def _drift(times: FloatArray, poses: FloatArray) -> FloatArray:
-    """Return the size of the mean rate of each column of ``poses``, (n, 6)."""
+    """Return the absolute mean rate of each column of ``poses``, (n, 6)."""
     centred = times - times.mean()
     sizes: FloatArray = np.abs(centred @ poses) / (centred @ centred)
     return sizes

@@ -1,16 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
-"""This file fits a free flight to a stretch of measured poses, in hindsight.
+"""Fits a free flight to measured poses, including those after the time of interest.
 
-Model: the centre of mass flies a parabola of known gravity, and the angular momentum L about it is constant
-(lecture 25). The orientations themselves are measured, so the angular inertia in world axes is known at each
-frame and the rotation follows from L linearly: with theta the rotation vector from a reference orientation, d
-theta / dt = J(theta)^-1 I_W^-1 L, where J is the left Jacobian of rotation vectors. Both fits are linear
-least squares, p_0 and v_0 from the positions, theta_0 and L from the orientations, and use no integrator and
-no closed form of tumbling: the physics that is to be tested takes no part in them.
+Model: the centre of mass follows a parabola under known gravity, and the angular momentum L about it is
+constant (lecture 25). Because the orientations are measured, the angular inertia in world axes is known at
+each frame, and the rotation depends linearly on L: with theta the rotation vector from a reference
+orientation, d theta / dt = J(theta)^-1 I_W^-1 L, where J is the left Jacobian of rotation vectors. Both fits
+are linear least squares, of p_0 and v_0 to the positions and of theta_0 and L to the orientations. They use
+neither an integrator nor the closed form of tumbling, so they are independent of the physics under test.
 
-Uncertainties follow from white noise of the toss's stated size. If the residuals are larger, they are
-enlarged by Birge's ratio. Not covered: drag, a wrong gravity or inertia, noise that is correlated from frame
-to frame.
+Uncertainties assume white noise of the given size, and are enlarged by Birge's ratio if the residuals are
+larger. Not covered: drag, a wrong gravity or inertia, and noise that is correlated from frame to frame.
 """
 
 from __future__ import annotations
@@ -33,40 +32,40 @@ if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
 
 FEWEST_FRAMES: Final = 4
-"""Least number of frames. Positions and orientations have two unknown vectors each, and two more frames give
+"""Minimum number of frames: two for the two unknown vectors of positions and of orientations, and two for
 residuals."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class MeasuredState(Record):
-    """A state found by a fit, with the standard deviation of each of its parts."""
+    """A state found by a fit, with the standard deviations of its parts."""
 
-    time: float  # time of the state, s, on the recording's clock
+    time: float  # s, on the clock of the recording
     state: BodyState  # the state of the centre of mass, world axes
     position_std: float  # standard deviation of each coordinate, m
-    orientation_std: FloatArray  # (3,), rad, those of a rotation vector's components, world axes
+    orientation_std: FloatArray  # (3,), rad, of the components of a rotation vector, world axes
     velocity_std: float  # standard deviation of each component, m/s
-    angular_velocity_std: FloatArray  # (3,), rad/s, that of each component, world axes
+    angular_velocity_std: FloatArray  # (3,), rad/s, of each component, world axes
 
 
 class FittedPoses(NamedTuple):
-    """Poses of fitted flights, with the standard deviation of each of their parts."""
+    """Poses of fitted flights, with the standard deviations of their parts."""
 
     p_WB_W: FloatArray  # (..., n, 3), m
     q_WB: FloatArray  # (..., n, 4), unit quaternions x, y, z, w
-    position_std: FloatArray  # (..., n), m, that of each coordinate
-    orientation_std: FloatArray  # (..., n, 3), rad, those of a rotation vector's components, world axes
+    position_std: FloatArray  # (..., n), m, of each coordinate
+    orientation_std: FloatArray  # (..., n, 3), rad, of the components of a rotation vector, world axes
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class FlightFit(Record):
-    """A fitted free flight, or many: position and rotation vector at a reference time, with velocity and L.
+    """One or several fitted free flights: position, velocity, rotation vector and L at a reference time.
 
     The leading axes of all arrays are those of the flights; a single flight has none.
     """
 
     reference: FloatArray  # (...), the reference time, s
-    # (..., 4), x, y, z, w, the measured orientation from which rotation vectors start.
+    # (..., 4), x, y, z, w, the measured orientation to which rotation vectors refer.
     q_reference: FloatArray
     p_W: FloatArray  # (..., 3), m, position at the reference
     v_W: FloatArray  # (..., 3), m/s, velocity at the reference
@@ -76,10 +75,10 @@ class FlightFit(Record):
     I_B: FloatArray  # (3, 3), kg m^2, body axes
     cov_p: FloatArray  # (..., 2, 2), covariance of a coordinate and its rate: m^2, m^2/s, m^2/s^2
     cov_rotation: FloatArray  # (..., 6, 6), covariance of theta and L
-    by_L: FloatArray  # (..., n, 3, 3), 1/(kg m^2/s), what L adds to the rotation vectors of the n frames
+    by_L: FloatArray  # (..., n, 3, 3), 1/(kg m^2/s), derivatives of the frames' rotation vectors by L
 
     def at(self, time: float) -> MeasuredState:
-        """Return a single flight's state at ``time``, s; see `poses_at`."""
+        """Return the state of a single flight at ``time``, s; see `poses_at`."""
         poses, after = self.poses_at(np.array([time])), time - float(self.reference)
         inverse = self._inverse_inertias(poses.q_WB)[0]
         cov_w = inverse @ self.cov_rotation[3:, 3:] @ inverse.T
@@ -99,10 +98,10 @@ class FlightFit(Record):
         )
 
     def poses_at(self, times: FloatArray) -> FittedPoses:
-        """Return the poses at many ``times``, (..., n), s.
+        """Return the poses at several ``times``, (..., n), s.
 
         An orientation is one step of the midpoint rule from the reference. Its error is of third order in the
-        angle, so ask within a few frames of the reference.
+        angle, so times must be within a few frames of the reference.
         """
         after = (times - self.reference[..., None])[..., None]  # (..., n, 1)
         L = self.L_W[..., None]
@@ -114,13 +113,13 @@ class FlightFit(Record):
         return self._poses(after, q, after[..., None] * self._inverse_inertias(q))
 
     def poses_of_frames(self, times: FloatArray) -> FittedPoses:
-        """Return the poses at the fitted frames, whose times are (..., n), s, over any angle below pi."""
+        """Return the poses at the fitted frames, at times (..., n), s, for rotations by less than pi."""
         turns = self.theta_W[..., None, :] + (self.by_L @ self.L_W[..., None, :, None])[..., 0]
         after = (times - self.reference[..., None])[..., None]
         return self._poses(after, _turned(self.q_reference[..., None, :], turns), self.by_L)
 
     def _poses(self, after: FloatArray, q: FloatArray, to_L: FloatArray) -> FittedPoses:
-        """Return poses some time after the reference, (..., n, 1), s, from orientations and what L adds."""
+        """Return poses at times after the reference, (..., n, 1), s, from orientations and what L adds."""
         to_q = np.concatenate([np.broadcast_to(np.eye(3), to_L.shape), to_L], axis=-1)
         to_p = np.concatenate([np.ones_like(after), after], axis=-1)
         fallen = self.p_W[..., None, :] + after * self.v_W[..., None, :] + (0.5 * after**2) * self.gravity_W
@@ -142,10 +141,10 @@ class FlightFit(Record):
 def fit_flight(
     poses: MeasuredPoses, frames: slice | NDArray[np.intp], *, reference: int | NDArray[np.intp] | None = None
 ) -> FlightFit:
-    """Return the free flight that fits the poses of ``frames`` best, or that of each row of frames.
+    """Return the free flight that fits the poses of ``frames`` best, or one flight per row of frames.
 
-    These are `FEWEST_FRAMES` or more, a slice or numbers, (..., n). The fit refers in time and orientation to
-    the frame ``reference``, (...), which is the last one by default.
+    ``frames`` is a slice or an array of numbers, (..., n), of at least `FEWEST_FRAMES` frames. The reference
+    of time and orientation is the frame ``reference``, (...), by default the last one.
     """
     if isinstance(frames, slice):
         frames = np.arange(frames.start, frames.stop)
@@ -187,7 +186,7 @@ def fit_flight(
 
 
 def _least_squares(design: FloatArray, values: FloatArray, noise: float) -> tuple[FloatArray, FloatArray]:
-    """Return the solutions, (..., m, k), and the covariance, (..., m, m), of each of their k columns."""
+    """Return the solutions, (..., m, k), and the covariance of each of their k columns, (..., m, m)."""
     scale = np.abs(design).max(axis=-2)
     scaled = design / scale[..., None, :]
     orthogonal, triangle = np.linalg.qr(scaled)
@@ -213,7 +212,7 @@ def _inverse_left_jacobians(theta: FloatArray) -> FloatArray:
     """Return J^-1 = 1 - [theta] / 2 + c [theta]^2, (n, 3, 3): d theta / dt = J^-1 w of R = Exp(theta) R_0."""
     square = np.einsum("ij,ij->i", theta, theta)
     half = 0.5 * np.sqrt(square)
-    # with h half the angle, c = (1 - h cot h) / (4 h^2) cancels towards 0; 1/12 + h^2 / 180 is off by 1e-11
+    # with h half the angle, c = (1 - h cot h) / (4 h^2) loses digits near 0; 1/12 + h^2 / 180 is off by 1e-11
     small = half < 1e-2
     h = np.where(small, 1.0, half)
     c = np.where(small, 1.0 / 12.0 + square / 720.0, (1.0 - h / np.tan(h)) / (4.0 * h * h))
@@ -223,7 +222,7 @@ def _inverse_left_jacobians(theta: FloatArray) -> FloatArray:
 
 
 def _integral(rates: FloatArray, times: FloatArray) -> FloatArray:
-    """Return the integrals of ``rates``, (..., n, 3, 3), by trapezoids, from time 0, one of ``times``."""
+    """Return the integrals of ``rates``, (..., n, 3, 3), by the trapezoidal rule from time 0."""
     steps = 0.5 * (rates[..., 1:, :, :] + rates[..., :-1, :, :]) * np.diff(times)[..., None, None]
     total = np.zeros_like(rates)
     np.cumsum(steps, axis=-3, out=total[..., 1:, :, :])

@@ -1,21 +1,21 @@
 # SPDX-License-Identifier: Apache-2.0
-"""This file finds the free flights of a measured body, and the strikes between them.
+"""Finds the free flights of a measured body, and the strikes between them.
 
-A flight grows frame by frame. Each new pose is compared with the prediction of the fitted last frames
-(`SPAN`). The flight ends where the pose is off by more than noise and an imperfect model explain. A stretch
-of at least `SPAN` counts as flight if the body falls in it: its fitted acceleration is nearer to gravity than
-to zero, as for a body whose weight is carried. With white noise sigma over n frames and a time T the standard
-deviation of that acceleration is sigma sqrt(720 / n) / T^2, which is 0.7 m/s^2 for the recorded brick.
+A flight is extended frame by frame. Each new pose is compared with the prediction from a fit to the last
+frames (`SPAN`), and the flight ends where the difference exceeds noise and model errors. An interval of at
+least `SPAN` is a flight if the fitted acceleration is closer to gravity than to zero, the acceleration of a
+supported body. For white noise sigma over n frames and a time T, the standard deviation of this acceleration
+is sigma sqrt(720 / n) / T^2, which is 0.7 m/s^2 for the recorded brick.
 
-A strike is between two flights with at most one frame between them. Both flights are fitted over the frames
-next to the strike. The time of the strike is when their positions and orientations agree best, because the
-pose is continuous while velocities jump. This gives the time far more sharply than the spacing of frames, and
-does not use where corners or surface are. For a strike of some length it is the centre of the impulse.
+A strike separates two flights with at most one frame between them. Both flights are fitted over the frames
+next to the strike. Because the pose is continuous while velocities jump, the time of the strike is that at
+which positions and orientations of both fits agree best. It is much more precise than the frame interval and
+independent of corners and surfaces. For a strike of finite duration it is the centre of the impulse.
 
-Each number has its standard deviation, so that an error of prediction can be compared with the noise of
-measurement. Not covered: flights shorter than `SPAN`, between strikes in quick succession; impacts that are
-too gentle to show within `SPAN`; spins by more than half a turn within half of it; and slender bodies that
-tumble fast, since noise of their axis is a large error of their spin about it.
+All results have standard deviations, so that prediction errors can be compared with measurement noise. Not
+covered: flights shorter than `SPAN`, between strikes in quick succession; impacts that hardly change the
+poses within `SPAN`; spins by more than half a turn within half of `SPAN`; and slender bodies that tumble
+fast, because noise of their axis is a large error of their spin about it.
 """
 
 from __future__ import annotations
@@ -49,33 +49,36 @@ if TYPE_CHECKING:
     IntArray = NDArray[np.intp]
 
 SPAN: Final = 0.047
-"""s. Length of the shortest flight, and of the part of a longer one that predicts its next frame."""
+"""s. Duration of the shortest flight, and of the part of a longer one from which its next frame is
+predicted."""
 
 DEVIATIONS: Final = 5.0
-"""Number of standard deviations by which a coordinate may miss its prediction. Noise exceeds it once in 1.7
+"""Largest deviation of a coordinate from its prediction, in standard deviations. Noise exceeds it once in 1.7
 million frames."""
 
 POSITION_SLACK: Final = 5e-4
-"""m. Error within `SPAN` that drag, a gravity off by 2 % and a centre of mass off by a millimetre may add."""
+"""m. Additional error within `SPAN` by drag, 2 % of gravity and a millimetre of the centre of mass."""
 
-ORIENTATION_SLACK: Final = 5e-3  # rad. Error within `SPAN` that an inertia off by some percent may add.
+ORIENTATION_SLACK: Final = 5e-3  # rad. Additional error within `SPAN` by a few percent of inertia.
 
 AT_ONCE: Final = 64
-"""Stretches that are fitted at once. It is about the length of a flight, beyond which fits are in vain."""
+"""Number of intervals that are fitted together: about the frames of a flight, since fits beyond its end are
+wasted."""
 
 FIT_SPAN: Final = 0.08
-"""s. The velocity is fitted over this much of a flight next to a strike. In a longer span, errors of the
-model, such as gravity off by 2 %, would be larger than the gain in noise."""
+"""s. Duration of the part of a flight next to a strike to which velocities are fitted. With a longer one,
+model errors, such as 2 % of gravity, would exceed the reduction of noise."""
 
 ALONE: Final = 0.1
-"""Share of the body's largest half size by which the second corner is higher in a strike of a single one."""
+"""Minimum height of the second corner above the lowest one in a single-corner strike, relative to the largest
+half size of the body."""
 
 MAX_BETWEEN: Final = 1
-"""Most frames between two flights that one strike may take. Such a frame shows the body in contact."""
+"""Maximum number of frames between the two flights of a strike. They show the body in contact."""
 
 
 def find_flights(poses: MeasuredPoses) -> list[slice]:
-    """Return the flights, as slices of frames, in the order of time."""
+    """Return the flights as slices of frames, in the order of time."""
     shortest = max(5, round(SPAN * poses.rate) + 1)
     flights: list[slice] = []
     begin = _next_begin(poses, 0, shortest)
@@ -86,7 +89,7 @@ def find_flights(poses: MeasuredPoses) -> list[slice]:
 
 
 def _next_begin(poses: MeasuredPoses, first: int, shortest: int) -> int | None:
-    """Return the first frame, from ``first`` on, with which a stretch of flight begins, or None."""
+    """Return the first frame, from ``first`` on, at which a flight begins, or None."""
     for at in range(first, len(poses) - shortest + 1, AT_ONCE):
         begins = np.arange(at, min(at + AT_ONCE, len(poses) - shortest + 1))
         stretches = begins[:, None] + np.arange(shortest)
@@ -101,7 +104,7 @@ def _next_begin(poses: MeasuredPoses, first: int, shortest: int) -> int | None:
 
 
 def _end(poses: MeasuredPoses, end: int, shortest: int) -> int:
-    """Return the first frame, from ``end`` on, that the fit to the frames before it does not predict."""
+    """Return the first frame, from ``end`` on, that deviates from the fit to the frames before it."""
     for at in range(end, len(poses), AT_ONCE):
         ends = np.arange(at, min(at + AT_ONCE, len(poses)))[:, None]
         expected = fit_flight(poses, ends + np.arange(-shortest, 0)).poses_at(poses.times[ends])
@@ -112,7 +115,7 @@ def _end(poses: MeasuredPoses, end: int, shortest: int) -> int:
 
 
 def _fall(poses: MeasuredPoses, stretches: IntArray) -> NDArray[np.bool_]:
-    """Return whether the acceleration along gravity in each stretch, (k, n), is more than half of it."""
+    """Return whether the acceleration along gravity exceeds half of gravity in each interval, (k, n)."""
     times = poses.times[stretches]
     times = times - times.mean(axis=1, keepdims=True)
     square = times * times
@@ -124,7 +127,7 @@ def _fall(poses: MeasuredPoses, stretches: IntArray) -> NDArray[np.bool_]:
 
 
 def _deviations(poses: MeasuredPoses, frames: IntArray, expected: FittedPoses) -> FloatArray:
-    """Return how far poses of ``frames``, (k, m), are off, as a fraction of what is allowed, (k, m)."""
+    """Return the deviations of the poses of frames, (k, m), relative to the allowed ones, (k, m)."""
     p_std = np.hypot(poses.position_noise, expected.position_std)
     q_std = np.hypot(poses.orientation_noise, expected.orientation_std)
     p_off = np.abs(poses.p_WB_W[frames] - expected.p_WB_W).max(axis=-1)
@@ -139,38 +142,38 @@ def _deviations(poses: MeasuredPoses, frames: IntArray, expected: FittedPoses) -
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class Strike(Record):
-    """Where one flight passes into the next, at the time when their poses agree best."""
+    """The transition from one flight to the next, at the time at which their poses agree best."""
 
-    time: float  # that time, s, on the recording's clock
-    time_std: float  # its standard deviation, s
-    before: MeasuredState  # the state then, from the flight that ends
-    after: MeasuredState  # the state then, from the flight that begins
+    time: float  # s, on the clock of the recording
+    time_std: float  # standard deviation of ``time``, s
+    before: MeasuredState  # the state at that time, from the flight that ends
+    after: MeasuredState  # the state at that time, from the flight that begins
     frames_before: slice  # frames of the flight that ends, within `FIT_SPAN`
     frames_after: slice  # frames of the flight that begins, within `FIT_SPAN`
-    # Number of the nearest of the flat surfaces, or None where there are none or no corners.
+    # Number of the nearest flat surface, or None without flat surfaces or corners.
     surface: int | None
-    # (k,), m, of the body's corners above it, from both flights' mean; empty where it is None.
+    # (k,), m, of the corners above this surface, from the mean of both flights; empty without a surface.
     heights: FloatArray
 
     @property
     def corner(self) -> int:
-        """Index of the lowest corner: the row of the body's vertices that struck."""
+        """Index of the lowest corner among the vertices of the body."""
         return int(np.argmin(self.heights))
 
     @property
     def height(self) -> float:
-        """Height of that corner, m, as configured."""
+        """Height of the lowest corner above the configured surface, m."""
         return float(self.heights.min())
 
     @property
     def margin(self) -> float:
-        """How much higher the next corner was, m: small where an edge or a face struck."""
+        """Height of the next corner above the lowest one, m. It is small if an edge or a face struck."""
         lowest, second = np.sort(self.heights)[:2] if len(self.heights) > 1 else (0.0, math.inf)
         return float(second - lowest)
 
 
 def find_strikes(poses: MeasuredPoses, flights: Sequence[slice] | None = None) -> tuple[Strike, ...]:
-    """Return the strikes in the order of time. The flights, if they are not given, are found first."""
+    """Return the strikes in the order of time. If flights are not given, they are detected."""
     return tuple(
         strike
         for before, after in pairwise(find_flights(poses) if flights is None else flights)
@@ -187,7 +190,7 @@ def strike_between(poses: MeasuredPoses, before: slice, after: slice) -> Strike 
     while True:
         fit_before = fit_flight(poses, last_part(poses, before, stop))
         time, time_std = _crossing(fit_before, fit_after)
-        # a frame just past the strike may have passed for flight: then the crossing comes before it
+        # the flight may include a frame just after the strike: the crossing is then before that frame
         if time >= poses.times[stop - 1] - time_std or stop - 1 - before.start < FEWEST_FRAMES:
             break
         stop -= 1
@@ -213,12 +216,12 @@ def strike_between(poses: MeasuredPoses, before: slice, after: slice) -> Strike 
 
 
 def last_part(poses: MeasuredPoses, flight: slice, stop: int) -> slice:
-    """Return the last frames of a flight before ``stop`` that velocities are fitted over."""
+    """Return the last frames of a flight before ``stop``, to which velocities are fitted."""
     return slice(max(flight.start, stop - _frames_of_fit(poses)), stop)
 
 
 def first_part(poses: MeasuredPoses, flight: slice) -> slice:
-    """Return the first frames of a flight that velocities are fitted over."""
+    """Return the first frames of a flight, to which velocities are fitted."""
     return slice(flight.start, min(flight.stop, flight.start + _frames_of_fit(poses)))
 
 
@@ -227,9 +230,9 @@ def _frames_of_fit(poses: MeasuredPoses) -> int:
 
 
 def _crossing(before: FlightFit, after: FlightFit) -> tuple[float, float]:
-    """Return when two flights agree best in position and orientation, s, and its standard deviation."""
+    """Return the time at which the poses of two flights agree best, s, and its standard deviation."""
     time, time_std = 0.5 * float(before.reference + after.reference), math.inf
-    for _ in range(3):  # Newton's steps; the paths are nearly straight, so that the first is nearly exact
+    for _ in range(3):  # Newton's method; the first step is nearly exact, as the paths are nearly straight
         a, b = before.at(time), after.at(time)
         gap = np.concatenate(
             [b.state.p_WB_W - a.state.p_WB_W, rotation_vectors(b.state.q_WB[None], a.state.q_WB)[0]]
@@ -245,7 +248,7 @@ def _crossing(before: FlightFit, after: FlightFit) -> tuple[float, float]:
 
 
 def corner_heights(poses: MeasuredPoses, state: BodyState) -> FloatArray:
-    """Return the heights, (s, k), m, of the body's k corners above each of the s flat surfaces."""
+    """Return the heights of the k corners of a body above each of s flat surfaces, (s, k), m."""
     shape = poses.body.shape
     corners = state.p_WB_W + shape.vertices @ state.R_WB.T
     gaps = [surface.gaps(corners) - shape.rounding for surface in poses.surfaces]

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The measured states of one body in one stretch of time, as flights and contacts are found in them.
+"""The measured states of one body in an interval without gaps, in which flights and contacts are found.
 
-The noise of the poses is stated by the source or estimated from their scatter. Fourth differences remove what
-is smooth (a parabola wholly, a tumbling rotation nearly) and leave white noise, enlarged by sqrt(70). Their
-median absolute size, over 0.6745, is the standard deviation of normal noise, and strikes are too few to move
-it. Noise that is correlated from state to state, as behind a filter, comes out too small.
+The noise of the poses is given by the source or estimated from their scatter. Fourth differences remove
+smooth motion (a parabola completely, a tumbling rotation nearly) and contain white noise enlarged by
+sqrt(70). Their median absolute value, divided by 0.6745, is the standard deviation of normal noise; strikes
+are too rare to affect the median. Noise that is correlated in time, for example by a filter, is
+underestimated.
 """
 
 from __future__ import annotations
@@ -39,35 +40,35 @@ if TYPE_CHECKING:
     IntArray = NDArray[np.int64]
 
 FEWEST_STATES: Final = 12
-"""Shorter stretches hold no flight that could be asked about, and too few differences for their noise."""
+"""Shorter intervals contain no flight that could be predicted, and too few differences to estimate noise."""
 
-GAP: Final = 5.0  # median spacings of states. Where states are farther apart than this, a stretch ends.
-_ENLARGED: Final = math.sqrt(70.0)  # white noise in fourth differences: 1 + 16 + 36 + 16 + 1
+GAP: Final = 5.0  # median spacings of states. A longer gap ends an interval.
+_ENLARGED: Final = math.sqrt(70.0)  # factor on white noise in fourth differences: 1 + 16 + 36 + 16 + 1
 _MEDIAN: Final = 0.6745  # median of the absolute value of a standard normal variable
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class MeasuredMotion(Record):
-    """One body's states without gaps; sample k is row k of each array."""
+    """The states of one body in an interval without gaps; sample k is row k of each array."""
 
     body: Body  # with its shape
     world: World  # the world that the body moves in
-    epoch_ns: int  # the stamp from which times count, ns
+    epoch_ns: int  # the stamp at time 0, ns
     stamps_ns: IntArray  # (n,), ns, ascending
-    arrivals_ns: IntArray  # (n,), when each state was known, ns, on the clock of the stamps
+    arrivals_ns: IntArray  # (n,), arrival times of the states, ns, on the clock of the stamps
     times: FloatArray  # (n,), s after the epoch
     p_WB_W: FloatArray  # (n, 3), m, centre of mass in the world
     q_WB: FloatArray  # (n, 4), unit quaternions x, y, z, w: body coordinates into world coordinates
     v_WB_W: FloatArray  # (n, 3), m/s, as published, world axes
     w_WB_W: FloatArray  # (n, 3), rad/s, as published, world axes
-    # (n, 12, 12), as in `UncertainState`, NaN where a state had none; empty if none had one.
+    # (n, 12, 12), as in `UncertainState`; NaN for states without covariance, and empty if all are.
     covariances: FloatArray
     rate: float  # rate of the states, Hz
     position_noise: float  # standard deviation of each coordinate of a position, m
     orientation_noise: float  # that of each component of an orientation's rotation error, rad
 
     def __post_init__(self) -> None:
-        """Refuse a world that moves."""
+        """Reject a world with moving surfaces."""
         check_at_rest("world", self.world, "measured motions")
 
     def __len__(self) -> int:
@@ -89,11 +90,11 @@ class MeasuredMotion(Record):
         return int(self.stamps_ns[sample])
 
     def state(self, sample: int) -> KnownState:
-        """Return a state as it was published, with its covariance if it had one."""
+        """Return a published state, with its covariance if it has one."""
         return self.states([sample])[0]
 
     def states(self, samples: Sequence[int]) -> list[KnownState]:
-        """Return the states of some samples, as `state` does."""
+        """Return the published states of several samples."""
         rows = [getattr(self, name)[samples] for name in ("p_WB_W", "q_WB", "v_WB_W", "w_WB_W")]
         states = states_of_rows(np.hstack(rows), self.stamps_ns[samples].tolist())
         if len(self.covariances) == 0:
@@ -106,30 +107,30 @@ class MeasuredMotion(Record):
         ]
 
     def known_by(self, asked_ns: int, *, since: int = 0) -> IntArray:
-        """Return the samples from ``since`` on that had been stamped and had arrived by then."""
+        """Return the samples, from ``since`` on, that were stamped and had arrived by a time, ns."""
         end = int(np.searchsorted(self.stamps_ns, asked_ns, side="right"))
         return since + np.flatnonzero(self.arrivals_ns[since:end] <= asked_ns)
 
     def part(self, begin: int, stop: int) -> MeasuredMotion:
-        """Return the states from one number up to another, with the times that they had."""
+        """Return the states of a range of samples, with unchanged times."""
         return replace(self, **{name: getattr(self, name)[begin:stop] for name in COLUMNS})
 
 
 MeasuredPoses: TypeAlias = "MeasuredMotion | Toss"
-"""The poses of one body in the order of time, and how well they are measured."""
+"""The poses of one body in the order of time, with their noise."""
 
 COLUMNS: Final = ("stamps_ns", "arrivals_ns", "times", "p_WB_W", "q_WB", "v_WB_W", "w_WB_W", "covariances")
-"""The fields of a motion that have a row for each state."""
+"""The fields of a motion with one row per state."""
 
 _STATE: Final = 13  # numbers: position, quaternion, linear and angular velocity
-_LATEST_NS: Final = 2**63 - 1  # which a damaged log may exceed
+_LATEST_NS: Final = 2**63 - 1  # a damaged log may contain later arrivals
 
 
 class StateColumns:
-    """States of one body in the order in which they came. A number takes eight bytes, and no object."""
+    """The states of one body in the order of their arrival, stored as arrays of eight bytes per number."""
 
     def __init__(self, states: Iterable[KnownState] = (), arrivals_ns: Iterable[int] = ()) -> None:
-        """Begin with states, and when each of them was known, ns, on the clock of the stamps."""
+        """Store states with their arrival times, ns, on the clock of the stamps."""
         self._numbers, self._stamps_ns, self._arrivals_ns = array("d"), array("q"), array("q")
         self._covariances: dict[int, FloatArray] = {}
         for state, arrival_ns in zip(states, arrivals_ns, strict=True):
@@ -140,7 +141,7 @@ class StateColumns:
         return len(self._stamps_ns)
 
     def add(self, known: KnownState, arrival_ns: int) -> None:
-        """Add a state, and when it was known, ns."""
+        """Add a state with its arrival time, ns."""
         state = state_of(known)
         if isinstance(known, UncertainState):
             self._covariances[len(self)] = known.covariance
@@ -150,13 +151,13 @@ class StateColumns:
             self._numbers.frombytes(part.tobytes())
 
     def extend(self, stamps_ns: IntArray, numbers: FloatArray, arrivals_ns: Sequence[int]) -> None:
-        """Add n states without covariances: stamps, (n,), `numbers`, (n, 13), and when each was known, ns."""
+        """Add n states without covariances, with stamps, (n,), ns, and arrival times, (n,), ns."""
         self._stamps_ns.frombytes(stamps_ns.tobytes())
         self._numbers.frombytes(numbers.tobytes())
         self._arrivals_ns.extend(min(arrival_ns, _LATEST_NS) for arrival_ns in arrivals_ns)
 
     def know_at_stamps(self) -> None:
-        """Count each state as known at its stamp."""
+        """Set each arrival time to the stamp."""
         self._arrivals_ns = self._stamps_ns[:]
 
     @property
@@ -166,7 +167,7 @@ class StateColumns:
 
     @property
     def arrivals_ns(self) -> IntArray:
-        """When each state was known, (n,), ns."""
+        """The arrival times, (n,), ns."""
         return np.array(self._arrivals_ns, dtype=np.int64)
 
     @property
@@ -191,11 +192,11 @@ def motions_of(
     noise: tuple[float, float] | None = None,
     epoch_ns: int | None = None,
 ) -> list[MeasuredMotion]:
-    """Return a body's states in stretches without gaps.
+    """Return the states of a body in intervals without gaps.
 
-    They come in any order, and of several with one stamp the last one counts. Times count from ``epoch_ns``,
-    ns, by default the first stamp. The noise, m of a position's coordinates and rad of an orientation's
-    components, is estimated if it is None.
+    The states may be in any order; of several with the same stamp, the last one is used. Times are relative
+    to ``epoch_ns``, ns, by default the first stamp. The noise (m for each coordinate of a position, rad for
+    each component of an orientation error) is estimated if it is None.
     """
     stamps_ns, reverse = np.unique(states.stamps_ns[::-1], return_index=True)
     if len(stamps_ns) < FEWEST_STATES:
@@ -232,7 +233,7 @@ def motions_of(
 
 
 def estimated_noise(p_WB_W: FloatArray, q_WB: FloatArray) -> tuple[float, float]:
-    """Return the standard deviations, m and rad, of evenly spaced poses, (n, 3) and (n, 4), n > 4."""
+    """Return the noise, m and rad, of evenly spaced poses, (n, 3) and (n, 4), n > 4."""
     turns = rotation_vectors(q_WB[1:], q_WB[:-1])
     position = float(np.median(np.abs(np.diff(p_WB_W, n=4, axis=0)))) / (_MEDIAN * _ENLARGED)
     orientation = float(np.median(np.abs(np.diff(turns, n=3, axis=0)))) / (_MEDIAN * _ENLARGED)

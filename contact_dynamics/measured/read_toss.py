@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""This file reads a recorded toss by path: the package's own, another like it, or a measured cube toss."""
+"""Reads a recorded toss by its path: the package's own recording, another CSV file, or a cube toss."""
 
 from __future__ import annotations
 
@@ -13,19 +13,19 @@ from contact_dynamics.measured.recorded_toss import Toss, read_toss_csv
 __all__ = ["DEFAULT_RECORDING", "Toss", "read_toss"]
 
 DEFAULT_RECORDING: Final = Path(__file__).parent / "tosses" / "brick.csv"
-"""The recording that comes with the package."""
+"""The recording of a brick that is part of the package."""
 
 
 def read_toss(path: str | Path = DEFAULT_RECORDING, *, index: int | None = None) -> Toss:
-    """Return the toss that ``path`` names: a recording in this project's CSV, or a cube toss in an `.npz`.
+    """Return the toss at a path: a recording in this project's CSV format, or a cube toss in an `.npz` file.
 
-    ``index``, or a path that ends in ``#17`` or ``:17``, selects one of the tosses of an `.npz`. The default
-    is the first.
+    ``index``, or a path that ends in ``#17`` or ``:17``, selects a toss of an `.npz` file, by default the
+    first one.
 
     Raises:
         FileNotFoundError: there is no such file.
-        InvalidFieldError: the file is neither `.csv` nor `.npz`, its content is not as described, or the
-            index is out of range.
+        InvalidFieldError: the file is neither `.csv` nor `.npz`, its content is invalid, or the index is out
+            of range.
     """
     file, chosen = _split_index(path)
     if index is not None:

@@ -1,16 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
-"""In a recorded toss a tracking system measured a body that flew, bounced and came to rest.
+"""A recorded toss: the poses of a body that flies, bounces and comes to rest, and its CSV file.
 
-Velocities are estimates from past poses alone (`velocity_estimate`), by the same method for every source. So
-a prediction from them was possible at that moment.
+Velocities are estimated from past poses alone (`velocity_estimate`), by the same method for every source, as
+they would have been available at the time.
 
-It is assumed that there is one body and one surface, that z is up in the world, and that the body is a box
-whose tracked frame has its origin at the centre of mass.
+Assumptions: one body and one surface; z points up in the world; the body is a box whose tracked frame has its
+origin at the centre of mass.
 
-The project's own file of one toss is CSV, with a header of comment lines that a person can read. A header
-line is `# name [unit]: value`, with the value in JSON. Other comment lines are prose. After the header there
-is one line of column names, then the samples. Numbers are rounded in decimal, far below the noise, so that
-the same recording gives the same bytes everywhere.
+The CSV file of a toss begins with a header of comment lines. A header line is `# name [unit]: value`, with
+the value in JSON; other comment lines are prose. A line of column names and the samples follow. Numbers are
+rounded far below the noise, so that the same recording gives the same bytes on every platform.
 """
 
 from __future__ import annotations
@@ -41,17 +40,17 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class Toss(Record):
-    """A recorded toss of one box-shaped body onto one surface. Sample k is row k of each array.
+    """A recorded toss of a box onto a surface. Sample k is row k of each array.
 
     Raises:
         InvalidFieldError: arrays have unequal lengths, a number is not finite, times do not increase, a
             quaternion is not unit, or a rate or noise is not > 0.
     """
 
-    source: str  # where the numbers come from, in words
-    body: Body  # mass properties and corners. Its published frame is B itself.
+    source: str  # description of the origin of the data
+    body: Body  # mass properties and corners; its published frame is the body frame B
     box_size: FloatArray  # (3,), m, full side lengths along the body's axes
-    surface: Surface  # the surface on which it falls, with friction and restitution
+    surface: Surface  # the surface that it hits, with friction and restitution
     gravity_W: FloatArray  # (3,), m/s^2, world axes
     rate: float  # rate of the samples, Hz
     position_noise: float  # standard deviation of each coordinate of a measured position, m
@@ -65,7 +64,7 @@ class Toss(Record):
     w_WB_W: FloatArray  # (n, 3), rad/s, angular velocity, world axes, estimated from the past
 
     def __post_init__(self) -> None:
-        """Check every field, and normalise the quaternions to rounding."""
+        """Check all fields, and normalise the quaternions."""
         n = len(self.times)
         object.__setattr__(self, "box_size", check_array("box_size", self.box_size, (3,)))
         object.__setattr__(self, "gravity_W", check_array("gravity_W", self.gravity_W, (3,)))
@@ -90,7 +89,7 @@ class Toss(Record):
 
     @property
     def surfaces(self) -> tuple[Surface]:
-        """The surface, as the only one."""
+        """The surface, as a tuple of one."""
         return (self.surface,)
 
     def state(self, sample: int, *, epoch_ns: int = 0) -> BodyState:
@@ -123,9 +122,9 @@ class Toss(Record):
 COLUMNS: Final = ("t", "px", "py", "pz", "qx", "qy", "qz", "qw", "vx", "vy", "vz", "wx", "wy", "wz")
 
 DECIMALS: Final = (9, *(6,) * 3, *(6,) * 4, *(4,) * 3, *(4,) * 3)
-"""Number of decimals of each column: 1 ns, 1 um, 1e-6 (2 urad), 0.1 mm/s, 0.1 mrad/s."""
+"""Decimals of each column: resolutions of 1 ns, 1 um, 1e-6 (2 urad), 0.1 mm/s and 0.1 mrad/s."""
 
-UNITS: Final = {  # the header's names, all required, and their units
+UNITS: Final = {  # names in the header, all required, with their units
     "source": "",
     "body": "",
     "mass": "kg",
@@ -145,7 +144,7 @@ _HEADER_LINE: Final = re.compile(r"# (\w+)(?: \[([^\]]*)\])?: (.*)")
 
 
 def write_toss_csv(path: Path, toss: Toss, *, prose: Sequence[str] = ()) -> None:
-    """Write ``toss`` to ``path``. The lines of ``prose`` become comments at the top."""
+    """Write a toss to a file, with the lines of ``prose`` as comments at the top."""
     header: dict[str, Any] = {
         "source": toss.source,
         "body": toss.body.name,
@@ -175,11 +174,11 @@ def write_toss_csv(path: Path, toss: Toss, *, prose: Sequence[str] = ()) -> None
 
 
 def read_toss_csv(path: Path) -> Toss:
-    """Return the toss in ``path``.
+    """Return the toss in a CSV file.
 
     Raises:
-        InvalidFieldError: a header line is missing or has another unit, the columns are others, or a sample
-            is not numbers.
+        InvalidFieldError: a header line is missing or has another unit, the column names differ, or a sample
+            does not consist of numbers.
     """
     header, rows = _split(path)
     names = rows[0].split(",") if rows else []
@@ -222,7 +221,7 @@ def read_toss_csv(path: Path) -> Toss:
 
 
 def _split(path: Path) -> tuple[dict[str, Any], list[str]]:
-    """Return the header's values by name, and the lines that follow it."""
+    """Return the values of the header by name, and the lines after the header."""
     header: dict[str, Any] = {}
     rows = []
     try:
