@@ -1,15 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-"""This file interpolates the state of a body between two published ones.
+"""Interpolates the state of a body between two published states.
 
-Velocities are taken to change linearly from one state to the next, and the orientation to turn at a constant
-rate about a fixed axis. Of the angles that lead from one orientation to the other, it turns by the one that
-agrees with the published angular velocities, which may be more than half a turn. The position is the cubic
-through both positions with both velocities. For a body in flight that is the exact parabola, since its
-acceleration is constant. In general the error of the position grows as the fourth power of the time between
-the states: a body on a circle of radius r that turns by an angle a between them is at most r a^4 / 384 beside
-it.
+Velocities are interpolated linearly, and the orientation turns at a constant rate about a fixed axis. Of the
+angles that connect both orientations, the one that agrees with the published angular velocities is used,
+which may exceed half a turn. The position is the cubic through both positions with both velocities, which is
+exact for the parabola of a flight. In general, the error of the position grows as the fourth power of the
+time between the states: for a body on a circle of radius r that turns by an angle a between them, it is at
+most r a^4 / 384.
 
-An impact between the two states is smeared over the time between them.
+An impact between the two states is spread over the time between them.
 """
 
 from __future__ import annotations
@@ -29,7 +28,7 @@ if TYPE_CHECKING:
 
 
 def share_between(earlier: BodyState, later: BodyState, stamp_ns: int) -> float:
-    """Return how far a stamp, ns, is on the way from one state to the other, in [0, 1]."""
+    """Return the position of a stamp, ns, between those of two states, in [0, 1]."""
     return seconds_between(earlier.stamp_ns, stamp_ns) / seconds_between(earlier.stamp_ns, later.stamp_ns)
 
 
@@ -37,8 +36,8 @@ def state_between(earlier: BodyState, later: BodyState, stamp_ns: int) -> BodySt
     """Return the state at a stamp, ns, from ``earlier.stamp_ns`` to ``later.stamp_ns``, which differ.
 
     Raises:
-        InvalidFieldError: the orientations differ from what the angular velocities say by a third of a turn
-            or more, so that it is not known how the body turned.
+        InvalidFieldError: the orientations differ from those expected from the angular velocities by at least
+            a third of a turn, so that the rotation is ambiguous.
     """
     seconds = seconds_between(earlier.stamp_ns, later.stamp_ns)
     share = share_between(earlier, later, stamp_ns)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""This file carries the covariance of a body's state along a free or a forced motion.
+"""Propagates the covariance of a body's state along a free or a forced motion.
 
 Covariances are (12, 12), in the order position (m), rotation vector (rad, world axes, a small rotation
 applied after the attitude: R_true = Exp(theta) R), linear velocity (m/s), angular velocity (rad/s, world
@@ -7,15 +7,16 @@ axes). There are two methods. The first takes the exact derivative J of the moti
 cheap, and right as long as the body's possible states stay close together. The second draws many states from
 C and computes the motion of each.
 
-A tumbling body's orientation becomes unpredictable. Its deviation grows with time, and near the middle axis
-it grows exponentially. A linear covariance grows without bounds, but a real orientation can only be lost. So
-both methods say from when on small rotations no longer describe it: `CarriedCovariance.trusted`.
+The orientation of a tumbling body becomes unpredictable: its deviation grows with time, and exponentially
+near the middle axis. A linear covariance grows without bounds, although an orientation is at most unknown.
+Both methods therefore report from which time on small rotations do not describe it
+(`CarriedCovariance.trusted`).
 
-Sampled deviations are measured from the motion of the given state. A caller predicts with that motion, so its
-bias counts. The draws come in opposite pairs and are scaled to have exactly the given covariance. So where
-the motion is linear, both methods agree to rounding.
+Sampled deviations are relative to the motion of the given state, with which callers predict, and include its
+bias. The samples are drawn in opposite pairs and scaled to have exactly the given covariance, so that both
+methods agree to rounding if the motion is linear.
 
-Not covered: uncertain mass properties, noise on the way. `contact_dynamics.tumbling.flips` has the
+Not covered: uncertain mass properties and process noise. `contact_dynamics.tumbling.flips` computes the
 uncertainty of the times of flips.
 """
 
@@ -229,9 +230,9 @@ def _from_state(motion: FreeMotion | ForcedMotion, state: BodyState) -> FreeMoti
 
 
 def _probes(motion: FreeMotion | ForcedMotion, seconds: FloatArray) -> FloatArray:
-    """Return times on the way to ``seconds``: the integrator's own, or in closed form over one period.
+    """Return times up to ``seconds``: those of the integrator, or in closed form those of one period.
 
-    After a period, growth repeats itself and adds.
+    The growth of each period is the same, and adds up.
     """
     ends = float(seconds.max(initial=0.0)), float(seconds.min(initial=0.0))
     if isinstance(motion, ForcedMotion):
@@ -247,7 +248,7 @@ def _probes(motion: FreeMotion | ForcedMotion, seconds: FloatArray) -> FloatArra
 def orientation_deviations(covariances: FloatArray) -> FloatArray:
     """Return the largest standard deviations of orientation, (n,), rad, of covariances, (n, 12, 12).
 
-    Infinite where no double holds them.
+    They are infinite where they exceed the range of doubles.
     """
     finite = np.isfinite(covariances).all(axis=(1, 2))
     deviations = np.full(len(covariances), math.inf)
@@ -257,7 +258,7 @@ def orientation_deviations(covariances: FloatArray) -> FloatArray:
 
 
 def _trusted(seconds: FloatArray, deviations: FloatArray) -> NDArray[np.bool_]:
-    """Return where deviations, (n,), stay below the limit on the whole way from time 0."""
+    """Return whether deviations, (n,), have remained below the limit since time 0."""
     lost = deviations > TRUSTED_DEVIATION
     first = float(seconds[lost & (seconds >= 0.0)].min(initial=math.inf))
     last = float(seconds[lost & (seconds <= 0.0)].max(initial=-math.inf))

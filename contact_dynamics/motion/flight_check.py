@@ -1,16 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
-"""This file checks that positions are those of one flight: no impact lies among them, and the body falls.
+"""Checks whether positions are those of one flight: without an impact, and of a falling body.
 
-Model: what the fitted motion misses the positions by is white noise and, if an impact lies among them, two
-straight lines with a break. A wrong force bends one line instead. Two lines are therefore compared with one
-parabola, by their likelihoods with noise of unknown size. They need to be far better, since noise of trackers
-is correlated. The search begins with the last few states and doubles their number in each round. It therefore
+Model: the residuals of the fitted motion are white noise and, if an impact is among the states, two straight
+lines with a break. A wrong force bends a single line instead. Two lines are therefore compared with one
+parabola by their likelihoods with noise of unknown size, and must be far better, because noise of trackers is
+correlated. The search starts with the last few states and doubles their number in each round, so that it
 finds the latest of several impacts.
 
-A body that lies, slides or is carried does not fall: its acceleration is off by more than half of gravity.
+A body that rests, slides or is carried does not fall: its acceleration is off by more than half of gravity.
 
-If only the newest state comes after an impact, there is no second line: that state is compared with the
-parabola of the others, by the same measures.
+If only the newest state is after an impact, there is no second line, and this state is compared with the
+parabola of the others by the same criteria.
 
 Not covered: an impact with fewer than two states before it, one whose change of velocity is hidden by the
 noise, and contacts that act slowly. A jump of the positions themselves counts as an impact, also that of a
@@ -30,14 +30,14 @@ if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
 
 MIN_VARIANCE_RATIO: Final = 9.0
-"""Least ratio of the variances about a parabola and about two lines with an impact between them."""
+"""Minimum ratio of the variances about a parabola and about two lines with an impact between them."""
 
 LEAST_EVIDENCE: Final = 32.0
 """Least difference of twice the logarithms of the likelihoods. It matters for fewer than a dozen states, for
 which noise alone could reach the ratio."""
 
 OFF_GRAVITY: Final = 0.5
-"""By which share of gravity the acceleration of a flight may be off, where it is measured that well."""
+"""Largest error of the acceleration of a flight relative to gravity, if the states determine it."""
 
 _FIRST: Final = 6  # states of the first round
 _LEAST: Final = 2  # states of a line
@@ -45,7 +45,7 @@ _FEWEST_OF_PARABOLA: Final = 4  # a parabola fits any three positions
 
 
 def velocity_jump(seconds: FloatArray, misses_W: FloatArray) -> float | None:
-    """Return when, s, the velocity of a body jumps, or None if the positions show no jump.
+    """Return the time, s, at which the velocity of a body jumps, or None if the positions show no jump.
 
     ``misses_W``, (n, 3), m, are the positions at ascending times less those of a smooth motion.
     """
@@ -64,7 +64,7 @@ def velocity_jump(seconds: FloatArray, misses_W: FloatArray) -> float | None:
 
 
 def is_held(seconds: FloatArray, misses_W: FloatArray, gravity_W: FloatArray) -> bool:
-    """Return whether a body accelerates unlike one in flight: what carries it takes most of its weight.
+    """Return whether the acceleration of a body is not that of flight, because it is supported.
 
     ``misses_W``, (n, 3), m, are the positions at ascending times less those of a flight.
     """
@@ -81,7 +81,7 @@ def is_held(seconds: FloatArray, misses_W: FloatArray, gravity_W: FloatArray) ->
 
 
 def _parabola(t: FloatArray, x: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return powers of the times, from 0 to 1, the coefficient of their squares, and what is left, (n, 3)."""
+    """Return powers of the times, from 0 to 1, the coefficient of the squares, and the residuals, (n, 3)."""
     s = (t - t[0]) / (t[-1] - t[0])
     powers = np.column_stack([np.ones_like(s), s, np.square(s)])
     coefficients = np.linalg.lstsq(powers, x, rcond=None)[0]
@@ -89,7 +89,7 @@ def _parabola(t: FloatArray, x: FloatArray) -> tuple[FloatArray, FloatArray, Flo
 
 
 def _states_after(t: FloatArray, x: FloatArray) -> int:
-    """Return how many of the states come after a break, or zero if there is none."""
+    """Return the number of states after a break, or zero without a break."""
     n = len(t)
     x = x - x.mean(axis=0)
     powers, _, left = _parabola(t, x)

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Besides gravity, constant wrenches and drag act on a body (lecture 24).
+"""Constant wrenches and drag on a body, in addition to gravity (lecture 24).
 
 A wrench is a force through the centre of mass and a torque about it. Drag follows the usual two laws for
-still air or water: it is linear where the flow creeps and quadratic where it is turbulent. It acts at the
-centre of mass and equally in all directions. Not covered: wind, lift, added mass, a centre of pressure
+still air or water: linear in creeping flow and quadratic in turbulent flow. It acts at the centre of mass,
+equally in all directions. Not covered: wind, lift, added mass, a centre of pressure
 elsewhere.
 
-The differential equations are here too, in the variables of the integrator. `motion.integrated` says which
-these are, and why.
+This file also contains the differential equations in the variables of the integrator, which
+`motion.integrated` defines.
 """
 
 from __future__ import annotations
@@ -59,7 +59,7 @@ class ConstantWrench(Record):
         def __init__(
             self, *, force: ArrayLike = ..., torque: ArrayLike = ..., axes: WrenchAxes = ...
         ) -> None:
-            """Take whatever NumPy makes arrays of."""
+            """Accept anything that NumPy converts to arrays."""
 
     def __post_init__(self) -> None:
         """Check all fields."""

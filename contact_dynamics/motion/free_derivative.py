@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""How a free motion changes with its initial state: the exact derivative, at any time.
+"""The exact derivatives of a free motion with respect to its initial state, at any time.
 
 With theta a small rotation applied after the attitude and dL the change of L, both in world axes, the
 neighbours of a torque-free rotation obey

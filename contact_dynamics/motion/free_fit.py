@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A free motion is fitted to a short window of published states, so that one noisy velocity does no harm.
+"""Fits a free motion to a short window of published states, to avoid the noise of a single velocity.
 
-Model: a torque-free body in uniform gravity (`contact_dynamics.tumbling`) is seen at n times, with the noise
-of `state_noise`. The path of the centre of mass is a linear least-squares problem. The rotation has six
-unknowns, attitude and angular velocity at the newest stamp. Gauss's and Newton's method finds them with the
-exact derivative of the motion (`free_derivative`). It starts from the angular momentum averaged over all
-neighbouring pairs of states, since L is constant. If that is far off, it starts from the last turn or from
-the published velocities, whichever fits best. `whole_turns` finds out whether the body made whole turns more
-or less between the states. `velocity_jump` finds an impact within the window, which no free motion fits.
+Model: a torque-free body in uniform gravity (`contact_dynamics.tumbling`) is measured at n times, with the
+noise of `state_noise`. The path of the centre of mass is a linear least-squares problem. The rotation has six
+unknowns, attitude and angular velocity at the newest stamp, which the Gauss-Newton method finds with the
+exact derivatives of the motion (`free_derivative`). It starts from the angular momentum, which is constant,
+averaged over all neighbouring pairs of states, or if that is far off, from the last turn or the published
+velocities, whichever fits best. `whole_turns` determines the number of whole turns between the states, and
+`velocity_jump` detects an impact within the window, which no free motion fits.
 
 Not covered: contacts that change the velocity slowly, torque and drag (`integrated_fit`), outliers, unknown
 mass properties, and what `whole_turns` does not cover.
@@ -55,10 +55,10 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
 FEWEST_STATES: Final = 3
-"""Least number of states. Twelve numbers fit two poses exactly, with all their noise."""
+"""Minimum number of states. Twelve unknowns would fit two poses exactly, including their noise."""
 
 MAX_STATES: Final = 2000
-"""Largest number of states, which is a window of seconds. More would take too long."""
+"""Maximum number of states, a window of seconds. More would take too long."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -258,7 +258,7 @@ def _fit_rotation(
     *,
     search: bool,
 ) -> _Rotation:
-    """Fit the rotation. Without a search no other numbers of turns are tried, which takes long in vain."""
+    """Fit the rotation. Other numbers of turns are tried only if ``search`` is true."""
     window = _Turning(body, states, noise)
     seconds = window.seconds
     if search:
@@ -289,7 +289,7 @@ def _fit_rotation(
 
 
 def _start(window: _Turning) -> FreeMotion:
-    """Return the first start so near all attitudes that any such one leads to the same fit, or the best."""
+    """Return the first start that is close enough to all attitudes, or the closest one."""
     count, best, least = len(window.seconds), None, math.inf
     for motion in window.starts():
         misses = window.misses(motion, count)
@@ -315,7 +315,7 @@ class _Turning(Window[FreeMotion]):
         self.rates_weigh = self.by_w > 0.0
 
     def turns(self, motion: FreeMotion, count: int) -> FloatArray:
-        """Return the rotation vectors, (count, 3), from computed attitudes to the last ones seen."""
+        """Return the rotation vectors, (count, 3), from computed to the last measured attitudes."""
         return rotation_vectors(self.q[-count:], self.at(motion, count).q_WB)
 
     def misses(self, motion: FreeMotion, count: int) -> FloatArray:
@@ -330,7 +330,7 @@ class _Turning(Window[FreeMotion]):
         return self.by_q * whitened(rows, self.seconds[-len(rows) :], self.time)
 
     def derivatives(self, motion: FreeMotion, count: int) -> FloatArray:
-        """Return the derivatives of what the residuals compare, (m, 6)."""
+        """Return the derivatives of the computed quantities in the residuals, (m, 6)."""
         each = derivatives_along(motion, self.at(motion, count))
         if not np.isfinite(each).all():
             raise InvalidFieldError(
@@ -365,13 +365,13 @@ class _Turning(Window[FreeMotion]):
         return free_motion(self.body, state, gravity_W=np.zeros(3), precision=Precision.DOUBLE)
 
     def starts(self) -> Iterator[FreeMotion]:
-        """Yield motions from the newest attitude on, with angular velocities by several estimates.
+        """Yield motions through the newest attitude, with several estimates of the angular velocity.
 
-        Between neighbours a body turns about almost one axis: w is the turn over the time, at the attitude
-        halfway. That of L averaged over all neighbours, with the squares of the times as the weights for the
-        noise of orientations, is the least noisy. A needle is the exception, because the spin about its own
-        axis is the smallest part of L; for it there is the last turn. Where a body tumbles by half a turn or
-        more between neighbours, neither is near, and published velocities are.
+        Between neighbouring states, a body turns about nearly one axis, and w is the turn divided by the
+        time, at the attitude halfway. The average of L over all neighbours, weighted by the squares of the
+        times, is the least noisy estimate, except for a needle, whose spin about its own axis is the smallest
+        part of L; its last turn is better. If a body turns by half a turn or more between neighbours, only
+        published velocities are close.
         """
         q, between = self.q, np.diff(self.seconds)
         expected = 0.5 * (self.w[1:] + self.w[:-1]) * between[:, None]

@@ -1,23 +1,23 @@
 # SPDX-License-Identifier: Apache-2.0
-"""This file integrates the motion of a rigid body under forces and torques besides gravity (lecture 24).
+"""Integrates the motion of a rigid body under forces and torques in addition to gravity (lecture 24).
 
 The equations are Newton's and Euler's laws about the centre of mass, dp/dt = v, m dv/dt = m g + F, dL/dt = N,
 dR/dt = [w] R with w = R I^-1 R^T L. Forces may be constant in world or in body axes, drag in still air, and a
 user's function of time and state.
 
-The method. L in world axes is a variable, so it is constant to the last bit where no torque acts. The
-attitude is a quaternion whose rates depend on q / |q| alone. So the integrator's error of |q| affects
-nothing, and every answer is divided by |q|. Rotation vectors would need restarts. Position and velocity are
-deviations from the free parabola, which is therefore exact. SciPy's DOP853 (Hairer, Norsett and Wanner,
-Solving Ordinary Differential Equations I, II.5) steps these variables, in both directions of time and as far
-as is asked for. The steps are made when a time needs them, and kept.
+Method: L in world axes is a variable, so that it is constant to the last bit without torque. The attitude is
+a quaternion whose rates depend on q / |q| only; the integration error of |q| therefore has no effect, and
+results are divided by |q|. Rotation vectors would require restarts. Position and velocity are deviations from
+the free parabola, which is therefore exact. SciPy's DOP853 (Hairer, Norsett and Wanner, Solving Ordinary
+Differential Equations I, II.5) integrates these variables in both directions of time. Steps are computed when
+a requested time requires them, and stored.
 
 Accuracy, against the closed form at zero torque: 1e-12 rad after 10 revolutions of a compact body and 5e-11
 after 100, growing with the square of time; a rod of 1 to 20 is ten times as sensitive, and spin near the
-middle axis as much more as `poinsot` says of any error of its state. Cost: some 15 ms a revolution. Where
-nothing acts the closed form is better in all respects: `motion_of` chooses.
+middle axis amplifies it as any error of its state (see `poinsot`). Cost: about 15 ms per revolution. Without
+wrench and drag, the closed form is better in all respects; `motion_of` selects it.
 
-Not covered: forces that jump (each jump costs small steps), impacts, wind, lift, added mass.
+Not covered: discontinuous forces (each jump requires small steps), impacts, wind, lift, added mass.
 """
 
 from __future__ import annotations
@@ -210,7 +210,7 @@ def motion_of(
 
 
 def turns_or_drags(wrench: ConstantWrench, drag: Drag, wrench_of: WrenchFunction | None) -> bool:
-    """Return whether something acts that the closed form does not cover."""
+    """Return whether a torque or drag acts, which the closed form does not cover."""
     turns = any(wrench.torque.tolist())
     turns = turns or (wrench.axes is WrenchAxes.BODY and any(wrench.force.tolist()))
     return turns or drag != NO_DRAG or wrench_of is not None
@@ -241,7 +241,7 @@ def forced_motion(
     max_steps = check_whole("max_steps", max_steps, 1)
     check_extent(state, gravity)
     law = MotionLaw(body, state, gravity, wrench=wrench, drag=drag, wrench_of=wrench_of)
-    law.rates(0.0, law.start)  # a function that returns nonsense is refused at once
+    law.rates(0.0, law.start)  # rejects an invalid function immediately
     return ForcedMotion(
         body=body,
         state=state,
@@ -265,7 +265,7 @@ class IntegratedStep(NamedTuple):
 
 
 class Steps:
-    """The steps of the integrator in one direction of time. They are continued when a time needs it."""
+    """The steps of the integrator in one direction of time, which are continued when a time requires it."""
 
     def __init__(self, law: MotionLaw, end: float, most: int) -> None:
         self.law = law
@@ -323,7 +323,7 @@ class Steps:
                 self._refuse(distance, f"{self.most} steps of the integrator reach")
             if self.solver.status != "running":
                 self._refuse(distance, "the motion stays within bounds")
-            with np.errstate(all="ignore"):  # what grows without bounds is seen by its steps
+            with np.errstate(all="ignore"):  # a motion that grows without bounds needs ever smaller steps
                 self.solver.step()
             if self.solver.status != "failed":
                 self.dense.append(self.solver.dense_output())

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""How a motion under forces changes with its initial state: the derivative along the integrated motion.
+"""The derivatives of a motion under forces with respect to its initial state, along the integrated motion.
 
 Let theta be a small rotation applied after the attitude, dL the change of the angular momentum, and dF and dN
 the changes of force and torque, all in world axes. The neighbours of a motion then obey
@@ -75,7 +75,7 @@ def _one_way(motion: ForcedMotion, times: FloatArray) -> FloatArray:
     edges = _edges(motion, float(times[np.argmax(np.abs(times))]))
     nodes = GAUSS.nodes_of(edges).ravel()
     K = _coefficients(motion, nodes).reshape(-1, GAUSS.count, 12, 12)
-    with np.errstate(over="ignore", invalid="ignore"):  # neighbours may part beyond all doubles
+    with np.errstate(over="ignore", invalid="ignore"):  # neighbours may diverge beyond the range of doubles
         flow = GAUSS.solutions(K, edges, times)[1]
         begin = _rates_for_momenta(motion, motion.at([0.0]))[0]
         found: FloatArray = _rates_for_momenta(motion, motion.at(times)) @ flow @ np.linalg.inv(begin)

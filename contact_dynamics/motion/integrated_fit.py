@@ -1,15 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-"""This file fits a motion under torque and drag to a short window of published states.
+"""Fits a motion under torque and drag to a short window of published states.
 
 Model: a body moves under gravity, a constant wrench, drag and a user's function (`motion.integrated`), and is
-seen at n times with the noise of `state_noise`. All twelve numbers of the newest state are found together,
-because a force that turns with the body ties its path to its attitude. Gauss's and Newton's method finds them
-with the derivative of the integrated motion (`contact_dynamics.motion.integrated_derivative`). It starts from
-the free motion that fits best. `whole_turns` finds out whether the body made whole turns more or less between
-the states.
+measured at n times with the noise of `state_noise`. All twelve numbers of the newest state are estimated
+together, because a force that rotates with the body couples path and attitude. The Gauss-Newton method uses
+the derivatives of the integrated motion (`contact_dynamics.motion.integrated_derivative`), and starts from
+the free motion that fits best. `whole_turns` determines the number of whole turns between the states.
 
-Not covered: forces that are not known, outliers, contacts that change the velocity slowly,
-unknown mass properties, and what `whole_turns` does not cover.
+Not covered: unknown forces, outliers, contacts that change the velocity slowly, unknown mass properties, and
+what `whole_turns` does not cover.
 """
 
 from __future__ import annotations
@@ -48,9 +47,8 @@ if TYPE_CHECKING:
     from contact_dynamics.motion.forces import WrenchFunction
 
 PASSES: Final = 3
-"""Number of passes where the noise is not known and weights come from residuals. The residuals of the free
-motion are too large if it fits badly. Those of the first pass are nearly right. The covariance uses those of
-the second."""
+"""Number of passes for unknown noise, whose size is estimated from residuals. Those of the free motion may be
+too large, those of the first pass are nearly correct, and the covariance uses those of the second."""
 
 
 def fit_motion(
@@ -133,7 +131,7 @@ def fit_motion(
 
 
 def _noise_of(position_residual: float, orientation_residual: float, count: int) -> StateNoise:
-    """Return the noise of each component that these residuals of ``count`` poses imply."""
+    """Return the noise of each component estimated from the residuals of ``count`` poses."""
     # Residuals are root mean squares of vectors, and six numbers are fitted to each.
     share = math.sqrt(count / (3 * count - 6))
     return StateNoise(
@@ -163,7 +161,7 @@ class _Seen(Window[ForcedMotion]):
         self.rates_weigh = noise.angular_velocity is not None
 
     def misses(self, motion: ForcedMotion, count: int = MAX_STATES) -> FloatArray:
-        """Return the seen states less the computed ones, (n, 12), of the last ``count`` states."""
+        """Return measured minus computed states, (n, 12), of the last ``count`` states."""
         then = self.at(motion, min(count, len(self.seconds)))
         return np.hstack(
             [

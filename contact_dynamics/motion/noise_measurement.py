@@ -1,15 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The noise of poses is estimated from the residuals of recorded flights, all of one body and one tracker.
+"""Estimates the noise of poses from the residuals of recorded flights of one body with one tracker.
 
 Standard deviation, correlation time and degrees of freedom maximise the restricted likelihood of the
-residuals (REML; Patterson and Thompson, Biometrika 58, 1971): a fit takes up a part of slow errors, and this
-likelihood accounts for that part. Each flight has a gravity of its own, so that a wrong one is not taken for
-noise.
+residuals (REML; Patterson and Thompson, Biometrika 58, 1971), which accounts for the part of slow errors that
+a fit absorbs. Gravity is free in each flight, so that a wrong value does not count as noise.
 
-An error that is constant over a flight does not show. Correlation times that are long beside the flights
-therefore fit alike, and the shortest one that the residuals do not reject is taken. Flights whose residuals
-exceed the noise of the others by as much as a fit rejects (`whole_turns.MAX_NOISE_RATIO`) are left out,
-since something touched the body in them.
+An error that is constant over a flight is not observable. Correlation times much longer than the flights
+therefore fit equally well, and the shortest one that the residuals do not reject is used. Flights whose
+residuals exceed the noise of the others by as much as a fit rejects (`whole_turns.MAX_NOISE_RATIO`) are
+excluded, because something touched the body in them.
 """
 
 from __future__ import annotations
@@ -37,19 +36,19 @@ if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
 
 MIN_FLIGHTS: Final = 10
-"""Least number of flights. The degrees of freedom say how the noise differs from flight to flight."""
+"""Minimum number of flights. The degrees of freedom describe how the noise differs between flights."""
 
 FEWEST_POSES: Final = 4
-"""Least number of poses in a flight, whose path has three unknowns in each coordinate."""
+"""Minimum number of poses in a flight, whose path has three unknowns in each coordinate."""
 
 SHORTEST: Final = 0.25
 """Shortest correlation time other than 0, in intervals between poses. Neighbours then share 2 %."""
 
 LONGEST: Final = 2.0
-"""Longest correlation time, in durations of the longest flight. Longer ones look alike."""
+"""Longest correlation time, in durations of the longest flight. Longer ones are indistinguishable."""
 
 STEP: Final = 1.25
-"""Factor from one correlation time to the next. Hundreds of flights tell it no better."""
+"""Factor from one correlation time to the next. Hundreds of flights do not determine it better."""
 
 NOT_REJECTED: Final = 2.0
 """Logarithm of the ratio of likelihoods up to which a time is not rejected, at two standard deviations."""

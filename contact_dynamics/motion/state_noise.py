@@ -7,9 +7,9 @@ window it is drawn from a scaled inverse chi-squared distribution, whose degrees
 heavy tails: errors over many windows are then Student's. A window's own residuals update the variance.
 
 Where the noise is not known, the covariance is the average over correlation times (`FRAMES`), weighted by
-the restricted likelihood of the residuals, whose variance has Jeffreys' prior. A dozen states cannot tell
-slow errors from motion: their average is wider than white noise would need. From some thirty states on, the
-residuals decide.
+the restricted likelihood of the residuals, whose variance has Jeffreys' prior. A dozen states cannot
+distinguish slow errors from motion, so their average is wider than for white noise. From about thirty states
+on, the residuals determine the result.
 
 Not covered: noise in the axes of a camera, and errors that last longer than all recorded flights.
 """
@@ -63,7 +63,7 @@ class StateNoise(Record):
     degrees_of_freedom: float | None = None
 
     def __post_init__(self) -> None:
-        """Check those that are there."""
+        """Check the given values."""
         for name in ("position", "orientation", "linear_velocity", "angular_velocity"):
             value = getattr(self, name)
             if value is not None:

@@ -1,13 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""This file estimates velocities as a tracking system does, from past measured poses alone.
+"""Estimates velocities as a tracking system does, from past measured poses alone.
 
 Model: over the last few frames each coordinate of the position, and of the rotation vector relative to the
-newest orientation, is a quadratic function of time. Least squares gives the three coefficients. The velocity
-is the slope of the quadratic **at the newest frame**, so that the estimate belongs to the stamp of its
-sample. At the end of the window the slope of a quadratic has no lag under constant acceleration, such as
-gravity's. A straight line would be half a window late.
+newest orientation, is a quadratic function of time, fitted by least squares. The velocity is the slope of the
+quadratic **at the newest frame**, to whose stamp the estimate belongs. This slope has no lag under constant
+acceleration, such as that of gravity, whereas the slope of a straight line would lag by half a window.
 
-The price is noise. For n frames spaced dt with white noise sigma, the slope's standard deviation at the end
+The disadvantage is noise. For n frames spaced dt with white noise sigma, the standard deviation of the slope
 is sigma / dt * sqrt(12 (2n - 1)(8n - 11) / (n (n^2 - 1)(n^2 - 4))), close to sigma / dt * sqrt(192 / n^3).
 
 Not covered: a window that spans an impact averages the velocities before and after it, and such estimates are
@@ -36,7 +35,7 @@ slope's noise."""
 
 
 def frames_in_window(rate: float) -> int:
-    """Return how many frames at ``rate`` (Hz) the estimate uses, including the newest."""
+    """Return the number of frames in the estimate at ``rate`` (Hz), including the newest."""
     return max(FEWEST_FRAMES, round(rate * WINDOW))
 
 
@@ -67,8 +66,8 @@ def velocity_at(
 ) -> tuple[FloatArray, FloatArray]:
     """Return linear and angular velocity, (3,) each, at a time, s, near the frames or among them.
 
-    Frames are given as to `causal_velocities`, at least three of them. The farther the time is from the
-    frames, the more their noise counts.
+    Frames are given as to `causal_velocities`, at least three of them. The effect of noise grows with
+    the distance of the time from the frames.
     """
     nearest = int(np.abs(times - seconds).argmin())
     coordinates = np.column_stack([p_W - p_W[nearest], rotation_vectors(q, q[nearest])])

@@ -1,20 +1,20 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Poses do not show the whole turns between them. Angular velocities do.
+"""Determines the number of whole turns between poses, which angular velocities show and poses do not.
 
-A body that turns by half a turn or more from one pose to the next looks as if it turned slower, or backwards.
+A body that turns by half a turn or more from one pose to the next appears to turn more slowly, or backwards.
 Motions whose attitudes agree at all stamps differ by at least one turn over some interval, so their angular
-velocities differ by at least 2 pi over the longest interval. Published velocities that are nearer to a motion
-than a third of this therefore exclude all others. Where they do not, other motions are searched for: from
-the published velocities, and with whole turns more and less. A search starts with the last few states and
-takes in twice as many in each round, so that a start need not be right over the whole window.
+velocities differ by at least 2 pi over the longest interval. Published velocities that are closer to a motion
+than a third of this therefore exclude all others. Otherwise, other motions are searched for, starting from
+the published velocities and from motions with more and fewer whole turns. A search starts with the last few
+states and doubles their number in each round, so that the start need not fit the whole window.
 
-Motions that the states do not tell apart are alternatives. Residuals decide by their likelihood, with the
-noise that is given or, if none is, with one of unknown size. Among motions that fit alike, published
-velocities decide if they are twice as far from the second as from the first. Velocities that are all zero
-count as not published, unless the body rests.
+Motions that the states do not distinguish are alternatives. The criterion is the likelihood of the residuals,
+with the given noise or with noise of unknown size. Among motions that fit equally well, published velocities
+decide if they are twice as far from the second as from the first. Velocities that are all zero count as not
+published, unless the body rests.
 
-Not covered: without velocities, the search goes up to two turns per interval more or less. Other motions may
-fit as well, and that a fit has no alternatives is then no proof.
+Not covered: without velocities, the search includes up to two turns per interval more or less. Other motions
+may fit as well, so a fit without alternatives is not proven to be unique.
 """
 
 from __future__ import annotations
@@ -110,7 +110,7 @@ class Window(ABC, Generic[Model]):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Chosen(Generic[Model]):
-    """The motion that fits best, and others that fit as well."""
+    """The best fit, and other motions that fit equally well."""
 
     fit: Fit[Model]  # the best fit
     converged: bool  # whether it converged, and its residuals fit the noise
@@ -129,10 +129,10 @@ class _Found(Generic[Model]):
 
 
 def turns_near(q: FloatArray, q_from: FloatArray, expected: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return the turns, (n, 3), from attitudes to others nearest to those expected, and what these miss.
+    """Return the turns, (n, 3), between attitudes that are nearest to the expected ones, and their errors.
 
-    A turn is a rotation vector, rad, of any length. That of at most half a turn is taken if it is as near as
-    `THIRD_OF_A_TURN`. Otherwise it is the one expected, and what this misses, (n, 3), rad, follows it.
+    A turn is a rotation vector, rad, of any length. It is the one of at most half a turn if that is within
+    `THIRD_OF_A_TURN` of the expected one. Otherwise it is the expected one, with its error, (n, 3), rad.
     """
     seen = rotation_vectors(q, q_from)
     rest = np.zeros_like(seen)
@@ -201,7 +201,7 @@ def _judged(window: Window[Model], fit: Fit[Model]) -> _Found[Model]:
         else orientation_residual <= MAX_ORIENTATION_RESIDUAL
     )
     spin_miss = math.sqrt(float(np.square(rates).sum()) / count)
-    if window.w.any() and spin_miss * _longest(window) > math.pi:  # no better than chance
+    if window.w.any() and spin_miss * _longest(window) > math.pi:  # not better than by chance
         fits = False
     return _Found(
         fit=fit,
@@ -214,7 +214,7 @@ def _judged(window: Window[Model], fit: Fit[Model]) -> _Found[Model]:
 
 
 def _confirmed(window: Window[Model], found: _Found[Model]) -> bool:
-    """Return whether published angular velocities exclude motions with whole turns more or less."""
+    """Return whether published angular velocities exclude motions with more or fewer whole turns."""
     if not window.w.any():
         turn = float(np.linalg.norm(found.fit.model.state.w_WB_W)) * -float(window.seconds[0])
         return turn <= _RESTS * max(found.orientation_residual, LEAST_NOISE)
@@ -235,7 +235,7 @@ def _evidence(window: Window[Model], best: _Found[Model], other: _Found[Model]) 
 
 
 def _distinct(window: Window[Model], found: list[_Found[Model]]) -> list[_Found[Model]]:
-    """Return those whose angular velocities differ as those of different motions do, best first."""
+    """Return fits of different motions, judged by their angular velocities, best first."""
     kept: list[_Found[Model]] = []
     apart = 0.5 * THIRD_OF_A_TURN / _longest(window)
     for each in sorted(found, key=_goodness):
@@ -246,7 +246,7 @@ def _distinct(window: Window[Model], found: list[_Found[Model]]) -> list[_Found[
 
 
 def _searched(window: Window[Model], model: Model, found: list[_Found[Model]]) -> list[_Found[Model]]:
-    """Return the fit from a start to the last states, and to twice as many in each round, or none."""
+    """Return the fit from a start, extended over twice as many states in each round, or none."""
     total = len(window.seconds)
     variances = [each.cost / each.free for each in found if each.converged]
     variance = 1.0 if window.noise_is_known else min(variances, default=math.inf)

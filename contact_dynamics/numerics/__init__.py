@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Known numerical methods that the physics uses. They contain no physics."""
+"""Standard numerical methods, without physics."""

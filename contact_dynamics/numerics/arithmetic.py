@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The constants of a rotation are computed in doubles, alone or in arrays, or in decimals.
+"""Arithmetic for the constants of a rotation: doubles, arrays of doubles, or decimals.
 
 The formulas are written once for all these numbers. Long motions need extended precision: an error of one
 last bit in the rate of a phase becomes an error of radians after 1e16 rad. Near the middle axis this happens
@@ -53,11 +53,11 @@ class Precision(enum.Enum):
 
 @dataclass(frozen=True, slots=True)
 class Arithmetic(Generic[Number]):
-    """What the formulas need to know of a kind of number.
+    """The operations that the formulas require of a type of number.
 
     Attributes:
         number: Function that converts a double exactly.
-        any: Function that says whether a comparison is true, in any element of an array.
+        any: Function that returns whether a comparison is true for any element of an array.
         sums: Decimal context for sums that cancel.
         rates: Decimal context for numbers that are multiplied by time.
         cancelled: Rounding of a sum that should be zero, relative to its terms.
@@ -92,7 +92,7 @@ DOUBLES: Final = Arithmetic(
 
 
 def _context(digits: int) -> DecimalContext:
-    """Return a context that sets every option, so that the caller's and the default one do not matter."""
+    """Return a context that sets every option, independently of the caller's and the default context."""
     return DecimalContext(
         prec=digits,
         rounding=ROUND_HALF_EVEN,
@@ -111,7 +111,7 @@ DECIMALS: Final = Arithmetic(
     largest=max,
     sqrt=Decimal.sqrt,
     pi=Decimal("3.14159265358979323846264338327950288419716939937510582097494459"),
-    sums=_context(120),  # may cancel by 80 digits and leave a double's worth
+    sums=_context(120),  # after a cancellation of 80 digits, those of a double remain
     rates=_context(38),  # a double-double's 32 digits, and six for the way there
     cancelled=Decimal("1e-100"),
     half_precise=Decimal("1e-19"),
@@ -133,5 +133,5 @@ ARRAYS: Final = Arithmetic(
 
 
 def within(context: DecimalContext | None) -> AbstractContextManager[object]:
-    """Return a block in which decimals have a context's digits. For doubles the context is None."""
+    """Return a context manager in which decimals have the digits of a context, or none for doubles."""
     return contextlib.nullcontext() if context is None else localcontext(context)

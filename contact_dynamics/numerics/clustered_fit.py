@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
 
 HUBER: Final = 2.0
-"""Standard deviations up to which an observation counts wholly. Of normal residuals 5 % are larger."""
+"""Standard deviations up to which an observation has full weight. Of normal residuals, 5 % are larger."""
 
 REJECTED: Final = 5.0
 """Standard deviations beyond which an observation is an outlier."""
@@ -44,17 +44,17 @@ MAX_ROUNDS: Final = 40
 """Bound on the rounds. Well determined fits take five to ten."""
 
 MAX_TRIALS: Final = 8
-"""Bound on the tries of one round, each with ten times more damping."""
+"""Bound on the trials of one round, each with ten times more damping."""
 
 LEAST_INFORMATION: Final = 1.0
 """Information along a direction, in standard units, below which it is undetermined."""
 
 SEPARATED: Final = 10.0
-"""Factor by which errors may grow because parameters replace each other. It is 2 and less for the standard
-parameters of twenty published tosses, and 45 for rounding, size and surface height together."""
+"""Factor by which errors may grow because parameters compensate for each other. It is at most 2 for the
+standard parameters of twenty published tosses, and 45 for rounding, size and surface height together."""
 
 APART: Final = 0.3
-"""An undetermined direction is reported beside others if at least this share is outside of their span."""
+"""Share of an undetermined direction outside the span of the others, from which it is reported too."""
 
 SHRINKING: Final = 5.0
 """Clusters for each parameter at which the scatter between clusters counts half against its mean. With it,
@@ -62,7 +62,7 @@ SHRINKING: Final = 5.0
 sets of twenty tosses in the slow test of calibrations, for both ways."""
 
 SPARE_CLUSTERS: Final = 3
-"""There must be so many clusters more than parameters for the jackknife."""
+"""Minimum number of clusters in excess of parameters for the jackknife."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -88,7 +88,7 @@ class ClusteredFit(Record):
         parameters: (p,), in standard units.
         covariance: (p, p), in standard units; zero along undetermined directions.
         influences: (clusters, p), by how much each cluster moved the estimate.
-        undetermined: (u, p), orthonormal directions along which the data say too little.
+        undetermined: (u, p), orthonormal directions that the data do not determine.
         at_bound: (p,), whether a parameter lies at its bound. Its variance is then zero.
         sizes: For each group, (n,), the residuals' size in standard deviations of one.
         clusters: Number of clusters with any weight.
@@ -232,8 +232,8 @@ def _shrunk(scattered: FloatArray, information: FloatArray, clusters: int) -> Fl
     """Return a covariance between that of the scatter of few clusters and a multiple of the model's.
 
     In axes in which the model's covariance is 1, the scatter of G clusters in r directions has eigenvalues
-    that are far from each other by chance alone, and a region by it would be too flat in some direction.
-    So it is drawn towards its mean eigenvalue (Ledoit and Wolf, Journal of Multivariate Analysis 2004).
+    that differ widely by chance alone, and its region would be too flat in some direction. It is therefore
+    shrunk towards its mean eigenvalue (Ledoit and Wolf, Journal of Multivariate Analysis 2004).
     """
     size = len(information)
     factor = np.linalg.cholesky(information)
@@ -252,7 +252,7 @@ def _step(
     bounds: tuple[FloatArray, FloatArray],
     damping: float,
 ) -> FloatArray:
-    """Return the step, which does not go along undetermined directions."""
+    """Return the step, which has no component along undetermined directions."""
     basis, _ = _directions(information, _free(score, x, bounds))
     inner = basis.T @ information @ basis
     inner[np.diag_indices_from(inner)] += damping
@@ -261,7 +261,7 @@ def _step(
 
 
 def _free(score: FloatArray, x: FloatArray, bounds: tuple[FloatArray, FloatArray]) -> NDArray[np.bool_]:
-    """Return which parameters are not held at a bound by a cost that falls beyond it."""
+    """Return which parameters are free: not at a bound beyond which the cost decreases."""
     lower, upper = bounds
     free: NDArray[np.bool_] = ~(((x <= lower) & (score > 0.0)) | ((x >= upper) & (score < 0.0)))
     return free

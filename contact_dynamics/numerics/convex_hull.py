@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""This file finds convex hulls by Qhull. If rounding makes Qhull give up, it tries again with turned points.
+"""Computes convex hulls with Qhull. If Qhull fails because of rounding, the points are rotated first.
 
-Qhull merges facets that are nearly one. Where points are symmetric, or lie nearly in a plane, rounding can
-lead it into merges that it refuses. This happens in one rotation of a thousand or in four of five, and other
-rotations give the hull.
+Qhull merges nearly coplanar facets. For symmetric points, or points nearly in a plane, rounding can lead to
+merges that it rejects, in one rotation of a thousand or in four of five. Other rotations succeed.
 """
 
 from __future__ import annotations
@@ -39,7 +38,7 @@ def hull_of(field: str, points: FloatArray) -> Hull:
     """Return the convex hull of points, (n, d), d >= 2, that do not lie in a plane.
 
     Args:
-        field: The caller's name of the points, which errors use.
+        field: The caller's name of the points, for errors.
         points: Any unit.
 
     Raises:
@@ -47,7 +46,7 @@ def hull_of(field: str, points: FloatArray) -> Hull:
     """
     from scipy.spatial import ConvexHull, QhullError
 
-    middle = np.zeros(points.shape[1])  # first as they are: most hulls need no more
+    middle = np.zeros(points.shape[1])  # most hulls succeed without a rotation
     rotation = np.eye(points.shape[1])
     chance = np.random.default_rng(0)
     for _ in range(_TRIALS):
@@ -57,7 +56,7 @@ def hull_of(field: str, points: FloatArray) -> Hull:
             middle = points.mean(axis=0)
             rotation = np.linalg.qr(chance.normal(size=rotation.shape))[0]
             if np.linalg.det(rotation) < 0.0:
-                rotation[:, 0] *= -1.0  # keeps what is counterclockwise
+                rotation[:, 0] *= -1.0  # keeps the order counterclockwise
             continue
         outward = hull.equations[:, :-1] @ rotation.T
         return Hull(

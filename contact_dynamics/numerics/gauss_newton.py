@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Gauss's and Newton's method finds nonlinear least squares, with steps that are halved until they help.
+"""Nonlinear least squares by the Gauss-Newton method, whose steps are halved until the residuals decrease.
 
-SciPy's ``least_squares`` finds the same, and the tests compare both. It is not used here for three reasons.
-An attitude is moved by a new rotation vector in each round, and SciPy's would have to start anew for
-that. The rounds here end where the change is negligible in the measured quantities. And its import takes
-tenths of a second, in the middle of the first question with a window of states.
+SciPy's ``least_squares`` has the same results, as tests show, but is not used for three reasons: attitudes
+change by a new rotation vector in each round, for which SciPy would have to be restarted; rounds end here
+when the change of the measured quantities is negligible; and its import would delay the first request with a
+window of states by tenths of a second.
 
 Not covered: bounds, outliers, and starts that are too far off for linearisation.
 """
@@ -27,20 +27,20 @@ if TYPE_CHECKING:
 Model = TypeVar("Model")
 
 MAX_ROUNDS: Final = 20
-"""Bound on the rounds. Most fits take three, and a start that is a radian off takes a few more."""
+"""Bound on the rounds. Most fits take three; a start that is off by a radian takes a few more."""
 
 MAX_HALVINGS: Final = 10
-"""Bound on the halvings of a step that does not make the residuals smaller."""
+"""Bound on the halvings of a step that does not reduce the residuals."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Fit(Generic[Model]):
-    """The model that fits best.
+    """The best fit.
 
     Attributes:
         misses: (m,), weighted residuals: measured less computed.
         inverse: (k, k). inverse @ inverse^T is the parameters' covariance for unit variances.
-        converged: Whether the last round changed next to nothing.
+        converged: Whether the change in the last round was negligible.
     """
 
     model: Model
@@ -58,7 +58,7 @@ def gauss_newton(
     moved: Callable[[Model, FloatArray], Model],
     negligible: FloatArray,
 ) -> Fit[Model]:
-    """Return the model whose weighted residuals have the least sum of squares, from a start nearby.
+    """Return the model whose weighted residuals have the least sum of squares, near a start.
 
     Args:
         model: the start.
@@ -74,7 +74,7 @@ def gauss_newton(
     """
     misses = misses_of(model)
     rounds, converged = 0, False
-    before = 0.0  # what the round before explained of the sum of squares, if its step was a whole one
+    before = 0.0  # part of the sum of squares explained by the round before, if its step was not halved
     while rounds < MAX_ROUNDS and not converged:
         rounds += 1
         design = derivatives_of(model)
@@ -91,7 +91,7 @@ def gauss_newton(
             ) from None
         cost, part = float(misses @ misses), float(explained @ explained)
         small = bool((np.abs(design @ step) < negligible).all())
-        # The rounds converge ever faster, so the next one explains at most its part of this one.
+        # Convergence accelerates, so the next round explains at most the same share of this one.
         shrinks = part / before if part < before else 1.0
         converged = small or shrinks * part < SMALL_SHARE * cost
         start, before = model, part

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""This file finds out why linear inequalities on non-negative numbers have no solution, if they have none.
+"""Proves that linear inequalities on non-negative numbers have no solution, if they have none.
 
-It is a dual simplex on a small dense table. By Farkas' lemma, inequalities without solution have a
-non-negative combination that contradicts itself, and the last table has its multipliers in one row. A caller
-checks that combination by its own bounds of rounding, so that nothing here needs to be trusted.
+The method is the dual simplex on a small dense table. By Farkas' lemma, inequalities without solution have a
+non-negative combination that contradicts itself; the last table contains its multipliers in one row. The
+caller checks that combination with its own bounds of rounding, so the proof does not depend on this file.
 
 It replaces SciPy's linear programs (HiGHS), which take five times longer for tables of 35 rows, mostly to
 check and convert what they are given, and whose interface for mixed integers has no multipliers.

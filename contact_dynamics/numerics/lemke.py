@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Lemke's pivots solve linear complementarity: find z >= 0 with w = M z + q >= 0 and z . w = 0.
+"""Solves linear complementarity problems by Lemke's method: z >= 0 with w = M z + q >= 0 and z . w = 0.
 
-Friction makes M unsymmetric and copositive. Lemke's method then ends at a solution wherever some z >= 0 gives
-w >= 0 (Cottle, Pang and Stone, The Linear Complementarity Problem, 1992, 4.4). Redundant contacts make ties.
-A covering vector in general position breaks them. It is always the same.
+Friction makes M unsymmetric and copositive. Lemke's method then finds a solution if some z >= 0 satisfies
+w >= 0 (Cottle, Pang and Stone, The Linear Complementarity Problem, 1992, 4.4). Redundant contacts cause ties,
+which a constant covering vector in general position breaks.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from contact_dynamics.validation import FloatArray
 
 _PIVOTS_A_ROW: Final = 50
-"""Number of pivots for each row after which the search counts as failed. Solutions take one to three."""
+"""Bound on the pivots per row. Solutions take one to three."""
 
 
 def solve_complementarity(M: FloatArray, q: FloatArray) -> FloatArray | None:
@@ -55,7 +55,7 @@ def solve_complementarity(M: FloatArray, q: FloatArray) -> FloatArray | None:
         ratios = np.full(m, np.inf)
         ratios[rising] = np.maximum(table[rising, -1], 0.0) / column[rising]
         leaving_row = int(ratios.argmin())
-        # The covering variable leaves as soon as it may: then the problem is solved.
+        # The problem is solved as soon as the covering variable can leave the basis.
         covering = basis.index(2 * m)
         if table[covering, -1] - ratios[leaving_row] * column[covering] <= solved:
             leaving_row = covering

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""This file finds orthonormal bases of the span of vectors and of its complement, and their dimensions.
+"""Orthonormal bases of the span of vectors and of its complement, with their dimensions.
 
-A few plain vectors go through Gram's and Schmidt's method. Rows of a matrix go through its singular values.
+Few vectors are orthogonalised by the Gram-Schmidt method, and rows of matrices by singular values.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ def orthonormal(vectors: Iterable[Sequence[float]]) -> list[tuple[float, ...]]:
     basis: list[tuple[float, ...]] = []
     for vector in vectors:
         rest, size = _without_all(vector, basis)
-        # Twice is enough (Kahan): the second pass removes what rounding left.
+        # Two passes are enough (Kahan): the second one removes the rounding errors of the first.
         if basis and size > ROW_TOLERANCE:
             rest, size = _without_all(rest, basis)
         if size > ROW_TOLERANCE:
@@ -37,7 +37,7 @@ def orthonormal(vectors: Iterable[Sequence[float]]) -> list[tuple[float, ...]]:
 
 
 def _without_all(vector: Sequence[float], basis: list[tuple[float, ...]]) -> tuple[Sequence[float], float]:
-    """Return the part of a vector that is orthogonal to all of a basis, and its size."""
+    """Return the part of a vector that is orthogonal to a basis, and its length."""
     rest = vector
     for unit in basis:
         part = 0.0
@@ -53,8 +53,8 @@ def _without_all(vector: Sequence[float], basis: list[tuple[float, ...]]) -> tup
 def rough_span(vectors: Iterable[Vector3], *, tolerance: float) -> list[Vector3]:
     """Return an orthonormal basis of the span of unit ``vectors``. Zero vectors are allowed and add nothing.
 
-    A vector that leans out of the span by no more than ``tolerance``, a sine, counts as in it. This is far
-    more than rounding leaves, so one pass is enough, unlike in `orthonormal`.
+    A vector whose angle to the span has a sine of at most ``tolerance`` counts as in the span. The tolerance
+    far exceeds rounding, so one pass is enough, unlike in `orthonormal`.
     """
     basis: list[Vector3] = []
     for vector in vectors:
@@ -67,7 +67,7 @@ def rough_span(vectors: Iterable[Vector3], *, tolerance: float) -> list[Vector3]
 
 
 def row_space(rows: FloatArray) -> FloatArray:
-    """Return an orthonormal basis, (k, d), of what the rows, (m, d), span."""
+    """Return an orthonormal basis, (k, d), of the span of rows, (m, d)."""
     if len(rows) == 0:
         return np.zeros(rows.shape)
     sizes, basis = np.linalg.svd(rows)[1:]
@@ -86,7 +86,7 @@ def seen_and_unseen(rows: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return orthonormal bases, (k, d) and (d - k, d), of the span of rows of unit length, and of the rest.
 
     Unlike in `row_space` and `null_space`, the length of the rows matters: rows that consist of rounding
-    alone span nothing. There are many rows here, so they are first reduced to as many as there are columns,
+    errors span nothing. Because there are many rows, they are first reduced to as many as there are columns,
     which changes last bits.
     """
     if len(rows) > rows.shape[1]:

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""This file solves non-negative least squares, after Lawson and Hanson (1974, ch. 23).
+"""Solves non-negative least squares by the method of Lawson and Hanson (1974, ch. 23).
 
 `least_force` chooses among the forces that balance a wrench. It returns those of least sum of squares if none
-of them is negative, as under a block on a row of feet. Otherwise it returns a solution with few forces. It
-does not use SciPy, because SciPy's first import takes tenths of a second, longer than all else in a planar
-answer. Also, it leaves out directions that consist of rounding alone, and SciPy does not.
+of them is negative, as under a block on a row of feet. Otherwise it returns a solution with few forces. SciPy
+is not used, because its import takes tenths of a second, longer than the rest of a planar answer, and because
+it does not exclude directions that consist of rounding errors.
 
 `exact_combination` calculates with as many digits as it takes, for columns that nearly coincide.
 
@@ -42,7 +42,7 @@ _LARGEST_SHARE: Final = 1e13
 """Largest share of the target that one column may have for the target to count as reached."""
 
 _GUESSES: Final = 30
-"""Largest number of rounds of a search for the least forces, which takes a few."""
+"""Bound on the rounds of the search for the least forces, which takes a few."""
 
 _Decimals: TypeAlias = "list[Decimal]"
 
@@ -73,7 +73,7 @@ def least_force(columns: Sequence[Vector3], target: Vector3, absent: Sequence[Ve
 
 
 def _few_forces(matrix: FloatArray, right: FloatArray) -> FloatArray:
-    """Add the column that helps most and drop those that would pull, until the target is balanced."""
+    """Add the most effective column and drop negative ones, until the target is balanced."""
     count = matrix.shape[1]
     x = np.zeros(count)
     acting = np.zeros(count, dtype=bool)
