@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from contact_dynamics.measured.events import REST_SPAN, find_rest
+from contact_dynamics.measured.events import REST_SPAN, find_rest, reach_of
 from contact_dynamics.measured.flight_fit import FEWEST_FRAMES
 from contact_dynamics.measured.flights import ALONE, find_flights, find_strikes
 from contact_dynamics.records import Record
@@ -66,7 +66,8 @@ def observe(name: str, motion: MeasuredMotion) -> list[Observed]:
 def _observed(name: str, motion: MeasuredMotion, flights: tuple[slice, ...]) -> Observed:
     surfaces = motion.surfaces
     found = find_strikes(motion, flights) if surfaces else ()
-    alone = [strike for strike in found if strike.margin >= ALONE * _reach(motion)]
+    reach = reach_of(motion.body.shape)
+    alone = [strike for strike in found if strike.margin >= ALONE * reach]
     rest = find_rest(motion)
     first = slice(flights[0].start, flights[0].stop - 1) if flights else slice(0, 0)
     return Observed(
@@ -74,7 +75,7 @@ def _observed(name: str, motion: MeasuredMotion, flights: tuple[slice, ...]) -> 
         motion=motion,
         flights=flights,
         first=first if first.stop - first.start >= FEWEST_IN_FIRST else None,
-        strikes=tuple(strike for strike in alone if abs(strike.height) <= NEAR * _reach(motion)),
+        strikes=tuple(strike for strike in alone if abs(strike.height) <= NEAR * reach),
         several=len(found) - len(alone),
         rest=rest,
         rest_surface=_nearest(surfaces, rest.state.p_WB_W) if rest is not None and surfaces else 0,
@@ -83,15 +84,6 @@ def _observed(name: str, motion: MeasuredMotion, flights: tuple[slice, ...]) -> 
 
 def _nearest(surfaces: Sequence[Surface], point_W: FloatArray) -> int:
     return int(np.argmin([abs(float(surface.gaps(point_W))) for surface in surfaces]))
-
-
-def _reach(motion: MeasuredMotion) -> float:
-    shape = motion.body.shape
-    if shape.is_empty:
-        return 0.0
-    vertices = shape.vertices if len(shape.vertices) else np.array([rim.center for rim in shape.rims])
-    middle = vertices.mean(axis=0)
-    return float(np.linalg.norm(vertices - middle, axis=1).max()) + shape.rounding
 
 
 BETWEEN_TOSSES: Final = 0.4
@@ -137,7 +129,7 @@ def _thrown_again(motion: MeasuredMotion, last: slice, flight: slice) -> bool:
     corners = motion.p_WB_W[between][:, None] + turned
     gaps = np.min([surface.gaps(corners.reshape(-1, 3)) for surface in surfaces], axis=0)
     lowest = gaps.reshape(len(corners), -1).min(axis=1) - shape.rounding
-    return float(lowest.max()) > LIFTED * _reach(motion)
+    return float(lowest.max()) > LIFTED * reach_of(shape)
 
 
 def _rests_by(motion: MeasuredMotion, begin: int, end: int) -> int:

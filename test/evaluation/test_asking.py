@@ -10,7 +10,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.evaluation.asking import asked_before, compare_event, of_known_center
 from contact_dynamics.evaluation.comparison import Comparison
 from contact_dynamics.evaluation.model_error import model_error_of
@@ -226,10 +225,3 @@ def test_model_errors_of_a_calibration_widen_the_regions(brick: Recording, tmp_p
             variances = [np.square(narrow.time_error / row.distance) for row in (narrow, widened)]
             assert variances[1] - variances[0] == pytest.approx(np.square(1e-3 / speed), rel=1e-9)
     assert kinds == {EventKind.FLIGHT, EventKind.LANDING, EventKind.IMPACT}
-
-
-def test_a_file_that_is_no_calibration_is_rejected(tmp_path: Path) -> None:
-    file = tmp_path / "other.json"
-    file.write_text("{}", encoding="utf-8")
-    with pytest.raises(InvalidFieldError, match=r"calibrate --json"):
-        model_error_of(file)
