@@ -44,19 +44,24 @@ before the first row.
 from __future__ import annotations
 
 import argparse
+import json
 import sys
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Final, NamedTuple
+from typing import Any, Final, NamedTuple
 
 import mujoco
 import numpy as np
 
 from contact_dynamics.measured.read_toss import DEFAULT_RECORDING
-from contact_dynamics.measured.recorded_toss import COLUMNS, DECIMALS, Toss, write_toss_csv
+from contact_dynamics.measured.recorded_toss import COLUMNS, UNITS, Toss
 from contact_dynamics.motion.velocity_estimate import causal_velocities, frames_in_window
 from contact_dynamics.rigid_body.body import MassProperties
 from contact_dynamics.rotations.many import turned
 from contact_dynamics.world import Body, Surface, box_vertices
+
+DECIMALS: Final = (9, *(6,) * 3, *(6,) * 4, *(4,) * 3, *(4,) * 3)
+"""Decimals of each column: resolutions of 1 ns, 1 um, 1e-6 (2 urad), 0.1 mm/s and 0.1 mrad/s."""
 
 SIZE: Final = (0.15, 0.09, 0.05)  # m
 MASS: Final = 0.4  # kg
@@ -231,6 +236,36 @@ their row and none after (contact_dynamics/motion/velocity_estimate.py).
 Inertia: principal moments about the body's axes x, y, z through the centre of mass. Noise: standard deviation
 of each coordinate. Restitution: of a point mass against the floor.
 """
+
+
+def write_toss_csv(path: Path, toss: Toss, *, prose: Sequence[str] = ()) -> None:
+    """Write a toss to a file, with the lines of ``prose`` as comments at the top."""
+    header: dict[str, Any] = {
+        "source": toss.source,
+        "body": toss.body.name,
+        "mass": toss.body.mass_properties.mass,
+        "box_size": toss.box_size.tolist(),
+        "inertia": toss.body.mass_properties.I_B.diagonal().tolist(),
+        "surface": toss.surface.name,
+        "surface_height": float(toss.surface.p_WS_W[2]),
+        "friction": toss.surface.friction,
+        "restitution": toss.surface.restitution,
+        "gravity": -float(toss.gravity_W[2]),
+        "rate": toss.rate,
+        "position_noise": toss.position_noise,
+        "orientation_noise": toss.orientation_noise,
+    }
+    lines = [f"# {line}".rstrip() for line in prose]
+    lines += [
+        f"# {name}{f' [{UNITS[name]}]' if UNITS[name] else ''}: {json.dumps(header[name])}" for name in UNITS
+    ]
+    lines.append(",".join(COLUMNS))
+    table = np.column_stack([toss.times, toss.p_WB_W, toss.q_WB, toss.v_WB_W, toss.w_WB_W])
+    for row in table.tolist():
+        # adding 0.0 turns -0.0 into 0.0: the sign of a rounded zero is noise
+        numbers = (round(x, d) + 0.0 for x, d in zip(row, DECIMALS, strict=True))
+        lines.append(",".join(f"{x:.{d}f}" for x, d in zip(numbers, DECIMALS, strict=True)))
+    path.write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
 def main(arguments: list[str]) -> int:

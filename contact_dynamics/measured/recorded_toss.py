@@ -32,7 +32,6 @@ from contact_dynamics.validation import check_array, check_finite, check_positiv
 from contact_dynamics.world import Body, Surface, box_vertices
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
     from pathlib import Path
 
     from contact_dynamics.validation import FloatArray
@@ -121,9 +120,6 @@ class Toss(Record):
 
 COLUMNS: Final = ("t", "px", "py", "pz", "qx", "qy", "qz", "qw", "vx", "vy", "vz", "wx", "wy", "wz")
 
-DECIMALS: Final = (9, *(6,) * 3, *(6,) * 4, *(4,) * 3, *(4,) * 3)
-"""Decimals of each column: resolutions of 1 ns, 1 um, 1e-6 (2 urad), 0.1 mm/s and 0.1 mrad/s."""
-
 UNITS: Final = {  # names in the header, all required, with their units
     "source": "",
     "body": "",
@@ -141,36 +137,6 @@ UNITS: Final = {  # names in the header, all required, with their units
 }
 
 _HEADER_LINE: Final = re.compile(r"# (\w+)(?: \[([^\]]*)\])?: (.*)")
-
-
-def write_toss_csv(path: Path, toss: Toss, *, prose: Sequence[str] = ()) -> None:
-    """Write a toss to a file, with the lines of ``prose`` as comments at the top."""
-    header: dict[str, Any] = {
-        "source": toss.source,
-        "body": toss.body.name,
-        "mass": toss.body.mass_properties.mass,
-        "box_size": toss.box_size.tolist(),
-        "inertia": toss.body.mass_properties.I_B.diagonal().tolist(),
-        "surface": toss.surface.name,
-        "surface_height": float(toss.surface.p_WS_W[2]),
-        "friction": toss.surface.friction,
-        "restitution": toss.surface.restitution,
-        "gravity": -float(toss.gravity_W[2]),
-        "rate": toss.rate,
-        "position_noise": toss.position_noise,
-        "orientation_noise": toss.orientation_noise,
-    }
-    lines = [f"# {line}".rstrip() for line in prose]
-    lines += [
-        f"# {name}{f' [{UNITS[name]}]' if UNITS[name] else ''}: {json.dumps(header[name])}" for name in UNITS
-    ]
-    lines.append(",".join(COLUMNS))
-    table = np.column_stack([toss.times, toss.p_WB_W, toss.q_WB, toss.v_WB_W, toss.w_WB_W])
-    for row in table.tolist():
-        # adding 0.0 turns -0.0 into 0.0: the sign of a rounded zero is noise
-        numbers = (round(x, d) + 0.0 for x, d in zip(row, DECIMALS, strict=True))
-        lines.append(",".join(f"{x:.{d}f}" for x, d in zip(numbers, DECIMALS, strict=True)))
-    path.write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
 def read_toss_csv(path: Path) -> Toss:

@@ -8,7 +8,6 @@ import pytest
 
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.measured.read_toss import DEFAULT_RECORDING, read_toss
-from contact_dynamics.measured.recorded_toss import write_toss_csv
 from contact_dynamics.motion.velocity_estimate import causal_velocities, frames_in_window
 from measured.brick_truth import TRUTH
 from oracles.rigid_flight import fly, matrix
@@ -133,14 +132,6 @@ def test_arrays_cannot_be_written() -> None:
     ):
         with pytest.raises(ValueError, match="read-only"):
             array[0] = 0.0
-
-
-def test_writing_what_was_read_gives_the_same_numbers(tmp_path: Path) -> None:
-    write_toss_csv(tmp_path / "again.csv", read_toss())
-    original = DEFAULT_RECORDING.read_text(encoding="utf-8").splitlines()
-    again = (tmp_path / "again.csv").read_text(encoding="utf-8").splitlines()
-    header = original.index(again[0])
-    assert again == original[header:]
 
 
 @pytest.mark.parametrize(
