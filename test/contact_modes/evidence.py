@@ -3,19 +3,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
+from scipy.optimize import linprog
 
 from contact_dynamics.contact.contact import ContactSet
+from contact_dynamics.contact.friction import linearised_cone
 from contact_dynamics.contact_modes import (
+    ModeVerdict,
     PlanarContactProblem,
     PlanarMode,
     PlanarModeAnswer,
     SpatialContactProblem,
     SpatialMode,
+    contact_modes,
 )
 from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarVelocity, PlanarWrench
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
@@ -171,3 +175,40 @@ def check_laws(problem: SpatialContactProblem, mode: SpatialMode, flush_within: 
         else:
             straight = -friction * pressing * way / np.linalg.norm(way)
             assert np.abs(across - straight).max() <= small * size * max(1.0, friction)
+
+
+def pyramid_wrenches(
+    contacts: ContactSet, edges: int, share: float = 1.0, about: ArrayLike = (0.0, 0.0, 0.0)
+) -> np.ndarray:
+    """Return the wrenches, (k, 6), of the edges of pyramids inside cones with a share of the friction."""
+    rows = []
+    for one in contacts:
+        forces = linearised_cone(one.normal_W, share * one.friction, edges)
+        rows.append(np.hstack([forces, np.cross(one.p_WC_W - about, forces)]))
+    return np.vstack(rows)
+
+
+def balance(wrenches: np.ndarray, load: np.ndarray) -> bool:
+    """Return whether positive combinations of wrenches, (k, 6), balance a load: a linear program."""
+    found = linprog(np.zeros(len(wrenches)), A_eq=wrenches.T, b_eq=-load, method="highs")
+    return bool(found.status == 0)
+
+
+def check_proofs(drawn: Iterable[tuple[Any, Callable[[], Any]]], samples: int) -> int:
+    """Check answers that are certain against samples of the same box, and return how many there were."""
+    proven = 0
+    for problem, sample in drawn:
+        answer = contact_modes(problem)
+        assert answer.within is not None
+        assert answer.within.verdicts[0] == answer.verdict
+        if not answer.within.certain:
+            assert answer.within.samples > 0
+            continue
+        proven += 1
+        assert answer.within.verdicts == (answer.verdict,)
+        for _ in range(samples):
+            other = contact_modes(sample())
+            assert other.verdict == answer.verdict, problem
+            if answer.verdict == ModeVerdict.UNIQUE:
+                assert other.modes[0].mode == answer.modes[0].mode, problem
+    return proven

@@ -14,7 +14,6 @@ import pytest
 from contact_dynamics.contact import ContactUncertainty
 from contact_dynamics.contact_modes import (
     PlanarContactProblem,
-    PlanarMode,
     PlanarModeAnswer,
     contact_modes,
     geometry_margins,
@@ -66,26 +65,6 @@ def feet(width: float = 0.3, height: float = 0.2, friction: float = MU) -> list[
 
 def problem_on(motion: Motion, velocity: PlanarVelocity, *contacts: PlanarContact) -> PlanarContactProblem:
     return planar_problem(BLOCK, velocity, [motion.carried(one) for one in contacts], WEIGHT)
-
-
-def only_mode(problem: PlanarContactProblem) -> PlanarMode:
-    answer = contact_modes(problem)
-    assert answer.problem is problem
-    (mode,) = answer.modes
-    return mode
-
-
-@pytest.mark.parametrize("sign", [1.0, -1.0])
-def test_a_block_rides_on_a_cart_up_to_mu_g(sign: float) -> None:
-    for a, letters in ((0.999 * MU * G, "ff"), (1.001 * MU * G, "ll" if sign > 0 else "rr")):
-        cart = Motion(v=(3.0, 0.0), a=(sign * a, 0.0))
-        mode = only_mode(problem_on(cart, PlanarVelocity(v=(3.0, 0.0), w=0.0), *feet()))
-        assert mode.mode == letters
-        assert mode.acceleration == pytest.approx((sign * min(a, MU * G), 0.0), abs=1e-12)
-        assert mode.contact_accelerations[0] == pytest.approx((sign * min(0.0, MU * G - a), 0.0), abs=1e-12)
-        assert mode.contact_forces[0][0] + mode.contact_forces[1][0] == pytest.approx(
-            sign * 2.0 * min(a, MU * G), abs=1e-11
-        )
 
 
 def test_a_block_between_two_belts_is_dragged_by_both() -> None:

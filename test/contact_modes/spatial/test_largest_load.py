@@ -22,7 +22,6 @@ from contact_dynamics import (
     contact_modes,
     largest_load,
 )
-from contact_dynamics.contact.friction import linearised_cone
 from contact_dynamics.contact_modes.spatial.largest_load import (
     LargestLoad,
     largest_acceleration,
@@ -31,7 +30,7 @@ from contact_dynamics.contact_modes.spatial.largest_load import (
     least_friction,
 )
 from contact_dynamics.errors import InvalidFieldError
-from contact_modes.evidence import spatial_problem
+from contact_modes.evidence import pyramid_wrenches, spatial_problem
 from sweeps import seeds
 
 WEIGHT = 20.0 * 10.0
@@ -205,19 +204,17 @@ def test_limits_against_a_linear_program(seed: int) -> None:
     found = largest_load(problem, force_W=load[:3], torque_W=load[3:], max_normal_forces=limits)
 
     def bound(scale: float) -> float:
-        cones = [linearised_cone(one, scale * mu, edges) for one, mu in zip(normals, friction, strict=True)]
-        forces = np.vstack(cones)
-        arms = np.repeat(points, edges, axis=0)
-        wrenches = np.hstack([forces, np.cross(arms, forces)]).T
+        wrenches = pyramid_wrenches(contacts, edges, scale)
         pressing = np.zeros((n, n * edges))
         for i in range(n):
-            pressing[i, i * edges : (i + 1) * edges] = cones[i] @ normals[i]
+            at = slice(i * edges, (i + 1) * edges)
+            pressing[i, at] = wrenches[at, :3] @ normals[i]
         bounded = np.isfinite(limits)
         program = linprog(
             np.append(np.zeros(n * edges), -1.0),
             A_ub=np.hstack([pressing, np.zeros((n, 1))])[bounded],
             b_ub=limits[bounded],
-            A_eq=np.hstack([wrenches, load[:, None]]),
+            A_eq=np.hstack([wrenches.T, load[:, None]]),
             b_eq=np.zeros(6),
         )
         return float("inf") if program.status == 3 else float(program.x[-1])

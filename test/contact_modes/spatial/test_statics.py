@@ -8,7 +8,6 @@ import math
 
 import numpy as np
 import pytest
-from scipy.optimize import linprog
 from scipy.spatial.transform import Rotation
 
 from contact_dynamics.contact.contact import ContactSet
@@ -23,7 +22,7 @@ from contact_dynamics.contact_modes import (
 from contact_dynamics.errors import TooLargeError, UndecidedError
 from contact_dynamics.plane.types import PlanarBody, PlanarContact, PlanarWrench
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
-from contact_modes.evidence import spatial_problem
+from contact_modes.evidence import balance, pyramid_wrenches, spatial_problem
 from sweeps import seeds
 
 WEIGHT, MU, HEIGHT = 20.0, 0.5, 0.25
@@ -207,16 +206,7 @@ def test_contacts_that_nearly_coincide_are_answered_or_refused_by_name(apart: fl
 
 def can_balance(found: ContactSet, wrench: np.ndarray, share: float) -> bool:
     """Whether forces in cones of 64 edges, friction scaled by ``share``, balance a wrench."""
-    columns = []
-    for point, normal, friction in zip(found.p_WC_W, found.normals_W, found.frictions, strict=True):
-        one = np.cross(normal, [1.0, 0.0, 0.0] if abs(normal[0]) < 0.9 else [0.0, 1.0, 0.0])
-        one /= np.linalg.norm(one)
-        for angle in 2.0 * np.pi * np.arange(64) / 64:
-            way = math.cos(angle) * one + math.sin(angle) * np.cross(normal, one)
-            force = normal + share * friction * way
-            columns.append(np.concatenate([force, np.cross(point, force)]))
-    found_forces = linprog(np.zeros(len(columns)), A_eq=np.array(columns).T, b_eq=-wrench)
-    return bool(found_forces.status == 0)
+    return balance(pyramid_wrenches(found, 64, share), wrench)
 
 
 @seeds(range(5), slow=range(5, 12))

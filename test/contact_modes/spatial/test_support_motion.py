@@ -23,7 +23,6 @@ from contact_dynamics import (
     World,
     contact_modes,
 )
-from contact_dynamics.contact import linearised_cone
 from contact_dynamics.contact_modes import (
     LargestLoad,
     closure,
@@ -33,7 +32,7 @@ from contact_dynamics.contact_modes import (
     least_friction,
 )
 from contact_dynamics.errors import InvalidFieldError, NotSupportedError
-from contact_modes.evidence import spatial_problem
+from contact_modes.evidence import pyramid_wrenches, spatial_problem
 from sweeps import seeds
 
 G = 9.80665
@@ -256,14 +255,6 @@ def positively_spans(wrenches: NDArray[np.float64]) -> bool:
         return False
     zero = linprog(np.zeros(len(wrenches)), A_eq=wrenches.T, b_eq=np.zeros(6), bounds=(1.0, None))
     return bool(zero.status == 0)
-
-
-def pyramid_wrenches(contacts: ContactSet, facets: int, share: float) -> NDArray[np.float64]:
-    rows = []
-    for one in contacts:
-        edges = linearised_cone(one.normal_W, share * one.friction, facets) if share else one.normal_W[None]
-        rows += [np.concatenate([edge, np.cross(one.p_WC_W, edge)]) for edge in edges]
-    return np.array(rows)
 
 
 @seeds(range(2), slow=range(2, 5))

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -14,7 +15,7 @@ from contact_dynamics.contact_modes import ModeVerdict, SpatialContactProblem, c
 from contact_dynamics.contact_modes.spatial.uncertain import no_other_mode
 from contact_dynamics.errors import InvalidFieldError
 from contact_dynamics.rigid_body.body import BodyState, MassProperties
-from contact_modes.evidence import spatial_problem
+from contact_modes.evidence import check_proofs, spatial_problem
 
 BODY = MassProperties(mass=1.0, I_B=np.diag([0.0043, 0.0043, 0.0053]))
 FRICTION = 0.5
@@ -77,41 +78,26 @@ def moved(
     return replace(problem, contacts=contacts, uncertainty=ContactUncertainty())
 
 
-def check_proofs(seeds: range, samples: int) -> int:
-    """Check answers that are certain against samples, and return how many there were."""
-    proven = 0
-    for seed in seeds:
-        chance = np.random.default_rng(seed)
-        box = ContactUncertainty(
-            points=10.0 ** chance.uniform(-14.0, -2.0),
-            normals=10.0 ** chance.uniform(-14.0, -2.0),
-            frictions=10.0 ** chance.uniform(-14.0, -2.0),
-        )
-        problem = replace(drawn(chance), uncertainty=box)
-        answer = contact_modes(problem)
-        assert answer.within is not None
-        assert answer.within.verdicts[0] == answer.verdict
-        if not answer.within.certain:
-            assert answer.within.samples > 0
-            continue
-        proven += 1
-        assert answer.within.verdicts == (answer.verdict,)
-        for _ in range(samples):
-            other = contact_modes(moved(problem, box, chance))
-            assert other.verdict == answer.verdict, seed
-            if answer.verdict == ModeVerdict.UNIQUE:
-                assert other.modes[0].mode == answer.modes[0].mode, seed
-    return proven
+def boxed(seed: int) -> tuple[SpatialContactProblem, Callable[[], SpatialContactProblem]]:
+    """Return a problem with an uncertainty, and what draws problems within it."""
+    chance = np.random.default_rng(seed)
+    box = ContactUncertainty(
+        points=10.0 ** chance.uniform(-14.0, -2.0),
+        normals=10.0 ** chance.uniform(-14.0, -2.0),
+        frictions=10.0 ** chance.uniform(-14.0, -2.0),
+    )
+    problem = replace(drawn(chance), uncertainty=box)
+    return problem, lambda: moved(problem, box, chance)
 
 
 def test_what_is_certain_holds_at_every_sample() -> None:
-    assert check_proofs(range(9), samples=4) >= 6
+    assert check_proofs(map(boxed, range(9)), samples=4) >= 6
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("block", range(20))
 def test_what_is_certain_holds_at_many_samples(block: int) -> None:
-    assert check_proofs(range(1000 + 15 * block, 1015 + 15 * block), samples=60) > 0
+    assert check_proofs(map(boxed, range(1000 + 15 * block, 1015 + 15 * block)), samples=60) > 0
 
 
 @pytest.mark.parametrize("push", [(0.0, 0.0), (3.0, 1.0), (6.0, 1.0)])
@@ -140,6 +126,14 @@ def test_a_pushed_box_holds_where_an_eighth_of_friction_is_not_known() -> None:
     )
     assert no_other_mode(problem, "ffff", ContactUncertainty(frictions=0.125))
     assert not no_other_mode(problem, "ffff", ContactUncertainty(frictions=0.21))
+
+
+def test_a_proof_fails_where_more_friction_would_hold_the_tripod() -> None:
+    """It slides, and would stick if friction rose to push / weight."""
+    problem = on_feet(TRIPOD, (6.0, 0.0))
+    gained = 6.0 / WEIGHT - FRICTION
+    assert no_other_mode(problem, "ccc", ContactUncertainty(frictions=0.6 * gained))
+    assert not no_other_mode(problem, "ccc", ContactUncertainty(frictions=1.001 * gained))
 
 
 def test_each_contact_may_have_its_own_uncertainty() -> None:
