@@ -5,7 +5,6 @@ from contact_dynamics import PlanarContact, PlanarVelocity, contact_modes, plane
 from hostile_values.shared import BALL, CONTACTS, DEEP, FLAT, LEAN, RESTING, ROD, TIP, Calls
 
 FLAT_ANSWER, DEEP_ANSWER = contact_modes.contact_modes(FLAT), contact_modes.contact_modes(DEEP)
-FLAT_SET, DEEP_SET = contact_modes.wrench_sets(FLAT)[0], contact_modes.wrench_sets(DEEP)[0]
 UPRIGHT = plane.PlaneOfMotion(normal_W=[1.0, 0.0, 0.0])
 LOADED = {
     "body": BALL,

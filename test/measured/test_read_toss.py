@@ -12,8 +12,6 @@ from contact_dynamics.motion.velocity_estimate import causal_velocities, frames_
 from measured.brick_truth import TRUTH
 from oracles.rigid_flight import fly, matrix
 
-HERE = Path(__file__).parent
-
 
 def edited(tmp_path: Path, old: str, new: str) -> Path:
     text = DEFAULT_RECORDING.read_text(encoding="utf-8")

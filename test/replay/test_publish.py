@@ -183,17 +183,7 @@ def in_a_terminal(bag: Path, *, typed_before: bytes = b"") -> tuple[subprocess.P
     """Begin paused to publish a log in a terminal; return the process and what types into it."""
     outside, inside = pty.openpty()
     os.write(outside, typed_before)
-    command = [
-        sys.executable,
-        "-m",
-        "contact_dynamics",
-        "replay",
-        "publish",
-        str(bag),
-        "--paused",
-        "--wait",
-        "0",
-    ]
+    command = [sys.executable, "-m", "contact_dynamics", "replay", "publish", bag, "--paused", "--wait", "0"]
     started = subprocess.Popen(
         command,
         cwd=ROOT,

@@ -50,14 +50,15 @@ def copied(
     *,
     run: Callable[[dict[str, str]], dict[str, str]] = dict,
     data_of: Callable[[LoggedMessage], bytes] = as_it_is,
+    until: int | None = None,
 ) -> Path:
-    """A copy of a log, with another record of its run or other messages."""
+    """A copy of a log, with another record of its run, other messages, or only the first of them."""
     reader = BagReader(asked.log)
     with BagWriter(folder / "copy", run=run(reader.run())) as writer:
         messages = list(reader.messages())
         for topic, type_name in sorted({(message.topic, message.type_name) for message in messages}):
             writer.add_topic(topic, type_name)
-        for message in messages:
+        for message in messages[:until]:
             writer.write(
                 message.topic,
                 data_of(message),
@@ -76,12 +77,6 @@ def changed(parameter: str, value: object) -> Callable[[dict[str, str]], dict[st
         return {**run, "parameters": json.dumps({**parameters, parameter: value})}
 
     return change
-
-
-def as_text(run: dict[str, str]) -> dict[str, str]:
-    """The record as servers wrote it before it had types: each parameter as Python prints it."""
-    others = {key: text for key, text in run.items() if key not in {"parameters", "state_topics"}}
-    return {**others, **{name: str(value) for name, value in json.loads(run["parameters"]).items()}}
 
 
 def assert_all_equal(found: Verification, asked: Asked) -> None:
@@ -131,14 +126,7 @@ def test_in_an_environment_with_the_library_alone(asked: Asked, tmp_path: Path) 
     )
     write_flight(tmp_path / "bag")
     (tmp_path / "flights.yaml").write_text(CONFIGURATION)
-    command = [
-        environment / "bin" / "contact-dynamics",
-        "replay",
-        "table",
-        tmp_path / "bag",
-        "--ask",
-        "landing",
-    ]
+    command = [command[0], "replay", "table", tmp_path / "bag", "--ask", "landing"]
     command += ["--config", tmp_path / "flights.yaml", "--topics", "ball=/tracker/ball"]
     done = subprocess.run(command, capture_output=True, text=True, check=False, env=outside, cwd=tmp_path)
     assert done.returncode == 0, done.stdout + done.stderr
@@ -428,20 +416,9 @@ def test_the_known_digests_are_those_of_the_interface_files() -> None:
 
 
 def test_questions_without_an_answer_are_told(asked: Asked, tmp_path: Path) -> None:
-    reader = BagReader(asked.log)
-    messages: list[LoggedMessage] = list(reader.messages())
-    *_, last = (index for index, message in enumerate(messages) if message.topic.endswith("/_service_event"))
-    with BagWriter(tmp_path / "short", run=reader.run()) as writer:
-        for topic, type_name in sorted({(message.topic, message.type_name) for message in messages}):
-            writer.add_topic(topic, type_name)
-        for message in messages[:last]:
-            writer.write(
-                message.topic,
-                message.data,
-                log_time_ns=message.log_time_ns,
-                publish_time_ns=message.publish_time_ns,
-            )
-    found = verify_log(tmp_path / "short")
+    events = (m.topic.endswith("/_service_event") for m in BagReader(asked.log).messages())
+    *_, last = (index for index, is_event in enumerate(events) if is_event)
+    found = verify_log(copied(asked, tmp_path, until=last))
     assert found.agrees
     assert sum(tally.unanswered for tally in found.services.values()) == 1
 

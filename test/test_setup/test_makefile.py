@@ -15,7 +15,6 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[2]
-PIP = "pip"
 BUILD = "build"
 
 # Stands for setup/make_venv.sh, with an environment whose programs only write down what they were asked for.
