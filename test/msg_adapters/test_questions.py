@@ -203,15 +203,6 @@ def test_a_second_body_is_there_where_anything_is_said_of_it() -> None:
     assert question.other_state == PublishedState(stamp_ns=7)
 
 
-READ_WITH: dict[str, dict[str, Any]] = {
-    "rate": {"sampling": 2, "times": []},
-    "margin_length": {"include_margins": True},
-    "strike_window": {"several_contacts_law": 2},
-    "max_strikes": {"several_contacts_law": 2},
-}
-"""What a request says besides, so that a field of it is read."""
-
-
 @pytest.mark.parametrize(
     ("service", "path", "value", "error", "words"),
     [
@@ -262,18 +253,12 @@ READ_WITH: dict[str, dict[str, Any]] = {
             InvalidFieldError,
             "velocity_tolerance must be >= 0, got -0.5",
         ),
-        (PredictTumbling, "rate", 0.0, InvalidFieldError, "rate must be .*, got 0"),
-        (PredictContactMode, "margin_length", 0.0, InvalidFieldError, "margin_length must be .*, got 0"),
-        (PredictImpact, "strike_window", 0.0, InvalidFieldError, "strike_window must be .*, got 0"),
-        (PredictImpact, "max_strikes", 0, InvalidFieldError, "max_strikes must be .*, got 0"),
     ],
 )
 def test_an_error_names_the_field_of_the_request(
     service: Any, path: str, value: Any, error: type[Exception], words: str
 ) -> None:
     request = explicit(service)
-    for field, asked in READ_WITH.get(path, {}).items():
-        setattr(request, field, asked)
     put(path, value)(request)
     with pytest.raises(error, match=words):
         read(request)

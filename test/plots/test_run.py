@@ -27,21 +27,10 @@ from contact_dynamics_interfaces.srv import (
 )
 from message_words import says
 from nodes.test_same_question import REQUESTS, filled
-from replay.asked_log import about_many
+from replay.asked_log import BLOCKED, about_many
 from running_server import ROOT, server_and_client
 
-BLOCKED = """
-import sys
-class Missing:
-    def find_spec(self, name, path=None, target=None):
-        first = name.partition(".")[0]
-        named = first in {"rclpy", "rpyutils", "ament_index_python", "rerun"}
-        if named or first.endswith(("_msgs", "_interfaces")):
-            raise ModuleNotFoundError(f"No module named {name!r}", name=name)
-sys.meta_path.insert(0, Missing())
-from contact_dynamics.command_line import main
-sys.exit(main(sys.argv[1:]))
-"""
+WITHOUT_RERUN = BLOCKED.replace('"rclpy",', '"rclpy", "rerun",')
 """The command line where neither ROS nor its messages nor rerun can be found."""
 
 
@@ -80,7 +69,7 @@ def log(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def test_each_answer_has_its_diagrams_without_ros(log: Path, tmp_path: Path) -> None:
     run = subprocess.run(
-        [sys.executable, "-c", BLOCKED, "plot", str(log), "--output", str(tmp_path / "out")],
+        [sys.executable, "-c", WITHOUT_RERUN, "plot", str(log), "--output", str(tmp_path / "out")],
         capture_output=True,
         text=True,
         check=False,

@@ -10,7 +10,6 @@ from pathlib import Path
 from xml.etree import ElementTree as ET
 
 import numpy as np
-import pytest
 import scipy
 
 import contact_dynamics
@@ -50,11 +49,6 @@ def test_another_packages_manifest_is_not_taken(tmp_path: Path) -> None:
         "<package><name>other</name><version>3.2.1</version></package>", encoding="utf-8"
     )
     assert "3.2.1" not in ask(tmp_path).stdout
-
-
-def test_an_unknown_attribute_is_none() -> None:
-    with pytest.raises(AttributeError, match="has no attribute 'nonsense'"):
-        contact_dynamics.nonsense  # noqa: B018
 
 
 def test_both_packages_say_that_they_are_typed() -> None:

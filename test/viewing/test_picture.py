@@ -26,9 +26,7 @@ LATER_NS = STAMP_NS + 100_000_000
 
 
 def moved(state: BodyState, stamp_ns: int) -> BodyState:
-    return BodyState(
-        p_WB_W=state.p_WB_W, q_WB=state.q_WB, v_WB_W=state.v_WB_W, w_WB_W=state.w_WB_W, stamp_ns=stamp_ns
-    )
+    return replace(state, stamp_ns=stamp_ns)
 
 
 def an_impact(
